@@ -1,0 +1,75 @@
+#include "dof/lens.h"
+
+#include <cmath>
+#include <limits>
+
+#include "raster/numbers/exact_math.h"
+
+namespace softfocus {
+namespace {
+
+constexpr double kMillimetres = 1000.0;  // per metre
+
+double focus_mm(const ThinLens& lens) { return lens.focus_m * kMillimetres; }
+
+}  // namespace
+
+const char* lens_error(const ThinLens& lens) {
+  const auto usable = [](double value) { return std::isfinite(value) && value > 0.0; };
+  if (!usable(lens.focal_length_mm)) return "the focal length must be a positive number of mm";
+  if (!usable(lens.f_number)) {
+    return "the f-number must be positive and finite (for an all-sharp picture, "
+           "use the pinhole method)";
+  }
+  if (!usable(lens.focus_m)) return "the focus distance must be a positive number of metres";
+  if (focus_mm(lens) <= lens.focal_length_mm) {
+    return "the focal length must be shorter than the focus distance: "
+           "nothing nearer than the focal length can be in focus";
+  }
+  return nullptr;
+}
+
+double aperture_mm(const ThinLens& lens) { return lens.focal_length_mm / lens.f_number; }
+
+double image_distance_mm(const ThinLens& lens, double distance_m) {
+  const double z = distance_m * kMillimetres;
+  return lens.focal_length_mm * z / (z - lens.focal_length_mm);
+}
+
+double coc_on_film_mm(const ThinLens& lens, double distance_m) {
+  const double z = distance_m * kMillimetres;
+  const double f = lens.focal_length_mm;
+  return aperture_mm(lens) * f * std::fabs(z - focus_mm(lens)) / (z * (focus_mm(lens) - f));
+}
+
+double hyperfocal_m(const ThinLens& lens, double largest_coc_mm) {
+  const double f = lens.focal_length_mm;
+  return (f * f / (lens.f_number * largest_coc_mm) + f) / kMillimetres;
+}
+
+SharpRange sharp_range(const ThinLens& lens, double largest_coc_mm) {
+  // c = c_max solved for z on either side of focus:
+  //   z = A f z_f / (A f +- c_max (z_f - f))
+  const double a_f = aperture_mm(lens) * lens.focal_length_mm;
+  const double spread = largest_coc_mm * (focus_mm(lens) - lens.focal_length_mm);
+  SharpRange range{};
+  range.near_m = a_f * lens.focus_m / (a_f + spread);
+  range.far_m = spread < a_f ? a_f * lens.focus_m / (a_f - spread)
+                             : std::numeric_limits<double>::infinity();
+  return range;
+}
+
+PixelCoc pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px, double coc_scale) {
+  const double pixels_per_unit_tangent =
+      height_px / (2.0 * exact_math::tan_degrees(fov_y_degrees / 2.0));
+  const double aperture_radius_m = aperture_mm(lens) / kMillimetres / 2.0;
+  const double at_infinity =
+      aperture_radius_m / lens.focus_m * pixels_per_unit_tangent * coc_scale;
+  return {static_cast<float>(at_infinity), static_cast<float>(lens.focus_m)};
+}
+
+double film_height_mm(const ThinLens& lens, double fov_y_degrees) {
+  return 2.0 * image_distance_mm(lens, lens.focus_m) * exact_math::tan_degrees(fov_y_degrees / 2.0);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,50 @@
+#pragma once
+// The table of depth-of-field methods. A method is one entry: adding one touches its
+// own file, the table and a test.
+
+#include <span>
+#include <string_view>
+
+#include "dof/lens.h"
+#include "raster/images/image.h"
+#include "raster/numbers/profile.h"
+#include "raster/parallel.h"
+
+namespace softfocus {
+
+/// What every method is told about the lens and the filter.
+struct DofSettings {
+  PixelCoc coc;
+  /// Largest circle of confusion, a radius in pixels, 0 to kLargestMaxCoc: larger
+  /// ones are cut to it.
+  float max_coc_px = 16.0f;
+  /// How readily a background gives its colour to what lies before it: the factor
+  /// of the leakage weight, per pixel of the receiver's radius. 0 or more.
+  float leak = 0.25f;
+};
+
+inline constexpr float kLargestMaxCoc = 1024.0f;
+
+/// A picture and how to blur it.
+struct DofInput {
+  /// RGBA16F: linear colour, and in alpha the depth in metres along the axis.
+  const Image& scene;
+  DofSettings settings;
+  Profile profile;
+};
+
+struct Method {
+  std::string_view name;
+  std::string_view summary;
+  /// What the method works from, for the list of methods.
+  std::string_view needs;
+  /// An image of the scene's size and format, depth kept in alpha.
+  Image (*apply)(const DofInput& input, ThreadPool& pool);
+};
+
+std::span<const Method> methods();
+
+/// The method of that name, or nullptr.
+const Method* find_method(std::string_view name);
+
+}  // namespace softfocus

@@ -1,0 +1,52 @@
+#include "raster/images/image.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "raster/numbers/hash.h"
+
+namespace softfocus {
+
+Image make_image(Format format, int width, int height) {
+  assert(width >= 1 && width <= kMaxImageSize && height >= 1 && height <= kMaxImageSize);
+  Image image{.format = format, .width = width, .height = height, .stride_bytes = 0, .bytes = {}};
+  const std::size_t used = static_cast<std::size_t>(width) * bytes_per_texel(format);
+  image.stride_bytes = (used + kRowAlignment - 1) / kRowAlignment * kRowAlignment;
+  image.bytes.resize(image.stride_bytes * static_cast<std::size_t>(height));
+  return image;
+}
+
+namespace {
+
+template <class Channel>
+void add_rows_to_hash(Hash& hash, const Image& image) {
+  for (int y = 0; y < image.height; ++y) {
+    for (const Channel value : row<Channel>(image, y)) add_to_hash(hash, value);
+  }
+}
+
+}  // namespace
+
+std::uint64_t hash_image(const Image& image) {
+  Hash hash;
+  add_to_hash(hash, static_cast<std::uint8_t>(image.format));
+  add_to_hash(hash, static_cast<std::uint32_t>(image.width));
+  add_to_hash(hash, static_cast<std::uint32_t>(image.height));
+  switch (image.format) {
+    case Format::r8:
+    case Format::rgba8:
+    case Format::srgb8: add_rows_to_hash<std::uint8_t>(hash, image); break;
+    case Format::rgba16f: add_rows_to_hash<std::uint16_t>(hash, image); break;
+    case Format::r32f:
+    case Format::rgba32f: add_rows_to_hash<float>(hash, image); break;
+  }
+  return hash.value;
+}
+
+bool equal(const Image& a, const Image& b) {
+  // Padding is zero in every image, so whole buffers compare.
+  return a.format == b.format && a.width == b.width && a.height == b.height &&
+         std::equal(a.bytes.begin(), a.bytes.end(), b.bytes.begin(), b.bytes.end());
+}
+
+}  // namespace softfocus

@@ -1,0 +1,64 @@
+#pragma once
+// Reading and writing one texel as four floats, whatever the format. A one-channel
+// format reads as (value, 0, 0, 1) and stores the first component, as in OpenGL.
+
+#include <glm/vec4.hpp>
+
+#include "raster/images/image.h"
+#include "raster/numbers/half.h"
+#include "raster/numbers/lerp.h"
+#include "raster/numbers/profile.h"
+#include "raster/numbers/srgb.h"
+
+namespace softfocus {
+
+/// The format-known forms, for inner loops. `x` counts texels in the row.
+template <Format format>
+glm::vec4 load_texel(const Image& image, int x, int y) {
+  const auto index = static_cast<std::size_t>(x) * static_cast<std::size_t>(channel_count(format));
+  if constexpr (format == Format::r8) {
+    return {unorm8_to_linear(row<std::uint8_t>(image, y)[index]), 0.0f, 0.0f, 1.0f};
+  } else if constexpr (format == Format::r32f) {
+    return {row<float>(image, y)[index], 0.0f, 0.0f, 1.0f};
+  } else if constexpr (format == Format::rgba32f) {
+    const auto* v = &row<float>(image, y)[index];
+    return {v[0], v[1], v[2], v[3]};
+  } else if constexpr (format == Format::rgba16f) {
+    const auto* v = &row<std::uint16_t>(image, y)[index];
+    return {half_to_float(v[0]), half_to_float(v[1]), half_to_float(v[2]), half_to_float(v[3])};
+  } else {
+    const auto* v = &row<std::uint8_t>(image, y)[index];
+    const auto decode = format == Format::srgb8 ? srgb8_to_linear : unorm8_to_linear;
+    return {decode(v[0]), decode(v[1]), decode(v[2]), unorm8_to_linear(v[3])};
+  }
+}
+
+template <Format format>
+void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& profile) {
+  const auto index = static_cast<std::size_t>(x) * static_cast<std::size_t>(channel_count(format));
+  if constexpr (format == Format::r8) {
+    row<std::uint8_t>(image, y)[index] = linear_to_unorm8(value.x);
+  } else if constexpr (format == Format::r32f) {
+    row<float>(image, y)[index] = flush_denormal(value.x, profile.denormals);
+  } else if constexpr (format == Format::rgba32f) {
+    auto* v = &row<float>(image, y)[index];
+    for (int i = 0; i < 4; ++i) v[i] = flush_denormal(value[i], profile.denormals);
+  } else if constexpr (format == Format::rgba16f) {
+    auto* v = &row<std::uint16_t>(image, y)[index];
+    for (int i = 0; i < 4; ++i) v[i] = float_to_half(value[i], profile.half_store);
+  } else {
+    auto* v = &row<std::uint8_t>(image, y)[index];
+    const auto encode = format == Format::srgb8 ? linear_to_srgb8 : linear_to_unorm8;
+    for (int i = 0; i < 3; ++i) v[i] = encode(value[i]);
+    v[3] = linear_to_unorm8(value.w);
+  }
+}
+
+/// The same for a format known at run time. Needs 0 <= x < width, 0 <= y < height.
+glm::vec4 load_texel(const Image& image, int x, int y);
+void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& profile);
+
+/// Sets every texel to `value`.
+void clear_image(Image& image, glm::vec4 value, const Profile& profile);
+
+}  // namespace softfocus

@@ -1,0 +1,89 @@
+#pragma once
+// binary16, the storage format of RGBA16F textures (IEEE 754-2008, 3.6):
+//
+//   bit   15    14..10     9..0
+//        sign  exponent  mantissa
+//
+//   exponent 0        (-1)^sign * 2^-24 * mantissa             zero, subnormals
+//   exponent 1..30    (-1)^sign * 2^(exponent-15) * (1 + mantissa/1024)
+//   exponent 31       infinity (mantissa 0) or NaN
+//
+//   0x3C00 = 1    0x0001 = 2^-24    0x0400 = 2^-14    0x7BFF = 65504 (largest)
+
+#include <bit>
+#include <cstdint>
+
+namespace softfocus {
+
+/// How a float that lies between two halves is stored.
+enum class HalfRounding : std::uint8_t {
+  /// To the nearer, ties to the even mantissa; past 65520 to infinity (IEEE 754).
+  nearest_even,
+  /// To the one nearer zero; past 65504 to 65504, infinity stays (D3D11.3 3.2.2).
+  toward_zero,
+};
+
+inline constexpr std::uint16_t kHalfLargest = 0x7BFF;  // 65504
+inline constexpr std::uint16_t kHalfInfinity = 0x7C00;
+inline constexpr std::uint16_t kHalfOne = 0x3C00;
+
+/// Value of a half; exact. A NaN keeps its sign and payload and comes out quiet.
+constexpr float half_to_float(std::uint16_t half) {
+  const std::uint32_t sign = (half & 0x8000u) << 16;
+  const std::uint32_t magnitude = half & 0x7FFFu;
+  if (magnitude >= kHalfInfinity) {
+    const std::uint32_t quiet = magnitude > kHalfInfinity ? 0x00400000u : 0u;
+    return std::bit_cast<float>(sign | 0x7F800000u | quiet | (magnitude & 0x3FFu) << 13);
+  }
+  // Shifted into place, a half's exponent is read with the wrong bias (127 for
+  // 15): 2^112 mends it, and turns subnormals into normal floats on the way.
+  const float scaled = std::bit_cast<float>(magnitude << 13) * 0x1p112f;
+  return std::bit_cast<float>(sign | std::bit_cast<std::uint32_t>(scaled));
+}
+
+/// The half that stores `value`. A NaN becomes the quiet NaN 0x7E00 with the
+/// sign kept: payloads do not survive a driver's store either.
+constexpr std::uint16_t float_to_half(float value, HalfRounding rounding) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000u);
+  const std::uint32_t magnitude = bits & 0x7FFFFFFFu;
+  if (magnitude > 0x7F800000u) return static_cast<std::uint16_t>(sign | 0x7E00u);
+  if (magnitude == 0x7F800000u) return static_cast<std::uint16_t>(sign | kHalfInfinity);
+
+  const int exponent = static_cast<int>(magnitude >> 23) - 127;
+  if (exponent > 15) {
+    const bool to_infinity = rounding == HalfRounding::nearest_even;
+    return static_cast<std::uint16_t>(sign | (to_infinity ? kHalfInfinity : kHalfLargest));
+  }
+  if (exponent < -25) return sign;  // below half of the smallest subnormal
+
+  // The kept bits and the cut ones, with the implicit one made explicit: a
+  // normal half keeps 11 of the 24 significant bits, a subnormal one fewer.
+  const std::uint32_t significand = (magnitude & 0x7FFFFFu) | 0x800000u;
+  const int cut = exponent >= -14 ? 13 : -1 - exponent;
+  std::uint32_t kept = significand >> cut;
+  if (exponent >= -14) kept += static_cast<std::uint32_t>(exponent + 14) << 10;
+  if (rounding == HalfRounding::nearest_even) {
+    const std::uint32_t rest = significand & ((1u << cut) - 1);
+    const std::uint32_t tie = 1u << (cut - 1);
+    // A carry runs from the mantissa into the exponent, and from 65504 to infinity.
+    if (rest > tie || (rest == tie && (kept & 1u) != 0)) ++kept;
+  }
+  return static_cast<std::uint16_t>(sign | kept);
+}
+
+/// How far apart two halves lie, counted in representable values: 0 for equal
+/// bits and for +0 against -0. Two NaNs are 0 apart; a NaN and a number 65535.
+constexpr int half_ulps_between(std::uint16_t a, std::uint16_t b) {
+  const auto is_nan = [](std::uint16_t half) { return (half & 0x7FFFu) > kHalfInfinity; };
+  if (is_nan(a) || is_nan(b)) return is_nan(a) && is_nan(b) ? 0 : 65535;
+  // Sign and magnitude to a number line.
+  const auto place = [](std::uint16_t half) {
+    const int magnitude = half & 0x7FFF;
+    return (half & 0x8000) != 0 ? -magnitude : magnitude;
+  };
+  const int distance = place(a) - place(b);
+  return distance < 0 ? -distance : distance;
+}
+
+}  // namespace softfocus

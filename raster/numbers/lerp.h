@@ -1,0 +1,26 @@
+#pragma once
+// The one operation in which drivers differ most, in one place.
+
+#include <cmath>
+
+#include "raster/numbers/profile.h"
+
+namespace softfocus {
+
+/// a b + c, rounded once when fused and after each operation when not.
+inline float multiply_add(float a, float b, float c, Contraction contraction) {
+  return contraction == Contraction::fused ? std::fma(a, b, c) : a * b + c;
+}
+
+/// a + t (b - a); the difference is always rounded by itself.
+inline float lerp(float a, float b, float t, Contraction contraction) {
+  return multiply_add(t, b - a, a, contraction);
+}
+
+/// `value`, or a zero of its sign where the profile flushes subnormals.
+inline float flush_denormal(float value, Denormals denormals) {
+  const bool flushed = denormals == Denormals::flush && std::fabs(value) < 0x1p-126f;
+  return flushed ? std::copysign(0.0f, value) : value;
+}
+
+}  // namespace softfocus

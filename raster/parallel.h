@@ -1,0 +1,34 @@
+#pragma once
+// A pool of threads and one way to use it: a counted loop whose iterations may run
+// in any order on any thread. What an iteration computes must not depend on either.
+
+#include <functional>
+#include <memory>
+
+namespace softfocus {
+
+/// Threads that sleep until a loop wants them.
+class ThreadPool {
+ public:
+  /// `threads` >= 1 counts the calling one; 1 starts none.
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int threads() const;
+
+  /// Runs body(0) to body(count - 1), each once, and returns when all have ended.
+  /// An exception of a body is rethrown here after the others have stopped; the
+  /// iterations not yet begun are left out. Not to be called from a body.
+  void for_each(int count, const std::function<void(int)>& body);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The threads that the machine can run at once, at least 1.
+int hardware_threads();
+
+}  // namespace softfocus

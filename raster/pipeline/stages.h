@@ -1,0 +1,61 @@
+#pragma once
+// What a programmer writes: a vertex stage and a fragment stage, plain callables known
+// at compile time, and the values that travel between them.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec4.hpp>
+
+namespace softfocus {
+
+/// How a varying runs over a triangle.
+enum class Interpolation : std::uint8_t {
+  perspective,  ///< linear on the surface in space
+  linear,       ///< linear in the window
+  flat,         ///< the first vertex's value (the provoking vertex)
+};
+
+inline constexpr std::size_t kMaxVaryings = 16;
+
+template <std::size_t N>
+using Varyings = std::array<float, N>;
+
+/// What a vertex stage returns. Clip space: -w <= x, y, z <= w, y downwards.
+template <std::size_t N>
+struct VertexOutput {
+  glm::vec4 position;
+  Varyings<N> varyings;
+};
+
+// A vertex stage is callable as
+//     VertexOutput<N> operator()(std::uint32_t vertex_index) const
+//
+// A fragment stage has
+//     static constexpr std::array<Interpolation, N> kInterpolation
+//     static constexpr bool kNeedsDerivatives      whether it calls ddx and ddy
+//     FragmentOutput<C> operator()(const Fragment<N>&) const    C colour targets
+// Both are called from several threads at once, and must not write what they share.
+
+/// A pixel of a triangle, as the fragment stage sees it.
+template <std::size_t N>
+struct Fragment {
+  int x = 0;
+  int y = 0;
+  float depth = 0.0f;  ///< window depth, 0 to 1
+  bool front_facing = true;
+  Varyings<N> varyings{};
+  /// Differences to the next pixel right and down within the 2x2 block of pixels
+  /// (even x, even y) that this one is in, taken on the block's upper and left side:
+  /// the same for all four, as GPUs' coarse derivatives. Zero unless asked for.
+  Varyings<N> ddx{};
+  Varyings<N> ddy{};
+};
+
+template <std::size_t C>
+struct FragmentOutput {
+  std::array<glm::vec4, C> colour{};
+  bool discard = false;
+};
+
+}  // namespace softfocus

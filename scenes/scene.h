@@ -1,0 +1,100 @@
+#pragma once
+// What there is to draw: plain data, filled by the loaders and read by draw_scene.
+// World units are metres, y points up, the coordinate system is right-handed.
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dof/lens.h"
+#include "raster/images/sampler.h"
+
+namespace softfocus {
+
+struct Camera {
+  glm::dvec3 position{0.0, 0.0, 3.0};
+  glm::dvec3 target{0.0};
+  glm::dvec3 up{0.0, 1.0, 0.0};
+  double fov_y_degrees = 40.0;
+  double near_m = 0.1;
+  double far_m = 100.0;
+  /// The camera's way around the target, about `up`, by frame.
+  double orbit_degrees_per_frame = 0.0;
+};
+
+/// What the scene wants from the lens; every value can be overruled from outside.
+struct SceneLens {
+  ThinLens lens;
+  double coc_scale = 1.0;
+  /// Largest CoC as a radius in pixels of a picture 1024 rows high; scaled with the
+  /// height, so that a picture looks the same at every size.
+  double max_coc_px_at_1024 = 16.0;
+};
+
+enum class LightKind : std::uint8_t { directional, point };
+
+struct Light {
+  LightKind kind = LightKind::directional;
+  /// Of a directional light: towards the light, any length. Of a point light: where it is.
+  glm::vec3 position_or_direction{0.0f, 1.0f, 0.0f};
+  glm::vec3 colour{1.0f};
+};
+
+/// Blinn-Phong, evaluated at the vertices.
+struct Material {
+  std::string name;
+  glm::vec3 ambient{0.2f};   ///< multiplies the scene's ambient light
+  glm::vec3 diffuse{0.8f};
+  glm::vec3 specular{0.0f};
+  int shininess = 32;        ///< a whole number, 1 to 1024: a power by multiplication is exact
+  std::optional<std::uint32_t> texture;  ///< multiplies ambient and diffuse; index into textures
+  Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
+  bool two_sided = false;    ///< drawn from both sides, lit on the side that is seen
+  bool lit = true;           ///< false: the diffuse colour (times texture) as it is
+};
+
+/// Triangles, counter-clockwise seen from outside. One normal a vertex, unit length;
+/// uvs one a vertex or none.
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> uvs;
+  std::vector<std::uint32_t> indices;
+};
+
+/// A mesh put into the world: scaled, then turned about x, y and z in that order,
+/// then moved.
+struct Object {
+  std::uint32_t mesh = 0;
+  std::uint32_t material = 0;
+  glm::dvec3 position{0.0};
+  glm::dvec3 rotation_degrees{0.0};
+  glm::dvec3 scale{1.0};
+  /// Turned so much more with every frame.
+  glm::dvec3 spin_degrees_per_frame{0.0};
+  /// Moved to and fro: + sway * sin(360 (frame / period + phase) degrees).
+  glm::dvec3 sway{0.0};
+  double sway_period_frames = 1.0;
+  double sway_phase = 0.0;
+};
+
+struct Scene {
+  std::string name;
+  std::string title;
+  Camera camera;
+  SceneLens lens;
+  glm::vec3 background{0.0f};
+  glm::vec3 ambient_light{0.2f};
+  std::vector<Light> lights;
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Object> objects;
+};
+
+std::size_t triangle_count(const Scene& scene);
+
+}  // namespace softfocus
