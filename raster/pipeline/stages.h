@@ -33,7 +33,8 @@ struct VertexOutput {
 //
 // A fragment stage has
 //     static constexpr std::array<Interpolation, N> kInterpolation
-//     static constexpr bool kNeedsDerivatives      whether it calls ddx and ddy
+//     static constexpr bool kNeedsDerivatives   whether it reads ddx and ddy
+//     static constexpr bool kDiscards           whether it may discard a fragment
 //     FragmentOutput<C> operator()(const Fragment<N>&) const    C colour targets
 // Both are called from several threads at once, and must not write what they share.
 

@@ -1,0 +1,33 @@
+#include "dof/method.h"
+
+#include <array>
+
+#include "dof/one_pass.h"
+#include "dof/pinhole.h"
+#include "dof/two_pass.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::string_view kColourAndDepth = "colour and depth";
+
+constexpr std::array kMethods{
+    Method{"pinhole", "everything sharp: no lens", "colour", pinhole},
+    Method{"two-pass", "a horizontal and a vertical gather, after Zhou et al. 2007",
+           kColourAndDepth, two_pass},
+    Method{"one-pass", "one gather over rings: round and slower, the thesis 5.1",
+           kColourAndDepth, one_pass},
+};
+
+}  // namespace
+
+std::span<const Method> methods() { return kMethods; }
+
+const Method* find_method(std::string_view name) {
+  for (const Method& method : kMethods) {
+    if (method.name == name) return &method;
+  }
+  return nullptr;
+}
+
+}  // namespace softfocus

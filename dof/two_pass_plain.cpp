@@ -1,0 +1,41 @@
+#include <algorithm>
+
+#include "dof/two_pass.h"
+#include "dof/weights.h"
+#include "raster/passes/fullscreen_pass.h"
+
+namespace softfocus {
+namespace {
+
+Image filter_along(const DofInput& input, const Image& source, int step_x, int step_y,
+                   ThreadPool& pool) {
+  const auto fetch = [&](int x, int y) {
+    return load_texel<Format::rgba16f>(source, std::clamp(x, 0, source.width - 1),
+                                       std::clamp(y, 0, source.height - 1));
+  };
+  const auto neighbour = [&](int x, int y) {
+    const glm::vec4 texel = fetch(x, y);
+    return filter_texel(input.settings, glm::vec3{texel.x, texel.y, texel.z}, texel.w);
+  };
+  Image target = make_image(Format::rgba16f, source.width, source.height);
+  fullscreen_pass<Format::rgba16f>(target, input.profile, pool, [&](int x, int y) {
+    const FilterTexel centre = neighbour(x, y);
+    const float receiver_leakage = leakage(centre.radius_px, input.settings.leak);
+    Gather gather = begin_gather(centre);
+    for (int d = 1; d <= tap_count(input.settings.max_coc_px); ++d) {
+      const auto distance = static_cast<float>(d);
+      add_neighbour(gather, neighbour(x - d * step_x, y - d * step_y), distance, receiver_leakage);
+      add_neighbour(gather, neighbour(x + d * step_x, y + d * step_y), distance, receiver_leakage);
+    }
+    return glm::vec4{resolve(gather), fetch(x, y).w};
+  });
+  return target;
+}
+
+}  // namespace
+
+Image two_pass_plain(const DofInput& input, ThreadPool& pool) {
+  return filter_along(input, filter_along(input, input.scene, 1, 0, pool), 0, 1, pool);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,40 @@
+#pragma once
+// A recorded draw call: the stages and their data behind four functions that a render
+// pass calls, each for a batch of vertices, triangles or a whole tile, never for a
+// single fragment.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "raster/pipeline/state.h"
+
+namespace softfocus {
+
+/// Triangles are assembled in chunks of this many, tiles are so many pixels square.
+/// Neither number shows in a result.
+inline constexpr std::uint32_t kChunkTriangles = 1024;
+inline constexpr std::uint32_t kChunkVertices = 1024;
+inline constexpr int kTileSize = 64;
+
+/// "Triangle `triangle` of the chunk touches tile `tile`." Sorted by tile, then by
+/// triangle, which is the order of submission.
+struct Bin {
+  std::uint32_t tile;
+  std::uint32_t triangle;
+};
+
+struct DrawCall {
+  std::uint32_t vertex_count = 0;
+  std::uint32_t chunk_count = 0;
+  /// Runs the vertex stage over vertices begin <= i < end.
+  std::function<void(std::uint32_t begin, std::uint32_t end)> shade_vertices;
+  /// Clips and sets up the triangles of a chunk, and sorts them into tiles.
+  std::function<void(std::uint32_t chunk)> assemble;
+  std::function<std::span<const Bin>(std::uint32_t chunk)> bins;
+  /// Draws the listed triangles of a chunk inside `tile`.
+  std::function<void(std::uint32_t chunk, std::span<const Bin> bins, const Rectangle& tile)>
+      shade_tile;
+};
+
+}  // namespace softfocus

@@ -1,0 +1,110 @@
+#include "raster/pipeline/merge.h"
+
+#include "raster/images/texel.h"
+
+namespace softfocus {
+namespace {
+
+glm::vec4 factor(BlendFactor kind, glm::vec4 source, glm::vec4 destination) {
+  switch (kind) {
+    case BlendFactor::zero: return glm::vec4{0.0f};
+    case BlendFactor::one: return glm::vec4{1.0f};
+    case BlendFactor::source_colour: return source;
+    case BlendFactor::one_minus_source_colour: return 1.0f - source;
+    case BlendFactor::destination_colour: return destination;
+    case BlendFactor::one_minus_destination_colour: return 1.0f - destination;
+    case BlendFactor::source_alpha: return glm::vec4{source.w};
+    case BlendFactor::one_minus_source_alpha: return glm::vec4{1.0f - source.w};
+    case BlendFactor::destination_alpha: return glm::vec4{destination.w};
+    case BlendFactor::one_minus_destination_alpha: return glm::vec4{1.0f - destination.w};
+  }
+  return glm::vec4{0.0f};
+}
+
+float combine(BlendOp op, float source, float source_factor, float destination,
+              float destination_factor) {
+  switch (op) {
+    case BlendOp::add: return source * source_factor + destination * destination_factor;
+    case BlendOp::subtract: return source * source_factor - destination * destination_factor;
+    case BlendOp::reverse_subtract:
+      return destination * destination_factor - source * source_factor;
+    case BlendOp::minimum: return destination < source ? destination : source;
+    case BlendOp::maximum: return source < destination ? destination : source;
+  }
+  return source;
+}
+
+}  // namespace
+
+std::uint8_t apply(StencilOp op, const StencilFace& face, std::uint8_t stored) {
+  switch (op) {
+    case StencilOp::keep: return stored;
+    case StencilOp::zero: return 0;
+    case StencilOp::replace: return face.reference;
+    case StencilOp::increment_clamp:
+      return stored == 255 ? stored : static_cast<std::uint8_t>(stored + 1);
+    case StencilOp::decrement_clamp:
+      return stored == 0 ? stored : static_cast<std::uint8_t>(stored - 1);
+    case StencilOp::invert: return static_cast<std::uint8_t>(~stored);
+    case StencilOp::increment_wrap: return static_cast<std::uint8_t>(stored + 1);
+    case StencilOp::decrement_wrap: return static_cast<std::uint8_t>(stored - 1);
+  }
+  return stored;
+}
+
+bool depth_stencil_test(const DrawState& state, const RenderTargets& targets, int x, int y,
+                        float depth, bool front_facing) {
+  const bool test_depth = state.depth && targets.depth != nullptr;
+  float* stored_depth =
+      test_depth ? &row<float>(*targets.depth, y)[static_cast<std::size_t>(x)] : nullptr;
+  const auto depth_passes = [&] {
+    return !test_depth || compare(state.depth->test, depth, *stored_depth);
+  };
+
+  bool passes = true;
+  if (state.stencil && targets.stencil != nullptr) {
+    const StencilFace& face = front_facing ? state.stencil->front : state.stencil->back;
+    std::uint8_t& stored = row<std::uint8_t>(*targets.stencil, y)[static_cast<std::size_t>(x)];
+    const bool stencil_passes =
+        compare(face.test, static_cast<std::uint8_t>(face.reference & face.read_mask),
+                static_cast<std::uint8_t>(stored & face.read_mask));
+    passes = stencil_passes && depth_passes();
+    const StencilOp op = !stencil_passes ? face.on_fail
+                         : !passes       ? face.on_depth_fail
+                                         : face.on_pass;
+    const std::uint8_t changed = apply(op, face, stored);
+    stored = static_cast<std::uint8_t>((stored & ~face.write_mask) | (changed & face.write_mask));
+  } else {
+    passes = depth_passes();
+  }
+  if (passes && test_depth && state.depth->write) *stored_depth = depth;
+  return passes;
+}
+
+glm::vec4 blend(const BlendState& state, glm::vec4 source, glm::vec4 destination) {
+  const glm::vec4 source_rgb = factor(state.colour.source, source, destination);
+  const glm::vec4 destination_rgb = factor(state.colour.destination, source, destination);
+  glm::vec4 result{};
+  for (int i = 0; i < 3; ++i) {
+    result[i] = combine(state.colour.op, source[i], source_rgb[i], destination[i],
+                        destination_rgb[i]);
+  }
+  result.w = combine(state.alpha.op, source.w, factor(state.alpha.source, source, destination).w,
+                     destination.w, factor(state.alpha.destination, source, destination).w);
+  return result;
+}
+
+void write_colour(const ColourState& state, Image& target, int x, int y, glm::vec4 colour,
+                  const Profile& profile) {
+  const bool all_channels = state.write == std::array{true, true, true, true};
+  if (state.blend || !all_channels) {
+    const glm::vec4 stored = load_texel(target, x, y);
+    if (state.blend) colour = blend(*state.blend, colour, stored);
+    for (int i = 0; i < 4; ++i) {
+      if (!state.write[static_cast<std::size_t>(i)]) colour[i] = stored[i];
+    }
+  }
+  store_texel(target, x, y, colour, profile);
+}
+
+}  // namespace softfocus
