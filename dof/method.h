@@ -20,7 +20,7 @@ struct DofSettings {
   float max_coc_px = 16.0f;
   /// How readily a background gives its colour to what lies before it: the factor
   /// of the leakage weight, per pixel of the receiver's radius. 0 or more.
-  float leak = 0.25f;
+  float leak = 1.0f;
 };
 
 inline constexpr float kLargestMaxCoc = 1024.0f;

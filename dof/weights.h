@@ -16,8 +16,9 @@
 // - The largest radius cuts r, not O: a circle that would be larger keeps its soft
 //   edge, O falls from 1 to 0 between max_coc - 1 and max_coc, and no tap lies at
 //   or past max_coc.
-// - The leak factor counts per pixel of the receiver's radius; 0.25 lets a background
-//   in fully once the receiver is 4 pixels soft (docs/depth-of-field.md shows why).
+// - The leak factor counts per pixel of the receiver's radius. 1, the default, lets a
+//   background in fully once the receiver is a pixel soft; of all factors tried it is
+//   the nearest to the lens (docs/depth-of-field.md has the figures).
 // - A neighbour whose weight is 0 is left out, not added as 0 * colour: an infinite or
 //   NaN pixel then harms what its own circle covers and nothing else.
 
