@@ -10,7 +10,8 @@ namespace softfocus {
 /// Threads that sleep until a loop wants them.
 class ThreadPool {
  public:
-  /// `threads` >= 1 counts the calling one; 1 starts none.
+  /// `threads` >= 1 counts the calling one; 1 starts none. Where the system gives fewer,
+  /// fewer it is.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;

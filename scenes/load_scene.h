@@ -2,20 +2,14 @@
 // From a name or a file to a scene.
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "scenes/scene.h"
+#include "scenes/scene_error.h"
 
 namespace softfocus {
-
-/// What came from outside and was wrong. The message is one line that names the file
-/// (and the line in it) and says what would be right.
-struct SceneError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// Where scenes are looked for, in this order: the directories given by the user,
 /// the source tree that the program was built from, the installed share directory.

@@ -93,6 +93,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
+  /// What was missing and made do without, a line each: a model's texture, say.
+  std::vector<std::string> warnings;
 };
 
 std::size_t triangle_count(const Scene& scene);

@@ -13,10 +13,11 @@ float srgb8_to_linear(std::uint8_t encoded);
 std::uint8_t linear_to_srgb8(float linear);
 
 /// Linear 8 bits: round to nearest of 255 * clamp(value, 0, 1), ties up; NaN gives 0.
+/// In binary64, where the product is exact: binary32 would round some up to a tie.
 inline std::uint8_t linear_to_unorm8(float value) {
   if (!(value > 0.0f)) return 0;
   if (value >= 1.0f) return 255;
-  return static_cast<std::uint8_t>(value * 255.0f + 0.5f);
+  return static_cast<std::uint8_t>(static_cast<double>(value) * 255.0 + 0.5);
 }
 
 /// value / 255, correctly rounded.
