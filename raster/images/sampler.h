@@ -39,7 +39,7 @@ struct Sampler {
 /// The texture at (u, v), where (0, 0) is the upper left corner of texel (0, 0) and
 /// (1, 1) the lower right one of the last, at level of detail `lod` (0 = full size,
 /// clamped to the levels there are; NaN is 0). An infinite or NaN coordinate reads
-/// as 0. Needs at least one level.
+/// as 0, one past 2^22 texels as 2^22 texels. Needs at least one level.
 ///
 /// Order of operations, in binary32, for a level of width w:
 ///   u' = u * w - 0.5;  i = floor(u');  t = u' - i

@@ -18,8 +18,8 @@ double tan_degrees(double degrees);
 /// 2^x; error below 2 units in the last place; 0 and infinity past the range.
 double exp2(double x);
 
-/// Binary logarithm; -infinity for 0, NaN for negative x. Error below 2 units in
-/// the last place away from 1, below 1e-16 absolute near it.
+/// Binary logarithm; -infinity for 0, NaN for negative x. Error below 4 units in the
+/// last place, near 1 too.
 double log2(double x);
 
 /// exp2(y * log2(x)) for x >= 0; relative error below 1e-13 where the result lies

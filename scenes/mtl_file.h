@@ -1,0 +1,35 @@
+#pragma once
+// MTL material libraries, read by tinyobjloader.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace softfocus {
+
+/// What libraries have given so far. Textures are shared by the materials that name
+/// the same file.
+struct MtlMaterials {
+  std::vector<Texture> textures;
+  std::map<std::string, Material> by_name;
+  std::map<std::string, std::uint32_t> texture_of_file;
+  std::vector<std::string> warnings;
+};
+
+/// Adds the materials of a library; the first of a name stays. From Kd, Ka, Ks, Ns and
+/// map_Kd, opaque whatever d and Tr say. As exporters write them:
+///   Ka black or white   means nothing; Kd takes its place
+///   Kd black under a map_Kd   means white
+///   Ns   is rounded to a whole number from 1 to 1024
+/// Texture paths are relative to the library, or else looked for beside it by their
+/// last part. A library or texture that is missing, or in a format other than PNG and
+/// JPEG, is a warning. Throws SceneError for a texture that is there and unreadable.
+void load_mtl(const std::filesystem::path& library, MtlMaterials& materials);
+
+/// What stands in for a material that is missing.
+Material neutral_grey();
+
+}  // namespace softfocus

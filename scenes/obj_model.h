@@ -1,0 +1,38 @@
+#pragma once
+// Wavefront OBJ models with their MTL materials, as they are found in the wild.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace softfocus {
+
+/// A model split by material. Positions are the file's; textures and materials are
+/// numbered from 0.
+struct ObjModel {
+  std::vector<Texture> textures;
+  std::vector<Material> materials;  ///< two-sided
+  /// One mesh a material that is used, in the order of first use.
+  struct Part {
+    Mesh mesh;
+    std::uint32_t material = 0;
+  };
+  std::vector<Part> parts;
+  /// What was missing and made do without, a line each.
+  std::vector<std::string> warnings;
+};
+
+/// Reads a model, its materials and their textures. Throws SceneError for a file that
+/// is missing or no OBJ, a number that is none, an index out of range (with the line),
+/// a model without a face, and a texture that is there and cannot be read. A missing
+/// material library, material or texture is a warning, and neutral grey stands in.
+///
+/// Polygons become triangles. Missing normals are made: of a smooth surface, or as the
+/// smoothing groups say where there are any. A face whose winding opposes the normals
+/// given for it is turned round. v of the texture coordinates, which OBJ counts
+/// upwards, is flipped.
+ObjModel load_obj_model(const std::filesystem::path& file);
+
+}  // namespace softfocus

@@ -1,0 +1,54 @@
+#pragma once
+// The text of an OBJ file as numbers: what it says, checked, and nothing made of it yet.
+//
+// Not tinyobjloader's reader, though its MTL reader is used: it counts the corners of a
+// face in 8 bits, checks no index, multiplies decimals out with the C library's pow
+// (so that the last bit depends on the machine) and drops triangles of polygons that
+// are small or far from the origin. Numbers here are rounded once, correctly.
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace softfocus {
+
+/// Indices from 0; -1 where the file gives none.
+struct ObjCorner {
+  std::int32_t position = -1;
+  std::int32_t uv = -1;
+  std::int32_t normal = -1;
+};
+
+struct ObjFace {
+  std::uint32_t first_corner = 0;
+  std::uint32_t corner_count = 0;     ///< 3 to kMaxFaceCorners
+  std::int32_t material = -1;         ///< into material_names
+  std::uint32_t smoothing_group = 0;  ///< 0: flat
+};
+
+struct ObjText {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec2> uvs;  ///< v as the file has it, upwards
+  std::vector<glm::vec3> normals;
+  std::vector<ObjCorner> corners;
+  std::vector<ObjFace> faces;
+  std::vector<std::string> material_names;  ///< in the order of first use
+  std::vector<std::string> libraries;       ///< what follows each mtllib
+  bool has_smoothing_groups = false;        ///< whether there is any `s`
+};
+
+inline constexpr std::uint32_t kMaxFaceCorners = 1024;
+
+/// Coordinates beyond this are taken for damage; their squares are still floats.
+inline constexpr float kLargestCoordinate = 1e9f;
+
+/// Understands v, vt, vn, f, s, usemtl, mtllib and lines continued by a backslash, and
+/// passes over the rest (groups, lines, curves). `file` is for complaints. Throws
+/// SceneError for what is not text, a number that is none or not finite, an index out
+/// of range, a face of too many corners, and a file without a face.
+ObjText parse_obj_text(std::string_view text, const std::string& file);
+
+}  // namespace softfocus

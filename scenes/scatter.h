@@ -1,0 +1,37 @@
+#pragma once
+// Many balls at random places, none touching another: the same ones on every machine.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+namespace softfocus {
+
+struct Ball {
+  glm::dvec3 centre{0.0};
+  double radius = 1.0;
+};
+
+struct ScatterRule {
+  int count = 1;
+  std::uint64_t seed = 1;
+  glm::dvec3 region_min{-1.0};  ///< of the centres
+  glm::dvec3 region_max{1.0};
+  double radius_min = 0.1;
+  double radius_max = 0.1;
+  double gap = 0.0;        ///< least distance between two surfaces
+  bool on_ground = false;  ///< the balls lie on y = region_min.y
+};
+
+/// Draws radius, x, y and z, in this order, for one ball after the other, and a place
+/// anew (x, y, z) while the ball comes nearer than `gap` to one of `obstacles` or an
+/// earlier ball. Nothing where a ball finds no place in kScatterAttempts.
+std::optional<std::vector<Ball>> scatter(const ScatterRule& rule,
+                                         const std::vector<Ball>& obstacles);
+
+inline constexpr int kScatterAttempts = 1000;
+/// Each place is compared with every ball, so time grows with the square.
+inline constexpr int kMaxScatterCount = 4096;
+
+}  // namespace softfocus

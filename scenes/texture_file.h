@@ -1,0 +1,19 @@
+#pragma once
+// Textures from PNG and JPEG files.
+
+#include <filesystem>
+
+#include "raster/images/sampler.h"
+
+namespace softfocus {
+
+/// The picture as Format::srgb8 with all its mipmaps (of the ieee profile), row 0 on
+/// top; grey becomes RGB, 16 bits become 8, what has no alpha is opaque. Throws
+/// SceneError for what is no PNG or JPEG, is damaged, or has more than kMaxImageSize
+/// texels along a side or kMaxTextureTexels in all.
+Texture load_texture(const std::filesystem::path& file);
+
+/// 8192 x 8192: a quarter of a gigabyte, and what a small file can be made to claim.
+inline constexpr int kMaxTextureTexels = 1 << 26;
+
+}  // namespace softfocus

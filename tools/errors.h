@@ -1,0 +1,19 @@
+#pragma once
+// The two ways for a command to end badly. Each message is one line that names the
+// option or the file and says what would be right.
+
+#include <stdexcept>
+
+namespace softfocus {
+
+/// What was typed cannot be right.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A file could not be read or written.
+struct FileError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace softfocus

@@ -1,0 +1,36 @@
+#pragma once
+// The lens on the command line, as `render` and `lens` share it.
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dof/lens.h"
+
+namespace softfocus {
+
+/// The lens values that were given.
+struct LensOptions {
+  std::optional<double> focal_length_mm;
+  std::optional<double> f_number;
+  std::optional<double> focus_m;
+  std::optional<double> coc_scale;
+};
+
+/// Adds --focus, --focal-length, --f-number and --coc-scale. A value that no lens can
+/// have is refused as it is read. `defaults` fills the help's "(default: ...)", with
+/// one entry for each in that order.
+struct LensDefaults {
+  std::string focus, focal_length, f_number, coc_scale;
+};
+void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults& defaults);
+
+/// `lens` with what was given put in.
+ThinLens overruled(ThinLens lens, const LensOptions& options);
+
+/// Throws UsageError if `lens` cannot be, naming the options that made it so or, if
+/// none was given, `otherwise`.
+void check_lens(const ThinLens& lens, const LensOptions& options, std::string_view otherwise);
+
+}  // namespace softfocus

@@ -1,0 +1,62 @@
+#pragma once
+// From an option's text to its value, with one kind of message: the option, what was
+// given, and what would be right.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace softfocus {
+
+struct PictureSize {
+  int width = 1024;
+  int height = 1024;
+};
+
+/// Counted from the left and from the top.
+struct Pixel {
+  int x = 0;
+  int y = 0;
+};
+
+/// Adds an option that takes one value and may be given once. `type` stands for the
+/// value in the help; `take` gets the text and throws UsageError.
+void add_value(CLI::App& parser, const std::string& name, const std::string& type,
+               const std::string& help, std::function<void(const std::string&)> take);
+
+/// Adds --scene-path, which may be repeated: directories that must exist.
+void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories);
+
+/// A positional argument that must be given.
+void add_argument(CLI::App& parser, const std::string& name, const std::string& help,
+                  std::string& value);
+
+/// A finite decimal number from `least` to `most`; `wanted` ends the message "give ...".
+double parse_number(std::string_view option, const std::string& text, double least, double most,
+                    std::string_view wanted);
+
+/// A whole number likewise.
+int parse_whole(std::string_view option, const std::string& text, int least, int most,
+                std::string_view wanted);
+
+/// WIDTHxHEIGHT, each 1 to kMaxImageSize.
+PictureSize parse_size(std::string_view option, const std::string& text);
+
+/// X,Y.
+Pixel parse_pixel(std::string_view option, const std::string& text);
+
+/// `value` as short as it can be told from its neighbours by eye: at most 6 digits.
+std::string short_number(double value);
+
+/// "a, b, c" of things that have a name.
+template <class Range>
+std::string names_of(const Range& things) {
+  std::string list;
+  for (const auto& thing : things) list += (list.empty() ? "" : ", ") + std::string{thing.name};
+  return list;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,132 @@
+#include "tools/performance_report.h"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace softfocus {
+namespace {
+
+struct NamedTime {
+  const char* name;
+  double StageTimes::*ms;
+};
+constexpr std::array kStages{
+    NamedTime{"load", &StageTimes::load},     NamedTime{"draw", &StageTimes::draw},
+    NamedTime{"focus", &StageTimes::focus},   NamedTime{"filter", &StageTimes::filter},
+    NamedTime{"encode", &StageTimes::encode}, NamedTime{"write", &StageTimes::write}};
+
+double cost_ms(const StageTimes& ms) { return ms.focus + ms.filter; }
+
+double frames_per_second(double ms) { return ms > 0.0 ? 1000.0 / ms : 0.0; }
+
+std::string line(const char* name, const std::string& value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%-24s", name);
+  return text + value + "\n";
+}
+
+std::string time_line(const char* name, double ms, bool with_rate) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%12.2f", ms);
+  std::string value = text;
+  std::snprintf(text, sizeof text, "%20.2f", frames_per_second(ms));
+  if (with_rate) value += text;
+  return line(name, value);
+}
+
+std::string lens_lines(const UsedLens& used) {
+  std::string focus = short_number(used.lens.focus_m) + " m";
+  if (used.autofocus_pixel) {
+    focus += ", found at pixel " + std::to_string(used.autofocus_pixel->x) + "," +
+             std::to_string(used.autofocus_pixel->y);
+  }
+  return line("Focus distance", focus) +
+         line("Focal length", short_number(used.lens.focal_length_mm) + " mm") +
+         line("F-number", short_number(used.lens.f_number)) +
+         line("Aperture", short_number(aperture_mm(used.lens)) + " mm") +
+         line("CoC scale", short_number(used.coc_scale)) +
+         line("Filter size",
+              short_number(used.settings.max_coc_px) + " pixels (largest CoC radius)") +
+         line("Leak", short_number(used.settings.leak));
+}
+
+}  // namespace
+
+std::string_view name_of(Show show) {
+  switch (show) {
+    case Show::image: return "image";
+    case Show::pinhole: return "pinhole";
+    case Show::coc: return "coc";
+    case Show::depth: return "depth";
+  }
+  return "";
+}
+
+bool has_depth_of_field(const RenderOptions& options) {
+  return options.show == Show::image && options.method->name != "pinhole";
+}
+
+std::string text_report(const RenderOptions& options, const RenderRecord& record) {
+  const StageTimes& ms = record.ms;
+  std::string text = "softfocus " SOFTFOCUS_VERSION " performance report\n\n";
+  text += line("Scene", record.scene_name + ": " + record.scene_title);
+  text += line("Frame", short_number(options.frame));
+  text += line("Resolution", std::to_string(options.size.width) + " x " +
+                                 std::to_string(options.size.height) + " pixels");
+  text += line("Triangles", std::to_string(record.triangles));
+  text += line("Method", std::string{options.method->name});
+  text += line("Picture", std::string{name_of(options.show)});
+  text += line("Profile", std::string{options.profile.name});
+  text += line("Threads", std::to_string(options.threads));
+  text += "\n";
+  if (record.lens) text += lens_lines(*record.lens) + "\n";
+
+  text += line("", "milliseconds   frames per second");
+  text += time_line("Without depth of field", ms.draw, true);
+  if (has_depth_of_field(options)) {
+    text += time_line("With depth of field", ms.draw + cost_ms(ms), true);
+    text += time_line("Cost of depth of field", cost_ms(ms), false);
+  }
+  text += "\n" + line("Stage", "milliseconds");
+  for (const NamedTime& stage : kStages) text += time_line(stage.name, ms.*stage.ms, false);
+  return text;
+}
+
+std::string json_report(const RenderOptions& options, const RenderRecord& record) {
+  using nlohmann::ordered_json;
+  const StageTimes& ms = record.ms;
+  ordered_json json{
+      {"softfocus", SOFTFOCUS_VERSION}, {"scene", record.scene_name},
+      {"title", record.scene_title},    {"frame", options.frame},
+      {"width", options.size.width},    {"height", options.size.height},
+      {"triangles", record.triangles},  {"method", options.method->name},
+      {"show", name_of(options.show)},  {"profile", options.profile.name},
+      {"threads", options.threads},     {"output", options.output},
+  };
+  if (record.lens) {
+    const UsedLens& used = *record.lens;
+    json["lens"] = {{"focus_m", used.lens.focus_m},
+                    {"focal_length_mm", used.lens.focal_length_mm},
+                    {"f_number", used.lens.f_number},
+                    {"aperture_mm", aperture_mm(used.lens)},
+                    {"coc_scale", used.coc_scale},
+                    {"radius_at_infinity_px", used.settings.coc.radius_at_infinity_px},
+                    {"max_coc_px", used.settings.max_coc_px},
+                    {"leak", used.settings.leak}};
+    if (used.autofocus_pixel) {
+      json["lens"]["autofocus_pixel"] = {used.autofocus_pixel->x, used.autofocus_pixel->y};
+    }
+  }
+  json["without_depth_of_field"] = {{"ms", ms.draw}, {"fps", frames_per_second(ms.draw)}};
+  if (has_depth_of_field(options)) {
+    const double with = ms.draw + cost_ms(ms);
+    json["with_depth_of_field"] = {{"ms", with}, {"fps", frames_per_second(with)}};
+    json["cost_of_depth_of_field_ms"] = cost_ms(ms);
+  }
+  for (const NamedTime& stage : kStages) json["stages_ms"][stage.name] = ms.*stage.ms;
+  // A file's name need not be UTF-8, but JSON must be.
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace softfocus

@@ -1,0 +1,23 @@
+#pragma once
+// One line on a terminal that says what is being done, gone when it is done.
+
+#include <string_view>
+
+namespace softfocus {
+
+/// Silent where standard error is no terminal.
+class Progress {
+ public:
+  Progress();
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void show(std::string_view stage);
+  void clear();
+
+ private:
+  bool on_terminal_;
+};
+
+}  // namespace softfocus

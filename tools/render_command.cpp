@@ -1,0 +1,155 @@
+// softfocus render: the way of a frame from a scene's file to a picture's.
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "dof/views.h"
+#include "raster/images/texel.h"
+#include "scenes/draw_scene.h"
+#include "scenes/load_scene.h"
+#include "tools/command_line.h"
+#include "tools/commands.h"
+#include "tools/errors.h"
+#include "tools/performance_report.h"
+#include "tools/progress.h"
+#include "tools/render_options.h"
+#include "tools/whole_file.h"
+
+namespace softfocus {
+namespace {
+
+/// Does a stage's work, with its name on the terminal and its time noted.
+template <class Work>
+auto timed(Progress& progress, const char* stage, double& ms, Work work) {
+  using Clock = std::chrono::steady_clock;
+  progress.show(stage);
+  struct Stopwatch {
+    double& ms;
+    Clock::time_point start = Clock::now();
+    ~Stopwatch() { ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+  } const stopwatch{ms};
+  return work();
+}
+
+bool needs_lens(const RenderOptions& options) {
+  return options.show == Show::coc || has_depth_of_field(options);
+}
+
+/// The lens as far as it is known before anything is drawn.
+UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene) {
+  UsedLens used;
+  used.lens = overruled(of_scene.lens, options.lens);
+  used.coc_scale = options.lens.coc_scale.value_or(of_scene.coc_scale);
+  const double scaled = of_scene.max_coc_px_at_1024 * options.size.height / 1024.0;
+  used.settings.max_coc_px = options.max_coc_px.value_or(
+      static_cast<float>(std::fmin(scaled, static_cast<double>(kLargestMaxCoc))));
+  used.settings.leak = options.leak;
+  if (options.autofocus) {
+    used.autofocus_pixel =
+        options.autofocus_pixel.value_or(Pixel{options.size.width / 2, options.size.height / 2});
+  } else {
+    check_lens(used.lens, options.lens, options.scene);
+  }
+  return used;
+}
+
+/// Focuses on the drawn picture if that is asked for, and computes the frame's constants.
+void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
+              double fov_y_degrees) {
+  if (used.autofocus_pixel) {
+    const auto [x, y] = *used.autofocus_pixel;
+    used.lens.focus_m = load_texel<Format::rgba16f>(scene, x, y).w;
+    check_lens(used.lens, options.lens,
+               "--autofocus " + std::to_string(x) + "," + std::to_string(y));
+  }
+  used.settings.coc = pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
+  if (!std::isfinite(used.settings.coc.radius_at_infinity_px)) {
+    throw UsageError(
+        "the lens's circles of confusion are too large to compute with; "
+        "give a larger --f-number or a smaller --coc-scale");
+  }
+}
+
+Image shown_picture(Image scene, const RenderOptions& options, const Camera& camera,
+                    const DofSettings& settings, ThreadPool& pool) {
+  switch (options.show) {
+    case Show::image: return options.method->apply({scene, settings, options.profile}, pool);
+    case Show::pinhole: return scene;
+    case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
+    case Show::depth:
+      return show_depth(scene, static_cast<float>(camera.near_m), static_cast<float>(camera.far_m));
+  }
+  return scene;
+}
+
+int render(const RenderOptions& options) {
+  const bool to_standard_output = options.output == "-";
+  if (!to_standard_output) check_writable(options.output);
+  if (options.report) check_writable(*options.report);
+
+  RenderRecord record;
+  StageTimes& ms = record.ms;
+  Progress progress;
+  ThreadPool pool{options.threads};
+
+  const Scene scene = timed(progress, "loading", ms.load, [&] {
+    return load_scene(options.scene, scene_search_path(options.scene_path));
+  });
+  record.scene_name = scene.name;
+  record.scene_title = scene.title;
+  record.triangles = triangle_count(scene);
+  if (needs_lens(options)) record.lens = chosen_lens(options, scene.lens);
+
+  const int width = options.size.width, height = options.size.height;
+  Image drawn = timed(progress, "drawing", ms.draw, [&] {
+    const View view = camera_view(scene.camera, options.frame, width, height);
+    return draw_scene(scene, view, options.frame, width, height, options.profile, pool);
+  });
+
+  DofSettings settings;
+  if (record.lens) {
+    timed(progress, "focusing", ms.focus,
+          [&] { set_lens(*record.lens, drawn, options, scene.camera.fov_y_degrees); });
+    settings = record.lens->settings;
+  }
+  const Image picture = timed(progress, "filtering", ms.filter, [&] {
+    return shown_picture(std::move(drawn), options, scene.camera, settings, pool);
+  });
+
+  const Bytes bytes =
+      timed(progress, "encoding", ms.encode, [&] { return encode(picture, options.format); });
+  // The files get their names together, when nothing can fail but the naming.
+  std::optional<WholeFile> picture_file, report_file;
+  timed(progress, "writing", ms.write, [&] {
+    if (to_standard_output) {
+      write_to_standard_output(bytes);
+    } else {
+      picture_file.emplace(options.output).write(bytes);
+    }
+  });
+  const std::string report = text_report(options, record);
+  if (options.report) report_file.emplace(*options.report).write(report);
+  if (picture_file) picture_file->commit();
+  if (report_file) report_file->commit();
+  progress.clear();
+
+  if (options.json) std::cout << json_report(options, record);
+  if (options.verbose) std::cerr << report;
+  return kDone;
+}
+
+}  // namespace
+
+Command add_render_command(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand("render", "Render a scene to a picture");
+  const auto options = std::make_shared<RenderOptions>();
+  add_render_options(*parser, *options);
+  return {parser, [parser, options] {
+            complete(*options, *parser);
+            return render(*options);
+          }};
+}
+
+}  // namespace softfocus

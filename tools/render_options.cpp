@@ -1,0 +1,197 @@
+#include "tools/render_options.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+
+#include "raster/images/image.h"
+#include "tools/errors.h"
+
+namespace softfocus {
+namespace {
+
+struct ShowChoice {
+  std::string_view name;
+  Show show;
+};
+constexpr std::array kShowChoices{ShowChoice{"image", Show::image},
+                                  ShowChoice{"pinhole", Show::pinhole},
+                                  ShowChoice{"coc", Show::coc}, ShowChoice{"depth", Show::depth}};
+
+template <class Range>
+[[noreturn]] void refuse_name(std::string_view option, const std::string& text,
+                              const Range& choices) {
+  throw UsageError(std::string{option} + " '" + text + "': there are " + names_of(choices));
+}
+
+void add_picture_options(CLI::App& parser, RenderOptions& options) {
+  add_value(parser, "-o,--output", "FILE",
+            "The picture: .png, .pfm or .npy; - for standard output (required)",
+            [&options](const std::string& text) { options.output = text; });
+  add_value(parser, "--format", "png|pfm|npy",
+            "Format of FILE, whatever its name (default: by the name, png for -)",
+            [&options](const std::string& text) {
+              const auto format = format_by_name(text);
+              if (!format) throw UsageError("--format '" + text + "': there are png, pfm, npy");
+              options.format = *format;
+            });
+  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
+            [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_value(parser, "--show", "image|pinhole|coc|depth",
+            "The picture with depth of field, without, or a grey map (default: image)",
+            [&options](const std::string& text) {
+              for (const ShowChoice& choice : kShowChoices) {
+                if (choice.name == text) {
+                  options.show = choice.show;
+                  return;
+                }
+              }
+              refuse_name("--show", text, kShowChoices);
+            });
+}
+
+void add_scene_options(CLI::App& parser, RenderOptions& options) {
+  add_value(parser, "--frame", "N", "Frame of the animation, from 0 (default: 0)",
+            [&options](const std::string& text) {
+              options.frame =
+                  parse_number("--frame", text, 0.0, 1e9, "a frame from 0 to 1000000000");
+            });
+  add_scene_path(parser, options.scene_path);
+}
+
+void add_method_options(CLI::App& parser, RenderOptions& options) {
+  add_value(parser, "--method", "NAME", "Depth-of-field method (default: two-pass)",
+            [&options](const std::string& text) {
+              options.method = find_method(text);
+              if (options.method == nullptr) refuse_name("--method", text, methods());
+            });
+  add_lens_options(parser, options.lens,
+                   {.focus = "the scene's",
+                    .focal_length = "the scene's",
+                    .f_number = "the scene's",
+                    .coc_scale = "the scene's"});
+  add_value(parser, "--autofocus", "[X,Y]",
+            "Focus on what is at this pixel, from the top left (default: the centre)",
+            [&options](const std::string& text) {
+              options.autofocus = true;
+              if (text != "centre") options.autofocus_pixel = parse_pixel("--autofocus", text);
+            });
+  add_value(parser, "--max-coc", "PIXELS",
+            "Filter size: largest radius, 0 to 1024 (default: the scene's, by height)",
+            [&options](const std::string& text) {
+              options.max_coc_px = static_cast<float>(parse_number(
+                  "--max-coc", text, 0.0, kLargestMaxCoc, "a radius in pixels from 0 to 1024"));
+            });
+  add_value(parser, "--leak", "A",
+            "How readily a background gives its colour to what is before it (default: " +
+                short_number(options.leak) + ")",
+            [&options](const std::string& text) {
+              options.leak = static_cast<float>(
+                  parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
+            });
+}
+
+void add_run_options(CLI::App& parser, RenderOptions& options) {
+  add_value(parser, "--profile", "NAME", "GPU to agree with to the bit (default: ieee)",
+            [&options](const std::string& text) {
+              const auto profile = find_profile(text);
+              if (!profile) refuse_name("--profile", text, profiles());
+              options.profile = *profile;
+            });
+  add_value(parser, "--threads", "N", "Threads, 1 to 256; the picture is the same (default: all)",
+            [&options](const std::string& text) {
+              options.threads = parse_whole("--threads", text, 1, 256, "a number from 1 to 256");
+            });
+  add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
+            [&options](const std::string& text) { options.report = text; });
+  parser.add_flag("--json", options.json, "Print the report as JSON on standard output");
+  parser.add_flag("-v,--verbose", options.verbose, "Say on standard error what was chosen");
+}
+
+/// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
+/// depth (4) and the largest encoding (12).
+constexpr std::uint64_t kBytesPerPixel = 40;
+
+void check_memory(PictureSize size) {
+  const auto needed = kBytesPerPixel * static_cast<std::uint64_t>(size.width) *
+                      static_cast<std::uint64_t>(size.height);
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  const long page_bytes = ::sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || page_bytes <= 0) return;  // unknown: allocation decides
+  const auto there = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
+  if (needed <= there) return;
+  constexpr double kGigabyte = 1e9;
+  throw UsageError(
+      "--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": needs " +
+      short_number(static_cast<double>(needed) / kGigabyte) + " GB of memory and there are " +
+      short_number(static_cast<double>(there) / kGigabyte) + " GB; give a smaller size");
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& parser, RenderOptions& options) {
+  add_argument(parser, "SCENE", "Name of a scene (softfocus scenes), a .toml or an .obj file",
+               options.scene);
+  add_picture_options(parser, options);
+  add_scene_options(parser, options);
+  add_method_options(parser, options);
+  add_run_options(parser, options);
+}
+
+void complete(RenderOptions& options, const CLI::App& parser) {
+  if (options.output.empty()) {
+    throw UsageError("-o is missing: give a .png, .pfm or .npy file, or - for standard output");
+  }
+  const bool to_standard_output = options.output == "-";
+  if (parser.count("--format") == 0 && !to_standard_output) {
+    const auto format = format_by_extension(options.output);
+    if (!format) {
+      throw UsageError("-o '" + options.output +
+                       "': the name must end in .png, .pfm or .npy, or --format say which");
+    }
+    options.format = *format;
+  }
+  if (to_standard_output && options.json) {
+    throw UsageError("--json and -o - would both write to standard output; give -o a file");
+  }
+  if (to_standard_output && ::isatty(STDOUT_FILENO) != 0) {
+    throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
+  }
+  if (options.report && options.report->empty()) {
+    throw UsageError("--report '': give the name of a file");
+  }
+  if (options.report && *options.report == options.output) {
+    throw UsageError("--report and -o name the same file; give two");
+  }
+  if (options.autofocus && options.lens.focus_m) {
+    throw UsageError("--focus and --autofocus exclude each other; give one");
+  }
+  if (options.autofocus_pixel) {
+    const auto [x, y] = *options.autofocus_pixel;
+    const auto [width, height] = options.size;
+    if (x < 0 || x >= width || y < 0 || y >= height) {
+      throw UsageError("--autofocus " + std::to_string(x) + "," + std::to_string(y) +
+                       ": the pixel must lie in the picture, 0,0 to " + std::to_string(width - 1) +
+                       "," + std::to_string(height - 1));
+    }
+  }
+  check_memory(options.size);
+}
+
+std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {
+  std::vector<std::string> joined;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    joined.push_back(std::move(arguments[i]));
+    if (joined.back() != "--autofocus") continue;
+    const bool has_next = i + 1 < arguments.size();
+    const std::string next = has_next ? arguments[i + 1] : "";
+    // No scene is named with these characters alone; a mistyped pixel is.
+    const bool is_value = next.find_first_of("0123456789") != next.npos &&
+                          next.find_first_not_of("0123456789+-.,;x: ") == next.npos;
+    joined.back() += "=" + (is_value ? arguments[++i] : "centre");
+  }
+  return joined;
+}
+
+}  // namespace softfocus

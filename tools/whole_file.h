@@ -1,0 +1,46 @@
+#pragma once
+// A file that appears whole or not at all: the bytes go into a temporary file beside
+// it, which takes its name at the end. POSIX.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace softfocus {
+
+/// Bytes on their way to a file. Every call throws FileError, which names the file.
+class WholeFile {
+ public:
+  /// Opens the temporary file. A symbolic link is followed; what exists and is no
+  /// regular file (a device, a pipe) cannot be replaced and is written to directly.
+  explicit WholeFile(const std::filesystem::path& target);
+  /// Without a commit() before, nothing remains.
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+
+  /// Gives the file its name, in place of one that has it. A new file has the
+  /// permissions of the umask, a replaced one those it had.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error) const;
+
+  std::filesystem::path shown_;      // as the user named it
+  std::filesystem::path target_;     // with links followed
+  std::filesystem::path temporary_;  // empty: written to directly, or committed
+  int descriptor_ = -1;
+};
+
+/// Throws FileError if `target` could not be written now, so that a long work need
+/// not be done in vain. Leaves everything as it was.
+void check_writable(const std::filesystem::path& target);
+
+/// Writes to standard output. Throws FileError.
+void write_to_standard_output(std::span<const std::byte> bytes);
+
+}  // namespace softfocus
