@@ -36,12 +36,12 @@ Cell cell_at(double position) {
 double cell_random(std::uint64_t seed, int x, int y) {
   const auto cell = static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 |
                     static_cast<std::uint32_t>(y);
-  return unit_interval(mix_bits(mix_bits(seed) + cell));
+  return unit_interval(mix_bits(seed * 0x9E3779B97F4A7C15u + cell));
 }
 
 // Value noise: random values on a lattice that repeats after `period_x` x `period_y`
 // cells, blended by smooth steps. 0 to 1.
-double noise(std::uint64_t seed, double x, double y, int period_x, int period_y) {
+double value_noise(std::uint64_t seed, double x, double y, int period_x, int period_y) {
   const Cell column = cell_at(x);
   const Cell row = cell_at(y);
   const auto lattice = [&](int i, int j) {
@@ -54,12 +54,12 @@ double noise(std::uint64_t seed, double x, double y, int period_x, int period_y)
   return upper + (lower - upper) * t;
 }
 
-// Five octaves, each twice as fine and half as strong as the one before. 0 to 1.
+// Four octaves, each twice as fine and half as strong as the one before. 0 to 1.
 double fractal_noise(std::uint64_t seed, double u, double v, int cells_x, int cells_y) {
   double sum = 0.0;
-  double strength = 16.0 / 31.0;
-  for (int octave = 0; octave < 5; ++octave) {
-    sum += strength * noise(seed + static_cast<std::uint64_t>(octave), u * cells_x, v * cells_y,
+  double strength = 8.0 / 15.0;
+  for (int octave = 0; octave < 4; ++octave) {
+    sum += strength * value_noise(seed + static_cast<std::uint64_t>(octave), u * cells_x, v * cells_y,
                             cells_x, cells_y);
     strength *= 0.5;
     cells_x *= 2;
@@ -70,7 +70,7 @@ double fractal_noise(std::uint64_t seed, double u, double v, int cells_x, int ce
 
 // Fine grain that keeps a flat colour from looking painted by a machine.
 double grain(const TextureRecipe& recipe, double u, double v, double strength) {
-  return 1.0 - strength * fractal_noise(recipe.seed + 100, u, v, 16, 16);
+  return 1.0 - strength * fractal_noise(recipe.seed + 100, u, v, 8, 8);
 }
 
 glm::dvec3 checker(const TextureRecipe& recipe, double u, double v) {

@@ -18,8 +18,8 @@ bool starts_with(std::span<const std::byte> bytes, std::string_view start) {
 
 Bytes read_bytes(const std::filesystem::path& file) {
   const auto refuse = [&](int error) {
-    throw FileError("cannot read '" + file.string() +
-                    "': " + std::generic_category().message(error));
+    throw FileError("cannot read '" + file.string() + "': " +
+                    std::generic_category().message(error) + "; give a .png, .pfm or .npy file");
   };
   if (std::filesystem::is_directory(file)) refuse(EISDIR);
   std::ifstream stream{file, std::ios::binary};

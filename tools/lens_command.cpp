@@ -54,8 +54,8 @@ LensFigures figures(const LensCommandOptions& options) {
   f.largest_coc_mm = options.largest_coc_mm.value_or(f.film_mm / options.height_px);
   f.hyperfocal_m = hyperfocal_m(f.lens, f.largest_coc_mm);
   f.sharp = sharp_range(f.lens, f.largest_coc_mm);
-  f.coc = pixel_coc(f.lens, options.fov_y_degrees, options.height_px,
-                    options.lens.coc_scale.value_or(1.0));
+  f.coc = checked_pixel_coc(f.lens, options.fov_y_degrees, options.height_px,
+                            options.lens.coc_scale.value_or(1.0));
   auto distances = options.distances_m;
   if (distances.empty()) {
     for (const double part : kUsualDistances) distances.push_back(part * f.lens.focus_m);

@@ -1,6 +1,6 @@
 #include "tools/lens_options.h"
 
-#include <limits>
+#include <cmath>
 
 #include "tools/errors.h"
 #include "tools/option_values.h"
@@ -8,13 +8,14 @@
 namespace softfocus {
 namespace {
 
-// Any number at all: lens_error() knows which of them are a lens.
-constexpr double kAnything = std::numeric_limits<double>::max();
+// Far past anything real, and far from the limits of single precision. What is too
+// small, lens_error() knows.
+constexpr double kLargest = 1e9;
 
 /// Checks one value by putting it into a lens in which nothing else can be wrong.
 double checked(std::string_view option, const std::string& text, std::string_view wanted,
                ThinLens lens, double ThinLens::*value) {
-  lens.*value = parse_number(option, text, -kAnything, kAnything, wanted);
+  lens.*value = parse_number(option, text, -kLargest, kLargest, wanted);
   if (const char* error = lens_error(lens)) {
     throw UsageError(std::string{option} + " " + text + ": " + error);
   }
@@ -35,12 +36,13 @@ void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults
               });
   };
   add("--focus", "METRES", "Distance in focus, along the axis", defaults.focus,
-      "a distance in metres above 0, such as 2.5", &ThinLens::focus_m, options.focus_m);
+      "a distance in metres above 0 (at most 1e9), such as 2.5", &ThinLens::focus_m,
+      options.focus_m);
   add("--focal-length", "MM", "Focal length", defaults.focal_length,
-      "a focal length in millimetres above 0, such as 50", &ThinLens::focal_length_mm,
+      "a focal length in millimetres above 0 (at most 1e9), such as 50", &ThinLens::focal_length_mm,
       options.focal_length_mm);
   add("--f-number", "N", "Focal length over aperture", defaults.f_number,
-      "an f-number above 0, such as 2.8", &ThinLens::f_number, options.f_number);
+      "an f-number above 0 (at most 1e9), such as 2.8", &ThinLens::f_number, options.f_number);
   add_value(
       parser, "--coc-scale", "S",
       "Exaggeration of the circles, 1 = the lens itself (default: " + defaults.coc_scale + ")",
@@ -68,6 +70,15 @@ void check_lens(const ThinLens& lens, const LensOptions& options, std::string_vi
   if (given.empty()) given = otherwise;
   throw UsageError(given + " (the lens is " + short_number(lens.focal_length_mm) +
                    " mm, focused at " + short_number(lens.focus_m) + " m): " + error);
+}
+
+PixelCoc checked_pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px,
+                           double coc_scale) {
+  const PixelCoc coc = pixel_coc(lens, fov_y_degrees, height_px, coc_scale);
+  if (std::isfinite(coc.radius_at_infinity_px) && std::isfinite(coc.focus_m)) return coc;
+  throw UsageError(
+      "the lens's circles are too large to compute with: give a larger --f-number, "
+      "a nearer --focus or a smaller --coc-scale");
 }
 
 }  // namespace softfocus

@@ -33,4 +33,8 @@ ThinLens overruled(ThinLens lens, const LensOptions& options);
 /// none was given, `otherwise`.
 void check_lens(const ThinLens& lens, const LensOptions& options, std::string_view otherwise);
 
+/// pixel_coc(), whose circles single precision must be able to hold: UsageError.
+PixelCoc checked_pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px,
+                           double coc_scale);
+
 }  // namespace softfocus

@@ -64,12 +64,8 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
     check_lens(used.lens, options.lens,
                "--autofocus " + std::to_string(x) + "," + std::to_string(y));
   }
-  used.settings.coc = pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
-  if (!std::isfinite(used.settings.coc.radius_at_infinity_px)) {
-    throw UsageError(
-        "the lens's circles of confusion are too large to compute with; "
-        "give a larger --f-number or a smaller --coc-scale");
-  }
+  used.settings.coc =
+      checked_pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
 }
 
 Image shown_picture(Image scene, const RenderOptions& options, const Camera& camera,

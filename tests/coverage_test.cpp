@@ -1,0 +1,469 @@
+// Which pixels a triangle covers, through the whole draw call.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "raster/images/texel.h"
+#include "raster/pipeline/draw.h"
+#include "raster/pipeline/setup.h"
+#include "tests/raster_helpers.h"
+
+using namespace softfocus;
+using test::profile_named;
+using test::window_quad;
+using test::window_triangles;
+
+namespace {
+
+#ifdef __SIZEOF_INT128__
+__extension__ typedef __int128 Wide;
+#else
+using Wide = std::int64_t;  // enough for positions below 2^20 pixels
+#endif
+
+using Vertices = std::vector<VertexOutput<0>>;
+
+// How often each pixel is covered: every fragment adds one.
+Image count_coverage(const Vertices& vertices, int width, int height, const Profile& profile = {},
+                     const DrawState& state = test::adding_state()) {
+  Image counts = make_image(Format::r32f, width, height);
+  test::draw_list({.colour = {&counts}}, state, vertices, test::OneColour{}, profile);
+  return counts;
+}
+
+float count_at(const Image& counts, int x, int y) {
+  return row<float>(counts, y)[static_cast<std::size_t>(x)];
+}
+
+// Pixels whose count is not the one that `expected(x, y)` says.
+template <class Expected>
+int wrong_pixels(const Image& counts, Expected expected) {
+  int wrong = 0;
+  for (int y = 0; y < counts.height; ++y) {
+    for (int x = 0; x < counts.width; ++x) {
+      wrong += count_at(counts, x, y) != static_cast<float>(expected(x, y));
+    }
+  }
+  return wrong;
+}
+
+int pixels_not_covered_once(const Image& counts) {
+  return wrong_pixels(counts, [](int, int) { return 1; });
+}
+
+// A triangle from a centre to each side of a ring of points.
+Vertices fan(glm::vec2 centre, float radius, int spokes, int width, int height) {
+  std::vector<glm::vec2> points;
+  const auto ring = [&](int i) {
+    const double angle = 2.0 * 3.14159265358979 * (i % spokes + 0.3) / spokes;
+    return glm::vec2{centre.x + radius * static_cast<float>(std::cos(angle)),
+                     centre.y + radius * static_cast<float>(std::sin(angle))};
+  };
+  for (int i = 0; i < spokes; ++i) {
+    points.insert(points.end(), {centre, ring(i), ring(i + 1)});
+  }
+  return window_triangles(points, width, height);
+}
+
+// A grid of quadrangles, each two triangles, whose inner vertices are moved at random, with
+// varying w; it covers (low, low) to (high, high) in window coordinates.
+Vertices jittered_grid(int cells, float low, float high, int width, int height,
+                       test::Random& random) {
+  const float side = (high - low) / static_cast<float>(cells);
+  std::vector<glm::vec4> points;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const bool on_border = i == 0 || j == 0 || i == cells || j == cells;
+      const float jitter = on_border ? 0.0f : 0.33f * side;
+      const glm::vec2 window{low + side * static_cast<float>(i) + random.between(-1.0f, 1.0f) * jitter,
+                             low + side * static_cast<float>(j) + random.between(-1.0f, 1.0f) * jitter};
+      points.push_back(test::at_window(window, width, height) * random.between(0.5f, 3.0f));
+    }
+  }
+  Vertices vertices;
+  const auto add = [&](int i, int j) {
+    vertices.push_back({points[static_cast<std::size_t>(j * (cells + 1) + i)], {}});
+  };
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      const bool falling = random.whole(0, 1) == 0;
+      // Either diagonal, and either winding.
+      const std::array<std::array<int, 2>, 4> c{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+      const std::array<std::size_t, 6> order =
+          falling ? std::array<std::size_t, 6>{0, 1, 2, 0, 3, 2} : std::array<std::size_t, 6>{1, 2, 3, 3, 1, 0};
+      for (const std::size_t k : order) add(c[k][0], c[k][1]);
+    }
+  }
+  return vertices;
+}
+
+// --- the oracle ---
+
+struct Snapped {
+  Wide x, y;  // 1/256 pixel from the centre of pixel (0, 0)
+};
+
+Wide snap_in_double(float window) {
+  const double steps = static_cast<double>(window - 0.5f) * 256.0;
+  double whole = std::floor(steps);
+  const double rest = steps - whole;
+  if (rest > 0.5 || (rest == 0.5 && std::fmod(whole, 2.0) != 0.0)) whole += 1.0;
+  return static_cast<Wide>(whole);
+}
+
+int sign(Wide value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+
+// The side of line a b on which a point lies that is a hair right of pixel (x, y)'s centre
+// and a far smaller hair below it. That point is on no line, so "inside" needs no rule for
+// edges: a centre on a left edge moves in, one on a right edge out, and one on a level
+// edge in if the triangle is below.
+int side(const Snapped& a, const Snapped& b, int x, int y) {
+  const Wide dx = b.x - a.x;
+  const Wide dy = b.y - a.y;
+  const Wide at_centre = dx * (static_cast<Wide>(y) * 256 - a.y) - dy * (static_cast<Wide>(x) * 256 - a.x);
+  if (at_centre != 0) return sign(at_centre);
+  return dy != 0 ? sign(-dy) : sign(dx);
+}
+
+bool covers(const std::array<Snapped, 3>& t, int x, int y) {
+  const int first = side(t[0], t[1], x, y);
+  return first != 0 && first == side(t[1], t[2], x, y) && first == side(t[2], t[0], x, y);
+}
+
+bool has_area(const std::array<Snapped, 3>& t) {
+  return (t[1].x - t[0].x) * (t[2].y - t[0].y) != (t[1].y - t[0].y) * (t[2].x - t[0].x);
+}
+
+// Draws triangles one by one into sums of 1, number and square, and compares with the
+// oracle: a wrong pixel of one triangle cannot hide behind another's.
+int wrong_against_oracle(const std::vector<glm::vec4>& positions, int width, int height,
+                         const Profile& profile = {}) {
+  std::vector<VertexOutput<4>> vertices;
+  Image expected = make_image(Format::rgba32f, width, height);
+  for (std::size_t t = 0; t < positions.size() / 3; ++t) {
+    const auto number = static_cast<float>(t % 101 + 1);
+    std::array<Snapped, 3> snapped{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::vec4& position = positions[3 * t + i];
+      vertices.push_back({position, {1.0f, number, number * number, 0.0f}});
+      const WindowVertex window = to_window(position, width, height, profile);
+      snapped[i] = {snap_in_double(window.x), snap_in_double(window.y)};
+    }
+    if (!has_area(snapped)) continue;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (!covers(snapped, x, y)) continue;
+        auto* sum = &row<float>(expected, y)[static_cast<std::size_t>(4 * x)];
+        sum[0] += 1.0f;
+        sum[1] += number;
+        sum[2] += number * number;
+      }
+    }
+  }
+  Image drawn = make_image(Format::rgba32f, width, height);
+  test::draw_list({.colour = {&drawn}}, test::adding_state(), vertices,
+                  test::VaryingColour<Interpolation::flat>{}, profile);
+  int wrong = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) wrong += load_texel(drawn, x, y) != load_texel(expected, x, y);
+  }
+  return wrong;
+}
+
+glm::vec4 some_position(test::Random& random, int width, int height, float margin) {
+  const float x = random.between(-margin, static_cast<float>(width) + margin);
+  const float y = random.between(-margin, static_cast<float>(height) + margin);
+  return test::at_window({x, y}, width, height) * random.between(0.5f, 2.0f);
+}
+
+}  // namespace
+
+TEST_CASE("a fan of triangles covers each pixel around its centre once, wherever that lies") {
+  test::Random random{71};
+  int wrong = 0;
+  for (const glm::vec2 centre : {glm::vec2{32.5f, 32.5f}, {32.0f, 32.0f}, {32.5f, 32.0f}, {0.0f, 0.0f},
+                                 {64.0f, 0.5f}, {31.99f, 32.51f}}) {
+    for (const int spokes : {3, 4, 8, 37, 200}) {
+      wrong += pixels_not_covered_once(count_coverage(fan(centre, 200.0f, spokes, 64, 64), 64, 64));
+    }
+  }
+  for (int i = 0; i < 30; ++i) {
+    const glm::vec2 centre{random.between(0.0f, 64.0f), random.between(0.0f, 64.0f)};
+    wrong += pixels_not_covered_once(
+        count_coverage(fan(centre, 200.0f, random.whole(3, 60), 64, 64), 64, 64));
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("a fan that reaches past the guard band covers each pixel once, in every profile") {
+  test::Random random{72};
+  for (const Profile& profile : profiles()) {
+    int wrong = 0;
+    for (const float radius : {100.0f, 1'000.0f, 30'000.0f}) {
+      for (int i = 0; i < 10; ++i) {
+        const glm::vec2 centre{random.between(0.0f, 64.0f), random.between(0.0f, 64.0f)};
+        wrong += pixels_not_covered_once(
+            count_coverage(fan(centre, radius, random.whole(3, 60), 64, 64), 64, 64, profile));
+      }
+    }
+    CHECK_MESSAGE(wrong == 0, profile.name);
+  }
+}
+
+TEST_CASE("a jittered grid of shared edges covers each pixel once") {
+  test::Random random{73};
+  int wrong = 0;
+  for (int i = 0; i < 10; ++i) {
+    for (const int cells : {3, 17, 60}) {
+      wrong += pixels_not_covered_once(
+          count_coverage(jittered_grid(cells, -9.0f, 137.0f, 128, 128, random), 128, 128));
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("a jittered grid through the guard band covers each pixel once, in every profile") {
+  test::Random random{74};
+  for (const Profile& profile : profiles()) {
+    int wrong = 0;
+    for (int i = 0; i < 5; ++i) {
+      for (const int cells : {3, 17, 60}) {
+        const float margin = 64.0f * (profile.guard_band + 2.0f);
+        wrong += pixels_not_covered_once(
+            count_coverage(jittered_grid(cells, 64.0f - margin, 64.0f + margin, 128, 128, random),
+                           128, 128, profile));
+      }
+    }
+    CHECK_MESSAGE(wrong == 0, profile.name);
+  }
+}
+
+TEST_CASE("a jittered grid of cells smaller than a pixel covers each pixel once") {
+  test::Random random{75};
+  CHECK(pixels_not_covered_once(
+            count_coverage(jittered_grid(150, -1.0f, 33.0f, 32, 32, random), 32, 32)) == 0);
+}
+
+TEST_CASE("a quad from pixel centre to pixel centre covers its upper and left rims, not the others") {
+  for (const bool reversed : {false, true}) {
+    std::vector<glm::vec2> points = window_quad(2.5f, 3.5f, 6.5f, 8.5f);
+    if (reversed) std::reverse(points.begin(), points.end());
+    const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16);
+    CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; }) == 0);
+  }
+}
+
+TEST_CASE("a quad from pixel corner to pixel corner covers the pixels within") {
+  const Image counts =
+      count_coverage(window_triangles(window_quad(2, 3, 6, 8), 16, 16), 16, 16);
+  CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; }) == 0);
+}
+
+TEST_CASE("moving a quad by 1/256 pixel over pixel centres moves its rims by a pixel") {
+  const float step = 1.0f / 256.0f;
+  const auto covered = [&](float by) {
+    return count_coverage(
+        window_triangles(window_quad(2.5f + by, 3.5f + by, 6.5f + by, 8.5f + by), 16, 16), 16, 16);
+  };
+  CHECK(wrong_pixels(covered(step),
+                     [](int x, int y) { return x >= 3 && x < 7 && y >= 4 && y < 9; }) == 0);
+  CHECK(wrong_pixels(covered(-step),
+                     [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; }) == 0);
+}
+
+TEST_CASE("a point on a left edge belongs to the triangle") {
+  const Image counts = count_coverage(
+      window_triangles(std::array<glm::vec2, 3>{{{4.5f, 1.0f}, {12.0f, 8.0f}, {4.5f, 15.0f}}}, 16, 16), 16, 16);
+  CHECK(count_at(counts, 4, 8) == 1.0f);
+}
+
+TEST_CASE("a point on a right edge does not belong to the triangle") {
+  const Image counts = count_coverage(
+      window_triangles(std::array<glm::vec2, 3>{{{11.5f, 1.0f}, {4.0f, 8.0f}, {11.5f, 15.0f}}}, 16, 16), 16, 16);
+  CHECK(count_at(counts, 11, 8) == 0.0f);
+  CHECK(count_at(counts, 10, 8) == 1.0f);
+}
+
+TEST_CASE("a point on a level upper edge belongs to the triangle, on a level lower edge not") {
+  const Image upper = count_coverage(
+      window_triangles(std::array<glm::vec2, 3>{{{1.0f, 4.5f}, {15.0f, 4.5f}, {8.0f, 12.0f}}}, 16, 16), 16, 16);
+  CHECK(count_at(upper, 8, 4) == 1.0f);
+  const Image lower = count_coverage(
+      window_triangles(std::array<glm::vec2, 3>{{{1.0f, 11.5f}, {15.0f, 11.5f}, {8.0f, 4.0f}}}, 16, 16), 16, 16);
+  CHECK(count_at(lower, 8, 11) == 0.0f);
+  CHECK(count_at(lower, 8, 10) == 1.0f);
+}
+
+TEST_CASE("the four triangles of a square around a pixel's centre cover that pixel once") {
+  std::vector<glm::vec2> points;
+  const std::array<glm::vec2, 4> corners{{{2.5f, 2.5f}, {13.5f, 2.5f}, {13.5f, 13.5f}, {2.5f, 13.5f}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    points.insert(points.end(), {{8.5f, 8.5f}, corners[i], corners[(i + 1) % 4]});
+  }
+  const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16);
+  CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 13 && y >= 2 && y < 13; }) == 0);
+}
+
+TEST_CASE("triangles without area draw nothing") {
+  const std::vector<glm::vec2> points{
+      {4.5f, 4.5f}, {4.5f, 4.5f}, {4.5f, 4.5f},   // a point
+      {1.0f, 1.0f}, {14.0f, 14.0f}, {1.0f, 1.0f},  // there and back
+      {0.5f, 0.5f}, {7.5f, 7.5f}, {15.5f, 15.5f},  // three in line, through centres
+      {2.5f, 9.5f}, {8.5f, 9.5f}, {12.5f, 9.5f}};
+  const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16);
+  CHECK(wrong_pixels(counts, [](int, int) { return 0; }) == 0);
+}
+
+TEST_CASE("facebookresearch/DRTK issue 9: two triangles with a diagonal through centres leave no hole") {
+  for (const float shift : {0.0f, 0.5f}) {
+    const std::array<glm::vec2, 4> v{{{0.5f, 0.49993896484375f}, {0.5f, 6.5f},
+                                      {6.50006103515625f, 0.49993896484375f}, {6.50006103515625f, 6.5f}}};
+    for (const bool flipped : {false, true}) {
+      std::vector<glm::vec2> points{v[0], v[1], v[2], v[3], v[2], v[1]};
+      if (flipped) std::swap(points[4], points[5]);
+      for (glm::vec2& p : points) p += shift;
+      const Image counts = count_coverage(window_triangles(points, 8, 8), 8, 8);
+      const int first = shift == 0.0f ? 0 : 1;
+      CHECK(wrong_pixels(counts, [&](int x, int y) {
+              return x >= first && x < first + 6 && y >= first && y < first + 6;
+            }) == 0);
+    }
+  }
+}
+
+TEST_CASE("random triangles cover what an oracle without an edge rule says, at many target sizes") {
+  test::Random random{76};
+  int wrong = 0;
+  for (const auto& [width, height] : {std::pair{1, 1}, {7, 5}, {64, 64}, {65, 63}, {100, 130}}) {
+    for (const float margin : {0.0f, 30.0f, 400.0f}) {
+      std::vector<glm::vec4> positions;
+      for (int i = 0; i < 3 * 150; ++i) {
+        positions.push_back(some_position(random, width, height, std::min(margin, 6.0f * static_cast<float>(std::min(width, height)))));
+      }
+      wrong += wrong_against_oracle(positions, width, height);
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("random triangles with vertices on pixel centres and corners cover what the oracle says") {
+  test::Random random{77};
+  std::vector<glm::vec4> positions;
+  for (int i = 0; i < 3 * 3'000; ++i) {
+    const glm::vec2 window{static_cast<float>(random.whole(-8, 72)) * 0.5f,
+                           static_cast<float>(random.whole(-8, 72)) * 0.5f};
+    positions.push_back(test::at_window(window, 32, 32));
+  }
+  CHECK(wrong_against_oracle(positions, 32, 32) == 0);
+  CHECK(wrong_against_oracle(positions, 32, 32, profile_named("llvmpipe")) == 0);
+}
+
+TEST_CASE("small triangles and slivers cover what the oracle says") {
+  test::Random random{78};
+  std::vector<glm::vec4> positions;
+  for (int i = 0; i < 4'000; ++i) {
+    const glm::vec2 a{random.between(0.0f, 32.0f), random.between(0.0f, 32.0f)};
+    const glm::vec2 step{random.between(-2.0f, 2.0f), random.between(-2.0f, 2.0f)};
+    const glm::vec2 along = i % 2 == 0 ? step : step * 15.0f;
+    const float width = i % 2 == 0 ? 1.0f : 1.0f / 64.0f;
+    const glm::vec2 across{random.between(-width, width), random.between(-width, width)};
+    for (const glm::vec2 p : {a, a + along, a + along * 0.5f + across}) {
+      positions.push_back(test::at_window(p, 32, 32));
+    }
+  }
+  CHECK(wrong_against_oracle(positions, 32, 32) == 0);
+}
+
+TEST_CASE("triangles as large as the guard band cover what the oracle says") {
+  test::Random random{79};
+  std::vector<glm::vec4> positions;
+  for (int i = 0; i < 3 * 1'500; ++i) {
+    positions.push_back({random.between(-15.9f, 15.9f), random.between(-15.9f, 15.9f), 0.0f, 1.0f});
+  }
+  CHECK(wrong_against_oracle(positions, 64, 64) == 0);
+}
+
+TEST_CASE("a rectangle larger than the target covers each pixel of it once, whatever its size") {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 130}, {130, 1}, {63, 65}, {64, 64}, {128, 64}, {200, 70}}) {
+    const auto w = static_cast<float>(width);
+    const auto h = static_cast<float>(height);
+    const Image counts = count_coverage(
+        window_triangles(window_quad(-0.5f * w, -0.5f * h, 1.5f * w, 1.5f * h), width, height), width, height);
+    CHECK(pixels_not_covered_once(counts) == 0);
+  }
+}
+
+TEST_CASE("one triangle over the whole target covers each pixel once") {
+  const Vertices vertices{{{-1.0f, -1.0f, 0.0f, 1.0f}, {}}, {{3.0f, -1.0f, 0.0f, 1.0f}, {}},
+                          {{-1.0f, 3.0f, 0.0f, 1.0f}, {}}};
+  for (const Profile& profile : profiles()) {
+    CHECK_MESSAGE(pixels_not_covered_once(count_coverage(vertices, 150, 97, profile)) == 0, profile.name);
+  }
+}
+
+TEST_CASE("both windings of a triangle cover the same pixels, and culling takes one away") {
+  const std::vector<glm::vec2> clockwise{{3.0f, 2.0f}, {13.0f, 5.0f}, {6.0f, 14.0f}};
+  const std::vector<glm::vec2> counter{clockwise[0], clockwise[2], clockwise[1]};
+  const auto covered = [&](const std::vector<glm::vec2>& points, Cull cull, FrontFace face) {
+    DrawState state = test::adding_state();
+    state.cull = cull;
+    state.front_face = face;
+    const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16, {}, state);
+    int sum = 0;
+    for (int y = 0; y < 16; ++y) {
+      for (int x = 0; x < 16; ++x) sum += static_cast<int>(count_at(counts, x, y));
+    }
+    return sum;
+  };
+  const int all = covered(clockwise, Cull::none, FrontFace::counter_clockwise);
+  CHECK(all > 30);
+  CHECK(covered(counter, Cull::none, FrontFace::counter_clockwise) == all);
+  CHECK(covered(clockwise, Cull::back, FrontFace::counter_clockwise) == 0);
+  CHECK(covered(counter, Cull::back, FrontFace::counter_clockwise) == all);
+  CHECK(covered(clockwise, Cull::front, FrontFace::counter_clockwise) == all);
+  CHECK(covered(clockwise, Cull::back, FrontFace::clockwise) == all);
+  CHECK(covered(counter, Cull::back, FrontFace::clockwise) == 0);
+}
+
+TEST_CASE("the fragment stage is told which face it draws") {
+  struct FaceColour {
+    static constexpr std::array<Interpolation, 0> kInterpolation{};
+    static constexpr bool kNeedsDerivatives = false;
+    static constexpr bool kDiscards = false;
+    FragmentOutput<1> operator()(const Fragment<0>& f) const {
+      return {{glm::vec4{f.front_facing ? 1.0f : 2.0f}}, false};
+    }
+  };
+  const std::vector<glm::vec2> clockwise{{-9.0f, -9.0f}, {30.0f, -9.0f}, {-9.0f, 30.0f}};
+  for (const FrontFace face : {FrontFace::clockwise, FrontFace::counter_clockwise}) {
+    Image target = make_image(Format::r32f, 8, 8);
+    DrawState state = test::plain_state();
+    state.front_face = face;
+    test::draw_list({.colour = {&target}}, state, window_triangles(clockwise, 8, 8), FaceColour{});
+    CHECK(count_at(target, 4, 4) == (face == FrontFace::clockwise ? 1.0f : 2.0f));
+  }
+}
+
+TEST_CASE("a scissor lets through the pixels it holds and no others, across tiles") {
+  for (const Rectangle& scissor : {Rectangle{3, 5, 17, 9}, {60, 63, 70, 65}, {-50, -50, 1000, 3},
+                                   {64, 64, 128, 128}, {10, 10, 11, 11}}) {
+    DrawState state = test::adding_state();
+    state.scissor = scissor;
+    const Image counts = count_coverage(test::covering_quad(100, 90), 100, 90, {}, state);
+    CHECK(wrong_pixels(counts, [&](int x, int y) {
+            return x >= scissor.x_begin && x < scissor.x_end && y >= scissor.y_begin && y < scissor.y_end;
+          }) == 0);
+  }
+}
+
+TEST_CASE("an empty, turned or far away scissor lets nothing through") {
+  for (const Rectangle& scissor : {Rectangle{5, 5, 5, 9}, {9, 9, 5, 5}, {200, 0, 300, 50}, {-20, -20, -10, -10}}) {
+    DrawState state = test::adding_state();
+    state.scissor = scissor;
+    const Image counts = count_coverage(test::covering_quad(100, 90), 100, 90, {}, state);
+    CHECK(wrong_pixels(counts, [](int, int) { return 0; }) == 0);
+  }
+}
