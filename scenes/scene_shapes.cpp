@@ -62,7 +62,7 @@ Mesh read_plane(Section& section) {
 Mesh read_teapot(Section& section) {
   const double height = read_size(section, "height", 1.0);
   // 32 patches of divisions x divisions.
-  return make_teapot(height, read_whole_number(section, "divisions", 12, 1, 180));
+  return make_teapot(height, read_whole_number(section, "divisions", 12, 2, 180));
 }
 
 struct ShapeKind {

@@ -168,7 +168,7 @@ void append_tube(Mesh& mesh, const std::array<Row, 7>& rows, double scale, int d
 }  // namespace
 
 Mesh make_teapot(double height, int divisions) {
-  assert(height > 0.0 && divisions >= 1);
+  assert(height > 0.0 && divisions >= 2);
   const double scale = height / kHeight;
   Mesh mesh;
   append_revolution(mesh, scale, divisions);

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "scenes/file_bytes.h"
+#include "scenes/jpeg_check.h"
 #include "scenes/scene_error.h"
 
 // Its vector code gives other bits than its plain code for JPEG.
@@ -32,15 +32,6 @@ std::string stb_reason() {
   return reason != nullptr ? reason : "unknown reason";
 }
 
-// stb_image fills what is missing of a JPEG with grey. The end marker cannot occur in
-// the scan's data, where a byte 0xFF is always followed by 0.
-bool is_cut_jpeg(std::string_view bytes) {
-  if (!bytes.starts_with("\xFF\xD8")) return false;
-  const std::size_t last_scan = bytes.rfind("\xFF\xDA");
-  return last_scan == std::string_view::npos ||
-         bytes.find("\xFF\xD9", last_scan) == std::string_view::npos;
-}
-
 }  // namespace
 
 Texture load_texture(const std::filesystem::path& file) {
@@ -48,6 +39,10 @@ Texture load_texture(const std::filesystem::path& file) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
 
+  if (has_overfull_huffman_table(bytes)) {
+    fail(file, "is damaged (a Huffman table of more than 256 codes); a complete PNG or JPEG file "
+               "would do");
+  }
   int width = 0;
   int height = 0;
   int channels = 0;

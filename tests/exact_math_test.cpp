@@ -69,9 +69,12 @@ double some_angle(test::Random& random, int i) {
     case 0: return random.between(-45.0, 45.0);
     case 1: return random.between(-720.0, 720.0);
     case 2: return random.between(-1e9, 1e9);
-    default:
-      return 90.0 * random.whole(-40, 40) +
-             std::ldexp(random.between(-1.0, 1.0), random.whole(-50, 5));
+    default: {
+      // One at a time: the order in which operands draw numbers is the compiler's choice.
+      const double multiple = 90.0 * random.whole(-40, 40);
+      const int exponent = random.whole(-50, 5);
+      return multiple + std::ldexp(random.between(-1.0, 1.0), exponent);
+    }
   }
 }
 

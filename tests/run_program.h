@@ -1,18 +1,18 @@
 #pragma once
 // Runs the program as a user does and keeps what it said. POSIX.
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -24,21 +24,23 @@ namespace softfocus {
 /// How a run ended and what it wrote.
 struct ProgramRun {
   int status = -1;  ///< the exit status; -1 if a signal ended it
-  std::string out;
-  std::string err;
+  std::string out{};
+  std::string err{};
 };
 
 struct RunSetting {
-  std::string out_to;                     ///< standard output goes to this file, not to `out`
-  std::optional<rlim_t> file_size_limit;  ///< stands for a full disk: writes past it fail
+  std::string out_to{};  ///< standard output goes to this file, not to `out`
+  std::string err_to{};  ///< likewise standard error
+  /// Stands for a full disk: a file's bytes past it cannot be written.
+  std::optional<rlim_t> file_size_limit{};
 };
 
 inline ProgramRun run_program(const std::vector<std::string>& arguments,
                               const RunSetting& setting = {}) {
-  using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-  const File out{std::tmpfile(), std::fclose};
-  const File err{std::tmpfile(), std::fclose};
-  if (!out || !err) throw std::runtime_error("no temporary file");
+  int out[2], err[2];
+  if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) {
+    throw std::runtime_error("no pipe");
+  }
   std::vector<std::string> words{SOFTFOCUS_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -48,12 +50,12 @@ inline ProgramRun run_program(const std::vector<std::string>& arguments,
   const pid_t child = ::fork();
   if (child == 0) {
     if (std::freopen("/dev/null", "r", stdin) == nullptr) ::_exit(125);
-    if (setting.out_to.empty()) {
-      ::dup2(::fileno(out.get()), STDOUT_FILENO);
-    } else if (std::freopen(setting.out_to.c_str(), "w", stdout) == nullptr) {
-      ::_exit(125);
-    }
-    ::dup2(::fileno(err.get()), STDERR_FILENO);
+    const auto connect = [](int descriptor, const std::string& name, int pipe) {
+      const int to = name.empty() ? pipe : ::open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+      if (::dup2(to, descriptor) < 0) ::_exit(125);
+    };
+    connect(STDOUT_FILENO, setting.out_to, out[1]);
+    connect(STDERR_FILENO, setting.err_to, err[1]);
     if (setting.file_size_limit) {
       const rlimit limit{*setting.file_size_limit, *setting.file_size_limit};
       ::setrlimit(RLIMIT_FSIZE, &limit);
@@ -61,18 +63,25 @@ inline ProgramRun run_program(const std::vector<std::string>& arguments,
     ::execv(SOFTFOCUS_PROGRAM, argv.data());
     ::_exit(126);
   }
-  int status = 0;
-  if (child < 0 || ::waitpid(child, &status, 0) != child) throw std::runtime_error("no child");
+  ::close(out[1]);
+  ::close(err[1]);
+  if (child < 0) throw std::runtime_error("no child");
 
-  const auto contents = [](std::FILE* file) {
+  const auto read_all = [](int pipe) {
     std::string text;
-    std::rewind(file);
-    for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
-      text.push_back(static_cast<char>(c));
+    char part[65536];
+    for (ssize_t count; (count = ::read(pipe, part, sizeof part)) > 0;) {
+      text.append(part, static_cast<std::size_t>(count));
     }
+    ::close(pipe);
     return text;
   };
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out.get()), contents(err.get())};
+  auto said = std::async(std::launch::async, read_all, err[0]);  // both, or one would fill up
+  ProgramRun run{.out = read_all(out[0]), .err = said.get()};
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (WIFEXITED(status)) run.status = WEXITSTATUS(status);
+  return run;
 }
 
 /// A directory of a test's own, gone with it.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string_view>
 #include <vector>
 
 #include "raster/images/texel.h"
@@ -228,7 +229,7 @@ TEST_CASE("a bilinear fetch is (a + s (b - a)) along rows, then along columns, i
   test::Random random{25};
   const Texture texture = random_texture(Format::rgba16f, 16, 16, 6, -8.0f, 8.0f);
   const Sampler sampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::clamp_to_edge};
-  for (const char* name : {"ieee", "llvmpipe", "llvmpipe-sse41", "softpipe", "d3d11"}) {
+  for (const std::string_view name : {"ieee", "llvmpipe", "llvmpipe-sse41", "softpipe", "d3d11"}) {
     const Profile profile = profile_named(name);
     const bool fused = profile.lerp == Contraction::fused;
     const auto mix = [&](float a, float b, float t) {

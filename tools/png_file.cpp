@@ -3,6 +3,7 @@
 #include <stb_image.h>
 
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <new>
 
@@ -10,6 +11,20 @@
 #include "tools/byte_order.h"
 #include "tools/errors.h"
 #include "tools/image_file.h"
+
+namespace {
+
+/// stb only asserts that its buffer could grow, but no memory is an error like any other.
+void* grown(void* memory, std::size_t size) {
+  void* larger = std::realloc(memory, size);
+  if (larger == nullptr) throw std::bad_alloc{};
+  return larger;
+}
+
+}  // namespace
+#define STBIW_MALLOC(size) std::malloc(size)
+#define STBIW_REALLOC(memory, size) grown(memory, size)
+#define STBIW_FREE(memory) std::free(memory)
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push

@@ -187,9 +187,9 @@ std::vector<std::string> with_autofocus_joined(std::vector<std::string> argument
     const bool has_next = i + 1 < arguments.size();
     const std::string next = has_next ? arguments[i + 1] : "";
     // No scene is named with these characters alone; a mistyped pixel is.
-    const bool is_value = next.find_first_of("0123456789") != next.npos &&
+    const bool is_pixel = next.find_first_of("0123456789") != next.npos &&
                           next.find_first_not_of("0123456789+-.,;x: ") == next.npos;
-    joined.back() += "=" + (is_value ? arguments[++i] : "centre");
+    joined.back() += "=" + (is_pixel || next == "centre" ? arguments[++i] : "centre");
   }
   return joined;
 }

@@ -18,9 +18,11 @@ struct ClipVertex {
   std::array<float, kMaxVaryings> varyings;
 };
 
-/// A convex polygon; each of the six planes adds at most one vertex to a triangle.
+/// A polygon, convex but for rounding. In exact arithmetic each of the six planes adds
+/// at most one vertex to a triangle; but the rounded vertices of a sliver can lie on
+/// alternate sides of a plane, and n vertices then become 3n/2: 3, 4, 6, 9, 13, 19, 28.
 struct ClipPolygon {
-  std::array<ClipVertex, 9> vertices;
+  std::array<ClipVertex, 28> vertices;
   std::size_t count = 0;
 };
 

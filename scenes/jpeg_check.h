@@ -1,0 +1,16 @@
+#pragma once
+// What stb_image (2.27) lets pass in a JPEG and should not, looked for beforehand.
+
+#include <string_view>
+
+namespace softfocus {
+
+/// Whether the bytes begin as a JPEG does and their end is missing: stb_image fills
+/// what is not there with grey.
+bool is_cut_jpeg(std::string_view bytes);
+
+/// Whether a Huffman table of a JPEG claims more than its 256 codes: stb_image writes
+/// them past the table's end.
+bool has_overfull_huffman_table(std::string_view bytes);
+
+}  // namespace softfocus

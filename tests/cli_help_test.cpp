@@ -1,0 +1,78 @@
+#include "tests/cli_render.h"
+
+using namespace softfocus;
+
+TEST_CASE("help names every option of every subcommand, with units") {
+  const auto names_all = [](const char* command, const Words& options) {
+    const ProgramRun run = run_program({command, "--help"});
+    CHECK(run.status == 0);
+    CHECK(run.err == "");
+    for (const std::string& option : options) {
+      CAPTURE(option);
+      CHECK(contains(run.out, "  " + option));
+    }
+  };
+  names_all("render", {"SCENE",
+                       "-o,--output FILE",
+                       "--format png|pfm|npy",
+                       "--size WxH",
+                       "--show image|pinhole|coc|depth",
+                       "--frame N",
+                       "--scene-path DIR",
+                       "--method NAME",
+                       "--focus METRES",
+                       "--focal-length MM",
+                       "--f-number N",
+                       "--coc-scale S",
+                       "--autofocus [X,Y]",
+                       "--max-coc PIXELS",
+                       "--leak A",
+                       "--profile NAME",
+                       "--threads N",
+                       "--report FILE",
+                       "--json",
+                       "-v,--verbose"});
+  names_all("lens",
+            {"--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
+             "--fov DEGREES", "--height PIXELS", "--max-coc-film MM", "--at METRES ...", "--json"});
+  names_all("compare", {"A", "B", "--diff OUT", "--json"});
+  names_all("scenes", {"--scene-path DIR"});
+  names_all("methods", {});
+  names_all("profiles", {});
+}
+
+TEST_CASE("the program tells its version") {
+  CHECK(run_program({"--version"}).out.starts_with("softfocus 0."));
+}
+
+TEST_CASE("without a subcommand there is the help, as wrong usage") {
+  const ProgramRun run = run_program({});
+  CHECK(run.status == 2);
+  CHECK(run.out == "");
+  for (const char* command : {"render", "scenes", "methods", "profiles", "lens", "compare"}) {
+    CHECK(contains(run.err, std::string{"\n  "} + command));
+  }
+}
+
+TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
+  const auto lists = [](const char* command, const Words& names) {
+    const ProgramRun run = run_program({command});
+    CHECK(run.status == 0);
+    for (const std::string& name : names) {
+      CAPTURE(name);
+      CHECK(contains("\n" + run.out, "\n" + name + " "));
+    }
+    CHECK(std::count(run.out.begin(), run.out.end(), '\n') ==
+          static_cast<std::ptrdiff_t>(names.size()));
+  };
+  lists("scenes", {"cube-room", "figures", "sphere-world"});
+  lists("methods", {"pinhole", "two-pass", "one-pass"});
+  lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
+}
+
+TEST_CASE("scenes lists those of --scene-path with their titles") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("mine.toml"), "title = \"My own\"\n" + kCube);
+  CHECK(contains(run_program({"scenes", "--scene-path", directory.path()}).out,
+                 "mine          My own\n"));
+}

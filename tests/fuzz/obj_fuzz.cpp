@@ -1,0 +1,17 @@
+// Any bytes as an OBJ model: a model that can be drawn, or a SceneError.
+
+#include "scenes/draw_scene.h"
+#include "scenes/model_scene.h"
+#include "scenes/scene_error.h"
+#include "tests/fuzz/fuzz_input.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace softfocus;
+  try {
+    const Scene scene = make_model_scene(load_obj_model(fuzz_file(data, size, ".obj")), "fuzz");
+    ThreadPool pool(1);
+    draw_scene(scene, camera_view(scene.camera, 0, 16, 16), 0, 16, 16, profiles()[0], pool);
+  } catch (const SceneError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,23 @@
+// Any bytes as each kind of picture: a picture, or the error that is meant for the user.
+
+#include "scenes/scene_error.h"
+#include "scenes/texture_file.h"
+#include "tests/fuzz/fuzz_input.h"
+#include "tools/errors.h"
+#include "tools/image_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace softfocus;
+  const std::span bytes{reinterpret_cast<const std::byte*>(data), size};
+  for (const FileFormat format : {FileFormat::png, FileFormat::pfm, FileFormat::npy}) {
+    try {
+      decode(bytes, format);
+    } catch (const FileError&) {
+    }
+  }
+  try {
+    load_texture(fuzz_file(data, size, ".png"));
+  } catch (const SceneError&) {
+  }
+  return 0;
+}
