@@ -41,8 +41,8 @@ void append_grid(Mesh& mesh, const GridLayout& layout, PointFunction point) {
   const auto first_vertex = static_cast<std::uint32_t>(mesh.positions.size());
   const auto columns = static_cast<std::uint32_t>(layout.columns);
   for (int row = 0; row <= layout.rows; ++row) {
-    const bool is_point = (row == 0 && layout.first_row_is_point) ||
-                          (row == layout.rows && layout.last_row_is_point);
+    const bool is_point =
+        (row == 0 && layout.first_row_is_point) || (row == layout.rows && layout.last_row_is_point);
     const int vertices = is_point ? layout.columns : layout.columns + 1;
     for (int column = 0; column < vertices; ++column) {
       append_vertex(mesh, point(is_point ? column + 0.5 : column, row));

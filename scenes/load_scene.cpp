@@ -48,9 +48,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   throw SceneError("there is no scene \"" + std::string(name) + "\"" + nearest +
-                   (names.empty() ? "; no scenes were found at all: give a .toml or .obj file"
-                                  : "; there are " + names +
-                                        ", and any .toml or .obj file can be given"));
+                   (names.empty()
+                        ? "; no scenes were found at all: give a .toml or .obj file"
+                        : "; there are " + names + ", and any .toml or .obj file can be given"));
 }
 
 }  // namespace

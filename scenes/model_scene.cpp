@@ -1,7 +1,6 @@
 #include "scenes/model_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,31 +10,37 @@
 namespace softfocus {
 namespace {
 
-struct Box {
+// The axes of the camera, and the box along them that holds the model.
+struct SeenBox {
+  glm::dvec3 axes[3];  // right, up, towards the camera
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
 };
 
-Box bounding_box(const Scene& scene) {
-  Box box;
-  for (const Mesh& mesh : scene.meshes) {
-    for (const glm::vec3& position : mesh.positions) {
-      for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = std::min(box.low[axis], static_cast<double>(position[axis]));
-        box.high[axis] = std::max(box.high[axis], static_cast<double>(position[axis]));
-      }
-    }
-  }
-  return box;
+glm::dvec3 along_axes(const SeenBox& box, glm::dvec3 p) {
+  return {dot(p, box.axes[0]), dot(p, box.axes[1]), dot(p, box.axes[2])};
 }
 
-std::array<glm::dvec3, 8> corners_of(const Box& box) {
-  std::array<glm::dvec3, 8> corners;
-  for (std::size_t i = 0; i < 8; ++i) {
-    corners[i] = {(i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
-                  (i & 4) != 0 ? box.high.z : box.low.z};
+template <class Visit>
+void for_each_position(const Scene& scene, Visit visit) {
+  for (const Mesh& mesh : scene.meshes) {
+    for (const glm::vec3& position : mesh.positions) visit(glm::dvec3{position});
   }
-  return corners;
+}
+
+SeenBox seen_box(const Scene& scene, glm::dvec3 towards) {
+  SeenBox box;
+  box.axes[2] = towards;
+  box.axes[0] = normalize(cross(scene.camera.up, towards));
+  box.axes[1] = cross(box.axes[2], box.axes[0]);
+  for_each_position(scene, [&](glm::dvec3 p) {
+    const glm::dvec3 seen = along_axes(box, p);
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::min(box.low[axis], seen[axis]);
+      box.high[axis] = std::max(box.high[axis], seen[axis]);
+    }
+  });
+  return box;
 }
 
 // Moeller and Trumbore 1997: how many `direction`s the triangle lies ahead, or infinity.
@@ -63,8 +68,7 @@ double first_hit(const Scene& scene, glm::dvec3 eye, glm::dvec3 direction) {
       const auto corner = [&](std::size_t k) {
         return glm::dvec3{mesh.positions[mesh.indices[i + k]]};
       };
-      nearest = std::min(nearest,
-                         ray_to_triangle(eye, direction, corner(0), corner(1), corner(2)));
+      nearest = std::min(nearest, ray_to_triangle(eye, direction, corner(0), corner(1), corner(2)));
     }
   }
   return nearest;
@@ -73,30 +77,29 @@ double first_hit(const Scene& scene, glm::dvec3 eye, glm::dvec3 direction) {
 constexpr glm::dvec3 kViewedFrom{0.6, 0.42, 1.0};
 constexpr double kFilled = 0.9;  // of half the picture
 
-// Stands where every corner c of the box lies inside the picture: with c seen along
-// the camera's axes from the middle, |c.right| and |c.up| <= (d - c.towards) * tangent.
-void fit_camera(Camera& camera, const Box& box) {
-  const glm::dvec3 middle = (box.low + box.high) * 0.5;
+// Stands where every point of the model lies inside the picture: with c its place
+// along the camera's axes from the middle, |c.x| and |c.y| <= (d - c.z) * tangent.
+void fit_camera(Scene& scene) {
+  Camera& camera = scene.camera;
   const glm::dvec3 towards = normalize(kViewedFrom);
-  const glm::dvec3 right = normalize(cross(camera.up, towards));
-  const glm::dvec3 up = cross(towards, right);
+  const SeenBox box = seen_box(scene, towards);
+  const glm::dvec3 middle = (box.low + box.high) * 0.5;
   const double tangent = kFilled * exact_math::tan_degrees(camera.fov_y_degrees / 2.0);
   double distance = 0.0;
-  double depth = 0.0;  // of the box before and behind its middle
-  for (const glm::dvec3 corner : corners_of(box)) {
-    const glm::dvec3 c = corner - middle;
-    const double aside = std::max(std::fabs(dot(c, right)), std::fabs(dot(c, up)));
-    distance = std::max(distance, dot(c, towards) + aside / tangent);
-    depth = std::max(depth, dot(c, towards));
-  }
-  camera.target = middle;
-  camera.position = middle + towards * distance;
-  // Room to move the camera: a hundredth of the way before, ten times behind.
-  camera.near_m = std::max((distance - depth) * 0.5, distance * 0.01);
+  for_each_position(scene, [&](glm::dvec3 p) {
+    const glm::dvec3 c = along_axes(box, p) - middle;
+    distance = std::max(distance, c.z + std::max(std::fabs(c.x), std::fabs(c.y)) / tangent);
+  });
+  // A flat model seen on edge has no width.
+  distance = std::max(distance, (box.high.z - middle.z) * 1.5);
+  camera.target = (box.axes[0] * middle.x + box.axes[1] * middle.y) + box.axes[2] * middle.z;
+  camera.position = camera.target + towards * distance;
+  // Room to move the camera: half the way before the model, ten times the way behind.
+  camera.near_m = (distance - (box.high.z - middle.z)) * 0.5;
   camera.far_m = distance * 10.0;
 }
 
-void fit_lens(SceneLens& lens, const Scene& scene, const Box& box) {
+void fit_lens(Scene& scene) {
   const Camera& camera = scene.camera;
   const glm::dvec3 way = camera.target - camera.position;
   const double to_middle = std::sqrt(dot(way, way));
@@ -104,17 +107,19 @@ void fit_lens(SceneLens& lens, const Scene& scene, const Box& box) {
   const double hit = first_hit(scene, camera.position, forwards);
   const double focus = std::isfinite(hit) ? hit : to_middle;
 
-  // r = (A/2) |1/z_f - 1/z| pixels, largest at one end of the box.
-  double largest = 0.0;
-  for (const glm::dvec3 corner : corners_of(box)) {
-    const double z = dot(corner - camera.position, forwards);
+  // r = (A/2) |1/z_f - 1/z| pixels; a flat model seen square on gets the lens of one
+  // that is a tenth of its distance deep.
+  double largest = 0.1 / focus;
+  for_each_position(scene, [&](glm::dvec3 p) {
+    const double z = dot(p - camera.position, forwards);
     largest = std::max(largest, std::fabs(1.0 / focus - 1.0 / z));
-  }
+  });
   const double pixels = 1024.0 / (2.0 * exact_math::tan_degrees(camera.fov_y_degrees / 2.0));
   const double aperture_m = 2.0 * kModelCocPx / (largest * pixels);
-  lens.lens.focus_m = focus;
-  lens.lens.focal_length_mm = focus * 1000.0 / 20.0;
-  lens.lens.f_number = lens.lens.focal_length_mm / (aperture_m * 1000.0);
+  ThinLens& lens = scene.lens.lens;
+  lens.focus_m = focus;
+  lens.focal_length_mm = focus * 1000.0 / 20.0;
+  lens.f_number = lens.focal_length_mm / (aperture_m * 1000.0);
 }
 
 }  // namespace
@@ -144,16 +149,15 @@ Scene make_model_scene(ObjModel model, const std::string& name) {
   Scene scene;
   scene.name = name;
   scene.title = name;
-  scene.background = {0.18f, 0.19f, 0.21f};
-  scene.ambient_light = {0.30f, 0.31f, 0.34f};
+  scene.background = {0.14f, 0.15f, 0.17f};
+  scene.ambient_light = {0.17f, 0.175f, 0.19f};
   scene.lights = {
-      {LightKind::directional, {-0.5f, 0.9f, 0.8f}, {0.95f, 0.92f, 0.86f}},
-      {LightKind::directional, {1.0f, 0.25f, 0.35f}, {0.22f, 0.25f, 0.30f}},
+      {LightKind::directional, {-0.5f, 0.9f, 0.8f}, {1.05f, 1.0f, 0.92f}},
+      {LightKind::directional, {1.0f, 0.25f, 0.35f}, {0.25f, 0.28f, 0.34f}},
   };
   add_model(scene, std::move(model), Object{}, std::nullopt);
-  const Box box = bounding_box(scene);
-  fit_camera(scene.camera, box);
-  fit_lens(scene.lens, scene, box);
+  fit_camera(scene);
+  fit_lens(scene);
   return scene;
 }
 

@@ -33,8 +33,7 @@ class FirstComeNumbers {
   using Key = std::array<std::uint32_t, 3>;
   /// The key's number, and whether it is new.
   std::pair<std::uint32_t, bool> number(const Key& key) {
-    const auto [entry, is_new] =
-        numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size()));
+    const auto [entry, is_new] = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size()));
     return {entry->second, is_new};
   }
 

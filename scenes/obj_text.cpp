@@ -61,8 +61,8 @@ void read_numbers(const Place& place, std::string_view line, int least, int most
     if (word.empty() && i >= least) return;
     const auto number = to_float(word);
     if (!number) {
-      fail(place, word.empty() ? "has " + std::to_string(i) + " numbers; " +
-                                     std::to_string(least) + " would be right"
+      fail(place, word.empty() ? "has " + std::to_string(i) + " numbers; " + std::to_string(least) +
+                                     " would be right"
                                : "\"" + std::string(word.substr(0, 40)) + "\" is no number");
     }
     if (!(std::fabs(*number) <= kLargestCoordinate)) {
@@ -142,6 +142,7 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
   if (text.find('\0') != std::string_view::npos) {
     throw SceneError(file + ": is binary; an OBJ model is text");
   }
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   ObjText obj;
   FaceState state;
   std::vector<std::size_t> face_lines;

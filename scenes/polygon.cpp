@@ -72,8 +72,7 @@ bool cut_from_second(std::span<const glm::dvec3> corners, const std::vector<glm:
 
 }  // namespace
 
-std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(
-    std::span<const glm::dvec3> corners) {
+std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(std::span<const glm::dvec3> corners) {
   assert(corners.size() >= 3);
   if (corners.size() == 3) return {{0, 1, 2}};
   const std::vector<glm::dvec2> flat = flattened(corners);
@@ -94,7 +93,8 @@ std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(
     }
     place %= left.size();
     const std::size_t count = left.size();
-    triangles.push_back({left[(place + count - 1) % count], left[place], left[(place + 1) % count]});
+    triangles.push_back(
+        {left[(place + count - 1) % count], left[place], left[(place + 1) % count]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(place));
   }
   triangles.push_back({left[0], left[1], left[2]});

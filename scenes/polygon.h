@@ -14,7 +14,6 @@ namespace softfocus {
 /// inside it; a polygon of more corners loses one ear after the other (Meisters 1975),
 /// seen along the axis in which it is largest. One that crosses itself, or has no
 /// area, is cut anyhow. Needs 3 corners or more.
-std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(
-    std::span<const glm::dvec3> corners);
+std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(std::span<const glm::dvec3> corners);
 
 }  // namespace softfocus

@@ -59,8 +59,8 @@ double fractal_noise(std::uint64_t seed, double u, double v, int cells_x, int ce
   double sum = 0.0;
   double strength = 8.0 / 15.0;
   for (int octave = 0; octave < 4; ++octave) {
-    sum += strength * value_noise(seed + static_cast<std::uint64_t>(octave), u * cells_x, v * cells_y,
-                            cells_x, cells_y);
+    sum += strength * value_noise(seed + static_cast<std::uint64_t>(octave), u * cells_x,
+                                  v * cells_y, cells_x, cells_y);
     strength *= 0.5;
     cells_x *= 2;
     cells_y *= 2;

@@ -103,7 +103,9 @@ void read_scatter(Section& section, const NamedSurfaces& surfaces, std::vector<B
   const bool turned = read_flag(section, "turned", false);
   std::vector<Ball> obstacles = placed;
   for (const auto& row : read_rows(section, "avoid", 4, kAnyPlace)) {
-    if (row[3] < 0.0) fail_at(section, "avoid", "has a negative radius; [x, y, z, radius] would be right");
+    if (row[3] < 0.0) {
+      fail_at(section, "avoid", "has a negative radius; [x, y, z, radius] would be right");
+    }
     obstacles.push_back({{row[0], row[1], row[2]}, row[3]});
   }
 

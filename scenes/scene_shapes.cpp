@@ -32,8 +32,7 @@ Mesh read_torus(Section& section) {
   const double ring_radius = read_size(section, "ring_radius", 1.0);
   const double tube_radius = read_size(section, "tube_radius", 0.35);
   if (tube_radius >= ring_radius) {
-    fail_at(section, "tube_radius",
-            "must be smaller than ring_radius, or the torus has no hole");
+    fail_at(section, "tube_radius", "must be smaller than ring_radius, or the torus has no hole");
   }
   const int segments = read_cells(section, "segments", 64, 3);
   return make_torus(ring_radius, tube_radius, segments, read_cells(section, "sides", 32, 3));

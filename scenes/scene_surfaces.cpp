@@ -36,9 +36,9 @@ Texture read_procedural_texture(Section& section) {
   const auto rows = read_rows(section, "colours", 3, {0.0, 1.0});
   if (rows.size() != pattern.colour_count) {
     fail_at(section, "colours",
-            std::to_string(rows.size()) + " are given; the pattern \"" +
-                std::string(pattern.name) + "\" needs " + std::to_string(pattern.colour_count) +
-                " (" + std::string(pattern.colours) + "), each [red, green, blue] from 0 to 1");
+            std::to_string(rows.size()) + " are given; the pattern \"" + std::string(pattern.name) +
+                "\" needs " + std::to_string(pattern.colour_count) + " (" +
+                std::string(pattern.colours) + "), each [red, green, blue] from 0 to 1");
   }
   for (const auto& row : rows) recipe.colours.emplace_back(glm::dvec3{row[0], row[1], row[2]});
   return make_procedural_texture(pattern, recipe);
@@ -55,8 +55,7 @@ Texture read_texture(Section& section, const std::filesystem::path& directory) {
   return load_texture(directory / read_text(section, "file", ""));
 }
 
-Material read_material(Section& section, const std::string& name,
-                       const NamedSurfaces& surfaces) {
+Material read_material(Section& section, const std::string& name, const NamedSurfaces& surfaces) {
   // Light that is reflected more than once over is no material's, but a scene's author
   // may want it.
   constexpr double kLargest = 10.0;
@@ -112,19 +111,18 @@ NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory
   return surfaces;
 }
 
-std::uint32_t material_named(const Section& section, std::string_view key,
-                             const std::string& name, const NamedSurfaces& surfaces) {
+std::uint32_t material_named(const Section& section, std::string_view key, const std::string& name,
+                             const NamedSurfaces& surfaces) {
   const auto found = surfaces.materials.find(name);
   if (found == surfaces.materials.end()) {
-    fail_at(section, key,
-            "there is no material \"" + name + "\"; a table [material." + name +
-                "] would be right");
+    fail_at(
+        section, key,
+        "there is no material \"" + name + "\"; a table [material." + name + "] would be right");
   }
   return found->second;
 }
 
-glm::vec3 read_colour(Section& section, std::string_view key, glm::vec3 fallback,
-                      double largest) {
+glm::vec3 read_colour(Section& section, std::string_view key, glm::vec3 fallback, double largest) {
   return glm::vec3{read_vector(section, key, glm::dvec3{fallback}, {0.0, largest})};
 }
 

@@ -25,8 +25,8 @@ struct NamedSurfaces {
 NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory, Scene& scene);
 
 /// The material that `key` names. Throws SceneError where it names none.
-std::uint32_t material_named(const Section& section, std::string_view key,
-                             const std::string& name, const NamedSurfaces& surfaces);
+std::uint32_t material_named(const Section& section, std::string_view key, const std::string& name,
+                             const NamedSurfaces& surfaces);
 
 /// The texts of a file's colours: three numbers, linear.
 glm::vec3 read_colour(Section& section, std::string_view key, glm::vec3 fallback, double largest);

@@ -48,7 +48,8 @@ Mesh make_torus(double ring_radius, double tube_radius, int segments, int sides)
     const double around_tube = 360.0 * row / sides;
     const glm::dvec3 ring = heading(column, segments);
     const glm::dvec3 out = ring * sin_degrees(around_tube) + kUp * cos_degrees(around_tube);
-    return SurfacePoint{ring * ring_radius + out * tube_radius, out,
+    return SurfacePoint{ring * ring_radius + out * tube_radius,
+                        out,
                         {column / segments, static_cast<double>(row) / sides}};
   });
   return mesh;
@@ -91,8 +92,8 @@ Mesh make_cube(double size, int cells) {
   Mesh mesh;
   for (const Face& face : kFaces) {
     append_grid(mesh, {cells, cells}, [&](double column, int row) {
-      const glm::dvec3 place = face.outward * 0.5 + face.right * centred(column, cells) -
-                               face.up * centred(row, cells);
+      const glm::dvec3 place =
+          face.outward * 0.5 + face.right * centred(column, cells) - face.up * centred(row, cells);
       return SurfacePoint{
           place * size, face.outward, {column / cells, static_cast<double>(row) / cells}};
     });

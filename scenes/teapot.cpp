@@ -39,13 +39,10 @@ constexpr std::array<std::array<ProfilePoint, 4>, 6> kProfiles = {{
     {{on_profile(1.4, 2.4), on_profile(1.3375, 2.53125), on_profile(1.4375, 2.53125),
       on_profile(1.5, 2.4)}},
     // body
-    {{on_profile(1.5, 2.4), on_profile(1.75, 1.875), on_profile(2.0, 1.35),
-      on_profile(2.0, 0.9)}},
-    {{on_profile(2.0, 0.9), on_profile(2.0, 0.45), on_profile(1.5, 0.225),
-      on_profile(1.5, 0.15)}},
+    {{on_profile(1.5, 2.4), on_profile(1.75, 1.875), on_profile(2.0, 1.35), on_profile(2.0, 0.9)}},
+    {{on_profile(2.0, 0.9), on_profile(2.0, 0.45), on_profile(1.5, 0.225), on_profile(1.5, 0.15)}},
     // foot
-    {{on_profile(1.5, 0.15), on_profile(1.5, 0.075), on_profile(1.425, 0.0),
-      on_profile(0.0, 0.0)}},
+    {{on_profile(1.5, 0.15), on_profile(1.5, 0.075), on_profile(1.425, 0.0), on_profile(0.0, 0.0)}},
 }};
 
 // Handle and spout: the half with z >= 0 of each section, from the body outwards.
@@ -90,8 +87,7 @@ glm::dvec3 point_of(const Row& p, const Bernstein& at) {
 }
 
 glm::dvec3 slope_of(const Row& p, const Bernstein& at) {
-  return ((p[1] - p[0]) * at.slope[0] + (p[3] - p[2]) * at.slope[2]) +
-         (p[2] - p[1]) * at.slope[1];
+  return ((p[1] - p[0]) * at.slope[0] + (p[3] - p[2]) * at.slope[2]) + (p[2] - p[1]) * at.slope[1];
 }
 
 // Where the first or last row is one point, the derivative along the row vanishes
@@ -112,8 +108,7 @@ struct UvRange {
   double u0, v0, u_size, v_size;
 };
 
-void append_patch(Mesh& mesh, const Patch& patch, const UvRange& uvs, double scale,
-                  int divisions) {
+void append_patch(Mesh& mesh, const Patch& patch, const UvRange& uvs, double scale, int divisions) {
   const GridLayout layout{divisions, divisions, is_point(patch[0]), is_point(patch[3])};
   append_grid(mesh, layout, [&](double column, int row) {
     const Bernstein right{column, divisions};
@@ -124,9 +119,10 @@ void append_patch(Mesh& mesh, const Patch& patch, const UvRange& uvs, double sca
       points[i] = point_of(patch[i], right);
       slopes[i] = slope_of(patch[i], right);
     }
-    return SurfacePoint{point_of(points, down) * scale, patch_normal(points, slopes, down),
-                        {uvs.u0 + uvs.u_size * column / divisions,
-                         uvs.v0 + uvs.v_size * row / divisions}};
+    return SurfacePoint{
+        point_of(points, down) * scale,
+        patch_normal(points, slopes, down),
+        {uvs.u0 + uvs.u_size * column / divisions, uvs.v0 + uvs.v_size * row / divisions}};
   });
 }
 

@@ -40,8 +40,9 @@ Texture load_texture(const std::filesystem::path& file) {
   const int size = static_cast<int>(bytes.size());
 
   if (has_overfull_huffman_table(bytes)) {
-    fail(file, "is damaged (a Huffman table of more than 256 codes); a complete PNG or JPEG file "
-               "would do");
+    fail(file,
+         "is damaged (a Huffman table of more than 256 codes); a complete PNG or JPEG file "
+         "would do");
   }
   int width = 0;
   int height = 0;
@@ -53,10 +54,9 @@ Texture load_texture(const std::filesystem::path& file) {
   }
   if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize ||
       static_cast<std::int64_t>(width) * height > kMaxTextureTexels) {
-    fail(file, "is " + std::to_string(width) + "x" + std::to_string(height) +
-                   " texels; up to " + std::to_string(kMaxImageSize) +
-                   " along a side and " + std::to_string(kMaxTextureTexels) +
-                   " in all would do");
+    fail(file, "is " + std::to_string(width) + "x" + std::to_string(height) + " texels; up to " +
+                   std::to_string(kMaxImageSize) + " along a side and " +
+                   std::to_string(kMaxTextureTexels) + " in all would do");
   }
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels{
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free};

@@ -64,16 +64,15 @@ double number_of(const Section& section, std::string_view key, const toml::node&
 
 std::string number_in(Range range) { return "a number " + in_words(range); }
 
-std::vector<double> numbers_of(const Section& section, std::string_view key,
-                               const toml::node& node, std::size_t count, Range range) {
+std::vector<double> numbers_of(const Section& section, std::string_view key, const toml::node& node,
+                               std::size_t count, Range range) {
   const std::string how_many = count == 0 ? "" : std::to_string(count) + " ";
   const std::string wanted = "an array of " + how_many + "numbers " + in_words(range);
   const toml::array* array = node.as_array();
   if (array == nullptr) fail_type(section, key, node, wanted);
   if (count != 0 && array->size() != count) {
     fail_at_line(section, node.source().begin.line, key,
-                 "has " + std::to_string(array->size()) + " values; " + wanted +
-                     " would be right");
+                 "has " + std::to_string(array->size()) + " values; " + wanted + " would be right");
   }
   std::vector<double> numbers;
   for (const toml::node& value : *array) {
@@ -111,11 +110,13 @@ int read_whole_number(Section& section, std::string_view key, int fallback, int 
   if (node == nullptr) return fallback;
   const std::string wanted =
       "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
-  if (node->is_floating_point()) fail_at(section, key, "has a fraction; " + wanted + " would be right");
+  if (node->is_floating_point())
+    fail_at(section, key, "has a fraction; " + wanted + " would be right");
   if (!node->is_integer()) fail_type(section, key, *node, wanted);
   const std::int64_t value = *node->value<std::int64_t>();
   if (value < low || value > high) {
-    fail_at(section, key, std::to_string(value) + " is out of range; " + wanted + " would be right");
+    fail_at(section, key,
+            std::to_string(value) + " is out of range; " + wanted + " would be right");
   }
   return static_cast<int>(value);
 }
@@ -155,8 +156,7 @@ std::vector<std::vector<double>> read_rows(Section& section, std::string_view ke
   if (node == nullptr) return rows;
   const toml::array* array = node->as_array();
   if (array == nullptr) {
-    fail_type(section, key, *node,
-              "an array of arrays of " + std::to_string(length) + " numbers");
+    fail_type(section, key, *node, "an array of arrays of " + std::to_string(length) + " numbers");
   }
   for (const toml::node& entry : *array) {
     rows.push_back(numbers_of(section, key, entry, length, range));
@@ -217,8 +217,7 @@ std::vector<NamedSection> read_named_sections(Section& parent, std::string_view 
   for (const auto& [name, node] : *outer.table) {
     const std::string full_name = dotted(outer, name.str());
     if (!node.is_table()) fail_type(outer, name.str(), node, "a table [" + full_name + "]");
-    sections.push_back(
-        {std::string(name.str()), {node.as_table(), parent.file, full_name, {}}});
+    sections.push_back({std::string(name.str()), {node.as_table(), parent.file, full_name, {}}});
   }
   // toml++ keeps a table sorted by name; the file's order is what a reader expects.
   std::stable_sort(sections.begin(), sections.end(), [](const auto& a, const auto& b) {

@@ -128,7 +128,7 @@ struct BusyScene {
 
 }  // namespace
 
-TEST_CASE("blended triangles merge in the order of submission, across chunks, draws and tiles") {
+TEST_CASE("blended triangles merge in the order of submission, across chunks, draws, tiles and threads") {
   // Two draws of 3,000 translucent triangles, each over four tiles at least, against the
   // same sums taken one by one.
   test::Random random{91};
@@ -226,7 +226,7 @@ TEST_CASE("a pass without draws, and a draw without triangles, leave the targets
   CHECK(all_zero(target));
 }
 
-TEST_CASE("the vertex stage runs once a vertex, however often indices name it, over many batches") {
+TEST_CASE("the vertex stage runs once a vertex, however often indices name it, on any thread") {
   std::vector<VertexOutput<0>> vertices(5'000, VertexOutput<0>{{0.0f, 0.0f, 0.0f, 1.0f}, {}});
   std::vector<std::atomic<int>> calls(vertices.size());
   const std::vector<std::uint32_t> indices(300, 7u);
@@ -238,7 +238,7 @@ TEST_CASE("the vertex stage runs once a vertex, however often indices name it, o
   CHECK(std::all_of(calls.begin(), calls.end(), [](const auto& count) { return count == 1; }));
 }
 
-TEST_CASE("the fragment stage runs once for each pixel that passes the early test") {
+TEST_CASE("the fragment stage runs once for each pixel that passes the early test, on any thread") {
   Image target = make_image(Format::r8, 100, 100);
   Image depth = make_image(Format::r32f, 100, 100);
   for (int y = 0; y < 100; ++y) {

@@ -89,6 +89,10 @@ TEST_CASE("lines may end as on Windows or an old Mac, and go on after a backslas
   }
 }
 
+TEST_CASE("a byte order mark is no part of the first line") {
+  CHECK(parse("\xEF\xBB\xBF" + triangle_with("f 1 2 3\n")).positions.size() == 3);
+}
+
 TEST_CASE("comments, groups and what else there may be are passed over") {
   CHECK(parse(triangle_with("# a comment\no thing\ng group\nl 1 2\np 1\nvp 0.1\nfoo bar\n"
                             "f 1 2 3 # done\n"))
@@ -192,20 +196,23 @@ TEST_CASE("without normals and smoothing groups, a model is smooth") {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     // A corner of the cube leans to all three sides, if not to each alike: two of its
     // faces may give it two triangles.
-    for (int axis = 0; axis < 3; ++axis) CHECK(mesh.normals[i][axis] * mesh.positions[i][axis] > 0.3f);
+    for (int axis = 0; axis < 3; ++axis)
+      CHECK(mesh.normals[i][axis] * mesh.positions[i][axis] > 0.3f);
   }
 }
 
 TEST_CASE("made normals are weighted by area") {
   // A large triangle in z = 0 and one a hundredth its size upright, joined at an edge.
-  const Mesh mesh = load("v 0 0 0\nv 1 0 0\nv 0 10 0\nv 0 0 -0.1\nf 1 2 3\nf 2 1 4\n").parts[0].mesh;
+  const Mesh mesh =
+      load("v 0 0 0\nv 1 0 0\nv 0 10 0\nv 0 0 -0.1\nf 1 2 3\nf 2 1 4\n").parts[0].mesh;
   CHECK(mesh.normals[0].z > 0.99f);
 }
 
 TEST_CASE("places that are equal are smooth across two vertices") {
   // The fold's two faces name the common edge by vertices of their own.
-  const Mesh mesh =
-      load("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 4 5 6\n").parts[0].mesh;
+  const Mesh mesh = load("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 4 5 6\n")
+                        .parts[0]
+                        .mesh;
   CHECK(mesh.normals[0].x == doctest::Approx(mesh.normals[0].z));
 }
 
@@ -217,8 +224,10 @@ TEST_CASE("smoothing group 0 is flat") {
 
 TEST_CASE("a smoothing group is smooth in itself and creased to the next") {
   const Mesh mesh = load(
-      "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\nv 0 -1 0\n"
-      "s 1\nf 1 3 2\ns 2\nf 1 2 4\n").parts[0].mesh;
+                        "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\nv 0 -1 0\n"
+                        "s 1\nf 1 3 2\ns 2\nf 1 2 4\n")
+                        .parts[0]
+                        .mesh;
   CHECK(normal_agreement(mesh) == doctest::Approx(1.0));
 }
 
@@ -246,8 +255,7 @@ TEST_CASE("two sides that cancel each have a normal of their own") {
 
 TEST_CASE("texture coordinates count downwards, and only where there are any") {
   CHECK(load(kCube).parts[0].mesh.uvs.empty());
-  const Mesh mesh =
-      load(triangle_with("vt 0.25 0.75\nf 1/1 2/1 3/1\n")).parts[0].mesh;
+  const Mesh mesh = load(triangle_with("vt 0.25 0.75\nf 1/1 2/1 3/1\n")).parts[0].mesh;
   REQUIRE(mesh.uvs.size() == 1 * 3);
   CHECK(mesh.uvs[0] == glm::vec2{0.25f, 0.25f});
 }
@@ -255,10 +263,8 @@ TEST_CASE("texture coordinates count downwards, and only where there are any") {
 TEST_CASE("triangles without area are left out, and a model of nothing else is refused") {
   CHECK(load(triangle_with("f 1 2 3\nf 1 1 2\n")).parts[0].mesh.indices.size() == 3);
   CHECK(contains(scene_error_of([] { load(triangle_with("f 1 1 2\n")); }), "no face has an area"));
-  CHECK(contains(scene_error_of([] {
-          load("v 0 0 0\nv 1e-12 0 0\nv 0 1e-12 0\nf 1 2 3\n");
-        }),
-        "no face has an area"));
+  CHECK(contains(scene_error_of([] { load("v 0 0 0\nv 1e-12 0 0\nv 0 1e-12 0\nf 1 2 3\n"); }),
+                 "no face has an area"));
 }
 
 // --- the materials --------------------------------------------------------------------
@@ -319,9 +325,8 @@ TEST_CASE("a texture is loaded once, however many materials have it") {
 }
 
 TEST_CASE("a texture is found by its last part, and a black Kd does not hide it") {
-  const ObjModel model =
-      load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-           "newmtl a\nKd 0 0 0\nmap_Kd C:\\Users\\me\\wood.png\n");
+  const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                              "newmtl a\nKd 0 0 0\nmap_Kd C:\\Users\\me\\wood.png\n");
   CHECK(model.textures.size() == 1);
   CHECK(model.materials[0].diffuse == glm::vec3{1.0f});
   CHECK(model.warnings.empty());

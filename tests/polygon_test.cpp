@@ -41,9 +41,22 @@ void check_covered(const Polygon& polygon) {
 
 Polygon comb(double size, glm::dvec3 place) {
   Polygon polygon;
-  for (const auto& [x, y] : std::initializer_list<std::pair<double, double>>{
-           {0, 0}, {7, 0}, {7, 4}, {6, 4}, {6, 1}, {5, 1}, {5, 4}, {4, 4}, {4, 1}, {3, 1},
-           {3, 4}, {2, 4}, {2, 1}, {1, 1}, {1, 4}, {0, 4}}) {
+  for (const auto& [x, y] : std::initializer_list<std::pair<double, double>>{{0, 0},
+                                                                             {7, 0},
+                                                                             {7, 4},
+                                                                             {6, 4},
+                                                                             {6, 1},
+                                                                             {5, 1},
+                                                                             {5, 4},
+                                                                             {4, 4},
+                                                                             {4, 1},
+                                                                             {3, 1},
+                                                                             {3, 4},
+                                                                             {2, 4},
+                                                                             {2, 1},
+                                                                             {1, 1},
+                                                                             {1, 4},
+                                                                             {0, 4}}) {
     polygon.push_back(place + glm::dvec3{x, y, 0.5 * x} * size);
   }
   return polygon;
@@ -96,8 +109,16 @@ TEST_CASE("a small polygon, or one far from the origin, loses no triangle") {
 }
 
 TEST_CASE("a polygon with a hole, joined by a cut, is covered") {
-  check_covered({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
-                 {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
+  check_covered({{0, 0, 0},
+                 {4, 0, 0},
+                 {4, 4, 0},
+                 {0, 4, 0},
+                 {0, 0, 0},
+                 {1, 1, 0},
+                 {1, 3, 0},
+                 {3, 3, 0},
+                 {3, 1, 0},
+                 {1, 1, 0}});
 }
 
 TEST_CASE("a round polygon of a thousand corners is covered") {
@@ -110,7 +131,8 @@ TEST_CASE("a round polygon of a thousand corners is covered") {
 }
 
 TEST_CASE("what crosses itself or has no area still gives corners - 2 triangles") {
-  CHECK(triangulate_polygon(Polygon{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {2, 2, 0}}).size() ==
-        3);
+  CHECK(
+      triangulate_polygon(Polygon{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {2, 2, 0}}).size() ==
+      3);
   CHECK(triangulate_polygon(Polygon(6, glm::dvec3{1.0})).size() == 4);
 }

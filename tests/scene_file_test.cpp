@@ -162,7 +162,8 @@ sway_phase = 0.25
 }
 
 TEST_CASE("an object may be inside out, and its texture repeat") {
-  const Scene scene = read(object("shape = \"plane\"\ninside_out = true\ntexture_repeat = [3, 4]\n"));
+  const Scene scene =
+      read(object("shape = \"plane\"\ninside_out = true\ntexture_repeat = [3, 4]\n"));
   CHECK(scene.meshes[0].normals[0] == glm::vec3{0, -1, 0});
   float largest = 0.0f;
   for (const glm::vec2& uv : scene.meshes[0].uvs) largest = std::max(largest, uv.y);
@@ -189,10 +190,11 @@ TEST_CASE("a scatter gives as many objects as it says, of one mesh and the mater
 }
 
 TEST_CASE("scatters keep clear of what they avoid and of one another") {
-  const std::string both = scatter_of("count = 1\nregion_min = [0, 0, 0]\nregion_max = [0, 0, 0]\n") +
-                           "[[scatter]]\nshape = \"sphere\"\nmaterials = [\"m\"]\n";
+  const std::string both =
+      scatter_of("count = 1\nregion_min = [0, 0, 0]\nregion_max = [0, 0, 0]\n") +
+      "[[scatter]]\nshape = \"sphere\"\nmaterials = [\"m\"]\n";
   CHECK(contains(complaint(both + "region_min = [0.5, 0, 0]\nregion_max = [0.6, 0, 0]\n"),
-                 "a.toml:7: scatter.count: there is no room"));
+                 "a.toml:8: scatter.count: there is no room"));
   CHECK(read(both + "region_min = [2.5, 0, 0]\nregion_max = [2.6, 0, 0]\n").objects.size() == 2);
   CHECK(contains(complaint(scatter_of("region_min = [0, 0, 0]\nregion_max = [1, 1, 1]\n"
                                       "avoid = [[0, 0, 0, 5]]\n")),
@@ -218,7 +220,8 @@ TEST_CASE("a texture and a model may come from files beside the scene") {
 }
 
 TEST_CASE("what is no TOML is a complaint with the line") {
-  CHECK(contains(complaint("title = \"x\"\nbackground = [0, 0\n[camera]\n"), "a.toml:3: is no TOML: "));
+  CHECK(contains(complaint("title = \"x\"\nbackground = [0, 0\n[camera]\n"),
+                 "a.toml:3: is no TOML: "));
   CHECK(contains(complaint("title = \"x\"\ntitle = \"y\"\n"), "a.toml:2: is no TOML: "));
 }
 
@@ -255,7 +258,8 @@ TEST_CASE("a value of the wrong type is an error") {
         "right");
   CHECK(complaint("background = [0, 1]\n") ==
         "a.toml:1: background: has 2 values; an array of 3 numbers from 0 to 1000 would be right");
-  CHECK(contains(complaint("background = [0, 1, true]\n"), "a.toml:1: background: is true or false"));
+  CHECK(
+      contains(complaint("background = [0, 1, true]\n"), "a.toml:1: background: is true or false"));
   CHECK(contains(complaint("background = 0.5\n"), "a.toml:1: background: is a number; an array"));
   CHECK(contains(complaint("material = 1\n"), "a.toml:1: material: is a number"));
   CHECK(contains(complaint("[material]\nm = 1\n"), "a.toml:2: material.m: is a number"));
@@ -279,7 +283,8 @@ TEST_CASE("values that do not go together are errors") {
         "a.toml:3: camera.far_m: must be larger than near_m");
   CHECK(contains(complaint("[camera]\nposition = [1, 1, 1]\ntarget = [1, 1, 1]\n"),
                  "a.toml:3: camera.target: is the camera's position"));
-  CHECK(contains(complaint("[camera]\nposition = [0, 5, 0]\n"), "camera.up: points along the view"));
+  CHECK(
+      contains(complaint("[camera]\nposition = [0, 5, 0]\n"), "camera.up: points along the view"));
   CHECK(contains(complaint("[camera]\nup = [0, 0, 0]\n"), "a.toml:2: camera.up: "));
   CHECK(contains(complaint("[lens]\nfocal_length_mm = 900\nfocus_m = 0.5\n"),
                  "a.toml:3: lens.focus_m: the focal length must be shorter"));
@@ -310,7 +315,8 @@ TEST_CASE("a name that refers to nothing is an error") {
   CHECK(complaint("[material.m]\ntexture = \"wood\"\n") ==
         "a.toml:2: material.m.texture: there is no texture \"wood\"; a table [texture.wood] would "
         "be right");
-  CHECK(contains(complaint("[[object]]\nshape = \"cube\"\n"), "a.toml:1: object.material: is missing"));
+  CHECK(contains(complaint("[[object]]\nshape = \"cube\"\n"),
+                 "a.toml:1: object.material: is missing"));
   CHECK(contains(complaint("[[scatter]]\nshape = \"cube\"\n"),
                  "a.toml:1: scatter.materials: is missing"));
 }
@@ -332,8 +338,9 @@ TEST_CASE("a texture is made by formula or read from a file") {
   CHECK(contains(complaint("[texture.t]\nkind = \"dots\"\nfile = \"x.png\"\n"),
                  "texture.t.file: a texture has either"));
   CHECK(contains(complaint("[texture.t]\nfile = \"none.png\"\n"), "none.png: no such file"));
-  CHECK(contains(complaint("[texture.t]\nfile = \"none.png\"\nfilter = \"cubic\"\n"),
-                 "texture.t.filter: there is no \"cubic\"; there are nearest, bilinear and trilinear"));
+  CHECK(contains(
+      complaint("[texture.t]\nfile = \"none.png\"\nfilter = \"cubic\"\n"),
+      "texture.t.filter: there is no \"cubic\"; there are nearest, bilinear and trilinear"));
   CHECK(contains(complaint("[texture.t]\nkind = \"plaid\"\n"),
                  "texture.t.kind: there is no \"plaid\"; there are checker, stripes"));
   CHECK(complaint("[texture.t]\nkind = \"dots\"\nsize = 100\n") ==
@@ -349,10 +356,9 @@ TEST_CASE("absurd sizes are errors before any memory is taken for them") {
         object("shape = \"sphere\"\nrings = 99999999999999\n"),
         object("shape = \"teapot\"\ndivisions = 100000\n"),
         object("shape = \"cube\"\ncells = 100000\n"),
-        object("shape = \"plane\"\ncells_x = 100000\n"),
-        object("shape = \"cone\"\nsegments = 2\n"), scatter_of("count = 1000000000\n"),
-        scatter_of("count = 0\n"), object("shape = \"cube\"\nscale = 0\n"),
-        object("shape = \"cube\"\nscale = [1, 0, 1]\n"),
+        object("shape = \"plane\"\ncells_x = 100000\n"), object("shape = \"cone\"\nsegments = 2\n"),
+        scatter_of("count = 1000000000\n"), scatter_of("count = 0\n"),
+        object("shape = \"cube\"\nscale = 0\n"), object("shape = \"cube\"\nscale = [1, 0, 1]\n"),
         object("shape = \"cube\"\nposition = [1e30, 0, 0]\n"),
         object("shape = \"cube\"\nsway_period_frames = 0\n"),
         std::string("[texture.t]\nkind = \"dots\"\nsize = 1048576\n")}) {

@@ -30,5 +30,4 @@ std::string scene_error_of(Work work) {
   return "";
 }
 
-
 }  // namespace softfocus::test

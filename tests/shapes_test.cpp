@@ -142,8 +142,8 @@ TEST_CASE("a plane's four sides are its only boundary") {
 
 TEST_CASE("seen from outside, a texture is not mirrored") {
   // d(position)/du x d(position)/dv points inwards where u runs right and v runs down.
-  const Mesh shapes[] = {make_sphere(1.0, 24, 12), make_torus(1.0, 0.3, 24, 12),
-                         make_cube(1.0, 2), make_plane(1.0, 1.0, 2, 2)};
+  const Mesh shapes[] = {make_sphere(1.0, 24, 12), make_torus(1.0, 0.3, 24, 12), make_cube(1.0, 2),
+                         make_plane(1.0, 1.0, 2, 2)};
   for (const Mesh& mesh : shapes) {
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
       const glm::dvec2 a{mesh.uvs[mesh.indices[i]]};

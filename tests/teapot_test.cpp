@@ -34,9 +34,8 @@ glm::dvec3 smallest(const Mesh& mesh) {
 }
 
 bool has_point(const Mesh& mesh, glm::dvec3 point) {
-  return std::any_of(mesh.positions.begin(), mesh.positions.end(), [&](const glm::vec3& p) {
-    return length(glm::dvec3{p} - point) < 1e-6;
-  });
+  return std::any_of(mesh.positions.begin(), mesh.positions.end(),
+                     [&](const glm::vec3& p) { return length(glm::dvec3{p} - point) < 1e-6; });
 }
 
 }  // namespace
@@ -54,18 +53,18 @@ TEST_CASE("the teapot has Newell's extents") {
 TEST_CASE("the corners of the patches are where Newell's table has them") {
   const Mesh mesh = newell_size(2);
   // Published as (x, y, z) with z up: here (x, z, -y).
-  CHECK(has_point(mesh, {1.4, 2.4, 0.0}));      // 103: the rim's inside
-  CHECK(has_point(mesh, {1.5, 2.4, 0.0}));      // 13: the body's upper edge
-  CHECK(has_point(mesh, {0.0, 0.9, 2.0}));      // 28: the body's middle
-  CHECK(has_point(mesh, {1.5, 0.15, 0.0}));     // 38: the foot
-  CHECK(has_point(mesh, {-1.6, 2.025, 0.0}));   // 42: where the handle begins
-  CHECK(has_point(mesh, {-3.0, 1.8, 0.0}));     // 57: the handle's outermost
-  CHECK(has_point(mesh, {-1.9, 0.6, 0.0}));     // 68: where it ends
-  CHECK(has_point(mesh, {1.7, 1.425, 0.0}));    // 69: where the spout begins
-  CHECK(has_point(mesh, {3.3, 2.4, 0.0}));      // 84: the spout's neck
-  CHECK(has_point(mesh, {3.2, 2.4, 0.0}));      // 96: the lip's inside
-  CHECK(has_point(mesh, {0.2, 2.7, 0.0}));      // 1: the knob's waist
-  CHECK(has_point(mesh, {1.3, 2.4, 0.0}));      // 115: the lid's edge
+  CHECK(has_point(mesh, {1.4, 2.4, 0.0}));     // 103: the rim's inside
+  CHECK(has_point(mesh, {1.5, 2.4, 0.0}));     // 13: the body's upper edge
+  CHECK(has_point(mesh, {0.0, 0.9, 2.0}));     // 28: the body's middle
+  CHECK(has_point(mesh, {1.5, 0.15, 0.0}));    // 38: the foot
+  CHECK(has_point(mesh, {-1.6, 2.025, 0.0}));  // 42: where the handle begins
+  CHECK(has_point(mesh, {-3.0, 1.8, 0.0}));    // 57: the handle's outermost
+  CHECK(has_point(mesh, {-1.9, 0.6, 0.0}));    // 68: where it ends
+  CHECK(has_point(mesh, {1.7, 1.425, 0.0}));   // 69: where the spout begins
+  CHECK(has_point(mesh, {3.3, 2.4, 0.0}));     // 84: the spout's neck
+  CHECK(has_point(mesh, {3.2, 2.4, 0.0}));     // 96: the lip's inside
+  CHECK(has_point(mesh, {0.2, 2.7, 0.0}));     // 1: the knob's waist
+  CHECK(has_point(mesh, {1.3, 2.4, 0.0}));     // 115: the lid's edge
 }
 
 TEST_CASE("the rim rises from 2.4 to at most 2.53 and falls back") {
@@ -141,10 +140,9 @@ TEST_CASE("at the knob's top and the foot's middle the normal is the axis") {
 TEST_CASE("the teapot's body holds what the profile of its curves encloses") {
   // Pappus, over Newell's profile from the table, once for rim, body and foot as they
   // are turned: the almost-circles enclose a little more than circles.
-  const double pieces[3][4][2] = {
-      {{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}},
-      {{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}},
-      {{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}};
+  const double pieces[3][4][2] = {{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}},
+                                  {{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}},
+                                  {{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}};
   double expected = 0.0;
   double before_r = 1.5;
   double before_y = 2.4;
