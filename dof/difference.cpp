@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <glm/vec3.hpp>
 #include <cmath>
+#include <glm/vec3.hpp>
 #include <limits>
 
 #include "raster/images/texel.h"
@@ -24,7 +24,8 @@ glm::vec4 heat(int ulps) {
   constexpr std::array<glm::vec3, 4> kStops{
       glm::vec3{0.1f, 0.2f, 1.0f}, glm::vec3{0.0f, 0.8f, 0.3f}, glm::vec3{1.0f, 0.9f, 0.0f},
       glm::vec3{1.0f, 0.0f, 0.0f}};
-  const int magnitude = static_cast<int>(std::bit_width(static_cast<unsigned>(ulps))) - 1;  // 0 to 15
+  const int magnitude =
+      static_cast<int>(std::bit_width(static_cast<unsigned>(ulps))) - 1;  // 0 to 15
   const float place = static_cast<float>(magnitude) / 5.0f;
   const auto stop = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
   const float t = place - static_cast<float>(stop);
@@ -44,8 +45,8 @@ Difference compare_images(const Image& a, const Image& b) {
     for (std::size_t i = 0; i < of_a.size(); ++i) {
       const int ulps = half_ulps_between(of_a[i], of_b[i]);
       ++difference.values;
-      ++difference.ulp_histogram[static_cast<std::size_t>(
-          std::bit_width(static_cast<unsigned>(ulps)))];
+      ++difference
+            .ulp_histogram[static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(ulps)))];
       if (ulps != 0) {
         if (difference.differing == 0) {
           difference.first_x = static_cast<int>(i / 4);

@@ -54,8 +54,8 @@ SharpRange sharp_range(const ThinLens& lens, double largest_coc_mm) {
   const double spread = largest_coc_mm * (focus_mm(lens) - lens.focal_length_mm);
   SharpRange range{};
   range.near_m = a_f * lens.focus_m / (a_f + spread);
-  range.far_m = spread < a_f ? a_f * lens.focus_m / (a_f - spread)
-                             : std::numeric_limits<double>::infinity();
+  range.far_m =
+      spread < a_f ? a_f * lens.focus_m / (a_f - spread) : std::numeric_limits<double>::infinity();
   return range;
 }
 
@@ -63,8 +63,7 @@ PixelCoc pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px, do
   const double pixels_per_unit_tangent =
       height_px / (2.0 * exact_math::tan_degrees(fov_y_degrees / 2.0));
   const double aperture_radius_m = aperture_mm(lens) / kMillimetres / 2.0;
-  const double at_infinity =
-      aperture_radius_m / lens.focus_m * pixels_per_unit_tangent * coc_scale;
+  const double at_infinity = aperture_radius_m / lens.focus_m * pixels_per_unit_tangent * coc_scale;
   return {static_cast<float>(at_infinity), static_cast<float>(lens.focus_m)};
 }
 

@@ -15,8 +15,8 @@ constexpr std::array kMethods{
     Method{"pinhole", "everything sharp: no lens", "colour", pinhole},
     Method{"two-pass", "a horizontal and a vertical gather, after Zhou et al. 2007",
            kColourAndDepth, two_pass},
-    Method{"one-pass", "one gather over rings: round and slower, the thesis 5.1",
-           kColourAndDepth, one_pass},
+    Method{"one-pass", "one gather over rings: round and slower, the thesis 5.1", kColourAndDepth,
+           one_pass},
 };
 
 }  // namespace

@@ -32,8 +32,7 @@ void fill_line(Line& line, const DofSettings& settings, const Fetch& fetch) {
   for (int i = 0; i < length(line); ++i) {
     const glm::vec4 texel = fetch(i);
     const auto at = static_cast<std::size_t>(i);
-    line.texels[at + taps] =
-        filter_texel(settings, glm::vec3{texel.x, texel.y, texel.z}, texel.w);
+    line.texels[at + taps] = filter_texel(settings, glm::vec3{texel.x, texel.y, texel.z}, texel.w);
     line.depths[at] = texel.w;
   }
   const FilterTexel first = line.texels[taps];

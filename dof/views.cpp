@@ -33,9 +33,8 @@ Image show_coc(const Image& scene, const PixelCoc& coc, float max_coc_px) {
 Image show_depth(const Image& scene, float near_m, float far_m) {
   const float at_near = 1.0f / near_m;
   const float at_far = 1.0f / far_m;
-  return grey_picture(scene, [&](float depth) {
-    return (at_near - 1.0f / depth) / (at_near - at_far);
-  });
+  return grey_picture(scene,
+                      [&](float depth) { return (at_near - 1.0f / depth) / (at_near - at_far); });
 }
 
 }  // namespace softfocus

@@ -22,7 +22,7 @@ inline float whole_power(float x, int n) {
 
 /// What a texture multiplies, and what it does not.
 struct LitColour {
-  glm::vec3 base;      ///< ambient and diffuse
+  glm::vec3 base;  ///< ambient and diffuse
   glm::vec3 specular;
 };
 

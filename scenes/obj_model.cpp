@@ -251,7 +251,9 @@ ObjModel load_obj_model(const std::filesystem::path& file) {
   ObjModel model;
   model.materials = list_materials(obj, file, library);
   model.textures = std::move(library.textures);
-  model.warnings = std::move(library.warnings);
+  for (const std::string& warning : library.warnings) {
+    model.warnings.push_back(printable(warning));
+  }
 
   const std::size_t without_material = obj.material_names.size();
   std::vector<GrowingPart> growing;

@@ -46,14 +46,14 @@ struct Light {
 /// Blinn-Phong, evaluated at the vertices.
 struct Material {
   std::string name;
-  glm::vec3 ambient{0.2f};   ///< multiplies the scene's ambient light
+  glm::vec3 ambient{0.2f};  ///< multiplies the scene's ambient light
   glm::vec3 diffuse{0.8f};
   glm::vec3 specular{0.0f};
-  int shininess = 32;        ///< a whole number, 1 to 1024: a power by multiplication is exact
+  int shininess = 32;  ///< a whole number, 1 to 1024: a power by multiplication is exact
   std::optional<std::uint32_t> texture;  ///< multiplies ambient and diffuse; index into textures
   Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
-  bool two_sided = false;    ///< drawn from both sides, lit on the side that is seen
-  bool lit = true;           ///< false: the diffuse colour (times texture) as it is
+  bool two_sided = false;  ///< drawn from both sides, lit on the side that is seen
+  bool lit = true;         ///< false: the diffuse colour (times texture) as it is
 };
 
 /// Triangles, counter-clockwise seen from outside. One normal a vertex, unit length;

@@ -1,7 +1,5 @@
 #include "scenes/scene_file.h"
 
-#include <toml++/toml.h>
-
 #include <array>
 #include <cmath>
 

@@ -64,10 +64,9 @@ struct SurfaceVertexStage {
         normalize(transform_direction(input.normal_to_world, input.mesh->normals[index]));
     const glm::vec3 towards_eye = normalize(input.eye - world);
     const auto light_side = [&](glm::vec3 side_normal, std::size_t at) {
-      const LitColour lit = material.lit
-                                ? light_point(material, input.ambient_light, input.lights, world,
-                                              side_normal, towards_eye)
-                                : LitColour{material.diffuse, glm::vec3{0.0f}};
+      const LitColour lit = material.lit ? light_point(material, input.ambient_light, input.lights,
+                                                       world, side_normal, towards_eye)
+                                         : LitColour{material.diffuse, glm::vec3{0.0f}};
       for (std::size_t i = 0; i < 3; ++i) {
         output.varyings[at + i] = lit.base[static_cast<int>(i)];
         if constexpr (variant.specular) {
@@ -97,14 +96,12 @@ struct SurfaceFragmentStage {
   Profile profile;
 
   FragmentOutput<1> operator()(const Fragment<Layout::kCount>& in) const {
-    const std::size_t side =
-        variant.two_sided && !in.front_facing ? Layout::kBack : Layout::kFront;
+    const std::size_t side = variant.two_sided && !in.front_facing ? Layout::kBack : Layout::kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
     if constexpr (variant.textured) {
       constexpr std::size_t u = Layout::kTexture;
       constexpr std::size_t v = Layout::kTexture + 1;
-      const float lod =
-          level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]});
+      const float lod = level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]});
       const glm::vec4 texel =
           sample(*texture, sampler, {in.varyings[u], in.varyings[v]}, lod, profile);
       colour *= glm::vec3{texel.x, texel.y, texel.z};

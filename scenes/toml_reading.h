@@ -2,6 +2,9 @@
 // Checked reading of TOML tables: every value has a type and a range, every key is
 // known, and every complaint names the file, the line, the key and what would be right.
 
+// toml++ 3.3 asserts what only the file decides: a `[` at a line's end would end the
+// program. Without its assertions it goes on to a proper error.
+#define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
 
 #include <glm/vec3.hpp>

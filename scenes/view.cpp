@@ -55,22 +55,22 @@ glm::dmat4 perspective(double fov_y_degrees, double aspect, double near_m, doubl
 }  // namespace
 
 View camera_view(const Camera& camera, double frame, int width, int height) {
-  const glm::dvec3 arm =
-      turn_about(camera.position - camera.target, normalize(camera.up),
-                 camera.orbit_degrees_per_frame * frame);
+  const glm::dvec3 arm = turn_about(camera.position - camera.target, normalize(camera.up),
+                                    camera.orbit_degrees_per_frame * frame);
   View view{};
   view.eye = camera.target + arm;
   view.view = look_at(view.eye, camera.target, camera.up);
-  view.projection = perspective(camera.fov_y_degrees,
-                                static_cast<double>(width) / static_cast<double>(height),
-                                camera.near_m, camera.far_m);
+  view.projection =
+      perspective(camera.fov_y_degrees, static_cast<double>(width) / static_cast<double>(height),
+                  camera.near_m, camera.far_m);
   return view;
 }
 
 glm::dmat4 object_matrix(const Object& object, double frame) {
   const glm::dvec3 degrees = object.rotation_degrees + object.spin_degrees_per_frame * frame;
   const double phase = frame / object.sway_period_frames + object.sway_phase;
-  const glm::dvec3 position = object.position + object.sway * exact_math::sin_degrees(360.0 * phase);
+  const glm::dvec3 position =
+      object.position + object.sway * exact_math::sin_degrees(360.0 * phase);
 
   glm::dmat4 scale{1.0};
   glm::dmat4 move{1.0};
@@ -78,8 +78,8 @@ glm::dmat4 object_matrix(const Object& object, double frame) {
     scale[i][i] = object.scale[i];
     move[3][i] = position[i];
   }
-  const glm::dmat4 turned = multiply(
-      multiply(turn(0, 1, degrees.z), turn(2, 0, degrees.y)), turn(1, 2, degrees.x));
+  const glm::dmat4 turned =
+      multiply(multiply(turn(0, 1, degrees.z), turn(2, 0, degrees.y)), turn(1, 2, degrees.x));
   return multiply(move, multiply(turned, scale));
 }
 

@@ -215,8 +215,10 @@ TEST_CASE("bad input: a full device, as a file and as standard output") {
 TEST_CASE("bad input: two outputs in one place") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("out.png");
-  check_refused(directory, {"render", "figures", "-o", file, "--report", file}, 2,
-                {"--report", "-o"});
+  for (const std::string& other : {file, directory.file("./out.png")}) {
+    check_refused(directory, {"render", "figures", "-o", file, "--report", other}, 2,
+                  {"--report", "-o"});
+  }
   check_refused(directory, {"render", "figures", "-o", "-", "--json"}, 2, {"--json", "-o -"});
 }
 

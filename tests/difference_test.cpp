@@ -24,8 +24,8 @@ TEST_CASE("a picture does not differ from itself") {
 TEST_CASE("each differing value is counted, placed and sorted by its distance") {
   const Image a = random_scene_image(31, 17, 1);
   Image b = a;
-  row<std::uint16_t>(b, 3)[4 * 5 + 1] ^= 1;   // 1 half-ULP
-  row<std::uint16_t>(b, 9)[4 * 2 + 3] += 6;   // alpha counts too
+  row<std::uint16_t>(b, 3)[4 * 5 + 1] ^= 1;  // 1 half-ULP
+  row<std::uint16_t>(b, 9)[4 * 2 + 3] += 6;  // alpha counts too
   const Difference d = compare_images(a, b);
   CHECK(d.differing == 2);
   CHECK(d.max_ulp == 6);
@@ -60,9 +60,9 @@ TEST_CASE("the difference picture is black exactly where the pictures agree") {
 
 TEST_CASE("the grey map is black in focus and white at the largest circle") {
   Image scene = make_image(Format::rgba16f, 3, 1);
-  store_texel(scene, 0, 0, {1, 1, 1, 2.0f}, {});    // in focus
-  store_texel(scene, 1, 0, {1, 1, 1, 4.0f}, {});    // half of the circle at infinity
-  store_texel(scene, 2, 0, {1, 1, 1, 0.25f}, {});   // far past the largest
+  store_texel(scene, 0, 0, {1, 1, 1, 2.0f}, {});   // in focus
+  store_texel(scene, 1, 0, {1, 1, 1, 4.0f}, {});   // half of the circle at infinity
+  store_texel(scene, 2, 0, {1, 1, 1, 0.25f}, {});  // far past the largest
   const Image map = show_coc(scene, {8.0f, 2.0f}, 16.0f);
   CHECK(load_texel(map, 0, 0).x == 0.0f);
   CHECK(load_texel(map, 1, 0).x == 0.25f);

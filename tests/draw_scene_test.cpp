@@ -126,8 +126,8 @@ TEST_CASE("light is ambient plus diffuse by the cosine plus the highlight") {
   // 60 degrees from the normal, the eye on the normal: h is 30 degrees off.
   const float sine = std::sqrt(0.75f);
   const Light light{LightKind::directional, {sine, 0, 0.5f}, {1, 2, 0}};
-  const LitColour lit = light_point(material, glm::vec3{0.5f}, std::span{&light, 1}, {0, 0, 0},
-                                    {0, 0, 1}, {0, 0, 1});
+  const LitColour lit =
+      light_point(material, glm::vec3{0.5f}, std::span{&light, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1});
   CHECK(lit.base.x == doctest::Approx(0.05 + 0.25));
   CHECK(lit.base.y == doctest::Approx(0.10 + 0.50));
   CHECK(lit.base.z == doctest::Approx(0.15));
@@ -151,8 +151,8 @@ TEST_CASE("a light of no direction and a normal of no length light nothing and b
   material.ambient = glm::vec3{0.25f};
   material.specular = glm::vec3{1.0f};
   const Light light{LightKind::directional, {0, 0, 0}, glm::vec3{1.0f}};
-  const LitColour dark = light_point(material, glm::vec3{1.0f}, std::span{&light, 1}, {0, 0, 0},
-                                     {0, 0, 1}, {0, 0, 1});
+  const LitColour dark =
+      light_point(material, glm::vec3{1.0f}, std::span{&light, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1});
   CHECK(dark.base == glm::vec3{0.25f});
   const Light sun{LightKind::directional, {0, 0, 1}, glm::vec3{1.0f}};
   const LitColour flat = light_point(material, glm::vec3{1.0f}, std::span{&sun, 1}, {0, 0, 0},

@@ -313,9 +313,8 @@ TEST_CASE("each texel of the disc is a ring's sample exactly once, nearest rings
   for (int dy = -9; dy <= 9; ++dy) {
     for (int dx = -9; dx <= 9; ++dx) {
       const bool in_disc = dx * dx + dy * dy < 81 && (dx != 0 || dy != 0);
-      const auto found = std::count_if(taps.begin(), taps.end(), [&](const RingTap& t) {
-        return t.dx == dx && t.dy == dy;
-      });
+      const auto found = std::count_if(taps.begin(), taps.end(),
+                                       [&](const RingTap& t) { return t.dx == dx && t.dy == dy; });
       CHECK(found == (in_disc ? 1 : 0));
       inside += in_disc ? 1 : 0;
     }

@@ -369,6 +369,15 @@ TEST_CASE("absurd sizes are errors before any memory is taken for them") {
   CHECK(contains(complaint(many), "light: has 65 lights; up to 64 would do"));
 }
 
+TEST_CASE("a name with a line end or a terminal sequence in it cannot spoil the complaint") {
+  CHECK(contains(complaint("\"a\\nb\\u001b[31m\" = 1\n"),
+                 "a.toml:1: a?b?[31m: there is no such key"));
+}
+
+TEST_CASE("a bracket at a line's end is no TOML, and no end of the program") {
+  CHECK(contains(complaint("[\n"), "a.toml:1: is no TOML: "));
+}
+
 TEST_CASE("damaged text gives a complaint of one line or a scene, and nothing else") {
   const std::string whole = scatter_of(
       "count = 3\nregion_max = [5, 5, 5]\n[camera]\nfov_degrees = 40\n[lens]\nfocus_m = 1.5\n");

@@ -109,6 +109,14 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
   parser.add_flag("-v,--verbose", options.verbose, "Say on standard error what was chosen");
 }
 
+/// Whether two names lead to one file, there already or not.
+bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error_a, error_b;
+  const auto place_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a), error_a);
+  const auto place_b = std::filesystem::weakly_canonical(std::filesystem::absolute(b), error_b);
+  return a == b || (!error_a && !error_b && place_a == place_b);
+}
+
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
 /// depth (4) and the largest encoding (12).
 constexpr std::uint64_t kBytesPerPixel = 40;
@@ -161,7 +169,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (options.report && options.report->empty()) {
     throw UsageError("--report '': give the name of a file");
   }
-  if (options.report && *options.report == options.output) {
+  if (options.report && is_one_place(*options.report, options.output)) {
     throw UsageError("--report and -o name the same file; give two");
   }
   if (options.autofocus && options.lens.focus_m) {

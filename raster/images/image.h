@@ -46,10 +46,10 @@ struct RowAllocator {
   template <class U>
   RowAllocator(const RowAllocator<U>&) {}  // NOLINT(google-explicit-constructor)
   T* allocate(std::size_t count) {
-    return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t{kRowAlignment}));
+    return static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kRowAlignment}));
   }
   void deallocate(T* memory, std::size_t) {
-    ::operator delete(memory, std::align_val_t{kRowAlignment});
+    ::operator delete (memory, std::align_val_t{kRowAlignment});
   }
   bool operator==(const RowAllocator&) const = default;
 };

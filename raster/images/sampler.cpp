@@ -31,8 +31,7 @@ int wrap_index(int index, int size, Wrap wrap) {
 // A coordinate scaled to texels, kept where an int can hold its floor.
 float to_texels(float coordinate, int size) {
   if (!std::isfinite(coordinate)) return 0.0f;
-  return std::clamp(coordinate * static_cast<float>(size), -kLargestCoordinate,
-                    kLargestCoordinate);
+  return std::clamp(coordinate * static_cast<float>(size), -kLargestCoordinate, kLargestCoordinate);
 }
 
 // The two texels that a bilinear fetch reads along one axis, and the second's weight.

@@ -55,15 +55,15 @@ Quadrant reduce(double degrees) {
 
 double sin_degrees(double degrees) {
   const Quadrant angle = reduce(degrees);
-  const double value = (angle.quarter & 1) != 0 ? cos_kernel(angle.rest_radians)
-                                                : sin_kernel(angle.rest_radians);
+  const double value =
+      (angle.quarter & 1) != 0 ? cos_kernel(angle.rest_radians) : sin_kernel(angle.rest_radians);
   return (angle.quarter & 2) != 0 ? -value : value;
 }
 
 double cos_degrees(double degrees) {
   const Quadrant angle = reduce(degrees);
-  const double value = (angle.quarter & 1) != 0 ? -sin_kernel(angle.rest_radians)
-                                                : cos_kernel(angle.rest_radians);
+  const double value =
+      (angle.quarter & 1) != 0 ? -sin_kernel(angle.rest_radians) : cos_kernel(angle.rest_radians);
   return (angle.quarter & 2) != 0 ? -value : value;
 }
 

@@ -29,7 +29,7 @@ constexpr Profile kLlvmpipe{
     .interpolation = Contraction::fused,
     .attributes = AttributeSetup::planes_from_origin,
     .denormals = Denormals::flush,
-    .guard_band = 2.0f,
+    .guard_band = 1.0f,
 };
 
 constexpr Profile kLlvmpipeSse41{
@@ -38,7 +38,7 @@ constexpr Profile kLlvmpipeSse41{
     .half_store = HalfRounding::toward_zero,
     .attributes = AttributeSetup::planes_from_origin,
     .denormals = Denormals::flush,
-    .guard_band = 2.0f,
+    .guard_band = 1.0f,
 };
 
 constexpr Profile kSoftpipe{

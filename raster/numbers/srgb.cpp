@@ -10,8 +10,7 @@ namespace softfocus {
 namespace {
 
 double decode(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92
-                            : exact_math::pow((encoded + 0.055) / 1.055, 2.4);
+  return encoded <= 0.04045 ? encoded / 12.92 : exact_math::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 std::array<float, 256> decoding_table() {
@@ -44,8 +43,8 @@ float srgb8_to_linear(std::uint8_t encoded) {
 std::uint8_t linear_to_srgb8(float linear) {
   static const std::array<float, 255> thresholds = encoding_thresholds();
   if (!(linear > 0.0f)) return 0;
-  return static_cast<std::uint8_t>(
-      std::upper_bound(thresholds.begin(), thresholds.end(), linear) - thresholds.begin());
+  return static_cast<std::uint8_t>(std::upper_bound(thresholds.begin(), thresholds.end(), linear) -
+                                   thresholds.begin());
 }
 
 }  // namespace softfocus

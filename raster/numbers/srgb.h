@@ -21,8 +21,6 @@ inline std::uint8_t linear_to_unorm8(float value) {
 }
 
 /// value / 255, correctly rounded.
-inline float unorm8_to_linear(std::uint8_t encoded) {
-  return static_cast<float>(encoded) / 255.0f;
-}
+inline float unorm8_to_linear(std::uint8_t encoded) { return static_cast<float>(encoded) / 255.0f; }
 
 }  // namespace softfocus

@@ -52,7 +52,8 @@ void bin_triangle(Chunk<N>& chunk, const Triangle<N>& triangle, int tiles_x) {
 }
 
 template <class Draw, std::size_t N>
-void add_triangle(const Draw& draw, Chunk<N>& chunk, const std::array<VertexOutput<N>, 3>& corners) {
+void add_triangle(const Draw& draw, Chunk<N>& chunk,
+                  const std::array<VertexOutput<N>, 3>& corners) {
   std::array<WindowVertex, 3> window{};
   Triangle<N> triangle{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -131,8 +132,13 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
       !depth_stencil_test(draw.state, draw.targets, x, y, depth, front)) {
     return;
   }
-  Fragment<N> fragment{.x = x, .y = y, .depth = depth, .front_facing = front,
-                       .varyings = values.varyings, .ddx = {}, .ddy = {}};
+  Fragment<N> fragment{.x = x,
+                       .y = y,
+                       .depth = depth,
+                       .front_facing = front,
+                       .varyings = values.varyings,
+                       .ddx = {},
+                       .ddy = {}};
   if constexpr (FragmentStage::kNeedsDerivatives) {
     const int x0 = x & ~1;
     const int y0 = y & ~1;
@@ -160,10 +166,9 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
 template <class Interpolator, class Draw, std::size_t N>
 void shade_triangle(const Draw& draw, const Triangle<N>& triangle, const Rectangle& tile) {
   const TriangleSetup& setup = triangle.setup;
-  const Rectangle area{std::max(tile.x_begin, setup.bounds.x_begin),
-                       std::max(tile.y_begin, setup.bounds.y_begin),
-                       std::min(tile.x_end, setup.bounds.x_end),
-                       std::min(tile.y_end, setup.bounds.y_end)};
+  const Rectangle area{
+      std::max(tile.x_begin, setup.bounds.x_begin), std::max(tile.y_begin, setup.bounds.y_begin),
+      std::min(tile.x_end, setup.bounds.x_end), std::min(tile.y_end, setup.bounds.y_end)};
   const Interpolator interpolator{triangle, draw.profile};
   const auto& edges = setup.edges;
   for (int y = area.y_begin; y < area.y_end; ++y) {
@@ -212,8 +217,7 @@ void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_
   if (state.scissor) {
     clip = {std::max(clip.x_begin, state.scissor->x_begin),
             std::max(clip.y_begin, state.scissor->y_begin),
-            std::min(clip.x_end, state.scissor->x_end),
-            std::min(clip.y_end, state.scissor->y_end)};
+            std::min(clip.x_end, state.scissor->x_end), std::min(clip.y_end, state.scissor->y_end)};
   }
   const auto triangles = static_cast<std::uint32_t>(indices.size() / 3);
   const std::uint32_t chunks = (triangles + kChunkTriangles - 1) / kChunkTriangles;

@@ -114,15 +114,13 @@ struct PlaneInterpolator {
   }
 
   float evaluate(const Plane& p, int x, int y) const {
-    const float along_x =
-        multiply_add(p.per_x, static_cast<float>(x), p.at_origin, contraction);
+    const float along_x = multiply_add(p.per_x, static_cast<float>(x), p.at_origin, contraction);
     return multiply_add(p.per_y, static_cast<float>(y), along_x, contraction);
   }
 
   Interpolated<N> at(int x, int y, const std::array<Interpolation, N>& kinds) const {
     const auto& v = triangle.setup.vertices;
-    const float inverse_w =
-        evaluate(plane(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w), x, y);
+    const float inverse_w = evaluate(plane(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w), x, y);
     const float w = 1.0f / inverse_w;
     Interpolated<N> result;
     result.depth = evaluate(plane(v[0].depth, v[1].depth, v[2].depth), x, y);
@@ -132,9 +130,9 @@ struct PlaneInterpolator {
       const float a2 = triangle.varyings[2][i];
       switch (kinds[i]) {
         case Interpolation::perspective:
-          result.varyings[i] = w * evaluate(plane(a0 * v[0].inverse_w, a1 * v[1].inverse_w,
-                                                  a2 * v[2].inverse_w),
-                                            x, y);
+          result.varyings[i] =
+              w *
+              evaluate(plane(a0 * v[0].inverse_w, a1 * v[1].inverse_w, a2 * v[2].inverse_w), x, y);
           break;
         case Interpolation::linear: result.varyings[i] = evaluate(plane(a0, a1, a2), x, y); break;
         case Interpolation::flat: result.varyings[i] = a0; break;

@@ -86,8 +86,8 @@ glm::vec4 blend(const BlendState& state, glm::vec4 source, glm::vec4 destination
   const glm::vec4 destination_rgb = factor(state.colour.destination, source, destination);
   glm::vec4 result{};
   for (int i = 0; i < 3; ++i) {
-    result[i] = combine(state.colour.op, source[i], source_rgb[i], destination[i],
-                        destination_rgb[i]);
+    result[i] =
+        combine(state.colour.op, source[i], source_rgb[i], destination[i], destination_rgb[i]);
   }
   result.w = combine(state.alpha.op, source.w, factor(state.alpha.source, source, destination).w,
                      destination.w, factor(state.alpha.destination, source, destination).w);

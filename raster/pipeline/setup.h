@@ -37,7 +37,7 @@ struct TriangleSetup {
   std::array<EdgeFunction, 3> edges;
   std::int64_t area;  ///< twice the triangle's, in 1/65536 of a square pixel; positive
   bool front_facing;
-  Rectangle bounds;   ///< the pixels whose centres the bounding box holds, in the clip
+  Rectangle bounds;  ///< the pixels whose centres the bounding box holds, in the clip
 };
 
 inline std::int64_t edge_at(const EdgeFunction& edge, int x, int y) {

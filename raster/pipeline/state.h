@@ -8,7 +8,14 @@
 namespace softfocus {
 
 enum class Compare : std::uint8_t {
-  never, less, equal, less_equal, greater, not_equal, greater_equal, always,
+  never,
+  less,
+  equal,
+  less_equal,
+  greater,
+  not_equal,
+  greater_equal,
+  always,
 };
 
 /// False for every comparison with NaN but not_equal and always.
@@ -46,7 +53,14 @@ struct DepthState {
 };
 
 enum class StencilOp : std::uint8_t {
-  keep, zero, replace, increment_clamp, decrement_clamp, invert, increment_wrap, decrement_wrap,
+  keep,
+  zero,
+  replace,
+  increment_clamp,
+  decrement_clamp,
+  invert,
+  increment_wrap,
+  decrement_wrap,
 };
 
 /// Passes where (reference & read_mask) `test` (stored & read_mask).
@@ -66,9 +80,16 @@ struct StencilState {
 };
 
 enum class BlendFactor : std::uint8_t {
-  zero, one,
-  source_colour, one_minus_source_colour, destination_colour, one_minus_destination_colour,
-  source_alpha, one_minus_source_alpha, destination_alpha, one_minus_destination_alpha,
+  zero,
+  one,
+  source_colour,
+  one_minus_source_colour,
+  destination_colour,
+  one_minus_destination_colour,
+  source_alpha,
+  one_minus_source_alpha,
+  destination_alpha,
+  one_minus_destination_alpha,
 };
 
 enum class BlendOp : std::uint8_t { add, subtract, reverse_subtract, minimum, maximum };
