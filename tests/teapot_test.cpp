@@ -82,10 +82,11 @@ TEST_CASE("the teapot is its own mirror image in z") {
   const Mesh mesh = newell_size(6);
   std::set<std::tuple<float, float, float>> points;
   for (const glm::vec3& p : mesh.positions) points.emplace(p.x, p.y, p.z);
-  for (const auto& [x, y, z] : points) {
+  for (const auto& point : points) {
     const auto mirrored = std::any_of(points.begin(), points.end(), [&](const auto& other) {
-      return std::fabs(std::get<0>(other) - x) < 1e-5f &&
-             std::fabs(std::get<1>(other) - y) < 1e-5f && std::fabs(std::get<2>(other) + z) < 1e-5f;
+      return std::fabs(std::get<0>(other) - std::get<0>(point)) < 1e-5f &&
+             std::fabs(std::get<1>(other) - std::get<1>(point)) < 1e-5f &&
+             std::fabs(std::get<2>(other) + std::get<2>(point)) < 1e-5f;
     });
     CHECK(mirrored);
   }
