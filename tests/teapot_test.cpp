@@ -67,6 +67,41 @@ TEST_CASE("the corners of the patches are where Newell's table has them") {
   CHECK(has_point(mesh, {1.3, 2.4, 0.0}));     // 115: the lid's edge
 }
 
+TEST_CASE("the middles of the handle's and spout's patches are where Newell's table has them") {
+  // The patches as published, z up, y <= 0; the middle of a bicubic patch is the mean
+  // of its 4 x 4 points with weights 1, 3, 3, 1 along each side.
+  const double patches[4][4][4][3] = {
+      {{{-1.6, 0, 2.025}, {-1.6, -0.3, 2.025}, {-1.5, -0.3, 2.25}, {-1.5, 0, 2.25}},
+       {{-2.3, 0, 2.025}, {-2.3, -0.3, 2.025}, {-2.5, -0.3, 2.25}, {-2.5, 0, 2.25}},
+       {{-2.7, 0, 2.025}, {-2.7, -0.3, 2.025}, {-3, -0.3, 2.25}, {-3, 0, 2.25}},
+       {{-2.7, 0, 1.8}, {-2.7, -0.3, 1.8}, {-3, -0.3, 1.8}, {-3, 0, 1.8}}},
+      {{{-2.7, 0, 1.8}, {-2.7, -0.3, 1.8}, {-3, -0.3, 1.8}, {-3, 0, 1.8}},
+       {{-2.7, 0, 1.575}, {-2.7, -0.3, 1.575}, {-3, -0.3, 1.35}, {-3, 0, 1.35}},
+       {{-2.5, 0, 1.125}, {-2.5, -0.3, 1.125}, {-2.65, -0.3, 0.9375}, {-2.65, 0, 0.9375}},
+       {{-2, 0, 0.9}, {-2, -0.3, 0.9}, {-1.9, -0.3, 0.6}, {-1.9, 0, 0.6}}},
+      {{{1.7, 0, 1.425}, {1.7, -0.66, 1.425}, {1.7, -0.66, 0.6}, {1.7, 0, 0.6}},
+       {{2.6, 0, 1.425}, {2.6, -0.66, 1.425}, {3.1, -0.66, 0.825}, {3.1, 0, 0.825}},
+       {{2.3, 0, 2.1}, {2.3, -0.25, 2.1}, {2.4, -0.25, 2.025}, {2.4, 0, 2.025}},
+       {{2.7, 0, 2.4}, {2.7, -0.25, 2.4}, {3.3, -0.25, 2.4}, {3.3, 0, 2.4}}},
+      {{{2.7, 0, 2.4}, {2.7, -0.25, 2.4}, {3.3, -0.25, 2.4}, {3.3, 0, 2.4}},
+       {{2.8, 0, 2.475}, {2.8, -0.25, 2.475}, {3.525, -0.25, 2.49375}, {3.525, 0, 2.49375}},
+       {{2.9, 0, 2.475}, {2.9, -0.15, 2.475}, {3.45, -0.15, 2.5125}, {3.45, 0, 2.5125}},
+       {{2.8, 0, 2.4}, {2.8, -0.15, 2.4}, {3.2, -0.15, 2.4}, {3.2, 0, 2.4}}}};
+  constexpr double kWeights[4] = {0.125, 0.375, 0.375, 0.125};
+  const Mesh mesh = newell_size(2);
+  for (const auto& patch : patches) {
+    glm::dvec3 middle{0.0};
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        const auto& p = patch[i][j];
+        middle += glm::dvec3{p[0], p[2], -p[1]} * (kWeights[i] * kWeights[j]);
+      }
+    }
+    CHECK(has_point(mesh, middle));
+    CHECK(has_point(mesh, {middle.x, middle.y, -middle.z}));
+  }
+}
+
 TEST_CASE("the rim rises from 2.4 to at most 2.53 and falls back") {
   const Mesh mesh = newell_size(24);
   double highest = 0.0;
