@@ -226,4 +226,6 @@ TEST_CASE("bad input: a line is one line, even for a name with a newline in it")
   const TemporaryDirectory directory;
   check_refused(directory, {"render", "a\nb\x1b[31m.toml", "-o", directory.file("out.png")}, 1,
                 {"a?b?[31m.toml"});
+  check_refused(directory, {"render", "figures", "-o", directory.file("no\nsuch/out.png")}, 1,
+                {"no?such/out.png"});
 }

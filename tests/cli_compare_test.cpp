@@ -120,6 +120,15 @@ TEST_CASE("compare: where a file has no alpha, alpha is not compared") {
   CHECK(run.out == "differing values    0 of 36\n");
 }
 
+TEST_CASE("compare: alpha that is not compared is in no count of the histogram") {
+  const TwoPictures files;
+  write_picture(files.directory.file("a.pfm"), grey());
+  const ProgramRun run = run_program({"compare", files.directory.file("a.pfm"), files.b});
+  CHECK(run.status == 1);
+  CHECK(contains(run.out, "differing values    2 of 36\n"));
+  CHECK(contains(run.out, "  0                 34\n"));
+}
+
 TEST_CASE("compare: a depth that differs makes two NPY files different") {
   const TemporaryDirectory directory;
   Image image = grey();

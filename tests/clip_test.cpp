@@ -133,9 +133,10 @@ TEST_CASE("a point is outside of the planes that it is beyond, and of no others"
 
 TEST_CASE("a point on a plane is inside of it") {
   const float g = 2.0f;
-  for (const glm::vec4 point : {glm::vec4{0, 0, -1, 1}, glm::vec4{0, 0, 1, 1}, glm::vec4{-2, 0, 0, 1},
-                                glm::vec4{2, 0, 0, 1}, glm::vec4{0, -2, 0, 1}, glm::vec4{0, 2, 0, 1},
-                                glm::vec4{2, 2, 1, 1}, glm::vec4{0, 0, 0, 0}}) {
+  for (const glm::vec4 point :
+       {glm::vec4{0, 0, -1, 1}, glm::vec4{0, 0, 1, 1}, glm::vec4{-2, 0, 0, 1},
+        glm::vec4{2, 0, 0, 1}, glm::vec4{0, -2, 0, 1}, glm::vec4{0, 2, 0, 1}, glm::vec4{2, 2, 1, 1},
+        glm::vec4{0, 0, 0, 0}}) {
     CHECK(clip_code(point, g) == 0);
   }
 }
@@ -156,7 +157,7 @@ TEST_CASE("a point with a NaN or infinite component is outside of kNotFinite") {
 }
 
 TEST_CASE("a triangle with one corner beyond a plane becomes a quadrangle, with two a triangle") {
-  const std::array<glm::vec4, kPlanes> beyond{glm::vec4{0, 0, -3, 1}, {0, 0, 3, 1}, {-3, 0, 0, 1},
+  const std::array<glm::vec4, kPlanes> beyond{glm::vec4{0, 0, -3, 1}, {0, 0, 3, 1},  {-3, 0, 0, 1},
                                               {3, 0, 0, 1},           {0, -3, 0, 1}, {0, 3, 0, 1}};
   for (const glm::vec4& out : beyond) {
     const glm::vec4 in{0.1f, 0.2f, 0.0f, 1.0f};
@@ -190,7 +191,9 @@ TEST_CASE("clipping makes new vertices only on a plane, and leaves none outside"
   CHECK(wrong == 0);
 }
 
-TEST_CASE("clipping by every plane, pair and triple of planes keeps the area that a clip in binary64 keeps") {
+TEST_CASE(
+    "clipping by every plane, pair and triple of planes keeps the area that a clip in binary64 "
+    "keeps") {
   test::Random random{52};
   std::map<unsigned, int> kept_by_planes;
   double worst = 0.0;
@@ -226,7 +229,8 @@ TEST_CASE("a triangle from behind the eye is cut at the near plane") {
     for (const glm::dvec4& p : positions(clipped.polygon)) {
       if (!(p.w > 0.49)) worst = kInfinity;
     }
-    worst = std::max(worst, std::fabs(window_area(positions(clipped.polygon)) - window_area(exact)));
+    worst =
+        std::max(worst, std::fabs(window_area(positions(clipped.polygon)) - window_area(exact)));
   }
   CHECK(cut > 10'000);
   CHECK(worst < 1e-3);  // of 64
@@ -245,8 +249,8 @@ TEST_CASE("a triangle wholly outside of one plane vanishes") {
 }
 
 TEST_CASE("a triangle inside is not touched") {
-  const Corners corners{glm::vec4{0.5f, 0.5f, 0.0f, 1.0f}, {-0.5f, 0.5f, 0.5f, 1.0f},
-                        {0.0f, -1.0f, -1.0f, 1.0f}};
+  const Corners corners{
+      glm::vec4{0.5f, 0.5f, 0.0f, 1.0f}, {-0.5f, 0.5f, 0.5f, 1.0f}, {0.0f, -1.0f, -1.0f, 1.0f}};
   const Clipped clipped = clip(corners, 1.0f);
   CHECK(clipped.planes == 0);
   CHECK(positions(clipped.polygon) == positions(corners));

@@ -78,8 +78,9 @@ Vertices jittered_grid(int cells, float low, float high, int width, int height,
     for (int i = 0; i <= cells; ++i) {
       const bool on_border = i == 0 || j == 0 || i == cells || j == cells;
       const float jitter = on_border ? 0.0f : 0.2f * side;
-      const glm::vec2 window{low + side * static_cast<float>(i) + random.between(-1.0f, 1.0f) * jitter,
-                             low + side * static_cast<float>(j) + random.between(-1.0f, 1.0f) * jitter};
+      const glm::vec2 window{
+          low + side * static_cast<float>(i) + random.between(-1.0f, 1.0f) * jitter,
+          low + side * static_cast<float>(j) + random.between(-1.0f, 1.0f) * jitter};
       points.push_back(test::at_window(window, width, height) * random.between(0.5f, 3.0f));
     }
   }
@@ -92,8 +93,9 @@ Vertices jittered_grid(int cells, float low, float high, int width, int height,
       const bool falling = random.whole(0, 1) == 0;
       // Either diagonal, and either winding.
       const std::array<std::array<int, 2>, 4> c{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
-      const std::array<std::size_t, 6> order =
-          falling ? std::array<std::size_t, 6>{0, 1, 2, 0, 3, 2} : std::array<std::size_t, 6>{1, 2, 3, 3, 1, 0};
+      const std::array<std::size_t, 6> order = falling
+                                                   ? std::array<std::size_t, 6>{0, 1, 2, 0, 3, 2}
+                                                   : std::array<std::size_t, 6>{1, 2, 3, 3, 1, 0};
       for (const std::size_t k : order) add(c[k][0], c[k][1]);
     }
   }
@@ -123,7 +125,8 @@ int sign(Wide value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 int side(const Snapped& a, const Snapped& b, int x, int y) {
   const Wide dx = b.x - a.x;
   const Wide dy = b.y - a.y;
-  const Wide at_centre = dx * (static_cast<Wide>(y) * 256 - a.y) - dy * (static_cast<Wide>(x) * 256 - a.x);
+  const Wide at_centre =
+      dx * (static_cast<Wide>(y) * 256 - a.y) - dy * (static_cast<Wide>(x) * 256 - a.x);
   if (at_centre != 0) return sign(at_centre);
   return dy != 0 ? sign(-dy) : sign(dx);
 }
@@ -193,8 +196,12 @@ glm::vec4 some_position(test::Random& random, int width, int height, float margi
 TEST_CASE("a fan of triangles covers each pixel around its centre once, wherever that lies") {
   test::Random random{71};
   int wrong = 0;
-  for (const glm::vec2 centre : {glm::vec2{32.5f, 32.5f}, {32.0f, 32.0f}, {32.5f, 32.0f}, {0.0f, 0.0f},
-                                 {64.0f, 0.5f}, {31.99f, 32.51f}}) {
+  for (const glm::vec2 centre : {glm::vec2{32.5f, 32.5f},
+                                 {32.0f, 32.0f},
+                                 {32.5f, 32.0f},
+                                 {0.0f, 0.0f},
+                                 {64.0f, 0.5f},
+                                 {31.99f, 32.51f}}) {
     for (const int spokes : {3, 4, 8, 37, 200}) {
       wrong += pixels_not_covered_once(count_coverage(fan(centre, 200.0f, spokes, 64, 64), 64, 64));
     }
@@ -256,18 +263,19 @@ TEST_CASE("a jittered grid of cells smaller than a pixel covers each pixel once"
             count_coverage(jittered_grid(150, -1.0f, 33.0f, 32, 32, random), 32, 32)) == 0);
 }
 
-TEST_CASE("a quad from pixel centre to pixel centre covers its upper and left rims, not the others") {
+TEST_CASE(
+    "a quad from pixel centre to pixel centre covers its upper and left rims, not the others") {
   for (const bool reversed : {false, true}) {
     std::vector<glm::vec2> points = window_quad(2.5f, 3.5f, 6.5f, 8.5f);
     if (reversed) std::reverse(points.begin(), points.end());
     const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16);
-    CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; }) == 0);
+    CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; }) ==
+          0);
   }
 }
 
 TEST_CASE("a quad from pixel corner to pixel corner covers the pixels within") {
-  const Image counts =
-      count_coverage(window_triangles(window_quad(2, 3, 6, 8), 16, 16), 16, 16);
+  const Image counts = count_coverage(window_triangles(window_quad(2, 3, 6, 8), 16, 16), 16, 16);
   CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; }) == 0);
 }
 
@@ -285,51 +293,64 @@ TEST_CASE("moving a quad by 1/256 pixel over pixel centres moves its rims by a p
 
 TEST_CASE("a point on a left edge belongs to the triangle") {
   const Image counts = count_coverage(
-      window_triangles(std::array<glm::vec2, 3>{{{4.5f, 1.0f}, {12.0f, 8.0f}, {4.5f, 15.0f}}}, 16, 16), 16, 16);
+      window_triangles(std::array<glm::vec2, 3>{{{4.5f, 1.0f}, {12.0f, 8.0f}, {4.5f, 15.0f}}}, 16,
+                       16),
+      16, 16);
   CHECK(count_at(counts, 4, 8) == 1.0f);
 }
 
 TEST_CASE("a point on a right edge does not belong to the triangle") {
   const Image counts = count_coverage(
-      window_triangles(std::array<glm::vec2, 3>{{{11.5f, 1.0f}, {4.0f, 8.0f}, {11.5f, 15.0f}}}, 16, 16), 16, 16);
+      window_triangles(std::array<glm::vec2, 3>{{{11.5f, 1.0f}, {4.0f, 8.0f}, {11.5f, 15.0f}}}, 16,
+                       16),
+      16, 16);
   CHECK(count_at(counts, 11, 8) == 0.0f);
   CHECK(count_at(counts, 10, 8) == 1.0f);
 }
 
 TEST_CASE("a point on a level upper edge belongs to the triangle, on a level lower edge not") {
   const Image upper = count_coverage(
-      window_triangles(std::array<glm::vec2, 3>{{{1.0f, 4.5f}, {15.0f, 4.5f}, {8.0f, 12.0f}}}, 16, 16), 16, 16);
+      window_triangles(std::array<glm::vec2, 3>{{{1.0f, 4.5f}, {15.0f, 4.5f}, {8.0f, 12.0f}}}, 16,
+                       16),
+      16, 16);
   CHECK(count_at(upper, 8, 4) == 1.0f);
   const Image lower = count_coverage(
-      window_triangles(std::array<glm::vec2, 3>{{{1.0f, 11.5f}, {15.0f, 11.5f}, {8.0f, 4.0f}}}, 16, 16), 16, 16);
+      window_triangles(std::array<glm::vec2, 3>{{{1.0f, 11.5f}, {15.0f, 11.5f}, {8.0f, 4.0f}}}, 16,
+                       16),
+      16, 16);
   CHECK(count_at(lower, 8, 11) == 0.0f);
   CHECK(count_at(lower, 8, 10) == 1.0f);
 }
 
 TEST_CASE("the four triangles of a square around a pixel's centre cover that pixel once") {
   std::vector<glm::vec2> points;
-  const std::array<glm::vec2, 4> corners{{{2.5f, 2.5f}, {13.5f, 2.5f}, {13.5f, 13.5f}, {2.5f, 13.5f}}};
+  const std::array<glm::vec2, 4> corners{
+      {{2.5f, 2.5f}, {13.5f, 2.5f}, {13.5f, 13.5f}, {2.5f, 13.5f}}};
   for (std::size_t i = 0; i < 4; ++i) {
     points.insert(points.end(), {{8.5f, 8.5f}, corners[i], corners[(i + 1) % 4]});
   }
   const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16);
-  CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 13 && y >= 2 && y < 13; }) == 0);
+  CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 13 && y >= 2 && y < 13; }) ==
+        0);
 }
 
 TEST_CASE("triangles without area draw nothing") {
   const std::vector<glm::vec2> points{
-      {4.5f, 4.5f}, {4.5f, 4.5f}, {4.5f, 4.5f},   // a point
-      {1.0f, 1.0f}, {14.0f, 14.0f}, {1.0f, 1.0f},  // there and back
-      {0.5f, 0.5f}, {7.5f, 7.5f}, {15.5f, 15.5f},  // three in line, through centres
-      {2.5f, 9.5f}, {8.5f, 9.5f}, {12.5f, 9.5f}};
+      {4.5f, 4.5f}, {4.5f, 4.5f},   {4.5f, 4.5f},    // a point
+      {1.0f, 1.0f}, {14.0f, 14.0f}, {1.0f, 1.0f},    // there and back
+      {0.5f, 0.5f}, {7.5f, 7.5f},   {15.5f, 15.5f},  // three in line, through centres
+      {2.5f, 9.5f}, {8.5f, 9.5f},   {12.5f, 9.5f}};
   const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16);
   CHECK(wrong_pixels(counts, [](int, int) { return 0; }) == 0);
 }
 
-TEST_CASE("facebookresearch/DRTK issue 9: two triangles with a diagonal through centres leave no hole") {
+TEST_CASE(
+    "facebookresearch/DRTK issue 9: two triangles with a diagonal through centres leave no hole") {
   for (const float shift : {0.0f, 0.5f}) {
-    const std::array<glm::vec2, 4> v{{{0.5f, 0.49993896484375f}, {0.5f, 6.5f},
-                                      {6.50006103515625f, 0.49993896484375f}, {6.50006103515625f, 6.5f}}};
+    const std::array<glm::vec2, 4> v{{{0.5f, 0.49993896484375f},
+                                      {0.5f, 6.5f},
+                                      {6.50006103515625f, 0.49993896484375f},
+                                      {6.50006103515625f, 6.5f}}};
     for (const bool flipped : {false, true}) {
       std::vector<glm::vec2> points{v[0], v[1], v[2], v[3], v[2], v[1]};
       if (flipped) std::swap(points[4], points[5]);
@@ -350,7 +371,9 @@ TEST_CASE("random triangles cover what an oracle without an edge rule says, at m
     for (const float margin : {0.0f, 30.0f, 400.0f}) {
       std::vector<glm::vec4> positions;
       for (int i = 0; i < 3 * 150; ++i) {
-        positions.push_back(some_position(random, width, height, std::min(margin, 6.0f * static_cast<float>(std::min(width, height)))));
+        positions.push_back(
+            some_position(random, width, height,
+                          std::min(margin, 6.0f * static_cast<float>(std::min(width, height)))));
       }
       wrong += wrong_against_oracle(positions, width, height);
     }
@@ -358,7 +381,8 @@ TEST_CASE("random triangles cover what an oracle without an edge rule says, at m
   CHECK(wrong == 0);
 }
 
-TEST_CASE("random triangles with vertices on pixel centres and corners cover what the oracle says") {
+TEST_CASE(
+    "random triangles with vertices on pixel centres and corners cover what the oracle says") {
   test::Random random{77};
   std::vector<glm::vec4> positions;
   for (int i = 0; i < 3 * 3'000; ++i) {
@@ -399,20 +423,24 @@ TEST_CASE("triangles as large as the guard band cover what the oracle says") {
 }
 
 TEST_CASE("a rectangle larger than the target covers each pixel of it once, whatever its size") {
-  for (const auto& [width, height] : {std::pair{1, 1}, {1, 130}, {130, 1}, {63, 65}, {64, 64}, {128, 64}, {200, 70}}) {
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {1, 130}, {130, 1}, {63, 65}, {64, 64}, {128, 64}, {200, 70}}) {
     const auto w = static_cast<float>(width);
     const auto h = static_cast<float>(height);
     const Image counts = count_coverage(
-        window_triangles(window_quad(-0.5f * w, -0.5f * h, 1.5f * w, 1.5f * h), width, height), width, height);
+        window_triangles(window_quad(-0.5f * w, -0.5f * h, 1.5f * w, 1.5f * h), width, height),
+        width, height);
     CHECK(pixels_not_covered_once(counts) == 0);
   }
 }
 
 TEST_CASE("one triangle over the whole target covers each pixel once") {
-  const Vertices vertices{{{-1.0f, -1.0f, 0.0f, 1.0f}, {}}, {{3.0f, -1.0f, 0.0f, 1.0f}, {}},
+  const Vertices vertices{{{-1.0f, -1.0f, 0.0f, 1.0f}, {}},
+                          {{3.0f, -1.0f, 0.0f, 1.0f}, {}},
                           {{-1.0f, 3.0f, 0.0f, 1.0f}, {}}};
   for (const Profile& profile : profiles()) {
-    CHECK_MESSAGE(pixels_not_covered_once(count_coverage(vertices, 150, 97, profile)) == 0, profile.name);
+    CHECK_MESSAGE(pixels_not_covered_once(count_coverage(vertices, 150, 97, profile)) == 0,
+                  profile.name);
   }
 }
 
@@ -452,19 +480,24 @@ TEST_CASE("the fragment stage is told which face it draws") {
 }
 
 TEST_CASE("a scissor lets through the pixels it holds and no others, across tiles") {
-  for (const Rectangle& scissor : {Rectangle{3, 5, 17, 9}, {60, 63, 70, 65}, {-50, -50, 1000, 3},
-                                   {64, 64, 128, 128}, {10, 10, 11, 11}}) {
+  for (const Rectangle& scissor : {Rectangle{3, 5, 17, 9},
+                                   {60, 63, 70, 65},
+                                   {-50, -50, 1000, 3},
+                                   {64, 64, 128, 128},
+                                   {10, 10, 11, 11}}) {
     DrawState state = test::adding_state();
     state.scissor = scissor;
     const Image counts = count_coverage(test::covering_quad(100, 90), 100, 90, {}, state);
     CHECK(wrong_pixels(counts, [&](int x, int y) {
-            return x >= scissor.x_begin && x < scissor.x_end && y >= scissor.y_begin && y < scissor.y_end;
+            return x >= scissor.x_begin && x < scissor.x_end && y >= scissor.y_begin &&
+                   y < scissor.y_end;
           }) == 0);
   }
 }
 
 TEST_CASE("an empty, turned or far away scissor lets nothing through") {
-  for (const Rectangle& scissor : {Rectangle{5, 5, 5, 9}, {9, 9, 5, 5}, {200, 0, 300, 50}, {-20, -20, -10, -10}}) {
+  for (const Rectangle& scissor :
+       {Rectangle{5, 5, 5, 9}, {9, 9, 5, 5}, {200, 0, 300, 50}, {-20, -20, -10, -10}}) {
     DrawState state = test::adding_state();
     state.scissor = scissor;
     const Image counts = count_coverage(test::covering_quad(100, 90), 100, 90, {}, state);

@@ -23,10 +23,12 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr BlendEquation kOver{BlendFactor::source_alpha, BlendFactor::one_minus_source_alpha, BlendOp::add};
+constexpr BlendEquation kOver{BlendFactor::source_alpha, BlendFactor::one_minus_source_alpha,
+                              BlendOp::add};
 
 bool all_zero(const Image& image) {
-  return std::all_of(image.bytes.begin(), image.bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+  return std::all_of(image.bytes.begin(), image.bytes.end(),
+                     [](std::byte b) { return b == std::byte{0}; });
 }
 
 DrawState over_state() {
@@ -42,7 +44,8 @@ struct ThreeTargets {
   static constexpr bool kDiscards = false;
   FragmentOutput<3> operator()(const Fragment<0>& f) const {
     return {{glm::vec4{0.75f}, glm::vec4{0.375f},
-             glm::vec4{static_cast<float>(f.x), static_cast<float>(f.y), f.depth, 1.0f}}, false};
+             glm::vec4{static_cast<float>(f.x), static_cast<float>(f.y), f.depth, 1.0f}},
+            false};
   }
 };
 
@@ -90,7 +93,8 @@ struct BusyScene {
   }
 
   // Hash of colour, depth and stencil together.
-  std::uint64_t draw_hash(int threads, const Profile& profile, Format format = Format::rgba16f) const {
+  std::uint64_t draw_hash(int threads, const Profile& profile,
+                          Format format = Format::rgba16f) const {
     Image colour = make_image(format, 203, 149);
     Image depth = make_image(Format::r32f, 203, 149);
     Image stencil = make_image(Format::r8, 203, 149);
@@ -111,7 +115,8 @@ struct BusyScene {
 
     ThreadPool pool{threads};
     RenderPass pass{.targets = {.colour = {&colour}, .depth = &depth, .stencil = &stencil},
-                    .profile = profile, .draws = {}};
+                    .profile = profile,
+                    .draws = {}};
     draw(pass, opaque, solid_indices, static_cast<std::uint32_t>(solid.size()),
          test::ListedVertices<4>{&solid}, test::VaryingColour<Interpolation::perspective>{});
     draw(pass, see_through, glass_indices, static_cast<std::uint32_t>(glass.size()),
@@ -128,7 +133,8 @@ struct BusyScene {
 
 }  // namespace
 
-TEST_CASE("blended triangles merge in the order of submission, across chunks, draws, tiles and threads") {
+TEST_CASE(
+    "blended triangles merge in the order of submission, across chunks, draws, tiles and threads") {
   // Two draws of 3,000 translucent triangles, each over four tiles at least, against the
   // same sums taken one by one.
   test::Random random{91};
@@ -139,7 +145,8 @@ TEST_CASE("blended triangles merge in the order of submission, across chunks, dr
     const glm::vec4 colour{random.between(0.0f, 1.0f), random.between(0.0f, 1.0f),
                            random.between(0.0f, 1.0f), random.between(0.05f, 0.5f)};
     for (const glm::vec2 p : {glm::vec2{-300.0f, -300.0f}, {600.0f, -300.0f}, {-300.0f, 600.0f}}) {
-      vertices.push_back({test::at_window(p, size, size), {colour.x, colour.y, colour.z, colour.w}});
+      vertices.push_back(
+          {test::at_window(p, size, size), {colour.x, colour.y, colour.z, colour.w}});
     }
     for (int k = 0; k < 4; ++k) {
       const float source = colour[k] * colour.w;
@@ -189,13 +196,12 @@ TEST_CASE("a busy scene gives the same bits in every build, with 3 threads") {
     std::uint64_t hash;
   };
   const BusyScene scene{93};
-  for (const Golden& golden :
-       {Golden{"ieee", Format::rgba16f, 9738760297032446101u},
-        Golden{"ieee", Format::srgb8, 15076417834951181805u},
-        Golden{"d3d11", Format::rgba16f, 3753380126262380792u},
-        Golden{"llvmpipe", Format::rgba16f, 17978932670392252242u},
-        Golden{"llvmpipe-sse41", Format::rgba16f, 674035697030886004u},
-        Golden{"softpipe", Format::rgba16f, 674035697030886004u}}) {
+  for (const Golden& golden : {Golden{"ieee", Format::rgba16f, 9738760297032446101u},
+                               Golden{"ieee", Format::srgb8, 15076417834951181805u},
+                               Golden{"d3d11", Format::rgba16f, 3753380126262380792u},
+                               Golden{"llvmpipe", Format::rgba16f, 17978932670392252242u},
+                               Golden{"llvmpipe-sse41", Format::rgba16f, 674035697030886004u},
+                               Golden{"softpipe", Format::rgba16f, 674035697030886004u}}) {
     const std::uint64_t hash = scene.draw_hash(3, profile_named(golden.profile), golden.format);
     CHECK_MESSAGE(hash == golden.hash, golden.profile);
   }
@@ -233,7 +239,8 @@ TEST_CASE("the vertex stage runs once a vertex, however often indices name it, o
   Image target = make_image(Format::r8, 4, 4);
   ThreadPool pool{4};
   RenderPass pass{.targets = {.colour = {&target}}, .profile = {}, .draws = {}};
-  draw(pass, test::plain_state(), indices, 5'000u, CountingVertices{&vertices, &calls}, test::OneColour{});
+  draw(pass, test::plain_state(), indices, 5'000u, CountingVertices{&vertices, &calls},
+       test::OneColour{});
   finish(pass, pool);
   CHECK(std::all_of(calls.begin(), calls.end(), [](const auto& count) { return count == 1; }));
 }
@@ -242,7 +249,8 @@ TEST_CASE("the fragment stage runs once for each pixel that passes the early tes
   Image target = make_image(Format::r8, 100, 100);
   Image depth = make_image(Format::r32f, 100, 100);
   for (int y = 0; y < 100; ++y) {
-    for (int x = 0; x < 100; ++x) row<float>(depth, y)[static_cast<std::size_t>(x)] = x < 30 ? 0.0f : 1.0f;
+    for (int x = 0; x < 100; ++x)
+      row<float>(depth, y)[static_cast<std::size_t>(x)] = x < 30 ? 0.0f : 1.0f;
   }
   std::atomic<int> calls{0};
   DrawState state;
@@ -254,12 +262,14 @@ TEST_CASE("the fragment stage runs once for each pixel that passes the early tes
 
 TEST_CASE("indices choose the vertices") {
   const std::vector<VertexOutput<0>> vertices = test::window_triangles(
-      std::array<glm::vec2, 6>{{{100, 100}, {0, 0}, {100, 101}, {32, 0}, {101, 100}, {0, 32}}}, 16, 16);
+      std::array<glm::vec2, 6>{{{100, 100}, {0, 0}, {100, 101}, {32, 0}, {101, 100}, {0, 32}}}, 16,
+      16);
   const std::vector<std::uint32_t> indices{1, 3, 5};
   Image target = make_image(Format::r32f, 16, 16);
   ThreadPool pool{1};
   RenderPass pass{.targets = {.colour = {&target}}, .profile = {}, .draws = {}};
-  draw(pass, test::plain_state(), indices, 6, test::ListedVertices<0>{&vertices}, test::OneColour{});
+  draw(pass, test::plain_state(), indices, 6, test::ListedVertices<0>{&vertices},
+       test::OneColour{});
   finish(pass, pool);
   CHECK(load_texel(target, 0, 0).x == 1.0f);
   CHECK(load_texel(target, 15, 15).x == 1.0f);
@@ -274,12 +284,14 @@ TEST_CASE("several colour targets of different formats and states get their own 
   const BlendEquation add{BlendFactor::one, BlendFactor::one, BlendOp::add};
   state.colour[1].blend = BlendState{add, add};
   state.colour[2].write = {true, true, true, false};
-  test::draw_list({.colour = {&half, &bytes, &place}}, state, test::covering_quad(9, 9), ThreeTargets{});
+  test::draw_list({.colour = {&half, &bytes, &place}}, state, test::covering_quad(9, 9),
+                  ThreeTargets{});
   int wrong = 0;
   for (int y = 0; y < 9; ++y) {
     for (int x = 0; x < 9; ++x) {
       wrong += load_texel(half, x, y) != glm::vec4{0.75f};
-      wrong += row<std::uint8_t>(bytes, y)[static_cast<std::size_t>(4 * x)] != 160;  // (64/255 + 0.375) * 255
+      wrong += row<std::uint8_t>(bytes, y)[static_cast<std::size_t>(4 * x)] !=
+               160;  // (64/255 + 0.375) * 255
       wrong += load_texel(place, x, y) !=
                glm::vec4{static_cast<float>(x), static_cast<float>(y), 0.5f, 0.0f};
     }
@@ -289,8 +301,8 @@ TEST_CASE("several colour targets of different formats and states get their own 
 
 TEST_CASE("a colour target that is not there is passed over") {
   Image place = make_image(Format::rgba32f, 9, 9);
-  test::draw_list({.colour = {nullptr, nullptr, &place}}, test::plain_state(), test::covering_quad(9, 9),
-                  ThreeTargets{});
+  test::draw_list({.colour = {nullptr, nullptr, &place}}, test::plain_state(),
+                  test::covering_quad(9, 9), ThreeTargets{});
   CHECK(load_texel(place, 8, 7) == glm::vec4{8.0f, 7.0f, 0.5f, 1.0f});
 }
 
@@ -310,7 +322,8 @@ TEST_CASE("a triangle with a NaN or infinite position draws nothing, its neighbo
         std::vector<VertexOutput<0>> vertices = test::covering_quad(16, 16);
         vertices[4].position[component] = odd;  // of the second triangle, lower left
         Image target = make_image(Format::r32f, 16, 16);
-        test::draw_list({.colour = {&target}}, test::plain_state(), vertices, test::OneColour{}, profile);
+        test::draw_list({.colour = {&target}}, test::plain_state(), vertices, test::OneColour{},
+                        profile);
         CHECK(load_texel(target, 12, 3).x == 1.0f);
         CHECK(load_texel(target, 3, 12).x == 0.0f);
       }
@@ -320,10 +333,12 @@ TEST_CASE("a triangle with a NaN or infinite position draws nothing, its neighbo
 
 TEST_CASE("a triangle whose vertices all have w = 0 draws nothing") {
   for (const Profile& profile : profiles()) {
-    const std::vector<VertexOutput<0>> vertices{{{-1, -1, 0, 0}, {}}, {{3, -1, 0, 0}, {}}, {{-1, 3, 0, 0}, {}},
-                                                {{0, 0, 0, 0}, {}},   {{0, 0, 0, 0}, {}},  {{0, 0, 0, 0}, {}}};
+    const std::vector<VertexOutput<0>> vertices{{{-1, -1, 0, 0}, {}}, {{3, -1, 0, 0}, {}},
+                                                {{-1, 3, 0, 0}, {}},  {{0, 0, 0, 0}, {}},
+                                                {{0, 0, 0, 0}, {}},   {{0, 0, 0, 0}, {}}};
     Image target = make_image(Format::r32f, 16, 16);
-    test::draw_list({.colour = {&target}}, test::plain_state(), vertices, test::OneColour{}, profile);
+    test::draw_list({.colour = {&target}}, test::plain_state(), vertices, test::OneColour{},
+                    profile);
     CHECK(all_zero(target));
   }
 }
@@ -335,8 +350,8 @@ TEST_CASE("a triangle with one vertex in the plane of the eye (w = 0) draws the 
   };
   for (const Profile& profile : profiles()) {
     Image target = make_image(Format::r32f, 32, 32);
-    test::draw_list({.colour = {&target}}, test::adding_state(), std::vector{at(0, 0), at(-9, 8), at(9, 8)},
-                    test::OneColour{}, profile);
+    test::draw_list({.colour = {&target}}, test::adding_state(),
+                    std::vector{at(0, 0), at(-9, 8), at(9, 8)}, test::OneColour{}, profile);
     int above = 0;
     for (int y = 0; y < 16; ++y) {
       for (int x = 0; x < 32; ++x) above += load_texel(target, x, y).x != 0.0f;
@@ -349,7 +364,8 @@ TEST_CASE("a triangle with one vertex in the plane of the eye (w = 0) draws the 
 TEST_CASE("a triangle behind the eye or beyond the far plane draws nothing") {
   for (const float w : {-1.0f, 1.0f}) {
     const float z = w < 0.0f ? 0.0f : 1.5f;
-    const std::vector<VertexOutput<0>> vertices{{{-1, -1, z, w}, {}}, {{3, -1, z, w}, {}}, {{-1, 3, z, w}, {}}};
+    const std::vector<VertexOutput<0>> vertices{
+        {{-1, -1, z, w}, {}}, {{3, -1, z, w}, {}}, {{-1, 3, z, w}, {}}};
     Image target = make_image(Format::r32f, 16, 16);
     test::draw_list({.colour = {&target}}, test::plain_state(), vertices, test::OneColour{});
     CHECK(all_zero(target));
@@ -362,8 +378,9 @@ TEST_CASE("positions at random over the whole range of floats draw without harm"
   for (int i = 0; i < 3 * 3'000; ++i) {
     glm::vec4 p{};
     for (int k = 0; k < 4; ++k) {
-      p[k] = random.whole(0, 1) == 0 ? std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()))
-                                     : std::ldexp(random.between(-1.0f, 1.0f), random.whole(-3, 3));
+      p[k] = random.whole(0, 1) == 0
+                 ? std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()))
+                 : std::ldexp(random.between(-1.0f, 1.0f), random.whole(-3, 3));
     }
     vertices.push_back({p, {random.between(-1.0f, 1.0f), kNan, kInfinity, 1e38f}});
   }
@@ -395,7 +412,8 @@ TEST_CASE("an exception in a fragment stage on any thread reaches the caller of 
   Image target = make_image(Format::r8, 200, 200);
   ThreadPool pool{3};
   RenderPass pass{.targets = {.colour = {&target}}, .profile = {}, .draws = {}};
-  draw(pass, test::plain_state(), indices, 6, test::ListedVertices<0>{&vertices}, test::OneColour{});
+  draw(pass, test::plain_state(), indices, 6, test::ListedVertices<0>{&vertices},
+       test::OneColour{});
   pass.draws[0].shade_tile = [](auto&&...) { throw Thrower{}; };
   CHECK_THROWS_AS(finish(pass, pool), Thrower);
 }
@@ -405,8 +423,11 @@ TEST_CASE("the targets' size is that of any of them") {
   Image depth = make_image(Format::r32f, 5, 7);
   Image stencil = make_image(Format::r8, 5, 7);
   for (const RenderTargets& targets :
-       {RenderTargets{.colour = {&colour}}, {.depth = &depth}, {.stencil = &stencil},
-        {.colour = {nullptr, nullptr, nullptr, &colour}}, {.colour = {&colour}, .depth = &depth, .stencil = &stencil}}) {
+       {RenderTargets{.colour = {&colour}},
+        {.depth = &depth},
+        {.stencil = &stencil},
+        {.colour = {nullptr, nullptr, nullptr, &colour}},
+        {.colour = {&colour}, .depth = &depth, .stencil = &stencil}}) {
     const Rectangle area = target_area(targets);
     CHECK(area.x_begin == 0);
     CHECK(area.y_begin == 0);

@@ -136,8 +136,8 @@ TEST_CASE("the tangent is within 5 units in the last place, and infinite at 90 d
   for (int i = 0; i < kTries; ++i) {
     const double angle = some_angle(random, i);
     if (std::fmod(angle, 90.0) == 0.0) continue;
-    worst = std::max(worst, error_ulps(exact_math::tan_degrees(angle),
-                                       sin_oracle(angle) / cos_oracle(angle)));
+    worst = std::max(
+        worst, error_ulps(exact_math::tan_degrees(angle), sin_oracle(angle) / cos_oracle(angle)));
   }
   CHECK(worst < 5.0 * kSlack);
   CHECK(std::isinf(exact_math::tan_degrees(90.0)));
@@ -150,7 +150,8 @@ TEST_CASE("exp2 is within 2 units in the last place") {
   double worst = 0.0;
   for (int i = 0; i < kTries; ++i) {
     const double x = i % 2 == 0 ? random.between(-1074.0, 1024.0) : random.between(-2.0, 2.0);
-    worst = std::max(worst, error_ulps(exact_math::exp2(x), std::exp2(static_cast<long double>(x))));
+    worst =
+        std::max(worst, error_ulps(exact_math::exp2(x), std::exp2(static_cast<long double>(x))));
   }
   CHECK(worst < 2.0 * kSlack);
 }
@@ -176,7 +177,8 @@ TEST_CASE("log2 is within 4 units in the last place, near 1 too") {
     if (i % 3 == 1) x = std::ldexp(x, random.whole(-1070, 1022));
     if (i % 3 == 2) x = 1.0 + std::ldexp(random.between(-1.0, 1.0), random.whole(-52, -2));
     if (x == 1.0) continue;
-    worst = std::max(worst, error_ulps(exact_math::log2(x), std::log2(static_cast<long double>(x))));
+    worst =
+        std::max(worst, error_ulps(exact_math::log2(x), std::log2(static_cast<long double>(x))));
   }
   CHECK(worst < 4.0 * kSlack);
 }

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -33,15 +34,25 @@ constexpr Golden kGolden[] = {
 #include "tests/golden_table.inc"
 };
 
+// Making a scene's textures takes longer than drawing it small: each is loaded once.
+const Scene& loaded(std::string_view name) {
+  static std::map<std::string, Scene, std::less<>> scenes;
+  auto found = scenes.find(name);
+  if (found == scenes.end()) {
+    found = scenes.emplace(name, load_scene(name, scene_search_path({}))).first;
+  }
+  return found->second;
+}
+
 // Frame 7, so that what moves has moved; the scene's own lens.
 Image render(const Golden& golden, ThreadPool& pool) {
-  const Scene scene = load_scene(golden.scene, scene_search_path({}));
+  const Scene& scene = loaded(golden.scene);
   const Profile profile = find_profile(golden.profile).value();
   const View view = camera_view(scene.camera, 7, golden.width, golden.height);
   const Image picture = draw_scene(scene, view, 7, golden.width, golden.height, profile, pool);
   DofSettings settings;
-  settings.coc =
-      pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, golden.height, scene.lens.coc_scale);
+  settings.coc = pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, golden.height,
+                           scene.lens.coc_scale);
   settings.max_coc_px = static_cast<float>(scene.lens.max_coc_px_at_1024 * golden.height / 1024.0);
   return find_method(golden.method)->apply({picture, settings, profile}, pool);
 }

@@ -70,7 +70,8 @@ void for_each_gap(Visit visit) {
 
 }  // namespace
 
-static_assert(half_to_float(kHalfOne) == 1.0f && float_to_half(1.0f, HalfRounding::toward_zero) == kHalfOne,
+static_assert(half_to_float(kHalfOne) == 1.0f &&
+                  float_to_half(1.0f, HalfRounding::toward_zero) == kHalfOne,
               "both directions work at compile time");
 
 TEST_CASE("each of the 65,536 halves decodes to the value of its bit fields") {
@@ -129,8 +130,9 @@ TEST_CASE("truncation stores every float between two halves as the one nearer ze
   for_each_gap([&](std::uint16_t lower, std::uint16_t upper, float middle) {
     const float away = std::copysign(kInfinity, middle);
     const float end = half_to_float(upper);
-    for (const float inside : {std::nextafter(half_to_float(lower), away), std::nextafter(middle, 0.0f),
-                               middle, std::nextafter(middle, away), std::nextafter(end, 0.0f)}) {
+    for (const float inside :
+         {std::nextafter(half_to_float(lower), away), std::nextafter(middle, 0.0f), middle,
+          std::nextafter(middle, away), std::nextafter(end, 0.0f)}) {
       wrong += float_to_half(inside, kTruncate) != lower;
     }
     wrong += float_to_half(end, kTruncate) != upper;
@@ -268,7 +270,7 @@ struct Differences {
 
 #ifdef SOFTFOCUS_TEST_F16C
 __attribute__((target("avx,f16c"))) void add_differences_from_hardware(std::uint32_t first,
-                                                                        Differences& found) {
+                                                                       Differences& found) {
   alignas(32) std::array<float, 8> values;
   for (std::uint32_t i = 0; i < 8; ++i) values[i] = std::bit_cast<float>(first + i);
   const __m256 vector = _mm256_load_ps(values.data());

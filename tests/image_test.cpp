@@ -92,8 +92,8 @@ TEST_CASE("a row spans width times channels values") {
 TEST_CASE("texel sizes are channels times channel size") {
   for (const Format format : kFormats) {
     const std::size_t channel = format == Format::r32f || format == Format::rgba32f ? 4
-                                : format == Format::rgba16f                          ? 2
-                                                                                     : 1;
+                                : format == Format::rgba16f                         ? 2
+                                                                                    : 1;
     CHECK(bytes_per_texel(format) == channel * static_cast<std::size_t>(channel_count(format)));
   }
 }

@@ -61,9 +61,8 @@ template <class Visit>
 void for_each_pixel(const TriangleSetup& setup, Visit visit) {
   for (int y = setup.bounds.y_begin; y < setup.bounds.y_end; ++y) {
     for (int x = setup.bounds.x_begin; x < setup.bounds.x_end; ++x) {
-      const bool covered = std::all_of(setup.edges.begin(), setup.edges.end(), [&](const auto& e) {
-        return inside(e, edge_at(e, x, y));
-      });
+      const bool covered = std::all_of(setup.edges.begin(), setup.edges.end(),
+                                       [&](const auto& e) { return inside(e, edge_at(e, x, y)); });
       if (covered) visit(x, y);
     }
   }
@@ -80,7 +79,8 @@ Weights exact_weights(const TriangleSetup& setup, int x, int y, bool snapped) {
   std::array<glm::dvec2, 3> p;
   for (std::size_t i = 0; i < 3; ++i) {
     const WindowVertex& v = setup.vertices[i];
-    p[i] = snapped ? glm::dvec2{snap_to_subpixel(v.x) / 256.0 + 0.5, snap_to_subpixel(v.y) / 256.0 + 0.5}
+    p[i] = snapped ? glm::dvec2{snap_to_subpixel(v.x) / 256.0 + 0.5,
+                                snap_to_subpixel(v.y) / 256.0 + 0.5}
                    : glm::dvec2{v.x, v.y};
   }
   const glm::dvec2 centre{x + 0.5, y + 0.5};
@@ -144,8 +144,8 @@ struct GiveFour {
   }
 };
 
-Image draw_four(const std::vector<VertexOutput<4>>& vertices, auto stage, const Profile& profile = {},
-                int width = kSize, int height = kSize) {
+Image draw_four(const std::vector<VertexOutput<4>>& vertices, auto stage,
+                const Profile& profile = {}, int width = kSize, int height = kSize) {
   Image target = make_image(Format::rgba32f, width, height);
   test::draw_list({.colour = {&target}}, test::plain_state(), vertices, stage, profile);
   return target;
@@ -205,7 +205,8 @@ TEST_CASE("a plane in space comes back from its varyings: the position seen at e
   for (int t = 0; t < 400; ++t) {
     const Seen seen = some_triangle(random);
     std::array<Varyings<3>, 3> varyings{};
-    for (std::size_t i = 0; i < 3; ++i) varyings[i] = {seen.space[i].x, seen.space[i].y, seen.space[i].z};
+    for (std::size_t i = 0; i < 3; ++i)
+      varyings[i] = {seen.space[i].x, seen.space[i].y, seen.space[i].z};
     const auto triangle = set_up<3>(seen.clip, varyings);
     if (!triangle) continue;
     const glm::dvec3 origin{seen.space[0]};
@@ -229,17 +230,16 @@ TEST_CASE("a plane in space comes back from its varyings: the position seen at e
 
 TEST_CASE("a perspective varying halfway across is nearer the closer vertex's value") {
   // From w = 1 to w = 3: at the middle of the window (1/2 a/1 + 1/2 b/3) / (1/2 + 1/6).
-  const std::vector<VertexOutput<4>> vertices{{{-1, -8, 0, 1}, {0, 0, 0, 0}},
-                                              {{3, -24, 0, 3}, {1, 1, 1, 1}},
-                                              {{-1, 8, 0, 1}, {0, 0, 0, 0}},
-                                              {{-1, 8, 0, 1}, {0, 0, 0, 0}},
-                                              {{3, -24, 0, 3}, {1, 1, 1, 1}},
-                                              {{3, 24, 0, 3}, {1, 1, 1, 1}}};
+  const std::vector<VertexOutput<4>> vertices{
+      {{-1, -8, 0, 1}, {0, 0, 0, 0}}, {{3, -24, 0, 3}, {1, 1, 1, 1}},
+      {{-1, 8, 0, 1}, {0, 0, 0, 0}},  {{-1, 8, 0, 1}, {0, 0, 0, 0}},
+      {{3, -24, 0, 3}, {1, 1, 1, 1}}, {{3, 24, 0, 3}, {1, 1, 1, 1}}};
   const Image perspective = draw_four(vertices, GiveFour<kPerspective, Give::values>{});
   const Image linear = draw_four(vertices, GiveFour<kLinear, Give::values>{});
   for (int x = 0; x < kSize; ++x) {
     const double s = (x + 0.5) / kSize;
-    CHECK(load_texel(perspective, x, 20).x == doctest::Approx(s / 3.0 / (1.0 - s + s / 3.0)).epsilon(1e-5));
+    CHECK(load_texel(perspective, x, 20).x ==
+          doctest::Approx(s / 3.0 / (1.0 - s + s / 3.0)).epsilon(1e-5));
     CHECK(load_texel(linear, x, 20).x == doctest::Approx(s).epsilon(1e-5));
   }
 }
@@ -274,9 +274,8 @@ TEST_CASE("a varying that is the same at all three vertices comes out unchanged"
     const auto triangle = set_up<3>(some_triangle(random).clip, {same, same, same});
     if (!triangle) continue;
     const BarycentricInterpolator<3> interpolator{*triangle, Profile{}};
-    for_each_pixel(triangle->setup, [&](int x, int y) {
-      wrong += interpolator.at(x, y, kinds).varyings != same;
-    });
+    for_each_pixel(triangle->setup,
+                   [&](int x, int y) { wrong += interpolator.at(x, y, kinds).varyings != same; });
   }
   CHECK(wrong == 0);
 }
@@ -290,8 +289,9 @@ TEST_CASE("interpolated values stay within rounding of the vertices' range on an
     std::array<glm::vec4, 3> clip{};
     const glm::vec2 a{random.between(0.0f, 64.0f), random.between(0.0f, 64.0f)};
     const glm::vec2 b{random.between(0.0f, 64.0f), random.between(0.0f, 64.0f)};
-    const glm::vec2 near_line = a + (b - a) * random.between(0.0f, 1.0f) +
-                                glm::vec2{random.between(-0.02f, 0.02f), random.between(-0.02f, 0.02f)};
+    const glm::vec2 near_line =
+        a + (b - a) * random.between(0.0f, 1.0f) +
+        glm::vec2{random.between(-0.02f, 0.02f), random.between(-0.02f, 0.02f)};
     const std::array<glm::vec2, 3> window{a, b, near_line};
     for (std::size_t i = 0; i < 3; ++i) {
       clip[i] = test::at_window(window[i], kSize, kSize) * random.between(0.5f, 30.0f);
@@ -314,9 +314,9 @@ TEST_CASE("interpolated values stay within rounding of the vertices' range on an
 TEST_CASE("the depth that a draw stores runs from 0 at the near plane to 1 at the far one") {
   for (const Profile& profile : profiles()) {
     // A wall from the near plane on the left to beyond the far plane on the right.
-    const std::vector<VertexOutput<0>> vertices{{{-1, -8, -1, 1}, {}}, {{1.5f, -8, 1.5f, 1}, {}},
-                                                {{-1, 8, -1, 1}, {}},  {{-1, 8, -1, 1}, {}},
-                                                {{1.5f, -8, 1.5f, 1}, {}}, {{1.5f, 8, 1.5f, 1}, {}}};
+    const std::vector<VertexOutput<0>> vertices{
+        {{-1, -8, -1, 1}, {}}, {{1.5f, -8, 1.5f, 1}, {}}, {{-1, 8, -1, 1}, {}},
+        {{-1, 8, -1, 1}, {}},  {{1.5f, -8, 1.5f, 1}, {}}, {{1.5f, 8, 1.5f, 1}, {}}};
     Image depth = make_image(Format::r32f, kSize, kSize);
     clear_image(depth, glm::vec4{2.0f}, {});
     DrawState state = test::plain_state();
@@ -340,7 +340,9 @@ TEST_CASE("depth never leaves 0 to 1, on any triangle and in any profile") {
     std::vector<VertexOutput<0>> vertices;
     for (int i = 0; i < 3 * 500; ++i) {
       glm::vec4 p{random.between(-2.0f, 2.0f), random.between(-2.0f, 2.0f), 0.0f, 1.0f};
-      p.z = random.whole(0, 2) == 0 ? random.between(-1.5f, 1.5f) : random.whole(0, 1) == 0 ? -1.0f : 1.0f;
+      p.z = random.whole(0, 2) == 0   ? random.between(-1.5f, 1.5f)
+            : random.whole(0, 1) == 0 ? -1.0f
+                                      : 1.0f;
       vertices.push_back({p * random.between(0.1f, 9.0f), {}});
     }
     Image depth = make_image(Format::r32f, kSize, kSize);
@@ -365,8 +367,9 @@ TEST_CASE("both ways of interpolating agree within a few thousandths of a pixel'
   const std::vector<VertexOutput<4>> floor = slanted_floor();
   for (const auto stage_is_linear : {false, true}) {
     const auto drawn = [&](std::string_view name) {
-      return stage_is_linear ? draw_four(floor, GiveFour<kLinear, Give::values>{}, profile_named(name))
-                             : draw_four(floor, GiveFour<kPerspective, Give::values>{}, profile_named(name));
+      return stage_is_linear
+                 ? draw_four(floor, GiveFour<kLinear, Give::values>{}, profile_named(name))
+                 : draw_four(floor, GiveFour<kPerspective, Give::values>{}, profile_named(name));
     };
     const Image exact = drawn("ieee");
     for (const std::string_view name : {"llvmpipe", "llvmpipe-sse41", "softpipe"}) {
@@ -384,7 +387,8 @@ TEST_CASE("varyings of all kinds are the same whether the guard band clips or no
   Profile tight = profile_named("ieee");
   tight.guard_band = 1.0f;
   CHECK(largest_difference(draw_four(vertices, GiveFour<kPerspective, Give::values>{}),
-                           draw_four(vertices, GiveFour<kPerspective, Give::values>{}, tight)) < 1e-2);
+                           draw_four(vertices, GiveFour<kPerspective, Give::values>{}, tight)) <
+        1e-2);
   CHECK(largest_difference(draw_four(vertices, GiveFour<kLinear, Give::values>{}),
                            draw_four(vertices, GiveFour<kLinear, Give::values>{}, tight)) < 1e-2);
   CHECK(largest_difference(draw_four(vertices, GiveFour<kFlat, Give::values>{}),
@@ -395,8 +399,9 @@ TEST_CASE("derivatives are equal for the four pixels of each 2x2 block, in odd t
   for (const Profile& profile : profiles()) {
     for (const auto give_ddx : {true, false}) {
       const Image target =
-          give_ddx ? draw_four(slanted_floor(), GiveFour<kPerspective, Give::ddx>{}, profile, 63, 61)
-                   : draw_four(slanted_floor(), GiveFour<kPerspective, Give::ddy>{}, profile, 63, 61);
+          give_ddx
+              ? draw_four(slanted_floor(), GiveFour<kPerspective, Give::ddx>{}, profile, 63, 61)
+              : draw_four(slanted_floor(), GiveFour<kPerspective, Give::ddy>{}, profile, 63, 61);
       // The two triangles meet on the diagonal: a block that both touch has two planes.
       int wrong = 0;
       int blocks = 0;
@@ -415,7 +420,8 @@ TEST_CASE("derivatives are equal for the four pixels of each 2x2 block, in odd t
 
 TEST_CASE("derivatives are the differences on the block's upper and left side") {
   for (const Profile& profile : profiles()) {
-    const Image values = draw_four(slanted_floor(), GiveFour<kPerspective, Give::values>{}, profile);
+    const Image values =
+        draw_four(slanted_floor(), GiveFour<kPerspective, Give::values>{}, profile);
     const Image ddx = draw_four(slanted_floor(), GiveFour<kPerspective, Give::ddx>{}, profile);
     const Image ddy = draw_four(slanted_floor(), GiveFour<kPerspective, Give::ddy>{}, profile);
     int wrong = 0;
@@ -437,7 +443,8 @@ TEST_CASE("derivatives of a flat varying are 0, and of all varyings where a stag
   int wrong = 0;
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
-      wrong += load_texel(flat, x, y) != glm::vec4{0.0f} || load_texel(unasked, x, y) != glm::vec4{0.0f};
+      wrong +=
+          load_texel(flat, x, y) != glm::vec4{0.0f} || load_texel(unasked, x, y) != glm::vec4{0.0f};
     }
   }
   CHECK(wrong == 0);

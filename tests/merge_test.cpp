@@ -16,13 +16,17 @@ using test::same_bits;
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr std::array kCompares{Compare::never,   Compare::less,      Compare::equal,
-                               Compare::less_equal, Compare::greater, Compare::not_equal,
+constexpr std::array kCompares{Compare::never,         Compare::less,    Compare::equal,
+                               Compare::less_equal,    Compare::greater, Compare::not_equal,
                                Compare::greater_equal, Compare::always};
-constexpr std::array kStencilOps{StencilOp::keep,            StencilOp::zero,
-                                 StencilOp::replace,         StencilOp::increment_clamp,
-                                 StencilOp::decrement_clamp, StencilOp::invert,
-                                 StencilOp::increment_wrap,  StencilOp::decrement_wrap};
+constexpr std::array kStencilOps{StencilOp::keep,
+                                 StencilOp::zero,
+                                 StencilOp::replace,
+                                 StencilOp::increment_clamp,
+                                 StencilOp::decrement_clamp,
+                                 StencilOp::invert,
+                                 StencilOp::increment_wrap,
+                                 StencilOp::decrement_wrap};
 
 // Whether the comparison holds, by what its name says of smaller, equal and larger.
 struct Truth {
@@ -30,9 +34,9 @@ struct Truth {
   bool smaller, equal, larger;
 };
 constexpr std::array kTruths{
-    Truth{Compare::never, false, false, false},   Truth{Compare::less, true, false, false},
-    Truth{Compare::equal, false, true, false},    Truth{Compare::less_equal, true, true, false},
-    Truth{Compare::greater, false, false, true},  Truth{Compare::not_equal, true, false, true},
+    Truth{Compare::never, false, false, false},       Truth{Compare::less, true, false, false},
+    Truth{Compare::equal, false, true, false},        Truth{Compare::less_equal, true, true, false},
+    Truth{Compare::greater, false, false, true},      Truth{Compare::not_equal, true, false, true},
     Truth{Compare::greater_equal, false, true, true}, Truth{Compare::always, true, true, true}};
 
 // One pixel with a depth and a stencil buffer.
@@ -86,7 +90,8 @@ ColourState blending(BlendEquation colour, BlendEquation alpha) {
   return state;
 }
 
-constexpr BlendEquation kOver{BlendFactor::source_alpha, BlendFactor::one_minus_source_alpha, BlendOp::add};
+constexpr BlendEquation kOver{BlendFactor::source_alpha, BlendFactor::one_minus_source_alpha,
+                              BlendOp::add};
 
 }  // namespace
 
@@ -156,7 +161,8 @@ TEST_CASE("the write mask keeps the stored bits that it leaves out, for every op
         DrawState state;
         state.depth.reset();
         state.stencil.emplace();
-        state.stencil->front = {.reference = 0x3C, .write_mask = static_cast<std::uint8_t>(mask), .on_pass = op};
+        state.stencil->front = {
+            .reference = 0x3C, .write_mask = static_cast<std::uint8_t>(mask), .on_pass = op};
         Pixel pixel{0.5f, stored};
         pixel.test(state, 0.5f);
         wrong += pixel.s() != ((wanted(op, 0x3C, stored) & mask) | (stored & ~mask & 0xFF));
@@ -166,7 +172,8 @@ TEST_CASE("the write mask keeps the stored bits that it leaves out, for every op
   CHECK(wrong == 0);
 }
 
-TEST_CASE("the stencil test compares the reference with the stored value, both under the read mask") {
+TEST_CASE(
+    "the stencil test compares the reference with the stored value, both under the read mask") {
   int wrong = 0;
   for (const Truth& truth : kTruths) {
     for (const int mask : {0x00, 0x0F, 0xF0, 0xFF}) {
@@ -193,8 +200,11 @@ TEST_CASE("stencil first, then depth: each outcome runs its own operation") {
   DrawState state = with_depth(Compare::less);
   state.stencil.emplace();
   const auto outcome = [&](Compare stencil, float depth) {
-    state.stencil->front = {.test = stencil, .reference = 9, .on_fail = StencilOp::zero,
-                            .on_depth_fail = StencilOp::invert, .on_pass = StencilOp::replace};
+    state.stencil->front = {.test = stencil,
+                            .reference = 9,
+                            .on_fail = StencilOp::zero,
+                            .on_depth_fail = StencilOp::invert,
+                            .on_pass = StencilOp::replace};
     Pixel pixel{0.5f, 100};
     const bool passes = pixel.test(state, depth);
     return std::tuple{passes, pixel.s(), pixel.d()};
@@ -278,9 +288,9 @@ TEST_CASE("every blend factor and operation is the written-out formula, colour a
         const Factor& alpha_source = factors[(i + 3) % 10];
         const Factor& alpha_destination = factors[(j + 7) % 10];
         const BlendOp alpha_op = op == BlendOp::add ? BlendOp::subtract : BlendOp::add;
-        const glm::vec4 result =
-            blend({{factors[i].kind, factors[j].kind, op},
-                   {alpha_source.kind, alpha_destination.kind, alpha_op}}, s, d);
+        const glm::vec4 result = blend({{factors[i].kind, factors[j].kind, op},
+                                        {alpha_source.kind, alpha_destination.kind, alpha_op}},
+                                       s, d);
         const glm::vec4 expected{wanted_value(op, factors[i], factors[j], 0),
                                  wanted_value(op, factors[i], factors[j], 1),
                                  wanted_value(op, factors[i], factors[j], 2),
@@ -300,8 +310,8 @@ TEST_CASE("without blending the source replaces what was there") {
 TEST_CASE("blending reads the target decoded and stores it encoded, in every format") {
   const glm::vec4 before{0.25f, 0.5f, 0.75f, 1.0f};
   const glm::vec4 colour{1.0f, 0.0f, 0.5f, 0.5f};
-  for (const Format format : {Format::r8, Format::rgba8, Format::srgb8, Format::rgba16f,
-                              Format::r32f, Format::rgba32f}) {
+  for (const Format format :
+       {Format::r8, Format::rgba8, Format::srgb8, Format::rgba16f, Format::r32f, Format::rgba32f}) {
     Image target = make_image(format, 1, 1);
     store_texel(target, 0, 0, before, {});
     const glm::vec4 stored = load_texel(target, 0, 0);
@@ -314,7 +324,8 @@ TEST_CASE("blending reads the target decoded and stores it encoded, in every for
 
 TEST_CASE("a one-channel target blends with a destination alpha of 1") {
   const BlendEquation by_alpha{BlendFactor::destination_alpha, BlendFactor::zero, BlendOp::add};
-  CHECK(written(blending(by_alpha, by_alpha), Format::r32f, glm::vec4{0.5f}, glm::vec4{0.3f}).x == 0.3f);
+  CHECK(written(blending(by_alpha, by_alpha), Format::r32f, glm::vec4{0.5f}, glm::vec4{0.3f}).x ==
+        0.3f);
 }
 
 TEST_CASE("a colour mask keeps the stored channels that it leaves out") {
@@ -365,8 +376,10 @@ TEST_CASE("what a colour mask leaves out of an 8-bit, sRGB or half target keeps 
 TEST_CASE("blending into half targets rounds once, as the profile stores") {
   const BlendEquation add{BlendFactor::one, BlendFactor::one, BlendOp::add};
   const glm::vec4 small{0.75f / 1024.0f};
-  CHECK(written(blending(add, add), Format::rgba16f, glm::vec4{1.0f}, small).x == 1.0f + 1.0f / 1024.0f);
-  CHECK(written(blending(add, add), Format::rgba16f, glm::vec4{1.0f}, small, profile_named("d3d11")).x == 1.0f);
+  CHECK(written(blending(add, add), Format::rgba16f, glm::vec4{1.0f}, small).x ==
+        1.0f + 1.0f / 1024.0f);
+  CHECK(written(blending(add, add), Format::rgba16f, glm::vec4{1.0f}, small, profile_named("d3d11"))
+            .x == 1.0f);
 }
 
 // --- through the draw call ---
@@ -378,9 +391,7 @@ struct DiscardLeft {
   static constexpr std::array<Interpolation, 0> kInterpolation{};
   static constexpr bool kNeedsDerivatives = false;
   static constexpr bool kDiscards = true;
-  FragmentOutput<1> operator()(const Fragment<0>& f) const {
-    return {{glm::vec4{1.0f}}, f.x < 4};
-  }
+  FragmentOutput<1> operator()(const Fragment<0>& f) const { return {{glm::vec4{1.0f}}, f.x < 4}; }
 };
 
 // Says that it discards everything, but has not declared that it may.
@@ -437,7 +448,8 @@ TEST_CASE("a stage that may discard is still tested: late is as good as early") 
 
 TEST_CASE("a discard that the stage has not declared is no discard") {
   Buffers buffers;
-  test::draw_list(buffers.targets(), test::plain_state(), test::covering_quad(8, 8), UndeclaredDiscard{});
+  test::draw_list(buffers.targets(), test::plain_state(), test::covering_quad(8, 8),
+                  UndeclaredDiscard{});
   CHECK(load_texel(buffers.colour, 2, 2).x == 1.0f);
 }
 
@@ -461,8 +473,8 @@ TEST_CASE("a stencil mask drawn first lets the second draw through where it lies
   mark.stencil.emplace();
   mark.stencil->front = mark.stencil->back = {.reference = 1, .on_pass = StencilOp::replace};
   mark.colour[0].write = {false, false, false, false};
-  test::draw_list(buffers.targets(), mark, test::window_triangles(test::window_quad(2, 2, 6, 5), 8, 8),
-                  test::OneColour{});
+  test::draw_list(buffers.targets(), mark,
+                  test::window_triangles(test::window_quad(2, 2, 6, 5), 8, 8), test::OneColour{});
   DrawState fill = test::plain_state();
   fill.stencil.emplace();
   fill.stencil->front = fill.stencil->back = {.test = Compare::equal, .reference = 1};

@@ -130,8 +130,8 @@ inline std::vector<glm::vec2> window_quad(float x0, float y0, float x1, float y1
 /// Six vertices that cover the whole target at one window depth (0 to 1).
 inline std::vector<VertexOutput<0>> covering_quad(int width, int height, float depth = 0.5f) {
   return window_triangles(
-      window_quad(0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height)), width,
-      height, depth * 2.0f - 1.0f);
+      window_quad(0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height)), width, height,
+      depth * 2.0f - 1.0f);
 }
 
 /// Every component equal to the bit, NaN included.

@@ -91,10 +91,10 @@ glm::dvec4 bilinear_oracle(const Image& image, const Sampler& sampler, double u,
   const double t = y - std::floor(y);
   const auto i = static_cast<long>(std::floor(x));
   const auto j = static_cast<long>(std::floor(y));
-  const glm::dvec4 upper = texel_at(image, sampler, i, j) * (1.0 - s) +
-                           texel_at(image, sampler, i + 1, j) * s;
-  const glm::dvec4 lower = texel_at(image, sampler, i, j + 1) * (1.0 - s) +
-                           texel_at(image, sampler, i + 1, j + 1) * s;
+  const glm::dvec4 upper =
+      texel_at(image, sampler, i, j) * (1.0 - s) + texel_at(image, sampler, i + 1, j) * s;
+  const glm::dvec4 lower =
+      texel_at(image, sampler, i, j + 1) * (1.0 - s) + texel_at(image, sampler, i + 1, j + 1) * s;
   return upper * (1.0 - t) + lower * t;
 }
 
@@ -115,7 +115,8 @@ float dyadic(test::Random& random, int range) {
 struct Size {
   int width, height;
 };
-constexpr std::array kSizes{Size{1, 1}, Size{1, 7}, Size{6, 1}, Size{3, 5}, Size{8, 4}, Size{17, 9}};
+constexpr std::array kSizes{Size{1, 1}, Size{1, 7}, Size{6, 1},
+                            Size{3, 5}, Size{8, 4}, Size{17, 9}};
 
 }  // namespace
 
@@ -149,10 +150,10 @@ TEST_CASE("a bilinear fetch agrees with binary64, for every profile and wrap far
           const Sampler sampler{Filter::bilinear, wrap_u, wrap_v};
           for (int i = 0; i < 100; ++i) {
             const glm::vec2 uv{dyadic(random, 40), dyadic(random, 40)};
-            const glm::dvec4 exact = bilinear_oracle(texture.levels[0], sampler, uv.x, uv.y,
-                                                     profile.bilinear_weights);
-            worst = std::max(worst, largest_difference(sample(texture, sampler, uv, 0.0f, profile),
-                                                       exact));
+            const glm::dvec4 exact =
+                bilinear_oracle(texture.levels[0], sampler, uv.x, uv.y, profile.bilinear_weights);
+            worst = std::max(
+                worst, largest_difference(sample(texture, sampler, uv, 0.0f, profile), exact));
           }
         }
       }
@@ -194,7 +195,8 @@ TEST_CASE("a trilinear fetch lies between the two levels by the fraction of the 
                                profile.bilinear_weights);
       };
       const glm::dvec4 exact = level(fine) * (1.0 - fraction) + level(fine + 1) * fraction;
-      worst = std::max(worst, largest_difference(sample(texture, sampler, uv, lod, profile), exact));
+      worst =
+          std::max(worst, largest_difference(sample(texture, sampler, uv, lod, profile), exact));
     }
   }
   CHECK(worst < 9 * 0x1p-24);
@@ -208,8 +210,8 @@ TEST_CASE("a bilinear fetch at a texel's centre is that texel, in every profile"
       for (int x = 0; x < 8; ++x) {
         const glm::vec2 uv{(static_cast<float>(x) + 0.5f) / 8.0f,
                            (static_cast<float>(y) + 0.5f) / 8.0f};
-        wrong += !same_bits(sample(texture, {}, uv, 0.0f, profile),
-                            load_texel(texture.levels[0], x, y));
+        wrong +=
+            !same_bits(sample(texture, {}, uv, 0.0f, profile), load_texel(texture.levels[0], x, y));
       }
     }
   }
@@ -218,7 +220,8 @@ TEST_CASE("a bilinear fetch at a texel's centre is that texel, in every profile"
 
 TEST_CASE("u runs along rows and v down them") {
   Image image = make_image(Format::r32f, 2, 2);
-  for (int i = 0; i < 4; ++i) store_texel(image, i % 2, i / 2, glm::vec4{static_cast<float>(i)}, {});
+  for (int i = 0; i < 4; ++i)
+    store_texel(image, i % 2, i / 2, glm::vec4{static_cast<float>(i)}, {});
   const Texture texture = make_texture(std::move(image));
   CHECK(sample(texture, {}, {0.75f, 0.25f}, 0.0f, {}).x == 1.0f);
   CHECK(sample(texture, {}, {0.25f, 0.75f}, 0.0f, {}).x == 2.0f);
@@ -523,7 +526,8 @@ TEST_CASE("sRGB texels are decoded before they are filtered") {
 
 TEST_CASE("log2_linear is exact at powers of two") {
   int wrong = 0;
-  for (int k = -126; k <= 127; ++k) wrong += log2_linear(std::ldexp(1.0f, k)) != static_cast<float>(k);
+  for (int k = -126; k <= 127; ++k)
+    wrong += log2_linear(std::ldexp(1.0f, k)) != static_cast<float>(k);
   CHECK(wrong == 0);
 }
 

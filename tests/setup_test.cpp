@@ -53,7 +53,8 @@ TEST_CASE("the corners of clip space go to the corners of the window, y downward
   CHECK(lower_right.inverse_w == 1.0f / 3.0f);
 }
 
-TEST_CASE("the viewport transform multiplies by 1/w, then scales and shifts, fused as the profile says") {
+TEST_CASE(
+    "the viewport transform multiplies by 1/w, then scales and shifts, fused as the profile says") {
   test::Random random{61};
   int wrong = 0;
   int differ = 0;
@@ -130,7 +131,8 @@ TEST_CASE("edge i is zero at the other two vertices and the area at vertex i") {
   const std::array<std::array<int, 2>, 3> pixels{{{3, 5}, {50, 11}, {20, 60}}};
   Corners corners{};
   for (std::size_t i = 0; i < 3; ++i) {
-    corners[i] = vertex(static_cast<float>(pixels[i][0]) + 0.5f, static_cast<float>(pixels[i][1]) + 0.5f);
+    corners[i] =
+        vertex(static_cast<float>(pixels[i][0]) + 0.5f, static_cast<float>(pixels[i][1]) + 0.5f);
   }
   for (const bool reversed : {false, true}) {
     const auto setup = set_up(reversed ? Corners{corners[0], corners[2], corners[1]} : corners);
@@ -165,7 +167,9 @@ TEST_CASE("a left and an upper edge own the centres on them, a right and a lower
   }
 }
 
-TEST_CASE("a triangle of no area is nothing: equal corners, corners in line, corners that snap together") {
+TEST_CASE(
+    "a triangle of no area is nothing: equal corners, corners in line, corners that snap "
+    "together") {
   CHECK_FALSE(set_up({vertex(8, 8), vertex(8, 8), vertex(40, 20)}).has_value());
   CHECK_FALSE(set_up({vertex(8, 8), vertex(8, 8), vertex(8, 8)}).has_value());
   CHECK_FALSE(set_up({vertex(8, 8), vertex(16, 12), vertex(40, 24)}).has_value());
@@ -200,10 +204,12 @@ TEST_CASE("the bounds are the pixels whose centres the bounding box holds, withi
   for (int i = 0; i < 20'000; ++i) {
     const Corners corners = some_triangle(random, -20.0f, 84.0f);
     const Rectangle clip{5, 7, 50, 61};
-    const auto [x_min, x_max] = std::minmax({snap_to_subpixel(corners[0].x), snap_to_subpixel(corners[1].x),
-                                             snap_to_subpixel(corners[2].x)});
-    const auto [y_min, y_max] = std::minmax({snap_to_subpixel(corners[0].y), snap_to_subpixel(corners[1].y),
-                                             snap_to_subpixel(corners[2].y)});
+    const auto [x_min, x_max] =
+        std::minmax({snap_to_subpixel(corners[0].x), snap_to_subpixel(corners[1].x),
+                     snap_to_subpixel(corners[2].x)});
+    const auto [y_min, y_max] =
+        std::minmax({snap_to_subpixel(corners[0].y), snap_to_subpixel(corners[1].y),
+                     snap_to_subpixel(corners[2].y)});
     Rectangle expected{1000, 1000, -1000, -1000};
     for (int p = 0; p < 64; ++p) {
       if (p >= clip.x_begin && p < clip.x_end && 256 * p >= x_min && 256 * p <= x_max) {

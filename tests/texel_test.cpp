@@ -30,7 +30,8 @@ glm::vec4 stored(Format format, glm::vec4 value, const Profile& profile = {}) {
 
 TEST_CASE("a one-channel texel stores the first component and reads as (value, 0, 0, 1)") {
   CHECK(same_bits(stored(Format::r32f, {0.3f, 7.0f, 8.0f, 9.0f}), {0.3f, 0.0f, 0.0f, 1.0f}));
-  CHECK(same_bits(stored(Format::r8, {0.2f, 7.0f, 8.0f, 9.0f}), {51.0f / 255.0f, 0.0f, 0.0f, 1.0f}));
+  CHECK(
+      same_bits(stored(Format::r8, {0.2f, 7.0f, 8.0f, 9.0f}), {51.0f / 255.0f, 0.0f, 0.0f, 1.0f}));
 }
 
 TEST_CASE("a float texel keeps its bits, NaN payloads and subnormals too") {

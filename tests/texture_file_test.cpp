@@ -91,6 +91,12 @@ TEST_CASE("a JPEG that is cut short is damaged, not half grey") {
   }
 }
 
+TEST_CASE("a JPEG that lacks nothing but its end marker is damaged too") {
+  std::string whole = read_file(kJpeg);
+  whole.resize(whole.size() - 2);
+  CHECK(contains(complaint(whole), "is damaged"));
+}
+
 TEST_CASE("a picture larger than a GPU's textures is refused before it is read") {
   // An IHDR that claims 20000 x 2 texels, and one of 16384 x 16384.
   std::string png = png_bytes(4, 4);
