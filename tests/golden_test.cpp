@@ -51,8 +51,8 @@ Image render(const Golden& golden, ThreadPool& pool) {
   const View view = camera_view(scene.camera, 7, golden.width, golden.height);
   const Image picture = draw_scene(scene, view, 7, golden.width, golden.height, profile, pool);
   DofSettings settings;
-  settings.coc = pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, golden.height,
-                           scene.lens.coc_scale);
+  settings.coc =
+      pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, golden.height, scene.lens.coc_scale);
   settings.max_coc_px = static_cast<float>(scene.lens.max_coc_px_at_1024 * golden.height / 1024.0);
   return find_method(golden.method)->apply({picture, settings, profile}, pool);
 }
