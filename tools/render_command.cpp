@@ -1,5 +1,6 @@
 // softfocus render: the way of a frame from a scene's file to a picture's.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -80,6 +81,16 @@ Image shown_picture(Image scene, const RenderOptions& options, const Camera& cam
   return scene;
 }
 
+// What the scene had to make do without. A model may lack a hundred textures.
+void print_warnings(const std::vector<std::string>& warnings, bool all) {
+  constexpr std::size_t kMostLines = 3;
+  const std::size_t lines = all ? warnings.size() : std::min(warnings.size(), kMostLines);
+  for (std::size_t i = 0; i < lines; ++i) std::cerr << "softfocus: warning: " << warnings[i] << '\n';
+  if (lines < warnings.size()) {
+    std::cerr << "softfocus: warning: " << warnings.size() - lines << " more; -v lists them\n";
+  }
+}
+
 int render(const RenderOptions& options) {
   const bool to_standard_output = options.output == "-";
   if (!to_standard_output) check_writable(options.output);
@@ -93,6 +104,8 @@ int render(const RenderOptions& options) {
   const Scene scene = timed(progress, "loading", ms.load, [&] {
     return load_scene(options.scene, scene_search_path(options.scene_path));
   });
+  progress.clear();
+  print_warnings(scene.warnings, options.verbose);
   record.scene_name = scene.name;
   record.scene_title = scene.title;
   record.triangles = triangle_count(scene);
