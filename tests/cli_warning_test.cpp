@@ -23,7 +23,8 @@ std::ptrdiff_t lines_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("render: what a model lacks is warned of, in three lines and a count, and is no failure") {
+TEST_CASE(
+    "render: what a model lacks is warned of, in three lines and a count, and is no failure") {
   const TemporaryDirectory directory;
   write_file(directory.file("m.obj"), model_without_materials());
   const ProgramRun run = run_program(render(directory.file("m.obj"), directory.file("a.npy")));

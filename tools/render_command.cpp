@@ -85,7 +85,8 @@ Image shown_picture(Image scene, const RenderOptions& options, const Camera& cam
 void print_warnings(const std::vector<std::string>& warnings, bool all) {
   constexpr std::size_t kMostLines = 3;
   const std::size_t lines = all ? warnings.size() : std::min(warnings.size(), kMostLines);
-  for (std::size_t i = 0; i < lines; ++i) std::cerr << "softfocus: warning: " << warnings[i] << '\n';
+  for (std::size_t i = 0; i < lines; ++i)
+    std::cerr << "softfocus: warning: " << warnings[i] << '\n';
   if (lines < warnings.size()) {
     std::cerr << "softfocus: warning: " << warnings.size() - lines << " more; -v lists them\n";
   }

@@ -3,6 +3,7 @@
 // GPU does with a full-screen triangle and a fragment shader.
 
 #include <algorithm>
+#include <cassert>
 #include <glm/vec4.hpp>
 
 #include "raster/images/image.h"
@@ -21,6 +22,7 @@ inline constexpr int kPassRows = 8;
 template <Format format, class Kernel>
 void fullscreen_pass(Image& target, const Profile& profile, ThreadPool& pool,
                      const Kernel& kernel) {
+  assert(target.format == format);
   pool.for_each((target.height + kPassRows - 1) / kPassRows, [&](int band) {
     const int end = std::min((band + 1) * kPassRows, target.height);
     for (int y = band * kPassRows; y < end; ++y) {

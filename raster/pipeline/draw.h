@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -209,6 +210,8 @@ void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_
           std::uint32_t vertex_count, VertexStage vertex_stage, FragmentStage fragment_stage) {
   constexpr std::size_t N = FragmentStage::kInterpolation.size();
   static_assert(N <= kMaxVaryings);
+  static_assert(std::tuple_size_v<decltype(fragment_stage(Fragment<N>{}).colour)> <=
+                kMaxColourTargets);
   assert(indices.size() % 3 == 0);
   using Recorded = draw_detail::Recorded<VertexStage, FragmentStage, N>;
 

@@ -1,5 +1,8 @@
 #include "raster/pipeline/merge.h"
 
+#include <algorithm>
+#include <cstddef>
+
 #include "raster/images/texel.h"
 
 namespace softfocus {
@@ -32,6 +35,16 @@ float combine(BlendOp op, float source, float source_factor, float destination,
     case BlendOp::maximum: return source < destination ? destination : source;
   }
   return source;
+}
+
+bool is_normalised(Format format) {
+  return format == Format::r8 || format == Format::rgba8 || format == Format::srgb8;
+}
+
+// NaN becomes 0.
+glm::vec4 clamp_to_unit(glm::vec4 v) {
+  for (int i = 0; i < 4; ++i) v[i] = v[i] > 0.0f ? std::min(v[i], 1.0f) : 0.0f;
+  return v;
 }
 
 }  // namespace
@@ -96,15 +109,27 @@ glm::vec4 blend(const BlendState& state, glm::vec4 source, glm::vec4 destination
 
 void write_colour(const ColourState& state, Image& target, int x, int y, glm::vec4 colour,
                   const Profile& profile) {
-  const bool all_channels = state.write == std::array{true, true, true, true};
-  if (state.blend || !all_channels) {
-    const glm::vec4 stored = load_texel(target, x, y);
-    if (state.blend) colour = blend(*state.blend, colour, stored);
-    for (int i = 0; i < 4; ++i) {
-      if (!state.write[static_cast<std::size_t>(i)]) colour[i] = stored[i];
-    }
+  if (state.blend) {
+    if (is_normalised(target.format)) colour = clamp_to_unit(colour);
+    colour = blend(*state.blend, colour, load_texel(target, x, y));
   }
+  if (state.write == std::array{true, true, true, true}) {
+    store_texel(target, x, y, colour, profile);
+    return;
+  }
+  // Channels that are masked out keep their bits, whatever they mean.
+  const auto channels = static_cast<std::size_t>(channel_count(target.format));
+  const std::size_t texel_bytes = bytes_per_texel(target.format);
+  const std::size_t channel_bytes = texel_bytes / channels;
+  std::byte* texel = target.bytes.data() + static_cast<std::size_t>(y) * target.stride_bytes +
+                     static_cast<std::size_t>(x) * texel_bytes;
+  std::array<std::byte, 16> before{};
+  std::copy_n(texel, texel_bytes, before.begin());
   store_texel(target, x, y, colour, profile);
+  for (std::size_t i = 0; i < channels; ++i) {
+    const std::size_t at = i * channel_bytes;
+    if (!state.write[i]) std::copy_n(before.data() + at, channel_bytes, texel + at);
+  }
 }
 
 }  // namespace softfocus

@@ -30,7 +30,8 @@ std::uint8_t apply(StencilOp op, const StencilFace& face, std::uint8_t stored);
 /// source * factor (op) destination * factor in binary32, each product rounded.
 glm::vec4 blend(const BlendState& state, glm::vec4 source, glm::vec4 destination);
 
-/// Blends and stores one colour.
+/// Blends and stores one colour. Before blending into a normalised format the colour is
+/// clamped to 0..1 (OpenGL 4.6, 17.3.6). A channel that is not written keeps its bits.
 void write_colour(const ColourState& state, Image& target, int x, int y, glm::vec4 colour,
                   const Profile& profile);
 
