@@ -36,7 +36,9 @@ TEST_CASE("render: --json gives the times of all stages, and they add up") {
     CHECK(json["stages_ms"][stage] >= 0.0);
   }
   const double draw = json["stages_ms"]["draw"];
+  const double focus = json["stages_ms"]["focus"], filter = json["stages_ms"]["filter"];
   const double cost = json["cost_of_depth_of_field_ms"];
+  CHECK(cost == focus + filter);
   CHECK(json["without_depth_of_field"]["ms"] == draw);
   CHECK(json["with_depth_of_field"]["ms"] == draw + cost);
 }
