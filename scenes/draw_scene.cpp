@@ -79,7 +79,8 @@ Image draw_scene(const Scene& scene, const View& view, double frame, int width, 
                  const Profile& profile, ThreadPool& pool) {
   Image picture = make_image(Format::rgba16f, width, height);
   Image depth = make_image(Format::r32f, width, height);
-  clear_image(picture, glm::vec4{scene.background, static_cast<float>(scene.camera.far_m)},
+  clear_image(picture,
+              glm::vec4{scene.background, alpha_depth(static_cast<float>(scene.camera.far_m))},
               profile);
   clear_image(depth, glm::vec4{1.0f}, profile);
 

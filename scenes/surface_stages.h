@@ -18,6 +18,10 @@
 
 namespace softfocus {
 
+/// A depth as alpha holds it: cut to the largest half, because an infinite depth has no
+/// circle of confusion.
+inline float alpha_depth(float depth_m) { return depth_m < 65504.0f ? depth_m : 65504.0f; }
+
 struct SurfaceVariant {
   bool textured = false;
   bool specular = false;
@@ -109,7 +113,7 @@ struct SurfaceFragmentStage {
     if constexpr (variant.specular) {
       colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
     }
-    return {{glm::vec4{colour, in.varyings[Layout::kDepth]}}, false};
+    return {{glm::vec4{colour, alpha_depth(in.varyings[Layout::kDepth])}}, false};
   }
 };
 

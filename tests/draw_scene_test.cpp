@@ -56,6 +56,16 @@ TEST_CASE("alpha holds the depth along the axis, and the far distance where noth
   CHECK(load_texel(image, 0, 0) == glm::vec4{0.25f, 0.25f, 0.25f, 20.0f});
 }
 
+TEST_CASE("a depth that a half cannot hold is the largest half, not infinity") {
+  Scene scene = square_scene();
+  scene.camera.position = {0, 0, 100000};
+  scene.camera.far_m = 1e6;
+  scene.objects[0].scale = glm::dvec3{20000};
+  const Image image = draw_square(scene);
+  CHECK(centre(image) == glm::vec4{1.0f, 1.0f, 1.0f, 65504.0f});
+  CHECK(load_texel(image, 0, 0).w == 65504.0f);
+}
+
 TEST_CASE("an unlit material is its colour") {
   CHECK(centre(draw_square(square_scene())) == glm::vec4{1.0f, 1.0f, 1.0f, 4.0f});
 }
