@@ -5,58 +5,65 @@
 namespace softfocus {
 namespace {
 
-constexpr Profile kIeee{
-    .name = "ieee",
-    .summary = "IEEE 754 throughout: stores round to nearest even, float weights, nothing fused",
-};
+Profile ieee() {
+  return {
+      .name = "ieee",
+      .summary = "IEEE 754 throughout: stores round to nearest even, float weights, nothing fused"};
+}
 
-constexpr Profile kD3d11{
-    .name = "d3d11",
-    .summary = "the Direct3D 11.3 specification: stores truncate, 8-bit bilinear weights",
-    .half_store = HalfRounding::toward_zero,
-    .bilinear_weights = BilinearWeights::fixed_8,
-    .denormals = Denormals::flush,
-};
+Profile d3d11() {
+  return {.name = "d3d11",
+          .summary = "the Direct3D 11.3 specification: stores truncate, 8-bit bilinear weights",
+          .half_store = HalfRounding::toward_zero,
+          .denormals = Denormals::flush,
+          .bilinear_weights = BilinearWeights::fixed_8};
+}
 
-// Both of Mesa 22.3's software rasterizers were measured: half stores truncate, and
-// bilinear fetches of half textures are a + t (b - a), fused only where the CPU can.
-constexpr Profile kLlvmpipe{
-    .name = "llvmpipe",
-    .summary = "Mesa 22.3 llvmpipe on a CPU with fused multiply-add",
-    .half_store = HalfRounding::toward_zero,
-    .lerp = Contraction::fused,
-    .viewport = Contraction::fused,
-    .interpolation = Contraction::fused,
-    .attributes = AttributeSetup::planes_from_origin,
-    .denormals = Denormals::flush,
-    .guard_band = 1.0f,
-};
+// Mesa's software rasterizers were measured; docs/exactness.md has every operation.
+Profile llvmpipe() {
+  return {.name = "llvmpipe",
+          .summary = "Mesa 22.3 llvmpipe on a CPU with fused multiply-add",
+          .half_store = HalfRounding::toward_zero,
+          .unorm_store = UnormRounding::nearest_even,
+          .denormals = Denormals::flush,
+          .texture_unit = TextureUnit::llvmpipe,
+          .lerp = Contraction::fused,
+          .viewport = Contraction::fused,
+          .guard_band = 1.0f,
+          .attributes = AttributeSetup::planes_from_origin,
+          .interpolation = Contraction::fused};
+}
 
-constexpr Profile kLlvmpipeSse41{
-    .name = "llvmpipe-sse41",
-    .summary = "Mesa 22.3 llvmpipe held to SSE4.1: nothing fused",
-    .half_store = HalfRounding::toward_zero,
-    .attributes = AttributeSetup::planes_from_origin,
-    .denormals = Denormals::flush,
-    .guard_band = 1.0f,
-};
+Profile llvmpipe_sse41() {
+  Profile profile = llvmpipe();
+  profile.name = "llvmpipe-sse41";
+  profile.summary = "Mesa 22.3 llvmpipe held to SSE4.1: nothing fused";
+  profile.lerp = Contraction::unfused;
+  profile.viewport = Contraction::unfused;
+  profile.interpolation = Contraction::unfused;
+  return profile;
+}
 
-constexpr Profile kSoftpipe{
-    .name = "softpipe",
-    .summary = "Mesa 22.3 softpipe: stores truncate, float weights, nothing fused",
-    .half_store = HalfRounding::toward_zero,
-    .attributes = AttributeSetup::planes_from_origin,
-    .guard_band = 1.0f,
-};
-
-constexpr std::array kProfiles{kIeee, kD3d11, kLlvmpipe, kLlvmpipeSse41, kSoftpipe};
+Profile softpipe() {
+  return {.name = "softpipe",
+          .summary = "Mesa 22.3 softpipe: float spans, float textures, nothing fused",
+          .half_store = HalfRounding::toward_zero,
+          .unorm_store = UnormRounding::nearest_even,
+          .texture_unit = TextureUnit::softpipe,
+          .guard_band = 1.0f,
+          .coverage = Coverage::scanlines,
+          .attributes = AttributeSetup::planes_by_quad};
+}
 
 }  // namespace
 
-std::span<const Profile> profiles() { return kProfiles; }
+std::span<const Profile> profiles() {
+  static const std::array kProfiles{ieee(), d3d11(), llvmpipe(), llvmpipe_sse41(), softpipe()};
+  return kProfiles;
+}
 
 std::optional<Profile> find_profile(std::string_view name) {
-  for (const Profile& profile : kProfiles) {
+  for (const Profile& profile : profiles()) {
     if (profile.name == name) return profile;
   }
   return std::nullopt;

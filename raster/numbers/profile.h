@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "raster/numbers/half.h"
@@ -20,6 +21,31 @@ enum class BilinearWeights : std::uint8_t {
 /// Whether a product and the sum it feeds are rounded once or twice.
 enum class Contraction : std::uint8_t { unfused, fused };
 
+/// How a float becomes one of 256 levels, after scaling to 0 to 255.
+enum class UnormRounding : std::uint8_t { half_up, nearest_even };
+
+/// In which arithmetic textures are addressed and filtered.
+enum class TextureUnit : std::uint8_t {
+  /// As the specifications describe it, in the weights that `bilinear_weights` names.
+  plain,
+  /// Mesa 22.3 llvmpipe: 8-bit textures in 8-bit integers, its own wrapping in floats.
+  llvmpipe,
+  /// Mesa 22.3 softpipe: everything in floats, its own wrapping.
+  softpipe,
+};
+
+/// Which pixels a triangle covers.
+enum class Coverage : std::uint8_t {
+  /// Positions snapped to the subpixel grid, then exact integer edge functions.
+  edge_functions,
+  /// Spans between float edges, row by row, from unsnapped positions (softpipe).
+  scanlines,
+};
+
+/// Which pixel centres exactly on an edge belong: those of left edges always, and of
+/// level edges the upper or the lower one, as seen in the picture (row 0 on top).
+enum class FillRule : std::uint8_t { upper_left, lower_left };
+
 /// How attributes are interpolated over a triangle.
 enum class AttributeSetup : std::uint8_t {
   /// Barycentric weights from the exact integer edge functions: always convex,
@@ -28,23 +54,35 @@ enum class AttributeSetup : std::uint8_t {
   /// Planes a0 + dadx x + dady y from unsnapped positions, evaluated from the
   /// framebuffer origin (llvmpipe of Mesa 22 and 23).
   planes_from_origin,
+  /// Planes from the vertices sorted from top to bottom, evaluated once in each 2x2
+  /// block of pixels and stepped within it (softpipe).
+  planes_by_quad,
 };
 
 /// What becomes of binary32 subnormals in shaders and 32-bit float textures.
 enum class Denormals : std::uint8_t { keep, flush };
 
 struct Profile {
-  std::string_view name;
-  std::string_view summary;
+  std::string name;
+  std::string summary;
   HalfRounding half_store = HalfRounding::nearest_even;
-  BilinearWeights bilinear_weights = BilinearWeights::binary32;
-  Contraction lerp = Contraction::unfused;           ///< a + t (b - a)
-  Contraction viewport = Contraction::unfused;       ///< ndc * scale + translate
-  Contraction interpolation = Contraction::unfused;  ///< of planes_from_origin
-  AttributeSetup attributes = AttributeSetup::exact_barycentric;
+  UnormRounding unorm_store = UnormRounding::half_up;
   Denormals denormals = Denormals::keep;
+
+  TextureUnit texture_unit = TextureUnit::plain;
+  BilinearWeights bilinear_weights = BilinearWeights::binary32;  ///< of the plain unit
+  Contraction lerp = Contraction::unfused;                       ///< a + t (b - a)
+
+  /// ndc * scale + translate, of vertices that clipping did not make: those it made
+  /// are never fused.
+  Contraction viewport = Contraction::unfused;
   /// Clip planes stand at |x| = guard_band * w: 1 is the viewport's edge. At most 16.
   float guard_band = 16.0f;
+  Coverage coverage = Coverage::edge_functions;
+  int subpixel_bits = 8;  ///< of edge_functions: positions are multiples of 2^-bits, 4 to 8
+  FillRule fill_rule = FillRule::upper_left;
+  AttributeSetup attributes = AttributeSetup::exact_barycentric;
+  Contraction interpolation = Contraction::unfused;  ///< of planes_from_origin
 };
 
 /// The profiles that the program knows, `ieee` (the default) first.
