@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <optional>
 
+#include "scenes/decimal.h"
 #include "scenes/scene_error.h"
 
 namespace softfocus {
@@ -36,30 +35,13 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(kBlanks) + 1);
 }
 
-// The nearest float to a decimal, or nothing. Too large gives infinity.
-std::optional<float> to_float(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-#if defined(__cpp_lib_to_chars)
-  float value = 0.0f;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (end != word.data() + word.size() || error == std::errc::invalid_argument) return {};
-  if (error != std::errc::result_out_of_range) return value;
-#endif
-  // from_chars does not say whether it was too large or too small, strtof does.
-  const std::string copy(word);
-  char* after = nullptr;
-  const float rounded = std::strtof(copy.c_str(), &after);
-  if (word.empty() || after != copy.c_str() + copy.size()) return {};
-  return rounded;
-}
-
 // The numbers of a v, vt or vn line: at least `least`, further ones up to `most` where
 // they are there.
 void read_numbers(const Place& place, std::string_view line, int least, int most, float* numbers) {
   for (int i = 0; i < most; ++i) {
     const std::string_view word = next_word(line);
     if (word.empty() && i >= least) return;
-    const auto number = to_float(word);
+    const auto number = decimal_to_float(word);
     if (!number) {
       fail(place, word.empty() ? "has " + std::to_string(i) + " numbers; " + std::to_string(least) +
                                      " would be right"

@@ -105,7 +105,8 @@ struct SurfaceFragmentStage {
     if constexpr (variant.textured) {
       constexpr std::size_t u = Layout::kTexture;
       constexpr std::size_t v = Layout::kTexture + 1;
-      const float lod = level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]});
+      const float lod =
+          level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
       const glm::vec4 texel =
           sample(*texture, sampler, {in.varyings[u], in.varyings[v]}, lod, profile);
       colour *= glm::vec3{texel.x, texel.y, texel.z};

@@ -152,7 +152,7 @@ int wrong_against_oracle(const std::vector<glm::vec4>& positions, int width, int
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::vec4& position = positions[3 * t + i];
       vertices.push_back({position, {1.0f, number, number * number, 0.0f}});
-      const WindowVertex window = to_window(position, width, height, profile);
+      const WindowVertex window = to_window(position, width, height, profile.viewport);
       snapped[i] = {snap_in_double(window.x), snap_in_double(window.y)};
     }
     if (!has_area(snapped)) continue;
@@ -289,6 +289,60 @@ TEST_CASE("moving a quad by 1/256 pixel over pixel centres moves its rims by a p
                      [](int x, int y) { return x >= 3 && x < 7 && y >= 4 && y < 9; }) == 0);
   CHECK(wrong_pixels(covered(-step),
                      [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; }) == 0);
+}
+
+TEST_CASE("with the lower-left rule that quad covers its lower and left rims, not the others") {
+  Profile profile;
+  profile.fill_rule = FillRule::lower_left;
+  for (const bool reversed : {false, true}) {
+    std::vector<glm::vec2> points = window_quad(2.5f, 3.5f, 6.5f, 8.5f);
+    if (reversed) std::reverse(points.begin(), points.end());
+    const Image counts = count_coverage(window_triangles(points, 16, 16), 16, 16, profile);
+    CHECK(wrong_pixels(counts, [](int x, int y) { return x >= 2 && x < 6 && y >= 4 && y < 9; }) ==
+          0);
+  }
+}
+
+TEST_CASE("with 4 subpixel bits a quad moves in steps of 1/16 pixel") {
+  Profile profile;
+  profile.subpixel_bits = 4;
+  const auto covered = [&](float by) {
+    return count_coverage(
+        window_triangles(window_quad(2.5f + by, 3.5f + by, 6.5f + by, 8.5f + by), 16, 16), 16, 16,
+        profile);
+  };
+  const auto unmoved = [](int x, int y) { return x >= 2 && x < 6 && y >= 3 && y < 8; };
+  const auto moved = [](int x, int y) { return x >= 3 && x < 7 && y >= 4 && y < 9; };
+  CHECK(wrong_pixels(covered(1.0f / 256.0f), unmoved) == 0);
+  CHECK(wrong_pixels(covered(1.0f / 32.0f), unmoved) == 0);  // halfway: to the even step
+  CHECK(wrong_pixels(covered(9.0f / 256.0f), moved) == 0);
+  CHECK(wrong_pixels(covered(1.0f / 16.0f), moved) == 0);
+}
+
+TEST_CASE("with any subpixel bits and fill rule shared edges cover each pixel once") {
+  test::Random random{80};
+  for (int bits = 4; bits <= 8; ++bits) {
+    Profile profile;
+    profile.subpixel_bits = bits;
+    for (const FillRule rule : {FillRule::upper_left, FillRule::lower_left}) {
+      profile.fill_rule = rule;
+      CHECK(pixels_not_covered_once(count_coverage(jittered_grid(40, -9.0f, 73.0f, 64, 64, random),
+                                                   64, 64, profile)) == 0);
+      CHECK(pixels_not_covered_once(
+                count_coverage(fan({32.5f, 32.5f}, 200.0f, 37, 64, 64), 64, 64, profile)) == 0);
+    }
+  }
+}
+
+TEST_CASE("scanlines of shared edges cover each pixel once") {
+  test::Random random{81};
+  int wrong = 0;
+  for (int i = 0; i < 20; ++i) {
+    const int cells = random.whole(3, 60);
+    wrong += pixels_not_covered_once(count_coverage(
+        jittered_grid(cells, 0.0f, 128.0f, 128, 128, random), 128, 128, profile_named("softpipe")));
+  }
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("a point on a left edge belongs to the triangle") {

@@ -50,23 +50,26 @@ std::optional<Triangle<N>> set_up(const std::array<glm::vec4, 3>& clip,
                                   const std::array<Varyings<N>, 3>& varyings,
                                   const Profile& profile = {}) {
   std::array<WindowVertex, 3> window{};
-  for (std::size_t i = 0; i < 3; ++i) window[i] = to_window(clip[i], kSize, kSize, profile);
-  const auto setup = set_up_triangle(window, Cull::none, FrontFace::clockwise, kTarget);
+  for (std::size_t i = 0; i < 3; ++i)
+    window[i] = to_window(clip[i], kSize, kSize, profile.viewport);
+  const auto setup = set_up_triangle(window, Cull::none, FrontFace::clockwise, kTarget, profile);
   if (!setup) return std::nullopt;
-  return Triangle<N>{*setup, varyings};
+  return Triangle<N>{*setup, varyings, 2};
 }
 
 // Calls visit(x, y) for the covered pixels.
 template <class Visit>
 void for_each_pixel(const TriangleSetup& setup, Visit visit) {
   for (int y = setup.bounds.y_begin; y < setup.bounds.y_end; ++y) {
-    for (int x = setup.bounds.x_begin; x < setup.bounds.x_end; ++x) {
-      const bool covered = std::all_of(setup.edges.begin(), setup.edges.end(),
-                                       [&](const auto& e) { return inside(e, edge_at(e, x, y)); });
-      if (covered) visit(x, y);
-    }
+    const Span span = covered_span(setup, y, setup.bounds.x_begin, setup.bounds.x_end);
+    for (int x = span.x_begin; x < span.x_end; ++x) visit(x, y);
   }
 }
+
+template <std::size_t N>
+using InterpolatorFromOrigin = PlaneInterpolator<PlanesFromOrigin, N>;
+template <std::size_t N>
+using InterpolatorByQuad = PlaneInterpolator<PlanesByQuad, N>;
 
 // The linear and perspective weights of a pixel's centre in binary64, from snapped
 // positions (the triangle that is drawn) or unsnapped ones.
@@ -102,7 +105,7 @@ Weights exact_weights(const TriangleSetup& setup, int x, int y, bool snapped) {
 // perspective and linear varyings and of depth against the exact weights.
 template <template <std::size_t> class Interpolator>
 double error_against_weights(const Profile& profile, bool snapped, std::uint64_t seed,
-                             std::int64_t smallest_area) {
+                             float smallest_area) {
   constexpr std::array kinds{kPerspective, kLinear};
   test::Random random{seed};
   double worst = 0.0;
@@ -111,10 +114,10 @@ double error_against_weights(const Profile& profile, bool snapped, std::uint64_t
     std::array<Varyings<2>, 3> varyings{};
     for (auto& v : varyings) v[0] = v[1] = random.between(-1.0f, 1.0f);
     const auto triangle = set_up<2>(seen.clip, varyings, profile);
-    if (!triangle || triangle->setup.area < smallest_area) continue;
-    const Interpolator<2> interpolator{*triangle, profile};
+    if (!triangle || std::fabs(unsnapped_area(triangle->setup.vertices)) < smallest_area) continue;
+    const Interpolator<2> interpolator{*triangle, profile, kinds};
     for_each_pixel(triangle->setup, [&](int x, int y) {
-      const auto value = interpolator.at(x, y, kinds);
+      const auto value = interpolator.at(x, y);
       const Weights weights = exact_weights(triangle->setup, x, y, snapped);
       double perspective = 0.0;
       double linear = 0.0;
@@ -181,17 +184,20 @@ double largest_difference(const Image& a, const Image& b) {
 }  // namespace
 
 TEST_CASE("barycentric interpolation is within rounding of exact weights, for all triangles") {
-  CHECK(error_against_weights<BarycentricInterpolator>(profile_named("ieee"), true, 81, 0) < 8.0);
+  CHECK(error_against_weights<BarycentricInterpolator>(profile_named("ieee"), true, 81, 0.0f) <
+        8.0);
 }
 
 TEST_CASE("plane interpolation is near exact weights of the unsnapped triangle, slivers aside") {
   // Planes are evaluated from the origin: they lose what the slope is large for.
-  constexpr std::int64_t kTenSquarePixels = 2 * 10 * 65536;
-  for (const std::string_view name : {"llvmpipe", "llvmpipe-sse41", "softpipe"}) {
-    CHECK_MESSAGE(error_against_weights<PlaneInterpolator>(profile_named(name), false, 82,
-                                                           kTenSquarePixels) < 800.0,
+  constexpr float kTenSquarePixels = 2.0f * 10.0f;
+  for (const std::string_view name : {"llvmpipe", "llvmpipe-sse41"}) {
+    CHECK_MESSAGE(error_against_weights<InterpolatorFromOrigin>(profile_named(name), false, 82,
+                                                                kTenSquarePixels) < 800.0,
                   name);
   }
+  CHECK(error_against_weights<InterpolatorByQuad>(profile_named("softpipe"), false, 82,
+                                                  kTenSquarePixels) < 800.0);
 }
 
 TEST_CASE("a plane in space comes back from its varyings: the position seen at each pixel") {
@@ -213,9 +219,9 @@ TEST_CASE("a plane in space comes back from its varyings: the position seen at e
     const glm::dvec3 side_1 = glm::dvec3{seen.space[1]} - origin;
     const glm::dvec3 side_2 = glm::dvec3{seen.space[2]} - origin;
     const glm::dvec3 normal = normalize(cross(side_1, side_2));
-    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}};
+    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}, kinds};
     for_each_pixel(triangle->setup, [&](int x, int y) {
-      const auto v = interpolator.at(x, y, kinds).varyings;
+      const auto v = interpolator.at(x, y).varyings;
       const glm::dvec3 p{v[0], v[1], v[2]};
       worst_window = std::max({worst_window, std::fabs((p.x / p.z + 1.0) * 32.0 - (x + 0.5)),
                                std::fabs((p.y / p.z + 1.0) * 32.0 - (y + 0.5))});
@@ -244,7 +250,7 @@ TEST_CASE("a perspective varying halfway across is nearer the closer vertex's va
   }
 }
 
-TEST_CASE("a flat varying has the first vertex's value at every pixel, to the bit") {
+TEST_CASE("a flat varying has the provoking vertex's value at every pixel, to the bit") {
   test::Random random{84};
   int wrong = 0;
   for (const Profile& profile : profiles()) {
@@ -253,11 +259,13 @@ TEST_CASE("a flat varying has the first vertex's value at every pixel, to the bi
       const auto v = static_cast<float>(i + 1);
       vertices.push_back({some_triangle(random).clip[0], {0.1f * v, 1e20f * v, -v, 3.0f / v}});
     }
+    const auto& v = vertices[2].varyings;
+    const glm::vec4 last{v[0], v[1], v[2], v[3]};
     const Image target = draw_four(vertices, GiveFour<kFlat, Give::values>{}, profile);
     for (int y = 0; y < kSize; ++y) {
       for (int x = 0; x < kSize; ++x) {
         const glm::vec4 value = load_texel(target, x, y);
-        wrong += value != glm::vec4{0.0f} && value != glm::vec4{0.1f, 1e20f, -1.0f, 3.0f};
+        wrong += value != glm::vec4{0.0f} && value != last;
       }
     }
   }
@@ -273,9 +281,9 @@ TEST_CASE("a varying that is the same at all three vertices comes out unchanged"
     const Varyings<3> same{value, value, value};
     const auto triangle = set_up<3>(some_triangle(random).clip, {same, same, same});
     if (!triangle) continue;
-    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}};
+    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}, kinds};
     for_each_pixel(triangle->setup,
-                   [&](int x, int y) { wrong += interpolator.at(x, y, kinds).varyings != same; });
+                   [&](int x, int y) { wrong += interpolator.at(x, y).varyings != same; });
   }
   CHECK(wrong == 0);
 }
@@ -298,9 +306,9 @@ TEST_CASE("interpolated values stay within rounding of the vertices' range on an
     }
     const auto triangle = set_up<2>(clip, {Varyings<2>{0.0f, 1.0f}, {1.0f, 0.0f}, {0.5f, 0.25f}});
     if (!triangle) continue;
-    const BarycentricInterpolator<2> interpolator{*triangle, Profile{}};
+    const BarycentricInterpolator<2> interpolator{*triangle, Profile{}, kinds};
     for_each_pixel(triangle->setup, [&](int x, int y) {
-      const auto value = interpolator.at(x, y, kinds);
+      const auto value = interpolator.at(x, y);
       for (const float v : value.varyings) {
         worst = std::max({worst, -static_cast<double>(v), static_cast<double>(v) - 1.0});
       }
@@ -334,9 +342,10 @@ TEST_CASE("the depth that a draw stores runs from 0 at the near plane to 1 at th
   }
 }
 
-TEST_CASE("depth never leaves 0 to 1, on any triangle and in any profile") {
+TEST_CASE("depth never leaves 0 to 1, on any triangle and in any profile but softpipe") {
   test::Random random{87};
   for (const Profile& profile : profiles()) {
+    if (profile.name == "softpipe") continue;
     std::vector<VertexOutput<0>> vertices;
     for (int i = 0; i < 3 * 500; ++i) {
       glm::vec4 p{random.between(-2.0f, 2.0f), random.between(-2.0f, 2.0f), 0.0f, 1.0f};
@@ -363,8 +372,29 @@ TEST_CASE("depth never leaves 0 to 1, on any triangle and in any profile") {
   }
 }
 
+TEST_CASE("softpipe stores the depth that a sliver's plane gives beyond its vertices, unclamped") {
+  // In 1/65536 pixel; two vertices on the far plane, one on the near plane.
+  const auto corner = [](float x, float y, float z) {
+    return VertexOutput<0>{test::at_window(glm::vec2{x, y} / 65536.0f, 16, 16, z), {}};
+  };
+  const std::vector<VertexOutput<0>> sliver{
+      corner(229375, 163859, 1.0f), corner(819213, 753637, 1.0f), corner(364236, 298707, -1.0f)};
+  const auto drawn = [&](std::string_view name) {
+    Image depth = make_image(Format::r32f, 16, 16);
+    DrawState state = test::plain_state();
+    state.depth = DepthState{Compare::always, true};
+    test::draw_list({.depth = &depth}, state, sliver, test::OneColour{}, profile_named(name));
+    return load_texel(depth, 6, 5).x;
+  };
+  CHECK(drawn("softpipe") == 1.078125f);
+  CHECK(drawn("llvmpipe") <= 1.0f);
+}
+
 TEST_CASE("both ways of interpolating agree within a few thousandths of a pixel's step") {
-  const std::vector<VertexOutput<4>> floor = slanted_floor();
+  std::vector<VertexOutput<4>> floor = slanted_floor();
+  // Wholly in view: where Mesa's drivers clip, they can lose linear varyings.
+  for (auto& vertex : floor) vertex.position.x *= 0.75f;
+  for (auto& vertex : floor) vertex.position.y *= 0.75f;
   for (const auto stage_is_linear : {false, true}) {
     const auto drawn = [&](std::string_view name) {
       return stage_is_linear
@@ -418,7 +448,7 @@ TEST_CASE("derivatives are equal for the four pixels of each 2x2 block, in odd t
   }
 }
 
-TEST_CASE("derivatives are the differences on the block's upper and left side") {
+TEST_CASE("derivatives are the differences on the block's upper and left side, softpipe's lower") {
   for (const Profile& profile : profiles()) {
     const Image values =
         draw_four(slanted_floor(), GiveFour<kPerspective, Give::values>{}, profile);
@@ -429,7 +459,9 @@ TEST_CASE("derivatives are the differences on the block's upper and left side") 
       for (int x = 0; x < kSize; x += 2) {
         if (std::abs(x - y) < 4) continue;
         const glm::vec4 corner = load_texel(values, x, y);
-        wrong += load_texel(ddx, x + 1, y + 1) != load_texel(values, x + 1, y) - corner;
+        const int row = profile.name == "softpipe" ? y + 1 : y;
+        const glm::vec4 left = load_texel(values, x, row);
+        wrong += load_texel(ddx, x + 1, y) != load_texel(values, x + 1, row) - left;
         wrong += load_texel(ddy, x + 1, y + 1) != load_texel(values, x, y + 1) - corner;
       }
     }

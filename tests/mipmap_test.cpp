@@ -1,11 +1,15 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/srgb.h"
+#include "raster/passes/draw_mipmaps.h"
 #include "tests/raster_helpers.h"
 
 using namespace softfocus;
@@ -126,4 +130,131 @@ TEST_CASE("generating again replaces the levels and leaves level 0") {
   CHECK(texture.levels.size() == 4);
   CHECK(equal(texture.levels[0], original));
   CHECK(hash_image(texture.levels[2]) == once);
+}
+
+// --- as drivers draw them ---
+
+namespace {
+
+// Texels (37 x + 91 y + 11) mod 256.
+Texture hatched_texture(int width, int height) {
+  Image image = make_image(Format::r8, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      row<std::uint8_t>(image, y)[static_cast<std::size_t>(x)] =
+          static_cast<std::uint8_t>(37 * x + 91 * y + 11);
+    }
+  }
+  return make_texture(std::move(image));
+}
+
+// All texels of levels 1 and on.
+std::vector<int> coarse_texels(const Texture& texture) {
+  std::vector<int> texels;
+  for (std::size_t level = 1; level < texture.levels.size(); ++level) {
+    for (int y = 0; y < texture.levels[level].height; ++y) {
+      for (const int texel : row<std::uint8_t>(texture.levels[level], y)) texels.push_back(texel);
+    }
+  }
+  return texels;
+}
+
+constexpr std::array kDrivers{"llvmpipe", "llvmpipe-sse41", "softpipe"};
+
+}  // namespace
+
+TEST_CASE("drawn levels are those that Mesa's drivers were seen to make of odd sizes") {
+  for (const char* name : {"llvmpipe", "llvmpipe-sse41"}) {
+    Texture small = hatched_texture(5, 3);
+    draw_mipmaps(small, profile_named(name));
+    CHECK(coarse_texels(small) == std::vector{130, 222, 176});
+    Texture large = hatched_texture(7, 9);
+    draw_mipmaps(large, profile_named(name));
+    CHECK(coarse_texels(large) ==
+          std::vector{93, 179, 105, 74, 128, 214, 214, 76, 152, 131, 185, 111, 154, 131, 143});
+  }
+  Texture small = hatched_texture(5, 3);
+  draw_mipmaps(small, profile_named("softpipe"));
+  CHECK(coarse_texels(small) == std::vector{130, 222, 176});
+  Texture large = hatched_texture(7, 9);
+  draw_mipmaps(large, profile_named("softpipe"));
+  CHECK(coarse_texels(large) ==
+        std::vector{93, 179, 105, 73, 128, 214, 214, 76, 152, 131, 185, 111, 154, 130, 142});
+}
+
+TEST_CASE("where sides are powers of two a drawn texel is the mean of those under it") {
+  for (const char* name : kDrivers) {
+    Texture texture = random_texture(Format::rgba32f, 32, 8, 43);
+    draw_mipmaps(texture, profile_named(name));
+    REQUIRE(texture.levels.size() == 6);
+    double worst = 0.0;
+    for (std::size_t level = 1; level < texture.levels.size(); ++level) {
+      const Image& coarse = texture.levels[level];
+      for (int y = 0; y < coarse.height; ++y) {
+        for (int x = 0; x < coarse.width; ++x) {
+          const glm::dvec4 exact = mean_below(texture.levels[level - 1], x, y);
+          const glm::vec4 value = load_texel(coarse, x, y);
+          for (int i = 0; i < 4; ++i) worst = std::max(worst, std::fabs(value[i] - exact[i]));
+        }
+      }
+    }
+    CHECK_MESSAGE(worst < 4 * 0x1p-24, name);
+  }
+}
+
+TEST_CASE("the drawn levels of a constant texture are constant, in every format and size") {
+  int wrong = 0;
+  for (const char* name : kDrivers) {
+    for (const Format format : {Format::r8, Format::rgba8, Format::rgba16f, Format::rgba32f}) {
+      for (const auto& [width, height] : {std::pair{5, 3}, {1, 9}, {16, 16}, {100, 7}}) {
+        Texture texture = make_texture(make_image(format, width, height));
+        clear_image(texture.levels[0], glm::vec4{0.8f}, {});
+        const glm::vec4 value = load_texel(texture.levels[0], 0, 0);
+        draw_mipmaps(texture, profile_named(name));
+        for (const Image& level : texture.levels) {
+          wrong += load_texel(level, level.width - 1, level.height / 2) != value;
+        }
+      }
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("no drawn texel lies outside the smallest and the largest of an 8-bit texture") {
+  for (const char* name : kDrivers) {
+    Texture texture = make_texture(make_image(Format::rgba8, 37, 19));
+    test::Random random{44};
+    for (int y = 0; y < 19; ++y) {
+      for (std::uint8_t& byte : row<std::uint8_t>(texture.levels[0], y)) {
+        byte = static_cast<std::uint8_t>(random.whole(90, 130));
+      }
+    }
+    draw_mipmaps(texture, profile_named(name));
+    const std::vector<int> texels = coarse_texels(texture);
+    CHECK(std::all_of(texels.begin(), texels.end(), [](int t) { return t >= 90 && t <= 130; }));
+  }
+}
+
+TEST_CASE("drawing flushes the subnormals of float textures, in softpipe too") {
+  for (const char* name : kDrivers) {
+    Texture texture = make_texture(make_image(Format::r32f, 2, 2));
+    clear_image(texture.levels[0], glm::vec4{1e-39f}, {});
+    draw_mipmaps(texture, profile_named(name));
+    CHECK(load_texel(texture.levels[0], 0, 0).x == 1e-39f);
+    CHECK(load_texel(texture.levels[1], 0, 0).x == 0.0f);
+  }
+}
+
+TEST_CASE("levels are drawn for the profiles of drivers and box-filtered for the others") {
+  for (const Profile& profile : profiles()) {
+    Texture asked = random_texture(Format::rgba32f, 7, 5, 45);
+    Texture drawn = asked;
+    Texture boxed = asked;
+    generate_mipmaps_as(asked, profile);
+    draw_mipmaps(drawn, profile);
+    generate_mipmaps(boxed, profile);
+    const bool is_plain = profile.texture_unit == TextureUnit::plain;
+    CHECK(equal(asked.levels[1], boxed.levels[1]) == is_plain);
+    CHECK(equal(asked.levels[1], drawn.levels[1]) == !is_plain);
+  }
 }

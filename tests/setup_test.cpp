@@ -35,18 +35,25 @@ Corners some_triangle(test::Random& random, float low, float high) {
   return corners;
 }
 
-std::optional<TriangleSetup> set_up(const Corners& corners, const Rectangle& clip = kClip) {
-  return set_up_triangle(corners, Cull::none, FrontFace::counter_clockwise, clip);
+std::optional<TriangleSetup> set_up(const Corners& corners, const Rectangle& clip = kClip,
+                                    const Profile& profile = {}) {
+  return set_up_triangle(corners, Cull::none, FrontFace::counter_clockwise, clip, profile);
+}
+
+const EdgeFunctions& edges_of(const std::optional<TriangleSetup>& setup) {
+  return std::get<EdgeFunctions>(setup.value().coverage);
 }
 
 }  // namespace
 
 TEST_CASE("the corners of clip space go to the corners of the window, y downwards") {
-  const WindowVertex upper_left = to_window({-1.0f, -1.0f, -1.0f, 1.0f}, 640, 480, {});
+  const WindowVertex upper_left =
+      to_window({-1.0f, -1.0f, -1.0f, 1.0f}, 640, 480, Contraction::unfused);
   CHECK(upper_left.x == 0.0f);
   CHECK(upper_left.y == 0.0f);
   CHECK(upper_left.depth == 0.0f);
-  const WindowVertex lower_right = to_window({3.0f, 3.0f, 3.0f, 3.0f}, 640, 480, {});
+  const WindowVertex lower_right =
+      to_window({3.0f, 3.0f, 3.0f, 3.0f}, 640, 480, Contraction::unfused);
   CHECK(lower_right.x == 640.0f);
   CHECK(lower_right.y == 480.0f);
   CHECK(lower_right.depth == 1.0f);
@@ -54,7 +61,7 @@ TEST_CASE("the corners of clip space go to the corners of the window, y downward
 }
 
 TEST_CASE(
-    "the viewport transform multiplies by 1/w, then scales and shifts, fused as the profile says") {
+    "the viewport transform multiplies by 1/w, then scales and shifts, fused where asked for") {
   test::Random random{61};
   int wrong = 0;
   int differ = 0;
@@ -68,10 +75,10 @@ TEST_CASE(
     const float scaled_x = x * 500.0f;
     const float scaled_y = y * 303.5f;
     const float scaled_z = z * 0.5f;
-    const WindowVertex plain = to_window(p, 1000, 607, profile_named("ieee"));
+    const WindowVertex plain = to_window(p, 1000, 607, Contraction::unfused);
     wrong += plain.x != scaled_x + 500.0f || plain.y != scaled_y + 303.5f ||
              plain.depth != scaled_z + 0.5f || plain.inverse_w != r;
-    const WindowVertex fused = to_window(p, 1000, 607, profile_named("llvmpipe"));
+    const WindowVertex fused = to_window(p, 1000, 607, Contraction::fused);
     wrong += fused.x != std::fma(x, 500.0f, 500.0f) || fused.y != std::fma(y, 303.5f, 303.5f) ||
              fused.depth != std::fma(z, 0.5f, 0.5f) || fused.inverse_w != r;
     differ += fused.x != plain.x;
@@ -84,7 +91,7 @@ TEST_CASE("which winding is the front is the state's choice") {
   for (const bool is_clockwise : {true, false}) {
     const Corners corners = is_clockwise ? clockwise() : counter_clockwise();
     const auto front = [&](FrontFace face) {
-      return set_up_triangle(corners, Cull::none, face, kClip)->front_facing;
+      return set_up_triangle(corners, Cull::none, face, kClip, {})->front_facing;
     };
     CHECK(front(FrontFace::clockwise) == is_clockwise);
     CHECK(front(FrontFace::counter_clockwise) == !is_clockwise);
@@ -95,18 +102,18 @@ TEST_CASE("culling takes away the faces it names and no others") {
   for (const FrontFace face : {FrontFace::clockwise, FrontFace::counter_clockwise}) {
     const Corners front = face == FrontFace::clockwise ? clockwise() : counter_clockwise();
     const Corners back = face == FrontFace::clockwise ? counter_clockwise() : clockwise();
-    CHECK(set_up_triangle(front, Cull::back, face, kClip).has_value());
-    CHECK_FALSE(set_up_triangle(back, Cull::back, face, kClip).has_value());
-    CHECK_FALSE(set_up_triangle(front, Cull::front, face, kClip).has_value());
-    CHECK(set_up_triangle(back, Cull::front, face, kClip).has_value());
-    CHECK(set_up_triangle(front, Cull::none, face, kClip).has_value());
-    CHECK(set_up_triangle(back, Cull::none, face, kClip).has_value());
+    CHECK(set_up_triangle(front, Cull::back, face, kClip, {}).has_value());
+    CHECK_FALSE(set_up_triangle(back, Cull::back, face, kClip, {}).has_value());
+    CHECK_FALSE(set_up_triangle(front, Cull::front, face, kClip, {}).has_value());
+    CHECK(set_up_triangle(back, Cull::front, face, kClip, {}).has_value());
+    CHECK(set_up_triangle(front, Cull::none, face, kClip, {}).has_value());
+    CHECK(set_up_triangle(back, Cull::none, face, kClip, {}).has_value());
   }
 }
 
 TEST_CASE("the area counts 1/65536 of a square pixel, twice, and is positive for both windings") {
-  CHECK(set_up(clockwise())->area == 32LL * 32 * 65536);
-  CHECK(set_up(counter_clockwise())->area == 32LL * 32 * 65536);
+  CHECK(edges_of(set_up(clockwise())).area == 32LL * 32 * 65536);
+  CHECK(edges_of(set_up(counter_clockwise())).area == 32LL * 32 * 65536);
 }
 
 TEST_CASE("the three edge functions sum to the area at every pixel") {
@@ -118,9 +125,9 @@ TEST_CASE("the three edge functions sum to the area at every pixel") {
     for (int k = 0; k < 20; ++k) {
       const int x = random.whole(0, 63);
       const int y = random.whole(0, 63);
-      wrong += edge_at(setup->edges[0], x, y) + edge_at(setup->edges[1], x, y) +
-                   edge_at(setup->edges[2], x, y) !=
-               setup->area;
+      wrong += edge_at(edges_of(setup).edges[0], x, y) + edge_at(edges_of(setup).edges[1], x, y) +
+                   edge_at(edges_of(setup).edges[2], x, y) !=
+               edges_of(setup).area;
     }
   }
   CHECK(wrong == 0);
@@ -139,8 +146,8 @@ TEST_CASE("edge i is zero at the other two vertices and the area at vertex i") {
     for (std::size_t edge = 0; edge < 3; ++edge) {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t pixel = reversed && i > 0 ? 3 - i : i;
-        CHECK(edge_at(setup->edges[edge], pixels[pixel][0], pixels[pixel][1]) ==
-              (edge == i ? setup->area : 0));
+        CHECK(edge_at(edges_of(setup).edges[edge], pixels[pixel][0], pixels[pixel][1]) ==
+              (edge == i ? edges_of(setup).area : 0));
       }
     }
   }
@@ -157,13 +164,78 @@ TEST_CASE("a left and an upper edge own the centres on them, a right and a lower
       std::swap(lower_right[1], lower_right[2]);
     }
     const auto a = set_up(upper_left);
-    CHECK_FALSE(a->edges[0].owns_centres);
-    CHECK(a->edges[1].owns_centres);
-    CHECK(a->edges[2].owns_centres);
+    CHECK_FALSE(edges_of(a).edges[0].owns_centres);
+    CHECK(edges_of(a).edges[1].owns_centres);
+    CHECK(edges_of(a).edges[2].owns_centres);
     const auto b = set_up(lower_right);
-    CHECK(b->edges[0].owns_centres);
-    CHECK_FALSE(b->edges[1].owns_centres);
-    CHECK_FALSE(b->edges[2].owns_centres);
+    CHECK(edges_of(b).edges[0].owns_centres);
+    CHECK_FALSE(edges_of(b).edges[1].owns_centres);
+    CHECK_FALSE(edges_of(b).edges[2].owns_centres);
+  }
+}
+
+TEST_CASE("with the lower-left rule a lower edge owns the centres on it, an upper one does not") {
+  Profile profile;
+  profile.fill_rule = FillRule::lower_left;
+  const auto upper_left = set_up(clockwise(), kClip, profile);
+  CHECK_FALSE(edges_of(upper_left).edges[0].owns_centres);
+  CHECK(edges_of(upper_left).edges[1].owns_centres);  // left
+  CHECK_FALSE(edges_of(upper_left).edges[2].owns_centres);
+  const auto lower_right = set_up({vertex(40, 40), vertex(8, 40), vertex(40, 8)}, kClip, profile);
+  CHECK(edges_of(lower_right).edges[0].owns_centres);  // left
+  CHECK_FALSE(edges_of(lower_right).edges[1].owns_centres);
+  CHECK(edges_of(lower_right).edges[2].owns_centres);
+}
+
+TEST_CASE("positions snap to the nearest multiple of the profile's subpixel, to the even of two") {
+  test::Random random{64};
+  int wrong = 0;
+  for (int bits = 4; bits <= 8; ++bits) {
+    Profile profile;
+    profile.subpixel_bits = bits;
+    const float steps = static_cast<float>(1 << bits);
+    for (int i = 0; i < 1'000; ++i) {
+      Corners corners = some_triangle(random, 0.0f, 64.0f);
+      if (i % 4 == 0) {  // halfway between two steps
+        for (WindowVertex& c : corners) c.x = (std::floor(c.x * steps) + 0.5f) / steps;
+      }
+      Corners rounded = corners;
+      for (WindowVertex& c : rounded) {
+        c.x = std::nearbyint((c.x - 0.5f) * steps) / steps + 0.5f;
+        c.y = std::nearbyint((c.y - 0.5f) * steps) / steps + 0.5f;
+      }
+      const auto given = set_up(corners, kClip, profile);
+      const auto expected = set_up(rounded);
+      wrong += given.has_value() != expected.has_value();
+      if (!given || !expected) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const EdgeFunction& a = edges_of(given).edges[k];
+        const EdgeFunction& b = edges_of(expected).edges[k];
+        wrong += a.at_origin != b.at_origin || a.per_x != b.per_x || a.per_y != b.per_y;
+      }
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("by unsnapped positions a triangle without area is a back face") {
+  const Corners in_line{vertex(8, 8), vertex(16, 12), vertex(40, 24)};
+  for (const FrontFace face : {FrontFace::clockwise, FrontFace::counter_clockwise}) {
+    CHECK(is_culled_unsnapped(in_line, Cull::back, face));
+    CHECK_FALSE(is_culled_unsnapped(in_line, Cull::front, face));
+    CHECK_FALSE(is_culled_unsnapped(in_line, Cull::none, face));
+    const bool clockwise_is_front = face == FrontFace::clockwise;
+    CHECK(is_culled_unsnapped(clockwise(), Cull::back, face) == !clockwise_is_front);
+    CHECK(is_culled_unsnapped(clockwise(), Cull::front, face) == clockwise_is_front);
+    CHECK(is_culled_unsnapped(counter_clockwise(), Cull::back, face) == clockwise_is_front);
+  }
+}
+
+TEST_CASE("a triangle with a vertex that is not before the eye is nothing") {
+  for (const float inverse_w : {0.0f, -0.0f, -1.0f}) {
+    Corners corners = clockwise();
+    corners[0].inverse_w = inverse_w;
+    CHECK_FALSE(set_up(corners).has_value());
   }
 }
 

@@ -2,7 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 #include "tests/raster_helpers.h"
@@ -78,6 +82,84 @@ TEST_CASE("sRGB encoding holds what lies outside 0 to 1 at the ends, and NaN at 
     CHECK(linear_to_srgb8(value) == 0);
   }
   for (const float value : {1.0f, 1.0001f, 1e30f, kInfinity}) CHECK(linear_to_srgb8(value) == 255);
+}
+
+TEST_CASE("the decimal sRGB table is the curve printed with 8 digits and read again") {
+  int wrong = 0;
+  int beside = 0;
+  for (int k = 0; k < 256; ++k) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.7e",
+                  static_cast<double>(curve(static_cast<long double>(k) / 255.0L)));
+    wrong += srgb8_to_linear_decimal(code(k)) != std::strtof(text.data(), nullptr);
+    beside += srgb8_to_linear_decimal(code(k)) != srgb8_to_linear(code(k));
+  }
+  CHECK(wrong == 0);
+  CHECK(beside == 26);
+}
+
+TEST_CASE("the sRGB cubic is what llvmpipe was seen to give, fused or not") {
+  for (const Contraction contraction : {Contraction::unfused, Contraction::fused}) {
+    CHECK(srgb8_to_linear_by_cubic(0, contraction) == 0.0f);
+    CHECK(srgb8_to_linear_by_cubic(16, contraction) == 0x1.5ae054p-8f);
+    CHECK(srgb8_to_linear_by_cubic(128, contraction) == 0x1.bbacb8p-3f);
+    CHECK(srgb8_to_linear_by_cubic(255, contraction) == 1.0f);
+  }
+}
+
+TEST_CASE("the sRGB cubic lies within 0.0012 of the curve, and rises") {
+  double worst = 0.0;
+  int falls = 0;
+  for (int k = 0; k < 256; ++k) {
+    const auto cubic = srgb8_to_linear_by_cubic(code(k), Contraction::unfused);
+    worst = std::max(worst, std::fabs(static_cast<double>(cubic) - srgb8_to_linear(code(k))));
+    falls += k > 0 && cubic <= srgb8_to_linear_by_cubic(code(k - 1), Contraction::unfused);
+  }
+  CHECK(worst < 0.0012);
+  CHECK(worst > 0.0011);
+  CHECK(falls == 0);
+}
+
+TEST_CASE("by the reciprocal 126 of the 8-bit codes decode to the float beside k / 255") {
+  int beside = 0;
+  int wrong = 0;
+  for (int k = 0; k < 256; ++k) {
+    const float value = unorm8_by_reciprocal(code(k));
+    beside += value != unorm8_to_linear(code(k));
+    wrong += std::fabs(static_cast<double>(value) - k / 255.0) > value * 0x1p-23;
+  }
+  CHECK(beside == 126);
+  CHECK(wrong == 0);
+  CHECK(unorm8_by_reciprocal(255) == 1.0f);
+}
+
+TEST_CASE("8 bits rounded to even are those of the rounded product, at every threshold") {
+  int wrong = 0;
+  int ties = 0;
+  for (int k = 0; k < 255; ++k) {
+    auto value = static_cast<float>((k + 0.5) / 255.0);
+    for (int step = 0; step < 8; ++step) value = std::nextafter(value, 0.0f);
+    for (int step = 0; step < 17; ++step) {
+      const float product = value * 255.0f;
+      const double rest = static_cast<double>(product) - k;
+      const bool tie = rest == 0.5;
+      ties += tie;
+      const int expected = rest > 0.5 || (tie && k % 2 == 1) ? k + 1 : k;
+      wrong += linear_to_unorm8(value, UnormRounding::nearest_even) != expected;
+      value = std::nextafter(value, 2.0f);
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(ties > 255);
+}
+
+TEST_CASE("8 bits rounded to even hold what lies outside 0 to 1 at the ends, and NaN at 0") {
+  for (const float value : {-0.0f, -1e-20f, -3.0f, -kInfinity, kNan}) {
+    CHECK(linear_to_unorm8(value, UnormRounding::nearest_even) == 0);
+  }
+  for (const float value : {1.0f, 1.0001f, 1e30f, kInfinity}) {
+    CHECK(linear_to_unorm8(value, UnormRounding::nearest_even) == 255);
+  }
 }
 
 TEST_CASE("every linear 8-bit code survives decoding and encoding") {

@@ -2,8 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "raster/numbers/srgb.h"
 #include "tests/raster_helpers.h"
@@ -34,10 +36,17 @@ TEST_CASE("a one-channel texel stores the first component and reads as (value, 0
       same_bits(stored(Format::r8, {0.2f, 7.0f, 8.0f, 9.0f}), {51.0f / 255.0f, 0.0f, 0.0f, 1.0f}));
 }
 
-TEST_CASE("a float texel keeps its bits, NaN payloads and subnormals too") {
-  const glm::vec4 value{std::bit_cast<float>(0x7FC12345u), -0.0f, 1e-42f, -kInfinity};
+TEST_CASE("a float texel keeps its bits, subnormals too") {
+  const glm::vec4 value{0.1f, -0.0f, 1e-42f, -kInfinity};
   CHECK(same_bits(stored(Format::rgba32f, value), value));
   CHECK(stored(Format::r32f, {1e-42f, 0.0f, 0.0f, 0.0f}).x == 1e-42f);
+}
+
+TEST_CASE("any NaN is one in a float texel, its sign and payload forgotten") {
+  const glm::vec4 value{std::bit_cast<float>(0x7FC12345u), std::bit_cast<float>(0xFFC00000u),
+                        std::bit_cast<float>(0x7F800001u), kNan};
+  CHECK(same_bits(stored(Format::rgba32f, value), glm::vec4{kNan}));
+  CHECK(same_bits(stored(Format::r32f, value), {kNan, 0.0f, 0.0f, 1.0f}));
 }
 
 TEST_CASE("a half texel is rounded as the profile says") {
@@ -76,6 +85,63 @@ TEST_CASE("8-bit formats hold values outside 0 to 1 at the ends and take NaN for
   }
   CHECK(stored(Format::r8, {kNan, 0.0f, 0.0f, 0.0f}).x == 0.0f);
   CHECK(stored(Format::r8, {-kInfinity, 0.0f, 0.0f, 0.0f}).x == 0.0f);
+}
+
+TEST_CASE("an 8-bit texel half-way between codes is rounded as the profile says") {
+  // 0.5 * 255 = 127.5; 126.5 / 255 is not quite a tie, its product in binary32 is.
+  const glm::vec4 value{0.5f, 126.5f / 255.0f, 0.5f, 126.5f / 255.0f};
+  const auto stored_as = [&](std::string_view name) {
+    Image image = make_image(Format::rgba8, 1, 1);
+    store_texel(image, 0, 0, value, profile_named(name));
+    const auto texel = row<std::uint8_t>(image, 0);
+    return std::array<int, 4>{texel[0], texel[1], texel[2], texel[3]};
+  };
+  constexpr std::array kUp{128, 127, 128, 127};
+  constexpr std::array kEven{128, 126, 128, 126};
+  for (const std::string_view name : {"ieee", "d3d11"}) {
+    CHECK_MESSAGE(stored_as(name) == kUp, name);
+  }
+  for (const std::string_view name : {"llvmpipe", "llvmpipe-sse41", "softpipe"}) {
+    CHECK_MESSAGE(stored_as(name) == kEven, name);
+  }
+}
+
+TEST_CASE("a texel is fetched as each texture unit decodes it") {
+  Image rgba = make_image(Format::rgba8, 1, 1);
+  Image srgb = make_image(Format::srgb8, 1, 1);
+  for (Image* image : {&rgba, &srgb}) {
+    for (std::uint8_t& byte : row<std::uint8_t>(*image, 0)) byte = 30;
+  }
+  const auto red = [](const Image& image, std::string_view name) {
+    return fetch_texel(image, 0, 0, profile_named(name)).x;
+  };
+  CHECK(red(rgba, "ieee") == unorm8_to_linear(30));
+  CHECK(red(rgba, "llvmpipe") == unorm8_by_reciprocal(30));
+  CHECK(red(rgba, "softpipe") == unorm8_by_reciprocal(30));
+  CHECK(red(srgb, "d3d11") == srgb8_to_linear(30));
+  CHECK(red(srgb, "llvmpipe") == srgb8_to_linear_by_cubic(30, Contraction::fused));
+  CHECK(red(srgb, "llvmpipe-sse41") == srgb8_to_linear_by_cubic(30, Contraction::unfused));
+  CHECK(red(srgb, "softpipe") == srgb8_to_linear_decimal(30));
+  CHECK(fetch_texel(srgb, 0, 0, profile_named("softpipe")).w == unorm8_by_reciprocal(30));
+}
+
+TEST_CASE("fetched one-channel texels are (value, 0, 0, 1) in every profile") {
+  for (const Format format : {Format::r8, Format::r32f}) {
+    Image image = make_image(format, 1, 1);
+    store_texel(image, 0, 0, glm::vec4{1.0f}, {});
+    for (const Profile& profile : profiles()) {
+      CHECK(same_bits(fetch_texel(image, 0, 0, profile), {1.0f, 0.0f, 0.0f, 1.0f}));
+    }
+  }
+}
+
+TEST_CASE("a fetched float texel keeps its bits, subnormals too, in every profile") {
+  Image image = make_image(Format::rgba32f, 1, 1);
+  const glm::vec4 value{1e-42f, -kInfinity, -0.0f, 3e38f};
+  store_texel(image, 0, 0, value, {});
+  for (const Profile& profile : profiles()) {
+    CHECK(same_bits(fetch_texel(image, 0, 0, profile), value));
+  }
 }
 
 TEST_CASE("an sRGB texel has an encoded colour and a linear alpha") {

@@ -59,8 +59,9 @@ std::string reworded(const CLI::ParseError& error) {
 }
 
 int run_command(const Command& command) {
-  // To compare, 1 means "different": any error there is a 2.
-  const int failed = command.parser->get_name() == "compare" ? kWrongUsage : kFailed;
+  // Where things are compared, 1 means "different": any error there is a 2.
+  const std::string name = command.parser->get_name();
+  const int failed = name == "compare" || name == "crosscheck" ? kWrongUsage : kFailed;
   try {
     const int status = command.work();
     std::cout.flush();
@@ -82,9 +83,11 @@ int run(std::vector<std::string> arguments) {
   program.set_version_flag("--version", "softfocus " SOFTFOCUS_VERSION);
   program.require_subcommand(0, 1);
   program.get_formatter()->column_width(26);
-  const std::vector<Command> commands{add_render_command(program),  add_scenes_command(program),
-                                      add_methods_command(program), add_profiles_command(program),
-                                      add_lens_command(program),    add_compare_command(program)};
+  const std::vector<Command> commands{
+      add_render_command(program),     add_scenes_command(program), add_methods_command(program),
+      add_profiles_command(program),   add_lens_command(program),   add_compare_command(program),
+      add_crosscheck_command(program), add_probe_command(program),  add_shaders_command(program),
+      add_selftest_command(program)};
   // What is left over is ours to complain about, in check_rest().
   program.allow_extras();
   for (const Command& command : commands) command.parser->allow_extras();

@@ -20,5 +20,9 @@ Command add_methods_command(CLI::App& program);
 Command add_profiles_command(CLI::App& program);
 Command add_lens_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);
+Command add_crosscheck_command(CLI::App& program);
+Command add_probe_command(CLI::App& program);
+Command add_shaders_command(CLI::App& program);
+Command add_selftest_command(CLI::App& program);
 
 }  // namespace softfocus

@@ -77,7 +77,8 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += line("Triangles", std::to_string(record.triangles));
   text += line("Method", std::string{options.method->name});
   text += line("Picture", std::string{name_of(options.show)});
-  text += line("Profile", std::string{options.profile.name});
+  text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
+                                     : line("GL driver", record.gl_renderer);
   text += line("Threads", std::to_string(options.threads));
   text += "\n";
   if (record.lens) text += lens_lines(*record.lens) + "\n";
@@ -104,6 +105,10 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"show", name_of(options.show)},  {"profile", options.profile.name},
       {"threads", options.threads},     {"output", options.output},
   };
+  if (!record.gl_renderer.empty()) {
+    json["profile"] = nullptr;
+    json["gl_driver"] = record.gl_renderer;
+  }
   if (record.lens) {
     const UsedLens& used = *record.lens;
     json["lens"] = {{"focus_m", used.lens.focus_m},

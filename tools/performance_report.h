@@ -33,6 +33,7 @@ struct RenderRecord {
   std::string scene_name;
   std::string scene_title;
   std::size_t triangles = 0;
+  std::string gl_renderer;       ///< of --gl; else empty
   std::optional<UsedLens> lens;  ///< none where the picture needs none
   StageTimes ms;
 };

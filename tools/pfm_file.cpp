@@ -8,6 +8,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
+#include "scenes/decimal.h"
 #include "tools/byte_order.h"
 #include "tools/errors.h"
 #include "tools/image_file.h"
@@ -33,14 +34,21 @@ std::string_view take_word(std::span<const std::byte>& rest) {
   return word;
 }
 
-template <class Number>
-Number number(std::string_view word) {
-  Number value{};
+[[noreturn]] void refuse_number(std::string_view word) {
+  throw FileError("the PFM's header has '" + std::string{word} + "' where a number belongs");
+}
+
+int whole_number(std::string_view word) {
+  int value = 0;
   const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || stop != word.data() + word.size()) {
-    throw FileError("the PFM's header has '" + std::string{word} + "' where a number belongs");
-  }
+  if (error != std::errc{} || stop != word.data() + word.size()) refuse_number(word);
   return value;
+}
+
+float number(std::string_view word) {
+  const auto value = decimal_to_float(word);
+  if (!value) refuse_number(word);
+  return *value;
 }
 
 }  // namespace
@@ -66,14 +74,14 @@ Bytes encode_pfm(const Image& image) {
 Picture decode_pfm(std::span<const std::byte> bytes) {
   auto rest = bytes;
   if (take_word(rest) != "PF") throw FileError("the PFM must be a colour one, 'PF'");
-  const int width = number<int>(take_word(rest));
-  const int height = number<int>(take_word(rest));
-  const double scale = number<double>(take_word(rest));
+  const int width = whole_number(take_word(rest));
+  const int height = whole_number(take_word(rest));
+  const float scale = number(take_word(rest));
   if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize) {
     throw FileError("the PFM is " + std::to_string(width) + "x" + std::to_string(height) +
                     " pixels; each side may be 1 to " + std::to_string(kMaxImageSize));
   }
-  if (!std::isfinite(scale) || scale == 0.0) {
+  if (!std::isfinite(scale) || scale == 0.0f) {
     throw FileError("the PFM's scale must be a number below or above 0");
   }
   const auto size =
@@ -88,7 +96,7 @@ Picture decode_pfm(std::span<const std::byte> bytes) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (i % 4 == 3) continue;
       const auto bits =
-          scale < 0.0 ? little_endian<std::uint32_t>(rest) : big_endian<std::uint32_t>(rest);
+          scale < 0.0f ? little_endian<std::uint32_t>(rest) : big_endian<std::uint32_t>(rest);
       values[i] = float_to_half(std::bit_cast<float>(bits), HalfRounding::nearest_even);
       rest = rest.subspan(sizeof bits);
     }

@@ -1,8 +1,8 @@
 #include "tools/progress.h"
 
-#include <unistd.h>
-
 #include <iostream>
+
+#include "tools/platform.h"
 
 namespace softfocus {
 namespace {
@@ -11,7 +11,7 @@ constexpr std::string_view kEraseLine = "\r\x1b[K";
 
 }  // namespace
 
-Progress::Progress() : on_terminal_(::isatty(STDERR_FILENO) != 0) {}
+Progress::Progress() : on_terminal_(is_terminal(kStandardError)) {}
 
 Progress::~Progress() { clear(); }
 

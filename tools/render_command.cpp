@@ -13,6 +13,7 @@
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/errors.h"
+#include "tools/gl/frame_on_gl.h"
 #include "tools/performance_report.h"
 #include "tools/progress.h"
 #include "tools/render_options.h"
@@ -70,9 +71,11 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
 }
 
 Image shown_picture(Image scene, const RenderOptions& options, const Camera& camera,
-                    const DofSettings& settings, ThreadPool& pool) {
+                    const DofSettings& settings, FrameOnGl* on_gl, ThreadPool& pool) {
   switch (options.show) {
-    case Show::image: return options.method->apply({scene, settings, options.profile}, pool);
+    case Show::image:
+      return on_gl != nullptr ? on_gl->filter(*options.method, settings, scene)
+                              : options.method->apply({scene, settings, options.profile}, pool);
     case Show::pinhole: return scene;
     case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
     case Show::depth:
@@ -113,8 +116,11 @@ int render(const RenderOptions& options) {
   if (needs_lens(options)) record.lens = chosen_lens(options, scene.lens);
 
   const int width = options.size.width, height = options.size.height;
+  std::optional<FrameOnGl> on_gl;
+  if (options.gl != nullptr) record.gl_renderer = on_gl.emplace(*options.gl).renderer();
   Image drawn = timed(progress, "drawing", ms.draw, [&] {
     const View view = camera_view(scene.camera, options.frame, width, height);
+    if (on_gl) return on_gl->draw(scene, view, options.frame, width, height);
     return draw_scene(scene, view, options.frame, width, height, options.profile, pool);
   });
 
@@ -125,7 +131,8 @@ int render(const RenderOptions& options) {
     settings = record.lens->settings;
   }
   const Image picture = timed(progress, "filtering", ms.filter, [&] {
-    return shown_picture(std::move(drawn), options, scene.camera, settings, pool);
+    return shown_picture(std::move(drawn), options, scene.camera, settings,
+                         on_gl ? &*on_gl : nullptr, pool);
   });
 
   const Bytes bytes =

@@ -1,12 +1,13 @@
 #include "tools/render_options.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <cstdint>
 
 #include "raster/images/image.h"
+#include "tools/driver_option.h"
 #include "tools/errors.h"
+#include "tools/platform.h"
+#include "tools/profile_option.h"
 
 namespace softfocus {
 namespace {
@@ -93,12 +94,10 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
 }
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
-  add_value(parser, "--profile", "NAME", "GPU to agree with to the bit (default: ieee)",
-            [&options](const std::string& text) {
-              const auto profile = find_profile(text);
-              if (!profile) refuse_name("--profile", text, profiles());
-              options.profile = *profile;
-            });
+  add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
+                     [&options](const Profile& profile) { options.profile = profile; });
+  add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
+            [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
   add_value(parser, "--threads", "N", "Threads, 1 to 256; the picture is the same (default: all)",
             [&options](const std::string& text) {
               options.threads = parse_whole("--threads", text, 1, 256, "a number from 1 to 256");
@@ -124,16 +123,13 @@ constexpr std::uint64_t kBytesPerPixel = 40;
 void check_memory(PictureSize size) {
   const auto needed = kBytesPerPixel * static_cast<std::uint64_t>(size.width) *
                       static_cast<std::uint64_t>(size.height);
-  const long pages = ::sysconf(_SC_PHYS_PAGES);
-  const long page_bytes = ::sysconf(_SC_PAGESIZE);
-  if (pages <= 0 || page_bytes <= 0) return;  // unknown: allocation decides
-  const auto there = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
-  if (needed <= there) return;
+  const auto there = memory_bytes();
+  if (!there || needed <= *there) return;  // unknown: allocation decides
   constexpr double kGigabyte = 1e9;
   throw UsageError(
       "--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": needs " +
       short_number(static_cast<double>(needed) / kGigabyte) + " GB of memory and there are " +
-      short_number(static_cast<double>(there) / kGigabyte) + " GB; give a smaller size");
+      short_number(static_cast<double>(*there) / kGigabyte) + " GB; give a smaller size");
 }
 
 }  // namespace
@@ -163,8 +159,11 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (to_standard_output && options.json) {
     throw UsageError("--json and -o - would both write to standard output; give -o a file");
   }
-  if (to_standard_output && ::isatty(STDOUT_FILENO) != 0) {
+  if (to_standard_output && is_terminal(kStandardOutput)) {
     throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
+  }
+  if (options.gl != nullptr && parser.count("--profile") != 0) {
+    throw UsageError("--gl and --profile exclude each other: a driver is what it is");
   }
   if (options.report && options.report->empty()) {
     throw UsageError("--report '': give the name of a file");

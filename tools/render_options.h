@@ -9,6 +9,7 @@
 
 #include "dof/method.h"
 #include "raster/numbers/profile.h"
+#include "tools/gl/driver.h"
 #include "tools/image_file.h"
 #include "tools/lens_options.h"
 #include "tools/option_values.h"
@@ -26,6 +27,7 @@ struct RenderOptions {
   PictureSize size;
   double frame = 0.0;
   Profile profile = profiles().front();
+  const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
   int threads = hardware_threads();
   const Method* method = find_method("two-pass");
   LensOptions lens;

@@ -1,17 +1,12 @@
 #include "tools/whole_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <cerrno>
-#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "tools/errors.h"
+#include "tools/platform.h"
 
 namespace softfocus {
 namespace {
@@ -24,8 +19,10 @@ const char* remedy(int error) {
     case EACCES:
     case EPERM:
     case EROFS: return "; give a place that can be written to";
-    case ENOSPC:
-    case EDQUOT: return "; free some space or write elsewhere";
+#ifdef EDQUOT  // not on Windows
+    case EDQUOT:
+#endif
+    case ENOSPC: return "; free some space or write elsewhere";
     case EFBIG: return "; allow larger files or make a smaller picture";
     default: return "";
   }
@@ -36,12 +33,14 @@ const char* remedy(int error) {
                   "': " + std::generic_category().message(error) + remedy(error));
 }
 
-/// What `file` leads to, links followed, or nullopt if there is nothing yet.
-std::optional<struct stat> status_of(const std::filesystem::path& file) {
-  struct stat status {};
-  if (::stat(file.c_str(), &status) == 0) return status;
-  if (errno == ENOENT) return std::nullopt;
-  refuse(file, errno);
+/// What `file` leads to, links followed; of type not_found if there is nothing yet.
+std::filesystem::file_status status_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::none) {
+    refuse(file, error.default_error_condition().value());
+  }
+  return status;
 }
 
 /// The end of a chain of links, which need not exist.
@@ -57,9 +56,7 @@ std::filesystem::path links_followed(std::filesystem::path file) {
 
 void write_all(int descriptor, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    // Linux writes at most 2^31 - 4096 bytes a call; ask for less everywhere.
-    const std::size_t part = std::min(bytes.size(), std::size_t{1} << 30);
-    const ssize_t written = ::write(descriptor, bytes.data(), part);
+    const std::ptrdiff_t written = write_some(descriptor, bytes);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) throw std::system_error(errno, std::generic_category());
     bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -70,19 +67,20 @@ void write_all(int descriptor, std::span<const std::byte> bytes) {
 
 WholeFile::WholeFile(const std::filesystem::path& target) : shown_(target), target_(target) {
   const auto status = status_of(target);
-  if (status && !S_ISREG(status->st_mode)) {
-    descriptor_ = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+  const bool is_there = std::filesystem::exists(status);
+  if (is_there && !std::filesystem::is_regular_file(status)) {
+    descriptor_ = open_existing(target);
     if (descriptor_ < 0) fail(errno);
     return;
   }
   if (!target.has_filename()) fail(EISDIR);
   // A rename would replace even a file that is protected against writing.
-  if (status && ::access(target.c_str(), W_OK) != 0) fail(errno);
+  if (is_there && !may_write(target)) fail(errno);
   target_ = links_followed(target);
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
     temporary_ = target_.parent_path() /
-                 (".softfocus-" + std::to_string(::getpid()) + "-" + std::to_string(attempt));
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+                 (".softfocus-" + std::to_string(process_number()) + "-" + std::to_string(attempt));
+    descriptor_ = create_file(temporary_);
     if (descriptor_ < 0 && errno != EEXIST) {
       const int error = errno;
       temporary_.clear();
@@ -90,12 +88,14 @@ WholeFile::WholeFile(const std::filesystem::path& target) : shown_(target), targ
     }
   }
   // Best effort: some file systems know no permissions.
-  if (status) (void)!::fchmod(descriptor_, status->st_mode & 07777);
+  std::error_code ignored;
+  if (is_there) std::filesystem::permissions(temporary_, status.permissions(), ignored);
 }
 
 WholeFile::~WholeFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (descriptor_ >= 0) close_file(descriptor_);
+  std::error_code ignored;
+  if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
 }
 
 void WholeFile::fail(int error) const { refuse(shown_, error); }
@@ -108,23 +108,27 @@ void WholeFile::write(std::span<const std::byte> bytes) {
   }
 }
 
-void WholeFile::write(std::string_view text) { write(std::as_bytes(std::span{text})); }
+void WholeFile::write(std::string_view text) {
+  write(std::as_bytes(std::span{text.data(), text.size()}));
+}
 
 void WholeFile::commit() {
   // Some file systems report a full disk only here.
-  if (::close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+  if (!close_file(std::exchange(descriptor_, -1))) fail(errno);
   if (temporary_.empty()) return;
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  std::error_code error;
+  std::filesystem::rename(temporary_, target_, error);
+  if (error) fail(error.default_error_condition().value());
   temporary_.clear();
 }
 
 void check_writable(const std::filesystem::path& target) {
   const auto status = status_of(target);
-  if (!status || S_ISREG(status->st_mode)) {
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) {
     const WholeFile probe{target};
-  } else if (S_ISDIR(status->st_mode)) {
+  } else if (std::filesystem::is_directory(status)) {
     refuse(target, EISDIR);
-  } else if (::access(target.c_str(), W_OK) != 0) {
+  } else if (!may_write(target)) {
     // Not opened: the reader at a pipe's other end would see it close.
     refuse(target, errno);
   }
@@ -132,7 +136,7 @@ void check_writable(const std::filesystem::path& target) {
 
 void write_to_standard_output(std::span<const std::byte> bytes) {
   try {
-    write_all(STDOUT_FILENO, bytes);
+    write_all(kStandardOutput, bytes);
   } catch (const std::system_error& error) {
     refuse("standard output", error.code().value());
   }

@@ -1,6 +1,6 @@
 #pragma once
 // A file that appears whole or not at all: the bytes go into a temporary file beside
-// it, which takes its name at the end. POSIX.
+// it, which takes its name at the end.
 
 #include <cstddef>
 #include <filesystem>

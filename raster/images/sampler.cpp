@@ -1,11 +1,12 @@
 #include "raster/images/sampler.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
+#include "raster/images/bilinear.h"
+#include "raster/images/llvmpipe_sampler.h"
+#include "raster/images/softpipe_sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/lerp.h"
 
@@ -34,13 +35,6 @@ float to_texels(float coordinate, int size) {
   return std::clamp(coordinate * static_cast<float>(size), -kLargestCoordinate, kLargestCoordinate);
 }
 
-// The two texels that a bilinear fetch reads along one axis, and the second's weight.
-struct Taps {
-  int first;
-  int second;
-  float weight;
-};
-
 Taps bilinear_taps(float coordinate, int size, Wrap wrap, BilinearWeights weights) {
   float position = to_texels(coordinate, size) - 0.5f;
   if (weights == BilinearWeights::fixed_8) {
@@ -49,11 +43,6 @@ Taps bilinear_taps(float coordinate, int size, Wrap wrap, BilinearWeights weight
   const float base = std::floor(position);
   const int index = static_cast<int>(base);
   return {wrap_index(index, size, wrap), wrap_index(index + 1, size, wrap), position - base};
-}
-
-glm::vec4 lerp4(glm::vec4 a, glm::vec4 b, float t, Contraction contraction) {
-  return {lerp(a.x, b.x, t, contraction), lerp(a.y, b.y, t, contraction),
-          lerp(a.z, b.z, t, contraction), lerp(a.w, b.w, t, contraction)};
 }
 
 glm::vec4 sample_nearest(const Image& level, const Sampler& sampler, glm::vec2 uv) {
@@ -67,11 +56,9 @@ glm::vec4 sample_bilinear(const Image& level, const Sampler& sampler, glm::vec2 
                           const Profile& profile) {
   const Taps u = bilinear_taps(uv.x, level.width, sampler.wrap_u, profile.bilinear_weights);
   const Taps v = bilinear_taps(uv.y, level.height, sampler.wrap_v, profile.bilinear_weights);
-  const auto along_row = [&](int y) {
-    return lerp4(load_texel(level, u.first, y), load_texel(level, u.second, y), u.weight,
-                 profile.lerp);
-  };
-  return lerp4(along_row(v.first), along_row(v.second), v.weight, profile.lerp);
+  return filter_bilinear(
+      u, v, [&](int x, int y) { return load_texel(level, x, y); },
+      [&](float a, float b, float t) { return lerp(a, b, t, profile.lerp); });
 }
 
 }  // namespace
@@ -79,6 +66,11 @@ glm::vec4 sample_bilinear(const Image& level, const Sampler& sampler, glm::vec2 
 glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
                  const Profile& profile) {
   assert(!texture.levels.empty());
+  switch (profile.texture_unit) {
+    case TextureUnit::llvmpipe: return sample_llvmpipe(texture, sampler, uv, lod, profile);
+    case TextureUnit::softpipe: return sample_softpipe(texture, sampler, uv, lod, profile);
+    case TextureUnit::plain: break;
+  }
   const auto last = static_cast<float>(texture.levels.size() - 1);
   const float level = lod > 0.0f ? std::min(lod, last) : 0.0f;
   const auto image = [&](float index) -> const Image& {
@@ -97,54 +89,8 @@ glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, f
   const glm::vec4 fine = sample_bilinear(image(base), sampler, uv, profile);
   if (weight == 0.0f) return fine;
   const glm::vec4 coarse = sample_bilinear(image(base + 1.0f), sampler, uv, profile);
-  return lerp4(fine, coarse, weight, profile.lerp);
-}
-
-float log2_linear(float x) {
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  return static_cast<float>(bits) * 0x1p-23f - 127.0f;
-}
-
-float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y) {
-  const auto width = static_cast<float>(texture.levels.front().width);
-  const auto height = static_cast<float>(texture.levels.front().height);
-  const auto squared_length = [&](glm::vec2 uv) {
-    const float s = uv.x * width;
-    const float t = uv.y * height;
-    return s * s + t * t;
-  };
-  const float along_x = squared_length(uv_per_x);
-  const float along_y = squared_length(uv_per_y);
-  return 0.5f * log2_linear(along_x > along_y ? along_x : along_y);
-}
-
-void generate_mipmaps(Texture& texture, const Profile& profile) {
-  assert(!texture.levels.empty());
-  texture.levels.resize(1);
-  for (;;) {
-    const Image& fine = texture.levels.back();
-    if (fine.width == 1 && fine.height == 1) return;
-    Image coarse =
-        make_image(fine.format, std::max(1, fine.width / 2), std::max(1, fine.height / 2));
-    for (int y = 0; y < coarse.height; ++y) {
-      const int y0 = std::min(2 * y, fine.height - 1);
-      const int y1 = std::min(2 * y + 1, fine.height - 1);
-      for (int x = 0; x < coarse.width; ++x) {
-        const int x0 = std::min(2 * x, fine.width - 1);
-        const int x1 = std::min(2 * x + 1, fine.width - 1);
-        const glm::vec4 sum = (load_texel(fine, x0, y0) + load_texel(fine, x1, y0)) +
-                              (load_texel(fine, x0, y1) + load_texel(fine, x1, y1));
-        store_texel(coarse, x, y, sum * 0.25f, profile);
-      }
-    }
-    texture.levels.push_back(std::move(coarse));
-  }
-}
-
-Texture make_texture(Image image) {
-  Texture texture;
-  texture.levels.push_back(std::move(image));
-  return texture;
+  return mix_components(fine, coarse, weight,
+                        [&](float a, float b, float t) { return lerp(a, b, t, profile.lerp); });
 }
 
 }  // namespace softfocus

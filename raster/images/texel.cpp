@@ -25,6 +25,23 @@ void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& pro
   }
 }
 
+glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile) {
+  const bool is_8_bit =
+      bytes_per_texel(image.format) == static_cast<std::size_t>(channel_count(image.format));
+  if (profile.texture_unit == TextureUnit::plain || !is_8_bit) return load_texel(image, x, y);
+  const auto index =
+      static_cast<std::size_t>(x) * static_cast<std::size_t>(channel_count(image.format));
+  const std::uint8_t* v = &row<std::uint8_t>(image, y)[index];
+  if (image.format == Format::r8) return {unorm8_by_reciprocal(v[0]), 0.0f, 0.0f, 1.0f};
+  const auto decode = [&](std::uint8_t encoded) {
+    if (image.format == Format::rgba8) return unorm8_by_reciprocal(encoded);
+    return profile.texture_unit == TextureUnit::llvmpipe
+               ? srgb8_to_linear_by_cubic(encoded, profile.lerp)
+               : srgb8_to_linear_decimal(encoded);
+  };
+  return {decode(v[0]), decode(v[1]), decode(v[2]), unorm8_by_reciprocal(v[3])};
+}
+
 void clear_image(Image& image, glm::vec4 value, const Profile& profile) {
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) store_texel(image, x, y, value, profile);

@@ -3,6 +3,7 @@
 // format reads as (value, 0, 0, 1) and stores the first component, as in OpenGL.
 
 #include <glm/vec4.hpp>
+#include <limits>
 
 #include "raster/images/image.h"
 #include "raster/numbers/half.h"
@@ -33,30 +34,49 @@ glm::vec4 load_texel(const Image& image, int x, int y) {
   }
 }
 
+/// What a 32-bit float texel holds of a value: subnormals as the profile has them, and
+/// for any NaN the one (half.h says why).
+inline float stored_float(float value, const Profile& profile) {
+  if (value != value) return std::numeric_limits<float>::quiet_NaN();
+  return flush_denormal(value, profile.denormals);
+}
+
 template <Format format>
 void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& profile) {
   const auto index = static_cast<std::size_t>(x) * static_cast<std::size_t>(channel_count(format));
   if constexpr (format == Format::r8) {
-    row<std::uint8_t>(image, y)[index] = linear_to_unorm8(value.x);
+    row<std::uint8_t>(image, y)[index] = linear_to_unorm8(value.x, profile.unorm_store);
   } else if constexpr (format == Format::r32f) {
-    row<float>(image, y)[index] = flush_denormal(value.x, profile.denormals);
+    row<float>(image, y)[index] = stored_float(value.x, profile);
   } else if constexpr (format == Format::rgba32f) {
     auto* v = &row<float>(image, y)[index];
-    for (int i = 0; i < 4; ++i) v[i] = flush_denormal(value[i], profile.denormals);
+    for (int i = 0; i < 4; ++i) v[i] = stored_float(value[i], profile);
   } else if constexpr (format == Format::rgba16f) {
     auto* v = &row<std::uint16_t>(image, y)[index];
     for (int i = 0; i < 4; ++i) v[i] = float_to_half(value[i], profile.half_store);
   } else {
     auto* v = &row<std::uint8_t>(image, y)[index];
-    const auto encode = format == Format::srgb8 ? linear_to_srgb8 : linear_to_unorm8;
-    for (int i = 0; i < 3; ++i) v[i] = encode(value[i]);
-    v[3] = linear_to_unorm8(value.w);
+    for (int i = 0; i < 3; ++i) {
+      v[i] = format == Format::srgb8 ? linear_to_srgb8(value[i])
+                                     : linear_to_unorm8(value[i], profile.unorm_store);
+    }
+    v[3] = linear_to_unorm8(value.w, profile.unorm_store);
   }
 }
 
 /// The same for a format known at run time. Needs 0 <= x < width, 0 <= y < height.
 glm::vec4 load_texel(const Image& image, int x, int y);
 void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& profile);
+
+/// A filtered value of a texture with what its format lacks filled in: whatever the
+/// weights were, NaN too, missing channels are 0, 0 and 1.
+inline glm::vec4 with_missing_channels(glm::vec4 value, Format format) {
+  return channel_count(format) == 1 ? glm::vec4{value.x, 0.0f, 0.0f, 1.0f} : value;
+}
+
+/// What the profile's texture unit makes of a texel (texelFetch in GLSL). The units of
+/// drivers decode 8-bit formats in their own ways, the plain one as load_texel does.
+glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile);
 
 /// Sets every texel to `value`.
 void clear_image(Image& image, glm::vec4 value, const Profile& profile);

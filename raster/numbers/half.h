@@ -25,6 +25,7 @@ enum class HalfRounding : std::uint8_t {
 
 inline constexpr std::uint16_t kHalfLargest = 0x7BFF;  // 65504
 inline constexpr std::uint16_t kHalfInfinity = 0x7C00;
+inline constexpr std::uint16_t kHalfNan = 0x7E00;
 inline constexpr std::uint16_t kHalfOne = 0x3C00;
 
 /// Value of a half; exact. A NaN keeps its sign and payload and comes out quiet.
@@ -41,13 +42,13 @@ constexpr float half_to_float(std::uint16_t half) {
   return std::bit_cast<float>(sign | std::bit_cast<std::uint32_t>(scaled));
 }
 
-/// The half that stores `value`. A NaN becomes the quiet NaN 0x7E00 with the
-/// sign kept: payloads do not survive a driver's store either.
+/// The half that stores `value`. Any NaN becomes 0x7E00: processors differ in the sign
+/// and the payload of the NaN that, say, infinity minus infinity gives.
 constexpr std::uint16_t float_to_half(float value, HalfRounding rounding) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000u);
   const std::uint32_t magnitude = bits & 0x7FFFFFFFu;
-  if (magnitude > 0x7F800000u) return static_cast<std::uint16_t>(sign | 0x7E00u);
+  if (magnitude > 0x7F800000u) return kHalfNan;
   if (magnitude == 0x7F800000u) return static_cast<std::uint16_t>(sign | kHalfInfinity);
 
   const int exponent = static_cast<int>(magnitude >> 23) - 127;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raster/numbers/exact_math.h"
+#include "raster/numbers/lerp.h"
 
 namespace softfocus {
 namespace {
@@ -17,6 +18,22 @@ std::array<float, 256> decoding_table() {
   std::array<float, 256> values{};
   for (std::size_t k = 0; k < values.size(); ++k) {
     values[k] = static_cast<float>(decode(static_cast<double>(k) / 255.0));
+  }
+  return values;
+}
+
+// To 8 significant decimal digits.
+double to_8_digits(double value) {
+  if (value == 0.0) return 0.0;
+  double scale = 1.0;
+  while (value * scale < 1e7) scale *= 10.0;
+  return std::nearbyint(value * scale) / scale;
+}
+
+std::array<float, 256> decimal_decoding_table() {
+  std::array<float, 256> values{};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] = static_cast<float>(to_8_digits(decode(static_cast<double>(k) / 255.0)));
   }
   return values;
 }
@@ -38,6 +55,25 @@ std::array<float, 255> encoding_thresholds() {
 float srgb8_to_linear(std::uint8_t encoded) {
   static const std::array<float, 256> table = decoding_table();
   return table[encoded];
+}
+
+float srgb8_to_linear_decimal(std::uint8_t encoded) {
+  static const std::array<float, 256> table = decimal_decoding_table();
+  return table[encoded];
+}
+
+float srgb8_to_linear_by_cubic(std::uint8_t encoded, Contraction contraction) {
+  const auto x = static_cast<float>(encoded);
+  if (encoded <= 15) return x * (1.0f / (12.6f * 255.0f));
+  // c0 + c1 s + c2 s^2 + c3 s^3 of s = x / 255, its powers of 255 taken into constants.
+  constexpr float k0 = 0.0023f;
+  constexpr float k1 = 0.0030f / 255.0f;
+  constexpr float k2 = 0.6935f / (255.0f * 255.0f);
+  constexpr float k3 = 0.3012f / (255.0f * 255.0f * 255.0f);
+  const float square = x * x;
+  const float odd = multiply_add(square, k3, k1, contraction);
+  const float even = multiply_add(square, k2, k0, contraction);
+  return multiply_add(odd, x, even, contraction);
 }
 
 std::uint8_t linear_to_srgb8(float linear) {

@@ -52,52 +52,83 @@ void bin_triangle(Chunk<N>& chunk, const Triangle<N>& triangle, int tiles_x) {
   chunk.triangles.push_back(triangle);
 }
 
+inline std::size_t provoking_index(const DrawState& state) {
+  return state.provoking_vertex == ProvokingVertex::last ? 2 : 0;
+}
+
+// Clipped polygons are fans about vertex 0, which is the provoking one.
+inline std::array<std::size_t, 3> fan_triangle(std::size_t i, ProvokingVertex provoking) {
+  return provoking == ProvokingVertex::last ? std::array<std::size_t, 3>{i - 1, i, 0}
+                                            : std::array<std::size_t, 3>{0, i - 1, i};
+}
+
 template <class Draw, std::size_t N>
-void add_triangle(const Draw& draw, Chunk<N>& chunk,
-                  const std::array<VertexOutput<N>, 3>& corners) {
-  std::array<WindowVertex, 3> window{};
-  Triangle<N> triangle{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!(corners[i].position.w > 0.0f)) return;  // only a degenerate matrix leaves it so
-    window[i] = to_window(corners[i].position, draw.width, draw.height, draw.profile);
-    triangle.varyings[i] = corners[i].varyings;
-  }
-  const auto setup = set_up_triangle(window, draw.state.cull, draw.state.front_face, draw.clip);
+void add_triangle(const Draw& draw, Chunk<N>& chunk, const std::array<WindowVertex, 3>& window,
+                  const std::array<Varyings<N>, 3>& varyings, bool cull_unsnapped) {
+  const DrawState& state = draw.state;
+  if (cull_unsnapped && is_culled_unsnapped(window, state.cull, state.front_face)) return;
+  const auto setup = set_up_triangle(window, state.cull, state.front_face, draw.clip, draw.profile);
   if (!setup) return;
-  triangle.setup = *setup;
-  bin_triangle(chunk, triangle, (draw.width + kTileSize - 1) / kTileSize);
+  bin_triangle(chunk, Triangle<N>{*setup, varyings, provoking_index(state)},
+               (draw.width + kTileSize - 1) / kTileSize);
+}
+
+template <class Draw, std::size_t N>
+void add_unclipped(const Draw& draw, Chunk<N>& chunk, const std::array<VertexOutput<N>, 3>& corners,
+                   bool cull_unsnapped) {
+  std::array<WindowVertex, 3> window{};
+  std::array<Varyings<N>, 3> varyings{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    window[i] = to_window(corners[i].position, draw.width, draw.height, draw.profile.viewport);
+    varyings[i] = corners[i].varyings;
+  }
+  add_triangle(draw, chunk, window, varyings, cull_unsnapped);
 }
 
 template <class Draw, std::size_t N>
 void add_clipped(const Draw& draw, Chunk<N>& chunk, const std::array<VertexOutput<N>, 3>& corners,
-                 unsigned planes, const std::array<Interpolation, N>& kinds) {
+                 unsigned planes, const std::array<Interpolation, N>& kinds, bool cull_unsnapped) {
   ClipPolygon polygon;
   polygon.count = 3;
   for (std::size_t i = 0; i < 3; ++i) {
     polygon.vertices[i].position = corners[i].position;
     for (std::size_t k = 0; k < N; ++k) {
-      // The fan below has other first vertices than the triangle: flat values go along.
-      const std::size_t source = kinds[k] == Interpolation::flat ? 0 : i;
-      polygon.vertices[i].varyings[k] = corners[source].varyings[k];
+      // The fan below has other provoking vertices than the triangle: flat values go along.
+      const bool is_flat = kinds[k] == Interpolation::flat;
+      polygon.vertices[i].varyings[k] =
+          corners[is_flat ? provoking_index(draw.state) : i].varyings[k];
     }
   }
-  clip_polygon(polygon, planes, draw.profile.guard_band, kinds);
-  const auto corner = [&](std::size_t i) {
-    VertexOutput<N> output{polygon.vertices[i].position, {}};
-    std::copy_n(polygon.vertices[i].varyings.begin(), N, output.varyings.begin());
-    return output;
-  };
+  clip_polygon(polygon, planes, kinds, draw.profile);
   for (std::size_t i = 2; i < polygon.count; ++i) {
-    add_triangle(draw, chunk, std::array{corner(0), corner(i - 1), corner(i)});
+    std::array<WindowVertex, 3> window{};
+    std::array<Varyings<N>, 3> varyings{};
+    const auto corner_numbers = fan_triangle(i, draw.state.provoking_vertex);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ClipVertex& corner = polygon.vertices[corner_numbers[k]];
+      window[k] = to_window(corner.position, draw.width, draw.height,
+                            corner.is_new ? Contraction::unfused : draw.profile.viewport);
+      std::copy_n(corner.varyings.begin(), N, varyings[k].begin());
+    }
+    add_triangle(draw, chunk, window, varyings, cull_unsnapped);
   }
 }
 
+// Whether the triangles begin <= t < end are culled by unsnapped positions too: Mesa sends
+// all of a batch through its clipping stages if any vertex is outside.
+template <class Draw>
+bool culls_unsnapped(const Draw& draw, std::size_t begin, std::size_t end) {
+  if (draw.state.cull == Cull::none || !is_mesa(draw.profile)) return false;
+  const auto indices = draw.indices.subspan(3 * begin, 3 * (end - begin));
+  return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t i) {
+    return clip_code(draw.vertices[i].position, draw.profile.guard_band) != 0;
+  });
+}
+
 template <class Draw, std::size_t N>
-void assemble_chunk(const Draw& draw, Chunk<N>& chunk, std::uint32_t number,
+void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::size_t end,
                     const std::array<Interpolation, N>& kinds) {
-  const std::size_t triangle_count = draw.indices.size() / 3;
-  const std::size_t begin = std::size_t{number} * kChunkTriangles;
-  const std::size_t end = std::min(begin + kChunkTriangles, triangle_count);
+  const bool cull_unsnapped = culls_unsnapped(draw, begin, end);
   for (std::size_t t = begin; t < end; ++t) {
     std::array<VertexOutput<N>, 3> corners;
     unsigned outside_any = 0;
@@ -110,23 +141,40 @@ void assemble_chunk(const Draw& draw, Chunk<N>& chunk, std::uint32_t number,
     }
     if (outside_all != 0 || (outside_any & kNotFinite) != 0) continue;
     if (outside_any == 0) {
-      add_triangle(draw, chunk, corners);
+      add_unclipped(draw, chunk, corners, cull_unsnapped);
     } else {
-      add_clipped(draw, chunk, corners, outside_any, kinds);
+      add_clipped(draw, chunk, corners, outside_any, kinds, cull_unsnapped);
     }
+  }
+}
+
+template <class Draw, std::size_t N>
+void assemble_chunk(const Draw& draw, Chunk<N>& chunk, std::uint32_t number,
+                    const std::array<Interpolation, N>& kinds) {
+  const std::size_t triangle_count = draw.indices.size() / 3;
+  const std::size_t chunk_begin = std::size_t{number} * kChunkTriangles;
+  const std::size_t chunk_end = std::min(chunk_begin + kChunkTriangles, triangle_count);
+  for (std::size_t begin = chunk_begin; begin < chunk_end; begin += kBatchTriangles) {
+    assemble_batch(draw, chunk, begin, std::min(begin + kBatchTriangles, chunk_end), kinds);
   }
   std::sort(chunk.bins.begin(), chunk.bins.end(), [](const Bin& a, const Bin& b) {
     return a.tile != b.tile ? a.tile < b.tile : a.triangle < b.triangle;
   });
 }
 
+// Clamped to 0..1; NaN, which is all that planes give where a sliver's area rounds to 0,
+// becomes 1. But softpipe keeps what a plane gives beyond a sliver's vertices.
+inline float stored_depth(float depth, const Profile& profile) {
+  if (profile.attributes == AttributeSetup::planes_by_quad) return depth;
+  return depth <= 1.0f ? std::max(depth, 0.0f) : 1.0f;
+}
+
 template <class Interpolator, class Draw, std::size_t N>
 void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpolator& interpolator,
                     int x, int y) {
   using FragmentStage = decltype(draw.fragment_stage);
-  constexpr auto& kinds = FragmentStage::kInterpolation;
-  const Interpolated<N> values = interpolator.at(x, y, kinds);
-  const float depth = std::clamp(values.depth, 0.0f, 1.0f);
+  const Interpolated<N> values = interpolator.at(x, y);
+  const float depth = stored_depth(values.depth, draw.profile);
   const bool front = triangle.setup.front_facing;
   // Tests come first where the stage cannot take a fragment back.
   if (!FragmentStage::kDiscards &&
@@ -143,11 +191,14 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
   if constexpr (FragmentStage::kNeedsDerivatives) {
     const int x0 = x & ~1;
     const int y0 = y & ~1;
-    const Varyings<N> corner = interpolator.at(x0, y0, kinds).varyings;
-    const Varyings<N> right = interpolator.at(x0 + 1, y0, kinds).varyings;
-    const Varyings<N> below = interpolator.at(x0, y0 + 1, kinds).varyings;
+    // softpipe takes the difference along x from the block's lower row.
+    const int y_of_ddx = draw.profile.attributes == AttributeSetup::planes_by_quad ? y0 + 1 : y0;
+    const Varyings<N> corner = interpolator.at(x0, y0).varyings;
+    const Varyings<N> left = interpolator.at(x0, y_of_ddx).varyings;
+    const Varyings<N> right = interpolator.at(x0 + 1, y_of_ddx).varyings;
+    const Varyings<N> below = interpolator.at(x0, y0 + 1).varyings;
     for (std::size_t i = 0; i < N; ++i) {
-      fragment.ddx[i] = right[i] - corner[i];
+      fragment.ddx[i] = right[i] - left[i];
       fragment.ddy[i] = below[i] - corner[i];
     }
   }
@@ -170,19 +221,12 @@ void shade_triangle(const Draw& draw, const Triangle<N>& triangle, const Rectang
   const Rectangle area{
       std::max(tile.x_begin, setup.bounds.x_begin), std::max(tile.y_begin, setup.bounds.y_begin),
       std::min(tile.x_end, setup.bounds.x_end), std::min(tile.y_end, setup.bounds.y_end)};
-  const Interpolator interpolator{triangle, draw.profile};
-  const auto& edges = setup.edges;
+  const Interpolator interpolator{triangle, draw.profile,
+                                  decltype(draw.fragment_stage)::kInterpolation};
   for (int y = area.y_begin; y < area.y_end; ++y) {
-    std::int64_t e0 = edge_at(edges[0], area.x_begin, y);
-    std::int64_t e1 = edge_at(edges[1], area.x_begin, y);
-    std::int64_t e2 = edge_at(edges[2], area.x_begin, y);
-    for (int x = area.x_begin; x < area.x_end; ++x) {
-      if (inside(edges[0], e0) && inside(edges[1], e1) && inside(edges[2], e2)) {
-        shade_fragment(draw, triangle, interpolator, x, y);
-      }
-      e0 += edges[0].per_x;
-      e1 += edges[1].per_x;
-      e2 += edges[2].per_x;
+    const Span span = covered_span(setup, y, area.x_begin, area.x_end);
+    for (int x = span.x_begin; x < span.x_end; ++x) {
+      shade_fragment(draw, triangle, interpolator, x, y);
     }
   }
 }
@@ -192,10 +236,16 @@ void shade_tile(const Draw& draw, const Chunk<N>& chunk, std::span<const Bin> bi
                 const Rectangle& tile) {
   for (const Bin& bin : bins) {
     const Triangle<N>& triangle = chunk.triangles[bin.triangle];
-    if (draw.profile.attributes == AttributeSetup::exact_barycentric) {
-      shade_triangle<BarycentricInterpolator<N>>(draw, triangle, tile);
-    } else {
-      shade_triangle<PlaneInterpolator<N>>(draw, triangle, tile);
+    switch (draw.profile.attributes) {
+      case AttributeSetup::exact_barycentric:
+        shade_triangle<BarycentricInterpolator<N>>(draw, triangle, tile);
+        break;
+      case AttributeSetup::planes_from_origin:
+        shade_triangle<PlaneInterpolator<PlanesFromOrigin, N>>(draw, triangle, tile);
+        break;
+      case AttributeSetup::planes_by_quad:
+        shade_triangle<PlaneInterpolator<PlanesByQuad, N>>(draw, triangle, tile);
+        break;
     }
   }
 }
@@ -204,7 +254,8 @@ void shade_tile(const Draw& draw, const Chunk<N>& chunk, std::span<const Bin> bi
 
 /// Records a draw of indices.size() / 3 triangles: the stages are copied, what they
 /// and `indices` point to must live until finish(). Needs every index below
-/// `vertex_count`, and indices.size() a multiple of 3.
+/// `vertex_count`, indices.size() a multiple of 3, and in the profile edge functions
+/// where attributes are barycentric: the weights are those functions'.
 template <class VertexStage, class FragmentStage>
 void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_t> indices,
           std::uint32_t vertex_count, VertexStage vertex_stage, FragmentStage fragment_stage) {
@@ -213,6 +264,8 @@ void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_
   static_assert(std::tuple_size_v<decltype(fragment_stage(Fragment<N>{}).colour)> <=
                 kMaxColourTargets);
   assert(indices.size() % 3 == 0);
+  assert(pass.profile.coverage == Coverage::edge_functions ||
+         pass.profile.attributes != AttributeSetup::exact_barycentric);
   using Recorded = draw_detail::Recorded<VertexStage, FragmentStage, N>;
 
   const Rectangle target = target_area(pass.targets);

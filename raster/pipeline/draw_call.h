@@ -11,9 +11,13 @@
 
 namespace softfocus {
 
+/// The triangles that Mesa's drivers send through their clipping stages together: as
+/// many as 1,024 indices of 32 bits make, counted from the draw's first.
+inline constexpr std::uint32_t kBatchTriangles = 341;
+
 /// Triangles are assembled in chunks of this many, tiles are so many pixels square.
-/// Neither number shows in a result.
-inline constexpr std::uint32_t kChunkTriangles = 1024;
+/// Neither number shows in a result. A chunk holds whole batches.
+inline constexpr std::uint32_t kChunkTriangles = 3 * kBatchTriangles;
 inline constexpr std::uint32_t kChunkVertices = 1024;
 inline constexpr int kTileSize = 64;
 

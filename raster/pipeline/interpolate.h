@@ -1,11 +1,14 @@
 #pragma once
-// Depth and varyings at a pixel of a triangle, in the two ways that profiles name.
+// Depth and varyings at a pixel of a triangle, in the ways that profiles name. An
+// interpolator refers to its triangle and to the kinds of its varyings.
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <variant>
 
-#include "raster/numbers/lerp.h"
+#include "raster/numbers/profile.h"
+#include "raster/pipeline/edge_functions.h"
+#include "raster/pipeline/planes.h"
 #include "raster/pipeline/setup.h"
 #include "raster/pipeline/stages.h"
 
@@ -16,6 +19,7 @@ template <std::size_t N>
 struct Triangle {
   TriangleSetup setup;
   std::array<Varyings<N>, 3> varyings;
+  std::size_t provoking;  ///< the vertex that flat varyings come from: 0 or 2
 };
 
 template <std::size_t N>
@@ -29,19 +33,26 @@ struct Interpolated {
 ///   p_i = l_i * inverse_w_i;  s = (p_0 + p_1) + p_2;  q_i = p_i * (1 / s)
 ///   value = (a_0 + w_1 (a_1 - a_0)) + w_2 (a_2 - a_0)      w = l linear, q perspective
 /// Inside the triangle every l_i and p_i is at least 0 and s positive, whatever the
-/// sliver; a varying that is the same at all three vertices comes out unchanged.
+/// sliver; a varying that is the same at all three vertices comes out unchanged. Needs
+/// Coverage::edge_functions.
 template <std::size_t N>
 struct BarycentricInterpolator {
   const Triangle<N>& triangle;
+  const std::array<Interpolation, N>& kinds;
+  const EdgeFunctions& functions;
   float inverse_area;
 
-  BarycentricInterpolator(const Triangle<N>& t, const Profile&)
-      : triangle(t), inverse_area(1.0f / static_cast<float>(t.setup.area)) {}
+  BarycentricInterpolator(const Triangle<N>& t, const Profile&,
+                          const std::array<Interpolation, N>& interpolation)
+      : triangle(t),
+        kinds(interpolation),
+        functions(std::get<EdgeFunctions>(t.setup.coverage)),
+        inverse_area(1.0f / static_cast<float>(functions.area)) {}
 
-  Interpolated<N> at(int x, int y, const std::array<Interpolation, N>& kinds) const {
+  Interpolated<N> at(int x, int y) const {
     const auto& v = triangle.setup.vertices;
     const auto weight = [&](std::size_t i) {
-      return static_cast<float>(edge_at(triangle.setup.edges[i], x, y)) * inverse_area;
+      return static_cast<float>(edge_at(functions.edges[i], x, y)) * inverse_area;
     };
     const float l0 = weight(0);
     const float l1 = weight(1);
@@ -64,78 +75,59 @@ struct BarycentricInterpolator {
       switch (kinds[i]) {
         case Interpolation::perspective: result.varyings[i] = blend(a0, a1, a2, q1, q2); break;
         case Interpolation::linear: result.varyings[i] = blend(a0, a1, a2, l1, l2); break;
-        case Interpolation::flat: result.varyings[i] = a0; break;
+        case Interpolation::flat:
+          result.varyings[i] = triangle.varyings[triangle.provoking][i];
+          break;
       }
     }
     return result;
   }
 };
 
-/// By plane equations from the unsnapped positions, evaluated from the framebuffer's
-/// origin: a(x, y) = (a_origin + dadx x) + dady y at pixel (x, y), the products fused
-/// as the profile says. Perspective varyings are set up as a / w, and divided by the
-/// plane of 1 / w.
-template <std::size_t N>
+/// By planes over the window, in one of the two ways of planes.h: perspective varyings
+/// as the plane of a / w, divided by that of 1 / w.
+template <class Planes, std::size_t N>
 struct PlaneInterpolator {
-  struct Plane {
-    float at_origin;
-    float per_x;
-    float per_y;
-  };
-  const Triangle<N>& triangle;
-  Contraction contraction;
-  float dy20_over_area;
-  float dy01_over_area;
-  float dx20_over_area;
-  float dx01_over_area;
+  const std::array<Interpolation, N>& kinds;
+  Planes planes;
+  Plane depth;
+  Plane inverse_w;
+  std::array<Plane, N> varyings;
 
-  PlaneInterpolator(const Triangle<N>& t, const Profile& profile)
-      : triangle(t), contraction(profile.interpolation) {
-    const auto& v = t.setup.vertices;
-    const float dx01 = v[0].x - v[1].x;
-    const float dy01 = v[0].y - v[1].y;
-    const float dx20 = v[2].x - v[0].x;
-    const float dy20 = v[2].y - v[0].y;
-    const float one_over_area = 1.0f / (dx01 * dy20 - dx20 * dy01);
-    dy20_over_area = dy20 * one_over_area;
-    dy01_over_area = dy01 * one_over_area;
-    dx20_over_area = dx20 * one_over_area;
-    dx01_over_area = dx01 * one_over_area;
-  }
-
-  Plane plane(float a0, float a1, float a2) const {
+  PlaneInterpolator(const Triangle<N>& triangle, const Profile& profile,
+                    const std::array<Interpolation, N>& interpolation)
+      : kinds(interpolation), planes(triangle.setup, triangle.provoking, profile) {
     const auto& v = triangle.setup.vertices;
-    const float da01 = a0 - a1;
-    const float da20 = a2 - a0;
-    const float per_x = da01 * dy20_over_area - da20 * dy01_over_area;
-    const float per_y = da20 * dx01_over_area - da01 * dx20_over_area;
-    const float at_origin = a0 - (per_x * (v[0].x - 0.5f) + per_y * (v[0].y - 0.5f));
-    return {at_origin, per_x, per_y};
-  }
-
-  float evaluate(const Plane& p, int x, int y) const {
-    const float along_x = multiply_add(p.per_x, static_cast<float>(x), p.at_origin, contraction);
-    return multiply_add(p.per_y, static_cast<float>(y), along_x, contraction);
-  }
-
-  Interpolated<N> at(int x, int y, const std::array<Interpolation, N>& kinds) const {
-    const auto& v = triangle.setup.vertices;
-    const float inverse_w = evaluate(plane(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w), x, y);
-    const float w = 1.0f / inverse_w;
-    Interpolated<N> result;
-    result.depth = evaluate(plane(v[0].depth, v[1].depth, v[2].depth), x, y);
+    depth = planes.plane({v[0].depth, v[1].depth, v[2].depth});
+    inverse_w = planes.plane({v[0].inverse_w, v[1].inverse_w, v[2].inverse_w});
     for (std::size_t i = 0; i < N; ++i) {
       const float a0 = triangle.varyings[0][i];
       const float a1 = triangle.varyings[1][i];
       const float a2 = triangle.varyings[2][i];
       switch (kinds[i]) {
         case Interpolation::perspective:
-          result.varyings[i] =
-              w *
-              evaluate(plane(a0 * v[0].inverse_w, a1 * v[1].inverse_w, a2 * v[2].inverse_w), x, y);
+          varyings[i] =
+              planes.plane({a0 * v[0].inverse_w, a1 * v[1].inverse_w, a2 * v[2].inverse_w});
           break;
-        case Interpolation::linear: result.varyings[i] = evaluate(plane(a0, a1, a2), x, y); break;
-        case Interpolation::flat: result.varyings[i] = a0; break;
+        case Interpolation::linear: varyings[i] = planes.plane({a0, a1, a2}); break;
+        case Interpolation::flat:
+          varyings[i] = {triangle.varyings[triangle.provoking][i], 0.0f, 0.0f};
+          break;
+      }
+    }
+  }
+
+  Interpolated<N> at(int x, int y) const {
+    Interpolated<N> result;
+    result.depth = planes.at(depth, x, y);
+    const float inverse_w_here = planes.at(inverse_w, x, y);
+    for (std::size_t i = 0; i < N; ++i) {
+      switch (kinds[i]) {
+        case Interpolation::perspective:
+          result.varyings[i] = Planes::divide(planes.at(varyings[i], x, y), inverse_w_here);
+          break;
+        case Interpolation::linear: result.varyings[i] = planes.at(varyings[i], x, y); break;
+        case Interpolation::flat: result.varyings[i] = varyings[i].at_origin; break;
       }
     }
     return result;

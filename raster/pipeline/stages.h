@@ -13,7 +13,7 @@ namespace softfocus {
 enum class Interpolation : std::uint8_t {
   perspective,  ///< linear on the surface in space
   linear,       ///< linear in the window
-  flat,         ///< the first vertex's value (the provoking vertex)
+  flat,         ///< the provoking vertex's value (DrawState::provoking_vertex)
 };
 
 inline constexpr std::size_t kMaxVaryings = 16;
@@ -43,12 +43,13 @@ template <std::size_t N>
 struct Fragment {
   int x = 0;
   int y = 0;
-  float depth = 0.0f;  ///< window depth, 0 to 1
+  float depth = 0.0f;  ///< window depth, 0 to 1; of slivers in softpipe also beyond
   bool front_facing = true;
   Varyings<N> varyings{};
   /// Differences to the next pixel right and down within the 2x2 block of pixels
-  /// (even x, even y) that this one is in, taken on the block's upper and left side:
-  /// the same for all four, as GPUs' coarse derivatives. Zero unless asked for.
+  /// (even x, even y) that this one is in, taken on the block's upper (in softpipe
+  /// its lower) and left side: the same for all four, as GPUs' coarse derivatives. Zero
+  /// unless asked for.
   Varyings<N> ddx{};
   Varyings<N> ddy{};
 };

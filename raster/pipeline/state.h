@@ -39,12 +39,21 @@ enum class Cull : std::uint8_t { none, back, front };
 /// Which winding, as seen in the picture (row 0 on top), is a front face.
 enum class FrontFace : std::uint8_t { counter_clockwise, clockwise };
 
+/// Which vertex of a triangle gives `flat` varyings their value.
+enum class ProvokingVertex : std::uint8_t { last, first };
+
 /// Pixels x_begin <= x < x_end, y_begin <= y < y_end.
 struct Rectangle {
   int x_begin = 0;
   int y_begin = 0;
   int x_end = 0;
   int y_end = 0;
+};
+
+/// Pixels x_begin <= x < x_end of a row; none if x_begin >= x_end.
+struct Span {
+  int x_begin = 0;
+  int x_end = 0;
 };
 
 struct DepthState {
@@ -118,6 +127,7 @@ inline constexpr int kMaxColourTargets = 4;
 struct DrawState {
   Cull cull = Cull::back;
   FrontFace front_face = FrontFace::counter_clockwise;
+  ProvokingVertex provoking_vertex = ProvokingVertex::last;
   std::optional<Rectangle> scissor;
   std::optional<DepthState> depth = DepthState{};
   std::optional<StencilState> stencil;

@@ -1,0 +1,30 @@
+#pragma once
+// What every bilinear filter shares: two texels an axis, rows first, then between rows.
+
+#include <glm/vec4.hpp>
+
+namespace softfocus {
+
+/// The two texels that a bilinear fetch reads along one axis, and the second's weight.
+struct Taps {
+  int first;
+  int second;
+  float weight;
+};
+
+/// mix(a, b, t), a function of floats, of each component.
+template <class Mix>
+glm::vec4 mix_components(glm::vec4 a, glm::vec4 b, float t, const Mix& mix) {
+  return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t), mix(a.w, b.w, t)};
+}
+
+/// Mixes the four texels load(x, y): along both rows, then the two results.
+template <class Load, class Mix>
+glm::vec4 filter_bilinear(const Taps& u, const Taps& v, const Load& load, const Mix& mix) {
+  const auto along_row = [&](int y) {
+    return mix_components(load(u.first, y), load(u.second, y), u.weight, mix);
+  };
+  return mix_components(along_row(v.first), along_row(v.second), v.weight, mix);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,114 @@
+#include "raster/images/softpipe_sampler.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "raster/images/texel.h"
+#include "raster/numbers/lerp.h"
+
+namespace softfocus {
+namespace {
+
+float fraction_of(float value) { return value - std::floor(value); }
+
+// 1024 sizes make what is a little negative positive; what is more wraps round 2^32.
+int repeat(std::int32_t index, int size) {
+  const auto length = static_cast<std::uint32_t>(size);
+  return static_cast<int>((static_cast<std::uint32_t>(index) + 1024 * length) % length);
+}
+
+bool is_power_of_two(int size) { return std::has_single_bit(static_cast<unsigned>(size)); }
+
+}  // namespace
+
+std::int32_t softpipe_floor(float value) {
+  if (value != value) return 0;          // whichever NaNs the sums below would be
+  constexpr double kMagic = 12582912.5;  // 1.5 * 2^23 + 0.5
+  const auto above = std::bit_cast<std::uint32_t>(static_cast<float>(kMagic + value));
+  const auto below = std::bit_cast<std::uint32_t>(static_cast<float>(kMagic - value));
+  return static_cast<std::int32_t>(above - below) >> 1;
+}
+
+Taps softpipe_taps(float coordinate, int size, Wrap wrap) {
+  const auto length = static_cast<float>(size);
+  if (wrap == Wrap::repeat) {
+    const float position = coordinate * length - 0.5f;
+    const int first = repeat(softpipe_floor(position), size);
+    return {first, repeat(first + 1, size), fraction_of(position)};
+  }
+  if (wrap == Wrap::clamp_to_edge) {
+    const float scaled = coordinate * length;
+    const float position = (scaled > 0.0f ? std::min(scaled, length) : 0.0f) - 0.5f;
+    const int index = softpipe_floor(position);
+    return {std::max(index, 0), std::min(index + 1, size - 1), fraction_of(position)};
+  }
+  if ((softpipe_floor(coordinate) & 1) == 0) {
+    const float position = fraction_of(coordinate) * length - 0.5f;
+    const int index = softpipe_floor(position);
+    return {std::clamp(index, 0, size - 1), std::min(index + 1, size - 1), fraction_of(position)};
+  }
+  // In odd cells the axis runs backwards, from the texel right of the position.
+  const float position = (1.0f - fraction_of(coordinate)) * length + 0.5f;
+  const int index = softpipe_floor(position);
+  return {std::min(index, size - 1), std::clamp(index - 1, 0, size - 1),
+          fraction_of(1.0f - position)};
+}
+
+int softpipe_nearest(float coordinate, int size, Wrap wrap) {
+  const auto length = static_cast<float>(size);
+  if (wrap == Wrap::repeat) return repeat(softpipe_floor(coordinate * length), size);
+  if (wrap == Wrap::clamp_to_edge) {
+    const float position = coordinate * length;
+    if (position < 0.5f) return 0;
+    return position > length - 0.5f ? size - 1 : softpipe_floor(position);
+  }
+  const float half_texel = 1.0f / (2.0f * length);
+  const bool backwards = (softpipe_floor(coordinate) & 1) != 0;
+  const float position = backwards ? 1.0f - fraction_of(coordinate) : fraction_of(coordinate);
+  if (position < half_texel) return 0;
+  return position > 1.0f - half_texel ? size - 1 : softpipe_floor(position * length);
+}
+
+glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
+                          const Profile& profile) {
+  const Image& base = texture.levels[0];
+  const std::size_t last = texture.levels.size() - 1;
+  // The sampler's default lod range; NaN goes to its start.
+  const float level = lod > 0.0f ? std::min(lod, 1000.0f) : 0.0f;
+  const std::size_t nearest_level = std::min(static_cast<std::size_t>(level + 0.5f), last);
+  if (sampler.filter == Filter::nearest) {
+    const Image& image = texture.levels[nearest_level];
+    return fetch_texel(image, softpipe_nearest(uv.x, image.width, sampler.wrap_u),
+                       softpipe_nearest(uv.y, image.height, sampler.wrap_v), profile);
+  }
+
+  // A fast path of its own: the weight is taken from softpipe_floor, and level 0 is mixed
+  // with weight 0.
+  const bool is_fast = is_power_of_two(base.width) && is_power_of_two(base.height) &&
+                       sampler.wrap_u == Wrap::repeat && sampler.wrap_v == Wrap::repeat;
+  const auto taps = [&](float coordinate, int size, Wrap wrap) {
+    Taps result = softpipe_taps(coordinate, size, wrap);
+    if (is_fast) {
+      const float position = coordinate * static_cast<float>(size) - 0.5f;
+      result.weight = position - static_cast<float>(softpipe_floor(position));
+    }
+    return result;
+  };
+  const auto mix = [&](float a, float b, float t) { return lerp(a, b, t, profile); };
+  const auto bilinear = [&](const Image& image) {
+    const glm::vec4 value = filter_bilinear(
+        taps(uv.x, image.width, sampler.wrap_u), taps(uv.y, image.height, sampler.wrap_v),
+        [&](int x, int y) { return fetch_texel(image, x, y, profile); }, mix);
+    return with_missing_channels(value, image.format);
+  };
+  if (sampler.filter == Filter::bilinear) return bilinear(texture.levels[nearest_level]);
+
+  const auto fine = static_cast<std::size_t>(level);
+  if (fine >= last) return bilinear(texture.levels[last]);
+  if (level == 0.0f && !is_fast) return bilinear(base);
+  return mix_components(bilinear(texture.levels[fine]), bilinear(texture.levels[fine + 1]),
+                        fraction_of(level), mix);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,6 @@
+// Stores a texture's texels in the target's format: what the driver does to a float on
+// its way into a half or a byte. Beside raster/images/texel.h.
+uniform sampler2D values;
+out vec4 stored;
+
+void main() { stored = texelFetch(values, ivec2(gl_FragCoord.xy), 0); }

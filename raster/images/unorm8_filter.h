@@ -1,0 +1,27 @@
+#pragma once
+// llvmpipe's integer path: linear 8-bit textures that repeat or clamp are filtered in
+// 8-bit integers, with 8-bit weights, and become floats at the end.
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "raster/images/image.h"
+#include "raster/images/sampler.h"
+
+namespace softfocus {
+
+/// Whether llvmpipe filters this format with this sampler in integers.
+bool is_filtered_in_integers(Format format, const Sampler& sampler);
+
+/// a + weight / 256 (b - a), rounded to nearest, ties up. Needs 0 <= weight, a, b <= 255;
+/// lies between a and b.
+constexpr int lerp_unorm8(int a, int b, int weight) { return a + ((weight * (b - a) + 128) >> 8); }
+
+/// Bilinear fetch from level `level` of a texture, mixed with the next level by
+/// `next_weight` (0 <= weight < 1, cut to 8 bits; 0 reads one level). Values are
+/// rounded to 8 bits after each row, between rows and between levels, and scaled by 1/255.
+glm::vec4 sample_unorm8(const Texture& texture, const Sampler& sampler, glm::vec2 uv,
+                        std::size_t level, float next_weight);
+
+}  // namespace softfocus

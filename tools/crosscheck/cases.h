@@ -1,0 +1,60 @@
+#pragma once
+// What is drawn twice and compared: a list of cases, each belonging to a stage of the
+// pipeline. Adding a case touches the file of its stage, adding a stage this list too.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raster/numbers/profile.h"
+#include "raster/parallel.h"
+#include "scenes/random_bits.h"
+#include "tools/crosscheck/tally.h"
+#include "tools/gl/context.h"
+#include "tools/gl/shaders.h"
+
+namespace softfocus {
+
+/// The two sides of a comparison.
+struct Bench {
+  const GlContext& gl;
+  const Shaders& shaders;
+  const Profile& profile;
+  ThreadPool& pool;
+};
+
+struct Case {
+  std::string stage;
+  std::string name;
+  bool quick;     ///< part of --quick
+  bool slow_too;  ///< small enough for a driver that is slow
+  std::function<void(const Bench&, Tally&)> run;
+};
+
+/// All cases, in the order of the pipeline's stages.
+std::vector<Case> crosscheck_cases();
+
+// One function a file.
+void add_store_cases(std::vector<Case>& cases);
+void add_texture_cases(std::vector<Case>& cases);
+void add_triangle_cases(std::vector<Case>& cases);
+void add_scene_cases(std::vector<Case>& cases);
+void add_filter_cases(std::vector<Case>& cases);
+
+/// Random numbers for making cases up.
+struct RandomNumbers {
+  RandomSequence sequence;
+  explicit RandomNumbers(unsigned seed) : sequence{seed} {}
+
+  std::uint32_t word() { return static_cast<std::uint32_t>(next_bits(sequence) >> 32); }
+  /// From `least` up to `most`.
+  float between(float least, float most) {
+    return static_cast<float>(
+        next_between(sequence, static_cast<double>(least), static_cast<double>(most)));
+  }
+  /// 0 to count - 1.
+  int below(int count) { return static_cast<int>(word() % static_cast<std::uint32_t>(count)); }
+};
+
+}  // namespace softfocus

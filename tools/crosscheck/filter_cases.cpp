@@ -1,0 +1,126 @@
+// Stages `two-pass` and `one-pass`: the same picture filtered by both sides.
+
+#include <array>
+#include <cmath>
+
+#include "dof/method.h"
+#include "raster/images/texel.h"
+#include "scenes/draw_scene.h"
+#include "scenes/load_scene.h"
+#include "tools/crosscheck/cases.h"
+#include "tools/gl/filter_on_gl.h"
+
+namespace softfocus {
+namespace {
+
+// What the picture holds that is filtered.
+enum class Picture {
+  figures,  ///< a drawn scene
+  random,   ///< random colours, random depths
+  steps,    ///< random colours on a few depths, in blocks: silhouettes
+  special,  ///< half subnormals, 65504, infinities, zero and infinite depths
+};
+
+Image figures(int width, int height, const Profile& profile, ThreadPool& pool) {
+  const Scene scene = load_scene("figures", scene_search_path({}));
+  return draw_scene(scene, camera_view(scene.camera, 5, width, height), 5, width, height, profile,
+                    pool);
+}
+
+Image make_picture(Picture kind, int width, int height, unsigned seed, const Bench& bench) {
+  if (kind == Picture::figures) return figures(width, height, bench.profile, bench.pool);
+  static constexpr std::array<float, 6> kDepths{0.5f, 1.0f, 1.9f, 2.0f, 4.0f, 50.0f};
+  static constexpr std::array<std::uint16_t, 12> kSpecialColours{0x0000, 0x8000, 0x0001, 0x03FF,
+                                                                 0x83FF, 0x0400, 0x3C00, 0x3555,
+                                                                 0x7BFF, 0xFBFF, 0x7C00, 0xB800};
+  static constexpr std::array<std::uint16_t, 8> kSpecialDepths{0x0000, 0x8000, 0x0001, 0x3C00,
+                                                               0x4000, 0x4880, 0x7BFF, 0x7C00};
+  RandomNumbers random{seed};
+  Image image = make_image(Format::rgba16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    const auto values = row<std::uint16_t>(image, y);
+    for (int x = 0; x < width; ++x) {
+      std::uint16_t* texel = &values[static_cast<std::size_t>(4 * x)];
+      for (int i = 0; i < 3; ++i) {
+        texel[i] = kind == Picture::special && random.below(8) == 0
+                       ? kSpecialColours[static_cast<std::size_t>(random.below(12))]
+                       : float_to_half(random.between(0.0f, 3.0f), HalfRounding::nearest_even);
+      }
+      float depth = random.between(0.3f, 20.0f);
+      if (kind == Picture::steps) {
+        depth = kDepths[static_cast<std::size_t>((x / 7 * 31 + y / 5 * 17) % 6)];
+      }
+      texel[3] = float_to_half(depth, HalfRounding::nearest_even);
+      if (kind == Picture::special && random.below(4) == 0) {
+        texel[3] = kSpecialDepths[static_cast<std::size_t>(random.below(8))];
+      }
+    }
+  }
+  return image;
+}
+
+struct FilterCase {
+  Picture picture;
+  int width;
+  int height;
+  DofSettings settings;
+};
+
+void filter_both(const Bench& bench, Tally& tally, const char* method, const FilterCase& what) {
+  const Image picture = make_picture(what.picture, what.width, what.height, 4711, bench);
+  const GlTexture texture = upload(picture);
+  const GlTarget filtered = filter_on_gl(bench.gl, bench.shaders, method, what.settings, texture,
+                                         what.width, what.height);
+  add_pictures(tally, read_colour(filtered, 0),
+               find_method(method)->apply({picture, what.settings, bench.profile}, bench.pool));
+}
+
+DofSettings focused(float radius_at_infinity_px, float focus_m, float max_coc_px,
+                    float leak = 1.0f) {
+  return {{radius_at_infinity_px, focus_m}, max_coc_px, leak};
+}
+
+}  // namespace
+
+void add_filter_cases(std::vector<Case>& cases) {
+  for (const char* method : {"two-pass", "one-pass"}) {
+    const bool rings = method == std::string_view("one-pass");
+    const auto add = [&](const std::string& name, bool quick, bool slow_too,
+                         const FilterCase& what) {
+      cases.push_back({method, name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
+                         filter_both(bench, tally, method, what);
+                       }});
+    };
+    for (const int radius : {1, 4, 16, 64}) {
+      const DofSettings lens =
+          focused(static_cast<float>(radius) * 1.5f, 2.0f, static_cast<float>(radius));
+      const std::string name = "radius" + std::to_string(radius);
+      const bool heavy = rings && radius == 64;
+      add("random-64x64-" + name, !heavy, radius <= (rings ? 4 : 16),
+          {Picture::random, 64, 64, lens});
+      add("steps-160x120-" + name, false, radius <= 4, {Picture::steps, 160, 120, lens});
+      if (heavy) continue;
+      add("figures-512x512-" + name, false, false, {Picture::figures, 512, 512, lens});
+      if (rings && radius == 16) continue;
+      add("figures-1024x1024-" + name, false, false, {Picture::figures, 1024, 1024, lens});
+    }
+    add("special-values", true, true, {Picture::special, 64, 64, focused(6.0f, 2.0f, 4.0f)});
+    add("special-values-odd", false, true, {Picture::special, 33, 51, focused(6.0f, 2.0f, 4.0f)});
+    add("odd-333x517", false, false, {Picture::steps, 333, 517, focused(12.0f, 2.0f, 8.0f)});
+    add("wide-1024x512", false, false, {Picture::figures, 1024, 512, focused(12.0f, 2.0f, 8.0f)});
+    add("one-pixel", true, true, {Picture::random, 1, 1, focused(12.0f, 2.0f, 8.0f)});
+    add("one-column", true, true, {Picture::random, 1, 300, focused(12.0f, 2.0f, 8.0f)});
+    add("lens-nothing-in-focus", false, true,
+        {Picture::random, 48, 48, focused(4000.0f, 1000.0f, 8.0f)});
+    add("lens-all-sharp", false, true, {Picture::random, 48, 48, focused(1e-6f, 2.0f, 8.0f)});
+    add("lens-half-pixel-radius", false, true,
+        {Picture::random, 48, 48, focused(3.0f, 2.0f, 0.5f)});
+    add("lens-fractional-radius", true, true, {Picture::random, 48, 48, focused(9.0f, 2.0f, 6.7f)});
+    add("lens-no-filter", false, true, {Picture::random, 48, 48, focused(3.0f, 2.0f, 0.0f)});
+    add("lens-no-leak", false, true, {Picture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.0f)});
+    add("lens-leak-0.3", true, true, {Picture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.3f)});
+    add("lens-huge-leak", false, true, {Picture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 1e30f)});
+  }
+}
+
+}  // namespace softfocus

@@ -1,0 +1,101 @@
+#include "tools/crosscheck/run_cases.h"
+
+#include <fnmatch.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/crosscheck/cases.h"
+#include "tools/gl/driver_process.h"
+#include "tools/image_file.h"
+#include "tools/whole_file.h"
+
+namespace softfocus {
+namespace {
+
+using nlohmann::json;
+
+std::vector<Case> chosen_cases(const std::string& pattern, bool quick, bool slow) {
+  std::vector<Case> chosen;
+  for (Case& one : crosscheck_cases()) {
+    const std::string name = one.stage + '/' + one.name;
+    const bool wanted = (one.quick || !quick) && (one.slow_too || !slow);
+    if (wanted && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) chosen.push_back(one);
+  }
+  return chosen;
+}
+
+void write_picture(const Tally& tally, const CrosscheckWork& work, const Case& one) {
+  const std::string name =
+      std::string(work.driver.name) + '.' + one.stage + '.' + one.name + ".png";
+  WholeFile file{work.pictures / name};
+  file.write(encode_png(side_by_side(tally)));
+  file.commit();
+}
+
+json line_of(const Case& one, const Tally& tally, const std::string& error) {
+  json line{{"stage", one.stage},           {"name", one.name},         {"values", tally.values},
+            {"differing", tally.differing}, {"max_ulp", tally.max_ulp}, {"error", error}};
+  if (tally.first) {
+    const FirstDifference& first = *tally.first;
+    line["first"] = {{"x", first.x},
+                     {"y", first.y},
+                     {"channel", first.channel},
+                     {"driver", first.driver},
+                     {"emulated", first.emulated},
+                     {"where", first.where}};
+  }
+  return line;
+}
+
+CaseResult result_of(const json& line) {
+  CaseResult result{line.at("stage"),   line.at("name"), line.at("values"), line.at("differing"),
+                    line.at("max_ulp"), std::nullopt,    line.at("error")};
+  if (line.contains("first")) {
+    const json& first = line["first"];
+    result.first = {first.at("x"),      first.at("y"),        first.at("channel"),
+                    first.at("driver"), first.at("emulated"), first.at("where")};
+  }
+  return result;
+}
+
+// In the driver's process.
+void compare_all(const CrosscheckWork& work, const SendLine& send) {
+  const GlContext gl{work.driver};
+  send(json{{"renderer", gl.renderer() + ", OpenGL " + gl.version()}}.dump());
+  ThreadPool pool{work.threads};
+  const Bench bench{gl, work.shaders, work.profile, pool};
+  for (const Case& one : chosen_cases(work.cases, work.quick, work.driver.slow)) {
+    Tally tally;
+    std::string error;
+    try {
+      one.run(bench, tally);
+    } catch (const DriverError& refused) {
+      error = refused.what();
+    }
+    if (tally.differing != 0 && !work.pictures.empty()) write_picture(tally, work, one);
+    send(line_of(one, tally, error).dump());
+  }
+}
+
+}  // namespace
+
+DriverRun run_cases(const CrosscheckWork& work,
+                    const std::function<void(const CaseResult&)>& report) {
+  DriverRun run;
+  run.error = run_driver_process([&](const SendLine& send) { compare_all(work, send); },
+                                 [&](const std::string& text) {
+                                   const json line = json::parse(text);
+                                   if (line.contains("renderer")) {
+                                     run.renderer = line["renderer"];
+                                   } else {
+                                     report(result_of(line));
+                                   }
+                                 });
+  return run;
+}
+
+int matching_cases(const std::string& pattern, bool quick, bool slow) {
+  return static_cast<int>(chosen_cases(pattern, quick, slow).size());
+}
+
+}  // namespace softfocus

@@ -1,0 +1,51 @@
+#pragma once
+// Runs cases on a driver, in a process of its own: Mesa settles for one driver and one
+// set of CPU features a process, and a driver that crashes takes nothing else along.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "raster/numbers/profile.h"
+#include "tools/crosscheck/tally.h"
+#include "tools/gl/driver.h"
+#include "tools/gl/shaders.h"
+
+namespace softfocus {
+
+struct CaseResult {
+  std::string stage;
+  std::string name;
+  std::uint64_t values = 0;
+  std::uint64_t differing = 0;
+  std::uint32_t max_ulp = 0;
+  std::optional<FirstDifference> first;
+  std::string error;  ///< what the driver refused, instead of a comparison
+};
+
+struct CrosscheckWork {
+  const Driver& driver;
+  Profile profile;
+  Shaders shaders;
+  std::string cases = "*";  ///< a pattern for "stage/name"
+  bool quick = false;
+  std::filesystem::path pictures;  ///< where to write what differs; empty: nowhere
+  int threads = 1;
+};
+
+/// What a driver's process said besides its results.
+struct DriverRun {
+  std::string renderer;  ///< GL_RENDERER and GL_VERSION
+  std::string error;     ///< why the driver could not be used, or how it ended
+};
+
+/// Calls `report` for each case as it is done.
+DriverRun run_cases(const CrosscheckWork& work,
+                    const std::function<void(const CaseResult&)>& report);
+
+/// How many cases the pattern stands for, on a driver of that speed.
+int matching_cases(const std::string& pattern, bool quick, bool slow);
+
+}  // namespace softfocus

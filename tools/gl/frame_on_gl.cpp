@@ -1,0 +1,41 @@
+#include "tools/gl/frame_on_gl.h"
+
+#include "tools/gl/filter_on_gl.h"
+#include "tools/gl/scene_on_gl.h"
+
+namespace softfocus {
+
+struct FrameOnGl::State {
+  GlContext context;
+  Shaders shaders;
+};
+
+FrameOnGl::FrameOnGl(const Driver& driver) {
+  try {
+    state_.reset(new State{GlContext{driver}, {}});
+  } catch (const DriverError& error) {
+    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
+  }
+}
+
+FrameOnGl::~FrameOnGl() = default;
+
+std::string FrameOnGl::renderer() const {
+  return state_->context.renderer() + ", OpenGL " + state_->context.version();
+}
+
+Image FrameOnGl::draw(const Scene& scene, const View& view, double frame, int width, int height) {
+  GlScene on_gl{state_->context, state_->shaders, scene};
+  const GlTarget target = make_scene_target(width, height);
+  on_gl.draw(view, frame, target);
+  return read_colour(target, 0);
+}
+
+Image FrameOnGl::filter(const Method& method, const DofSettings& settings, const Image& scene) {
+  if (method.name == "pinhole") return scene;
+  const GlTarget result = filter_on_gl(state_->context, state_->shaders, method.name, settings,
+                                       upload(scene), scene.width, scene.height);
+  return read_colour(result, 0);
+}
+
+}  // namespace softfocus

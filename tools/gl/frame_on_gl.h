@@ -1,0 +1,34 @@
+#pragma once
+// A frame rendered by a GL driver in this process: what `render --gl` does.
+
+#include <memory>
+#include <string>
+
+#include "dof/method.h"
+#include "scenes/scene.h"
+#include "scenes/view.h"
+#include "tools/gl/driver.h"
+
+namespace softfocus {
+
+class FrameOnGl {
+ public:
+  /// Opens the driver; throws DriverError.
+  explicit FrameOnGl(const Driver& driver);
+  ~FrameOnGl();
+
+  /// GL_RENDERER and GL_VERSION.
+  std::string renderer() const;
+
+  /// As draw_scene: RGBA16F, depth in alpha.
+  Image draw(const Scene& scene, const View& view, double frame, int width, int height);
+
+  /// As the method's apply(). Throws DriverError for a method that has no shader.
+  Image filter(const Method& method, const DofSettings& settings, const Image& scene);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softfocus

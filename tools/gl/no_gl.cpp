@@ -1,0 +1,32 @@
+// Stands in for what needs GL in a build without libepoxy.
+
+#include "tools/crosscheck/probe.h"
+#include "tools/crosscheck/run_cases.h"
+#include "tools/gl/frame_on_gl.h"
+
+namespace softfocus {
+namespace {
+
+[[noreturn]] void refuse() {
+  throw DriverError(
+      "this program was built without GL drivers, because libepoxy was not there; "
+      "docs/building.md says how to build it with them");
+}
+
+}  // namespace
+
+DriverRun run_cases(const CrosscheckWork&, const std::function<void(const CaseResult&)>&) {
+  refuse();
+}
+int matching_cases(const std::string&, bool, bool) { refuse(); }
+
+Probe probe_driver(const Driver&) { refuse(); }
+
+struct FrameOnGl::State {};
+FrameOnGl::FrameOnGl(const Driver&) { refuse(); }
+FrameOnGl::~FrameOnGl() = default;
+std::string FrameOnGl::renderer() const { refuse(); }
+Image FrameOnGl::draw(const Scene&, const View&, double, int, int) { refuse(); }
+Image FrameOnGl::filter(const Method&, const DofSettings&, const Image&) { refuse(); }
+
+}  // namespace softfocus

@@ -1,0 +1,286 @@
+#include "tools/gl/objects.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace softfocus {
+namespace {
+
+struct PixelFormat {
+  GLenum internal;
+  GLenum layout;
+  GLenum type;
+};
+
+PixelFormat pixel_format(Format format) {
+  switch (format) {
+    case Format::r8: return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+    case Format::rgba8: return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case Format::srgb8: return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case Format::rgba16f: return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    case Format::r32f: return {GL_R32F, GL_RED, GL_FLOAT};
+    case Format::rgba32f: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+  }
+  return {};
+}
+
+GLint wrap_mode(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::repeat: return GL_REPEAT;
+    case Wrap::mirrored_repeat: return GL_MIRRORED_REPEAT;
+    case Wrap::clamp_to_edge: return GL_CLAMP_TO_EDGE;
+  }
+  return GL_REPEAT;
+}
+
+GLint minification(Filter filter) {
+  switch (filter) {
+    case Filter::nearest: return GL_NEAREST_MIPMAP_NEAREST;
+    case Filter::bilinear: return GL_LINEAR_MIPMAP_NEAREST;
+    case Filter::trilinear: return GL_LINEAR_MIPMAP_LINEAR;
+  }
+  return GL_NEAREST;
+}
+
+// Rows without the padding that ours have.
+std::vector<std::byte> packed(const Image& image) {
+  const std::size_t row_bytes =
+      static_cast<std::size_t>(image.width) * bytes_per_texel(image.format);
+  std::vector<std::byte> bytes(row_bytes * static_cast<std::size_t>(image.height));
+  for (int y = 0; y < image.height; ++y) {
+    const auto at = static_cast<std::size_t>(y);
+    std::copy_n(image.bytes.data() + at * image.stride_bytes, row_bytes,
+                bytes.data() + at * row_bytes);
+  }
+  return bytes;
+}
+
+Image unpacked(const std::vector<std::byte>& bytes, Format format, int width, int height) {
+  Image image = make_image(format, width, height);
+  const std::size_t row_bytes = static_cast<std::size_t>(width) * bytes_per_texel(format);
+  for (int y = 0; y < height; ++y) {
+    const auto at = static_cast<std::size_t>(y);
+    std::copy_n(bytes.data() + at * row_bytes, row_bytes,
+                image.bytes.data() + at * image.stride_bytes);
+  }
+  return image;
+}
+
+std::vector<std::byte> room_for(Format format, int width, int height) {
+  return std::vector<std::byte>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                                bytes_per_texel(format));
+}
+
+// Textures are made and read in a unit that no program uses, so that what is bound for
+// a draw stays bound.
+void bind_for_work(GLuint texture) {
+  glActiveTexture(GL_TEXTURE15);
+  glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+GlTexture new_texture() {
+  GLuint name = 0;
+  glGenTextures(1, &name);
+  bind_for_work(name);
+  return GlTexture{name};
+}
+
+void set_parameter(GLenum parameter, GLint value) {
+  glTexParameteri(GL_TEXTURE_2D, parameter, value);
+}
+
+void check_error(const char* doing) {
+  const GLenum error = glGetError();
+  if (error == GL_NO_ERROR) return;
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  const char* what = error == GL_OUT_OF_MEMORY                   ? "out of memory"
+                     : error == GL_INVALID_FRAMEBUFFER_OPERATION ? "incomplete framebuffer"
+                     : error == GL_INVALID_VALUE                 ? "invalid value"
+                     : error == GL_INVALID_ENUM                  ? "invalid enum"
+                                                                 : "invalid operation";
+  throw DriverError(std::string(doing) + ": GL says " + what);
+}
+
+GlTexture empty_texture(GLenum internal, GLenum layout, GLenum type, int width, int height) {
+  GlTexture texture = new_texture();
+  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), width, height, 0, layout, type,
+               nullptr);
+  set_parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  set_parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  set_parameter(GL_TEXTURE_MAX_LEVEL, 0);
+  return texture;
+}
+
+GLuint compile(GLenum stage, const std::string& source, std::string_view name) {
+  const GLuint shader = glCreateShader(stage);
+  const char* text = source.c_str();
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  GLint good = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  if (good == GL_TRUE) return shader;
+  std::array<char, 512> log{};
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+  glDeleteShader(shader);
+  const std::string complaint = log.data();
+  throw DriverError(std::string(name) + ": " + complaint.substr(0, complaint.find('\n')));
+}
+
+GLint location(const GlProgram& program, const char* name) {
+  glUseProgram(program);
+  return glGetUniformLocation(program, name);
+}
+
+}  // namespace
+
+GlTexture upload(const Texture& texture, const Sampler& sampler) {
+  GlTexture name = new_texture();
+  for (std::size_t level = 0; level < texture.levels.size(); ++level) {
+    const Image& image = texture.levels[level];
+    const PixelFormat format = pixel_format(image.format);
+    glTexImage2D(GL_TEXTURE_2D, static_cast<GLint>(level), static_cast<GLint>(format.internal),
+                 image.width, image.height, 0, format.layout, format.type, packed(image).data());
+  }
+  set_parameter(GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(texture.levels.size()) - 1);
+  set_parameter(GL_TEXTURE_MIN_FILTER, minification(sampler.filter));
+  set_parameter(GL_TEXTURE_MAG_FILTER, sampler.filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
+  set_parameter(GL_TEXTURE_WRAP_S, wrap_mode(sampler.wrap_u));
+  set_parameter(GL_TEXTURE_WRAP_T, wrap_mode(sampler.wrap_v));
+  check_error("uploading a texture");
+  return name;
+}
+
+GlTexture upload(const Image& image) {
+  return upload(make_texture(image), {Filter::nearest, Wrap::clamp_to_edge, Wrap::clamp_to_edge});
+}
+
+void generate_levels(const GlTexture& texture) {
+  bind_for_work(texture);
+  set_parameter(GL_TEXTURE_MAX_LEVEL, 1000);
+  glGenerateMipmap(GL_TEXTURE_2D);
+  check_error("generating mipmaps");
+}
+
+Image read_level(const GlTexture& texture, Format format, int level, int width, int height) {
+  std::vector<std::byte> bytes = room_for(format, width, height);
+  const PixelFormat as = pixel_format(format);
+  bind_for_work(texture);
+  glGetTexImage(GL_TEXTURE_2D, level, as.layout, as.type, bytes.data());
+  check_error("reading a texture back");
+  return unpacked(bytes, format, width, height);
+}
+
+GlTarget make_target(std::span<const Format> formats, int width, int height, bool with_depth) {
+  GlTarget target{width, height, {formats.begin(), formats.end()}, {}, {}, {}};
+  GLuint name = 0;
+  glGenFramebuffers(1, &name);
+  target.framebuffer = GlFramebuffer{name};
+  glBindFramebuffer(GL_FRAMEBUFFER, name);
+  std::vector<GLenum> buffers;
+  for (const Format format : formats) {
+    const PixelFormat as = pixel_format(format);
+    target.colour.push_back(empty_texture(as.internal, as.layout, as.type, width, height));
+    buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(buffers.size()));
+    glFramebufferTexture2D(GL_FRAMEBUFFER, buffers.back(), GL_TEXTURE_2D, target.colour.back(), 0);
+  }
+  if (with_depth) {
+    target.depth =
+        empty_texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, width, height);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth, 0);
+  }
+  glDrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw DriverError("the driver cannot draw into " + std::to_string(width) + "x" +
+                      std::to_string(height) + " textures of the format asked for");
+  }
+  return target;
+}
+
+void bind(const GlTarget& target) {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  glViewport(0, 0, target.width, target.height);
+}
+
+Image read_colour(const GlTarget& target, std::size_t index) {
+  const Format format = target.formats[index];
+  const PixelFormat as = pixel_format(format);
+  std::vector<std::byte> bytes = room_for(format, target.width, target.height);
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+  glReadPixels(0, 0, target.width, target.height, as.layout, as.type, bytes.data());
+  check_error("reading a picture back");
+  return unpacked(bytes, format, target.width, target.height);
+}
+
+Image read_depth(const GlTarget& target) {
+  std::vector<std::byte> bytes = room_for(Format::r32f, target.width, target.height);
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  glReadPixels(0, 0, target.width, target.height, GL_DEPTH_COMPONENT, GL_FLOAT, bytes.data());
+  check_error("reading depth back");
+  return unpacked(bytes, Format::r32f, target.width, target.height);
+}
+
+GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
+                       std::string_view fragment, const std::string& defines) {
+  const std::string header = context.shader_header() + defines;
+  GlProgram program{glCreateProgram()};
+  for (const auto& [stage, name] :
+       {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
+    const GLuint shader = compile(static_cast<GLenum>(stage), header + shaders.source(name), name);
+    glAttachShader(program, shader);
+    glDeleteShader(shader);  // with the program
+  }
+  glLinkProgram(program);
+  GLint good = GL_FALSE;
+  glGetProgramiv(program, GL_LINK_STATUS, &good);
+  if (good != GL_TRUE) {
+    std::array<char, 512> log{};
+    glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    const std::string complaint = log.data();
+    throw DriverError("linking " + std::string(vertex) + " and " + std::string(fragment) + ": " +
+                      complaint.substr(0, complaint.find('\n')));
+  }
+  return program;
+}
+
+void set_uniform(const GlProgram& program, const char* name, int value) {
+  glUniform1i(location(program, name), value);
+}
+void set_uniform(const GlProgram& program, const char* name, float value) {
+  glUniform1f(location(program, name), value);
+}
+void set_uniform(const GlProgram& program, const char* name, glm::ivec2 value) {
+  glUniform2i(location(program, name), value.x, value.y);
+}
+void set_uniform(const GlProgram& program, const char* name, glm::vec3 value) {
+  glUniform3f(location(program, name), value.x, value.y, value.z);
+}
+void set_uniform(const GlProgram& program, const char* name, glm::vec4 value) {
+  glUniform4f(location(program, name), value.x, value.y, value.z, value.w);
+}
+void set_uniform(const GlProgram& program, const char* name, const glm::mat3& value) {
+  glUniformMatrix3fv(location(program, name), 1, GL_FALSE, &value[0][0]);
+}
+void set_uniform(const GlProgram& program, const char* name, const glm::mat4& value) {
+  glUniformMatrix4fv(location(program, name), 1, GL_FALSE, &value[0][0]);
+}
+
+void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, texture);
+  set_uniform(program, name, unit);
+}
+
+void draw_fullscreen(const GlTarget& target, const GlProgram& program) {
+  bind(target);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glUseProgram(program);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  check_error("a full-screen pass");
+}
+
+}  // namespace softfocus

@@ -1,0 +1,97 @@
+#pragma once
+// GL's objects as values that clean up after themselves, and the ways between them and
+// softfocus' images. Nothing here converts a number: what goes up and comes back are
+// the image's own bits.
+
+#include <epoxy/gl.h>
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "raster/images/sampler.h"
+#include "tools/gl/context.h"
+#include "tools/gl/shaders.h"
+
+namespace softfocus {
+
+/// Owner of one GL name.
+template <void (*destroy)(GLuint)>
+class GlName {
+ public:
+  GlName() = default;
+  explicit GlName(GLuint name) : name_(name) {}
+  GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlName& operator=(GlName&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~GlName() {
+    if (name_ != 0) destroy(name_);
+  }
+  operator GLuint() const { return name_; }  // NOLINT(google-explicit-constructor)
+
+ private:
+  GLuint name_ = 0;
+};
+
+inline void destroy_texture(GLuint name) { glDeleteTextures(1, &name); }
+inline void destroy_buffer(GLuint name) { glDeleteBuffers(1, &name); }
+inline void destroy_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+inline void destroy_program(GLuint name) { glDeleteProgram(name); }
+
+using GlTexture = GlName<destroy_texture>;
+using GlBuffer = GlName<destroy_buffer>;
+using GlFramebuffer = GlName<destroy_framebuffer>;
+using GlProgram = GlName<destroy_program>;
+
+/// A texture with all its levels; one level is sampled without mipmaps.
+GlTexture upload(const Texture& texture, const Sampler& sampler);
+/// An image for texelFetch.
+GlTexture upload(const Image& image);
+/// Replaces all levels but the first by what the driver makes of it.
+void generate_levels(const GlTexture& texture);
+/// A level as an image of the texture's format; the size is the level's.
+Image read_level(const GlTexture& texture, Format format, int level, int width, int height);
+
+/// What is drawn into: colour textures of one size, and a depth buffer on request.
+struct GlTarget {
+  int width = 0;
+  int height = 0;
+  std::vector<Format> formats;
+  GlFramebuffer framebuffer;
+  std::vector<GlTexture> colour;
+  GlTexture depth;
+};
+GlTarget make_target(std::span<const Format> formats, int width, int height, bool with_depth);
+/// Binds the target and its viewport.
+void bind(const GlTarget& target);
+Image read_colour(const GlTarget& target, std::size_t index);
+Image read_depth(const GlTarget& target);
+
+/// Compiles and links two of the project's shaders (tools/gl/shaders.h). `defines` come
+/// after the version line. Throws DriverError with the driver's first complaint.
+GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
+                       std::string_view fragment, const std::string& defines = {});
+
+/// Uniforms of the program in use; one that the compiler dropped is passed over.
+void set_uniform(const GlProgram& program, const char* name, int value);
+void set_uniform(const GlProgram& program, const char* name, float value);
+void set_uniform(const GlProgram& program, const char* name, glm::ivec2 value);
+void set_uniform(const GlProgram& program, const char* name, glm::vec3 value);
+void set_uniform(const GlProgram& program, const char* name, glm::vec4 value);
+void set_uniform(const GlProgram& program, const char* name, const glm::mat3& value);
+void set_uniform(const GlProgram& program, const char* name, const glm::mat4& value);
+/// Binds a texture to a unit and the sampler uniform to it.
+void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture);
+
+/// One triangle over the whole target, for programs with fullscreen.vert.
+void draw_fullscreen(const GlTarget& target, const GlProgram& program);
+
+}  // namespace softfocus

@@ -1,0 +1,128 @@
+#include "tools/gl/scene_on_gl.h"
+
+#include <algorithm>
+
+#include "scenes/draw_scene.h"
+#include "scenes/surface_draws.h"
+
+namespace softfocus {
+namespace {
+
+template <class Value>
+GlBuffer make_buffer(GLenum target, const std::vector<Value>& values) {
+  GLuint name = 0;
+  glGenBuffers(1, &name);
+  glBindBuffer(target, name);
+  glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(Value)), values.data(),
+               GL_STATIC_DRAW);
+  return GlBuffer{name};
+}
+
+void set_attribute(GLuint location, const GlBuffer& buffer, GLint components) {
+  glBindBuffer(GL_ARRAY_BUFFER, buffer);
+  glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, 0, nullptr);
+  glEnableVertexAttribArray(location);
+}
+
+void set_lights(const GlProgram& program, const SurfaceVertexInput& input) {
+  set_uniform(program, "ambient_light", input.ambient_light);
+  set_uniform(program, "light_count", static_cast<int>(input.lights.size()));
+  for (std::size_t i = 0; i < input.lights.size(); ++i) {
+    const Light& light = input.lights[i];
+    const std::string at = '[' + std::to_string(i) + ']';
+    const float is_point = light.kind == LightKind::point ? 1.0f : 0.0f;
+    set_uniform(program, ("light_position" + at).c_str(),
+                glm::vec4{light.position_or_direction, is_point});
+    set_uniform(program, ("light_colour" + at).c_str(), light.colour);
+  }
+}
+
+void set_material(const GlProgram& program, const Material& material) {
+  set_uniform(program, "material_ambient", material.ambient);
+  set_uniform(program, "material_diffuse", material.diffuse);
+  set_uniform(program, "material_specular", material.specular);
+  set_uniform(program, "material_shininess", material.shininess);
+  set_uniform(program, "material_lit", material.lit ? 1 : 0);
+}
+
+// The picture's row 0, its top, is GL's lowest row: turned over, what we see as
+// counter-clockwise is clockwise to GL.
+void set_state(const DrawState& state) {
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_BLEND);
+  glFrontFace(state.front_face == FrontFace::counter_clockwise ? GL_CW : GL_CCW);
+  if (state.cull == Cull::none) {
+    glDisable(GL_CULL_FACE);
+  } else {
+    glEnable(GL_CULL_FACE);
+    glCullFace(state.cull == Cull::back ? GL_BACK : GL_FRONT);
+  }
+}
+
+}  // namespace
+
+GlScene::GlScene(const GlContext& context, const Shaders& shaders, const Scene& scene)
+    : context_(context), shaders_(shaders), scene_(scene) {
+  for (const softfocus::Mesh& mesh : scene.meshes) {
+    std::vector<glm::vec2> uvs = mesh.uvs;
+    uvs.resize(mesh.positions.size());
+    meshes_.push_back(
+        {make_buffer(GL_ARRAY_BUFFER, mesh.positions), make_buffer(GL_ARRAY_BUFFER, mesh.normals),
+         make_buffer(GL_ARRAY_BUFFER, uvs), make_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices)});
+  }
+  for (const Material& material : scene.materials) {
+    if (!material.texture) continue;
+    textures_.emplace(&material, upload(scene.textures[*material.texture], material.sampler));
+  }
+}
+
+const GlProgram& GlScene::program(SurfaceVariant variant) {
+  GlProgram& program = programs_[(variant.textured ? 4u : 0u) + (variant.specular ? 2u : 0u) +
+                                 (variant.two_sided ? 1u : 0u)];
+  if (program != 0) return program;
+  std::string defines =
+      "#define MAX_LIGHTS " + std::to_string(std::max<std::size_t>(scene_.lights.size(), 1)) + '\n';
+  if (variant.textured) defines += "#define TEXTURED\n";
+  if (variant.specular) defines += "#define SPECULAR\n";
+  if (variant.two_sided) defines += "#define TWO_SIDED\n";
+  program = link_program(context_, shaders_, "surface.vert", "surface.frag", defines);
+  return program;
+}
+
+void GlScene::draw(const View& view, double frame, const GlTarget& target) {
+  bind(target);
+  const glm::vec4 clear = clear_colour(scene_);
+  glClearColor(clear.r, clear.g, clear.b, clear.a);
+  glClearDepth(1.0);
+  glDepthMask(GL_TRUE);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  for (const SurfaceDraw& surface : surface_draws(scene_, view, frame)) {
+    const SurfaceVertexInput& input = surface.input;
+    const GlProgram& used = program(surface.variant);
+    set_uniform(used, "to_clip", input.to_clip);
+    set_uniform(used, "to_world", input.to_world);
+    set_uniform(used, "normal_to_world", input.normal_to_world);
+    set_uniform(used, "eye", input.eye);
+    set_lights(used, input);
+    set_material(used, *input.material);
+    if (surface.variant.textured) {
+      set_texture(used, "surface_texture", 0, textures_.at(input.material));
+    }
+    set_state(surface.state);
+    const Mesh& mesh = meshes_[static_cast<std::size_t>(input.mesh - scene_.meshes.data())];
+    set_attribute(0, mesh.positions, 3);
+    set_attribute(1, mesh.normals, 3);
+    set_attribute(2, mesh.uvs, 2);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(input.mesh->indices.size()), GL_UNSIGNED_INT,
+                   nullptr);
+  }
+  for (const GLuint attribute : {0u, 1u, 2u}) glDisableVertexAttribArray(attribute);
+}
+
+GlTarget make_scene_target(int width, int height) {
+  return make_target(std::array{Format::rgba16f}, width, height, true);
+}
+
+}  // namespace softfocus

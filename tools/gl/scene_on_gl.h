@@ -1,0 +1,45 @@
+#pragma once
+// A scene drawn by a GL driver with the project's shaders: the same draws as
+// scenes/draw_scene.h gives the emulation.
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "scenes/surface_stages.h"
+#include "scenes/view.h"
+#include "tools/gl/objects.h"
+
+namespace softfocus {
+
+/// A scene's meshes and textures on the driver. The scene must outlive it.
+class GlScene {
+ public:
+  GlScene(const GlContext& context, const Shaders& shaders, const Scene& scene);
+
+  /// Draws one frame into an RGBA16F target with depth, cleared first.
+  void draw(const View& view, double frame, const GlTarget& target);
+
+ private:
+  struct Mesh {
+    GlBuffer positions;
+    GlBuffer normals;
+    GlBuffer uvs;
+    GlBuffer indices;
+  };
+
+  const GlContext& context_;
+  Shaders shaders_;
+  const Scene& scene_;
+  std::vector<Mesh> meshes_;
+  std::map<const Material*, GlTexture> textures_;  // a material has one sampler
+  std::array<GlProgram, 8> programs_;              // by variant, made when first used
+
+  const GlProgram& program(SurfaceVariant variant);
+};
+
+/// An RGBA16F target with depth, and the picture that `draw` leaves in it.
+GlTarget make_scene_target(int width, int height);
+
+}  // namespace softfocus

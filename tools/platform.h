@@ -1,0 +1,43 @@
+#pragma once
+// What POSIX and Windows do each in a way of their own, in one place.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+namespace softfocus {
+
+/// Makes a closed pipe and a file-size limit errors of the write that meets them, not
+/// the silent end of the program, and standard output a stream of bytes.
+void prepare_process();
+
+/// The running program's number.
+int process_number();
+
+/// The machine's memory, or nullopt where the system does not tell.
+std::optional<std::uint64_t> memory_bytes();
+
+inline constexpr int kStandardOutput = 1;
+inline constexpr int kStandardError = 2;
+
+bool is_terminal(int descriptor);
+
+/// A descriptor to write bytes to what is there, or -1 with errno set.
+int open_existing(const std::filesystem::path& file);
+
+/// Likewise to a new file, with the permissions of the umask; EEXIST where the name is
+/// taken.
+int create_file(const std::filesystem::path& file);
+
+/// Whether an existing file may be written to; if not, errno says why.
+bool may_write(const std::filesystem::path& file);
+
+/// Writes some of the bytes, at least one, and returns how many; -1 with errno set.
+std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes);
+
+/// Closes a descriptor; false with errno set if what was written is lost.
+bool close_file(int descriptor);
+
+}  // namespace softfocus
