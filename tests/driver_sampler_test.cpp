@@ -240,3 +240,26 @@ TEST_CASE("a flushing lerp takes subnormals for zeros, before and after each ope
     CHECK(lerp(0.0f, 0x1p-126f, 0.5f, profile) == 0x1p-127f);
   }
 }
+
+TEST_CASE("softpipe's cache hands out another tile's texel where two of a fetch share a slot") {
+  // Texels are their own numbers, y * 256 + x.
+  Image image = make_image(Format::rgba32f, 256, 256);
+  for (int y = 0; y < 256; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      store_texel(image, x, y, glm::vec4{static_cast<float>(y * 256 + x)}, {});
+    }
+  }
+  const Texture texture = make_texture(std::move(image));
+  const Sampler sampler{Filter::bilinear, Wrap::repeat, Wrap::repeat};
+  // Half-way between columns 255 and 0, on row y.
+  const auto on_seam = [&](int y) {
+    const float v = (static_cast<float>(y) + 0.5f) / 256.0f;
+    return sample(texture, sampler, {0.0f, v}, 0.0f, profile_named("softpipe")).x;
+  };
+  const auto mean = [](int a, int b) { return static_cast<float>(a + b) * 0.5f; };
+  CHECK(on_seam(30) == mean(30 * 256 + 255, 30 * 256));
+  // Rows 31 and 32 are in two tiles: that of (0, 31) has the slot of that of (255, 32),
+  // in whose place (224, 63) is where (0, 31) would be.
+  CHECK(on_seam(31) == mean(31 * 256 + 255, 63 * 256 + 224));
+  CHECK(on_seam(32) == mean(32 * 256 + 255, 32 * 256));
+}

@@ -18,6 +18,37 @@ int repeat(std::int32_t index, int size) {
   return static_cast<int>((static_cast<std::uint32_t>(index) + 1024 * length) % length);
 }
 
+struct Place {
+  int x;
+  int y;
+};
+
+// The driver fetches through a cache of 16 tiles of 32x32 texels, each with one possible
+// slot, and keeps where the four texels of a fetch stand in it, not their values. Where
+// two tiles of one fetch have the same slot (only at some corners of tiles on the seam
+// of a repeating texture), the later one's texels are read for both.
+constexpr int kTile = 32;
+
+int slot_of(int tile_x, int tile_y) { return (tile_x + 9 * tile_y) % 16; }
+
+// Which texel is read in place of (x, y), one of the four. Where that would be outside
+// the picture, in a tile that it fills in part, the driver reads what an earlier tile
+// has left there, which depends on all that was fetched before: (x, y) is given back.
+Place place_in_cache(const Image& image, int x, int y, const Taps& u, const Taps& v) {
+  const bool one_tile = u.first / kTile == u.second / kTile && v.first / kTile == v.second / kTile;
+  if (one_tile) return {x, y};
+  const int slot = slot_of(x / kTile, y / kTile);
+  for (const int row : {v.second, v.first}) {
+    for (const int column : {u.second, u.first}) {
+      if (slot_of(column / kTile, row / kTile) != slot) continue;
+      const Place place{column / kTile * kTile + x % kTile, row / kTile * kTile + y % kTile};
+      const bool inside = place.x < image.width && place.y < image.height;
+      return inside ? place : Place{x, y};
+    }
+  }
+  return {x, y};
+}
+
 bool is_power_of_two(int size) { return std::has_single_bit(static_cast<unsigned>(size)); }
 
 }  // namespace
@@ -97,9 +128,15 @@ glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::v
   };
   const auto mix = [&](float a, float b, float t) { return lerp(a, b, t, profile); };
   const auto bilinear = [&](const Image& image) {
+    const Taps u = taps(uv.x, image.width, sampler.wrap_u);
+    const Taps v = taps(uv.y, image.height, sampler.wrap_v);
     const glm::vec4 value = filter_bilinear(
-        taps(uv.x, image.width, sampler.wrap_u), taps(uv.y, image.height, sampler.wrap_v),
-        [&](int x, int y) { return fetch_texel(image, x, y, profile); }, mix);
+        u, v,
+        [&](int x, int y) {
+          const Place place = place_in_cache(image, x, y, u, v);
+          return fetch_texel(image, place.x, place.y, profile);
+        },
+        mix);
     return with_missing_channels(value, image.format);
   };
   if (sampler.filter == Filter::bilinear) return bilinear(texture.levels[nearest_level]);

@@ -13,9 +13,10 @@ namespace softfocus {
 /// sample() as softpipe does it. Coordinates past 2^22 texels read some texel, the same
 /// as in the driver.
 ///
-/// One thing is left out: its cache of 64x64 tiles now and then hands out texels of
-/// another tile, where a fetch on the seam of a repeating texture larger than a tile,
-/// with a side that is no power of two, reads four tiles at once.
+/// Its cache of tiles hands out texels of another tile at some corners of tiles on the
+/// seam of a repeating texture, say of 256x256. One thing of that is left out: where the
+/// other tile is filled in part, for a side that is no multiple of 32, what is read
+/// depends on all fetches before.
 glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
                           const Profile& profile);
 

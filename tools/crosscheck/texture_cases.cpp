@@ -134,7 +134,8 @@ std::string size_name(int width, int height) {
 constexpr std::pair<Wrap, const char*> kWraps[] = {
     {Wrap::repeat, "repeat"}, {Wrap::mirrored_repeat, "mirror"}, {Wrap::clamp_to_edge, "clamp"}};
 
-constexpr std::pair<int, int> kSizes[] = {{64, 32}, {37, 19}, {1, 16}, {1, 1}, {256, 256}};
+constexpr std::pair<int, int> kSizes[] = {{64, 32}, {37, 19},  {1, 16},
+                                          {1, 1},   {100, 75}, {256, 256}};
 
 }  // namespace
 
