@@ -2,6 +2,7 @@
 
 #include "raster/numbers/profile.h"
 #include "tests/gl_drivers.h"
+#include "tools/gl/driver.h"
 #include "tools/profile_file.h"
 
 using namespace softfocus;
@@ -34,7 +35,7 @@ void check_probe_finds_profile(const std::string& driver) {
   CHECK(run.out + run.err == "");
   const Profile probed = load_profile(file);
   CHECK(probed.name == driver + "-probed");
-  check_same_arithmetic(probed, find_profile(driver).value());
+  check_same_arithmetic(probed, find_profile(find_driver(driver)->profile).value());
 }
 
 }  // namespace
@@ -113,19 +114,21 @@ TEST_CASE("render: --profile takes a file") {
 }
 
 TEST_CASE("render: --gl gives the bits of the emulation with the driver's profile") {
-  for (const char* driver : {"llvmpipe", "llvmpipe-sse41"}) {
+  for (const char* driver : {"llvmpipe", "llvmpipe-sse41", "softpipe"}) {
     if (!has_driver(driver)) return;
     const TemporaryDirectory directory;
     for (const char* method : {"two-pass", "one-pass", "pinhole"}) {
-      const auto render = [&](const std::string& option, const std::string& name) {
+      const auto render = [&](const std::string& option, const std::string& value,
+                              const std::string& name) {
         const ProgramRun run =
             run_program({"render", "cube-room", "--size", "96x64", "--method", method, "--max-coc",
-                         "6", option, driver, "-o", directory.file(name)});
+                         "6", option, value, "-o", directory.file(name)});
         CHECK(run.status == 0);
         CHECK(run.err == "");
         return read_file(directory.file(name));
       };
-      CHECK(render("--gl", "a.npy") == render("--profile", "b.npy"));
+      const std::string profile{find_driver(driver)->profile};
+      CHECK(render("--gl", driver, "a.npy") == render("--profile", profile, "b.npy"));
     }
   }
 }

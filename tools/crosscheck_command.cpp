@@ -78,6 +78,7 @@ void print_result(const CaseResult& result) {
   std::cout << "    first at pixel " << first.x << ',' << first.y << " channel " << first.channel
             << (first.where.empty() ? "" : ", " + first.where) << ": driver " << first.driver
             << ", emulation " << first.emulated << '\n';
+  if (!result.picture.empty()) std::cout << "    " << result.picture << '\n';
 }
 
 ordered_json json_of(const Driver& driver, const Profile& profile, const CaseResult& result) {
@@ -85,6 +86,7 @@ ordered_json json_of(const Driver& driver, const Profile& profile, const CaseRes
                      {"stage", result.stage},    {"case", result.name},
                      {"values", result.values},  {"differing", result.differing},
                      {"max_ulp", result.max_ulp}};
+  if (!result.picture.empty()) entry["picture"] = result.picture;
   if (!result.error.empty()) entry["error"] = result.error;
   if (result.first) {
     const FirstDifference& first = *result.first;

@@ -24,17 +24,25 @@ std::vector<Case> chosen_cases(const std::string& pattern, bool quick, bool slow
   return chosen;
 }
 
-void write_picture(const Tally& tally, const CrosscheckWork& work, const Case& one) {
-  const std::string name =
-      std::string(work.driver.name) + '.' + one.stage + '.' + one.name + ".png";
-  WholeFile file{work.pictures / name};
+// Returns the file's name.
+std::string write_picture(const Tally& tally, const CrosscheckWork& work, const Case& one) {
+  const auto name =
+      work.pictures / (std::string(work.driver.name) + '.' + one.stage + '.' + one.name + ".png");
+  WholeFile file{name};
   file.write(encode_png(side_by_side(tally)));
   file.commit();
+  return name.string();
 }
 
-json line_of(const Case& one, const Tally& tally, const std::string& error) {
-  json line{{"stage", one.stage},           {"name", one.name},         {"values", tally.values},
-            {"differing", tally.differing}, {"max_ulp", tally.max_ulp}, {"error", error}};
+json line_of(const Case& one, const Tally& tally, const std::string& picture,
+             const std::string& error) {
+  json line{{"stage", one.stage},
+            {"name", one.name},
+            {"values", tally.values},
+            {"differing", tally.differing},
+            {"max_ulp", tally.max_ulp},
+            {"picture", picture},
+            {"error", error}};
   if (tally.first) {
     const FirstDifference& first = *tally.first;
     line["first"] = {{"x", first.x},
@@ -48,8 +56,8 @@ json line_of(const Case& one, const Tally& tally, const std::string& error) {
 }
 
 CaseResult result_of(const json& line) {
-  CaseResult result{line.at("stage"),   line.at("name"), line.at("values"), line.at("differing"),
-                    line.at("max_ulp"), std::nullopt,    line.at("error")};
+  CaseResult result{line.at("stage"),   line.at("name"), line.at("values"),  line.at("differing"),
+                    line.at("max_ulp"), std::nullopt,    line.at("picture"), line.at("error")};
   if (line.contains("first")) {
     const json& first = line["first"];
     result.first = {first.at("x"),      first.at("y"),        first.at("channel"),
@@ -72,8 +80,10 @@ void compare_all(const CrosscheckWork& work, const SendLine& send) {
     } catch (const DriverError& refused) {
       error = refused.what();
     }
-    if (tally.differing != 0 && !work.pictures.empty()) write_picture(tally, work, one);
-    send(line_of(one, tally, error).dump());
+    std::string picture;
+    if (tally.differing != 0 && !work.pictures.empty()) picture = write_picture(tally, work, one);
+    // Neither a driver's words nor a file's name need be UTF-8.
+    send(line_of(one, tally, picture, error).dump(-1, ' ', false, json::error_handler_t::replace));
   }
 }
 

@@ -22,7 +22,8 @@ struct CaseResult {
   std::uint64_t differing = 0;
   std::uint32_t max_ulp = 0;
   std::optional<FirstDifference> first;
-  std::string error;  ///< what the driver refused, instead of a comparison
+  std::string picture;  ///< the file that shows the difference, if one was asked for
+  std::string error;    ///< what the driver refused, instead of a comparison
 };
 
 struct CrosscheckWork {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "dof/difference.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
 
@@ -110,6 +111,20 @@ bool same_texel(const Image& a, const Image& b, int x, int y) {
   return true;
 }
 
+// Where and, for halves, how much.
+Image difference_map(const Tally& tally) {
+  const Image& driver = tally.driver;
+  if (driver.format == Format::rgba16f) return difference_picture(driver, tally.emulated);
+  Image map = make_image(Format::rgba16f, driver.width, driver.height);
+  for (int y = 0; y < driver.height; ++y) {
+    for (int x = 0; x < driver.width; ++x) {
+      const float white = same_texel(driver, tally.emulated, x, y) ? 0.0f : 1.0f;
+      store_texel(map, x, y, {white, white, white, 1.0f}, {});
+    }
+  }
+  return map;
+}
+
 }  // namespace
 
 void add_pictures(Tally& tally, const Image& driver, const Image& emulated,
@@ -125,6 +140,7 @@ void add_pictures(Tally& tally, const Image& driver, const Image& emulated,
 
 Image side_by_side(const Tally& tally) {
   const Image& driver = tally.driver;
+  const Image map = difference_map(tally);
   const float scale = 1.0f / largest_magnitude(driver);
   const int gap = 4;
   Image result = make_image(Format::rgba16f, 3 * driver.width + 2 * gap, driver.height);
@@ -134,8 +150,7 @@ Image side_by_side(const Tally& tally) {
     for (int x = 0; x < driver.width; ++x) {
       store_texel(result, x, y, load_texel(driver, x, y) * scale, {});
       store_texel(result, x + step, y, load_texel(tally.emulated, x, y) * scale, {});
-      const float white = same_texel(driver, tally.emulated, x, y) ? 0.0f : 1.0f;
-      store_texel(result, x + 2 * step, y, {white, white, white, 1.0f}, {});
+      store_texel(result, x + 2 * step, y, load_texel(map, x, y), {});
     }
   }
   return result;

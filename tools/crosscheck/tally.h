@@ -35,8 +35,10 @@ struct Tally {
 void add_pictures(Tally& tally, const Image& driver, const Image& emulated,
                   const std::string& where = {});
 
-/// The two pictures side by side and what differs, as RGBA16F to look at: scaled to
-/// 0..1 by the largest finite magnitude if that is past 1, the difference white.
+/// The driver's picture, the emulation's, and a map of what differs, side by side, as
+/// RGBA16F to look at. The pictures are scaled by their largest finite magnitude if that
+/// is past 1. In the map black is equal; halves are coloured as by difference_picture,
+/// other formats white.
 Image side_by_side(const Tally& tally);
 
 }  // namespace softfocus

@@ -16,11 +16,19 @@ Environment mesa(const char* gallium_driver, const char* cpu_caps) {
           {"MESA_GLSL_VERSION_OVERRIDE", nullptr},  {"MESA_SHADER_CACHE_DISABLE", "true"}};
 }
 
+// llvmpipe fuses where the CPU can, and computes as with SSE4.1 where it cannot.
+std::string_view profile_of_llvmpipe() {
+#if defined(__x86_64__) || defined(__i386__)
+  if (__builtin_cpu_supports("fma") == 0) return "llvmpipe-sse41";
+#endif
+  return "llvmpipe";
+}
+
 }  // namespace
 
 std::span<const Driver> drivers() {
   static const std::array kDrivers{
-      Driver{"llvmpipe", "Mesa's software renderer, compiled for this CPU", "llvmpipe",
+      Driver{"llvmpipe", "Mesa's software renderer, compiled for this CPU", profile_of_llvmpipe(),
              mesa("llvmpipe", nullptr), "llvmpipe"},
       Driver{"llvmpipe-sse41", "the same held to SSE4.1, without fused multiply-add",
              "llvmpipe-sse41", mesa("llvmpipe", "sse4.1"), "llvmpipe"},

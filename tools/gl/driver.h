@@ -19,8 +19,8 @@ struct DriverError : std::runtime_error {
 struct Driver {
   std::string_view name;
   std::string_view summary;
-  /// The profile that it is compared with unless another is given; empty for a GPU,
-  /// whose profile has to be probed first.
+  /// The profile that it is compared with unless another is given, on this CPU; empty
+  /// for a GPU, whose profile has to be probed first.
   std::string_view profile;
   /// Environment variables that Mesa reads when the first display is opened; one
   /// without a value is unset.
