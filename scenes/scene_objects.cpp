@@ -122,7 +122,7 @@ void read_scatter(Section& section, const NamedSurfaces& surfaces, std::vector<B
   for (const Ball& ball : *balls) {
     object.position = ball.centre;
     object.scale = glm::dvec3{ball.radius / mesh_radius};
-    object.material = materials[next_bits(random) % materials.size()];
+    object.material = materials[static_cast<std::size_t>(next_bits(random) % materials.size())];
     if (turned) {
       for (int axis = 0; axis < 3; ++axis) {
         object.rotation_degrees[axis] = next_between(random, 0.0, 360.0);

@@ -1,9 +1,11 @@
 #include "tools/platform.h"
 
 #ifdef _WIN32
-// As few names as may be: there are macros called near and far.
+// As few macros as may be: there are some called min, near and far.
 #define WIN32_LEAN_AND_MEAN
+#ifndef NOMINMAX  // libstdc++ has it too
 #define NOMINMAX
+#endif
 #include <fcntl.h>
 #include <io.h>
 #include <process.h>
