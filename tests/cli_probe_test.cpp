@@ -19,6 +19,7 @@ void check_same_arithmetic(const Profile& a, const Profile& b) {
   CHECK(a.lerp == b.lerp);
   CHECK(a.viewport == b.viewport);
   CHECK(a.guard_band == b.guard_band);
+  CHECK(a.clipping == b.clipping);
   CHECK(a.coverage == b.coverage);
   CHECK(a.subpixel_bits == b.subpixel_bits);
   CHECK(a.fill_rule == b.fill_rule);
@@ -36,6 +37,24 @@ void check_probe_finds_profile(const std::string& driver) {
   const Profile probed = load_profile(file);
   CHECK(probed.name == driver + "-probed");
   check_same_arithmetic(probed, find_profile(find_driver(driver)->profile).value());
+}
+
+void check_render_on_gl(const std::string& driver) {
+  if (!has_driver(driver)) return;
+  const TemporaryDirectory directory;
+  const std::string profile{find_driver(driver)->profile};
+  for (const char* method : {"two-pass", "one-pass", "pinhole"}) {
+    const auto render = [&](const std::string& option, const std::string& value,
+                            const std::string& name) {
+      const ProgramRun run =
+          run_program({"render", "cube-room", "--size", "96x64", "--method", method, "--max-coc",
+                       "6", option, value, "-o", directory.file(name)});
+      CHECK(run.status == 0);
+      CHECK(run.err == "");
+      return read_file(directory.file(name));
+    };
+    CHECK(render("--gl", driver, "a.npy") == render("--profile", profile, "b.npy"));
+  }
 }
 
 }  // namespace
@@ -113,25 +132,11 @@ TEST_CASE("render: --profile takes a file") {
   CHECK(ieee != truncating);
 }
 
-TEST_CASE("render: --gl gives the bits of the emulation with the driver's profile") {
-  for (const char* driver : {"llvmpipe", "llvmpipe-sse41", "softpipe"}) {
-    if (!has_driver(driver)) return;
-    const TemporaryDirectory directory;
-    for (const char* method : {"two-pass", "one-pass", "pinhole"}) {
-      const auto render = [&](const std::string& option, const std::string& value,
-                              const std::string& name) {
-        const ProgramRun run =
-            run_program({"render", "cube-room", "--size", "96x64", "--method", method, "--max-coc",
-                         "6", option, value, "-o", directory.file(name)});
-        CHECK(run.status == 0);
-        CHECK(run.err == "");
-        return read_file(directory.file(name));
-      };
-      const std::string profile{find_driver(driver)->profile};
-      CHECK(render("--gl", driver, "a.npy") == render("--profile", profile, "b.npy"));
-    }
-  }
+TEST_CASE("render: --gl llvmpipe gives the bits of its profile") { check_render_on_gl("llvmpipe"); }
+TEST_CASE("render: --gl llvmpipe-sse41 gives the bits of its profile") {
+  check_render_on_gl("llvmpipe-sse41");
 }
+TEST_CASE("render: --gl softpipe gives the bits of its profile") { check_render_on_gl("softpipe"); }
 
 TEST_CASE("render: --gl and --profile exclude each other") {
   const ProgramRun run = run_program(
@@ -150,4 +155,16 @@ TEST_CASE("shaders: lists them, and writes them out whole") {
   CHECK(run_program({"shaders", "-o", directory.path()}).status == 0);
   CHECK(contains(read_file(directory.file("weights.glsl")), "float overlap("));
   CHECK(run_program({"shaders", "-o", directory.file("none")}).status == 2);
+  CHECK(run_program({"shaders", "-o", ""}).status == 2);
+}
+
+TEST_CASE("shaders: a file of the user's own is not replaced") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("two_pass.frag"), "mine");
+  const ProgramRun run = run_program({"shaders", "-o", directory.path()});
+  CHECK(run.status == 1);
+  CHECK(is_one_line(run.err));
+  CHECK(contains(run.err, "two_pass.frag: is there and differs"));
+  CHECK(directory.listing() == std::vector<std::string>{"two_pass.frag"});
+  CHECK(read_file(directory.file("two_pass.frag")) == "mine");
 }

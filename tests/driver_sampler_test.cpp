@@ -149,7 +149,7 @@ TEST_CASE("softpipe reads the texel beside the one at whose centre a mirrored fe
   CHECK(sample_row(texture, mirrored, 0.375f, "softpipe") == 2.0f);
 }
 
-TEST_CASE("llvmpipe rounds the lod to the nearest level, ties to even; softpipe ties up") {
+TEST_CASE("llvmpipe rounds the lod to the nearest level, ties to even, and softpipe ties up") {
   const Texture texture = numbered_levels();
   const auto level = [&](float lod, const char* name) {
     return sample(texture, kEdge, {0.4f, 0.4f}, lod, profile_named(name)).x;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raster/parallel.h"
+#include "scenes/scene_error.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/crosscheck/run_cases.h"
@@ -15,6 +16,7 @@
 #include "tools/errors.h"
 #include "tools/option_values.h"
 #include "tools/profile_option.h"
+#include "tools/whole_file.h"
 
 namespace softfocus {
 namespace {
@@ -31,9 +33,16 @@ struct CrosscheckOptions {
   std::optional<Profile> profile;
   std::string cases = "*";
   std::filesystem::path pictures;
-  std::filesystem::path shaders;
+  Shaders shaders;
   bool quick = false;
   bool json = false;
+};
+
+/// What a driver is to do.
+struct DriverWork {
+  const Driver* driver;
+  Profile profile;
+  int cases;
 };
 
 Profile profile_for(const Driver& driver, const CrosscheckOptions& options) {
@@ -46,14 +55,27 @@ Profile profile_for(const Driver& driver, const CrosscheckOptions& options) {
   return find_profile(driver.profile).value();
 }
 
-// Without --driver: those whose profile is known.
-std::vector<const Driver*> chosen_drivers(const CrosscheckOptions& options) {
-  if (!options.drivers.empty()) return options.drivers;
-  std::vector<const Driver*> chosen;
-  for (const Driver& driver : drivers()) {
-    if (!driver.profile.empty()) chosen.push_back(&driver);
+// Without --driver: those whose profile is known. All that can be wrong with the options
+// is found here, before a driver has worked for minutes.
+std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
+  std::vector<const Driver*> chosen = options.drivers;
+  if (chosen.empty()) {
+    for (const Driver& driver : drivers()) {
+      if (!driver.profile.empty()) chosen.push_back(&driver);
+    }
   }
-  return chosen;
+  std::vector<DriverWork> work;
+  for (const Driver* driver : chosen) {
+    const Profile profile = profile_for(*driver, options);
+    const int cases = matching_cases(options.cases, options.quick, driver->slow);
+    if (cases == 0 && matching_cases(options.cases, false, false) == 0) {
+      throw UsageError("--case '" + options.cases +
+                       "' matches no case; names look like coverage/slivers-20000, and "
+                       "--case 'coverage/*' takes a whole stage");
+    }
+    work.push_back({driver, profile, cases});
+  }
+  return work;
 }
 
 std::string padded(std::string text, std::size_t width) {
@@ -61,31 +83,39 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
+bool was_compared(const CaseResult& result) { return result.values != 0; }
+
 void print_result(const CaseResult& result) {
   std::cout << "  " << padded(result.stage + '/' + result.name, 52);
+  if (was_compared(result)) {
+    std::cout << padded(std::to_string(result.differing) + " of " + std::to_string(result.values),
+                        24);
+  }
   if (!result.error.empty()) {
-    std::cout << "failed: " << result.error << '\n';
-    return;
-  }
-  std::cout << padded(std::to_string(result.differing) + " of " + std::to_string(result.values),
-                      24);
-  if (result.differing == 0) {
+    std::cout << "failed: " << printable(result.error) << '\n';
+  } else if (result.differing == 0) {
     std::cout << "equal\n";
-    return;
+  } else {
+    std::cout << "largest " << result.max_ulp << " ULP\n";
   }
-  std::cout << "largest " << result.max_ulp << " ULP\n";
+  if (!result.first) return;
   const FirstDifference& first = *result.first;
   std::cout << "    first at pixel " << first.x << ',' << first.y << " channel " << first.channel
             << (first.where.empty() ? "" : ", " + first.where) << ": driver " << first.driver
             << ", emulation " << first.emulated << '\n';
-  if (!result.picture.empty()) std::cout << "    " << result.picture << '\n';
+  if (!result.picture.empty()) std::cout << "    " << printable(result.picture) << '\n';
 }
 
-ordered_json json_of(const Driver& driver, const Profile& profile, const CaseResult& result) {
-  ordered_json entry{{"driver", driver.name},    {"profile", profile.name},
-                     {"stage", result.stage},    {"case", result.name},
-                     {"values", result.values},  {"differing", result.differing},
-                     {"max_ulp", result.max_ulp}};
+ordered_json json_of(const DriverWork& work, const CaseResult& result) {
+  ordered_json entry{{"driver", work.driver->name}, {"profile", work.profile.name},
+                     {"stage", result.stage},       {"case", result.name},
+                     {"values", result.values},     {"differing", nullptr},
+                     {"max_ulp", nullptr}};
+  // What was not compared is not equal.
+  if (was_compared(result)) {
+    entry["differing"] = result.differing;
+    entry["max_ulp"] = result.max_ulp;
+  }
   if (!result.picture.empty()) entry["picture"] = result.picture;
   if (!result.error.empty()) entry["error"] = result.error;
   if (result.first) {
@@ -97,55 +127,115 @@ ordered_json json_of(const Driver& driver, const Profile& profile, const CaseRes
   return entry;
 }
 
+// For a driver that could not be used, or not to its end.
+ordered_json json_of(const DriverWork& work, const std::string& error) {
+  return {{"driver", work.driver->name},
+          {"profile", work.profile.name},
+          {"stage", nullptr},
+          {"case", nullptr},
+          {"values", 0},
+          {"differing", nullptr},
+          {"max_ulp", nullptr},
+          {"error", error}};
+}
+
+struct Count {
+  int planned = 0;
+  int run = 0;
+  int equal = 0;
+  int different = 0;
+  int failed = 0;
+};
+
+void add(Count& count, const CaseResult& result) {
+  ++count.run;
+  count.different += result.differing != 0 ? 1 : 0;
+  count.failed += !result.error.empty() ? 1 : 0;
+  count.equal += result.differing == 0 && result.error.empty() ? 1 : 0;
+}
+
+void print_summary(const Count& count, const CrosscheckOptions& options) {
+  std::cout << count.equal << " of " << count.planned << " cases equal";
+  if (count.failed != 0) std::cout << ", " << count.failed << " failed";
+  if (count.run != count.planned) std::cout << ", " << count.planned - count.run << " not run";
+  if (count.different != 0 && options.pictures.empty()) {
+    std::cout << "; --diff DIR shows where";
+  }
+  std::cout << '\n';
+}
+
 int crosscheck(const CrosscheckOptions& options) {
   ordered_json entries = ordered_json::array();
-  int cases = 0, equal = 0, failed = 0;
+  Count count;
   bool complete = true;
-  for (const Driver* driver : chosen_drivers(options)) {
-    const Profile profile = profile_for(*driver, options);
-    if (matching_cases(options.cases, options.quick, driver->slow) == 0) {
-      if (matching_cases(options.cases, false, false) == 0) {
-        throw UsageError("--case '" + options.cases +
-                         "' matches no case; names look like coverage/slivers-20000, and "
-                         "--case 'coverage/*' takes a whole stage");
+  for (const DriverWork& work : planned_work(options)) {
+    count.planned += work.cases;
+    std::string error;
+    if (work.cases == 0) {
+      error = "no case of --case '" + options.cases + "' is for this driver" +
+              (options.quick ? " and --quick" : "");
+    } else {
+      if (!options.json) {
+        std::cout << work.driver->name << " against profile " << printable(work.profile.name)
+                  << '\n';
       }
-      std::cerr << "softfocus: " << driver->name << ": no case of --case '" << options.cases
-                << "' is run on this driver" << (options.quick ? " with --quick" : "") << '\n';
-      continue;
+      const DriverRun run = run_cases({*work.driver, work.profile, options.shaders, options.cases,
+                                       options.quick, options.pictures, hardware_threads()},
+                                      [&](const CaseResult& result) {
+                                        add(count, result);
+                                        if (options.json) {
+                                          entries.push_back(json_of(work, result));
+                                        } else {
+                                          print_result(result);
+                                          std::cout.flush();
+                                        }
+                                      });
+      if (!options.json && !run.renderer.empty()) {
+        std::cout << "  (" << printable(run.renderer) << ")\n";
+      }
+      error = run.error;
     }
-    if (!options.json) std::cout << driver->name << " against profile " << profile.name << '\n';
-    const CrosscheckWork work{*driver,       profile,          {options.shaders}, options.cases,
-                              options.quick, options.pictures, hardware_threads()};
-    const DriverRun run = run_cases(work, [&](const CaseResult& result) {
-      ++cases;
-      if (!result.error.empty()) {
-        ++failed;
-      } else if (result.differing == 0) {
-        ++equal;
-      }
-      if (options.json) {
-        entries.push_back(json_of(*driver, profile, result));
-      } else {
-        print_result(result);
-        std::cout.flush();
-      }
-    });
-    if (!options.json && !run.renderer.empty()) std::cout << "  (" << run.renderer << ")\n";
-    if (!run.error.empty()) {
-      complete = false;
-      std::cout.flush();
-      std::cerr << "softfocus: driver " << driver->name << ": " << run.error << '\n';
-    }
+    if (error.empty()) continue;
+    complete = false;
+    entries.push_back(json_of(work, error));
+    std::cout.flush();
+    std::cerr << "softfocus: driver " << work.driver->name << ": " << printable(error) << '\n';
   }
   if (options.json) {
-    std::cout << entries.dump(2) << '\n';
+    // A file's name need not be UTF-8, but JSON must be.
+    std::cout << entries.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
   } else {
-    std::cout << equal << " of " << cases << " cases equal";
-    if (failed != 0) std::cout << ", " << failed << " failed";
-    std::cout << '\n';
+    print_summary(count, options);
   }
-  if (equal + failed < cases) return kDifferent;
-  return complete && failed == 0 ? kEqual : kIncomplete;
+  if (count.different != 0) return kDifferent;
+  return complete && count.failed == 0 ? kEqual : kIncomplete;
+}
+
+// A folder that pictures can be written into.
+std::filesystem::path checked_folder(const std::string& text) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(text, unknown)) {
+    throw UsageError("--diff '" + text + "': there is no such folder");
+  }
+  const std::filesystem::path folder{text};
+  try {
+    check_writable(folder / "picture.png");
+  } catch (const FileError& error) {
+    throw UsageError(std::string("--diff: ") + error.what());
+  }
+  return folder;
+}
+
+Shaders checked_shaders(const std::string& text) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(text, unknown)) {
+    throw UsageError("--shaders '" + text + "': there is no such folder");
+  }
+  try {
+    return read_shaders(text);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(std::string("--shaders: ") + error.what());
+  }
 }
 
 }  // namespace
@@ -156,26 +246,21 @@ Command add_crosscheck_command(CLI::App& program) {
                                             "value; status 0 equal, 1 different, 2 error");
   const auto options = std::make_shared<CrosscheckOptions>();
   add_driver_option(*parser, "Driver to compare with, may be repeated (default: Mesa's three)",
-                    [options](const Driver& driver) { options->drivers.push_back(&driver); });
+                    [options](const Driver& driver) {
+                      auto& chosen = options->drivers;
+                      if (std::find(chosen.begin(), chosen.end(), &driver) == chosen.end()) {
+                        chosen.push_back(&driver);
+                      }
+                    });
   add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
                      [options](const Profile& profile) { options->profile = profile; });
   add_value(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
             [options](const std::string& text) { options->cases = text; });
   add_value(*parser, "--shaders", "DIR",
             "Shaders there take the place of those of the same name (see softfocus shaders)",
-            [options](const std::string& text) {
-              if (!std::filesystem::is_directory(text)) {
-                throw UsageError("--shaders '" + text + "': there is no such folder");
-              }
-              options->shaders = text;
-            });
+            [options](const std::string& text) { options->shaders = checked_shaders(text); });
   add_value(*parser, "--diff", "DIR", "Write a picture there for each case that differs",
-            [options](const std::string& text) {
-              if (!std::filesystem::is_directory(text)) {
-                throw UsageError("--diff '" + text + "': there is no such folder");
-              }
-              options->pictures = text;
-            });
+            [options](const std::string& text) { options->pictures = checked_folder(text); });
   parser->add_flag("--quick", options->quick, "A representative part, under a minute");
   parser->add_flag("--json", options->json, "Print JSON");
   return {parser, [options] { return crosscheck(*options); }};

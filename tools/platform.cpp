@@ -70,6 +70,11 @@ bool close_file(int descriptor) { return ::_close(descriptor) == 0; }
 void prepare_process() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  // A stream that was closed would lend its number to the first file that is opened, and
+  // what is printed would go there. One that cannot be written to fails when it is.
+  for (const int stream : {0, kStandardOutput, kStandardError}) {
+    if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
+  }
 }
 
 int process_number() { return ::getpid(); }

@@ -29,6 +29,7 @@ constexpr std::array<std::string_view, 2> kDenormalWords{"keep", "flush"};
 constexpr std::array<std::string_view, 3> kTextureWords{"plain", "llvmpipe", "softpipe"};
 constexpr std::array<std::string_view, 2> kWeightWords{"binary32", "fixed-8"};
 constexpr std::array<std::string_view, 2> kFusedWords{"unfused", "fused"};
+constexpr std::array<std::string_view, 2> kClippingWords{"plain", "mesa"};
 constexpr std::array<std::string_view, 2> kCoverageWords{"edge-functions", "scanlines"};
 constexpr std::array<std::string_view, 2> kFillWords{"upper-left", "lower-left"};
 constexpr std::array<std::string_view, 3> kAttributeWords{"exact-barycentric", "planes-from-origin",
@@ -50,6 +51,8 @@ void for_each_choice(const Visit& visit) {
                                    "precision of filter weights, in a plain texture unit"});
   visit(ChoiceKey<Contraction>{"lerp", &P::lerp, kFusedWords, "a + t (b - a) in filters"});
   visit(ChoiceKey<Contraction>{"viewport", &P::viewport, kFusedWords, "ndc * scale + translate"});
+  visit(ChoiceKey<Clipping>{"clipping", &P::clipping, kClippingWords,
+                            "what happens across the clip planes"});
   visit(ChoiceKey<Coverage>{"coverage", &P::coverage, kCoverageWords,
                             "which pixels a triangle covers"});
   visit(ChoiceKey<FillRule>{"fill_rule", &P::fill_rule, kFillWords,

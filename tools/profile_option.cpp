@@ -12,7 +12,7 @@ Profile profile_of(const std::string& text) {
   if (const auto known = find_profile(text)) return *known;
   if (text.find_first_of("/\\.") == std::string::npos) {
     throw UsageError("--profile '" + text + "': there are " + names_of(profiles()) +
-                     "; or give a profile's file, such as ./" + text + ".toml");
+                     "; or give a profile's file, such as ./mine.toml");
   }
   try {
     return load_profile(text);

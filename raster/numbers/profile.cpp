@@ -30,6 +30,7 @@ Profile llvmpipe() {
           .lerp = Contraction::fused,
           .viewport = Contraction::fused,
           .guard_band = 1.0f,
+          .clipping = Clipping::mesa,
           .attributes = AttributeSetup::planes_from_origin,
           .interpolation = Contraction::fused};
 }
@@ -51,6 +52,7 @@ Profile softpipe() {
           .unorm_store = UnormRounding::nearest_even,
           .texture_unit = TextureUnit::softpipe,
           .guard_band = 1.0f,
+          .clipping = Clipping::mesa,
           .coverage = Coverage::scanlines,
           .attributes = AttributeSetup::planes_by_quad};
 }

@@ -46,6 +46,14 @@ enum class Coverage : std::uint8_t {
 /// level edges the upper or the lower one, as seen in the picture (row 0 on top).
 enum class FillRule : std::uint8_t { upper_left, lower_left };
 
+/// What triangles go through that are not wholly inside the clip planes.
+enum class Clipping : std::uint8_t {
+  plain,
+  /// Mesa 22.3's draw module: window-linear varyings are cut by their images' places, and
+  /// a batch of which a vertex is outside is culled by unsnapped positions too.
+  mesa,
+};
+
 /// How attributes are interpolated over a triangle.
 enum class AttributeSetup : std::uint8_t {
   /// Barycentric weights from the exact integer edge functions: always convex,
@@ -78,6 +86,7 @@ struct Profile {
   Contraction viewport = Contraction::unfused;
   /// Clip planes stand at |x| = guard_band * w: 1 is the viewport's edge. At most 16.
   float guard_band = 16.0f;
+  Clipping clipping = Clipping::plain;
   Coverage coverage = Coverage::edge_functions;
   int subpixel_bits = 8;  ///< of edge_functions: positions are multiples of 2^-bits, 4 to 8
   FillRule fill_rule = FillRule::upper_left;

@@ -70,7 +70,7 @@ unsigned clip_code(const glm::vec4& position, float guard_band) {
 void clip_polygon(ClipPolygon& polygon, unsigned planes, std::span<const Interpolation> varyings,
                   const Profile& profile) {
   const float guard_band = profile.guard_band;
-  const bool by_image = is_mesa(profile);
+  const bool by_image = profile.clipping == Clipping::mesa;
   for (int plane = 0; plane < kPlanes; ++plane) {
     if ((planes >> plane & 1u) == 0) continue;
     ClipPolygon kept;

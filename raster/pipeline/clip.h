@@ -35,19 +35,13 @@ struct ClipPolygon {
 inline constexpr unsigned kNotFinite = 1u << 6;
 unsigned clip_code(const glm::vec4& position, float guard_band);
 
-/// Whether the profile is a driver of Mesa's, which are those that interpolate by planes:
-/// their clipping stages have ways of their own.
-inline bool is_mesa(const Profile& profile) {
-  return profile.attributes != AttributeSetup::exact_barycentric;
-}
-
 /// Cuts the polygon by the planes whose bit is set. A new vertex on the edge between a
 /// and b, whose signed distances to the plane are d_a and d_b, starts from the nearer
 /// end (|d_a| < |d_b|, or the one inside if they are equal): a + t (b - a), for position
 /// and varyings, with t = d_a / (d_a - d_b). That is the same whichever way round a
 /// triangle goes, so two triangles with a common edge get the same point. Flat varyings
 /// are those of the end inside. For linear ones t is how far the vertex lies between the
-/// images of a and b in the window: t w_b / w. Mesa takes it from the images' x instead,
+/// images of a and b in the window: t w_b / w. Clipping::mesa takes it from the images' x instead,
 /// or their y if both ends have the same clip x; it has no value (NaN) on an edge that
 /// is seen upright, as those along the picture's left and right side are.
 /// A polygon that is cut away, or is at an infinite distance from a plane, has count 0.

@@ -1,4 +1,5 @@
-// With the blend function ONE, ONE: each pixel sums up what covered it.
+// Adds a triangle's amount to the pixels that it covers, with the blend function ONE, ONE.
+// Beside raster/pipeline/draw.h.
 flat in float count;
 out vec4 sum;
 

@@ -118,7 +118,7 @@ void add_clipped(const Draw& draw, Chunk<N>& chunk, const std::array<VertexOutpu
 // all of a batch through its clipping stages if any vertex is outside.
 template <class Draw>
 bool culls_unsnapped(const Draw& draw, std::size_t begin, std::size_t end) {
-  if (draw.state.cull == Cull::none || !is_mesa(draw.profile)) return false;
+  if (draw.state.cull == Cull::none || draw.profile.clipping != Clipping::mesa) return false;
   const auto indices = draw.indices.subspan(3 * begin, 3 * (end - begin));
   return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t i) {
     return clip_code(draw.vertices[i].position, draw.profile.guard_band) != 0;

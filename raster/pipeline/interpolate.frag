@@ -1,3 +1,4 @@
+// Each kind of attribute as it comes to the pixel. Beside raster/pipeline/interpolate.h.
 smooth in vec4 with_perspective;
 noperspective in vec4 in_window;
 flat in vec4 constant;

@@ -16,19 +16,23 @@ namespace {
 // What the picture holds that is filtered.
 enum class Picture {
   figures,  ///< a drawn scene
+  cube_room,
+  sphere_world,
   random,   ///< random colours, random depths
   steps,    ///< random colours on a few depths, in blocks: silhouettes
   special,  ///< half subnormals, 65504, infinities, zero and infinite depths
 };
 
-Image figures(int width, int height, const Profile& profile, ThreadPool& pool) {
-  const Scene scene = load_scene("figures", scene_search_path({}));
-  return draw_scene(scene, camera_view(scene.camera, 5, width, height), 5, width, height, profile,
-                    pool);
+Image drawn(const char* name, int width, int height, const Bench& bench) {
+  const Scene scene = load_scene(name, scene_search_path({}));
+  return draw_scene(scene, camera_view(scene.camera, 5, width, height), 5, width, height,
+                    bench.profile, bench.pool);
 }
 
 Image make_picture(Picture kind, int width, int height, unsigned seed, const Bench& bench) {
-  if (kind == Picture::figures) return figures(width, height, bench.profile, bench.pool);
+  if (kind == Picture::figures) return drawn("figures", width, height, bench);
+  if (kind == Picture::cube_room) return drawn("cube-room", width, height, bench);
+  if (kind == Picture::sphere_world) return drawn("sphere-world", width, height, bench);
   static constexpr std::array<float, 6> kDepths{0.5f, 1.0f, 1.9f, 2.0f, 4.0f, 50.0f};
   static constexpr std::array<std::uint16_t, 12> kSpecialColours{0x0000, 0x8000, 0x0001, 0x03FF,
                                                                  0x83FF, 0x0400, 0x3C00, 0x3555,
@@ -101,10 +105,15 @@ void add_filter_cases(std::vector<Case>& cases) {
       add("steps-160x120-" + name, false, radius <= 4, {Picture::steps, 160, 120, lens});
       if (heavy) continue;
       add("figures-512x512-" + name, false, false, {Picture::figures, 512, 512, lens});
-      if (rings && radius == 16) continue;
       add("figures-1024x1024-" + name, false, false, {Picture::figures, 1024, 1024, lens});
     }
     add("special-values", true, true, {Picture::special, 64, 64, focused(6.0f, 2.0f, 4.0f)});
+    add("special-values-radius16", false, !rings,
+        {Picture::special, 64, 64, focused(24.0f, 2.0f, 16.0f)});
+    add("cube-room-512x512-radius16", false, false,
+        {Picture::cube_room, 512, 512, focused(24.0f, 2.0f, 16.0f)});
+    add("sphere-world-512x512-radius16", false, false,
+        {Picture::sphere_world, 512, 512, focused(24.0f, 2.0f, 16.0f)});
     add("special-values-odd", false, true, {Picture::special, 33, 51, focused(6.0f, 2.0f, 4.0f)});
     add("odd-333x517", false, false, {Picture::steps, 333, 517, focused(12.0f, 2.0f, 8.0f)});
     add("wide-1024x512", false, false, {Picture::figures, 1024, 512, focused(12.0f, 2.0f, 8.0f)});

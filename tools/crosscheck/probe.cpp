@@ -11,6 +11,7 @@
 #include "raster/numbers/lerp.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/objects.h"
+#include "tools/option_values.h"
 
 namespace softfocus {
 namespace {
@@ -131,6 +132,20 @@ std::vector<Candidate> attribute_candidates(const Profile& profile) {
   return candidates;
 }
 
+std::vector<Candidate> clipping_candidates(const Profile& profile) {
+  std::vector<Candidate> candidates;
+  for (const Clipping clipping : {Clipping::plain, Clipping::mesa}) {
+    for (const float guard_band : {1.0f, 2.0f, 4.0f, 8.0f, 16.0f}) {
+      candidates.push_back({std::string(clipping == Clipping::plain ? "plain" : "as Mesa") +
+                                ", guard band " + std::to_string(static_cast<int>(guard_band)),
+                            profile});
+      candidates.back().profile.clipping = clipping;
+      candidates.back().profile.guard_band = guard_band;
+    }
+  }
+  return candidates;
+}
+
 // The driver's a * b + c at every texel.
 Image multiply_add_on_gl(Laboratory& lab, const std::array<Image, 3>& operands, bool precise) {
   const GlProgram program = link_program(lab.gl, lab.shaders, "fullscreen.vert", "arithmetic.frag",
@@ -228,24 +243,26 @@ ProbeFinding weight_table(Laboratory& lab) {
 
   const Image result = read_colour(target, 0);
   std::set<float> different;
+  std::string others;
   int exact = 0;
-  float farthest = 0.0f;
   for (int x = 0; x < kSteps; ++x) {
-    const float wanted = static_cast<float>(x) / static_cast<float>(kSteps);
-    const float weight = load_texel(result, x, 0).x;
-    exact += weight == wanted ? 1 : 0;
-    farthest = std::max(farthest, std::fabs(weight - wanted));
+    const float weight = load_texel(result, x, 0).x * static_cast<float>(kSteps);
+    if (weight == static_cast<float>(x)) {
+      ++exact;
+    } else {
+      others += ' ' + std::to_string(x) + ':' + short_number(static_cast<double>(weight));
+    }
     for (int y = 0; y < kFine; ++y) different.insert(load_texel(result, x, y).x);
   }
   return {"bilinear weights between two texels of a half texture",
           std::to_string(different.size()) + " different ones at 4096 positions",
-          std::to_string(exact) + " of the 256 steps of 1/256 exact, the farthest off by " +
-              std::to_string(farthest)};
+          std::to_string(exact) + " of the 256 steps of 1/256 exact" +
+              (others.empty() ? "" : ", the others in 256ths:" + others)};
 }
 
 // "NVIDIA H200/PCIe/SSE2" -> "nvidia-h200-pcie-sse2"
 std::string profile_name(const Driver& driver, const std::string& renderer) {
-  if (!driver.renderer.empty()) return std::string(driver.name) + "-probed";
+  if (is_software(driver)) return std::string(driver.name) + "-probed";
   std::string name;
   for (const char c : renderer) {
     const auto letter = static_cast<unsigned char>(c);
@@ -296,9 +313,8 @@ Probe probe_driver(const Driver& driver) {
       coverage_candidates(profile));
   // At an odd size a fused viewport transform differs from an unfused one.
   ask("attributes", {"attributes/inside-odd-size"}, attribute_candidates(profile));
-  ask("guard band", {"coverage/across-edges-5000", "attributes/across-edges"},
-      variants(profile, &P::guard_band,
-               {{1.0f, "1"}, {2.0f, "2"}, {4.0f, "4"}, {8.0f, "8"}, {16.0f, "16"}}));
+  ask("clipping", {"coverage/across-edges-4000", "attributes/across-edges"},
+      clipping_candidates(profile));
 
   profile.name = profile_name(driver, gl.renderer());
   profile.summary = probe.renderer;

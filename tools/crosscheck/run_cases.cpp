@@ -24,24 +24,24 @@ std::vector<Case> chosen_cases(const std::string& pattern, bool quick, bool slow
   return chosen;
 }
 
-// Returns the file's name.
-std::string write_picture(const Tally& tally, const CrosscheckWork& work, const Case& one) {
-  const auto name =
-      work.pictures / (std::string(work.driver.name) + '.' + one.stage + '.' + one.name + ".png");
+std::filesystem::path picture_name(const CrosscheckWork& work, const std::string& stage,
+                                   const std::string& name) {
+  return work.pictures / (std::string(work.driver.name) + '.' + stage + '.' + name + ".png");
+}
+
+void write_picture(const Tally& tally, const std::filesystem::path& name) {
   WholeFile file{name};
   file.write(encode_png(side_by_side(tally)));
   file.commit();
-  return name.string();
 }
 
-json line_of(const Case& one, const Tally& tally, const std::string& picture,
-             const std::string& error) {
+json line_of(const Case& one, const Tally& tally, bool has_picture, const std::string& error) {
   json line{{"stage", one.stage},
             {"name", one.name},
             {"values", tally.values},
             {"differing", tally.differing},
             {"max_ulp", tally.max_ulp},
-            {"picture", picture},
+            {"has_picture", has_picture},
             {"error", error}};
   if (tally.first) {
     const FirstDifference& first = *tally.first;
@@ -55,9 +55,17 @@ json line_of(const Case& one, const Tally& tally, const std::string& picture,
   return line;
 }
 
-CaseResult result_of(const json& line) {
-  CaseResult result{line.at("stage"),   line.at("name"), line.at("values"),  line.at("differing"),
-                    line.at("max_ulp"), std::nullopt,    line.at("picture"), line.at("error")};
+CaseResult result_of(const json& line, const CrosscheckWork& work) {
+  CaseResult result{line.at("stage"),
+                    line.at("name"),
+                    line.at("values"),
+                    line.at("differing"),
+                    line.at("max_ulp"),
+                    std::nullopt,
+                    "",
+                    line.at("error")};
+  if (line.at("has_picture"))
+    result.picture = picture_name(work, result.stage, result.name).string();
   if (line.contains("first")) {
     const json& first = line["first"];
     result.first = {first.at("x"),      first.at("y"),        first.at("channel"),
@@ -66,24 +74,31 @@ CaseResult result_of(const json& line) {
   return result;
 }
 
+// Neither a driver's words nor a file's name need be UTF-8.
+std::string text_of(const json& line) {
+  return line.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 // In the driver's process.
 void compare_all(const CrosscheckWork& work, const SendLine& send) {
   const GlContext gl{work.driver};
-  send(json{{"renderer", gl.renderer() + ", OpenGL " + gl.version()}}.dump());
+  send(text_of({{"renderer", gl.renderer() + ", OpenGL " + gl.version()}}));
   ThreadPool pool{work.threads};
   const Bench bench{gl, work.shaders, work.profile, pool};
   for (const Case& one : chosen_cases(work.cases, work.quick, work.driver.slow)) {
     Tally tally;
     std::string error;
+    bool has_picture = false;
     try {
       one.run(bench, tally);
-    } catch (const DriverError& refused) {
-      error = refused.what();
+      if (tally.differing != 0 && !work.pictures.empty()) {
+        write_picture(tally, picture_name(work, one.stage, one.name));
+        has_picture = true;
+      }
+    } catch (const std::exception& refused) {
+      error = refused.what();  // of this case; the others still run
     }
-    std::string picture;
-    if (tally.differing != 0 && !work.pictures.empty()) picture = write_picture(tally, work, one);
-    // Neither a driver's words nor a file's name need be UTF-8.
-    send(line_of(one, tally, picture, error).dump(-1, ' ', false, json::error_handler_t::replace));
+    send(text_of(line_of(one, tally, has_picture, error)));
   }
 }
 
@@ -98,7 +113,7 @@ DriverRun run_cases(const CrosscheckWork& work,
                                    if (line.contains("renderer")) {
                                      run.renderer = line["renderer"];
                                    } else {
-                                     report(result_of(line));
+                                     report(result_of(line, work));
                                    }
                                  });
   return run;

@@ -23,7 +23,7 @@ struct CaseResult {
   std::uint32_t max_ulp = 0;
   std::optional<FirstDifference> first;
   std::string picture;  ///< the file that shows the difference, if one was asked for
-  std::string error;    ///< what the driver refused, instead of a comparison
+  std::string error;    ///< what went wrong; with `values` 0, nothing was compared
 };
 
 struct CrosscheckWork {

@@ -2,11 +2,13 @@
 
 #include <dlfcn.h>
 #include <epoxy/gl.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdlib>
 #include <initializer_list>
 #include <string_view>
+#include <vector>
 
 namespace softfocus {
 namespace {
@@ -26,21 +28,35 @@ bool has_word(const char* words, std::string_view word) {
   return all.find(' ' + std::string(word) + ' ') != std::string::npos;
 }
 
-bool is_software(const std::string& renderer) {
+bool is_software_renderer(const std::string& renderer) {
   for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
     if (renderer.find(name) != std::string::npos) return true;
   }
   return false;
 }
 
-// Only the first driver of a process counts: Mesa reads these once.
+// Mesa reads its variables once: only the first driver of a process counts. Whatever
+// the user has set would change what a software driver computes, and goes; all but
+// where drivers are found. No shader compiled for another CPU comes out of a cache.
 void set_environment(const Driver& driver) {
-  for (const auto& [name, value] : driver.environment) {
-    if (value != nullptr) {
-      ::setenv(name, value, 1);
-    } else {
-      ::unsetenv(name);
+  static constexpr std::array<std::string_view, 10> kPrefixes{
+      "MESA_",     "GALLIUM_", "GALLIVM_", "LP_",   "DRAW_",
+      "SOFTPIPE_", "NIR_",     "ST_",      "TGSI_", "LIBGL_"};
+  std::vector<std::string> names;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    const std::string_view name = text.substr(0, text.find('='));
+    if (name == "LIBGL_DRIVERS_PATH") continue;
+    for (const std::string_view prefix : kPrefixes) {
+      if (name.starts_with(prefix)) names.emplace_back(name);
     }
+  }
+  for (const std::string& name : names) ::unsetenv(name.c_str());
+  ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+  ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+  ::setenv("GALLIUM_DRIVER", std::string(driver.gallium_driver).c_str(), 1);
+  if (!driver.cpu_caps.empty()) {
+    ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", std::string(driver.cpu_caps).c_str(), 1);
   }
 }
 
@@ -48,6 +64,11 @@ struct GlVersion {
   int major;
   int minor;
 };
+
+std::string string_of(GLenum name) {
+  const GLubyte* text = glGetString(name);
+  return text != nullptr ? reinterpret_cast<const char*>(text) : "unnamed";
+}
 
 // Hidden state that would differ between drivers is set as softfocus has it.
 void set_defaults() {
@@ -79,8 +100,8 @@ bool GlContext::open(EGLDisplay display) {
     if (context_ == EGL_NO_CONTEXT) continue;
     if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE)
       return false;
-    renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    version_ = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    renderer_ = string_of(GL_RENDERER);
+    version_ = string_of(GL_VERSION);
     shader_header_ =
         version.major >= 4
             ? "#version " + std::to_string(version.major * 100 + version.minor * 10) + " core\n"
@@ -102,9 +123,9 @@ void GlContext::close() {
 GlContext::GlContext(const Driver& driver) {
   require_library({"libEGL.so.1"}, "libegl1");
   require_library({"libOpenGL.so.0", "libGL.so.1"}, "libgl1");
-  set_environment(driver);
+  if (is_software(driver)) set_environment(driver);
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-  if (!driver.renderer.empty()) {
+  if (is_software(driver)) {
     if (!has_word(extensions, "EGL_MESA_platform_surfaceless")) {
       throw DriverError(
           "EGL has no EGL_MESA_platform_surfaceless; Debian's packages "
@@ -117,7 +138,7 @@ GlContext::GlContext(const Driver& driver) {
           "no OpenGL 3.3 core context from Mesa; Debian's package "
           "libgl1-mesa-dri has its drivers");
     }
-    if (!renderer_.starts_with(driver.renderer)) {
+    if (!renderer_.starts_with(driver.gallium_driver)) {
       const std::string got = renderer_;
       close();
       throw DriverError("EGL gave '" + got + "' instead");
@@ -133,7 +154,7 @@ GlContext::GlContext(const Driver& driver) {
     for (EGLint i = 0; i < count && context_ == EGL_NO_CONTEXT; ++i) {
       const bool opened = open(eglGetPlatformDisplayEXT(
           EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
-      if (opened && !is_software(renderer_)) break;
+      if (opened && !is_software_renderer(renderer_)) break;
       if (opened) seen += (seen.empty() ? "" : ", ") + renderer_;
       close();
     }

@@ -1,13 +1,10 @@
 #pragma once
-// The GL drivers that can be asked for by name, and how each is reached.
+// The GL drivers that can be asked for by name.
 
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 namespace softfocus {
 
@@ -22,14 +19,15 @@ struct Driver {
   /// The profile that it is compared with unless another is given, on this CPU; empty
   /// for a GPU, whose profile has to be probed first.
   std::string_view profile;
-  /// Environment variables that Mesa reads when the first display is opened; one
-  /// without a value is unset.
-  std::vector<std::pair<const char*, const char*>> environment;
-  /// What GL_RENDERER must begin with; empty for any hardware.
-  std::string_view renderer;
+  /// For Mesa's software drivers: which of them, and to which CPU features it is held
+  /// (empty: those there are). GL_RENDERER begins with the driver's name.
+  std::string_view gallium_driver;
+  std::string_view cpu_caps;
   /// Draws so slowly that it gets small pictures only.
   bool slow = false;
 };
+
+inline bool is_software(const Driver& driver) { return !driver.gallium_driver.empty(); }
 
 /// llvmpipe, llvmpipe-sse41, softpipe, gpu.
 std::span<const Driver> drivers();

@@ -4,12 +4,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <iostream>
 
-#include "tools/gl/driver.h"
+#include "scenes/scene_error.h"
 
 namespace softfocus {
 namespace {
@@ -17,7 +18,8 @@ namespace {
 constexpr char kError = '!';  // begins the line that says what went wrong
 constexpr char kLine = '.';
 
-void write_all(int pipe, std::string text) {
+void send_line(int pipe, char kind, const std::string& line) {
+  const std::string text = kind + printable(line) + '\n';
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t count = ::write(pipe, text.data() + done, text.size() - done);
     if (count < 0 && errno != EINTR) ::_exit(1);
@@ -27,55 +29,73 @@ void write_all(int pipe, std::string text) {
 
 [[noreturn]] void run_child(int pipe, const std::function<void(const SendLine&)>& work) {
   try {
-    work([pipe](const std::string& line) { write_all(pipe, kLine + line + '\n'); });
+    work([pipe](const std::string& line) { send_line(pipe, kLine, line); });
   } catch (const std::exception& error) {
-    write_all(pipe, kError + std::string(error.what()) + '\n');
+    send_line(pipe, kError, error.what());
   }
   // Nothing of the parent's is flushed or torn down twice.
   ::_exit(0);
 }
 
+// The child and the end of the pipe that it writes to.
+struct Child {
+  pid_t process;
+  std::FILE* lines;
+
+  ~Child() {
+    if (lines == nullptr) return;  // it was waited for
+    ::kill(process, SIGKILL);
+    wait();
+  }
+
+  /// How it ended, in words; empty if well.
+  std::string wait() {
+    std::fclose(lines);
+    lines = nullptr;
+    int status = 0;
+    while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFSIGNALED(status)) {
+      return "its process ended with signal " + std::to_string(WTERMSIG(status)) + " (" +
+             ::strsignal(WTERMSIG(status)) + ')';
+    }
+    if (status == 0) return "";
+    return "its process ended with status " + std::to_string(WEXITSTATUS(status));
+  }
+};
+
 }  // namespace
 
 std::string run_driver_process(const std::function<void(const SendLine&)>& work,
                                const std::function<void(const std::string&)>& receive) {
-  int pipe[2];
-  if (::pipe(pipe) != 0) throw DriverError(std::string("no pipe: ") + std::strerror(errno));
   std::cout.flush();
-  const pid_t child = ::fork();
-  if (child < 0) throw DriverError(std::string("no process: ") + std::strerror(errno));
-  if (child == 0) {
+  int pipe[2];
+  if (::pipe(pipe) != 0) return std::string("no pipe to its process: ") + std::strerror(errno);
+  const pid_t process = ::fork();
+  if (process == 0) {
     ::close(pipe[0]);
     run_child(pipe[1], work);
   }
   ::close(pipe[1]);
+  if (process < 0) {
+    ::close(pipe[0]);
+    return std::string("no process for it: ") + std::strerror(errno);
+  }
 
+  Child child{process, ::fdopen(pipe[0], "r")};
   std::string error;
   std::string line;
-  std::FILE* from = ::fdopen(pipe[0], "r");
-  for (int c; (c = std::getc(from)) != EOF;) {
+  for (int c; (c = std::getc(child.lines)) != EOF;) {
     if (c != '\n') {
       line += static_cast<char>(c);
       continue;
     }
-    if (line.front() == kError) {
-      error = line.substr(1);
-    } else {
-      receive(line.substr(1));
-    }
+    if (line.starts_with(kError)) error = line.substr(1);
+    if (line.starts_with(kLine)) receive(line.substr(1));
     line.clear();
   }
-  std::fclose(from);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFSIGNALED(status)) {
-    error = std::string("the driver's process ended with signal ") +
-            std::to_string(WTERMSIG(status)) + " (" + ::strsignal(WTERMSIG(status)) + ')';
-  } else if (status != 0) {
-    error = "the driver's process ended with status " + std::to_string(WEXITSTATUS(status));
-  }
-  return error;
+  const std::string ending = child.wait();
+  return ending.empty() ? error : ending;
 }
 
 }  // namespace softfocus

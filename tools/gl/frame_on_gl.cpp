@@ -5,17 +5,28 @@
 
 namespace softfocus {
 
+namespace {
+
+// Names the driver in what it refuses.
+template <class Work>
+auto named(const Driver& driver, const Work& work) {
+  try {
+    return work();
+  } catch (const DriverError& error) {
+    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
+  }
+}
+
+}  // namespace
+
 struct FrameOnGl::State {
+  const Driver& driver;
   GlContext context;
   Shaders shaders;
 };
 
 FrameOnGl::FrameOnGl(const Driver& driver) {
-  try {
-    state_.reset(new State{GlContext{driver}, {}});
-  } catch (const DriverError& error) {
-    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
-  }
+  named(driver, [&] { state_.reset(new State{driver, GlContext{driver}, {}}); });
 }
 
 FrameOnGl::~FrameOnGl() = default;
@@ -25,17 +36,21 @@ std::string FrameOnGl::renderer() const {
 }
 
 Image FrameOnGl::draw(const Scene& scene, const View& view, double frame, int width, int height) {
-  GlScene on_gl{state_->context, state_->shaders, scene};
-  const GlTarget target = make_scene_target(width, height);
-  on_gl.draw(view, frame, target);
-  return read_colour(target, 0);
+  return named(state_->driver, [&] {
+    GlScene on_gl{state_->context, state_->shaders, scene};
+    const GlTarget target = make_scene_target(width, height);
+    on_gl.draw(view, frame, target);
+    return read_colour(target, 0);
+  });
 }
 
 Image FrameOnGl::filter(const Method& method, const DofSettings& settings, const Image& scene) {
   if (method.name == "pinhole") return scene;
-  const GlTarget result = filter_on_gl(state_->context, state_->shaders, method.name, settings,
-                                       upload(scene), scene.width, scene.height);
-  return read_colour(result, 0);
+  return named(state_->driver, [&] {
+    const GlTarget result = filter_on_gl(state_->context, state_->shaders, method.name, settings,
+                                         upload(scene), scene.width, scene.height);
+    return read_colour(result, 0);
+  });
 }
 
 }  // namespace softfocus

@@ -228,7 +228,8 @@ GlProgram link_program(const GlContext& context, const Shaders& shaders, std::st
   GlProgram program{glCreateProgram()};
   for (const auto& [stage, name] :
        {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
-    const GLuint shader = compile(static_cast<GLenum>(stage), header + shaders.source(name), name);
+    const GLuint shader =
+        compile(static_cast<GLenum>(stage), header + shader_source(shaders, name), name);
     glAttachShader(program, shader);
     glDeleteShader(shader);  // with the program
   }

@@ -39,7 +39,7 @@ class GlScene {
   const GlProgram& program(SurfaceVariant variant);
 };
 
-/// An RGBA16F target with depth, and the picture that `draw` leaves in it.
+/// What `draw` draws into: RGBA16F, with a depth buffer.
 GlTarget make_scene_target(int width, int height);
 
 }  // namespace softfocus

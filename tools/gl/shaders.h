@@ -1,8 +1,9 @@
 #pragma once
 // The project's GLSL. The files lie beside the C++ that they mirror, and are compiled
-// into the program; a folder of the user's can stand in for some of them.
+// into the program; files of the user's can stand in for some of them.
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,14 +18,19 @@ struct Shader {
 /// Every shader, by name. Defined in a file that the build makes.
 const std::vector<Shader>& built_in_shaders();
 
-/// Where shaders are taken from.
+/// Where shaders are taken from: the user's, by name, and then the built-in ones.
 struct Shaders {
-  /// Files here take the place of the built-in ones of the same name; may be empty.
-  std::filesystem::path folder;
-
-  /// A shader's text with every line `#include "NAME"` replaced by that shader's. A name
-  /// that there is not is a DriverError.
-  std::string source(std::string_view name) const;
+  std::map<std::string, std::string, std::less<>> own;
 };
+
+/// The shaders in a folder: those of the built-in ones' names, and any *.glsl that they
+/// include. Throws SceneError for a file that cannot be read, for a .vert or .frag that
+/// stands in for none, and for a folder without shaders.
+Shaders read_shaders(const std::filesystem::path& folder);
+
+/// A shader's text with every line `#include "NAME"` replaced by that shader's, and #line
+/// directives, so that a compiler's complaint has the file's own line. Throws DriverError
+/// for a name that there is not, or that includes itself.
+std::string shader_source(const Shaders& shaders, std::string_view name);
 
 }  // namespace softfocus
