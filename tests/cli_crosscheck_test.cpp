@@ -228,7 +228,9 @@ TEST_CASE("crosscheck: bad options are refused with what would be right") {
   write_file(empty.file("twopass.frag"), "void main() {}");
   refused({"--shaders", empty.path()}, "twopass.frag: stands in for none of the shaders");
   refused({"--driver", "llvmpipe", "--driver", "gpu"}, "--driver gpu needs --profile");
-  refused({"--diff", "/proc"}, "--diff: ");
+  const TemporaryDirectory unwritable;  // for root too: the name is taken by a folder
+  std::filesystem::create_directory(unwritable.file("picture.png"));
+  refused({"--diff", unwritable.path()}, "--diff: ");
   refused({"--fast"}, "unknown option '--fast'");
 }
 
