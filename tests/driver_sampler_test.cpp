@@ -18,6 +18,7 @@
 
 using namespace softfocus;
 using test::profile_named;
+using test::row_texture;
 using test::same_bits;
 
 namespace {
@@ -27,15 +28,6 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
 constexpr std::array kWraps{Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_edge};
 constexpr std::array kDrivers{"llvmpipe", "llvmpipe-sse41", "softpipe"};
-
-// A row of grey texels.
-Texture row_texture(const std::vector<float>& values, Format format = Format::rgba32f) {
-  Image image = make_image(format, static_cast<int>(values.size()), 1);
-  for (std::size_t x = 0; x < values.size(); ++x) {
-    store_texel(image, static_cast<int>(x), 0, glm::vec4{values[x]}, {});
-  }
-  return make_texture(std::move(image));
-}
 
 // Three levels whose texels are their numbers.
 Texture numbered_levels() {

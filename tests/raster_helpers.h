@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "raster/images/image.h"
+#include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/profile.h"
 #include "raster/pipeline/draw.h"
@@ -140,6 +141,30 @@ inline bool same_bits(glm::vec4 a, glm::vec4 b) {
     if (std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i])) return false;
   }
   return true;
+}
+
+// Texels of independent channels between low and high.
+inline Texture random_texture(Format format, int width, int height, std::uint64_t seed,
+                              float low = 0.0f, float high = 1.0f) {
+  Image image = make_image(format, width, height);
+  Random random{seed};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      glm::vec4 value{};
+      for (int i = 0; i < 4; ++i) value[i] = random.between(low, high);
+      store_texel(image, x, y, value, {});
+    }
+  }
+  return make_texture(std::move(image));
+}
+
+// A row of grey texels.
+inline Texture row_texture(const std::vector<float>& values, Format format = Format::rgba32f) {
+  Image image = make_image(format, static_cast<int>(values.size()), 1);
+  for (std::size_t x = 0; x < values.size(); ++x) {
+    store_texel(image, static_cast<int>(x), 0, glm::vec4{values[x]}, {});
+  }
+  return make_texture(std::move(image));
 }
 
 }  // namespace softfocus::test

@@ -65,15 +65,14 @@ std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
     }
   }
   std::vector<DriverWork> work;
-  for (const Driver* driver : chosen) {
-    const Profile profile = profile_for(*driver, options);
-    const int cases = matching_cases(options.cases, options.quick, driver->slow);
-    if (cases == 0 && matching_cases(options.cases, false, false) == 0) {
-      throw UsageError("--case '" + options.cases +
-                       "' matches no case; names look like coverage/slivers-20000, and "
-                       "--case 'coverage/*' takes a whole stage");
-    }
-    work.push_back({driver, profile, cases});
+  for (const Driver* driver : chosen) work.push_back({driver, profile_for(*driver, options), 0});
+  if (matching_cases(options.cases, false, false) == 0) {
+    throw UsageError("--case '" + options.cases +
+                     "' matches no case; names look like coverage/slivers-20000, and "
+                     "--case 'coverage/*' takes a whole stage");
+  }
+  for (DriverWork& one : work) {
+    one.cases = matching_cases(options.cases, options.quick, one.driver->slow);
   }
   return work;
 }

@@ -108,6 +108,13 @@ bool GlContext::open(EGLDisplay display) {
             : "#version 330 core\n#define precise\n";
     return true;
   }
+  // Whatever there is, to say what is too old.
+  context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
+  if (context_ != EGL_NO_CONTEXT &&
+      eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE) {
+    renderer_ = string_of(GL_RENDERER);
+    version_ = string_of(GL_VERSION);
+  }
   return false;
 }
 
@@ -135,9 +142,11 @@ GlContext::GlContext(const Driver& driver) {
     if (!open(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
                                        nullptr))) {
       close();
+      if (!version_.empty()) {
+        throw DriverError(renderer_ + " has OpenGL " + version_ + "; 3.3 core is needed");
+      }
       throw DriverError(
-          "no OpenGL 3.3 core context from Mesa; Debian's package "
-          "libgl1-mesa-dri has its drivers");
+          "no OpenGL context from Mesa; Debian's package libgl1-mesa-dri has its drivers");
     }
     if (!renderer_.starts_with(driver.gallium_driver)) {
       const std::string got = renderer_;
@@ -156,7 +165,10 @@ GlContext::GlContext(const Driver& driver) {
       const bool opened = open(eglGetPlatformDisplayEXT(
           EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
       if (opened && !is_software_renderer(renderer_)) break;
-      if (opened) seen += (seen.empty() ? "" : ", ") + renderer_;
+      if (!version_.empty()) {
+        seen += (seen.empty() ? "" : ", ") + renderer_ + (opened ? "" : " with " + version_);
+      }
+      version_.clear();
       close();
     }
     if (context_ == EGL_NO_CONTEXT) {
