@@ -55,7 +55,8 @@ struct ThreadPool::State {
   }
 };
 
-ThreadPool::ThreadPool(int threads) : state_(std::make_unique<State>()) {
+ThreadPool::ThreadPool(int threads, Isa isa)
+    : state_(std::make_unique<State>()), isa_(isa) {
   try {
     for (int i = 1; i < threads; ++i) {
       state_->workers.emplace_back([state = state_.get()] { state->work(); });

@@ -1,0 +1,39 @@
+#pragma once
+// The vector units that kernels are compiled for. Which one runs is chosen at run time
+// and shows in the time alone: all give the same bits.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+// AVX only on 64-bit x86, and not with mingw-w64's g++, which spills 32-byte vectors to
+// a stack that is aligned to 16 (GCC bug 54412).
+#if defined(__x86_64__) && !defined(_WIN32)
+#define SOFTFOCUS_HAS_AVX 1
+#else
+#define SOFTFOCUS_HAS_AVX 0
+#endif
+
+namespace softfocus {
+
+enum class Isa : std::uint8_t {
+  scalar,    ///< no kernels: the plain form of everything
+  baseline,  ///< 4 lanes, in what every CPU of the build has: SSE2, NEON on 64-bit Arm
+  avx2,      ///< 8 lanes: AVX2, FMA and F16C
+  avx512,    ///< 16 lanes: AVX-512 F, BW, DQ and VL beside those
+};
+
+/// Those that this CPU runs, `scalar` first, then by width.
+std::span<const Isa> available_isas();
+
+/// The widest of them.
+Isa widest_isa();
+
+/// "scalar", "baseline", "avx2", "avx512".
+std::string_view isa_name(Isa isa);
+
+/// The available one of that name; "neon" is another name of 64-bit Arm's baseline.
+std::optional<Isa> find_isa(std::string_view name);
+
+}  // namespace softfocus
