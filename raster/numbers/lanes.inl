@@ -1,0 +1,316 @@
+// Vectors of SOFTFOCUS_LANES numbers, one a pixel, a vertex or a triangle, in the
+// compiler's own vector types (g++ and clang): + - * / & | ^ << >> and comparisons work
+// lane by lane, each rounded as a single float's. Here is what has no operator; a function
+// does in every lane what its scalar namesake does. Nothing is fused but where
+// fused_multiply_add says so.
+//
+// Included by for_each_isa.inl, once a vector unit.
+
+inline constexpr int kLanes = SOFTFOCUS_LANES;
+
+using Floats [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = float;
+using Ints [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = std::int32_t;
+using Bits [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = std::uint32_t;
+/// Of each lane all bits or none: what comparisons give.
+using Mask = Ints;
+
+// --- memory; nothing need be aligned ---
+
+SOFTFOCUS_INLINE Floats load(const float* from) {
+  Floats v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+SOFTFOCUS_INLINE Ints load(const std::int32_t* from) {
+  Ints v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+SOFTFOCUS_INLINE Bits load(const std::uint32_t* from) {
+  Bits v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+SOFTFOCUS_INLINE void store(float* to, Floats v) { std::memcpy(to, &v, sizeof v); }
+SOFTFOCUS_INLINE void store(std::int32_t* to, Ints v) { std::memcpy(to, &v, sizeof v); }
+SOFTFOCUS_INLINE void store(std::uint32_t* to, Bits v) { std::memcpy(to, &v, sizeof v); }
+
+/// The value in every lane; no sum, which would turn -0 into 0.
+SOFTFOCUS_INLINE Floats splat(float value) {
+#if SOFTFOCUS_LANES == 16
+  return Floats{value, value, value, value, value, value, value, value,
+                value, value, value, value, value, value, value, value};
+#elif SOFTFOCUS_LANES == 8
+  return Floats{value, value, value, value, value, value, value, value};
+#else
+  return Floats{value, value, value, value};
+#endif
+}
+SOFTFOCUS_INLINE Ints splat(std::int32_t value) { return Ints{} + value; }
+SOFTFOCUS_INLINE Bits splat(std::uint32_t value) { return Bits{} + value; }
+
+/// 0, 1, 2, ...
+SOFTFOCUS_INLINE Ints lane_numbers() {
+#if SOFTFOCUS_LANES == 16
+  return Ints{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+#elif SOFTFOCUS_LANES == 8
+  return Ints{0, 1, 2, 3, 4, 5, 6, 7};
+#else
+  return Ints{0, 1, 2, 3};
+#endif
+}
+
+// --- bits and choices ---
+
+SOFTFOCUS_INLINE Bits as_bits(Floats v) { return (Bits)v; }
+SOFTFOCUS_INLINE Bits as_bits(Ints v) { return (Bits)v; }
+SOFTFOCUS_INLINE Floats as_floats(Bits v) { return (Floats)v; }
+SOFTFOCUS_INLINE Ints as_ints(Bits v) { return (Ints)v; }
+SOFTFOCUS_INLINE Ints as_ints(Floats v) { return (Ints)v; }
+
+SOFTFOCUS_INLINE Floats select(Mask mask, Floats yes, Floats no) { return mask ? yes : no; }
+SOFTFOCUS_INLINE Ints select(Mask mask, Ints yes, Ints no) { return mask ? yes : no; }
+SOFTFOCUS_INLINE Bits select(Mask mask, Bits yes, Bits no) {
+  return as_bits(mask ? as_ints(yes) : as_ints(no));
+}
+
+/// Bit i is set where lane i is.
+SOFTFOCUS_INLINE unsigned lane_bits(Mask mask) {
+#if SOFTFOCUS_LANES == 16
+  return _mm512_movepi32_mask((__m512i)mask);
+#elif SOFTFOCUS_LANES == 8
+  return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
+#elif defined(__SSE2__)
+  return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
+#else
+  unsigned bits = 0;
+  for (int i = 0; i < kLanes; ++i) bits |= (mask[i] != 0 ? 1u : 0u) << i;
+  return bits;
+#endif
+}
+inline constexpr unsigned kAllLaneBits = (1u << SOFTFOCUS_LANES) - 1;
+SOFTFOCUS_INLINE bool any(Mask mask) { return lane_bits(mask) != 0; }
+SOFTFOCUS_INLINE bool all(Mask mask) { return lane_bits(mask) == kAllLaneBits; }
+
+/// The lanes before the `count`th.
+SOFTFOCUS_INLINE Mask first_lanes(int count) { return lane_numbers() < count; }
+
+// --- arithmetic ---
+
+SOFTFOCUS_INLINE Floats absolute(Floats v) { return as_floats(as_bits(v) & 0x7FFFFFFFu); }
+/// a < b ? a : b and a > b ? a : b: b where one is NaN.
+SOFTFOCUS_INLINE Floats smaller(Floats a, Floats b) { return a < b ? a : b; }
+SOFTFOCUS_INLINE Floats larger(Floats a, Floats b) { return a > b ? a : b; }
+SOFTFOCUS_INLINE Ints smaller(Ints a, Ints b) { return a < b ? a : b; }
+SOFTFOCUS_INLINE Ints larger(Ints a, Ints b) { return a > b ? a : b; }
+
+SOFTFOCUS_INLINE Floats to_floats(Ints v) { return __builtin_convertvector(v, Floats); }
+/// The integer part. Needs values that an int32 holds.
+SOFTFOCUS_INLINE Ints truncate(Floats v) { return __builtin_convertvector(v, Ints); }
+
+SOFTFOCUS_INLINE Floats square_root(Floats v) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_sqrt_ps((__m512)v);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_sqrt_ps((__m256)v);
+#elif defined(__SSE2__)
+  return (Floats)_mm_sqrt_ps((__m128)v);
+#else
+  for (int i = 0; i < kLanes; ++i) v[i] = std::sqrt(v[i]);
+  return v;
+#endif
+}
+
+SOFTFOCUS_INLINE Floats floor(Floats v) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_roundscale_ps((__m512)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#else
+  for (int i = 0; i < kLanes; ++i) v[i] = std::floor(v[i]);
+  return v;
+#endif
+}
+
+/// To the nearest whole number, ties to even.
+SOFTFOCUS_INLINE Floats nearest(Floats v) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_roundscale_ps((__m512)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+#else
+  for (int i = 0; i < kLanes; ++i) v[i] = std::nearbyint(v[i]);
+  return v;
+#endif
+}
+
+/// a b + c, rounded once.
+SOFTFOCUS_INLINE Floats fused_multiply_add(Floats a, Floats b, Floats c) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+#else
+  for (int i = 0; i < kLanes; ++i) c[i] = softfocus::fused_multiply_add(a[i], b[i], c[i]);
+  return c;
+#endif
+}
+
+// --- gathers: base[index], in the lanes of the mask; 0 in the others ---
+
+SOFTFOCUS_INLINE Ints gather(const std::int32_t* base, Ints index, Mask mask) {
+#if SOFTFOCUS_LANES == 16
+  return (Ints)_mm512_mask_i32gather_epi32(
+      _mm512_setzero_si512(), _mm512_movepi32_mask((__m512i)mask), (__m512i)index, base, 4);
+#elif SOFTFOCUS_LANES == 8
+  return (Ints)_mm256_mask_i32gather_epi32(_mm256_setzero_si256(), base, (__m256i)index,
+                                           (__m256i)mask, 4);
+#else
+  Ints v{};
+  for (int i = 0; i < kLanes; ++i) {
+    if (mask[i] != 0) v[i] = base[index[i]];
+  }
+  return v;
+#endif
+}
+SOFTFOCUS_INLINE Floats gather(const float* base, Ints index, Mask mask) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), _mm512_movepi32_mask((__m512i)mask),
+                                          (__m512i)index, base, 4);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_mask_i32gather_ps(_mm256_setzero_ps(), base, (__m256i)index, (__m256)mask,
+                                          4);
+#else
+  Floats v{};
+  for (int i = 0; i < kLanes; ++i) {
+    if (mask[i] != 0) v[i] = base[index[i]];
+  }
+  return v;
+#endif
+}
+
+/// Writes the lanes of the mask one after the other and returns how many they are. Room
+/// for all lanes is needed.
+SOFTFOCUS_INLINE int compress_store(std::int32_t* to, Ints v, Mask mask) {
+#if SOFTFOCUS_LANES == 16
+  const __mmask16 bits = _mm512_movepi32_mask((__m512i)mask);
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(bits, (__m512i)v));
+  return __builtin_popcount(bits);
+#else
+  int count = 0;
+  for (unsigned bits = lane_bits(mask); bits != 0; bits &= bits - 1) {
+    to[count++] = v[__builtin_ctz(bits)];
+  }
+  return count;
+#endif
+}
+
+// --- halves, one in the low bits of each lane ---
+
+/// As half_to_float().
+SOFTFOCUS_INLINE Floats half_to_float(Bits half) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_cvtph_ps(_mm512_cvtepi32_epi16((__m512i)half));
+#elif SOFTFOCUS_LANES == 8
+  const __m256i packed = _mm256_packus_epi32((__m256i)half, (__m256i)half);
+  return (Floats)_mm256_cvtph_ps(_mm256_castsi256_si128(_mm256_permute4x64_epi64(packed, 0b1000)));
+#else
+  const Bits sign = (half & 0x8000u) << 16;
+  const Bits magnitude = half & 0x7FFFu;
+  const Bits quiet = select(magnitude > kHalfInfinity, splat(0x00400000u), splat(0u));
+  const Bits special = 0x7F800000u | quiet | (magnitude & 0x3FFu) << 13;
+  const Floats scaled = as_floats(magnitude << 13) * 0x1p112f;
+  return as_floats(sign | select(magnitude >= kHalfInfinity, special, as_bits(scaled)));
+#endif
+}
+
+/// As float_to_half().
+template <HalfRounding rounding>
+SOFTFOCUS_INLINE Bits float_to_half(Floats value) {
+#if SOFTFOCUS_LANES >= 8
+  constexpr int kRounding =
+      rounding == HalfRounding::nearest_even ? _MM_FROUND_TO_NEAREST_INT : _MM_FROUND_TO_ZERO;
+#if SOFTFOCUS_LANES == 16
+  const Bits half = (Bits)_mm512_cvtepu16_epi32(_mm512_cvtps_ph((__m512)value, kRounding));
+#else
+  const Bits half = (Bits)_mm256_cvtepu16_epi32(_mm256_cvtps_ph((__m256)value, kRounding));
+#endif
+  return select(value == value, half, splat(std::uint32_t{kHalfNan}));
+#else
+  constexpr bool kNearest = rounding == HalfRounding::nearest_even;
+  const Bits sign = as_bits(value) >> 16 & 0x8000u;
+  const Bits magnitude = as_bits(value) & 0x7FFFFFFFu;
+  // The exponent's bias goes from 127 to 15; a carry from rounding runs up to infinity.
+  Bits normal = magnitude - (112u << 23);
+  if constexpr (kNearest) normal += 0xFFFu + (normal >> 13 & 1u);
+  normal >>= 13;
+  // A subnormal half counts 2^-24, as the mantissa of 1/2 does.
+  Bits subnormal;
+  if constexpr (kNearest) {
+    subnormal = as_bits(as_floats(magnitude) + 0.5f) - 0x3F000000u;
+  } else {
+    const Bits small = select(magnitude < 0x38800000u, magnitude, splat(0u));
+    subnormal = as_bits(truncate(as_floats(small) * 0x1p24f));
+  }
+  Bits half = select(magnitude < 0x38800000u, subnormal, normal);
+  half = select(magnitude >= 0x47800000u,
+                splat(std::uint32_t{kNearest ? kHalfInfinity : kHalfLargest}), half);
+  half = select(magnitude >= 0x7F800000u, splat(std::uint32_t{kHalfInfinity}), half);
+  return select(magnitude > 0x7F800000u, splat(std::uint32_t{kHalfNan}), sign | half);
+#endif
+}
+
+// --- pixels of RGBA16F ---
+
+/// Channels of as many pixels, as halves.
+struct HalfTexels {
+  Bits r, g, b, a;
+};
+
+SOFTFOCUS_INLINE HalfTexels load_half_texels(const std::uint16_t* from) {
+  // A pixel is two words of two halves; on big-endian machines the first is the upper.
+  Bits first, second;
+  std::memcpy(&first, from, sizeof first);
+  std::memcpy(&second, from + 2 * kLanes, sizeof second);
+#if SOFTFOCUS_LANES == 16
+  const Bits rg = (Bits)__builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18,
+                                                20, 22, 24, 26, 28, 30);
+  const Bits ba = (Bits)__builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19,
+                                                21, 23, 25, 27, 29, 31);
+#elif SOFTFOCUS_LANES == 8
+  const Bits rg = (Bits)__builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14);
+  const Bits ba = (Bits)__builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15);
+#else
+  const Bits rg = (Bits)__builtin_shufflevector(first, second, 0, 2, 4, 6);
+  const Bits ba = (Bits)__builtin_shufflevector(first, second, 1, 3, 5, 7);
+#endif
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  return {rg >> 16, rg & 0xFFFFu, ba >> 16, ba & 0xFFFFu};
+#else
+  return {rg & 0xFFFFu, rg >> 16, ba & 0xFFFFu, ba >> 16};
+#endif
+}
+
+SOFTFOCUS_INLINE void store_half_texels(std::uint16_t* to, const HalfTexels& texels) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  const Bits rg = texels.r << 16 | texels.g;
+  const Bits ba = texels.b << 16 | texels.a;
+#else
+  const Bits rg = texels.r | texels.g << 16;
+  const Bits ba = texels.b | texels.a << 16;
+#endif
+#if SOFTFOCUS_LANES == 16
+  const Bits first =
+      (Bits)__builtin_shufflevector(rg, ba, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const Bits second = (Bits)__builtin_shufflevector(rg, ba, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28,
+                                                    13, 29, 14, 30, 15, 31);
+#elif SOFTFOCUS_LANES == 8
+  const Bits first = (Bits)__builtin_shufflevector(rg, ba, 0, 8, 1, 9, 2, 10, 3, 11);
+  const Bits second = (Bits)__builtin_shufflevector(rg, ba, 4, 12, 5, 13, 6, 14, 7, 15);
+#else
+  const Bits first = (Bits)__builtin_shufflevector(rg, ba, 0, 4, 1, 5);
+  const Bits second = (Bits)__builtin_shufflevector(rg, ba, 2, 6, 3, 7);
+#endif
+  std::memcpy(to, &first, sizeof first);
+  std::memcpy(to + 2 * kLanes, &second, sizeof second);
+}

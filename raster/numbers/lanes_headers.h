@@ -1,0 +1,18 @@
+#pragma once
+// What lanes.inl needs, compiled for every CPU.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "raster/numbers/fused.h"
+#include "raster/numbers/half.h"
+#include "raster/numbers/isa.h"
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+// Vectors travel in registers only where a function is inlined.
+#define SOFTFOCUS_INLINE [[gnu::always_inline]] inline
