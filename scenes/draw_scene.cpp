@@ -3,21 +3,34 @@
 #include "raster/images/texel.h"
 #include "raster/pipeline/draw.h"
 #include "scenes/surface_draws.h"
+#include "scenes/surface_lanes.h"
 #include "scenes/surface_stages.h"
 
 namespace softfocus {
 namespace {
 
 template <SurfaceVariant variant>
-void draw_surface(RenderPass& pass, const SurfaceDraw& surface) {
+void draw_surface(PreparedScene& prepared, const SurfaceDraw& surface) {
+  RenderPass& pass = prepared.pass;
   const SurfaceVertexInput& input = surface.input;
-  draw(pass, surface.state, input.mesh->indices,
-       static_cast<std::uint32_t>(input.mesh->positions.size()), SurfaceVertexStage<variant>{input},
-       SurfaceFragmentStage<variant>{surface.texture, input.material->sampler, pass.profile});
+  const auto vertices = static_cast<std::uint32_t>(input.mesh->positions.size());
+  const SurfaceVertexStage<variant> vertex_stage{input};
+  SurfaceFragmentStage<variant> fragment_stage{surface.texture, input.material->sampler,
+                                               pass.profile};
+  if (!can_draw_in_lanes(pass, surface.state)) {
+    draw(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage);
+    return;
+  }
+  if (surface.texture != nullptr) {
+    const auto number = surface.texture - prepared.scene->textures.data();
+    fragment_stage.decoded = &prepared.textures[static_cast<std::size_t>(number)];
+  }
+  draw_lanes(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage,
+             surface_lane_stages<variant>(pass.isa));
 }
 
-void draw_surface(RenderPass& pass, const SurfaceDraw& surface) {
-  using DrawSurface = void (*)(RenderPass&, const SurfaceDraw&);
+void draw_surface(PreparedScene& prepared, const SurfaceDraw& surface) {
+  using DrawSurface = void (*)(PreparedScene&, const SurfaceDraw&);
   static constexpr DrawSurface kVariants[2][2][2] = {
       {{draw_surface<SurfaceVariant{false, false, false}>,
         draw_surface<SurfaceVariant{false, false, true}>},
@@ -28,7 +41,7 @@ void draw_surface(RenderPass& pass, const SurfaceDraw& surface) {
        {draw_surface<SurfaceVariant{true, true, false}>,
         draw_surface<SurfaceVariant{true, true, true}>}}};
   const SurfaceVariant variant = surface.variant;
-  kVariants[variant.textured][variant.specular][variant.two_sided](pass, surface);
+  kVariants[variant.textured][variant.specular][variant.two_sided](prepared, surface);
 }
 
 }  // namespace
@@ -37,19 +50,41 @@ glm::vec4 clear_colour(const Scene& scene) {
   return {scene.background, alpha_depth(static_cast<float>(scene.camera.far_m))};
 }
 
+PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool) {
+  PreparedScene prepared{&scene, {}, {}, {}};
+  prepared.pass.profile = profile;
+  prepared.pass.isa = pool.isa();
+  if (pool.isa() == Isa::scalar) return prepared;
+  prepared.textures.resize(scene.textures.size());
+  pool.for_each(static_cast<int>(scene.textures.size()), [&](int i) {
+    const auto number = static_cast<std::size_t>(i);
+    prepared.textures[number] = decode_texture(scene.textures[number], profile);
+  });
+  return prepared;
+}
+
+void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& picture,
+                ThreadPool& pool) {
+  const Scene& scene = *prepared.scene;
+  RenderPass& pass = prepared.pass;
+  if (prepared.depth.width != picture.width || prepared.depth.height != picture.height) {
+    prepared.depth = make_image(Format::r32f, picture.width, picture.height);
+  }
+  pass.targets.colour[0] = &picture;
+  pass.targets.depth = &prepared.depth;
+  pass.clear_colour = clear_colour(scene);
+  pass.clear_depth = 1.0f;
+  for (const SurfaceDraw& surface : surface_draws(scene, view, frame)) {
+    draw_surface(prepared, surface);
+  }
+  finish(pass, pool);
+}
+
 Image draw_scene(const Scene& scene, const View& view, double frame, int width, int height,
                  const Profile& profile, ThreadPool& pool) {
   Image picture = make_image(Format::rgba16f, width, height);
-  Image depth = make_image(Format::r32f, width, height);
-  clear_image(picture, clear_colour(scene), profile);
-  clear_image(depth, glm::vec4{1.0f}, profile);
-
-  RenderPass pass;
-  pass.targets.colour[0] = &picture;
-  pass.targets.depth = &depth;
-  pass.profile = profile;
-  for (const SurfaceDraw& surface : surface_draws(scene, view, frame)) draw_surface(pass, surface);
-  finish(pass, pool);
+  PreparedScene prepared = prepare_scene(scene, profile, pool);
+  draw_scene(prepared, view, frame, picture, pool);
   return picture;
 }
 

@@ -2,10 +2,13 @@
 // From a scene to draw calls.
 
 #include <glm/vec4.hpp>
+#include <vector>
 
+#include "raster/images/decoded_texture.h"
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 #include "raster/parallel.h"
+#include "raster/pipeline/render_pass.h"
 #include "scenes/scene.h"
 #include "scenes/view.h"
 
@@ -19,5 +22,20 @@ glm::vec4 clear_colour(const Scene& scene);
 /// The same bits for any number of threads.
 Image draw_scene(const Scene& scene, const View& view, double frame, int width, int height,
                  const Profile& profile, ThreadPool& pool);
+
+/// A scene made ready for many frames: textures decoded, memory that is used again.
+struct PreparedScene {
+  const Scene* scene;
+  std::vector<DecodedTexture> textures;  ///< of the scene, if draws are to be in lanes
+  RenderPass pass;
+  Image depth;
+};
+
+/// The scene must outlive what is prepared; `pool` is that of the frames.
+PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);
+
+/// As above, into an RGBA16F picture.
+void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& picture,
+                ThreadPool& pool);
 
 }  // namespace softfocus

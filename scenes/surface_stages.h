@@ -10,6 +10,7 @@
 #include <glm/mat4x4.hpp>
 #include <span>
 
+#include "raster/images/decoded_texture.h"
 #include "raster/images/sampler.h"
 #include "raster/numbers/vector_math.h"
 #include "raster/pipeline/stages.h"
@@ -98,6 +99,7 @@ struct SurfaceFragmentStage {
   const Texture* texture;
   Sampler sampler;
   Profile profile;
+  const DecodedTexture* decoded = nullptr;  ///< of `texture`, for the form in lanes
 
   FragmentOutput<1> operator()(const Fragment<Layout::kCount>& in) const {
     const std::size_t side = variant.two_sided && !in.front_facing ? Layout::kBack : Layout::kFront;

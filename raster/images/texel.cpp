@@ -1,5 +1,8 @@
 #include "raster/images/texel.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace softfocus {
 
 glm::vec4 load_texel(const Image& image, int x, int y) {
@@ -43,9 +46,22 @@ glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile) 
 }
 
 void clear_image(Image& image, glm::vec4 value, const Profile& profile) {
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) store_texel(image, x, y, value, profile);
+  clear_image(image, 0, 0, image.width, image.height, value, profile);
+}
+
+void clear_image(Image& image, int x_begin, int y_begin, int x_end, int y_end, glm::vec4 value,
+                 const Profile& profile) {
+  store_texel(image, x_begin, y_begin, value, profile);
+  const std::size_t texel = bytes_per_texel(image.format);
+  const std::size_t bytes = static_cast<std::size_t>(x_end - x_begin) * texel;
+  const auto start = [&](int y) {
+    return image.bytes.data() + static_cast<std::size_t>(y) * image.stride_bytes +
+           static_cast<std::size_t>(x_begin) * texel;
+  };
+  for (std::size_t done = texel; done < bytes; done *= 2) {
+    std::memcpy(start(y_begin) + done, start(y_begin), std::min(done, bytes - done));
   }
+  for (int y = y_begin + 1; y < y_end; ++y) std::memcpy(start(y), start(y_begin), bytes);
 }
 
 }  // namespace softfocus

@@ -80,5 +80,8 @@ glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile);
 
 /// Sets every texel to `value`.
 void clear_image(Image& image, glm::vec4 value, const Profile& profile);
+/// The texels x_begin <= x < x_end, y_begin <= y < y_end, of which there is one at least.
+void clear_image(Image& image, int x_begin, int y_begin, int x_end, int y_end, glm::vec4 value,
+                 const Profile& profile);
 
 }  // namespace softfocus

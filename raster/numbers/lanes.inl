@@ -95,12 +95,35 @@ SOFTFOCUS_INLINE bool all(Mask mask) { return lane_bits(mask) == kAllLaneBits; }
 /// The lanes before the `count`th.
 SOFTFOCUS_INLINE Mask first_lanes(int count) { return lane_numbers() < count; }
 
+// AVX-512 is written in its maskz forms: g++ 12 warns of the others, whose lanes outside
+// the mask are undefined, and compiles both to the same.
+
 // --- arithmetic ---
 
 SOFTFOCUS_INLINE Floats absolute(Floats v) { return as_floats(as_bits(v) & 0x7FFFFFFFu); }
 /// a < b ? a : b and a > b ? a : b: b where one is NaN.
-SOFTFOCUS_INLINE Floats smaller(Floats a, Floats b) { return a < b ? a : b; }
-SOFTFOCUS_INLINE Floats larger(Floats a, Floats b) { return a > b ? a : b; }
+SOFTFOCUS_INLINE Floats smaller(Floats a, Floats b) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_maskz_min_ps(0xFFFF, (__m512)a, (__m512)b);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_min_ps((__m256)a, (__m256)b);
+#elif defined(__SSE2__)
+  return (Floats)_mm_min_ps((__m128)a, (__m128)b);
+#else
+  return a < b ? a : b;
+#endif
+}
+SOFTFOCUS_INLINE Floats larger(Floats a, Floats b) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_maskz_max_ps(0xFFFF, (__m512)a, (__m512)b);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_max_ps((__m256)a, (__m256)b);
+#elif defined(__SSE2__)
+  return (Floats)_mm_max_ps((__m128)a, (__m128)b);
+#else
+  return a > b ? a : b;
+#endif
+}
 SOFTFOCUS_INLINE Ints smaller(Ints a, Ints b) { return a < b ? a : b; }
 SOFTFOCUS_INLINE Ints larger(Ints a, Ints b) { return a > b ? a : b; }
 
@@ -110,7 +133,7 @@ SOFTFOCUS_INLINE Ints truncate(Floats v) { return __builtin_convertvector(v, Int
 
 SOFTFOCUS_INLINE Floats square_root(Floats v) {
 #if SOFTFOCUS_LANES == 16
-  return (Floats)_mm512_sqrt_ps((__m512)v);
+  return (Floats)_mm512_maskz_sqrt_ps(0xFFFF, (__m512)v);
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_sqrt_ps((__m256)v);
 #elif defined(__SSE2__)
@@ -121,28 +144,45 @@ SOFTFOCUS_INLINE Floats square_root(Floats v) {
 #endif
 }
 
-SOFTFOCUS_INLINE Floats floor(Floats v) {
-#if SOFTFOCUS_LANES == 16
-  return (Floats)_mm512_roundscale_ps((__m512)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-#elif SOFTFOCUS_LANES == 8
-  return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-#else
-  for (int i = 0; i < kLanes; ++i) v[i] = std::floor(v[i]);
-  return v;
-#endif
-}
-
 /// To the nearest whole number, ties to even.
 SOFTFOCUS_INLINE Floats nearest(Floats v) {
 #if SOFTFOCUS_LANES == 16
-  return (Floats)_mm512_roundscale_ps((__m512)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+  return (Floats)_mm512_maskz_roundscale_ps(0xFFFF, (__m512)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 #else
-  for (int i = 0; i < kLanes; ++i) v[i] = std::nearbyint(v[i]);
-  return v;
+  // Floats from 2^23 on are whole. The sign is put back for the sake of -0.
+  const Bits sign = as_bits(v) & 0x80000000u;
+  const Floats whole = (absolute(v) + 0x1p23f) - 0x1p23f;
+  return select(absolute(v) < 0x1p23f, as_floats(as_bits(whole) | sign), v);
 #endif
 }
+
+SOFTFOCUS_INLINE Floats floor(Floats v) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_maskz_roundscale_ps(0xFFFF, (__m512)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#else
+  const Floats whole = nearest(v);
+  return whole - select(whole > v, splat(1.0f), splat(0.0f));
+#endif
+}
+
+/// As float_to_int.h has them: what does not fit becomes the least integer.
+SOFTFOCUS_INLINE Ints truncate_to_int(Floats v) {
+#if SOFTFOCUS_LANES == 16
+  return (Ints)_mm512_maskz_cvttps_epi32(0xFFFF, (__m512)v);
+#elif SOFTFOCUS_LANES == 8
+  return (Ints)_mm256_cvttps_epi32((__m256)v);
+#elif defined(__SSE2__)
+  return (Ints)_mm_cvttps_epi32((__m128)v);
+#else
+  const Mask fits = (v >= -0x1p31f) & (v < 0x1p31f);
+  return select(fits, truncate(select(fits, v, splat(0.0f))), splat(INT32_MIN));
+#endif
+}
+SOFTFOCUS_INLINE Ints round_to_int(Floats v) { return truncate_to_int(nearest(v)); }
 
 /// a b + c, rounded once.
 SOFTFOCUS_INLINE Floats fused_multiply_add(Floats a, Floats b, Floats c) {
@@ -205,12 +245,43 @@ SOFTFOCUS_INLINE int compress_store(std::int32_t* to, Ints v, Mask mask) {
 #endif
 }
 
+// --- transposition ---
+
+// Written without loops, so that all vectors stay in registers.
+
+// Swaps, in lanes and vectors at once, two blocks of `step` off the diagonal.
+template <int step, class Vector, std::size_t... lane>
+SOFTFOCUS_INLINE void swap_blocks(Vector& a, Vector& b, std::index_sequence<lane...>) {
+  const Vector upper =
+      __builtin_shufflevector(a, b, ((lane & step) != 0 ? lane + SOFTFOCUS_LANES - step : lane)...);
+  b = __builtin_shufflevector(a, b, ((lane & step) != 0 ? lane + SOFTFOCUS_LANES : lane + step)...);
+  a = upper;
+}
+template <int step, class Vector, std::size_t... pair>
+SOFTFOCUS_INLINE void swap_all_blocks(Vector* v, std::index_sequence<pair...>) {
+  // Of each pair, the first: its number with a 0 put in at the bit of the step.
+  ((swap_blocks<step>(v[pair / step * step * 2 + pair % step],
+                      v[pair / step * step * 2 + pair % step + step],
+                      std::make_index_sequence<SOFTFOCUS_LANES>{})),
+   ...);
+}
+
+/// Of kLanes vectors, lane i of vector j and lane j of vector i change places.
+template <class Vector>
+SOFTFOCUS_INLINE void transpose(Vector* v) {
+  using Pairs = std::make_index_sequence<SOFTFOCUS_LANES / 2>;
+  if constexpr (kLanes > 8) swap_all_blocks<8>(v, Pairs{});
+  if constexpr (kLanes > 4) swap_all_blocks<4>(v, Pairs{});
+  swap_all_blocks<2>(v, Pairs{});
+  swap_all_blocks<1>(v, Pairs{});
+}
+
 // --- halves, one in the low bits of each lane ---
 
 /// As half_to_float().
 SOFTFOCUS_INLINE Floats half_to_float(Bits half) {
 #if SOFTFOCUS_LANES == 16
-  return (Floats)_mm512_cvtph_ps(_mm512_cvtepi32_epi16((__m512i)half));
+  return (Floats)_mm512_maskz_cvtph_ps(0xFFFF, _mm512_maskz_cvtepi32_epi16(0xFFFF, (__m512i)half));
 #elif SOFTFOCUS_LANES == 8
   const __m256i packed = _mm256_packus_epi32((__m256i)half, (__m256i)half);
   return (Floats)_mm256_cvtph_ps(_mm256_castsi256_si128(_mm256_permute4x64_epi64(packed, 0b1000)));
@@ -231,7 +302,8 @@ SOFTFOCUS_INLINE Bits float_to_half(Floats value) {
   constexpr int kRounding =
       rounding == HalfRounding::nearest_even ? _MM_FROUND_TO_NEAREST_INT : _MM_FROUND_TO_ZERO;
 #if SOFTFOCUS_LANES == 16
-  const Bits half = (Bits)_mm512_cvtepu16_epi32(_mm512_cvtps_ph((__m512)value, kRounding));
+  const Bits half = (Bits)_mm512_maskz_cvtepu16_epi32(
+      0xFFFF, _mm512_maskz_cvtps_ph(0xFFFF, (__m512)value, kRounding));
 #else
   const Bits half = (Bits)_mm256_cvtepu16_epi32(_mm256_cvtps_ph((__m256)value, kRounding));
 #endif

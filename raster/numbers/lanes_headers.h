@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "raster/numbers/fused.h"
 #include "raster/numbers/half.h"

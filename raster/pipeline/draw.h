@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "raster/pipeline/assemble.h"
 #include "raster/pipeline/clip.h"
 #include "raster/pipeline/interpolate.h"
 #include "raster/pipeline/render_pass.h"
@@ -52,16 +53,6 @@ void bin_triangle(Chunk<N>& chunk, const Triangle<N>& triangle, int tiles_x) {
   chunk.triangles.push_back(triangle);
 }
 
-inline std::size_t provoking_index(const DrawState& state) {
-  return state.provoking_vertex == ProvokingVertex::last ? 2 : 0;
-}
-
-// Clipped polygons are fans about vertex 0, which is the provoking one.
-inline std::array<std::size_t, 3> fan_triangle(std::size_t i, ProvokingVertex provoking) {
-  return provoking == ProvokingVertex::last ? std::array<std::size_t, 3>{i - 1, i, 0}
-                                            : std::array<std::size_t, 3>{0, i - 1, i};
-}
-
 template <class Draw, std::size_t N>
 void add_triangle(const Draw& draw, Chunk<N>& chunk, const std::array<WindowVertex, 3>& window,
                   const std::array<Varyings<N>, 3>& varyings, bool cull_unsnapped) {
@@ -71,47 +62,6 @@ void add_triangle(const Draw& draw, Chunk<N>& chunk, const std::array<WindowVert
   if (!setup) return;
   bin_triangle(chunk, Triangle<N>{*setup, varyings, provoking_index(state)},
                (draw.width + kTileSize - 1) / kTileSize);
-}
-
-template <class Draw, std::size_t N>
-void add_unclipped(const Draw& draw, Chunk<N>& chunk, const std::array<VertexOutput<N>, 3>& corners,
-                   bool cull_unsnapped) {
-  std::array<WindowVertex, 3> window{};
-  std::array<Varyings<N>, 3> varyings{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    window[i] = to_window(corners[i].position, draw.width, draw.height, draw.profile.viewport);
-    varyings[i] = corners[i].varyings;
-  }
-  add_triangle(draw, chunk, window, varyings, cull_unsnapped);
-}
-
-template <class Draw, std::size_t N>
-void add_clipped(const Draw& draw, Chunk<N>& chunk, const std::array<VertexOutput<N>, 3>& corners,
-                 unsigned planes, const std::array<Interpolation, N>& kinds, bool cull_unsnapped) {
-  ClipPolygon polygon;
-  polygon.count = 3;
-  for (std::size_t i = 0; i < 3; ++i) {
-    polygon.vertices[i].position = corners[i].position;
-    for (std::size_t k = 0; k < N; ++k) {
-      // The fan below has other provoking vertices than the triangle: flat values go along.
-      const bool is_flat = kinds[k] == Interpolation::flat;
-      polygon.vertices[i].varyings[k] =
-          corners[is_flat ? provoking_index(draw.state) : i].varyings[k];
-    }
-  }
-  clip_polygon(polygon, planes, kinds, draw.profile);
-  for (std::size_t i = 2; i < polygon.count; ++i) {
-    std::array<WindowVertex, 3> window{};
-    std::array<Varyings<N>, 3> varyings{};
-    const auto corner_numbers = fan_triangle(i, draw.state.provoking_vertex);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const ClipVertex& corner = polygon.vertices[corner_numbers[k]];
-      window[k] = to_window(corner.position, draw.width, draw.height,
-                            corner.is_new ? Contraction::unfused : draw.profile.viewport);
-      std::copy_n(corner.varyings.begin(), N, varyings[k].begin());
-    }
-    add_triangle(draw, chunk, window, varyings, cull_unsnapped);
-  }
 }
 
 // Whether the triangles begin <= t < end are culled by unsnapped positions too: Mesa sends
@@ -131,20 +81,12 @@ void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::s
   const bool cull_unsnapped = culls_unsnapped(draw, begin, end);
   for (std::size_t t = begin; t < end; ++t) {
     std::array<VertexOutput<N>, 3> corners;
-    unsigned outside_any = 0;
-    unsigned outside_all = ~0u;
-    for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = draw.vertices[draw.indices[3 * t + i]];
-      const unsigned code = clip_code(corners[i].position, draw.profile.guard_band);
-      outside_any |= code;
-      outside_all &= code;
-    }
-    if (outside_all != 0 || (outside_any & kNotFinite) != 0) continue;
-    if (outside_any == 0) {
-      add_unclipped(draw, chunk, corners, cull_unsnapped);
-    } else {
-      add_clipped(draw, chunk, corners, outside_any, kinds, cull_unsnapped);
-    }
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = draw.vertices[draw.indices[3 * t + i]];
+    to_window_triangles(
+        corners, kinds, draw.state.provoking_vertex, draw.width, draw.height, draw.profile,
+        [&](const std::array<WindowVertex, 3>& window, const std::array<Varyings<N>, 3>& varyings) {
+          add_triangle(draw, chunk, window, varyings, cull_unsnapped);
+        });
   }
 }
 

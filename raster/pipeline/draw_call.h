@@ -1,7 +1,7 @@
 #pragma once
-// A recorded draw call: the stages and their data behind four functions that a render
-// pass calls, each for a batch of vertices, triangles or a whole tile, never for a
-// single fragment.
+// A recorded draw call: the stages and their data behind functions that a render pass
+// calls, each for a batch of vertices, triangles or a whole tile, never for a single
+// fragment.
 
 #include <cstdint>
 #include <functional>
@@ -28,17 +28,37 @@ struct Bin {
   std::uint32_t triangle;
 };
 
+// Of the vector kernels (lane_draw.h).
+struct VertexStore;
+struct LaneChunk;
+struct VisibilityTile;
+struct VisibleRun;
+
 struct DrawCall {
   std::uint32_t vertex_count = 0;
   std::uint32_t chunk_count = 0;
   /// Runs the vertex stage over vertices begin <= i < end.
   std::function<void(std::uint32_t begin, std::uint32_t end)> shade_vertices;
+
+  // --- one fragment after the other ---
+
   /// Clips and sets up the triangles of a chunk, and sorts them into tiles.
   std::function<void(std::uint32_t chunk)> assemble;
   std::function<std::span<const Bin>(std::uint32_t chunk)> bins;
   /// Draws the listed triangles of a chunk inside `tile`.
   std::function<void(std::uint32_t chunk, std::span<const Bin> bins, const Rectangle& tile)>
       shade_tile;
+
+  // --- in lanes ---
+
+  bool in_lanes = false;
+  std::uint32_t vertex_stride = 0;  ///< floats that a vertex takes
+  DepthState depth;
+  /// Where the vertices are to go; before anything else.
+  std::function<void(const VertexStore& store)> use_store;
+  std::function<void(std::uint32_t number, LaneChunk& chunk)> assemble_lanes;
+  /// Shades the pixels of a tile that show a run of the draw's triangles.
+  std::function<void(const VisibilityTile& tile, const VisibleRun& run)> shade_seen;
 };
 
 }  // namespace softfocus

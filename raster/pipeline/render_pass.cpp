@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <memory>
+
+#include "raster/images/texel.h"
+#include "raster/pipeline/lane_kernels.h"
 
 namespace softfocus {
 namespace {
@@ -15,9 +19,34 @@ struct Batch {
 // The triangles of one chunk that touch one tile.
 struct TileWork {
   const DrawCall* draw;
-  std::uint32_t chunk;
+  std::uint32_t chunk;          // of the draw
+  const LaneChunk* lane_chunk;  // of a draw in lanes
   std::span<const Bin> bins;
 };
+
+// Gives every draw in lanes its part of the memory, in steps of whole vectors.
+void place_vertices(RenderPass& pass) {
+  constexpr std::size_t kStep = 16;
+  const auto room = [](const DrawCall& draw) {
+    return draw.in_lanes ? (draw.vertex_count + kStep - 1) / kStep * kStep : 0;
+  };
+  std::size_t floats = 0, vertices = 0;
+  for (const DrawCall& draw : pass.draws) {
+    vertices += room(draw);
+    floats += room(draw) * draw.vertex_stride;
+  }
+  LaneMemory& memory = pass.memory;
+  if (memory.rows.size() < floats) memory.rows.resize(floats);
+  if (memory.columns.size() < 3 * vertices) memory.columns.resize(3 * vertices);
+  float* row = memory.rows.data();
+  std::int32_t* column = memory.columns.data();
+  for (const DrawCall& draw : pass.draws) {
+    if (!draw.in_lanes) continue;
+    draw.use_store({row, draw.vertex_stride, column, column + room(draw), column + 2 * room(draw)});
+    row += room(draw) * draw.vertex_stride;
+    column += 3 * room(draw);
+  }
+}
 
 void shade_all_vertices(const RenderPass& pass, ThreadPool& pool) {
   std::vector<Batch> batches;
@@ -33,31 +62,91 @@ void shade_all_vertices(const RenderPass& pass, ThreadPool& pool) {
   });
 }
 
-void assemble_all_triangles(const RenderPass& pass, ThreadPool& pool) {
+// Chunks of all draws are numbered through, as LaneMemory has them.
+void assemble_all_triangles(RenderPass& pass, ThreadPool& pool) {
   std::vector<Batch> chunks;
   for (std::size_t d = 0; d < pass.draws.size(); ++d) {
     for (std::uint32_t c = 0; c < pass.draws[d].chunk_count; ++c) chunks.push_back({d, c, c + 1});
   }
+  if (pass.memory.chunks.size() < chunks.size()) pass.memory.chunks.resize(chunks.size());
   pool.for_each(static_cast<int>(chunks.size()), [&](int i) {
     const Batch& chunk = chunks[static_cast<std::size_t>(i)];
-    pass.draws[chunk.draw].assemble(chunk.begin);
+    const DrawCall& draw = pass.draws[chunk.draw];
+    if (draw.in_lanes) {
+      LaneChunk& lane_chunk = pass.memory.chunks[static_cast<std::size_t>(i)];
+      clear(lane_chunk);
+      draw.assemble_lanes(chunk.begin, lane_chunk);
+    } else {
+      draw.assemble(chunk.begin);
+    }
   });
 }
 
 std::vector<std::vector<TileWork>> sort_into_tiles(const RenderPass& pass, std::size_t tiles) {
   std::vector<std::vector<TileWork>> work(tiles);
+  const LaneChunk* lane_chunk = pass.memory.chunks.data();
   for (const DrawCall& draw : pass.draws) {
-    for (std::uint32_t c = 0; c < draw.chunk_count; ++c) {
+    for (std::uint32_t c = 0; c < draw.chunk_count; ++c, ++lane_chunk) {
+      if (draw.in_lanes) {
+        for (const TileBins& of_tile : lane_chunk->tiles) {
+          work[of_tile.tile].push_back(
+              {&draw, c, lane_chunk,
+               std::span{lane_chunk->bins}.subspan(of_tile.begin, of_tile.end - of_tile.begin)});
+        }
+        continue;
+      }
       const std::span<const Bin> bins = draw.bins(c);
       for (std::size_t begin = 0; begin < bins.size();) {
         std::size_t end = begin + 1;
         while (end < bins.size() && bins[end].tile == bins[begin].tile) ++end;
-        work[bins[begin].tile].push_back({&draw, c, bins.subspan(begin, end - begin)});
+        work[bins[begin].tile].push_back({&draw, c, nullptr, bins.subspan(begin, end - begin)});
         begin = end;
       }
     }
   }
   return work;
+}
+
+void clear_tile(const RenderPass& pass, const Rectangle& area) {
+  const auto clear = [&](Image* image, const std::optional<glm::vec4>& value) {
+    if (image == nullptr || !value) return;
+    clear_image(*image, area.x_begin, area.y_begin, area.x_end, area.y_end, *value, pass.profile);
+  };
+  for (Image* image : pass.targets.colour) clear(image, pass.clear_colour);
+  if (pass.clear_depth) clear(pass.targets.depth, glm::vec4{*pass.clear_depth});
+}
+
+// Draws in lanes gather in a VisibilityTile until a draw of the other kind, or the end.
+void draw_tile(const RenderPass& pass, const Rectangle& area, const std::vector<TileWork>& work) {
+  clear_tile(pass, area);
+  std::unique_ptr<VisibilityTile> tile;
+  const auto leave_lanes = [&] {
+    if (!tile) return;
+    shade_tile(*tile);
+    end_tile(*tile, *pass.targets.depth);
+    tile.reset();
+  };
+  for (const TileWork& item : work) {
+    if (!item.draw->in_lanes) {
+      leave_lanes();
+      item.draw->shade_tile(item.chunk, item.bins, area);
+      continue;
+    }
+    if (!tile) {
+      tile.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
+      begin_tile(*tile, area, *pass.targets.depth);
+    }
+    if (tile->triangles.size() + item.bins.size() > kMostVisible) shade_tile(*tile);
+    const auto first_id = static_cast<std::int32_t>(tile->triangles.size()) + 1;
+    rasterize_lanes(pass.isa, *item.lane_chunk, item.bins, item.draw->depth, pass.profile, *tile);
+    const auto end_id = static_cast<std::int32_t>(tile->triangles.size()) + 1;
+    if (!tile->runs.empty() && tile->runs.back().draw == item.draw) {
+      tile->runs.back().end_id = end_id;
+    } else {
+      tile->runs.push_back({item.draw, first_id, end_id});
+    }
+  }
+  leave_lanes();
 }
 
 }  // namespace
@@ -76,6 +165,7 @@ void finish(RenderPass& pass, ThreadPool& pool) {
   const int tiles_x = (area.x_end + kTileSize - 1) / kTileSize;
   const int tiles_y = (area.y_end + kTileSize - 1) / kTileSize;
 
+  place_vertices(pass);
   shade_all_vertices(pass, pool);
   assemble_all_triangles(pass, pool);
   const auto work = sort_into_tiles(pass, static_cast<std::size_t>(tiles_x * tiles_y));
@@ -84,9 +174,7 @@ void finish(RenderPass& pass, ThreadPool& pool) {
     const int y = t / tiles_x * kTileSize;
     const Rectangle tile{x, y, std::min(x + kTileSize, area.x_end),
                          std::min(y + kTileSize, area.y_end)};
-    for (const TileWork& item : work[static_cast<std::size_t>(t)]) {
-      item.draw->shade_tile(item.chunk, item.bins, tile);
-    }
+    draw_tile(pass, tile, work[static_cast<std::size_t>(t)]);
   });
   pass.draws.clear();
 }

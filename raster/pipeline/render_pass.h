@@ -8,11 +8,15 @@
 //   draw(pass, state, indices, vertex_count, vertex_stage, fragment_stage);   // draw.h
 //   finish(pass, pool);
 
+#include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
+#include "raster/numbers/isa.h"
 #include "raster/numbers/profile.h"
 #include "raster/parallel.h"
 #include "raster/pipeline/draw_call.h"
+#include "raster/pipeline/lane_draw.h"
 #include "raster/pipeline/merge.h"
 #include "raster/pipeline/state.h"
 
@@ -21,7 +25,14 @@ namespace softfocus {
 struct RenderPass {
   RenderTargets targets;
   Profile profile;
+  /// What finish() sets the targets to before it draws; none: they keep what they hold.
+  std::optional<glm::vec4> clear_colour = {};
+  std::optional<float> clear_depth = {};
+  /// Of the draws that are recorded in lanes.
+  Isa isa = Isa::scalar;
   std::vector<DrawCall> draws;
+  /// Kept from one finish() to the next: memory that is new to a process is slow.
+  LaneMemory memory = {};
 };
 
 /// Width and height of the targets, as the rectangle (0, 0) to (width, height). Needs

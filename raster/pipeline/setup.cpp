@@ -6,9 +6,6 @@
 namespace softfocus {
 namespace {
 
-// The guard band keeps positions far inside this; what lies beyond is no number.
-constexpr float kLargestPosition = 0x1p20f;
-
 bool is_culled(bool front_facing, Cull cull) {
   return (cull == Cull::back && !front_facing) || (cull == Cull::front && front_facing);
 }

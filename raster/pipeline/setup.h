@@ -13,6 +13,10 @@
 
 namespace softfocus {
 
+/// The guard band keeps positions in the window far inside this, in pixels; what lies
+/// beyond is taken for no number, and not drawn.
+inline constexpr float kLargestPosition = 0x1p20f;
+
 struct TriangleSetup {
   std::array<WindowVertex, 3> vertices;
   std::variant<EdgeFunctions, Scanlines> coverage;

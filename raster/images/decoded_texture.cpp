@@ -1,0 +1,150 @@
+#include "raster/images/decoded_texture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "raster/images/texel.h"
+#include "raster/images/unorm8_filter.h"
+#include "raster/numbers/lerp.h"
+
+namespace softfocus {
+namespace {
+
+bool is_8_bit(Format format) {
+  return bytes_per_texel(format) == static_cast<std::size_t>(channel_count(format));
+}
+
+bool is_power_of_two(int size) { return std::has_single_bit(static_cast<unsigned>(size)); }
+
+// Whether llvmpipe may filter texels in integers, so that they are left from 0 to 255.
+bool is_unscaled(Format format, const Profile& profile) {
+  return profile.texture_unit == TextureUnit::llvmpipe &&
+         (format == Format::r8 || format == Format::rgba8);
+}
+
+// Of each code, what fetch_texel() makes of it in the colours and in alpha.
+struct Codes {
+  std::array<float, 256> colour;
+  std::array<float, 256> alpha;
+};
+
+Codes decode_codes(Format format, const Profile& profile) {
+  Image image = make_image(format, 1, 1);
+  Codes codes{};
+  for (std::size_t code = 0; code < 256; ++code) {
+    for (std::uint8_t& channel : row<std::uint8_t>(image, 0)) {
+      channel = static_cast<std::uint8_t>(code);
+    }
+    const glm::vec4 texel = fetch_texel(image, 0, 0, profile);
+    codes.colour[code] = texel.x;
+    codes.alpha[code] = texel.w;
+  }
+  return codes;
+}
+
+Codes unscaled_codes() {
+  Codes codes{};
+  for (std::size_t code = 0; code < 256; ++code) codes.colour[code] = static_cast<float>(code);
+  codes.alpha = codes.colour;
+  return codes;
+}
+
+void decode_8_bit(const Image& image, const Codes& codes, float* to) {
+  for (int y = 0; y < image.height; ++y) {
+    const auto bytes = row<std::uint8_t>(image, y);
+    if (image.format == Format::r8) {
+      for (const std::uint8_t byte : bytes) {
+        *to++ = codes.colour[byte];
+        *to++ = 0.0f;
+        *to++ = 0.0f;
+        *to++ = codes.alpha[255];
+      }
+      continue;
+    }
+    for (std::size_t i = 0; i < bytes.size(); i += 4) {
+      *to++ = codes.colour[bytes[i]];
+      *to++ = codes.colour[bytes[i + 1]];
+      *to++ = codes.colour[bytes[i + 2]];
+      *to++ = codes.alpha[bytes[i + 3]];
+    }
+  }
+}
+
+void decode_floats(const Image& image, float* to) {
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const glm::vec4 texel = load_texel(image, x, y);
+      for (int i = 0; i < 4; ++i) *to++ = texel[i];
+    }
+  }
+}
+
+std::size_t texel_floats(const Image& image) {
+  return 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+}
+
+}  // namespace
+
+DecodedTexture decode_texture(const Texture& texture, const Profile& profile) {
+  assert(!texture.levels.empty());
+  DecodedTexture decoded;
+  decoded.source = &texture;
+  decoded.level_count = static_cast<int>(texture.levels.size());
+  if (profile.texture_unit == TextureUnit::softpipe || texture.levels.size() > kMaxDecodedLevels) {
+    return decoded;
+  }
+  decoded.base_width_is_power_of_two = is_power_of_two(texture.levels[0].width);
+  decoded.base_height_is_power_of_two = is_power_of_two(texture.levels[0].height);
+  decoded.widths_are_powers_of_two = true;
+  decoded.heights_are_powers_of_two = true;
+  std::size_t floats = 0;
+  for (std::size_t i = 0; i < texture.levels.size(); ++i) {
+    const Image& image = texture.levels[i];
+    decoded.starts[i] = static_cast<std::int32_t>(floats);
+    decoded.widths[i] = static_cast<float>(image.width);
+    decoded.heights[i] = static_cast<float>(image.height);
+    decoded.inverse_widths[i] = 1.0f / decoded.widths[i];
+    decoded.inverse_heights[i] = 1.0f / decoded.heights[i];
+    decoded.widths_are_powers_of_two &= is_power_of_two(image.width);
+    decoded.heights_are_powers_of_two &= is_power_of_two(image.height);
+    floats += texel_floats(image);
+  }
+  decoded.texels.resize(floats);
+
+  const Format format = texture.levels[0].format;
+  const bool unscaled = is_unscaled(format, profile);
+  if (unscaled) decoded.scale = 1.0f / 255.0f;
+  Codes codes{};
+  if (is_8_bit(format)) codes = unscaled ? unscaled_codes() : decode_codes(format, profile);
+  for (std::size_t i = 0; i < texture.levels.size(); ++i) {
+    float* to = decoded.texels.data() + decoded.starts[i];
+    if (is_8_bit(format)) {
+      decode_8_bit(texture.levels[i], codes, to);
+    } else {
+      decode_floats(texture.levels[i], to);
+    }
+  }
+  return decoded;
+}
+
+LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sampler,
+                               const Profile& profile) {
+  if (texture.texels.empty()) return LaneArithmetic::by_sample;
+  const Format format = texture.source->levels[0].format;
+  const bool fused = profile.lerp == Contraction::fused;
+  if (profile.texture_unit == TextureUnit::plain) {
+    if (fused) return LaneArithmetic::by_sample;
+    return profile.bilinear_weights == BilinearWeights::fixed_8 ? LaneArithmetic::plain_fixed_8
+                                                                : LaneArithmetic::plain;
+  }
+  // 32-bit texels may be subnormal, and flushed ones are left to sample().
+  const bool flushes_texels = format == Format::r32f || format == Format::rgba32f;
+  if (profile.denormals == Denormals::keep || flushes_texels) return LaneArithmetic::by_sample;
+  const auto in_floats = fused ? LaneArithmetic::llvmpipe_fused : LaneArithmetic::llvmpipe_unfused;
+  if (sampler.filter == Filter::nearest || !is_unscaled(format, profile)) return in_floats;
+  return is_filtered_in_integers(format, sampler) ? LaneArithmetic::llvmpipe_integers
+                                                  : LaneArithmetic::by_sample;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,65 @@
+#pragma once
+// A texture as vector code samples it: decoded once for a profile's texture unit, every
+// texel four floats, so that nothing is converted a pixel. raster/images/sample_lanes.inl
+// reads it.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "raster/images/sampler.h"
+#include "raster/images/texture.h"
+#include "raster/numbers/profile.h"
+
+namespace softfocus {
+
+/// A lane of the widest vector for each: 16384x16384 texels have 15 levels.
+inline constexpr std::size_t kMaxDecodedLevels = 16;
+
+struct DecodedTexture {
+  const Texture* source = nullptr;  ///< what it was made of, which must outlive it
+  int level_count = 0;
+  /// Whether every level's width, or height, is a power of two.
+  bool widths_are_powers_of_two = false;
+  bool heights_are_powers_of_two = false;
+  /// Whether level 0's are.
+  bool base_width_is_power_of_two = false;
+  bool base_height_is_power_of_two = false;
+  /// What texels are to be multiplied by: 1, or 1/255 where llvmpipe may filter them in
+  /// integers and they are 0 to 255.
+  float scale = 1.0f;
+
+  /// Of each level: where its texels start in `texels`, and its size. Rows lie without
+  /// gaps. Past the last level zeros.
+  alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
+  alignas(64) std::array<float, kMaxDecodedLevels> widths{};
+  alignas(64) std::array<float, kMaxDecodedLevels> heights{};
+  /// 1 / size, rounded.
+  alignas(64) std::array<float, kMaxDecodedLevels> inverse_widths{};
+  alignas(64) std::array<float, kMaxDecodedLevels> inverse_heights{};
+
+  /// Red, green, blue and alpha of each texel, as fetch_texel() gives them but for
+  /// `scale`. Empty where nothing but sample() has the profile's arithmetic.
+  std::vector<float, RowAllocator<float>> texels;
+};
+
+/// `texture`, which must have a level, for the texture unit of `profile`.
+DecodedTexture decode_texture(const Texture& texture, const Profile& profile);
+
+/// In which arithmetic sample_lanes() samples: one of those that have a vector form, or
+/// sample() itself, lane by lane.
+enum class LaneArithmetic : std::uint8_t {
+  by_sample,
+  plain,              ///< the plain unit with binary32 weights, nothing fused
+  plain_fixed_8,      ///< the same with weights of 8 bits
+  llvmpipe_fused,     ///< llvmpipe's float filter
+  llvmpipe_unfused,   ///< the same, nothing fused
+  llvmpipe_integers,  ///< its filter of 8-bit integers
+};
+
+/// The one that `sampler` and `profile` need, for which the texture was decoded. Constant
+/// in a draw.
+LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sampler,
+                               const Profile& profile);
+
+}  // namespace softfocus

@@ -1,0 +1,77 @@
+#pragma once
+// From a triangle in clip space to what is left of it in the window.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "raster/pipeline/clip.h"
+#include "raster/pipeline/stages.h"
+#include "raster/pipeline/state.h"
+#include "raster/pipeline/viewport.h"
+
+namespace softfocus {
+
+inline std::size_t provoking_index(ProvokingVertex provoking) {
+  return provoking == ProvokingVertex::last ? 2 : 0;
+}
+inline std::size_t provoking_index(const DrawState& state) {
+  return provoking_index(state.provoking_vertex);
+}
+
+// Clipped polygons are fans about vertex 0, which is the provoking one.
+inline std::array<std::size_t, 3> fan_triangle(std::size_t i, ProvokingVertex provoking) {
+  return provoking == ProvokingVertex::last ? std::array<std::size_t, 3>{i - 1, i, 0}
+                                            : std::array<std::size_t, 3>{0, i - 1, i};
+}
+
+/// Calls add(window vertices, varyings) for each triangle that clipping leaves of one, which
+/// is the triangle itself where all of it is inside.
+template <std::size_t N, class Add>
+void to_window_triangles(const std::array<VertexOutput<N>, 3>& corners,
+                         const std::array<Interpolation, N>& kinds, ProvokingVertex provoking,
+                         int width, int height, const Profile& profile, const Add& add) {
+  unsigned outside_any = 0;
+  unsigned outside_all = ~0u;
+  for (const VertexOutput<N>& corner : corners) {
+    const unsigned code = clip_code(corner.position, profile.guard_band);
+    outside_any |= code;
+    outside_all &= code;
+  }
+  if (outside_all != 0 || (outside_any & kNotFinite) != 0) return;
+  std::array<WindowVertex, 3> window{};
+  std::array<Varyings<N>, 3> varyings{};
+  if (outside_any == 0) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      window[i] = to_window(corners[i].position, width, height, profile.viewport);
+      varyings[i] = corners[i].varyings;
+    }
+    add(window, varyings);
+    return;
+  }
+
+  ClipPolygon polygon;
+  polygon.count = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    polygon.vertices[i].position = corners[i].position;
+    for (std::size_t k = 0; k < N; ++k) {
+      // The fan below has other provoking vertices than the triangle: flat values go along.
+      const bool is_flat = kinds[k] == Interpolation::flat;
+      polygon.vertices[i].varyings[k] =
+          corners[is_flat ? provoking_index(provoking) : i].varyings[k];
+    }
+  }
+  clip_polygon(polygon, outside_any, kinds, profile);
+  for (std::size_t i = 2; i < polygon.count; ++i) {
+    const auto corner_numbers = fan_triangle(i, provoking);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ClipVertex& corner = polygon.vertices[corner_numbers[k]];
+      window[k] = to_window(corner.position, width, height,
+                            corner.is_new ? Contraction::unfused : profile.viewport);
+      std::copy_n(corner.varyings.begin(), N, varyings[k].begin());
+    }
+    add(window, varyings);
+  }
+}
+
+}  // namespace softfocus

@@ -1,0 +1,197 @@
+// Varyings at the pixels of kLanes lanes, each of a triangle of its own: interpolate.h and
+// planes.h, lane by lane.
+
+namespace {
+
+/// What lanes read of their triangles' vertices: kQuantities floats from the front of the
+/// vertices' rows.
+template <std::size_t kQuantities>
+struct VertexLanes {
+  std::array<std::array<Floats, kQuantities>, 3> at;
+
+  SOFTFOCUS_INLINE void set(const std::array<const float*, 3>& rows) {
+    for (std::size_t v = 0; v < 3; ++v) {
+      for (std::size_t k = 0; k < kQuantities; ++k) at[v][k] = splat(rows[v][k]);
+    }
+  }
+  SOFTFOCUS_INLINE void set(const std::array<const float*, 3>& rows, Mask mask) {
+    for (std::size_t v = 0; v < 3; ++v) {
+      for (std::size_t k = 0; k < kQuantities; ++k) {
+        at[v][k] = select(mask, splat(rows[v][k]), at[v][k]);
+      }
+    }
+  }
+};
+
+/// Triangles by lane.
+struct TrianglesOfLanes {
+  const LaneTriangle* const* triangles;
+  Ints index;
+
+  SOFTFOCUS_INLINE const LaneTriangle& operator[](int lane) const {
+    return *triangles[index[lane]];
+  }
+};
+
+/// The weights of vertices 1 and 2 at a pixel.
+struct Weights {
+  Floats linear1, linear2, perspective1, perspective2;
+};
+
+/// As BarycentricInterpolator.
+template <std::size_t N>
+struct BarycentricLanes {
+  VertexLanes<kVertexVaryings + N> vertices;
+  std::array<Ints, 3> edge, per_x, per_y;
+  Ints x_origin, y_origin;
+  Floats inverse_area;
+  Mask is_large;
+
+  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t) {
+    vertices.set(t.vertices);
+    for (std::size_t i = 0; i < 3; ++i) {
+      edge[i] = splat(t.edge[i]);
+      per_x[i] = splat(t.per_x[i]);
+      per_y[i] = splat(t.per_y[i]);
+    }
+    x_origin = splat(t.x_origin);
+    y_origin = splat(t.y_origin);
+    inverse_area = splat(t.inverse_area);
+    is_large = splat(t.large != nullptr ? -1 : 0);
+  }
+  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t, Mask mask) {
+    vertices.set(t.vertices, mask);
+    for (std::size_t i = 0; i < 3; ++i) {
+      edge[i] = select(mask, splat(t.edge[i]), edge[i]);
+      per_x[i] = select(mask, splat(t.per_x[i]), per_x[i]);
+      per_y[i] = select(mask, splat(t.per_y[i]), per_y[i]);
+    }
+    x_origin = select(mask, splat(t.x_origin), x_origin);
+    y_origin = select(mask, splat(t.y_origin), y_origin);
+    inverse_area = select(mask, splat(t.inverse_area), inverse_area);
+    is_large = select(mask, splat(t.large != nullptr ? -1 : 0), is_large);
+  }
+  SOFTFOCUS_INLINE void prepare() {}
+
+  SOFTFOCUS_INLINE Weights weights(Ints x, Ints y, const TrianglesOfLanes& triangles) const {
+    std::array<Floats, 3> l;
+    const Ints dx = x - x_origin;
+    const Ints dy = y - y_origin;
+    for (std::size_t i = 0; i < 3; ++i) {
+      l[i] = to_floats(edge[i] + (dx * per_x[i] + dy * per_y[i]));
+    }
+    for (unsigned rest = lane_bits(is_large); rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      for (std::size_t i = 0; i < 3; ++i) {
+        l[i][lane] = static_cast<float>(edge_at(triangles[lane].large->edges[i], x[lane], y[lane]));
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) l[i] *= inverse_area;
+    const Floats p0 = l[0] * vertices.at[0][kVertexInverseW];
+    const Floats p1 = l[1] * vertices.at[1][kVertexInverseW];
+    const Floats p2 = l[2] * vertices.at[2][kVertexInverseW];
+    const Floats reciprocal = 1.0f / ((p0 + p1) + p2);
+    return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
+  }
+
+  SOFTFOCUS_INLINE Floats blend(std::size_t varying, Floats weight1, Floats weight2) const {
+    const Floats a0 = vertices.at[0][kVertexVaryings + varying];
+    const Floats a1 = vertices.at[1][kVertexVaryings + varying];
+    const Floats a2 = vertices.at[2][kVertexVaryings + varying];
+    return (a0 + weight1 * (a1 - a0)) + weight2 * (a2 - a0);
+  }
+
+  SOFTFOCUS_INLINE Floats value(std::size_t varying, Interpolation kind, std::size_t provoking,
+                                const Weights& w) const {
+    switch (kind) {
+      case Interpolation::perspective: return blend(varying, w.perspective1, w.perspective2);
+      case Interpolation::linear: return blend(varying, w.linear1, w.linear2);
+      case Interpolation::flat: break;
+    }
+    return vertices.at[provoking][kVertexVaryings + varying];
+  }
+};
+
+/// The window position of a pixel and 1 / (1 / w) there.
+struct PlanePoint {
+  Floats x, y, w;
+};
+
+/// As PlaneInterpolator with PlanesFromOrigin. The vertices are in the planes' order.
+template <std::size_t N, Contraction contraction>
+struct PlaneLanes {
+  VertexLanes<kVertexVaryings + N> vertices;
+  Floats x0, y0, dx01_over_area, dy01_over_area, dx20_over_area, dy20_over_area;
+
+  SOFTFOCUS_INLINE static std::array<const float*, 3> ordered(const LaneTriangle& t,
+                                                              std::size_t provoking) {
+    std::array<const float*, 3> rows = t.vertices;
+    if (t.clockwise) std::swap(rows[1], rows[provoking == 0 ? 2 : 0]);
+    return rows;
+  }
+  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t provoking) {
+    vertices.set(ordered(t, provoking));
+  }
+  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t provoking, Mask mask) {
+    vertices.set(ordered(t, provoking), mask);
+  }
+
+  /// Once all lanes have their triangles.
+  SOFTFOCUS_INLINE void prepare() {
+    const Floats x = vertices.at[0][kVertexX];
+    const Floats y = vertices.at[0][kVertexY];
+    const Floats dx01 = x - vertices.at[1][kVertexX];
+    const Floats dy01 = y - vertices.at[1][kVertexY];
+    const Floats dx20 = vertices.at[2][kVertexX] - x;
+    const Floats dy20 = vertices.at[2][kVertexY] - y;
+    const Floats one_over_area = 1.0f / (dx01 * dy20 - dx20 * dy01);
+    x0 = x - 0.5f;
+    y0 = y - 0.5f;
+    dx01_over_area = dx01 * one_over_area;
+    dy01_over_area = dy01 * one_over_area;
+    dx20_over_area = dx20 * one_over_area;
+    dy20_over_area = dy20 * one_over_area;
+  }
+
+  SOFTFOCUS_INLINE static Floats multiply_add(Floats a, Floats b, Floats c) {
+    if constexpr (contraction == Contraction::fused) return fused_multiply_add(a, b, c);
+    return a * b + c;
+  }
+
+  SOFTFOCUS_INLINE Floats plane_at(Floats a0, Floats a1, Floats a2, Floats x, Floats y) const {
+    const Floats da01 = a0 - a1;
+    const Floats da20 = a2 - a0;
+    const Floats per_x = da01 * dy20_over_area - da20 * dy01_over_area;
+    const Floats per_y = da20 * dx01_over_area - da01 * dx20_over_area;
+    const Floats at_origin = a0 - (per_x * x0 + per_y * y0);
+    return multiply_add(per_y, y, multiply_add(per_x, x, at_origin));
+  }
+
+  SOFTFOCUS_INLINE PlanePoint weights(Ints x, Ints y, const TrianglesOfLanes&) const {
+    const Floats column = to_floats(x);
+    const Floats row = to_floats(y);
+    const Floats inverse_w =
+        plane_at(vertices.at[0][kVertexInverseW], vertices.at[1][kVertexInverseW],
+                 vertices.at[2][kVertexInverseW], column, row);
+    return {column, row, 1.0f / inverse_w};
+  }
+
+  SOFTFOCUS_INLINE Floats value(std::size_t varying, Interpolation kind, std::size_t provoking,
+                                const PlanePoint& point) const {
+    const std::size_t k = kVertexVaryings + varying;
+    Floats a0 = vertices.at[0][k];
+    Floats a1 = vertices.at[1][k];
+    Floats a2 = vertices.at[2][k];
+    if (kind == Interpolation::flat) {
+      // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
+      return provoking == 0 ? a0 : a2;
+    }
+    if (kind == Interpolation::linear) return plane_at(a0, a1, a2, point.x, point.y);
+    a0 *= vertices.at[0][kVertexInverseW];
+    a1 *= vertices.at[1][kVertexInverseW];
+    a2 *= vertices.at[2][kVertexInverseW];
+    return plane_at(a0, a1, a2, point.x, point.y) * point.w;
+  }
+};
+
+}  // namespace

@@ -1,0 +1,128 @@
+#pragma once
+// What a draw leaves in memory on its way through the vector kernels: shaded vertices,
+// triangles with their edge functions, and for a tile the nearest triangle of each pixel.
+// Fragments are shaded once a tile's triangles are all through, so a pixel is shaded once.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "raster/images/image.h"
+#include "raster/numbers/profile.h"
+#include "raster/pipeline/draw_call.h"
+#include "raster/pipeline/edge_functions.h"
+#include "raster/pipeline/setup.h"
+#include "raster/pipeline/stages.h"
+#include "raster/pipeline/state.h"
+
+namespace softfocus {
+
+/// A vertex as one row of floats: these, and then its varyings.
+enum VertexRow : std::size_t { kVertexX, kVertexY, kVertexDepth, kVertexInverseW, kVertexVaryings };
+
+/// Beside the clip codes: a window position that set-up takes for no number.
+inline constexpr unsigned kNotDrawable = 1u << 30;
+
+/// The shaded vertices of a draw. Rows for set-up that reads one quantity of many, and
+/// columns for shading that reads all of one.
+struct VertexStore {
+  float* rows = nullptr;  ///< `stride` floats a vertex
+  std::size_t stride = 0;
+  std::int32_t* snapped_x = nullptr;  ///< in 1/256 pixel from the centre of pixel (0, 0)
+  std::int32_t* snapped_y = nullptr;
+  std::int32_t* codes = nullptr;  ///< clip_code(), kNotDrawable
+};
+
+/// The largest triangle, in 1/256 pixel along x and y, whose edge functions 32 bits hold
+/// anywhere in the 4x4 blocks of pixels that its bounds touch: their values stay below
+/// 2 * 22528 * (22528 + 8 * 256) < 2^31.
+inline constexpr std::int32_t kSmallExtent = 88 * 256;
+
+/// A triangle that is drawn.
+struct LaneTriangle {
+  /// Edge functions at the pixel (x_origin, y_origin), of a small triangle.
+  std::array<std::int32_t, 3> edge;
+  std::array<std::int32_t, 3> per_x;
+  std::array<std::int32_t, 3> per_y;
+  std::int32_t x_origin;
+  std::int32_t y_origin;
+  float inverse_area;
+  /// At vertex 0 and the differences of the others to it; or a plane's at_origin, per_x, per_y.
+  std::array<float, 3> depth;
+  std::array<std::int16_t, 4> bounds;  ///< x_begin, y_begin, x_end, y_end
+  std::array<const float*, 3> vertices;
+  const EdgeFunctions* large;             ///< of a triangle that is not small, else null
+  std::array<std::int8_t, 3> thresholds;  ///< covered where each E >= its threshold: 0 or 1
+  bool clockwise;
+  bool front_facing;
+};
+
+/// The chunk's bins begin <= i < end are of one tile.
+struct TileBins {
+  std::uint32_t tile;
+  std::uint32_t begin;
+  std::uint32_t end;
+};
+
+struct LaneChunk {
+  std::vector<LaneTriangle> triangles;
+  std::vector<Bin> bins;
+  std::vector<TileBins> tiles;
+  // What clipping made, and the edges of large triangles; they do not move.
+  std::deque<std::array<float, kVertexVaryings + kMaxVaryings>> new_vertices;
+  std::deque<EdgeFunctions> large;
+};
+
+/// Empties it, and keeps its memory.
+void clear(LaneChunk& chunk);
+
+/// Appends a triangle that was set up by itself, for the caller to give it vertices.
+LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
+                                  std::size_t provoking, const Profile& profile);
+
+/// Sorts the chunk's triangles into its bins.
+void bin_triangles(LaneChunk& chunk, int tiles_x);
+
+/// Tiles are kept in blocks of 4x4 pixels, a block's row by row.
+inline constexpr int kBlockSize = 4;
+inline constexpr int kBlockPixels = kBlockSize * kBlockSize;
+inline constexpr int kTileBlocks = kTileSize / kBlockSize;
+inline constexpr int kTilePixels = kTileSize * kTileSize;
+
+/// A run of a tile's triangles that belong to one draw.
+struct VisibleRun {
+  const DrawCall* draw;
+  std::int32_t first_id;
+  std::int32_t end_id;
+};
+
+/// The depth buffer of a tile while it is drawn, and which triangle is seen in each pixel.
+struct VisibilityTile {
+  Rectangle area;  ///< in the target; x_begin and y_begin are multiples of kTileSize
+  alignas(64) std::array<float, kTilePixels> depth;
+  alignas(64) std::array<std::int32_t, kTilePixels> ids;  ///< from 1 on; 0: none
+  std::vector<const LaneTriangle*> triangles;             ///< by id - 1
+  std::vector<VisibleRun> runs;
+};
+
+/// Begins a tile: reads its depths, and shows nothing in it.
+void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth);
+/// Shades what the tile shows, draw by draw, and forgets it.
+void shade_tile(VisibilityTile& tile);
+/// Writes the tile's depths.
+void end_tile(const VisibilityTile& tile, Image& depth);
+
+/// Ids fit beside a pixel's number in 32 bits.
+inline constexpr std::size_t kMostVisible = (std::size_t{1} << 19) - 1;
+
+/// Memory of draws, kept from frame to frame.
+struct LaneMemory {
+  std::vector<float> rows;
+  std::vector<std::int32_t> columns;
+  std::vector<LaneChunk> chunks;
+};
+
+}  // namespace softfocus

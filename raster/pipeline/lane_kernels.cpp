@@ -1,0 +1,30 @@
+#include "raster/pipeline/lane_kernels.h"
+
+#include <algorithm>
+#include <array>
+
+#include "raster/numbers/fixed_point.h"
+#include "raster/pipeline/clip.h"
+
+#define SOFTFOCUS_KERNELS "raster/pipeline/lane_kernels.inl"
+#include "raster/numbers/for_each_isa.inl"
+
+namespace softfocus {
+
+bool any_outside(const AssembleJob& job) {
+  const auto indices = job.indices.subspan(3 * job.begin, 3 * (job.end - job.begin));
+  return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t i) {
+    return (static_cast<unsigned>(job.vertices.codes[i]) & ~kNotDrawable) != 0;
+  });
+}
+
+void assemble_lanes(Isa isa, const AssembleJob& job, LaneChunk& chunk) {
+  SOFTFOCUS_KERNEL(isa, assemble)(job, chunk);
+}
+
+void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
+                     const DepthState& state, const Profile& profile, VisibilityTile& tile) {
+  SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, state, profile, tile);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,3 @@
+#include "raster/pipeline/assemble_lanes.inl"
+#include "raster/pipeline/block_lanes.inl"
+#include "raster/pipeline/rasterize_lanes.inl"

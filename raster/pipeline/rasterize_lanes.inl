@@ -1,0 +1,184 @@
+// Coverage and depth of triangles in a tile, block by block.
+
+namespace {
+
+SOFTFOCUS_INLINE Mask passes(Compare test, Floats incoming, Floats stored) {
+  switch (test) {
+    case Compare::never: return Mask{};
+    case Compare::less: return incoming < stored;
+    case Compare::equal: return incoming == stored;
+    case Compare::less_equal: return incoming <= stored;
+    case Compare::greater: return incoming > stored;
+    case Compare::not_equal: return ~(incoming == stored);
+    case Compare::greater_equal: return incoming >= stored;
+    case Compare::always: return ~Mask{};
+  }
+  return Mask{};
+}
+
+// As stored_depth() has it for planes and barycentric weights.
+SOFTFOCUS_INLINE Floats clamped_depth(Floats depth) {
+  return select(depth <= 1.0f, select(depth < 0.0f, splat(0.0f), depth), splat(1.0f));
+}
+
+/// What a triangle asks of depth in a tile. `test` is one for all of its pixels.
+template <Compare test, bool kPlanes>
+struct DepthWriter {
+  const DepthState& state;
+  VisibilityTile& tile;
+  std::int32_t id;
+  Contraction contraction;
+  Floats z0, z1, z2;
+  Floats inverse_area;
+
+  // Tests the covered lanes of a part of a block whose lane 0 is pixel (x, y).
+  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
+    Floats depth;
+    if constexpr (kPlanes) {
+      const Floats column = to_floats(x + lane_x());
+      const Floats line = to_floats(y + lane_y());
+      if (contraction == Contraction::fused) {
+        depth = fused_multiply_add(z2, line, fused_multiply_add(z1, column, z0));
+      } else {
+        depth = z2 * line + (z1 * column + z0);
+      }
+    } else {
+      depth = (z0 + (e1 * inverse_area) * z1) + (e2 * inverse_area) * z2;
+    }
+    depth = clamped_depth(depth);
+    const Floats stored = load(&tile.depth[at]);
+    const Mask seen = covered & passes(test, depth, stored);
+    if (state.write) store(&tile.depth[at], select(seen, depth, stored));
+    store(&tile.ids[at], select(seen, splat(id), load(&tile.ids[at])));
+  }
+};
+
+struct BlockRange {
+  int x_begin, y_begin, x_end, y_end;  // pixels, multiples of kBlockSize
+};
+
+SOFTFOCUS_INLINE BlockRange blocks_of(const LaneTriangle& t, const VisibilityTile& tile) {
+  return {std::max<int>(t.bounds[0], tile.area.x_begin) & ~3,
+          std::max<int>(t.bounds[1], tile.area.y_begin) & ~3,
+          std::min<int>(t.bounds[2], tile.area.x_end), std::min<int>(t.bounds[3], tile.area.y_end)};
+}
+
+SOFTFOCUS_INLINE std::size_t block_at(const VisibilityTile& tile, int x, int y) {
+  const int block =
+      (y - tile.area.y_begin) / kBlockSize * kTileBlocks + (x - tile.area.x_begin) / kBlockSize;
+  return static_cast<std::size_t>(block * kBlockPixels);
+}
+
+template <class Writer>
+SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTile& tile,
+                                      Writer& writer) {
+  const BlockRange range = blocks_of(t, tile);
+  std::array<Ints, 3> lanes;  // edge functions over a part of a block, less the threshold
+  for (std::size_t i = 0; i < 3; ++i) {
+    lanes[i] = lane_x() * t.per_x[i] + lane_y() * t.per_y[i] - std::int32_t{t.thresholds[i]};
+  }
+  for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
+    for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
+      const std::size_t block = block_at(tile, x, y);
+      for (int part = 0; part < kBlockParts; ++part) {
+        const int row = y + part * kPartRows;
+        const int dx = x - t.x_origin;
+        const int dy = row - t.y_origin;
+        const Ints e0 = lanes[0] + (t.edge[0] + dx * t.per_x[0] + dy * t.per_y[0]);
+        const Ints e1 = lanes[1] + (t.edge[1] + dx * t.per_x[1] + dy * t.per_y[1]);
+        const Ints e2 = lanes[2] + (t.edge[2] + dx * t.per_x[2] + dy * t.per_y[2]);
+        const Mask covered = (e0 | e1 | e2) >= 0;
+        if (!any(covered)) continue;
+        writer.write(x, row, block + static_cast<std::size_t>(part * kLanes), covered,
+                     to_floats(e1 + std::int32_t{t.thresholds[1]}),
+                     to_floats(e2 + std::int32_t{t.thresholds[2]}));
+      }
+    }
+  }
+}
+
+template <class Writer>
+SOFTFOCUS_INLINE void rasterize_large(const LaneTriangle& t, const VisibilityTile& tile,
+                                      Writer& writer) {
+  const BlockRange range = blocks_of(t, tile);
+  const auto& edges = t.large->edges;
+  for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
+    for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
+      // Where an edge function is largest in the block.
+      bool outside = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int corner_x = edges[i].per_x > 0 ? x + kBlockSize - 1 : x;
+        const int corner_y = edges[i].per_y > 0 ? y + kBlockSize - 1 : y;
+        outside = outside || edge_at(edges[i], corner_x, corner_y) < t.thresholds[i];
+      }
+      if (outside) continue;
+      const std::size_t block = block_at(tile, x, y);
+      for (int part = 0; part < kBlockParts; ++part) {
+        const int row = y + part * kPartRows;
+        Ints covered = ~Ints{};
+        std::array<Floats, 3> e{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (int lane = 0; lane < kLanes; ++lane) {
+            const std::int64_t value = edge_at(edges[i], x + (lane & 3), row + (lane >> 2));
+            e[i][lane] = static_cast<float>(value);
+            if (value < t.thresholds[i]) covered[lane] = 0;
+          }
+        }
+        if (!any(covered)) continue;
+        writer.write(x, row, block + static_cast<std::size_t>(part * kLanes), covered, e[1], e[2]);
+      }
+    }
+  }
+}
+
+template <Compare test, bool kPlanes>
+void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+                   const Profile& profile, VisibilityTile& tile) {
+  for (const Bin& bin : bins) {
+    const LaneTriangle& t = chunk.triangles[bin.triangle];
+    tile.triangles.push_back(&t);
+    DepthWriter<test, kPlanes> writer{state,
+                                      tile,
+                                      static_cast<std::int32_t>(tile.triangles.size()),
+                                      profile.interpolation,
+                                      splat(t.depth[0]),
+                                      splat(t.depth[1]),
+                                      splat(t.depth[2]),
+                                      splat(t.inverse_area)};
+    if (t.large == nullptr) {
+      rasterize_small(t, tile, writer);
+    } else {
+      rasterize_large(t, tile, writer);
+    }
+  }
+}
+
+template <Compare test>
+void rasterize_test(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+                    const Profile& profile, VisibilityTile& tile) {
+  if (profile.attributes == AttributeSetup::planes_from_origin) {
+    rasterize_all<test, true>(chunk, bins, state, profile, tile);
+  } else {
+    rasterize_all<test, false>(chunk, bins, state, profile, tile);
+  }
+}
+
+}  // namespace
+
+void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+               const Profile& profile, VisibilityTile& tile) {
+  switch (state.test) {
+    case Compare::never: return rasterize_test<Compare::never>(chunk, bins, state, profile, tile);
+    case Compare::less: return rasterize_test<Compare::less>(chunk, bins, state, profile, tile);
+    case Compare::equal: return rasterize_test<Compare::equal>(chunk, bins, state, profile, tile);
+    case Compare::less_equal:
+      return rasterize_test<Compare::less_equal>(chunk, bins, state, profile, tile);
+    case Compare::greater:
+      return rasterize_test<Compare::greater>(chunk, bins, state, profile, tile);
+    case Compare::not_equal:
+      return rasterize_test<Compare::not_equal>(chunk, bins, state, profile, tile);
+    case Compare::greater_equal:
+      return rasterize_test<Compare::greater_equal>(chunk, bins, state, profile, tile);
+    case Compare::always: return rasterize_test<Compare::always>(chunk, bins, state, profile, tile);
+  }
+}
