@@ -51,6 +51,29 @@ SOFTFOCUS_INLINE Corners depth_plane(Corners x, Corners y, Corners depth, Mask c
 SOFTFOCUS_INLINE Ints smallest(const IntCorners& v) { return smaller(smaller(v[0], v[1]), v[2]); }
 SOFTFOCUS_INLINE Ints largest(const IntCorners& v) { return larger(larger(v[0], v[1]), v[2]); }
 
+struct EdgeLanes {
+  IntCorners at_origin, per_x, per_y, threshold;
+};
+
+SOFTFOCUS_INLINE Mask covers(const EdgeLanes& edges, int x, int y) {
+  Ints all_inside{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    all_inside |= edges.at_origin[i] + x * edges.per_x[i] + y * edges.per_y[i] - edges.threshold[i];
+  }
+  return all_inside >= 0;
+}
+
+// Triangles between the pixels' centres: half of those as small as a pixel. Only bounds of
+// at most 2x2 pixels are looked into.
+SOFTFOCUS_INLINE Mask covers_nothing(const EdgeLanes& edges, Ints width, Ints height) {
+  const Mask in_second_column = width > 1;
+  const Mask in_second_row = height > 1;
+  const Mask covers_any = covers(edges, 0, 0) | (in_second_column & covers(edges, 1, 0)) |
+                          (in_second_row & covers(edges, 0, 1)) |
+                          (in_second_column & in_second_row & covers(edges, 1, 1));
+  return (width <= 2) & (height <= 2) & ~covers_any;
+}
+
 // The columns of kLanes triangles, to be read one triangle at a time.
 struct TriangleColumns {
   alignas(64) std::array<std::array<std::int32_t, kLanes>, 3> edge, per_x, per_y, threshold, index;
@@ -146,22 +169,32 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
       window_y = gather_corners(vertices.rows + kVertexY, rows, kept);
     }
     if (job.cull_unsnapped) kept &= ~culled_unsnapped(job, window_x, window_y);
+    if (!any(kept | slow)) continue;
+
+    EdgeLanes edges;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t from = (i + 1) % 3;
+      const std::size_t to = (i + 2) % 3;
+      const Ints dx = select(clockwise, x[to] - x[from], x[from] - x[to]);
+      const Ints dy = select(clockwise, y[to] - y[from], y[from] - y[to]);
+      edges.per_x[i] = -dy * kSubpixelOne;
+      edges.per_y[i] = dx * kSubpixelOne;
+      edges.at_origin[i] =
+          dy * (x[from] - x_begin * kSubpixelOne) - dx * (y[from] - y_begin * kSubpixelOne);
+      const Mask level_owns = job.profile->fill_rule == FillRule::upper_left ? dx > 0 : dx < 0;
+      const Mask owns = (dy < 0) | ((dy == 0) & level_owns);
+      edges.threshold[i] = owns + 1;
+    }
+    kept &= ~covers_nothing(edges, x_end - x_begin, y_end - y_begin);
     const unsigned kept_bits = lane_bits(kept);
     if ((kept_bits | lane_bits(slow)) == 0) continue;
 
     if (kept_bits != 0) {
       for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t from = (i + 1) % 3;
-        const std::size_t to = (i + 2) % 3;
-        const Ints dx = select(clockwise, x[to] - x[from], x[from] - x[to]);
-        const Ints dy = select(clockwise, y[to] - y[from], y[from] - y[to]);
-        store_to(columns.per_x[i], -dy * kSubpixelOne);
-        store_to(columns.per_y[i], dx * kSubpixelOne);
-        store_to(columns.edge[i],
-                 dy * (x[from] - x_begin * kSubpixelOne) - dx * (y[from] - y_begin * kSubpixelOne));
-        const Mask level_owns = job.profile->fill_rule == FillRule::upper_left ? dx > 0 : dx < 0;
-        const Mask owns = (dy < 0) | ((dy == 0) & level_owns);
-        store_to(columns.threshold[i], owns + 1);
+        store_to(columns.per_x[i], edges.per_x[i]);
+        store_to(columns.per_y[i], edges.per_y[i]);
+        store_to(columns.edge[i], edges.at_origin[i]);
+        store_to(columns.threshold[i], edges.threshold[i]);
         store_to(columns.index[i], index[i]);
       }
       store_to(columns.bounds[0], x_begin);
@@ -184,7 +217,7 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
     for (unsigned bits = kept_bits | lane_bits(slow); bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctz(bits));
       if ((kept_bits >> lane & 1u) != 0) {
-        copy_triangle(columns, lane, job, chunk.triangles.emplace_back());
+        copy_triangle(columns, lane, job, next_triangle(chunk));
       } else {
         job.add_slowly(job.context, chunk, begin + lane);
       }

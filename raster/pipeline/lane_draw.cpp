@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <utility>
 
 #include "raster/numbers/fixed_point.h"
@@ -47,7 +48,7 @@ std::array<float, 3> depth_fields(const TriangleSetup& setup, std::size_t provok
 }  // namespace
 
 void clear(LaneChunk& chunk) {
-  chunk.triangles.clear();
+  chunk.triangle_count = 0;
   chunk.bins.clear();
   chunk.tiles.clear();
   chunk.new_vertices.clear();
@@ -77,13 +78,14 @@ LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
               static_cast<std::int16_t>(setup.bounds.y_end)};
   t.clockwise = setup.clockwise;
   t.front_facing = setup.front_facing;
-  return chunk.triangles.emplace_back(t);
+  return next_triangle(chunk) = t;
 }
 
 void bin_triangles(LaneChunk& chunk, int tiles_x) {
-  if (chunk.triangles.empty()) return;
-  TileRange all = tiles_of(chunk.triangles.front());
-  for (const LaneTriangle& t : chunk.triangles) {
+  if (chunk.triangle_count == 0) return;
+  const auto triangles = std::span{chunk.triangles}.first(chunk.triangle_count);
+  TileRange all = tiles_of(triangles.front());
+  for (const LaneTriangle& t : triangles) {
     const TileRange tiles = tiles_of(t);
     all = {std::min(all.x_begin, tiles.x_begin), std::min(all.y_begin, tiles.y_begin),
            std::max(all.x_end, tiles.x_end), std::max(all.y_end, tiles.y_end)};
@@ -95,7 +97,7 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
   };
   std::vector<std::uint32_t> next(static_cast<std::size_t>(columns * (all.y_end - all.y_begin)));
   std::uint32_t total = 0;
-  for (const LaneTriangle& t : chunk.triangles) {
+  for (const LaneTriangle& t : triangles) {
     for_each_tile(tiles_of(t), [&](int x, int y) {
       ++next[place(x, y)];
       ++total;
@@ -111,8 +113,8 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
     }
   }
   chunk.bins.resize(total);
-  for (std::uint32_t i = 0; i < chunk.triangles.size(); ++i) {
-    for_each_tile(tiles_of(chunk.triangles[i]), [&](int x, int y) {
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    for_each_tile(tiles_of(triangles[i]), [&](int x, int y) {
       chunk.bins[next[place(x, y)]++] = {static_cast<std::uint32_t>(y * tiles_x + x), i};
     });
   }
@@ -120,15 +122,24 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
 
 namespace {
 
+// Calls copy(pixel of the row, place in the tile, number of pixels) for each row of a block.
 template <class Copy>
 void for_each_block_row(const Rectangle& area, const Copy& copy) {
-  for (int y = area.y_begin; y < area.y_end; ++y) {
-    for (int x = area.x_begin; x < area.x_end; x += kBlockSize) {
-      const int tile_x = x - area.x_begin, tile_y = y - area.y_begin;
-      const int block = tile_y / kBlockSize * kTileBlocks + tile_x / kBlockSize;
-      copy(x, y, block * kBlockPixels + tile_y % kBlockSize * kBlockSize,
-           std::min(kBlockSize, area.x_end - x));
+  for (int y = 0; y < area.y_end - area.y_begin; ++y) {
+    const int blocks = y / kBlockSize * kTileBlocks;
+    for (int x = 0; x < area.x_end - area.x_begin; x += kBlockSize) {
+      const int at = (blocks + x / kBlockSize) * kBlockPixels + y % kBlockSize * kBlockSize;
+      copy(x, y, static_cast<std::size_t>(at), std::min(kBlockSize, area.x_end - area.x_begin - x));
     }
+  }
+}
+
+// Mostly a whole row of a block, which is one instruction.
+inline void copy_pixels(const float* from, int count, float* to) {
+  if (count == kBlockSize) {
+    std::memcpy(to, from, kBlockSize * sizeof(float));
+  } else {
+    std::copy_n(from, count, to);
   }
 }
 
@@ -139,16 +150,16 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth)
   tile.ids.fill(0);
   tile.triangles.clear();
   tile.runs.clear();
-  for_each_block_row(area, [&](int x, int y, int at, int count) {
-    std::copy_n(&row<float>(depth, y)[static_cast<std::size_t>(x)], count,
-                &tile.depth[static_cast<std::size_t>(at)]);
+  for_each_block_row(area, [&](int x, int y, std::size_t at, int count) {
+    const float* from = row<float>(depth, area.y_begin + y).data() + area.x_begin + x;
+    copy_pixels(from, count, &tile.depth[at]);
   });
 }
 
 void end_tile(const VisibilityTile& tile, Image& depth) {
-  for_each_block_row(tile.area, [&](int x, int y, int at, int count) {
-    std::copy_n(&tile.depth[static_cast<std::size_t>(at)], count,
-                &row<float>(depth, y)[static_cast<std::size_t>(x)]);
+  for_each_block_row(tile.area, [&](int x, int y, std::size_t at, int count) {
+    float* to = row<float>(depth, tile.area.y_begin + y).data() + tile.area.x_begin + x;
+    copy_pixels(&tile.depth[at], count, to);
   });
 }
 

@@ -68,7 +68,8 @@ struct TileBins {
 };
 
 struct LaneChunk {
-  std::vector<LaneTriangle> triangles;
+  std::vector<LaneTriangle> triangles;  ///< the first triangle_count of them
+  std::uint32_t triangle_count = 0;
   std::vector<Bin> bins;
   std::vector<TileBins> tiles;
   // What clipping made, and the edges of large triangles; they do not move.
@@ -78,6 +79,14 @@ struct LaneChunk {
 
 /// Empties it, and keeps its memory.
 void clear(LaneChunk& chunk);
+
+/// Appends a triangle, for the caller to fill in.
+inline LaneTriangle& next_triangle(LaneChunk& chunk) {
+  if (chunk.triangle_count == chunk.triangles.size()) {
+    chunk.triangles.resize(2 * chunk.triangles.size() + 128);
+  }
+  return chunk.triangles[chunk.triangle_count++];
+}
 
 /// Appends a triangle that was set up by itself, for the caller to give it vertices.
 LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,

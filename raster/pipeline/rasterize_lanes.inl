@@ -134,8 +134,14 @@ SOFTFOCUS_INLINE void rasterize_large(const LaneTriangle& t, const VisibilityTil
 template <Compare test, bool kPlanes>
 void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
                    const Profile& profile, VisibilityTile& tile) {
-  for (const Bin& bin : bins) {
-    const LaneTriangle& t = chunk.triangles[bin.triangle];
+  // A triangle was written long ago, by another thread perhaps.
+  constexpr std::size_t kAhead = 6;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const auto* ahead = reinterpret_cast<const char*>(
+        &chunk.triangles[bins[std::min(i + kAhead, bins.size() - 1)].triangle]);
+    __builtin_prefetch(ahead);
+    __builtin_prefetch(ahead + 64);
+    const LaneTriangle& t = chunk.triangles[bins[i].triangle];
     tile.triangles.push_back(&t);
     DepthWriter<test, kPlanes> writer{state,
                                       tile,
