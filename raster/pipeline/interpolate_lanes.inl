@@ -3,21 +3,25 @@
 
 namespace {
 
-/// What lanes read of their triangles' vertices: kQuantities floats from the front of the
-/// vertices' rows.
-template <std::size_t kQuantities>
+/// What lanes read of their triangles' vertices: the floats kFirst <= k < kEnd of the rows.
+template <std::size_t kFirst, std::size_t kEnd>
 struct VertexLanes {
-  std::array<std::array<Floats, kQuantities>, 3> at;
+  std::array<std::array<Floats, kEnd - kFirst>, 3> values;
 
+  SOFTFOCUS_INLINE Floats at(std::size_t vertex, std::size_t k) const {
+    return values[vertex][k - kFirst];
+  }
   SOFTFOCUS_INLINE void set(const std::array<const float*, 3>& rows) {
     for (std::size_t v = 0; v < 3; ++v) {
-      for (std::size_t k = 0; k < kQuantities; ++k) at[v][k] = splat(rows[v][k]);
+#pragma GCC unroll 32
+      for (std::size_t k = kFirst; k < kEnd; ++k) values[v][k - kFirst] = splat(rows[v][k]);
     }
   }
   SOFTFOCUS_INLINE void set(const std::array<const float*, 3>& rows, Mask mask) {
     for (std::size_t v = 0; v < 3; ++v) {
-      for (std::size_t k = 0; k < kQuantities; ++k) {
-        at[v][k] = select(mask, splat(rows[v][k]), at[v][k]);
+#pragma GCC unroll 32
+      for (std::size_t k = kFirst; k < kEnd; ++k) {
+        values[v][k - kFirst] = select(mask, splat(rows[v][k]), values[v][k - kFirst]);
       }
     }
   }
@@ -41,7 +45,7 @@ struct Weights {
 /// As BarycentricInterpolator.
 template <std::size_t N>
 struct BarycentricLanes {
-  VertexLanes<kVertexVaryings + N> vertices;
+  VertexLanes<kVertexInverseW, kVertexVaryings + N> vertices;
   std::array<Ints, 3> edge, per_x, per_y;
   Ints x_origin, y_origin;
   Floats inverse_area;
@@ -87,17 +91,17 @@ struct BarycentricLanes {
       }
     }
     for (std::size_t i = 0; i < 3; ++i) l[i] *= inverse_area;
-    const Floats p0 = l[0] * vertices.at[0][kVertexInverseW];
-    const Floats p1 = l[1] * vertices.at[1][kVertexInverseW];
-    const Floats p2 = l[2] * vertices.at[2][kVertexInverseW];
+    const Floats p0 = l[0] * vertices.at(0, kVertexInverseW);
+    const Floats p1 = l[1] * vertices.at(1, kVertexInverseW);
+    const Floats p2 = l[2] * vertices.at(2, kVertexInverseW);
     const Floats reciprocal = 1.0f / ((p0 + p1) + p2);
     return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
   }
 
   SOFTFOCUS_INLINE Floats blend(std::size_t varying, Floats weight1, Floats weight2) const {
-    const Floats a0 = vertices.at[0][kVertexVaryings + varying];
-    const Floats a1 = vertices.at[1][kVertexVaryings + varying];
-    const Floats a2 = vertices.at[2][kVertexVaryings + varying];
+    const Floats a0 = vertices.at(0, kVertexVaryings + varying);
+    const Floats a1 = vertices.at(1, kVertexVaryings + varying);
+    const Floats a2 = vertices.at(2, kVertexVaryings + varying);
     return (a0 + weight1 * (a1 - a0)) + weight2 * (a2 - a0);
   }
 
@@ -108,7 +112,7 @@ struct BarycentricLanes {
       case Interpolation::linear: return blend(varying, w.linear1, w.linear2);
       case Interpolation::flat: break;
     }
-    return vertices.at[provoking][kVertexVaryings + varying];
+    return vertices.at(provoking, kVertexVaryings + varying);
   }
 };
 
@@ -120,7 +124,7 @@ struct PlanePoint {
 /// As PlaneInterpolator with PlanesFromOrigin. The vertices are in the planes' order.
 template <std::size_t N, Contraction contraction>
 struct PlaneLanes {
-  VertexLanes<kVertexVaryings + N> vertices;
+  VertexLanes<kVertexX, kVertexVaryings + N> vertices;
   Floats x0, y0, dx01_over_area, dy01_over_area, dx20_over_area, dy20_over_area;
 
   SOFTFOCUS_INLINE static std::array<const float*, 3> ordered(const LaneTriangle& t,
@@ -138,12 +142,12 @@ struct PlaneLanes {
 
   /// Once all lanes have their triangles.
   SOFTFOCUS_INLINE void prepare() {
-    const Floats x = vertices.at[0][kVertexX];
-    const Floats y = vertices.at[0][kVertexY];
-    const Floats dx01 = x - vertices.at[1][kVertexX];
-    const Floats dy01 = y - vertices.at[1][kVertexY];
-    const Floats dx20 = vertices.at[2][kVertexX] - x;
-    const Floats dy20 = vertices.at[2][kVertexY] - y;
+    const Floats x = vertices.at(0, kVertexX);
+    const Floats y = vertices.at(0, kVertexY);
+    const Floats dx01 = x - vertices.at(1, kVertexX);
+    const Floats dy01 = y - vertices.at(1, kVertexY);
+    const Floats dx20 = vertices.at(2, kVertexX) - x;
+    const Floats dy20 = vertices.at(2, kVertexY) - y;
     const Floats one_over_area = 1.0f / (dx01 * dy20 - dx20 * dy01);
     x0 = x - 0.5f;
     y0 = y - 0.5f;
@@ -171,25 +175,25 @@ struct PlaneLanes {
     const Floats column = to_floats(x);
     const Floats row = to_floats(y);
     const Floats inverse_w =
-        plane_at(vertices.at[0][kVertexInverseW], vertices.at[1][kVertexInverseW],
-                 vertices.at[2][kVertexInverseW], column, row);
+        plane_at(vertices.at(0, kVertexInverseW), vertices.at(1, kVertexInverseW),
+                 vertices.at(2, kVertexInverseW), column, row);
     return {column, row, 1.0f / inverse_w};
   }
 
   SOFTFOCUS_INLINE Floats value(std::size_t varying, Interpolation kind, std::size_t provoking,
                                 const PlanePoint& point) const {
     const std::size_t k = kVertexVaryings + varying;
-    Floats a0 = vertices.at[0][k];
-    Floats a1 = vertices.at[1][k];
-    Floats a2 = vertices.at[2][k];
+    Floats a0 = vertices.at(0, k);
+    Floats a1 = vertices.at(1, k);
+    Floats a2 = vertices.at(2, k);
     if (kind == Interpolation::flat) {
       // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
       return provoking == 0 ? a0 : a2;
     }
     if (kind == Interpolation::linear) return plane_at(a0, a1, a2, point.x, point.y);
-    a0 *= vertices.at[0][kVertexInverseW];
-    a1 *= vertices.at[1][kVertexInverseW];
-    a2 *= vertices.at[2][kVertexInverseW];
+    a0 *= vertices.at(0, kVertexInverseW);
+    a1 *= vertices.at(1, kVertexInverseW);
+    a2 *= vertices.at(2, kVertexInverseW);
     return plane_at(a0, a1, a2, point.x, point.y) * point.w;
   }
 };

@@ -63,37 +63,44 @@ SOFTFOCUS_INLINE BlockRange blocks_of(const LaneTriangle& t, const VisibilityTil
           std::min<int>(t.bounds[2], tile.area.x_end), std::min<int>(t.bounds[3], tile.area.y_end)};
 }
 
-SOFTFOCUS_INLINE std::size_t block_at(const VisibilityTile& tile, int x, int y) {
-  const int block =
-      (y - tile.area.y_begin) / kBlockSize * kTileBlocks + (x - tile.area.x_begin) / kBlockSize;
-  return static_cast<std::size_t>(block * kBlockPixels);
+// Of the part of a block that begins with pixel (x, y).
+SOFTFOCUS_INLINE std::size_t place_in_tile(const VisibilityTile& tile, int x, int y) {
+  const int tile_x = x - tile.area.x_begin, tile_y = y - tile.area.y_begin;
+  const int block = tile_y / kBlockSize * kTileBlocks + tile_x / kBlockSize;
+  return static_cast<std::size_t>(block * kBlockPixels + tile_y % kBlockSize * kBlockSize);
 }
 
 template <class Writer>
 SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTile& tile,
                                       Writer& writer) {
   const BlockRange range = blocks_of(t, tile);
-  std::array<Ints, 3> lanes;  // edge functions over a part of a block, less the threshold
+  const int dx = range.x_begin - t.x_origin;
+  const int dy = range.y_begin - t.y_origin;
+  // Edge functions over a part of a block, less the threshold: of the row's first one, and
+  // the steps to the next part and row.
+  std::array<Ints, 3> row, per_block, per_row;
   for (std::size_t i = 0; i < 3; ++i) {
-    lanes[i] = lane_x() * t.per_x[i] + lane_y() * t.per_y[i] - std::int32_t{t.thresholds[i]};
+    row[i] = (lane_x() + dx) * t.per_x[i] + (lane_y() + dy) * t.per_y[i] +
+             (t.edge[i] - std::int32_t{t.thresholds[i]});
+    per_block[i] = splat(t.per_x[i] * kBlockSize);
+    per_row[i] = splat(t.per_y[i] * kPartRows);
   }
-  for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
+  const Ints threshold1 = splat(std::int32_t{t.thresholds[1]});
+  const Ints threshold2 = splat(std::int32_t{t.thresholds[2]});
+  for (int y = range.y_begin; y < range.y_end; y += kPartRows) {
+    std::size_t at = place_in_tile(tile, range.x_begin, y);
+    Ints e0 = row[0], e1 = row[1], e2 = row[2];
     for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
-      const std::size_t block = block_at(tile, x, y);
-      for (int part = 0; part < kBlockParts; ++part) {
-        const int row = y + part * kPartRows;
-        const int dx = x - t.x_origin;
-        const int dy = row - t.y_origin;
-        const Ints e0 = lanes[0] + (t.edge[0] + dx * t.per_x[0] + dy * t.per_y[0]);
-        const Ints e1 = lanes[1] + (t.edge[1] + dx * t.per_x[1] + dy * t.per_y[1]);
-        const Ints e2 = lanes[2] + (t.edge[2] + dx * t.per_x[2] + dy * t.per_y[2]);
-        const Mask covered = (e0 | e1 | e2) >= 0;
-        if (!any(covered)) continue;
-        writer.write(x, row, block + static_cast<std::size_t>(part * kLanes), covered,
-                     to_floats(e1 + std::int32_t{t.thresholds[1]}),
-                     to_floats(e2 + std::int32_t{t.thresholds[2]}));
+      const Mask covered = (e0 | e1 | e2) >= 0;
+      if (any(covered)) {
+        writer.write(x, y, at, covered, to_floats(e1 + threshold1), to_floats(e2 + threshold2));
       }
+      e0 += per_block[0];
+      e1 += per_block[1];
+      e2 += per_block[2];
+      at += kBlockPixels;
     }
+    for (std::size_t i = 0; i < 3; ++i) row[i] += per_row[i];
   }
 }
 
@@ -112,7 +119,6 @@ SOFTFOCUS_INLINE void rasterize_large(const LaneTriangle& t, const VisibilityTil
         outside = outside || edge_at(edges[i], corner_x, corner_y) < t.thresholds[i];
       }
       if (outside) continue;
-      const std::size_t block = block_at(tile, x, y);
       for (int part = 0; part < kBlockParts; ++part) {
         const int row = y + part * kPartRows;
         Ints covered = ~Ints{};
@@ -125,7 +131,7 @@ SOFTFOCUS_INLINE void rasterize_large(const LaneTriangle& t, const VisibilityTil
           }
         }
         if (!any(covered)) continue;
-        writer.write(x, row, block + static_cast<std::size_t>(part * kLanes), covered, e[1], e[2]);
+        writer.write(x, row, place_in_tile(tile, x, row), covered, e[1], e[2]);
       }
     }
   }

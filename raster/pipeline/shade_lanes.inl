@@ -86,6 +86,18 @@ SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
           float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
 }
 
+// Asks for the vertices of the next vector's triangles, which were written long ago.
+SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
+                                     const std::int32_t* entries) {
+  std::int32_t last = -1;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::int32_t triangle = entries[lane] >> kPixelBits;
+    if (triangle == last) continue;
+    last = triangle;
+    for (const float* row : triangles[triangle]->vertices) __builtin_prefetch(row);
+  }
+}
+
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
@@ -97,6 +109,9 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   Interpolator interpolator;
   for (int i = 0; i < seen.count; i += kLanes) {
     const Ints entries = load(&seen.entries[static_cast<std::size_t>(i)]);
+    if (i + 2 * kLanes <= seen.count) {
+      fetch_vertices(triangles, &seen.entries[static_cast<std::size_t>(i + kLanes)]);
+    }
     const Ints pixel = entries & (kTilePixels - 1);
     const Ints triangle = entries >> kPixelBits;
     const Ints block = pixel >> 4;
