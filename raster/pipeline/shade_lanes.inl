@@ -185,7 +185,7 @@ SOFTFOCUS_INLINE Ints clip_codes(const std::array<Floats, 4>& position, float gu
                                         position[3] + position[2], position[3] - position[2]};
   Ints codes{};
   for (std::size_t plane = 0; plane < 6; ++plane) {
-    codes |= (distances[plane] < 0.0f) & (1 << plane);
+    codes |= (distances[plane] < 0.0f) & splat(1 << plane);
   }
   const Mask finite = is_finite(position[0]) & is_finite(position[1]) & is_finite(position[2]) &
                       is_finite(position[3]);

@@ -1,0 +1,45 @@
+// The stages of draw_lanes_test.cpp for vector units.
+
+#include "raster/pipeline/block_lanes.inl"
+#include "raster/pipeline/interpolate_lanes.inl"
+#include "raster/pipeline/shade_lanes.inl"
+
+namespace {
+
+struct ListedLanes {
+  static constexpr std::size_t kVaryings = 4;
+  const std::vector<VertexOutput<4>>& list;
+
+  void operator()(Ints index, std::array<Floats, 4>& position,
+                  std::array<Floats, 4>& varyings) const {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const VertexOutput<4>& vertex = list[static_cast<std::size_t>(index[lane])];
+      for (int i = 0; i < 4; ++i) {
+        position[static_cast<std::size_t>(i)][lane] = vertex.position[i];
+        varyings[static_cast<std::size_t>(i)][lane] = vertex.varyings[static_cast<std::size_t>(i)];
+      }
+    }
+  }
+};
+
+struct MixedLanes {
+  static constexpr auto kInterpolation = MixedColour::kInterpolation;
+  static constexpr bool kNeedsDerivatives = true;
+
+  template <class Fragment>
+  std::array<Floats, 4> operator()(const Fragment& in) const {
+    return {in.varying(0) + in.ddx(0), in.varying(1) - in.ddy(0),
+            select(in.front_facing, in.varying(2), -in.varying(2)), in.varying(3) + in.ddx(1)};
+  }
+};
+
+}  // namespace
+
+void shade_listed(const test::ListedVertices<4>& stage, const VertexJob& job) {
+  shade_vertices(ListedLanes{*stage.list}, job);
+}
+
+void shade_mixed(const MixedColour&, const FragmentJob& job, const VisibilityTile& tile,
+                 const VisibleRun& run) {
+  shade_fragments(MixedLanes{}, job, tile, run);
+}
