@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <limits>
 
 #include "raster/images/texel.h"
 #include "raster/images/unorm8_filter.h"
@@ -14,8 +15,6 @@ namespace {
 bool is_8_bit(Format format) {
   return bytes_per_texel(format) == static_cast<std::size_t>(channel_count(format));
 }
-
-bool is_power_of_two(int size) { return std::has_single_bit(static_cast<unsigned>(size)); }
 
 // Whether llvmpipe may filter texels in integers, so that they are left from 0 to 255.
 bool is_unscaled(Format format, const Profile& profile) {
@@ -80,6 +79,14 @@ void decode_floats(const Image& image, float* to) {
   }
 }
 
+void add_level(DecodedAxis& axis, std::size_t level, int size) {
+  const bool is_power_of_two = std::has_single_bit(static_cast<unsigned>(size));
+  axis.sizes[level] = static_cast<float>(size);
+  axis.inverses[level] = 1.0f / axis.sizes[level];
+  axis.are_powers_of_two = is_power_of_two && (level == 0 || axis.are_powers_of_two);
+  if (level == 0) axis.base_is_power_of_two = is_power_of_two;
+}
+
 std::size_t texel_floats(const Image& image) {
   return 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
 }
@@ -94,22 +101,15 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile) {
   if (profile.texture_unit == TextureUnit::softpipe || texture.levels.size() > kMaxDecodedLevels) {
     return decoded;
   }
-  decoded.base_width_is_power_of_two = is_power_of_two(texture.levels[0].width);
-  decoded.base_height_is_power_of_two = is_power_of_two(texture.levels[0].height);
-  decoded.widths_are_powers_of_two = true;
-  decoded.heights_are_powers_of_two = true;
   std::size_t floats = 0;
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
     const Image& image = texture.levels[i];
     decoded.starts[i] = static_cast<std::int32_t>(floats);
-    decoded.widths[i] = static_cast<float>(image.width);
-    decoded.heights[i] = static_cast<float>(image.height);
-    decoded.inverse_widths[i] = 1.0f / decoded.widths[i];
-    decoded.inverse_heights[i] = 1.0f / decoded.heights[i];
-    decoded.widths_are_powers_of_two &= is_power_of_two(image.width);
-    decoded.heights_are_powers_of_two &= is_power_of_two(image.height);
+    add_level(decoded.u, i, image.width);
+    add_level(decoded.v, i, image.height);
     floats += texel_floats(image);
   }
+  if (floats > std::numeric_limits<std::int32_t>::max()) return decoded;
   decoded.texels.resize(floats);
 
   const Format format = texture.levels[0].format;

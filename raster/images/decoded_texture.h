@@ -16,30 +16,26 @@ namespace softfocus {
 /// A lane of the widest vector for each: 16384x16384 texels have 15 levels.
 inline constexpr std::size_t kMaxDecodedLevels = 16;
 
+/// Widths or heights of the levels.
+struct DecodedAxis {
+  alignas(64) std::array<float, kMaxDecodedLevels> sizes{};
+  alignas(64) std::array<float, kMaxDecodedLevels> inverses{};  ///< 1 / size, rounded
+  bool are_powers_of_two = false;                               ///< all of them
+  bool base_is_power_of_two = false;                            ///< level 0's
+};
+
 struct DecodedTexture {
   const Texture* source = nullptr;  ///< what it was made of, which must outlive it
   int level_count = 0;
-  /// Whether every level's width, or height, is a power of two.
-  bool widths_are_powers_of_two = false;
-  bool heights_are_powers_of_two = false;
-  /// Whether level 0's are.
-  bool base_width_is_power_of_two = false;
-  bool base_height_is_power_of_two = false;
   /// What texels are to be multiplied by: 1, or 1/255 where llvmpipe may filter them in
   /// integers and they are 0 to 255.
   float scale = 1.0f;
-
-  /// Of each level: where its texels start in `texels`, and its size. Rows lie without
-  /// gaps. Past the last level zeros.
+  DecodedAxis u, v;
+  /// Where each level's texels start in `texels`, in floats. Rows lie without gaps.
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
-  alignas(64) std::array<float, kMaxDecodedLevels> widths{};
-  alignas(64) std::array<float, kMaxDecodedLevels> heights{};
-  /// 1 / size, rounded.
-  alignas(64) std::array<float, kMaxDecodedLevels> inverse_widths{};
-  alignas(64) std::array<float, kMaxDecodedLevels> inverse_heights{};
-
   /// Red, green, blue and alpha of each texel, as fetch_texel() gives them but for
-  /// `scale`. Empty where nothing but sample() has the profile's arithmetic.
+  /// `scale`. Empty where sample() must do: for softpipe, for more levels than
+  /// kMaxDecodedLevels and for 2^31 floats and more.
   std::vector<float, RowAllocator<float>> texels;
 };
 

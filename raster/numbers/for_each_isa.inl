@@ -75,5 +75,8 @@ namespace softfocus::avx512 {
    : (isa) == ::softfocus::Isa::avx2 ? ::softfocus::avx2::kernel   \
                                      : ::softfocus::baseline::kernel)
 #else
-#define SOFTFOCUS_KERNEL(isa, kernel) ((void)(isa), ::softfocus::baseline::kernel)
+// A choice between two, so that a template is chosen by what is asked for, as above.
+#define SOFTFOCUS_KERNEL(isa, kernel)                                  \
+  ((isa) == ::softfocus::Isa::baseline ? ::softfocus::baseline::kernel \
+                                       : ::softfocus::baseline::kernel)
 #endif

@@ -147,7 +147,8 @@ SOFTFOCUS_INLINE Floats square_root(Floats v) {
 /// To the nearest whole number, ties to even.
 SOFTFOCUS_INLINE Floats nearest(Floats v) {
 #if SOFTFOCUS_LANES == 16
-  return (Floats)_mm512_maskz_roundscale_ps(0xFFFF, (__m512)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+  return (Floats)_mm512_maskz_roundscale_ps(0xFFFF, (__m512)v,
+                                            _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 #else
@@ -160,7 +161,8 @@ SOFTFOCUS_INLINE Floats nearest(Floats v) {
 
 SOFTFOCUS_INLINE Floats floor(Floats v) {
 #if SOFTFOCUS_LANES == 16
-  return (Floats)_mm512_maskz_roundscale_ps(0xFFFF, (__m512)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+  return (Floats)_mm512_maskz_roundscale_ps(0xFFFF, (__m512)v,
+                                            _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
 #else
@@ -363,7 +365,11 @@ SOFTFOCUS_INLINE HalfTexels load_half_texels(const std::uint16_t* from) {
 #endif
 }
 
-SOFTFOCUS_INLINE void store_half_texels(std::uint16_t* to, const HalfTexels& texels) {
+/// Those pixels as they lie in memory: the first half of them, and the second.
+struct TexelWords {
+  Bits first, second;
+};
+SOFTFOCUS_INLINE TexelWords interleave(const HalfTexels& texels) {
 #if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
   const Bits rg = texels.r << 16 | texels.g;
   const Bits ba = texels.b << 16 | texels.a;
@@ -383,6 +389,36 @@ SOFTFOCUS_INLINE void store_half_texels(std::uint16_t* to, const HalfTexels& tex
   const Bits first = (Bits)__builtin_shufflevector(rg, ba, 0, 4, 1, 5);
   const Bits second = (Bits)__builtin_shufflevector(rg, ba, 2, 6, 3, 7);
 #endif
-  std::memcpy(to, &first, sizeof first);
-  std::memcpy(to + 2 * kLanes, &second, sizeof second);
+  return {first, second};
+}
+
+SOFTFOCUS_INLINE void store_texel_words(std::uint16_t* to, const TexelWords& words) {
+  std::memcpy(to, &words.first, sizeof words.first);
+  std::memcpy(to + 2 * kLanes, &words.second, sizeof words.second);
+}
+SOFTFOCUS_INLINE void store_half_texels(std::uint16_t* to, const HalfTexels& texels) {
+  store_texel_words(to, interleave(texels));
+}
+
+/// The same past the caches, where that can be: for what is not read again soon. Needs an
+/// address that is a multiple of a vector's size, and finish_streaming() before another
+/// thread may read.
+SOFTFOCUS_INLINE void stream_texel_words(std::uint16_t* to, const TexelWords& words) {
+#if SOFTFOCUS_LANES == 16
+  _mm512_stream_si512((__m512i*)to, (__m512i)words.first);
+  _mm512_stream_si512((__m512i*)(to + 2 * kLanes), (__m512i)words.second);
+#elif SOFTFOCUS_LANES == 8
+  _mm256_stream_si256((__m256i*)to, (__m256i)words.first);
+  _mm256_stream_si256((__m256i*)(to + 2 * kLanes), (__m256i)words.second);
+#elif defined(__SSE2__)
+  _mm_stream_si128((__m128i*)to, (__m128i)words.first);
+  _mm_stream_si128((__m128i*)(to + 2 * kLanes), (__m128i)words.second);
+#else
+  store_texel_words(to, words);
+#endif
+}
+SOFTFOCUS_INLINE void finish_streaming() {
+#if defined(__SSE2__)
+  _mm_sfence();
+#endif
 }
