@@ -21,6 +21,12 @@ constexpr std::array kMethods{
 
 }  // namespace
 
+Image apply(const Method& method, const DofInput& input, ThreadPool& pool) {
+  Image result = make_image(input.scene.format, input.scene.width, input.scene.height);
+  method.apply(input, result, pool);
+  return result;
+}
+
 std::span<const Method> methods() { return kMethods; }
 
 const Method* find_method(std::string_view name) {

@@ -38,9 +38,14 @@ struct Method {
   std::string_view summary;
   /// What the method works from, for the list of methods.
   std::string_view needs;
-  /// An image of the scene's size and format, depth kept in alpha.
-  Image (*apply)(const DofInput& input, ThreadPool& pool);
+  /// Writes every pixel of `result`, depth in alpha. It has the scene's size and format,
+  /// and is another image; one that is used again from frame to frame spares the cost
+  /// of fresh memory.
+  void (*apply)(const DofInput& input, Image& result, ThreadPool& pool);
 };
+
+/// The same into a new image.
+Image apply(const Method& method, const DofInput& input, ThreadPool& pool);
 
 std::span<const Method> methods();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dof/one_pass_tiles.h"
 #include "dof/weights.h"
 #include "raster/passes/fullscreen_pass.h"
 
@@ -42,6 +43,32 @@ Band fill_band(const DofInput& input, int y_begin, int y_end, int margin) {
   return band;
 }
 
+void one_pass_bands(const DofInput& input, Image& result, ThreadPool& pool) {
+  const Image& scene = input.scene;
+  const float radius = largest_filter_radius(input, pool);
+  const std::vector<RingTap> taps = ring_taps(radius);
+
+  pool.for_each((scene.height + kBandRows - 1) / kBandRows, [&](int number) {
+    const int y_begin = number * kBandRows;
+    const int y_end = std::min(y_begin + kBandRows, scene.height);
+    const Band band = fill_band(input, y_begin, y_end, tap_count(radius));
+    for (int y = y_begin; y < y_end; ++y) {
+      for (int x = 0; x < scene.width; ++x) {
+        const FilterTexel* centre = band.at(x, y);
+        const float receiver_leakage = leakage(centre->radius_px, input.settings.leak);
+        Gather gather = begin_gather(*centre);
+        for (const RingTap& tap : taps) {
+          add_neighbour(gather, *(centre + tap.dy * band.stride + tap.dx), tap.distance_px,
+                        receiver_leakage);
+        }
+        const float depth = load_texel<Format::rgba16f>(scene, x, y).w;
+        store_texel<Format::rgba16f>(result, x, y, glm::vec4{resolve(gather), depth},
+                                     input.profile);
+      }
+    }
+  });
+}
+
 }  // namespace
 
 std::vector<RingTap> ring_taps(float radius_px) {
@@ -66,35 +93,15 @@ std::vector<RingTap> ring_taps(float radius_px) {
   return taps;
 }
 
-Image one_pass(const DofInput& input, ThreadPool& pool) {
-  const Image& scene = input.scene;
-  const float radius = largest_filter_radius(input, pool);
-  const std::vector<RingTap> taps = ring_taps(radius);
-  Image result = make_image(Format::rgba16f, scene.width, scene.height);
-
-  pool.for_each((scene.height + kBandRows - 1) / kBandRows, [&](int number) {
-    const int y_begin = number * kBandRows;
-    const int y_end = std::min(y_begin + kBandRows, scene.height);
-    const Band band = fill_band(input, y_begin, y_end, tap_count(radius));
-    for (int y = y_begin; y < y_end; ++y) {
-      for (int x = 0; x < scene.width; ++x) {
-        const FilterTexel* centre = band.at(x, y);
-        const float receiver_leakage = leakage(centre->radius_px, input.settings.leak);
-        Gather gather = begin_gather(*centre);
-        for (const RingTap& tap : taps) {
-          add_neighbour(gather, *(centre + tap.dy * band.stride + tap.dx), tap.distance_px,
-                        receiver_leakage);
-        }
-        const float depth = load_texel<Format::rgba16f>(scene, x, y).w;
-        store_texel<Format::rgba16f>(result, x, y, glm::vec4{resolve(gather), depth},
-                                     input.profile);
-      }
-    }
-  });
-  return result;
+void one_pass(const DofInput& input, Image& result, ThreadPool& pool) {
+  if (pool.isa() == Isa::scalar) {
+    one_pass_bands(input, result, pool);
+  } else {
+    one_pass_tiles(input, result, pool);
+  }
 }
 
-Image one_pass_plain(const DofInput& input, ThreadPool& pool) {
+void one_pass_plain(const DofInput& input, Image& result, ThreadPool& pool) {
   const Image& scene = input.scene;
   const auto fetch = [&](int x, int y) {
     return load_texel<Format::rgba16f>(scene, std::clamp(x, 0, scene.width - 1),
@@ -105,7 +112,6 @@ Image one_pass_plain(const DofInput& input, ThreadPool& pool) {
     return filter_texel(input.settings, glm::vec3{texel.x, texel.y, texel.z}, texel.w);
   };
   const std::vector<RingTap> taps = ring_taps(input.settings.max_coc_px);
-  Image result = make_image(Format::rgba16f, scene.width, scene.height);
   fullscreen_pass<Format::rgba16f>(result, input.profile, pool, [&](int x, int y) {
     const FilterTexel centre = neighbour(x, y);
     const float receiver_leakage = leakage(centre.radius_px, input.settings.leak);
@@ -115,7 +121,6 @@ Image one_pass_plain(const DofInput& input, ThreadPool& pool) {
     }
     return glm::vec4{resolve(gather), fetch(x, y).w};
   });
-  return result;
 }
 
 }  // namespace softfocus

@@ -29,9 +29,9 @@ struct RingTap {
 /// The samples nearer than `radius_px`, in the order in which they are added.
 std::vector<RingTap> ring_taps(float radius_px);
 
-Image one_pass(const DofInput& input, ThreadPool& pool);
+void one_pass(const DofInput& input, Image& result, ThreadPool& pool);
 
 /// The oracle of one_pass: as a fragment shader would be written.
-Image one_pass_plain(const DofInput& input, ThreadPool& pool);
+void one_pass_plain(const DofInput& input, Image& result, ThreadPool& pool);
 
 }  // namespace softfocus

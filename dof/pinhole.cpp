@@ -1,7 +1,17 @@
 #include "dof/pinhole.h"
 
+#include <algorithm>
+
 namespace softfocus {
 
-Image pinhole(const DofInput& input, ThreadPool&) { return input.scene; }
+void pinhole(const DofInput& input, Image& result, ThreadPool& pool) {
+  constexpr int kRows = 64;
+  pool.for_each((result.height + kRows - 1) / kRows, [&](int block) {
+    const int end = std::min((block + 1) * kRows, result.height);
+    for (int y = block * kRows; y < end; ++y) {
+      std::ranges::copy(row<std::uint16_t>(input.scene, y), row<std::uint16_t>(result, y).begin());
+    }
+  });
+}
 
 }  // namespace softfocus

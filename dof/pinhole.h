@@ -6,6 +6,6 @@
 namespace softfocus {
 
 /// The picture as it was drawn.
-Image pinhole(const DofInput& input, ThreadPool& pool);
+void pinhole(const DofInput& input, Image& result, ThreadPool& pool);
 
 }  // namespace softfocus

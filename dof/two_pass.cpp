@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "dof/two_pass_strips.h"
 #include "dof/weights.h"
 #include "raster/images/texel.h"
 
@@ -56,9 +57,7 @@ void filter_line(const Line& line, float leak, const Store& store) {
   }
 }
 
-}  // namespace
-
-Image two_pass(const DofInput& input, ThreadPool& pool) {
+void two_pass_lines(const DofInput& input, Image& result, ThreadPool& pool) {
   const Image& scene = input.scene;
   const DofSettings& settings = input.settings;
   const int taps = tap_count(largest_filter_radius(input, pool));
@@ -75,7 +74,6 @@ Image two_pass(const DofInput& input, ThreadPool& pool) {
     }
   });
 
-  Image result = make_image(Format::rgba16f, scene.width, scene.height);
   pool.for_each((scene.width + kColumns - 1) / kColumns, [&](int block) {
     Line line(scene.height, taps);
     const int end = std::min((block + 1) * kColumns, scene.width);
@@ -86,7 +84,16 @@ Image two_pass(const DofInput& input, ThreadPool& pool) {
       });
     }
   });
-  return result;
+}
+
+}  // namespace
+
+void two_pass(const DofInput& input, Image& result, ThreadPool& pool) {
+  if (pool.isa() == Isa::scalar) {
+    two_pass_lines(input, result, pool);
+  } else {
+    two_pass_strips(input, result, pool);
+  }
 }
 
 }  // namespace softfocus

@@ -17,10 +17,10 @@ namespace softfocus {
 
 /// The filter, line by line: every quantity of a pixel is computed once a pass. Cost
 /// grows with the largest radius that is in the picture, up to max_coc.
-Image two_pass(const DofInput& input, ThreadPool& pool);
+void two_pass(const DofInput& input, Image& result, ThreadPool& pool);
 
 /// The same filter as a fragment shader would be written, every tap from the texture:
 /// the oracle of two_pass, equal to the bit.
-Image two_pass_plain(const DofInput& input, ThreadPool& pool);
+void two_pass_plain(const DofInput& input, Image& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -7,8 +7,8 @@
 namespace softfocus {
 namespace {
 
-Image filter_along(const DofInput& input, const Image& source, int step_x, int step_y,
-                   ThreadPool& pool) {
+void filter_along(const DofInput& input, const Image& source, Image& target, int step_x, int step_y,
+                  ThreadPool& pool) {
   const auto fetch = [&](int x, int y) {
     return load_texel<Format::rgba16f>(source, std::clamp(x, 0, source.width - 1),
                                        std::clamp(y, 0, source.height - 1));
@@ -17,7 +17,6 @@ Image filter_along(const DofInput& input, const Image& source, int step_x, int s
     const glm::vec4 texel = fetch(x, y);
     return filter_texel(input.settings, glm::vec3{texel.x, texel.y, texel.z}, texel.w);
   };
-  Image target = make_image(Format::rgba16f, source.width, source.height);
   fullscreen_pass<Format::rgba16f>(target, input.profile, pool, [&](int x, int y) {
     const FilterTexel centre = neighbour(x, y);
     const float receiver_leakage = leakage(centre.radius_px, input.settings.leak);
@@ -29,13 +28,14 @@ Image filter_along(const DofInput& input, const Image& source, int step_x, int s
     }
     return glm::vec4{resolve(gather), fetch(x, y).w};
   });
-  return target;
 }
 
 }  // namespace
 
-Image two_pass_plain(const DofInput& input, ThreadPool& pool) {
-  return filter_along(input, filter_along(input, input.scene, 1, 0, pool), 0, 1, pool);
+void two_pass_plain(const DofInput& input, Image& result, ThreadPool& pool) {
+  Image between = make_image(Format::rgba16f, input.scene.width, input.scene.height);
+  filter_along(input, input.scene, between, 1, 0, pool);
+  filter_along(input, between, result, 0, 1, pool);
 }
 
 }  // namespace softfocus

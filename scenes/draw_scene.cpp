@@ -74,6 +74,7 @@ void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& 
   pass.targets.depth = &prepared.depth;
   pass.clear_colour = clear_colour(scene);
   pass.clear_depth = 1.0f;
+  pass.keep_depth = false;
   for (const SurfaceDraw& surface : surface_draws(scene, view, frame)) {
     draw_surface(prepared, surface);
   }

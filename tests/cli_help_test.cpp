@@ -29,6 +29,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--leak A",
                        "--profile NAME",
                        "--threads N",
+                       "--isa NAME",
                        "--report FILE",
                        "--json",
                        "-v,--verbose"});
@@ -36,7 +37,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
             {"--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
              "--fov DEGREES", "--height PIXELS", "--max-coc-film MM", "--at METRES ...", "--json"});
   names_all("compare", {"A", "B", "--diff OUT", "--json"});
-  names_all("selftest", {"--threads N", "--json", "--print"});
+  names_all("selftest", {"--threads N", "--isa NAME", "--json", "--print"});
   names_all("scenes", {"--scene-path DIR"});
   names_all("methods", {});
   names_all("profiles", {});
@@ -51,7 +52,7 @@ TEST_CASE("without a subcommand there is the help, as wrong usage") {
   CHECK(run.status == 2);
   CHECK(run.out == "");
   for (const char* command :
-       {"render", "scenes", "methods", "profiles", "lens", "compare", "selftest"}) {
+       {"render", "scenes", "methods", "profiles", "lens", "compare", "bench", "selftest"}) {
     CHECK(contains(run.err, std::string{"\n  "} + command));
   }
 }

@@ -55,7 +55,7 @@ std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
         for (const Method& method : methods()) {
           hashes.push_back({name + ' ' + std::string{method.name} + ' ' + profile.name + ' ' +
                                 std::to_string(width) + 'x' + std::to_string(height),
-                            hash_image(method.apply({picture, settings, profile}, pool))});
+                            hash_image(apply(method, {picture, settings, profile}, pool))});
         }
       }
     }

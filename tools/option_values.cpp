@@ -61,6 +61,13 @@ void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& direct
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void add_frame(CLI::App& parser, double& frame) {
+  add_value(parser, "--frame", "N", "Frame of the animation, from 0 (default: 0)",
+            [&frame](const std::string& text) {
+              frame = parse_number("--frame", text, 0.0, 1e9, "a frame from 0 to 1000000000");
+            });
+}
+
 void add_argument(CLI::App& parser, const std::string& name, const std::string& help,
                   std::string& value) {
   parser.add_option(name, value, help)->type_name("")->required();
@@ -101,6 +108,10 @@ PictureSize parse_size(std::string_view option, const std::string& text) {
   const std::string_view all = text;
   if (cross == text.npos) return {side(""), 0};
   return {side(all.substr(0, cross)), side(all.substr(cross + 1))};
+}
+
+std::string size_text(PictureSize size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
 Pixel parse_pixel(std::string_view option, const std::string& text) {

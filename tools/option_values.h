@@ -30,6 +30,9 @@ void add_value(CLI::App& parser, const std::string& name, const std::string& typ
 /// Adds --scene-path, which may be repeated: directories that must exist.
 void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories);
 
+/// Adds --frame, a time of the animation.
+void add_frame(CLI::App& parser, double& frame);
+
 /// A positional argument that must be given.
 void add_argument(CLI::App& parser, const std::string& name, const std::string& help,
                   std::string& value);
@@ -44,6 +47,9 @@ int parse_whole(std::string_view option, const std::string& text, int least, int
 
 /// WIDTHxHEIGHT, each 1 to kMaxImageSize.
 PictureSize parse_size(std::string_view option, const std::string& text);
+
+/// "1024x768".
+std::string size_text(PictureSize size);
 
 /// X,Y.
 Pixel parse_pixel(std::string_view option, const std::string& text);

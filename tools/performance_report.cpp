@@ -79,7 +79,8 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += line("Picture", std::string{name_of(options.show)});
   text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
                                      : line("GL driver", record.gl_renderer);
-  text += line("Threads", std::to_string(options.threads));
+  text += line("Threads", std::to_string(options.pool.threads));
+  text += line("Vector unit", std::string{isa_name(options.pool.isa)});
   text += "\n";
   if (record.lens) text += lens_lines(*record.lens) + "\n";
 
@@ -98,12 +99,13 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
   using nlohmann::ordered_json;
   const StageTimes& ms = record.ms;
   ordered_json json{
-      {"softfocus", SOFTFOCUS_VERSION}, {"scene", record.scene_name},
-      {"title", record.scene_title},    {"frame", options.frame},
-      {"width", options.size.width},    {"height", options.size.height},
-      {"triangles", record.triangles},  {"method", options.method->name},
-      {"show", name_of(options.show)},  {"profile", options.profile.name},
-      {"threads", options.threads},     {"output", options.output},
+      {"softfocus", SOFTFOCUS_VERSION},  {"scene", record.scene_name},
+      {"title", record.scene_title},     {"frame", options.frame},
+      {"width", options.size.width},     {"height", options.size.height},
+      {"triangles", record.triangles},   {"method", options.method->name},
+      {"show", name_of(options.show)},   {"profile", options.profile.name},
+      {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
+      {"output", options.output},
   };
   if (!record.gl_renderer.empty()) {
     json["profile"] = nullptr;

@@ -1,8 +1,6 @@
 // softfocus render: the way of a frame from a scene's file to a picture's.
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -14,9 +12,11 @@
 #include "tools/commands.h"
 #include "tools/errors.h"
 #include "tools/gl/frame_on_gl.h"
+#include "tools/method_options.h"
 #include "tools/performance_report.h"
 #include "tools/progress.h"
 #include "tools/render_options.h"
+#include "tools/scene_warnings.h"
 #include "tools/whole_file.h"
 
 namespace softfocus {
@@ -44,9 +44,7 @@ UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene) {
   UsedLens used;
   used.lens = overruled(of_scene.lens, options.lens);
   used.coc_scale = options.lens.coc_scale.value_or(of_scene.coc_scale);
-  const double scaled = of_scene.max_coc_px_at_1024 * options.size.height / 1024.0;
-  used.settings.max_coc_px = options.max_coc_px.value_or(
-      static_cast<float>(std::fmin(scaled, static_cast<double>(kLargestMaxCoc))));
+  used.settings.max_coc_px = used_max_coc_px(options.max_coc_px, of_scene, options.size.height);
   used.settings.leak = options.leak;
   if (options.autofocus) {
     used.autofocus_pixel =
@@ -75,24 +73,13 @@ Image shown_picture(Image scene, const RenderOptions& options, const Camera& cam
   switch (options.show) {
     case Show::image:
       return on_gl != nullptr ? on_gl->filter(*options.method, settings, scene)
-                              : options.method->apply({scene, settings, options.profile}, pool);
+                              : apply(*options.method, {scene, settings, options.profile}, pool);
     case Show::pinhole: return scene;
     case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
     case Show::depth:
       return show_depth(scene, static_cast<float>(camera.near_m), static_cast<float>(camera.far_m));
   }
   return scene;
-}
-
-// What the scene had to make do without. A model may lack a hundred textures.
-void print_warnings(const std::vector<std::string>& warnings, bool all) {
-  constexpr std::size_t kMostLines = 3;
-  const std::size_t lines = all ? warnings.size() : std::min(warnings.size(), kMostLines);
-  for (std::size_t i = 0; i < lines; ++i)
-    std::cerr << "softfocus: warning: " << warnings[i] << '\n';
-  if (lines < warnings.size()) {
-    std::cerr << "softfocus: warning: " << warnings.size() - lines << " more; -v lists them\n";
-  }
 }
 
 int render(const RenderOptions& options) {
@@ -103,13 +90,13 @@ int render(const RenderOptions& options) {
   RenderRecord record;
   StageTimes& ms = record.ms;
   Progress progress;
-  ThreadPool pool{options.threads};
+  ThreadPool pool{options.pool.threads, options.pool.isa};
 
   const Scene scene = timed(progress, "loading", ms.load, [&] {
     return load_scene(options.scene, scene_search_path(options.scene_path));
   });
   progress.clear();
-  print_warnings(scene.warnings, options.verbose);
+  print_scene_warnings(scene.warnings, options.verbose);
   record.scene_name = scene.name;
   record.scene_title = scene.title;
   record.triangles = triangle_count(scene);

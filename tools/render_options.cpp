@@ -6,6 +6,8 @@
 #include "raster/images/image.h"
 #include "tools/driver_option.h"
 #include "tools/errors.h"
+#include "tools/memory_check.h"
+#include "tools/method_options.h"
 #include "tools/platform.h"
 #include "tools/profile_option.h"
 
@@ -53,20 +55,12 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
 }
 
 void add_scene_options(CLI::App& parser, RenderOptions& options) {
-  add_value(parser, "--frame", "N", "Frame of the animation, from 0 (default: 0)",
-            [&options](const std::string& text) {
-              options.frame =
-                  parse_number("--frame", text, 0.0, 1e9, "a frame from 0 to 1000000000");
-            });
+  add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
 }
 
 void add_method_options(CLI::App& parser, RenderOptions& options) {
-  add_value(parser, "--method", "NAME", "Depth-of-field method (default: two-pass)",
-            [&options](const std::string& text) {
-              options.method = find_method(text);
-              if (options.method == nullptr) refuse_name("--method", text, methods());
-            });
+  add_method_option(parser, options.method);
   add_lens_options(parser, options.lens,
                    {.focus = "the scene's",
                     .focal_length = "the scene's",
@@ -78,12 +72,7 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
               options.autofocus = true;
               if (text != "centre") options.autofocus_pixel = parse_pixel("--autofocus", text);
             });
-  add_value(parser, "--max-coc", "PIXELS",
-            "Filter size: largest radius, 0 to 1024 (default: the scene's, by height)",
-            [&options](const std::string& text) {
-              options.max_coc_px = static_cast<float>(parse_number(
-                  "--max-coc", text, 0.0, kLargestMaxCoc, "a radius in pixels from 0 to 1024"));
-            });
+  add_max_coc_option(parser, options.max_coc_px);
   add_value(parser, "--leak", "A",
             "How readily a background gives its colour to what is before it (default: " +
                 short_number(options.leak) + ")",
@@ -98,10 +87,7 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
                      [&options](const Profile& profile) { options.profile = profile; });
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
-  add_value(parser, "--threads", "N", "Threads, 1 to 256; the picture is the same (default: all)",
-            [&options](const std::string& text) {
-              options.threads = parse_whole("--threads", text, 1, 256, "a number from 1 to 256");
-            });
+  add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
             [&options](const std::string& text) { options.report = text; });
   parser.add_flag("--json", options.json, "Print the report as JSON on standard output");
@@ -119,18 +105,6 @@ bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
 /// depth (4) and the largest encoding (12).
 constexpr std::uint64_t kBytesPerPixel = 40;
-
-void check_memory(PictureSize size) {
-  const auto needed = kBytesPerPixel * static_cast<std::uint64_t>(size.width) *
-                      static_cast<std::uint64_t>(size.height);
-  const auto there = memory_bytes();
-  if (!there || needed <= *there) return;  // unknown: allocation decides
-  constexpr double kGigabyte = 1e9;
-  throw UsageError(
-      "--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": needs " +
-      short_number(static_cast<double>(needed) / kGigabyte) + " GB of memory and there are " +
-      short_number(static_cast<double>(*there) / kGigabyte) + " GB; give a smaller size");
-}
 
 }  // namespace
 
@@ -183,7 +157,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
                        "," + std::to_string(height - 1));
     }
   }
-  check_memory(options.size);
+  check_memory("--size", options.size, kBytesPerPixel);
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {

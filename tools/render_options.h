@@ -13,6 +13,7 @@
 #include "tools/image_file.h"
 #include "tools/lens_options.h"
 #include "tools/option_values.h"
+#include "tools/pool_options.h"
 
 namespace softfocus {
 
@@ -28,7 +29,7 @@ struct RenderOptions {
   double frame = 0.0;
   Profile profile = profiles().front();
   const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
-  int threads = hardware_threads();
+  PoolOptions pool;
   const Method* method = find_method("two-pass");
   LensOptions lens;
   bool autofocus = false;

@@ -9,13 +9,13 @@
 #include "tools/commands.h"
 #include "tools/errors.h"
 #include "tools/golden_hashes.h"
-#include "tools/option_values.h"
+#include "tools/pool_options.h"
 
 namespace softfocus {
 namespace {
 
 struct SelftestOptions {
-  int threads = hardware_threads();
+  PoolOptions pool;
   bool json = false;
   bool print = false;
 };
@@ -46,7 +46,7 @@ int selftest(const SelftestOptions& options) {
   if (options.json && options.print) {
     throw UsageError("--json and --print would both write to standard output; give one");
   }
-  ThreadPool pool{options.threads};
+  ThreadPool pool{options.pool.threads, options.pool.isa};
   const std::vector<HashCheck> checks = check_hashes(expected_hashes(), golden_hashes(pool));
   if (options.print) {
     print_table(checks);
@@ -67,10 +67,7 @@ Command add_selftest_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "selftest", "Check that this machine gives the bits that every other gives");
   const auto options = std::make_shared<SelftestOptions>();
-  add_value(*parser, "--threads", "N", "Threads, 1 to 256 (default: all)",
-            [options](const std::string& text) {
-              options->threads = parse_whole("--threads", text, 1, 256, "a number from 1 to 256");
-            });
+  add_pool_options(*parser, options->pool, "the hashes are the same");
   parser->add_flag("--json", options->json, "Print every hash, expected and computed, as JSON");
   parser->add_flag("--print", options->print,
                    "Print what was computed as the table's source, and compare nothing");

@@ -198,6 +198,42 @@ SOFTFOCUS_INLINE Floats fused_multiply_add(Floats a, Floats b, Floats c) {
 #endif
 }
 
+/// v[index] in each lane. Needs 0 <= index < kLanes.
+SOFTFOCUS_INLINE Floats pick(Floats v, Ints index) {
+#ifdef __clang__
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_permutexvar_ps((__m512i)index, (__m512)v);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_permutevar8x32_ps((__m256)v, (__m256i)index);
+#else
+  return Floats{v[index[0]], v[index[1]], v[index[2]], v[index[3]]};
+#endif
+#else
+  return __builtin_shuffle(v, index);
+#endif
+}
+
+/// A mask that is kept for many choices, and choices of one value for some lanes.
+#if SOFTFOCUS_LANES == 16
+using LaneMask = __mmask16;
+SOFTFOCUS_INLINE LaneMask to_lane_mask(Mask mask) { return _mm512_movepi32_mask((__m512i)mask); }
+SOFTFOCUS_INLINE Floats splat_where(LaneMask mask, float value, Floats others) {
+  return (Floats)_mm512_mask_broadcastss_ps((__m512)others, mask, _mm_set_ss(value));
+}
+SOFTFOCUS_INLINE Ints splat_where(LaneMask mask, std::int32_t value, Ints others) {
+  return (Ints)_mm512_mask_set1_epi32((__m512i)others, mask, value);
+}
+#else
+using LaneMask = Mask;
+SOFTFOCUS_INLINE LaneMask to_lane_mask(Mask mask) { return mask; }
+SOFTFOCUS_INLINE Floats splat_where(LaneMask mask, float value, Floats others) {
+  return select(mask, splat(value), others);
+}
+SOFTFOCUS_INLINE Ints splat_where(LaneMask mask, std::int32_t value, Ints others) {
+  return select(mask, splat(value), others);
+}
+#endif
+
 // --- gathers: base[index], in the lanes of the mask; 0 in the others ---
 
 SOFTFOCUS_INLINE Ints gather(const std::int32_t* base, Ints index, Mask mask) {

@@ -3,6 +3,22 @@
 
 namespace {
 
+/// The triangles of a vector's lanes: `count` different ones, and which lanes are of each.
+struct LaneSources {
+  int count = 0;
+  std::array<const LaneTriangle*, kLanes> triangles;
+  std::array<LaneMask, kLanes> masks;
+  std::array<std::array<const float*, kLanes>, 3> rows;  ///< their vertices
+};
+
+SOFTFOCUS_INLINE void add_source(LaneSources& sources, const LaneTriangle& triangle, Mask lanes,
+                                 const std::array<const float*, 3>& rows) {
+  const auto d = static_cast<std::size_t>(sources.count++);
+  sources.triangles[d] = &triangle;
+  sources.masks[d] = to_lane_mask(lanes);
+  for (std::size_t v = 0; v < 3; ++v) sources.rows[v][d] = rows[v];
+}
+
 /// What lanes read of their triangles' vertices: the floats kFirst <= k < kEnd of the rows.
 template <std::size_t kFirst, std::size_t kEnd>
 struct VertexLanes {
@@ -11,21 +27,38 @@ struct VertexLanes {
   SOFTFOCUS_INLINE Floats at(std::size_t vertex, std::size_t k) const {
     return values[vertex][k - kFirst];
   }
-  SOFTFOCUS_INLINE void set(const std::array<const float*, 3>& rows) {
+  SOFTFOCUS_INLINE void load(const LaneSources& sources) {
+    const auto count = static_cast<std::size_t>(sources.count);
     for (std::size_t v = 0; v < 3; ++v) {
-#pragma GCC unroll 32
-      for (std::size_t k = kFirst; k < kEnd; ++k) values[v][k - kFirst] = splat(rows[v][k]);
-    }
-  }
-  SOFTFOCUS_INLINE void set(const std::array<const float*, 3>& rows, Mask mask) {
-    for (std::size_t v = 0; v < 3; ++v) {
-#pragma GCC unroll 32
+      const auto& rows = sources.rows[v];
       for (std::size_t k = kFirst; k < kEnd; ++k) {
-        values[v][k - kFirst] = select(mask, splat(rows[v][k]), values[v][k - kFirst]);
+        Floats value = splat(rows[0][k]);
+        for (std::size_t d = 1; d < count; ++d) {
+          value = splat_where(sources.masks[d], rows[d][k], value);
+        }
+        values[v][k - kFirst] = value;
       }
     }
   }
 };
+
+/// One value of each lane's triangle.
+template <class Value>
+SOFTFOCUS_INLINE auto of_sources(const LaneSources& sources, Value LaneTriangle::*field) {
+  auto value = splat(sources.triangles[0]->*field);
+  for (std::size_t d = 1; d < static_cast<std::size_t>(sources.count); ++d) {
+    value = splat_where(sources.masks[d], sources.triangles[d]->*field, value);
+  }
+  return value;
+}
+SOFTFOCUS_INLINE Ints of_sources(const LaneSources& sources,
+                                 std::array<std::int32_t, 3> LaneTriangle::*field, std::size_t i) {
+  Ints value = splat((sources.triangles[0]->*field)[i]);
+  for (std::size_t d = 1; d < static_cast<std::size_t>(sources.count); ++d) {
+    value = splat_where(sources.masks[d], (sources.triangles[d]->*field)[i], value);
+  }
+  return value;
+}
 
 /// Triangles by lane.
 struct TrianglesOfLanes {
@@ -49,33 +82,23 @@ struct BarycentricLanes {
   std::array<Ints, 3> edge, per_x, per_y;
   Ints x_origin, y_origin;
   Floats inverse_area;
-  Mask is_large;
+  unsigned large_lanes;
 
-  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t) {
-    vertices.set(t.vertices);
-    for (std::size_t i = 0; i < 3; ++i) {
-      edge[i] = splat(t.edge[i]);
-      per_x[i] = splat(t.per_x[i]);
-      per_y[i] = splat(t.per_y[i]);
-    }
-    x_origin = splat(t.x_origin);
-    y_origin = splat(t.y_origin);
-    inverse_area = splat(t.inverse_area);
-    is_large = splat(t.large != nullptr ? -1 : 0);
+  SOFTFOCUS_INLINE static std::array<const float*, 3> rows(const LaneTriangle& t, std::size_t) {
+    return t.vertices;
   }
-  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t, Mask mask) {
-    vertices.set(t.vertices, mask);
+  SOFTFOCUS_INLINE void load(const LaneSources& sources) {
+    vertices.load(sources);
     for (std::size_t i = 0; i < 3; ++i) {
-      edge[i] = select(mask, splat(t.edge[i]), edge[i]);
-      per_x[i] = select(mask, splat(t.per_x[i]), per_x[i]);
-      per_y[i] = select(mask, splat(t.per_y[i]), per_y[i]);
+      edge[i] = of_sources(sources, &LaneTriangle::edge, i);
+      per_x[i] = of_sources(sources, &LaneTriangle::per_x, i);
+      per_y[i] = of_sources(sources, &LaneTriangle::per_y, i);
     }
-    x_origin = select(mask, splat(t.x_origin), x_origin);
-    y_origin = select(mask, splat(t.y_origin), y_origin);
-    inverse_area = select(mask, splat(t.inverse_area), inverse_area);
-    is_large = select(mask, splat(t.large != nullptr ? -1 : 0), is_large);
+    x_origin = of_sources(sources, &LaneTriangle::x_origin);
+    y_origin = of_sources(sources, &LaneTriangle::y_origin);
+    inverse_area = of_sources(sources, &LaneTriangle::inverse_area);
+    large_lanes = lane_bits(of_sources(sources, &LaneTriangle::is_large) != 0);
   }
-  SOFTFOCUS_INLINE void prepare() {}
 
   SOFTFOCUS_INLINE Weights weights(Ints x, Ints y, const TrianglesOfLanes& triangles) const {
     std::array<Floats, 3> l;
@@ -84,7 +107,7 @@ struct BarycentricLanes {
     for (std::size_t i = 0; i < 3; ++i) {
       l[i] = to_floats(edge[i] + (dx * per_x[i] + dy * per_y[i]));
     }
-    for (unsigned rest = lane_bits(is_large); rest != 0; rest &= rest - 1) {
+    for (unsigned rest = large_lanes; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
       for (std::size_t i = 0; i < 3; ++i) {
         l[i][lane] = static_cast<float>(edge_at(triangles[lane].large->edges[i], x[lane], y[lane]));
@@ -127,21 +150,14 @@ struct PlaneLanes {
   VertexLanes<kVertexX, kVertexVaryings + N> vertices;
   Floats x0, y0, dx01_over_area, dy01_over_area, dx20_over_area, dy20_over_area;
 
-  SOFTFOCUS_INLINE static std::array<const float*, 3> ordered(const LaneTriangle& t,
-                                                              std::size_t provoking) {
-    std::array<const float*, 3> rows = t.vertices;
-    if (t.clockwise) std::swap(rows[1], rows[provoking == 0 ? 2 : 0]);
-    return rows;
+  SOFTFOCUS_INLINE static std::array<const float*, 3> rows(const LaneTriangle& t,
+                                                           std::size_t provoking) {
+    std::array<const float*, 3> ordered = t.vertices;
+    if (t.clockwise) std::swap(ordered[1], ordered[provoking == 0 ? 2 : 0]);
+    return ordered;
   }
-  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t provoking) {
-    vertices.set(ordered(t, provoking));
-  }
-  SOFTFOCUS_INLINE void set(const LaneTriangle& t, std::size_t provoking, Mask mask) {
-    vertices.set(ordered(t, provoking), mask);
-  }
-
-  /// Once all lanes have their triangles.
-  SOFTFOCUS_INLINE void prepare() {
+  SOFTFOCUS_INLINE void load(const LaneSources& sources) {
+    vertices.load(sources);
     const Floats x = vertices.at(0, kVertexX);
     const Floats y = vertices.at(0, kVertexY);
     const Floats dx01 = x - vertices.at(1, kVertexX);

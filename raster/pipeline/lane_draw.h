@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <glm/vec4.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,9 +57,10 @@ struct LaneTriangle {
   std::array<std::int16_t, 4> bounds;  ///< x_begin, y_begin, x_end, y_end
   std::array<const float*, 3> vertices;
   const EdgeFunctions* large;             ///< of a triangle that is not small, else null
+  std::int32_t is_large;                  ///< 0 or 1
+  std::int32_t is_front_facing;           ///< 0 or 1
   std::array<std::int8_t, 3> thresholds;  ///< covered where each E >= its threshold: 0 or 1
   bool clockwise;
-  bool front_facing;
 };
 
 /// The chunk's bins begin <= i < end are of one tile.
@@ -117,12 +120,16 @@ struct VisibilityTile {
   std::vector<VisibleRun> runs;
 };
 
-/// Begins a tile: reads its depths, and shows nothing in it.
-void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth);
+/// Begins a tile that shows nothing, at the depth given or as the buffer has it.
+void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
+                std::optional<float> clear_depth);
 /// Shades what the tile shows, draw by draw, and forgets it.
 void shade_tile(VisibilityTile& tile);
 /// Writes the tile's depths.
 void end_tile(const VisibilityTile& tile, Image& depth);
+/// Sets the pixels of an RGBA16F image that show nothing in the tile.
+void clear_unseen(const VisibilityTile& tile, Image& colour, glm::vec4 value,
+                  const Profile& profile);
 
 /// Ids fit beside a pixel's number in 32 bits.
 inline constexpr std::size_t kMostVisible = (std::size_t{1} << 19) - 1;

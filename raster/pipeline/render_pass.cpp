@@ -107,47 +107,85 @@ std::vector<std::vector<TileWork>> sort_into_tiles(const RenderPass& pass, std::
   return work;
 }
 
-void clear_tile(const RenderPass& pass, const Rectangle& area) {
-  const auto clear = [&](Image* image, const std::optional<glm::vec4>& value) {
-    if (image == nullptr || !value) return;
-    clear_image(*image, area.x_begin, area.y_begin, area.x_end, area.y_end, *value, pass.profile);
-  };
-  for (Image* image : pass.targets.colour) clear(image, pass.clear_colour);
-  if (pass.clear_depth) clear(pass.targets.depth, glm::vec4{*pass.clear_depth});
+void clear_colours(const RenderPass& pass, const Rectangle& area) {
+  if (!pass.clear_colour) return;
+  for (Image* image : pass.targets.colour) {
+    if (image == nullptr) continue;
+    clear_image(*image, area.x_begin, area.y_begin, area.x_end, area.y_end, *pass.clear_colour,
+                pass.profile);
+  }
 }
 
 // Draws in lanes gather in a VisibilityTile until a draw of the other kind, or the end.
-void draw_tile(const RenderPass& pass, const Rectangle& area, const std::vector<TileWork>& work) {
-  clear_tile(pass, area);
-  std::unique_ptr<VisibilityTile> tile;
-  const auto leave_lanes = [&] {
-    if (!tile) return;
-    shade_tile(*tile);
-    end_tile(*tile, *pass.targets.depth);
-    tile.reset();
-  };
-  for (const TileWork& item : work) {
-    if (!item.draw->in_lanes) {
-      leave_lanes();
-      item.draw->shade_tile(item.chunk, item.bins, area);
-      continue;
+// Where they come first, clearing is left to it: most pixels are drawn over.
+class TileDrawing {
+ public:
+  TileDrawing(const RenderPass& pass, const Rectangle& area) : pass_(pass), area_(area) {}
+
+  void draw(const TileWork& item) {
+    if (item.draw->in_lanes) {
+      draw_lanes(item);
+      return;
     }
-    if (!tile) {
-      tile.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
-      begin_tile(*tile, area, *pass.targets.depth);
+    leave_lanes(true);
+    clear();
+    item.draw->shade_tile(item.chunk, item.bins, area_);
+  }
+
+  void end() {
+    leave_lanes(pass_.keep_depth);
+    clear();
+  }
+
+ private:
+  void draw_lanes(const TileWork& item) {
+    if (!tile_) {
+      tile_.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
+      begin_tile(*tile_, area_, *pass_.targets.depth,
+                 is_cleared_ ? std::nullopt : pass_.clear_depth);
     }
-    if (tile->triangles.size() + item.bins.size() > kMostVisible) shade_tile(*tile);
-    const auto first_id = static_cast<std::int32_t>(tile->triangles.size()) + 1;
-    rasterize_lanes(pass.isa, *item.lane_chunk, item.bins, item.draw->depth, pass.profile, *tile);
-    const auto end_id = static_cast<std::int32_t>(tile->triangles.size()) + 1;
-    if (!tile->runs.empty() && tile->runs.back().draw == item.draw) {
-      tile->runs.back().end_id = end_id;
+    VisibilityTile& tile = *tile_;
+    if (tile.triangles.size() + item.bins.size() > kMostVisible) shade();
+    const auto first_id = static_cast<std::int32_t>(tile.triangles.size()) + 1;
+    rasterize_lanes(pass_.isa, *item.lane_chunk, item.bins, item.draw->depth, pass_.profile, tile);
+    const auto end_id = static_cast<std::int32_t>(tile.triangles.size()) + 1;
+    if (!tile.runs.empty() && tile.runs.back().draw == item.draw) {
+      tile.runs.back().end_id = end_id;
     } else {
-      tile->runs.push_back({item.draw, first_id, end_id});
+      tile.runs.push_back({item.draw, first_id, end_id});
     }
   }
-  leave_lanes();
-}
+
+  void shade() {
+    if (!is_cleared_ && pass_.clear_colour) {
+      clear_unseen(*tile_, *pass_.targets.colour[0], *pass_.clear_colour, pass_.profile);
+    }
+    is_cleared_ = true;
+    shade_tile(*tile_);
+  }
+
+  void leave_lanes(bool needs_depth) {
+    if (!tile_) return;
+    shade();
+    if (needs_depth) end_tile(*tile_, *pass_.targets.depth);
+    tile_.reset();
+  }
+
+  void clear() {
+    if (is_cleared_) return;
+    is_cleared_ = true;
+    clear_colours(pass_, area_);
+    if (pass_.clear_depth && pass_.targets.depth != nullptr) {
+      clear_image(*pass_.targets.depth, area_.x_begin, area_.y_begin, area_.x_end, area_.y_end,
+                  glm::vec4{*pass_.clear_depth}, pass_.profile);
+    }
+  }
+
+  const RenderPass& pass_;
+  Rectangle area_;
+  std::unique_ptr<VisibilityTile> tile_;
+  bool is_cleared_ = false;
+};
 
 }  // namespace
 
@@ -174,7 +212,9 @@ void finish(RenderPass& pass, ThreadPool& pool) {
     const int y = t / tiles_x * kTileSize;
     const Rectangle tile{x, y, std::min(x + kTileSize, area.x_end),
                          std::min(y + kTileSize, area.y_end)};
-    draw_tile(pass, tile, work[static_cast<std::size_t>(t)]);
+    TileDrawing drawing{pass, tile};
+    for (const TileWork& item : work[static_cast<std::size_t>(t)]) drawing.draw(item);
+    drawing.end();
   });
   pass.draws.clear();
 }

@@ -28,6 +28,8 @@ struct RenderPass {
   /// What finish() sets the targets to before it draws; none: they keep what they hold.
   std::optional<glm::vec4> clear_colour = {};
   std::optional<float> clear_depth = {};
+  /// Whether depths are wanted after finish(): else the depth buffer may hold anything.
+  bool keep_depth = true;
   /// Of the draws that are recorded in lanes.
   Isa isa = Isa::scalar;
   std::vector<DrawCall> draws;

@@ -25,6 +25,33 @@ struct FragmentLanes {
   }
 };
 
+// Fragments of a part of a block, which has whole 2x2 pixels. `corners` are those that
+// differences are taken between: in the first quarter of the lanes the 2x2 pixels' upper
+// left ones, in the second their right neighbours, in the third the lower.
+template <class Stage, class Interpolator, class Point>
+struct BlockFragmentLanes {
+  const Interpolator& triangles;
+  std::size_t provoking;
+  Mask front_facing;
+  Point here, corners;
+
+  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return at(i, here); }
+  SOFTFOCUS_INLINE Floats ddx(std::size_t i) const {
+    const Floats values = at(i, corners);
+    const Ints quad = quad_of_lane();
+    return pick(values, quad + kLanes / 4) - pick(values, quad);
+  }
+  SOFTFOCUS_INLINE Floats ddy(std::size_t i) const {
+    const Floats values = at(i, corners);
+    const Ints quad = quad_of_lane();
+    return pick(values, quad + kLanes / 2) - pick(values, quad);
+  }
+
+  SOFTFOCUS_INLINE Floats at(std::size_t i, const Point& point) const {
+    return triangles.value(i, Stage::kInterpolation[i], provoking, point);
+  }
+};
+
 // The pixels of a tile that show a run, as id - first_id above kPixelBits of pixel number.
 inline constexpr int kPixelBits = 12;
 static_assert(kTilePixels == 1 << kPixelBits);
@@ -32,6 +59,9 @@ static_assert(kTilePixels == 1 << kPixelBits);
 struct SeenPixels {
   std::array<std::int32_t, kTilePixels + kLanes> entries;
   int count = 0;
+  /// Whole vectors of one triangle, by their first pixel.
+  std::array<std::int32_t, kTilePixels / kLanes> whole;
+  int whole_count = 0;
 };
 
 // Lists the pixels, and fills the last vector up with the last of them.
@@ -63,14 +93,30 @@ SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& ru
         mask &= (x < x_end) & (y < y_end);
         if (!any(mask)) continue;
         const Ints entries = (ids - run.first_id) << kPixelBits | (pixel + lane_numbers());
-        seen.count +=
-            compress_store(&seen.entries[static_cast<std::size_t>(seen.count)], entries, mask);
+        if (all(mask & (ids == ids[0]))) {
+          seen.whole[static_cast<std::size_t>(seen.whole_count++)] = entries[0];
+        } else {
+          seen.count +=
+              compress_store(&seen.entries[static_cast<std::size_t>(seen.count)], entries, mask);
+        }
       }
     }
   }
   if (seen.count != 0) {
     const auto count = static_cast<std::size_t>(seen.count);
     store(&seen.entries[count], splat(seen.entries[count - 1]));
+  }
+}
+
+// Asks for the vertices of the next vector's triangles, which were written long ago.
+SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
+                                     const std::int32_t* entries) {
+  std::int32_t last = -1;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::int32_t triangle = entries[lane] >> kPixelBits;
+    if (triangle == last) continue;
+    last = triangle;
+    for (const float* row : triangles[triangle]->vertices) __builtin_prefetch(row);
   }
 }
 
@@ -86,15 +132,136 @@ SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
           float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
 }
 
-// Asks for the vertices of the next vector's triangles, which were written long ago.
-SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
-                                     const std::int32_t* entries) {
-  std::int32_t last = -1;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const std::int32_t triangle = entries[lane] >> kPixelBits;
-    if (triangle == last) continue;
-    last = triangle;
-    for (const float* row : triangles[triangle]->vertices) __builtin_prefetch(row);
+SOFTFOCUS_INLINE void store_texels(const FragmentJob& job, const VisibilityTile& tile,
+                                   const std::int32_t* entries, int count,
+                                   const std::array<Floats, 4>& colour) {
+  alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
+  store_half_texels(halves.data(), to_half_texels(colour, job.profile->half_store));
+  std::byte* first = job.target->bytes.data() +
+                     static_cast<std::size_t>(tile.area.y_begin) * job.target->stride_bytes +
+                     static_cast<std::size_t>(tile.area.x_begin) * sizeof(std::uint64_t);
+  for (int lane = 0; lane < count; ++lane) {
+    const auto pixel = static_cast<std::uint32_t>(entries[lane]);
+    const std::uint32_t x = (pixel >> 4 & (kTileBlocks - 1)) * kBlockSize + (pixel & 3);
+    const std::uint32_t y =
+        (pixel & (kTilePixels - 1)) / (kBlockPixels * kTileBlocks) * kBlockSize + (pixel >> 2 & 3);
+    std::memcpy(first + y * job.target->stride_bytes + x * sizeof(std::uint64_t),
+                &halves[static_cast<std::size_t>(4 * lane)], sizeof(std::uint64_t));
+  }
+}
+
+// Rows of a block, of which a vector holds a whole part.
+SOFTFOCUS_INLINE void store_rows(const FragmentJob& job, int x, int y,
+                                 const std::array<Floats, 4>& colour) {
+  alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
+  store_half_texels(halves.data(), to_half_texels(colour, job.profile->half_store));
+  constexpr std::size_t kRowBytes = kBlockSize * sizeof(std::uint64_t);
+  std::byte* to = job.target->bytes.data() +
+                  static_cast<std::size_t>(y) * job.target->stride_bytes +
+                  static_cast<std::size_t>(x) * sizeof(std::uint64_t);
+  for (std::size_t row = 0; row < kPartRows; ++row, to += job.target->stride_bytes) {
+    std::memcpy(to, &halves[row * 4 * kBlockSize], kRowBytes);
+  }
+}
+
+// A vector of pixels by what triangles they show, as they come.
+template <class Interpolator, class Stage>
+SOFTFOCUS_INLINE void shade_mixed_lanes(const Stage& stage, const FragmentJob& job,
+                                        const VisibilityTile& tile,
+                                        const LaneTriangle* const* triangles,
+                                        const SeenPixels& seen) {
+  Interpolator interpolator;
+  for (int i = 0; i < seen.count; i += kLanes) {
+    const std::int32_t* list = &seen.entries[static_cast<std::size_t>(i)];
+    const Ints entries = load(list);
+    if (i + 2 * kLanes <= seen.count) fetch_vertices(triangles, list + kLanes);
+    const Ints pixel = entries & (kTilePixels - 1);
+    const Ints triangle = entries >> kPixelBits;
+    const Ints block = pixel >> 4;
+    const Ints x = tile.area.x_begin + (block & (kTileBlocks - 1)) * kBlockSize + (pixel & 3);
+    const Ints y = tile.area.y_begin + (block >> 4) * kBlockSize + (pixel >> 2 & 3);
+    static_assert(kTileBlocks == 16);
+
+    LaneSources sources;
+    for (unsigned rest = kAllLaneBits; rest != 0;) {
+      const Mask mask = triangle == triangle[__builtin_ctz(rest)];
+      const LaneTriangle& t = *triangles[list[__builtin_ctz(rest)] >> kPixelBits];
+      add_source(sources, t, mask, Interpolator::rows(t, job.provoking));
+      rest &= ~lane_bits(mask);
+    }
+    interpolator.load(sources);
+
+    const TrianglesOfLanes of_lanes{triangles, triangle};
+    using Point = decltype(interpolator.weights(x, y, of_lanes));
+    FragmentLanes<Stage, Interpolator, Point> fragment{
+        interpolator,
+        job.provoking,
+        of_sources(sources, &LaneTriangle::is_front_facing) != 0,
+        interpolator.weights(x, y, of_lanes),
+        {},
+        {},
+        {}};
+    if constexpr (Stage::kNeedsDerivatives) {
+      const Ints x0 = x & ~1;
+      const Ints y0 = y & ~1;
+      fragment.corner = interpolator.weights(x0, y0, of_lanes);
+      fragment.right = interpolator.weights(x0 + 1, y0, of_lanes);
+      fragment.below = interpolator.weights(x0, y0 + 1, of_lanes);
+    }
+    store_texels(job, tile, list, std::min(seen.count - i, kLanes), stage(fragment));
+  }
+}
+
+// Vectors that one triangle fills: its constants are set once for all that follow each
+// other, and differences are taken once for each 2x2 pixels.
+template <class Interpolator, class Stage>
+SOFTFOCUS_INLINE void shade_whole_lanes(const Stage& stage, const FragmentJob& job,
+                                        const VisibilityTile& tile,
+                                        const LaneTriangle* const* triangles,
+                                        const SeenPixels& seen) {
+  Interpolator interpolator;
+  std::int32_t loaded = -1;
+  for (int i = 0; i < seen.whole_count; ++i) {
+    const std::int32_t entry = seen.whole[static_cast<std::size_t>(i)];
+    const std::int32_t number = entry >> kPixelBits;
+    const LaneTriangle& t = *triangles[number];
+    if (number != loaded) {
+      LaneSources sources;
+      add_source(sources, t, ~Mask{}, Interpolator::rows(t, job.provoking));
+      interpolator.load(sources);
+      loaded = number;
+    }
+    const std::int32_t block = (entry & (kTilePixels - 1)) / kBlockPixels;
+    const int left = tile.area.x_begin + block % kTileBlocks * kBlockSize;
+    const int top = tile.area.y_begin + block / kTileBlocks * kBlockSize + (entry >> 2 & 3);
+    const Ints x = left + lane_x();
+    const Ints y = top + lane_y();
+
+    const TrianglesOfLanes of_lanes{triangles, splat(number)};
+    using Point = decltype(interpolator.weights(x, y, of_lanes));
+    if constexpr (Stage::kNeedsDerivatives && kLanes >= 8) {
+      const BlockFragmentLanes<Stage, Interpolator, Point> fragment{
+          interpolator, job.provoking, splat(-t.is_front_facing),
+          interpolator.weights(x, y, of_lanes),
+          interpolator.weights(left + block_corner_x(), top + block_corner_y(), of_lanes)};
+      store_rows(job, left, top, stage(fragment));
+    } else {
+      FragmentLanes<Stage, Interpolator, Point> fragment{interpolator,
+                                                         job.provoking,
+                                                         splat(-t.is_front_facing),
+                                                         interpolator.weights(x, y, of_lanes),
+                                                         {},
+                                                         {},
+                                                         {}};
+      if constexpr (Stage::kNeedsDerivatives) {
+        const Ints x0 = x & ~1;
+        const Ints y0 = y & ~1;
+        fragment.corner = interpolator.weights(x0, y0, of_lanes);
+        fragment.right = interpolator.weights(x0 + 1, y0, of_lanes);
+        fragment.below = interpolator.weights(x0, y0 + 1, of_lanes);
+      }
+      store_rows(job, left, top, stage(fragment));
+    }
   }
 }
 
@@ -105,61 +272,8 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   list_seen(tile, run, seen);
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
-
-  Interpolator interpolator;
-  for (int i = 0; i < seen.count; i += kLanes) {
-    const Ints entries = load(&seen.entries[static_cast<std::size_t>(i)]);
-    if (i + 2 * kLanes <= seen.count) {
-      fetch_vertices(triangles, &seen.entries[static_cast<std::size_t>(i + kLanes)]);
-    }
-    const Ints pixel = entries & (kTilePixels - 1);
-    const Ints triangle = entries >> kPixelBits;
-    const Ints block = pixel >> 4;
-    const Ints x = tile.area.x_begin + (block & (kTileBlocks - 1)) * kBlockSize + (pixel & 3);
-    const Ints y = tile.area.y_begin + block / kTileBlocks * kBlockSize + (pixel >> 2 & 3);
-
-    // Lanes beside each other mostly show the same triangle.
-    const LaneTriangle& first = *triangles[triangle[0]];
-    interpolator.set(first, job.provoking);
-    Mask front_facing = splat(first.front_facing ? -1 : 0);
-    for (unsigned rest = lane_bits(triangle != triangle[0]); rest != 0;) {
-      const int lane = __builtin_ctz(rest);
-      const LaneTriangle& other = *triangles[triangle[lane]];
-      const Mask mask = triangle == triangle[lane];
-      interpolator.set(other, job.provoking, mask);
-      front_facing = select(mask, splat(other.front_facing ? -1 : 0), front_facing);
-      rest &= ~lane_bits(mask);
-    }
-    interpolator.prepare();
-
-    const TrianglesOfLanes of_lanes{triangles, triangle};
-    using Point = decltype(interpolator.weights(x, y, of_lanes));
-    FragmentLanes<Stage, Interpolator, Point> fragment{interpolator,
-                                                       job.provoking,
-                                                       front_facing,
-                                                       interpolator.weights(x, y, of_lanes),
-                                                       {},
-                                                       {},
-                                                       {}};
-    if constexpr (Stage::kNeedsDerivatives) {
-      const Ints x0 = x & ~1;
-      const Ints y0 = y & ~1;
-      fragment.corner = interpolator.weights(x0, y0, of_lanes);
-      fragment.right = interpolator.weights(x0 + 1, y0, of_lanes);
-      fragment.below = interpolator.weights(x0, y0 + 1, of_lanes);
-    }
-    const std::array<Floats, 4> colour = stage(fragment);
-
-    alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
-    store_half_texels(halves.data(), to_half_texels(colour, job.profile->half_store));
-    const int count = std::min(seen.count - i, kLanes);
-    for (int lane = 0; lane < count; ++lane) {
-      std::byte* texel = job.target->bytes.data() +
-                         static_cast<std::size_t>(y[lane]) * job.target->stride_bytes +
-                         static_cast<std::size_t>(x[lane]) * 8;
-      std::memcpy(texel, &halves[static_cast<std::size_t>(4 * lane)], 8);
-    }
-  }
+  shade_whole_lanes<Interpolator>(stage, job, tile, triangles, seen);
+  shade_mixed_lanes<Interpolator>(stage, job, tile, triangles, seen);
 }
 
 template <class Stage>

@@ -76,7 +76,7 @@ void filter_both(const Bench& bench, Tally& tally, const char* method, const Fil
   const GlTarget filtered = filter_on_gl(bench.gl, bench.shaders, method, what.settings, texture,
                                          what.width, what.height);
   add_pictures(tally, read_colour(filtered, 0),
-               find_method(method)->apply({picture, what.settings, bench.profile}, bench.pool));
+               apply(*find_method(method), {picture, what.settings, bench.profile}, bench.pool));
 }
 
 DofSettings focused(float radius_at_infinity_px, float focus_m, float max_coc_px,

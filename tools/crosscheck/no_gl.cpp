@@ -3,6 +3,7 @@
 #include "tools/crosscheck/probe.h"
 #include "tools/crosscheck/run_cases.h"
 #include "tools/gl/frame_on_gl.h"
+#include "tools/gl/repeated_on_gl.h"
 
 namespace softfocus {
 namespace {
@@ -28,5 +29,14 @@ FrameOnGl::~FrameOnGl() = default;
 std::string FrameOnGl::renderer() const { refuse(); }
 Image FrameOnGl::draw(const Scene&, const View&, double, int, int) { refuse(); }
 Image FrameOnGl::filter(const Method&, const DofSettings&, const Image&) { refuse(); }
+
+struct RepeatedOnGl::State {};
+RepeatedOnGl::RepeatedOnGl(const Driver&, const BenchWork&, int) { refuse(); }
+RepeatedOnGl::~RepeatedOnGl() = default;
+std::string RepeatedOnGl::renderer() const { refuse(); }
+void RepeatedOnGl::draw() { refuse(); }
+void RepeatedOnGl::filter() { refuse(); }
+void RepeatedOnGl::finish() { refuse(); }
+Image RepeatedOnGl::picture() const { refuse(); }
 
 }  // namespace softfocus

@@ -54,7 +54,7 @@ void scene_both(const Bench& bench, Tally& tally, const SceneCase& what) {
   const GlTarget filtered = filter_on_gl(bench.gl, bench.shaders, what.method, settings,
                                          drawn.colour[0], what.width, what.height);
   add_pictures(tally, read_colour(filtered, 0),
-               find_method(what.method)->apply({emulated, settings, bench.profile}, bench.pool));
+               apply(*find_method(what.method), {emulated, settings, bench.profile}, bench.pool));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ bool is_software_renderer(const std::string& renderer) {
 // Mesa reads its variables once: only the first driver of a process counts. Whatever
 // the user has set would change what a software driver computes, and goes; all but
 // where drivers are found. No shader compiled for another CPU comes out of a cache.
-void set_environment(const Driver& driver) {
+void set_environment(const Driver& driver, std::optional<int> threads) {
   static constexpr std::array<std::string_view, 10> kPrefixes{
       "MESA_",     "GALLIUM_", "GALLIVM_", "LP_",   "DRAW_",
       "SOFTPIPE_", "NIR_",     "ST_",      "TGSI_", "LIBGL_"};
@@ -55,6 +55,11 @@ void set_environment(const Driver& driver) {
   ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
   ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   ::setenv("GALLIUM_DRIVER", std::string(driver.gallium_driver).c_str(), 1);
+  if (threads) {
+    // Beside the calling one, which then waits; 0: the calling one does it all.
+    const int beside = *threads == 1 ? 0 : *threads;
+    ::setenv("LP_NUM_THREADS", std::to_string(beside).c_str(), 1);
+  }
   if (!driver.cpu_caps.empty()) {
     ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", std::string(driver.cpu_caps).c_str(), 1);
   }
@@ -128,10 +133,10 @@ void GlContext::close() {
   context_ = EGL_NO_CONTEXT;
 }
 
-GlContext::GlContext(const Driver& driver) {
+GlContext::GlContext(const Driver& driver, std::optional<int> threads) {
   require_library({"libEGL.so.1"}, "libegl1");
   require_library({"libOpenGL.so.0", "libGL.so.1"}, "libgl1");
-  if (is_software(driver)) set_environment(driver);
+  if (is_software(driver)) set_environment(driver, threads);
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (is_software(driver)) {
     if (!has_word(extensions, "EGL_MESA_platform_surfaceless")) {

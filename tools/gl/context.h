@@ -4,6 +4,7 @@
 
 #include <epoxy/egl.h>
 
+#include <optional>
 #include <string>
 
 #include "tools/gl/driver.h"
@@ -13,9 +14,10 @@ namespace softfocus {
 class GlContext {
  public:
   /// Opens the driver, setting the environment in which it is found: only the first
-  /// driver of a process counts. Throws DriverError if there is no EGL, no such driver, or if its
+  /// driver of a process counts. With `threads`, llvmpipe works on so many, else on as many
+  /// as the machine has. Throws DriverError if there is no EGL, no such driver, or if its
   /// GL is older than 3.3.
-  explicit GlContext(const Driver& driver);
+  explicit GlContext(const Driver& driver, std::optional<int> threads = {});
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;

@@ -29,6 +29,16 @@ struct Driver {
 
 inline bool is_software(const Driver& driver) { return !driver.gallium_driver.empty(); }
 
+/// What `work` returns; a DriverError of it gets the driver's name in front.
+template <class Work>
+auto naming(const Driver& driver, const Work& work) {
+  try {
+    return work();
+  } catch (const DriverError& error) {
+    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
+  }
+}
+
 /// llvmpipe, llvmpipe-sse41, softpipe, gpu.
 std::span<const Driver> drivers();
 

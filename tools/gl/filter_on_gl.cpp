@@ -15,29 +15,6 @@ void set_settings(const GlProgram& program, const DofSettings& settings) {
   set_uniform(program, "leak", settings.leak);
 }
 
-GlTarget make_filter_target(int width, int height) {
-  return make_target(std::array{Format::rgba16f}, width, height, false);
-}
-
-GlTarget two_pass_on_gl(const GlContext& context, const Shaders& shaders,
-                        const DofSettings& settings, const GlTexture& scene, int width,
-                        int height) {
-  const GlProgram program = link_program(context, shaders, "fullscreen.vert", "two_pass.frag");
-  set_settings(program, settings);
-  set_uniform(program, "taps", tap_count(settings.max_coc_px));
-
-  const GlTarget between = make_filter_target(width, height);
-  set_texture(program, "source", 0, scene);
-  set_uniform(program, "direction", glm::ivec2{1, 0});
-  draw_fullscreen(between, program);
-
-  GlTarget result = make_filter_target(width, height);
-  set_texture(program, "source", 0, between.colour[0]);
-  set_uniform(program, "direction", glm::ivec2{0, 1});
-  draw_fullscreen(result, program);
-  return result;
-}
-
 // The taps as a texture of whole rows, the last one filled up with zeros.
 Image ring_tap_image(const std::vector<RingTap>& taps) {
   constexpr int kColumns = 256;
@@ -53,34 +30,51 @@ Image ring_tap_image(const std::vector<RingTap>& taps) {
   return image;
 }
 
-GlTarget one_pass_on_gl(const GlContext& context, const Shaders& shaders,
-                        const DofSettings& settings, const GlTexture& scene, int width,
-                        int height) {
-  const std::vector<RingTap> taps = ring_taps(settings.max_coc_px);
-  const GlProgram program = link_program(context, shaders, "fullscreen.vert", "one_pass.frag");
-  const GlTexture tap_texture = upload(ring_tap_image(taps));
-  set_settings(program, settings);
-  set_texture(program, "source", 0, scene);
-  set_texture(program, "ring_taps", 1, tap_texture);
-  set_uniform(program, "taps", static_cast<int>(taps.size()));
-  GlTarget result = make_filter_target(width, height);
-  draw_fullscreen(result, program);
-  return result;
-}
-
 }  // namespace
 
 bool has_shader(std::string_view method) { return method == "two-pass" || method == "one-pass"; }
 
+GlFilter make_filter(const GlContext& context, const Shaders& shaders, std::string_view method,
+                     const DofSettings& settings, int width, int height) {
+  if (!has_shader(method)) {
+    throw DriverError("the method " + std::string(method) + " has no shader");
+  }
+  const bool rings = method == "one-pass";
+  GlFilter filter;
+  filter.program =
+      link_program(context, shaders, "fullscreen.vert", rings ? "one_pass.frag" : "two_pass.frag");
+  set_settings(filter.program, settings);
+  int taps = tap_count(settings.max_coc_px);
+  if (rings) {
+    const std::vector<RingTap> ring = ring_taps(settings.max_coc_px);
+    filter.ring_taps = upload(ring_tap_image(ring));
+    taps = static_cast<int>(ring.size());
+  }
+  set_uniform(filter.program, "taps", taps);
+  for (int pass = 0; pass < (rings ? 1 : 2); ++pass) {
+    filter.targets.push_back(make_target(std::array{Format::rgba16f}, width, height, false));
+  }
+  return filter;
+}
+
+void run_filter(const GlFilter& filter, const GlTexture& scene) {
+  const GlTexture* source = &scene;
+  if (filter.ring_taps != 0) set_texture(filter.program, "ring_taps", 1, filter.ring_taps);
+  glm::ivec2 direction{1, 0};  // of two-pass; one-pass has none
+  for (const GlTarget& target : filter.targets) {
+    set_texture(filter.program, "source", 0, *source);
+    set_uniform(filter.program, "direction", direction);
+    draw_fullscreen(target, filter.program);
+    source = &target.colour[0];
+    direction = {0, 1};
+  }
+}
+
 GlTarget filter_on_gl(const GlContext& context, const Shaders& shaders, std::string_view method,
                       const DofSettings& settings, const GlTexture& scene, int width, int height) {
-  if (method == "two-pass") {
-    return two_pass_on_gl(context, shaders, settings, scene, width, height);
-  }
-  if (method == "one-pass") {
-    return one_pass_on_gl(context, shaders, settings, scene, width, height);
-  }
-  throw DriverError("the method " + std::string(method) + " has no shader");
+  GlFilter filter = make_filter(context, shaders, method, settings, width, height);
+  run_filter(filter, scene);
+  return std::move(filter.targets.back());
 }
 
 }  // namespace softfocus

@@ -5,20 +5,6 @@
 
 namespace softfocus {
 
-namespace {
-
-// Names the driver in what it refuses.
-template <class Work>
-auto named(const Driver& driver, const Work& work) {
-  try {
-    return work();
-  } catch (const DriverError& error) {
-    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
-  }
-}
-
-}  // namespace
-
 struct FrameOnGl::State {
   const Driver& driver;
   GlContext context;
@@ -26,7 +12,7 @@ struct FrameOnGl::State {
 };
 
 FrameOnGl::FrameOnGl(const Driver& driver) {
-  named(driver, [&] { state_.reset(new State{driver, GlContext{driver}, {}}); });
+  naming(driver, [&] { state_.reset(new State{driver, GlContext{driver}, {}}); });
 }
 
 FrameOnGl::~FrameOnGl() = default;
@@ -36,7 +22,7 @@ std::string FrameOnGl::renderer() const {
 }
 
 Image FrameOnGl::draw(const Scene& scene, const View& view, double frame, int width, int height) {
-  return named(state_->driver, [&] {
+  return naming(state_->driver, [&] {
     GlScene on_gl{state_->context, state_->shaders, scene};
     const GlTarget target = make_scene_target(width, height);
     on_gl.draw(view, frame, target);
@@ -46,7 +32,7 @@ Image FrameOnGl::draw(const Scene& scene, const View& view, double frame, int wi
 
 Image FrameOnGl::filter(const Method& method, const DofSettings& settings, const Image& scene) {
   if (method.name == "pinhole") return scene;
-  return named(state_->driver, [&] {
+  return naming(state_->driver, [&] {
     const GlTarget result = filter_on_gl(state_->context, state_->shaders, method.name, settings,
                                          upload(scene), scene.width, scene.height);
     return read_colour(result, 0);

@@ -97,24 +97,37 @@ void GlScene::draw(const View& view, double frame, const GlTarget& target) {
   glClearDepth(1.0);
   glDepthMask(GL_TRUE);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  // What the draw before has set is not set again.
+  const GlProgram* program_set = nullptr;
+  const Material* material_set = nullptr;
+  const softfocus::Mesh* mesh_set = nullptr;
   for (const SurfaceDraw& surface : surface_draws(scene_, view, frame)) {
     const SurfaceVertexInput& input = surface.input;
     const GlProgram& used = program(surface.variant);
     set_uniform(used, "to_clip", input.to_clip);
     set_uniform(used, "to_world", input.to_world);
     set_uniform(used, "normal_to_world", input.normal_to_world);
-    set_uniform(used, "eye", input.eye);
-    set_lights(used, input);
-    set_material(used, *input.material);
-    if (surface.variant.textured) {
-      set_texture(used, "surface_texture", 0, textures_.at(input.material));
+    if (program_set != &used) {
+      set_uniform(used, "eye", input.eye);
+      set_lights(used, input);
+    }
+    if (program_set != &used || material_set != input.material) {
+      set_material(used, *input.material);
+      if (surface.variant.textured) {
+        set_texture(used, "surface_texture", 0, textures_.at(input.material));
+      }
+    }
+    if (mesh_set != input.mesh) {
+      const Mesh& mesh = meshes_[static_cast<std::size_t>(input.mesh - scene_.meshes.data())];
+      set_attribute(0, mesh.positions, 3);
+      set_attribute(1, mesh.normals, 3);
+      set_attribute(2, mesh.uvs, 2);
+      glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
     }
     set_state(surface.state);
-    const Mesh& mesh = meshes_[static_cast<std::size_t>(input.mesh - scene_.meshes.data())];
-    set_attribute(0, mesh.positions, 3);
-    set_attribute(1, mesh.normals, 3);
-    set_attribute(2, mesh.uvs, 2);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
+    program_set = &used;
+    material_set = input.material;
+    mesh_set = input.mesh;
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(input.mesh->indices.size()), GL_UNSIGNED_INT,
                    nullptr);
   }

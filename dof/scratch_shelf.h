@@ -1,0 +1,32 @@
+#pragma once
+// Memory that tasks of a loop use one after the other: as many pieces come to be as
+// threads run at once.
+
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace softfocus {
+
+template <class Memory>
+class ScratchShelf {
+ public:
+  /// A piece that was put back, or a new one.
+  Memory take() {
+    const std::lock_guard lock(mutex_);
+    if (pieces_.empty()) return {};
+    Memory piece = std::move(pieces_.back());
+    pieces_.pop_back();
+    return piece;
+  }
+  void put_back(Memory piece) {
+    const std::lock_guard lock(mutex_);
+    pieces_.push_back(std::move(piece));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Memory> pieces_;
+};
+
+}  // namespace softfocus

@@ -1,0 +1,83 @@
+// The formulas of weights.h in vectors, in its order of operations.
+
+SOFTFOCUS_INLINE Floats filter_radius(const DofSettings& settings, Floats depth_m) {
+  const Floats radius =
+      absolute(settings.coc.radius_at_infinity_px * (depth_m - settings.coc.focus_m) / depth_m);
+  return smaller(radius, splat(settings.max_coc_px));
+}
+
+SOFTFOCUS_INLINE Floats intensity(Floats radius_px) {
+  const Floats radius = larger(radius_px, splat(1.0f));
+  return 1.0f / (radius * radius);
+}
+
+SOFTFOCUS_INLINE Floats overlap(Floats radius_px, Floats distance_px) {
+  return larger(smaller(radius_px - distance_px, splat(1.0f)), splat(0.0f));
+}
+
+SOFTFOCUS_INLINE Floats leakage(Floats receiver_radius_px, float leak) {
+  return smaller(leak * receiver_radius_px, splat(1.0f));
+}
+
+SOFTFOCUS_INLINE Floats clamp_to_half(Floats value) {
+  return larger(splat(-65504.0f), smaller(splat(65504.0f), value));
+}
+
+/// A pixel's radius and in its sign bit whether it lies beyond the focus.
+SOFTFOCUS_INLINE Floats signed_radius(const DofSettings& settings, Floats depth_m) {
+  const Bits beyond = as_bits(depth_m > settings.coc.focus_m) & 0x80000000u;
+  return as_floats(as_bits(filter_radius(settings, depth_m)) | beyond);
+}
+
+/// What store_texel makes of a depth that load_texel read.
+SOFTFOCUS_INLINE Bits stored_depth(Bits half) {
+  return select((half & 0x7FFFu) > kHalfInfinity, splat(std::uint32_t{kHalfNan}), half);
+}
+
+/// The two sums of a gather.
+struct Sums {
+  Floats weight, r, g, b;
+};
+
+/// What a receiver begins with: its intensity, and that times its colour, in vectors
+/// `stride` apart.
+SOFTFOCUS_INLINE Sums load_sums(const float* whole, std::ptrdiff_t stride) {
+  return {load(whole), load(whole + stride), load(whole + 2 * stride), load(whole + 3 * stride)};
+}
+
+/// Adds neighbours of overlap 1 and leakage 1: the same of theirs.
+SOFTFOCUS_INLINE void add_whole(Sums& sums, const float* whole, std::ptrdiff_t stride) {
+  sums.weight = sums.weight + load(whole);
+  sums.r = sums.r + load(whole + stride);
+  sums.g = sums.g + load(whole + 2 * stride);
+  sums.b = sums.b + load(whole + 3 * stride);
+}
+
+/// Adds neighbours of any weight. The colour sums change only where the weight is
+/// positive, since 0 * colour may be NaN or -0; the sum of weights is positive, and
+/// adding 0 changes nothing.
+template <bool leaking>
+SOFTFOCUS_INLINE void add_part(Sums& sums, Floats signed_radius_px, Floats light,
+                               const float* colour, std::ptrdiff_t stride, Floats distance_px,
+                               Floats receiver_leakage) {
+  Floats weight = overlap(absolute(signed_radius_px), distance_px) * light;
+  if constexpr (leaking) {
+    weight = select(as_ints(signed_radius_px) < 0, weight * receiver_leakage, weight);
+  }
+  const Mask counts = weight > 0.0f;
+  sums.weight = sums.weight + weight;
+  sums.r = select(counts, sums.r + load(colour) * weight, sums.r);
+  sums.g = select(counts, sums.g + load(colour + stride) * weight, sums.g);
+  sums.b = select(counts, sums.b + load(colour + 2 * stride) * weight, sums.b);
+}
+
+/// The colour of a receiver as the halves that are stored.
+struct HalfColour {
+  Bits r, g, b;
+};
+template <HalfRounding rounding>
+SOFTFOCUS_INLINE HalfColour resolve(const Sums& sums) {
+  return {float_to_half<rounding>(clamp_to_half(sums.r / sums.weight)),
+          float_to_half<rounding>(clamp_to_half(sums.g / sums.weight)),
+          float_to_half<rounding>(clamp_to_half(sums.b / sums.weight))};
+}

@@ -1,0 +1,78 @@
+#include "tools/bench_options.h"
+
+#include "scenes/sphere_field.h"
+#include "tools/driver_option.h"
+#include "tools/errors.h"
+#include "tools/memory_check.h"
+#include "tools/method_options.h"
+#include "tools/profile_option.h"
+
+namespace softfocus {
+namespace {
+
+constexpr int kLeastRuns = 10;
+constexpr int kMostRuns = 1000;
+
+/// A drawn and a filtered picture, one between (8 bytes a pixel each) and depth (4), for
+/// each of the two contenders; two pictures read back and compared.
+constexpr std::uint64_t kBytesPerPixel = 72;
+
+void add_subject_options(CLI::App& parser, BenchOptions& options) {
+  parser.add_option("SCENE", options.scene, "A scene or a file, as render takes it")->type_name("");
+  const std::string numbers =
+      std::to_string(kLeastFieldTriangles) + " to " + std::to_string(kMostFieldTriangles);
+  add_value(parser, "--triangles", "N",
+            "Instead of SCENE: 250 spheres of N triangles in all, " + numbers,
+            [&options, numbers](const std::string& text) {
+              options.triangles = parse_whole("--triangles", text, kLeastFieldTriangles,
+                                              kMostFieldTriangles, "a number from " + numbers);
+            });
+  add_value(parser, "--image", "WxH",
+            "Instead of SCENE: a picture of that size that nothing draws, for the filter alone",
+            [&options](const std::string& text) { options.image = parse_size("--image", text); });
+  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
+            [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_frame(parser, options.frame);
+  add_scene_path(parser, options.scene_path);
+}
+
+}  // namespace
+
+void add_bench_options(CLI::App& parser, BenchOptions& options) {
+  add_subject_options(parser, options);
+  add_method_option(parser, options.method);
+  add_lens_options(parser, options.lens,
+                   {.focus = "the scene's",
+                    .focal_length = "the scene's",
+                    .f_number = "the scene's",
+                    .coc_scale = "the scene's"});
+  add_max_coc_option(parser, options.max_coc_px);
+  add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
+                     [&options](const Profile& profile) { options.profile = profile; });
+  add_pool_options(parser, options.pool, "the picture is the same");
+  add_value(parser, "--runs", "N", "Times that each is run and timed, 10 to 1000 (default: 15)",
+            [&options](const std::string& text) {
+              options.runs =
+                  parse_whole("--runs", text, kLeastRuns, kMostRuns, "a number from 10 to 1000");
+            });
+  add_value(parser, "--vs", "DRIVER", "Time this GL driver too, in turn: " + names_of(drivers()),
+            [&options](const std::string& text) { options.versus = &parse_driver("--vs", text); });
+  parser.add_flag("--json", options.json, "Print JSON");
+}
+
+void complete(BenchOptions& options, const CLI::App& parser) {
+  const int given =
+      (options.scene.empty() ? 0 : 1) + (options.triangles ? 1 : 0) + (options.image ? 1 : 0);
+  if (given != 1) {
+    throw UsageError(std::string{given == 0 ? "nothing to measure is given"
+                                            : "more than one thing to measure is given"} +
+                     "; give a SCENE (softfocus scenes), --triangles N or --image WxH");
+  }
+  if (options.image && parser.count("--size") != 0) {
+    throw UsageError("--image and --size exclude each other: --image has the size");
+  }
+  if (options.image) options.size = *options.image;
+  check_memory(options.image ? "--image" : "--size", options.size, kBytesPerPixel);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,66 @@
+#include "tools/gl/repeated_on_gl.h"
+
+#include <optional>
+
+#include "tools/gl/filter_on_gl.h"
+#include "tools/gl/scene_on_gl.h"
+
+namespace softfocus {
+
+struct RepeatedOnGl::State {
+  const Driver& driver;
+  const BenchWork& work;
+  GlContext context;
+  Shaders shaders{};
+  std::optional<GlScene> scene{};  // with `drawn`
+  GlTarget drawn{};
+  GlTexture uploaded{};  // else
+  std::optional<GlFilter> method{};
+};
+
+RepeatedOnGl::RepeatedOnGl(const Driver& driver, const BenchWork& work, int threads) {
+  naming(driver, [&] {
+    state_.reset(new State{driver, work, GlContext{driver, threads}});
+    State& state = *state_;
+    const auto [width, height] = work.size;
+    if (work.scene) {
+      state.scene.emplace(state.context, state.shaders, *work.scene);
+      state.drawn = make_scene_target(width, height);
+    } else {
+      state.uploaded = upload(work.picture);
+    }
+    if (work.method->name != "pinhole") {
+      state.method = make_filter(state.context, state.shaders, work.method->name, work.settings,
+                                 width, height);
+    }
+  });
+}
+
+RepeatedOnGl::~RepeatedOnGl() = default;
+
+std::string RepeatedOnGl::renderer() const {
+  return state_->context.renderer() + ", OpenGL " + state_->context.version();
+}
+
+void RepeatedOnGl::draw() {
+  naming(state_->driver,
+         [&] { state_->scene->draw(state_->work.view, state_->work.frame, state_->drawn); });
+}
+
+void RepeatedOnGl::filter() {
+  if (!state_->method) return;
+  naming(state_->driver, [&] {
+    run_filter(*state_->method, state_->work.scene ? state_->drawn.colour[0] : state_->uploaded);
+  });
+}
+
+void RepeatedOnGl::finish() { glFinish(); }
+
+Image RepeatedOnGl::picture() const {
+  return naming(state_->driver, [&] {
+    if (state_->method) return read_colour(state_->method->targets.back(), 0);
+    return state_->work.scene ? read_colour(state_->drawn, 0) : state_->work.picture;
+  });
+}
+
+}  // namespace softfocus

@@ -1,0 +1,23 @@
+#pragma once
+// What many times of one thing tell, and how two things compare that were timed in turn.
+
+#include <span>
+#include <vector>
+
+namespace softfocus {
+
+/// The middle and the ends of some samples.
+struct Spread {
+  double median = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+};
+
+/// Of at least one sample. The median of an even number is the mean of the two in the middle.
+Spread spread_of(std::vector<double> samples);
+
+/// peer / ours, pair by pair: how many times as fast ours was. Needs as many of one as of
+/// the other, all above 0.
+std::vector<double> pair_ratios(std::span<const double> ours, std::span<const double> peers);
+
+}  // namespace softfocus
