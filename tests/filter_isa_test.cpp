@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "dof/one_pass.h"
 #include "dof/two_pass.h"
@@ -168,19 +168,21 @@ TEST_CASE("the filters' kernels give the plain forms' bits where part of a pictu
   };
   for (const FilterPair& filter : kFilters) {
     for (const Island island : {Island{70, 60, 1}, {0, 0, 20}, {95, 50, 45}, {10, 100, 30}}) {
-      for (const bool inside_is_sharp : {false, true}) {
+      // Behind the focus or before it, where it reaches what is in focus too.
+      for (const auto& [inside_m, outside_m] :
+           {std::pair{2.0f, 7.0f}, {7.0f, 2.0f}, {2.0f, 1.0f}, {1.0f, 2.0f}}) {
         Image scene = random_scene_image(141, 130, 11);
         set_depth(scene, [&](int x, int y) {
           const bool inside = x >= island.x && x < island.x + island.size && y >= island.y &&
                               y < island.y + island.size;
-          return inside == inside_is_sharp ? 2.0f : 7.0f;
+          return inside ? inside_m : outside_m;
         });
         // What is in focus passes through the same rules as what is not.
         set_halves(scene, [](int x, int y, int channel, std::uint16_t half) {
           constexpr std::array<std::uint16_t, 4> kStrange{0x7C00, 0xFC00, 0x7D01, 0x8000};
-          return (x * 7 + y * 13 + channel) % 97 == 0
-                     ? kStrange[static_cast<std::size_t>(x + y) % 4]
-                     : half;
+          const int place = x * 7 + y * 13 + channel;
+          return channel < 3 && place % 97 == 0 ? kStrange[static_cast<std::size_t>(place) % 4]
+                                                : half;
         });
         check_units(filter, scene, kSettings);
       }

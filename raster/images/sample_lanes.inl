@@ -231,6 +231,7 @@ SOFTFOCUS_INLINE void find_fetch(const PlaceLanes& place, Ints level, FetchLanes
   store(fetch.offsets[1], upper + (u.second << 2));
   store(fetch.offsets[2], lower + (u.first << 2));
   store(fetch.offsets[3], lower + (u.second << 2));
+  keep_in_memory(fetch.offsets);
   fetch.weight_u = u.weight;
   fetch.weight_v = v.weight;
   fetch.neighbours = all(u.second == u.first + 1);

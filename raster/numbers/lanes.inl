@@ -35,6 +35,13 @@ SOFTFOCUS_INLINE void store(float* to, Floats v) { std::memcpy(to, &v, sizeof v)
 SOFTFOCUS_INLINE void store(std::int32_t* to, Ints v) { std::memcpy(to, &v, sizeof v); }
 SOFTFOCUS_INLINE void store(std::uint32_t* to, Bits v) { std::memcpy(to, &v, sizeof v); }
 
+/// Has what was stored there read from memory: lanes that are used one by one come faster
+/// from there than out of a vector register, where compilers prefer to keep them.
+template <class Array>
+SOFTFOCUS_INLINE void keep_in_memory(Array& array) {
+  asm volatile("" : "+m"(array));
+}
+
 /// The value in every lane; no sum, which would turn -0 into 0.
 SOFTFOCUS_INLINE Floats splat(float value) {
 #if SOFTFOCUS_LANES == 16

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <utility>
 
-#include "raster/images/texel.h"
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/planes.h"
 
@@ -160,21 +159,6 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
   for_each_block_row(area, [&](int x, int y, std::size_t at, int count) {
     const float* from = row<float>(depth, area.y_begin + y).data() + area.x_begin + x;
     copy_pixels(from, count, &tile.depth[at]);
-  });
-}
-
-void clear_unseen(const VisibilityTile& tile, Image& colour, glm::vec4 value,
-                  const Profile& profile) {
-  Image texel = make_image(Format::rgba16f, 1, 1);
-  store_texel<Format::rgba16f>(texel, 0, 0, value, profile);
-  constexpr std::size_t kTexelBytes = 8;
-  for_each_block_row(tile.area, [&](int x, int y, std::size_t at, int count) {
-    std::byte* to = colour.bytes.data() +
-                    static_cast<std::size_t>(tile.area.y_begin + y) * colour.stride_bytes +
-                    static_cast<std::size_t>(tile.area.x_begin + x) * kTexelBytes;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (tile.ids[at + i] == 0) std::memcpy(to + i * kTexelBytes, texel.bytes.data(), kTexelBytes);
-    }
   });
 }
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <glm/vec4.hpp>
 #include <optional>
 #include <span>
 #include <vector>
@@ -127,9 +126,6 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
 void shade_tile(VisibilityTile& tile);
 /// Writes the tile's depths.
 void end_tile(const VisibilityTile& tile, Image& depth);
-/// Sets the pixels of an RGBA16F image that show nothing in the tile.
-void clear_unseen(const VisibilityTile& tile, Image& colour, glm::vec4 value,
-                  const Profile& profile);
 
 /// Ids fit beside a pixel's number in 32 bits.
 inline constexpr std::size_t kMostVisible = (std::size_t{1} << 19) - 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "raster/images/texel.h"
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/clip.h"
 
@@ -25,6 +26,13 @@ void assemble_lanes(Isa isa, const AssembleJob& job, LaneChunk& chunk) {
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DepthState& state, const Profile& profile, VisibilityTile& tile) {
   SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, state, profile, tile);
+}
+
+void clear_unseen(Isa isa, const VisibilityTile& tile, Image& colour, glm::vec4 value,
+                  const Profile& profile) {
+  Image texel = make_image(Format::rgba16f, 1, 1);
+  store_texel<Format::rgba16f>(texel, 0, 0, value, profile);
+  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, colour, texel.bytes.data());
 }
 
 }  // namespace softfocus

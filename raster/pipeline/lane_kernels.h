@@ -2,6 +2,7 @@
 // The vector kernels of set-up and coverage: the same for every draw.
 
 #include <cstdint>
+#include <glm/vec4.hpp>
 #include <span>
 
 #include "raster/numbers/isa.h"
@@ -37,5 +38,9 @@ void assemble_lanes(Isa isa, const AssembleJob& job, LaneChunk& chunk);
 /// where they are seen.
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DepthState& state, const Profile& profile, VisibilityTile& tile);
+
+/// Sets the pixels of an RGBA16F image that show nothing in the tile.
+void clear_unseen(Isa isa, const VisibilityTile& tile, Image& colour, glm::vec4 value,
+                  const Profile& profile);
 
 }  // namespace softfocus

@@ -194,3 +194,23 @@ void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DepthSta
     case Compare::always: return rasterize_test<Compare::always>(chunk, bins, state, profile, tile);
   }
 }
+
+// `texel` is four halves.
+void set_unseen(const VisibilityTile& tile, Image& colour, const std::byte* texel) {
+  constexpr std::size_t kTexelBytes = 8;
+  for (std::size_t at = 0; at < kTilePixels; at += kLanes) {
+    const Ints ids = load(&tile.ids[at]);
+    for (unsigned rest = lane_bits(ids == 0); rest != 0; rest &= rest - 1) {
+      const std::size_t pixel = at + static_cast<std::size_t>(__builtin_ctz(rest));
+      const std::size_t block = pixel / kBlockPixels;
+      const auto x = static_cast<int>(block % kTileBlocks * kBlockSize + pixel % kBlockSize);
+      const auto y =
+          static_cast<int>(block / kTileBlocks * kBlockSize + pixel % kBlockPixels / kBlockSize);
+      const int column = tile.area.x_begin + x, line = tile.area.y_begin + y;
+      if (column >= tile.area.x_end || line >= tile.area.y_end) continue;
+      std::memcpy(colour.bytes.data() + static_cast<std::size_t>(line) * colour.stride_bytes +
+                      static_cast<std::size_t>(column) * kTexelBytes,
+                  texel, kTexelBytes);
+    }
+  }
+}

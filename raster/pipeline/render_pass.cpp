@@ -158,7 +158,7 @@ class TileDrawing {
 
   void shade() {
     if (!is_cleared_ && pass_.clear_colour) {
-      clear_unseen(*tile_, *pass_.targets.colour[0], *pass_.clear_colour, pass_.profile);
+      clear_unseen(pass_.isa, *tile_, *pass_.targets.colour[0], *pass_.clear_colour, pass_.profile);
     }
     is_cleared_ = true;
     shade_tile(*tile_);
