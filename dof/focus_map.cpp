@@ -17,10 +17,10 @@ namespace {
 // pixel between them, make at most 2^-21 of it.
 constexpr float kRounding = 1.0f + 0x1p-20f;
 
-// Of depths from `least` to `most`, halves compared as integers: those from infinity on
-// are infinite, NaN or negative.
+// Of depths from `least` to `most`, halves compared as integers: those past infinity are
+// NaN or negative. Zero and infinity are blurred to the largest.
 float radius_bound(const DofSettings& settings, std::uint32_t least, std::uint32_t most) {
-  if (least == 0 || most >= kHalfInfinity) return settings.max_coc_px;
+  if (most > kHalfInfinity) return settings.max_coc_px;
   const auto radius = [&](std::uint32_t depth) {
     return filter_radius(settings, half_to_float(static_cast<std::uint16_t>(depth)));
   };

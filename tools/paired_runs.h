@@ -28,8 +28,8 @@ struct PairedSamples {
 };
 
 /// Times every stage of ours and then every stage of the peer's, in the next pair the peer
-/// first, and so on. Without stages of the peer's ours are timed alone. `on_run` is told each
-/// pair's number, from 0, before it begins.
+/// first, and so on; before, the contender's first stage once without a clock. Without stages of
+/// the peer's ours are timed alone. `on_run` is told each pair's number, from 0, before it begins.
 PairedSamples time_in_pairs(const std::vector<TimedStage>& ours,
                             const std::vector<TimedStage>& peers, int pairs,
                             const std::function<void(int)>& on_run);
