@@ -142,8 +142,8 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
     Mask kept = active & ~rejected & ~clipped & drawable;
     if (!any(kept | slow)) continue;
 
-    const IntCorners x = gather_corners(vertices.snapped_x, index, kept);
-    const IntCorners y = gather_corners(vertices.snapped_y, index, kept);
+    IntCorners x = gather_corners(vertices.snapped_x, index, kept);
+    IntCorners y = gather_corners(vertices.snapped_y, index, kept);
     const Ints x_min = smallest(x), x_max = largest(x);
     const Ints y_min = smallest(y), y_max = largest(y);
     const Ints x_begin = larger((x_min + 255) >> kSubpixelBits, splat(job.clip.x_begin));
@@ -154,6 +154,11 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
     const Mask small = (x_max - x_min <= kSmallExtent) & (y_max - y_min <= kSmallExtent);
     slow |= kept & ~small;
     kept &= small;
+    // In the other lanes what follows would overflow.
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[i] = select(kept, x[i], Ints{});
+      y[i] = select(kept, y[i], Ints{});
+    }
 
     const Ints area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
     const Mask clockwise = area > 0;
