@@ -169,13 +169,15 @@ TEST_CASE("the filters' kernels give the plain forms' bits where part of a pictu
   for (const FilterPair& filter : kFilters) {
     for (const Island island : {Island{70, 60, 1}, {0, 0, 20}, {95, 50, 45}, {10, 100, 30}}) {
       // Behind the focus or before it, where it reaches what is in focus too.
-      for (const auto& [inside_m, outside_m] :
-           {std::pair{2.0f, 7.0f}, {7.0f, 2.0f}, {2.0f, 1.0f}, {1.0f, 2.0f}}) {
+      struct Depths {
+        float inside_m, outside_m;
+      };
+      for (const Depths depths : {Depths{2.0f, 7.0f}, {7.0f, 2.0f}, {2.0f, 1.0f}, {1.0f, 2.0f}}) {
         Image scene = random_scene_image(141, 130, 11);
         set_depth(scene, [&](int x, int y) {
           const bool inside = x >= island.x && x < island.x + island.size && y >= island.y &&
                               y < island.y + island.size;
-          return inside ? inside_m : outside_m;
+          return inside ? depths.inside_m : depths.outside_m;
         });
         // What is in focus passes through the same rules as what is not.
         set_halves(scene, [](int x, int y, int channel, std::uint16_t half) {
