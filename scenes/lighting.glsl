@@ -12,6 +12,7 @@ uniform vec3 material_ambient;
 uniform vec3 material_diffuse;
 uniform vec3 material_specular;
 uniform int material_shininess;
+uniform float least_highlight;
 uniform bool material_lit;
 
 struct LitColour {
@@ -34,12 +35,12 @@ vec3 unit(vec3 v) {
 float whole_power(float x, int n) {
   precise float power = 1.0;
   precise float square = x;
-  while (n > 0) {
+  for (;;) {
     if ((n & 1) != 0) power *= square;
     n >>= 1;
+    if (n == 0) return power;
     square *= square;
   }
-  return power;
 }
 
 LitColour light_point(vec3 point, vec3 normal, vec3 towards_eye) {
@@ -54,7 +55,7 @@ LitColour light_point(vec3 point, vec3 normal, vec3 towards_eye) {
     base += light_colour[i] * (material_diffuse * facing);
     precise vec3 between = towards_light + towards_eye;
     float highlight = product_sum(normal, unit(between));
-    if (highlight > 0.0) {
+    if (highlight >= least_highlight) {
       specular += light_colour[i] * (material_specular * whole_power(highlight, material_shininess));
     }
   }

@@ -2,6 +2,8 @@
 // Light at a vertex: ambient, diffuse and specular after Blinn 1977, in binary32 and
 // in an order that a shader can follow: no pow, no dot() of unknown order.
 
+#include <algorithm>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
 
@@ -11,13 +13,23 @@
 namespace softfocus {
 
 /// x^n for n >= 1 by squaring, from n's lowest bit up: the same products on every
-/// machine, where a driver's pow is an approximation.
+/// machine, where a driver's pow is an approximation. No product is taken that goes
+/// further than x^n.
 inline float whole_power(float x, int n) {
   float power = 1.0f;
-  for (float square = x; n > 0; n >>= 1, square *= square) {
+  for (float square = x;; square *= square) {
     if ((n & 1) != 0) power *= square;
+    n >>= 1;
+    if (n == 0) return power;
   }
-  return power;
+}
+
+/// A highlight counts from this cosine on. Below it, its power is less than 2^-63, and what
+/// comes soon after is no normal number: CPUs take a hundred cycles for each such product.
+/// For n up to 126 the power of it is at least 2^-126; above, (1 + 87/n)^-n > e^-87.
+inline float least_highlight(int n) {
+  if (n > 126) return static_cast<float>(n) / static_cast<float>(n + 87);
+  return 1.0f / static_cast<float>(std::uint64_t{1} << std::min(126 / n, 63));
 }
 
 /// What a texture multiplies, and what it does not.
@@ -29,12 +41,14 @@ struct LitColour {
 /// Light on a point, all in world space. With n the normal, v towards the eye, l
 /// towards a light and h = normalize(l + v), summed over the lights in order:
 ///   base     = ambient_light * ambient + sum colour * (diffuse * max(n.l, 0))
-///   specular = sum colour * (specular * (n.h)^shininess)      where n.l > 0 and n.h > 0
+///   specular = sum colour * (specular * (n.h)^shininess)
+///              where n.l > 0 and n.h >= least_highlight(shininess)
 /// `normal` and `towards_eye` have unit length.
 inline LitColour light_point(const Material& material, glm::vec3 ambient_light,
                              std::span<const Light> lights, glm::vec3 point, glm::vec3 normal,
                              glm::vec3 towards_eye) {
   LitColour lit{ambient_light * material.ambient, glm::vec3{0.0f}};
+  const float least = least_highlight(material.shininess);
   for (const Light& light : lights) {
     const glm::vec3 towards_light =
         normalize(light.kind == LightKind::point ? light.position_or_direction - point
@@ -43,7 +57,7 @@ inline LitColour light_point(const Material& material, glm::vec3 ambient_light,
     if (!(facing > 0.0f)) continue;
     lit.base += light.colour * (material.diffuse * facing);
     const float highlight = dot(normal, normalize(towards_light + towards_eye));
-    if (highlight > 0.0f) {
+    if (highlight >= least) {
       lit.specular +=
           light.colour * (material.specular * whole_power(highlight, material.shininess));
     }

@@ -11,10 +11,11 @@ namespace {
 
 SOFTFOCUS_INLINE Floats whole_power(Floats x, int n) {
   Floats power = splat(1.0f);
-  for (Floats square = x; n > 0; n >>= 1, square *= square) {
+  for (Floats square = x;; square *= square) {
     if ((n & 1) != 0) power *= square;
+    n >>= 1;
+    if (n == 0) return power;
   }
-  return power;
 }
 
 SOFTFOCUS_INLINE Vec3Lanes load_vectors(const std::vector<glm::vec3>& vectors, Ints index) {
@@ -34,6 +35,7 @@ template <bool kSpecular>
 SOFTFOCUS_INLINE LitLanes light_points(const SurfaceVertexInput& input, const Vec3Lanes& point,
                                        const Vec3Lanes& normal, const Vec3Lanes& towards_eye) {
   const Material& material = *input.material;
+  const float least = least_highlight(material.shininess);
   LitLanes lit{splat(input.ambient_light * material.ambient), splat(glm::vec3{0.0f})};
   for (const Light& light : input.lights) {
     const Vec3Lanes towards_light =
@@ -44,12 +46,11 @@ SOFTFOCUS_INLINE LitLanes light_points(const SurfaceVertexInput& input, const Ve
     lit.base = select(lights, lit.base + light.colour * (material.diffuse * facing), lit.base);
     if constexpr (kSpecular) {
       const Floats highlight = dot(normal, normalize(towards_light + towards_eye));
-      const Mask shines = lights & (highlight > 0.0f);
-      lit.specular = select(
-          shines,
-          lit.specular +
-              light.colour * (material.specular * whole_power(highlight, material.shininess)),
-          lit.specular);
+      const Mask shines = lights & (highlight >= least);
+      // Lanes that do not shine have no part in the time either: see least_highlight().
+      const Floats power = whole_power(select(shines, highlight, splat(1.0f)), material.shininess);
+      lit.specular =
+          select(shines, lit.specular + light.colour * (material.specular * power), lit.specular);
     }
   }
   return lit;
@@ -111,44 +112,82 @@ struct SurfaceVertexLanes {
 
 // One copy for all variants.
 [[gnu::noinline]] void sample_surface(const DecodedTexture& texture, const Sampler& sampler,
-                                      const Profile& profile, const std::array<Floats, 6>& uv,
-                                      RgbLanes& texel) {
-  const Floats lod = level_of_detail_lanes(texture, uv[2], uv[3], uv[4], uv[5]);
-  texel = sample_lanes(texture, sampler, uv[0], uv[1], lod, ~Mask{}, profile);
+                                      const Profile& profile, SamplePoints points, int count,
+                                      RgbLanes* texels) {
+  sample_lanes(texture, sampler, profile, points, count, texels);
 }
 
 template <SurfaceVariant variant>
 struct SurfaceFragmentLanes {
   using Layout = SurfaceLayout<variant>;
   static constexpr auto kInterpolation = SurfaceFragmentStage<variant>::kInterpolation;
-  static constexpr bool kNeedsDerivatives = variant.textured;
+  // The colour that a texture is multiplied with, depth; and with a texture where it is
+  // sampled, and the highlights, which are else in the colour.
+  static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,
+                               kLod = 6, kHighlight = 7;
+  static constexpr std::size_t kInputs = !variant.textured ? 4 : variant.specular ? 10 : 7;
   const SurfaceFragmentStage<variant>& stage;
 
-  template <class Fragment>
-  SOFTFOCUS_INLINE std::array<Floats, 4> operator()(const Fragment& in) const {
+  template <class Quads>
+  SOFTFOCUS_INLINE std::array<Floats, kInputs> inputs(const Quads& in) const {
+    std::array<Floats, kInputs> values;
     Vec3Lanes colour = side(in, 0);
     if constexpr (variant.textured) {
       constexpr std::size_t u = Layout::kTexture;
       constexpr std::size_t v = Layout::kTexture + 1;
-      RgbLanes texel;
-      sample_surface(*stage.decoded, stage.sampler, stage.profile,
-                     {in.varying(u), in.varying(v), in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)},
-                     texel);
-      colour = {colour.x * texel.r, colour.y * texel.g, colour.z * texel.b};
+      values[kU] = in.varying(u);
+      values[kV] = in.varying(v);
+      values[kLod] =
+          level_of_detail_lanes(*stage.decoded, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v));
     }
-    if constexpr (variant.specular) colour = colour + side(in, 3);
-    const Floats depth = in.varying(Layout::kDepth);
-    return {colour.x, colour.y, colour.z, smaller(depth, splat(65504.0f))};
+    if constexpr (variant.specular) {
+      const Vec3Lanes highlight = side(in, 3);
+      if constexpr (variant.textured) {
+        values[kHighlight] = highlight.x;
+        values[kHighlight + 1] = highlight.y;
+        values[kHighlight + 2] = highlight.z;
+      } else {
+        colour = colour + highlight;
+      }
+    }
+    values[kRed] = colour.x;
+    values[kGreen] = colour.y;
+    values[kBlue] = colour.z;
+    values[kDepth] = smaller(in.varying(Layout::kDepth), splat(65504.0f));
+    return values;
+  }
+
+  SOFTFOCUS_INLINE void shade(const FragmentBatch<kInputs>& batch,
+                              std::array<Floats, 4>* colours) const {
+    const int count = batch.vectors();
+    std::array<RgbLanes, kMostSampled> texels;
+    if constexpr (variant.textured) {
+      sample_surface(*stage.decoded, stage.sampler, stage.profile,
+                     {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
+                     count, texels.data());
+    }
+    for (int i = 0; i < count; ++i) {
+      Vec3Lanes colour{batch.input(kRed, i), batch.input(kGreen, i), batch.input(kBlue, i)};
+      if constexpr (variant.textured) {
+        const RgbLanes& texel = texels[static_cast<std::size_t>(i)];
+        colour = {colour.x * texel.r, colour.y * texel.g, colour.z * texel.b};
+        if constexpr (variant.specular) {
+          colour = colour + Vec3Lanes{batch.input(kHighlight, i), batch.input(kHighlight + 1, i),
+                                      batch.input(kHighlight + 2, i)};
+        }
+      }
+      colours[i] = {colour.x, colour.y, colour.z, batch.input(kDepth, i)};
+    }
   }
 
   // Three varyings of the side that is seen.
-  template <class Fragment>
-  SOFTFOCUS_INLINE Vec3Lanes side(const Fragment& in, std::size_t at) const {
+  template <class Quads>
+  SOFTFOCUS_INLINE Vec3Lanes side(const Quads& in, std::size_t at) const {
     const std::size_t front = Layout::kFront + at;
     const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
     if constexpr (!variant.two_sided) return seen;
     const std::size_t back = Layout::kBack + at;
-    return select(in.front_facing, seen,
+    return select(in.front_facing(), seen,
                   Vec3Lanes{in.varying(back), in.varying(back + 1), in.varying(back + 2)});
   }
 };

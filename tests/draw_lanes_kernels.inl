@@ -24,12 +24,17 @@ struct ListedLanes {
 
 struct MixedLanes {
   static constexpr auto kInterpolation = MixedColour::kInterpolation;
-  static constexpr bool kNeedsDerivatives = true;
+  static constexpr std::size_t kInputs = 4;
 
-  template <class Fragment>
-  std::array<Floats, 4> operator()(const Fragment& in) const {
+  template <class Quads>
+  std::array<Floats, 4> inputs(const Quads& in) const {
     return {in.varying(0) + in.ddx(0), in.varying(1) - in.ddy(0),
-            select(in.front_facing, in.varying(2), -in.varying(2)), in.varying(3) + in.ddx(1)};
+            select(in.front_facing(), in.varying(2), -in.varying(2)), in.varying(3) + in.ddx(1)};
+  }
+  void shade(const FragmentBatch<4>& batch, std::array<Floats, 4>* colours) const {
+    for (int i = 0; i < batch.vectors(); ++i) {
+      colours[i] = {batch.input(0, i), batch.input(1, i), batch.input(2, i), batch.input(3, i)};
+    }
   }
 };
 

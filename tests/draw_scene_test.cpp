@@ -176,3 +176,15 @@ TEST_CASE("a whole power is the product written out") {
   CHECK(whole_power(3.0f, 5) == 243.0f);
   CHECK(whole_power(1.0f, 1024) == 1.0f);
 }
+
+TEST_CASE("no highlight takes numbers below the normal ones, and what is left out is nothing") {
+  for (int n = 1; n <= 1024; ++n) {
+    const float least = least_highlight(n);
+    const float power = whole_power(least, n);
+    CHECK(power >= std::numeric_limits<float>::min());
+    CHECK(power <= 0x1p-63f);
+    // The largest square on the way to the power.
+    CHECK(whole_power(least, static_cast<int>(std::bit_floor(static_cast<unsigned>(n)))) >=
+          std::numeric_limits<float>::min());
+  }
+}

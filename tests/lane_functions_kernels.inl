@@ -48,7 +48,10 @@ void lanes_gather_floats(const float* base, const std::int32_t* index, float* to
 }
 int lanes_compress_positive(const std::int32_t* a, std::int32_t* to) {
   const Ints v = load(a);
-  return compress_store(to, v, v > 0);
+  const Compression kept = compression(v > 0);
+  store(to, compress(v, kept));
+  const Floats floats = compress(to_floats(v), kept);
+  return all(truncate(floats) == load(to)) ? __builtin_popcount(lane_bits(v > 0)) : -1;
 }
 void lanes_transpose(const float* rows, float* to) {
   Floats v[kLanes];

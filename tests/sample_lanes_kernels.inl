@@ -6,20 +6,27 @@
 inline void sample_all(const DecodedTexture& texture, const Sampler& sampler,
                        const Profile& profile, std::span<const SamplePoint> points,
                        std::span<SampledColour> colours) {
-  for (std::size_t start = 0; start < points.size(); start += kLanes) {
-    Floats u, v, lod;
-    Mask active;
-    for (int i = 0; i < kLanes; ++i) {
-      const SamplePoint& point = points[start + static_cast<std::size_t>(i)];
-      u[i] = point.u;
-      v[i] = point.v;
-      lod[i] = point.lod;
-      active[i] = point.active ? -1 : 0;
+  constexpr auto kStep = static_cast<std::size_t>(kLanes);
+  std::vector<float> u, v, lod;
+  for (const SamplePoint& point : points) {
+    u.push_back(point.u);
+    v.push_back(point.v);
+    lod.push_back(point.lod);
+  }
+  std::array<RgbLanes, kMostSampled> texels;
+  // Batches of 1, 2, ... vectors by turns.
+  std::size_t most = 0;
+  for (std::size_t done = 0; done < points.size();) {
+    most = most % kMostSampled + 1;
+    const std::size_t count = std::min(most, (points.size() - done) / kStep);
+    sample_lanes(texture, sampler, profile, {&u[done], &v[done], &lod[done]},
+                 static_cast<int>(count), texels.data());
+    for (std::size_t i = 0; i < count * kStep; ++i) {
+      const RgbLanes& rgb = texels[i / kStep];
+      const int lane = static_cast<int>(i % kStep);
+      colours[done + i] = {rgb.r[lane], rgb.g[lane], rgb.b[lane]};
     }
-    const RgbLanes rgb = sample_lanes(texture, sampler, u, v, lod, active, profile);
-    for (int i = 0; i < kLanes; ++i) {
-      colours[start + static_cast<std::size_t>(i)] = {rgb.r[i], rgb.g[i], rgb.b[i]};
-    }
+    done += count * kStep;
   }
 }
 

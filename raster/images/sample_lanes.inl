@@ -1,4 +1,4 @@
-// sample() and level_of_detail() for kLanes pixels at once, to the bit. A kernel file, to
+// sample() and level_of_detail() for vectors of pixels, to the bit. A kernel file, to
 // be included by those that sample; raster/images/decoded_texture.h comes before.
 //
 // Addresses and weights are computed a lane each. Texels are four floats, so that one load
@@ -8,6 +8,15 @@
 struct RgbLanes {
   Floats r, g, b;
 };
+
+/// Where a texture is sampled, pixel after pixel.
+struct SamplePoints {
+  const float* u;
+  const float* v;
+  const float* lod;
+};
+
+inline constexpr int kMostSampled = 8;  // vectors at once
 
 /// level_of_detail() of the plain unit and llvmpipe.
 SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, Floats du_dx,
@@ -31,45 +40,11 @@ SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, Flo
 // group + 12: what spreads a lane over its texel, and transposes four groups, stays within
 // 128 bits.
 
-template <int group, std::size_t... lane>
-SOFTFOCUS_INLINE Floats spread_over(Floats v, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(v, v, ((lane & ~std::size_t{3}) + group)...);
-}
-template <int group>
-SOFTFOCUS_INLINE Floats spread(Floats v) {
-  return spread_over<group>(v, std::make_index_sequence<kLanes>{});
-}
-
-// Of each four lanes: the first, second, third and fourth of two vectors by turns.
-template <std::size_t from, std::size_t... lane>
-SOFTFOCUS_INLINE Floats interleave_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(
-      a, b, ((lane & ~std::size_t{3}) + from + (lane & 3) / 2 + (lane & 1) * kLanes)...);
-}
-template <std::size_t from>
-SOFTFOCUS_INLINE Floats interleave(Floats a, Floats b) {
-  return interleave_lanes<from>(a, b, std::make_index_sequence<kLanes>{});
-}
-
-// Of each four lanes two of `a`, then two of `b`.
-template <std::size_t from, std::size_t... lane>
-SOFTFOCUS_INLINE Floats join_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(
-      a, b, ((lane & ~std::size_t{3}) + from + (lane & 1) + (lane & 2) / 2 * kLanes)...);
-}
-template <std::size_t from>
-SOFTFOCUS_INLINE Floats join(Floats a, Floats b) {
-  return join_lanes<from>(a, b, std::make_index_sequence<kLanes>{});
-}
-
 /// The channels of four groups, lane by lane.
 SOFTFOCUS_INLINE RgbLanes transpose_groups(Floats group0, Floats group1, Floats group2,
                                            Floats group3) {
-  const Floats rg01 = interleave<0>(group0, group1);
-  const Floats rg23 = interleave<0>(group2, group3);
-  const Floats ba01 = interleave<2>(group0, group1);
-  const Floats ba23 = interleave<2>(group2, group3);
-  return {join<0>(rg01, rg23), join<2>(rg01, rg23), join<0>(ba01, ba23)};
+  transpose_fours(group0, group1, group2, group3);
+  return {group0, group1, group2};
 }
 
 /// Texels of a group, where `offsets` begins with its first lane's.
@@ -157,26 +132,29 @@ SOFTFOCUS_INLINE Floats filter_level(const float* texels, const FetchLanes& fetc
   return mix<arithmetic>(upper, lower, spread<group>(fetch.weight_v));
 }
 
-/// `coarse` is the next level's and null where no lane needs it.
-template <LaneArithmetic arithmetic, bool neighbours, int group>
+/// `coarse` is the next level's, and read where there are `two_levels`.
+template <LaneArithmetic arithmetic, bool neighbours, bool two_levels, int group>
 SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine,
-                                     const FetchLanes* coarse, Floats next_weight) {
+                                     const FetchLanes& coarse, Floats next_weight) {
   const Floats colour = filter_level<arithmetic, neighbours, group>(texels, fine);
-  if (coarse == nullptr) return colour;
-  const Floats next = filter_level<arithmetic, neighbours, group>(texels, *coarse);
+  if constexpr (!two_levels) return colour;
+  const Floats next = filter_level<arithmetic, neighbours, group>(texels, coarse);
   const Floats weight = spread<group>(next_weight);
   // A weight of 0 leaves alone what the sum would not: infinities, NaN, -0.
   return select(weight > 0.0f, mix<arithmetic>(colour, next, weight), colour);
 }
 
-template <LaneArithmetic arithmetic, bool neighbours>
-SOFTFOCUS_INLINE RgbLanes filter_lanes(const float* texels, const FetchLanes& fine,
-                                       const FetchLanes* coarse, Floats next_weight) {
-  return transpose_groups(
-      filter_group<arithmetic, neighbours, 0>(texels, fine, coarse, next_weight),
-      filter_group<arithmetic, neighbours, 1>(texels, fine, coarse, next_weight),
-      filter_group<arithmetic, neighbours, 2>(texels, fine, coarse, next_weight),
-      filter_group<arithmetic, neighbours, 3>(texels, fine, coarse, next_weight));
+/// Not inlined: beside each other in one function, g++ computes all addresses of all forms
+/// first and runs out of registers, which takes half as long again.
+template <LaneArithmetic arithmetic, bool neighbours, bool two_levels>
+[[gnu::noinline]] void filter_lanes(const float* texels, const FetchLanes& fine,
+                                    const FetchLanes& coarse, const Floats& next_weight,
+                                    RgbLanes& colour) {
+  colour = transpose_groups(
+      filter_group<arithmetic, neighbours, two_levels, 0>(texels, fine, coarse, next_weight),
+      filter_group<arithmetic, neighbours, two_levels, 1>(texels, fine, coarse, next_weight),
+      filter_group<arithmetic, neighbours, two_levels, 2>(texels, fine, coarse, next_weight),
+      filter_group<arithmetic, neighbours, two_levels, 3>(texels, fine, coarse, next_weight));
 }
 
 // --- a texture ---
@@ -251,113 +229,137 @@ SOFTFOCUS_INLINE RgbLanes sample_nearest(const PlaceLanes& place, Ints level) {
                           load_texels(texels, offsets + 2), load_texels(texels, offsets + 3));
 }
 
+/// What a vector reads: found for many vectors before any is filtered.
+struct SamplePlan {
+  FetchLanes fine, coarse;
+  Floats next_weight;
+  bool two_levels;
+  bool by_lane;  ///< to be left to sample()
+};
+
 template <LaneArithmetic arithmetic>
-SOFTFOCUS_INLINE RgbLanes sample_linear(const PlaceLanes& place, const LevelLanes& levels,
-                                        bool two_levels) {
-  const float* texels = place.texture.texels.data();
-  const Floats weight = levels.next_weight;
-  FetchLanes fine;
-  find_fetch<arithmetic>(place, levels.first, fine);
-  if (!two_levels) {
-    return fine.neighbours ? filter_lanes<arithmetic, true>(texels, fine, nullptr, weight)
-                           : filter_lanes<arithmetic, false>(texels, fine, nullptr, weight);
+SOFTFOCUS_INLINE LevelLanes choose_levels(Floats lod, int last, bool trilinear) {
+  if constexpr (is_llvmpipe(arithmetic)) {
+    LevelLanes levels = choose_llvmpipe_levels(lod, last, trilinear);
+    if constexpr (arithmetic == LaneArithmetic::llvmpipe_integers) {
+      levels.next_weight = floor(levels.next_weight * 256.0f) * (1.0f / 256.0f);
+    }
+    return levels;
+  } else {
+    return choose_plain_levels(lod, last, trilinear, arithmetic == LaneArithmetic::plain_fixed_8);
   }
-  FetchLanes coarse;
+}
+
+template <LaneArithmetic arithmetic>
+SOFTFOCUS_INLINE void plan_linear(const PlaceLanes& place, const LevelLanes& levels,
+                                  SamplePlan& plan) {
+  const Mask mixed = levels.next_weight > 0.0f;
+  plan.next_weight = levels.next_weight;
+  plan.two_levels = any(mixed);
+  plan.by_lane = false;
+  find_fetch<arithmetic>(place, levels.first, plan.fine);
+  if (!plan.two_levels) return;
+  if constexpr (arithmetic == LaneArithmetic::llvmpipe_fused ||
+                arithmetic == LaneArithmetic::llvmpipe_unfused) {
+    plan.by_lane = any((levels.next_weight < 0x1p-16f) & mixed);
+  }
   const Ints next = smaller(levels.first + 1, splat(place.texture.level_count - 1));
-  find_fetch<arithmetic>(place, next, coarse);
-  return fine.neighbours && coarse.neighbours
-             ? filter_lanes<arithmetic, true>(texels, fine, &coarse, weight)
-             : filter_lanes<arithmetic, false>(texels, fine, &coarse, weight);
+  find_fetch<arithmetic>(place, next, plan.coarse);
+}
+
+template <LaneArithmetic arithmetic>
+SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, RgbLanes& colour) {
+  const FetchLanes& fine = plan.fine;
+  const Floats& weight = plan.next_weight;
+  if (!plan.two_levels) {
+    if (fine.neighbours) {
+      filter_lanes<arithmetic, true, false>(texels, fine, fine, weight, colour);
+    } else {
+      filter_lanes<arithmetic, false, false>(texels, fine, fine, weight, colour);
+    }
+  } else if (fine.neighbours && plan.coarse.neighbours) {
+    filter_lanes<arithmetic, true, true>(texels, fine, plan.coarse, weight, colour);
+  } else {
+    filter_lanes<arithmetic, false, true>(texels, fine, plan.coarse, weight, colour);
+  }
 }
 
 /// sample() itself, lane by lane.
 [[gnu::noinline]] inline void sample_by_lane(const DecodedTexture& texture, const Sampler& sampler,
-                                             const Floats& u, const Floats& v, const Floats& lod,
-                                             const Mask& active, const Profile& profile,
-                                             RgbLanes& colour) {
-  colour = RgbLanes{Floats{}, Floats{}, Floats{}};
-  for (unsigned lanes = lane_bits(active); lanes != 0; lanes &= lanes - 1) {
-    const int i = __builtin_ctz(lanes);
-    const glm::vec4 value = sample(*texture.source, sampler, {u[i], v[i]}, lod[i], profile);
-    colour.r[i] = value.x;
-    colour.g[i] = value.y;
-    colour.b[i] = value.z;
+                                             const Profile& profile, SamplePoints points,
+                                             int vector, RgbLanes& colour) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const int i = vector * kLanes + lane;
+    const glm::vec4 value =
+        sample(*texture.source, sampler, {points.u[i], points.v[i]}, points.lod[i], profile);
+    colour.r[lane] = value.x;
+    colour.g[lane] = value.y;
+    colour.b[lane] = value.z;
   }
 }
 
-/// sample() of the lanes that are `active`, in the arithmetic that lane_arithmetic() chose;
-/// the others may hold anything, and get anything. One copy for all who sample, for it is
-/// long.
 template <LaneArithmetic arithmetic>
-[[gnu::noinline]] void sample_lanes(const DecodedTexture& texture, const Sampler& sampler,
-                                    const Floats& u, const Floats& v, const Floats& lod,
-                                    const Mask& active, const Profile& profile, RgbLanes& colour) {
-  if constexpr (arithmetic == LaneArithmetic::by_sample) {
-    sample_by_lane(texture, sampler, u, v, lod, active, profile, colour);
-    return;
-  }
+[[gnu::noinline]] void sample_batch(const DecodedTexture& texture, const Sampler& sampler,
+                                    const Profile& profile, SamplePoints points, int count,
+                                    RgbLanes* colours) {
   const int last = texture.level_count - 1;
   const bool trilinear = sampler.filter == Filter::trilinear;
-  PlaceLanes place{texture, sampler, u, v};
-  LevelLanes levels;
-  if constexpr (is_llvmpipe(arithmetic)) {
-    const Mask flushed_u = absolute(u) < 0x1p-126f;
-    const Mask flushed_v = absolute(v) < 0x1p-126f;
-    place.u = select(flushed_u, splat(0.0f), u);
-    place.v = select(flushed_v, splat(0.0f), v);
-    levels = choose_llvmpipe_levels(lod, last, trilinear);
-    if constexpr (arithmetic == LaneArithmetic::llvmpipe_integers) {
-      levels.next_weight = floor(levels.next_weight * 256.0f) * (1.0f / 256.0f);
+  std::array<SamplePlan, kMostSampled> plans;
+  for (int i = 0; i < count; ++i) {
+    PlaceLanes place{texture, sampler, load(points.u + i * kLanes), load(points.v + i * kLanes)};
+    if constexpr (is_llvmpipe(arithmetic)) {
+      place.u = select(absolute(place.u) < 0x1p-126f, splat(0.0f), place.u);
+      place.v = select(absolute(place.v) < 0x1p-126f, splat(0.0f), place.v);
+    } else {
+      place.u = select(absolute(place.u) < __builtin_inff(), place.u, splat(0.0f));
+      place.v = select(absolute(place.v) < __builtin_inff(), place.v, splat(0.0f));
     }
-  } else {
-    place.u = select(absolute(u) < __builtin_inff(), u, splat(0.0f));
-    place.v = select(absolute(v) < __builtin_inff(), v, splat(0.0f));
-    levels = choose_plain_levels(lod, last, trilinear, arithmetic == LaneArithmetic::plain_fixed_8);
+    const LevelLanes levels =
+        choose_levels<arithmetic>(load(points.lod + i * kLanes), last, trilinear);
+    if (sampler.filter == Filter::nearest) {
+      colours[i] = sample_nearest<arithmetic>(place, levels.first);
+    } else {
+      plan_linear<arithmetic>(place, levels, plans[static_cast<std::size_t>(i)]);
+    }
   }
-  if (sampler.filter == Filter::nearest) {
-    colour = sample_nearest<arithmetic>(place, levels.first);
-  } else {
-    const Mask mixed = (levels.next_weight > 0.0f) & active;
-    const bool two_levels = any(mixed);
-    if constexpr (arithmetic == LaneArithmetic::llvmpipe_fused ||
-                  arithmetic == LaneArithmetic::llvmpipe_unfused) {
-      if (two_levels && any((levels.next_weight < 0x1p-16f) & mixed)) {
-        sample_by_lane(texture, sampler, u, v, lod, active, profile, colour);
-        return;
+  for (int i = 0; i < count; ++i) {
+    if (sampler.filter != Filter::nearest) {
+      const SamplePlan& plan = plans[static_cast<std::size_t>(i)];
+      if (plan.by_lane) {
+        sample_by_lane(texture, sampler, profile, points, i, colours[i]);
+        continue;
       }
+      filter_plan<arithmetic>(texture.texels.data(), plan, colours[i]);
     }
-    colour = sample_linear<arithmetic>(place, levels, two_levels);
-  }
-  if constexpr (is_llvmpipe(arithmetic)) {
-    colour.r *= texture.scale;
-    colour.g *= texture.scale;
-    colour.b *= texture.scale;
+    if constexpr (is_llvmpipe(arithmetic)) {
+      colours[i].r *= texture.scale;
+      colours[i].g *= texture.scale;
+      colours[i].b *= texture.scale;
+    }
   }
 }
 
-/// The same, choosing at each call.
-SOFTFOCUS_INLINE RgbLanes sample_lanes(const DecodedTexture& texture, const Sampler& sampler,
-                                       Floats u, Floats v, Floats lod, Mask active,
-                                       const Profile& profile) {
+/// sample() of `count` vectors, kMostSampled at most, in the arithmetic that
+/// lane_arithmetic() chooses. First where all of them read, then what: so the CPU works on
+/// several at once, each of which is a long chain of operations.
+SOFTFOCUS_INLINE void sample_lanes(const DecodedTexture& texture, const Sampler& sampler,
+                                   const Profile& profile, SamplePoints points, int count,
+                                   RgbLanes* colours) {
   using enum LaneArithmetic;
-  RgbLanes colour;
   switch (lane_arithmetic(texture, sampler, profile)) {
     case by_sample:
-      sample_lanes<by_sample>(texture, sampler, u, v, lod, active, profile, colour);
-      break;
-    case plain: sample_lanes<plain>(texture, sampler, u, v, lod, active, profile, colour); break;
+      for (int i = 0; i < count; ++i) {
+        sample_by_lane(texture, sampler, profile, points, i, colours[i]);
+      }
+      return;
+    case plain: return sample_batch<plain>(texture, sampler, profile, points, count, colours);
     case plain_fixed_8:
-      sample_lanes<plain_fixed_8>(texture, sampler, u, v, lod, active, profile, colour);
-      break;
+      return sample_batch<plain_fixed_8>(texture, sampler, profile, points, count, colours);
     case llvmpipe_fused:
-      sample_lanes<llvmpipe_fused>(texture, sampler, u, v, lod, active, profile, colour);
-      break;
+      return sample_batch<llvmpipe_fused>(texture, sampler, profile, points, count, colours);
     case llvmpipe_unfused:
-      sample_lanes<llvmpipe_unfused>(texture, sampler, u, v, lod, active, profile, colour);
-      break;
+      return sample_batch<llvmpipe_unfused>(texture, sampler, profile, points, count, colours);
     case llvmpipe_integers:
-      sample_lanes<llvmpipe_integers>(texture, sampler, u, v, lod, active, profile, colour);
-      break;
+      return sample_batch<llvmpipe_integers>(texture, sampler, profile, points, count, colours);
   }
-  return colour;
 }

@@ -220,27 +220,6 @@ SOFTFOCUS_INLINE Floats pick(Floats v, Ints index) {
 #endif
 }
 
-/// A mask that is kept for many choices, and choices of one value for some lanes.
-#if SOFTFOCUS_LANES == 16
-using LaneMask = __mmask16;
-SOFTFOCUS_INLINE LaneMask to_lane_mask(Mask mask) { return _mm512_movepi32_mask((__m512i)mask); }
-SOFTFOCUS_INLINE Floats splat_where(LaneMask mask, float value, Floats others) {
-  return (Floats)_mm512_mask_broadcastss_ps((__m512)others, mask, _mm_set_ss(value));
-}
-SOFTFOCUS_INLINE Ints splat_where(LaneMask mask, std::int32_t value, Ints others) {
-  return (Ints)_mm512_mask_set1_epi32((__m512i)others, mask, value);
-}
-#else
-using LaneMask = Mask;
-SOFTFOCUS_INLINE LaneMask to_lane_mask(Mask mask) { return mask; }
-SOFTFOCUS_INLINE Floats splat_where(LaneMask mask, float value, Floats others) {
-  return select(mask, splat(value), others);
-}
-SOFTFOCUS_INLINE Ints splat_where(LaneMask mask, std::int32_t value, Ints others) {
-  return select(mask, splat(value), others);
-}
-#endif
-
 // --- gathers: base[index], in the lanes of the mask; 0 in the others ---
 
 SOFTFOCUS_INLINE Ints gather(const std::int32_t* base, Ints index, Mask mask) {
@@ -274,20 +253,100 @@ SOFTFOCUS_INLINE Floats gather(const float* base, Ints index, Mask mask) {
 #endif
 }
 
-/// Writes the lanes of the mask one after the other and returns how many they are. Room
-/// for all lanes is needed.
-SOFTFOCUS_INLINE int compress_store(std::int32_t* to, Ints v, Mask mask) {
+// --- compression: the lanes of a mask moved to the front ---
+
+/// What compress() needs to know of a mask, found once for many vectors.
 #if SOFTFOCUS_LANES == 16
-  const __mmask16 bits = _mm512_movepi32_mask((__m512i)mask);
-  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(bits, (__m512i)v));
-  return __builtin_popcount(bits);
+using Compression = __mmask16;
+SOFTFOCUS_INLINE Compression compression(Mask mask) { return _mm512_movepi32_mask((__m512i)mask); }
+SOFTFOCUS_INLINE Floats compress(Floats v, Compression kept) {
+  return (Floats)_mm512_maskz_compress_ps(kept, (__m512)v);
+}
+SOFTFOCUS_INLINE Ints compress(Ints v, Compression kept) {
+  return (Ints)_mm512_maskz_compress_epi32(kept, (__m512i)v);
+}
 #else
+using Compression = Ints;  // which lane comes to each place
+SOFTFOCUS_INLINE Compression compression(Mask mask) {
+  Ints kept{};
   int count = 0;
   for (unsigned bits = lane_bits(mask); bits != 0; bits &= bits - 1) {
-    to[count++] = v[__builtin_ctz(bits)];
+    kept[count++] = __builtin_ctz(bits);
   }
-  return count;
+  return kept;
+}
+SOFTFOCUS_INLINE Floats compress(Floats v, Compression kept) { return pick(v, kept); }
+SOFTFOCUS_INLINE Ints compress(Ints v, Compression kept) { return (Ints)pick((Floats)v, kept); }
 #endif
+
+// --- fours: vectors as kLanes / 4 times four lanes ---
+
+/// Of each four lanes the one of that number, in all of the four.
+template <int number, class Vector, std::size_t... lane>
+SOFTFOCUS_INLINE Vector spread_lanes(Vector v, std::index_sequence<lane...>) {
+  return __builtin_shufflevector(v, v, ((lane & ~std::size_t{3}) + number)...);
+}
+template <int number, class Vector>
+SOFTFOCUS_INLINE Vector spread(Vector v) {
+  return spread_lanes<number>(v, std::make_index_sequence<SOFTFOCUS_LANES>{});
+}
+
+/// Of the first kLanes / 4 lanes each in four lanes.
+template <std::size_t... lane>
+SOFTFOCUS_INLINE Ints repeat_lanes(Ints v, std::index_sequence<lane...>) {
+  return __builtin_shufflevector(v, v, (lane / 4)...);
+}
+SOFTFOCUS_INLINE Ints repeat_by_four(Ints v) {
+  return repeat_lanes(v, std::make_index_sequence<SOFTFOCUS_LANES>{});
+}
+
+/// Four numbers from each of kLanes / 4 places, `offset` numbers past those pointed to.
+SOFTFOCUS_INLINE Floats load_fours(const float* const* from, std::size_t offset) {
+#if SOFTFOCUS_LANES == 16
+  const __m512 first = _mm512_castps128_ps512(_mm_loadu_ps(from[0] + offset));
+  const __m512 second = _mm512_maskz_insertf32x4(0xFFFF, first, _mm_loadu_ps(from[1] + offset), 1);
+  const __m512 third = _mm512_maskz_insertf32x4(0xFFFF, second, _mm_loadu_ps(from[2] + offset), 2);
+  return (Floats)_mm512_maskz_insertf32x4(0xFFFF, third, _mm_loadu_ps(from[3] + offset), 3);
+#elif SOFTFOCUS_LANES == 8
+  const __m256 first = _mm256_castps128_ps256(_mm_loadu_ps(from[0] + offset));
+  return (Floats)_mm256_insertf128_ps(first, _mm_loadu_ps(from[1] + offset), 1);
+#else
+  return load(from[0] + offset);
+#endif
+}
+
+// Of each four lanes: `from` and the next of two vectors by turns.
+template <std::size_t from, std::size_t... lane>
+SOFTFOCUS_INLINE Floats interleave_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
+  return __builtin_shufflevector(
+      a, b, ((lane & ~std::size_t{3}) + from + (lane & 3) / 2 + (lane & 1) * kLanes)...);
+}
+template <std::size_t from>
+SOFTFOCUS_INLINE Floats interleave(Floats a, Floats b) {
+  return interleave_lanes<from>(a, b, std::make_index_sequence<kLanes>{});
+}
+
+// Of each four lanes two of `a`, then two of `b`.
+template <std::size_t from, std::size_t... lane>
+SOFTFOCUS_INLINE Floats join_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
+  return __builtin_shufflevector(
+      a, b, ((lane & ~std::size_t{3}) + from + (lane & 1) + (lane & 2) / 2 * kLanes)...);
+}
+template <std::size_t from>
+SOFTFOCUS_INLINE Floats join(Floats a, Floats b) {
+  return join_lanes<from>(a, b, std::make_index_sequence<kLanes>{});
+}
+
+/// In each four lanes, lane i of vector j and lane j of vector i change places.
+SOFTFOCUS_INLINE void transpose_fours(Floats& v0, Floats& v1, Floats& v2, Floats& v3) {
+  const Floats low01 = interleave<0>(v0, v1);
+  const Floats low23 = interleave<0>(v2, v3);
+  const Floats high01 = interleave<2>(v0, v1);
+  const Floats high23 = interleave<2>(v2, v3);
+  v0 = join<0>(low01, low23);
+  v1 = join<2>(low01, low23);
+  v2 = join<0>(high01, high23);
+  v3 = join<2>(high01, high23);
 }
 
 // --- transposition ---

@@ -108,9 +108,8 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
   t.y_origin = t.bounds[1];
   t.inverse_area = columns.inverse_area[lane];
   t.large = nullptr;
-  t.is_large = 0;
   t.clockwise = (columns.clockwise >> lane & 1u) != 0;
-  t.is_front_facing = t.clockwise == (job.front_face == FrontFace::clockwise) ? 1 : 0;
+  t.front_facing = t.clockwise == (job.front_face == FrontFace::clockwise);
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ void draw_lanes(RenderPass& pass, const DrawState& state, std::span<const std::u
   const auto triangles = static_cast<std::uint32_t>(indices.size() / 3);
   DrawCall call;
   call.vertex_count = vertex_count;
-  call.vertex_stride = kVertexVaryings + Draw::N;
+  call.vertex_stride = vertex_row_size(Draw::N);
   call.chunk_count = (triangles + kChunkTriangles - 1) / kChunkTriangles;
   call.depth = *state.depth;
   call.in_lanes = true;

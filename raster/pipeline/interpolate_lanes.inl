@@ -1,25 +1,12 @@
-// Varyings at the pixels of kLanes lanes, each of a triangle of its own: interpolate.h and
+// Varyings at the pixels of kQuads quads, each of a triangle of its own: interpolate.h and
 // planes.h, lane by lane.
 
 namespace {
 
-/// The triangles of a vector's lanes: `count` different ones, and which lanes are of each.
-struct LaneSources {
-  int count = 0;
-  std::array<const LaneTriangle*, kLanes> triangles;
-  std::array<LaneMask, kLanes> masks;
-  std::array<std::array<const float*, kLanes>, 3> rows;  ///< their vertices
-};
+/// The triangle that each quad shows.
+using QuadTriangles = std::array<const LaneTriangle*, kQuads>;
 
-SOFTFOCUS_INLINE void add_source(LaneSources& sources, const LaneTriangle& triangle, Mask lanes,
-                                 const std::array<const float*, 3>& rows) {
-  const auto d = static_cast<std::size_t>(sources.count++);
-  sources.triangles[d] = &triangle;
-  sources.masks[d] = to_lane_mask(lanes);
-  for (std::size_t v = 0; v < 3; ++v) sources.rows[v][d] = rows[v];
-}
-
-/// What lanes read of their triangles' vertices: the floats kFirst <= k < kEnd of the rows.
+/// The floats kFirst <= k < kEnd of the three vertices' rows, in the lanes of their quads.
 template <std::size_t kFirst, std::size_t kEnd>
 struct VertexLanes {
   std::array<std::array<Floats, kEnd - kFirst>, 3> values;
@@ -27,46 +14,29 @@ struct VertexLanes {
   SOFTFOCUS_INLINE Floats at(std::size_t vertex, std::size_t k) const {
     return values[vertex][k - kFirst];
   }
-  SOFTFOCUS_INLINE void load(const LaneSources& sources) {
-    const auto count = static_cast<std::size_t>(sources.count);
-    for (std::size_t v = 0; v < 3; ++v) {
-      const auto& rows = sources.rows[v];
-      for (std::size_t k = kFirst; k < kEnd; ++k) {
-        Floats value = splat(rows[0][k]);
-        for (std::size_t d = 1; d < count; ++d) {
-          value = splat_where(sources.masks[d], rows[d][k], value);
-        }
-        values[v][k - kFirst] = value;
-      }
-    }
+  /// `rows` are of one vertex of each quad's triangle.
+  SOFTFOCUS_INLINE void load(std::size_t vertex, const std::array<const float*, kQuads>& rows) {
+    load_all(vertex, rows, std::make_index_sequence<(kEnd + 3) / 4 - kFirst / 4>{});
   }
-};
 
-/// One value of each lane's triangle.
-template <class Value>
-SOFTFOCUS_INLINE auto of_sources(const LaneSources& sources, Value LaneTriangle::*field) {
-  auto value = splat(sources.triangles[0]->*field);
-  for (std::size_t d = 1; d < static_cast<std::size_t>(sources.count); ++d) {
-    value = splat_where(sources.masks[d], sources.triangles[d]->*field, value);
+ private:
+  template <std::size_t... four>
+  SOFTFOCUS_INLINE void load_all(std::size_t vertex, const std::array<const float*, kQuads>& rows,
+                                 std::index_sequence<four...>) {
+    (load_four<(kFirst / 4 + four) * 4>(vertex, rows), ...);
   }
-  return value;
-}
-SOFTFOCUS_INLINE Ints of_sources(const LaneSources& sources,
-                                 std::array<std::int32_t, 3> LaneTriangle::*field, std::size_t i) {
-  Ints value = splat((sources.triangles[0]->*field)[i]);
-  for (std::size_t d = 1; d < static_cast<std::size_t>(sources.count); ++d) {
-    value = splat_where(sources.masks[d], (sources.triangles[d]->*field)[i], value);
+  template <std::size_t k>
+  SOFTFOCUS_INLINE void load_four(std::size_t vertex,
+                                  const std::array<const float*, kQuads>& rows) {
+    const Floats four = load_fours(rows.data(), k);
+    put<k>(vertex, spread<0>(four));
+    put<k + 1>(vertex, spread<1>(four));
+    put<k + 2>(vertex, spread<2>(four));
+    put<k + 3>(vertex, spread<3>(four));
   }
-  return value;
-}
-
-/// Triangles by lane.
-struct TrianglesOfLanes {
-  const LaneTriangle* const* triangles;
-  Ints index;
-
-  SOFTFOCUS_INLINE const LaneTriangle& operator[](int lane) const {
-    return *triangles[index[lane]];
+  template <std::size_t k>
+  SOFTFOCUS_INLINE void put(std::size_t vertex, Floats value) {
+    if constexpr (k >= kFirst && k < kEnd) values[vertex][k - kFirst] = value;
   }
 };
 
@@ -78,47 +48,72 @@ struct Weights {
 /// As BarycentricInterpolator.
 template <std::size_t N>
 struct BarycentricLanes {
+  using Point = Weights;
   VertexLanes<kVertexInverseW, kVertexVaryings + N> vertices;
   std::array<Ints, 3> edge, per_x, per_y;
   Ints x_origin, y_origin;
   Floats inverse_area;
-  unsigned large_lanes;
+  const QuadTriangles* of_quads;
+  bool any_large;
 
-  SOFTFOCUS_INLINE static std::array<const float*, 3> rows(const LaneTriangle& t, std::size_t) {
-    return t.vertices;
-  }
-  SOFTFOCUS_INLINE void load(const LaneSources& sources) {
-    vertices.load(sources);
-    for (std::size_t i = 0; i < 3; ++i) {
-      edge[i] = of_sources(sources, &LaneTriangle::edge, i);
-      per_x[i] = of_sources(sources, &LaneTriangle::per_x, i);
-      per_y[i] = of_sources(sources, &LaneTriangle::per_y, i);
+  /// Keeps a pointer to the triangles.
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t) {
+    any_large = false;
+#pragma GCC unroll 3
+    for (std::size_t vertex = 0; vertex < 3; ++vertex) {
+      std::array<const float*, kQuads> rows;
+#pragma GCC unroll 4
+      for (std::size_t quad = 0; quad < kQuads; ++quad) {
+        rows[quad] = triangles[quad]->vertices[vertex];
+      }
+      vertices.load(vertex, rows);
     }
-    x_origin = of_sources(sources, &LaneTriangle::x_origin);
-    y_origin = of_sources(sources, &LaneTriangle::y_origin);
-    inverse_area = of_sources(sources, &LaneTriangle::inverse_area);
-    large_lanes = lane_bits(of_sources(sources, &LaneTriangle::is_large) != 0);
+    std::array<const float*, kQuads> numbers;
+#pragma GCC unroll 4
+    for (std::size_t quad = 0; quad < kQuads; ++quad) {
+      numbers[quad] = reinterpret_cast<const float*>(triangles[quad]);
+    }
+    const Ints edges = as_ints(load_fours(numbers.data(), 0));
+    const Ints columns = as_ints(load_fours(numbers.data(), 4));
+    const Floats rows = load_fours(numbers.data(), 8);
+    edge = {spread<0>(edges), spread<1>(edges), spread<2>(edges)};
+    x_origin = spread<3>(edges);
+    per_x = {spread<0>(columns), spread<1>(columns), spread<2>(columns)};
+    y_origin = spread<3>(columns);
+    per_y = {spread<0>(as_ints(rows)), spread<1>(as_ints(rows)), spread<2>(as_ints(rows))};
+    inverse_area = spread<3>(rows);
+    of_quads = &triangles;
+    for (const LaneTriangle* t : triangles) any_large = any_large || t->large != nullptr;
   }
 
-  SOFTFOCUS_INLINE Weights weights(Ints x, Ints y, const TrianglesOfLanes& triangles) const {
+  SOFTFOCUS_INLINE Weights weights(Ints x, Ints y) const {
     std::array<Floats, 3> l;
     const Ints dx = x - x_origin;
     const Ints dy = y - y_origin;
+#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       l[i] = to_floats(edge[i] + (dx * per_x[i] + dy * per_y[i]));
     }
-    for (unsigned rest = large_lanes; rest != 0; rest &= rest - 1) {
-      const int lane = __builtin_ctz(rest);
-      for (std::size_t i = 0; i < 3; ++i) {
-        l[i][lane] = static_cast<float>(edge_at(triangles[lane].large->edges[i], x[lane], y[lane]));
-      }
-    }
+    if (any_large) weigh_large(x, y, l);
+#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) l[i] *= inverse_area;
     const Floats p0 = l[0] * vertices.at(0, kVertexInverseW);
     const Floats p1 = l[1] * vertices.at(1, kVertexInverseW);
     const Floats p2 = l[2] * vertices.at(2, kVertexInverseW);
     const Floats reciprocal = 1.0f / ((p0 + p1) + p2);
     return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
+  }
+
+  // Edge functions that 32 bits do not hold.
+  void weigh_large(const Ints& x, const Ints& y, std::array<Floats, 3>& l) const {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const LaneTriangle& t = *(*of_quads)[static_cast<std::size_t>(lane / kQuadPixels)];
+      if (t.large == nullptr) continue;
+#pragma GCC unroll 3
+      for (std::size_t i = 0; i < 3; ++i) {
+        l[i][lane] = static_cast<float>(edge_at(t.large->edges[i], x[lane], y[lane]));
+      }
+    }
   }
 
   SOFTFOCUS_INLINE Floats blend(std::size_t varying, Floats weight1, Floats weight2) const {
@@ -147,17 +142,22 @@ struct PlanePoint {
 /// As PlaneInterpolator with PlanesFromOrigin. The vertices are in the planes' order.
 template <std::size_t N, Contraction contraction>
 struct PlaneLanes {
+  using Point = PlanePoint;
   VertexLanes<kVertexX, kVertexVaryings + N> vertices;
   Floats x0, y0, dx01_over_area, dy01_over_area, dx20_over_area, dy20_over_area;
 
-  SOFTFOCUS_INLINE static std::array<const float*, 3> rows(const LaneTriangle& t,
-                                                           std::size_t provoking) {
-    std::array<const float*, 3> ordered = t.vertices;
-    if (t.clockwise) std::swap(ordered[1], ordered[provoking == 0 ? 2 : 0]);
-    return ordered;
-  }
-  SOFTFOCUS_INLINE void load(const LaneSources& sources) {
-    vertices.load(sources);
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
+    for (std::size_t vertex = 0; vertex < 3; ++vertex) {
+      // A clockwise triangle's vertices 1 and `other` change places.
+      const std::size_t other = provoking == 0 ? 2 : 0;
+      const std::size_t swapped = vertex == 1 ? other : vertex == other ? 1 : vertex;
+      std::array<const float*, kQuads> rows;
+      for (std::size_t quad = 0; quad < kQuads; ++quad) {
+        const LaneTriangle& t = *triangles[quad];
+        rows[quad] = t.vertices[t.clockwise ? swapped : vertex];
+      }
+      vertices.load(vertex, rows);
+    }
     const Floats x = vertices.at(0, kVertexX);
     const Floats y = vertices.at(0, kVertexY);
     const Floats dx01 = x - vertices.at(1, kVertexX);
@@ -187,7 +187,7 @@ struct PlaneLanes {
     return multiply_add(per_y, y, multiply_add(per_x, x, at_origin));
   }
 
-  SOFTFOCUS_INLINE PlanePoint weights(Ints x, Ints y, const TrianglesOfLanes&) const {
+  SOFTFOCUS_INLINE PlanePoint weights(Ints x, Ints y) const {
     const Floats column = to_floats(x);
     const Floats row = to_floats(y);
     const Floats inverse_w =

@@ -77,8 +77,7 @@ LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
               static_cast<std::int16_t>(setup.bounds.x_end),
               static_cast<std::int16_t>(setup.bounds.y_end)};
   t.clockwise = setup.clockwise;
-  t.is_front_facing = setup.front_facing ? 1 : 0;
-  t.is_large = t.large != nullptr ? 1 : 0;
+  t.front_facing = setup.front_facing;
   return next_triangle(chunk) = t;
 }
 
@@ -121,59 +120,36 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
   }
 }
 
-namespace {
-
-// Calls copy(pixel of the row, place in the tile, number of pixels) for each row of a block.
-template <class Copy>
-void for_each_block_row(const Rectangle& area, const Copy& copy) {
-  for (int y = 0; y < area.y_end - area.y_begin; ++y) {
-    const int blocks = y / kBlockSize * kTileBlocks;
-    for (int x = 0; x < area.x_end - area.x_begin; x += kBlockSize) {
-      const int at = (blocks + x / kBlockSize) * kBlockPixels + y % kBlockSize * kBlockSize;
-      copy(x, y, static_cast<std::size_t>(at), std::min(kBlockSize, area.x_end - area.x_begin - x));
-    }
-  }
+void forget_seen(VisibilityTile& tile) {
+  tile.ids.fill(0);
+  tile.triangles.clear();
+  tile.runs.clear();
 }
-
-// Mostly a whole row of a block, which is one instruction.
-inline void copy_pixels(const float* from, int count, float* to) {
-  if (count == kBlockSize) {
-    std::memcpy(to, from, kBlockSize * sizeof(float));
-  } else {
-    std::copy_n(from, count, to);
-  }
-}
-
-}  // namespace
 
 void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
                 std::optional<float> clear_depth) {
   tile.area = area;
-  tile.ids.fill(0);
-  tile.triangles.clear();
-  tile.runs.clear();
+  forget_seen(tile);
   if (clear_depth) {
     tile.depth.fill(*clear_depth);
     return;
   }
-  for_each_block_row(area, [&](int x, int y, std::size_t at, int count) {
-    const float* from = row<float>(depth, area.y_begin + y).data() + area.x_begin + x;
-    copy_pixels(from, count, &tile.depth[at]);
-  });
+  for (int y = 0; y < area.y_end - area.y_begin; ++y) {
+    const float* from = row<float>(depth, area.y_begin + y).data() + area.x_begin;
+    for (int x = 0; x < area.x_end - area.x_begin; ++x) tile.depth[place_of_pixel(x, y)] = from[x];
+  }
 }
 
 void end_tile(const VisibilityTile& tile, Image& depth) {
-  for_each_block_row(tile.area, [&](int x, int y, std::size_t at, int count) {
-    float* to = row<float>(depth, tile.area.y_begin + y).data() + tile.area.x_begin + x;
-    copy_pixels(&tile.depth[at], count, to);
-  });
+  const Rectangle& area = tile.area;
+  for (int y = 0; y < area.y_end - area.y_begin; ++y) {
+    float* to = row<float>(depth, area.y_begin + y).data() + area.x_begin;
+    for (int x = 0; x < area.x_end - area.x_begin; ++x) to[x] = tile.depth[place_of_pixel(x, y)];
+  }
 }
 
-void shade_tile(VisibilityTile& tile) {
+void shade_tile(const VisibilityTile& tile) {
   for (const VisibleRun& run : tile.runs) run.draw->shade_seen(tile, run);
-  tile.ids.fill(0);
-  tile.triangles.clear();
-  tile.runs.clear();
 }
 
 }  // namespace softfocus

@@ -21,8 +21,12 @@
 
 namespace softfocus {
 
-/// A vertex as one row of floats: these, and then its varyings.
+/// A vertex as one row of floats: these, and then its varyings, up to a multiple of four.
 enum VertexRow : std::size_t { kVertexX, kVertexY, kVertexDepth, kVertexInverseW, kVertexVaryings };
+
+inline constexpr std::size_t vertex_row_size(std::size_t varyings) {
+  return (kVertexVaryings + varyings + 3) / 4 * 4;
+}
 
 /// Beside the clip codes: a window position that set-up takes for no number.
 inline constexpr unsigned kNotDrawable = 1u << 30;
@@ -44,23 +48,26 @@ inline constexpr std::int32_t kSmallExtent = 88 * 256;
 
 /// A triangle that is drawn.
 struct LaneTriangle {
+  // Three times four numbers, which kernels load at once.
   /// Edge functions at the pixel (x_origin, y_origin), of a small triangle.
   std::array<std::int32_t, 3> edge;
-  std::array<std::int32_t, 3> per_x;
-  std::array<std::int32_t, 3> per_y;
   std::int32_t x_origin;
+  std::array<std::int32_t, 3> per_x;
   std::int32_t y_origin;
+  std::array<std::int32_t, 3> per_y;
   float inverse_area;
   /// At vertex 0 and the differences of the others to it; or a plane's at_origin, per_x, per_y.
   std::array<float, 3> depth;
-  std::array<std::int16_t, 4> bounds;  ///< x_begin, y_begin, x_end, y_end
-  std::array<const float*, 3> vertices;
-  const EdgeFunctions* large;             ///< of a triangle that is not small, else null
-  std::int32_t is_large;                  ///< 0 or 1
-  std::int32_t is_front_facing;           ///< 0 or 1
+  std::array<std::int16_t, 4> bounds;     ///< x_begin, y_begin, x_end, y_end
   std::array<std::int8_t, 3> thresholds;  ///< covered where each E >= its threshold: 0 or 1
   bool clockwise;
+  bool front_facing;
+  std::array<const float*, 3> vertices;
+  const EdgeFunctions* large;  ///< of a triangle that is not small, else null
 };
+static_assert(offsetof(LaneTriangle, edge) == 0 &&
+              offsetof(LaneTriangle, per_x) == 4 * sizeof(float) &&
+              offsetof(LaneTriangle, per_y) == 8 * sizeof(float));
 
 /// The chunk's bins begin <= i < end are of one tile.
 struct TileBins {
@@ -75,7 +82,7 @@ struct LaneChunk {
   std::vector<Bin> bins;
   std::vector<TileBins> tiles;
   // What clipping made, and the edges of large triangles; they do not move.
-  std::deque<std::array<float, kVertexVaryings + kMaxVaryings>> new_vertices;
+  std::deque<std::array<float, vertex_row_size(kMaxVaryings)>> new_vertices;
   std::deque<EdgeFunctions> large;
 };
 
@@ -97,11 +104,20 @@ LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
 /// Sorts the chunk's triangles into its bins.
 void bin_triangles(LaneChunk& chunk, int tiles_x);
 
-/// Tiles are kept in blocks of 4x4 pixels, a block's row by row.
+/// Tiles are kept in blocks of 4x4 pixels, a block in quads of 2x2 pixels; tiles, blocks
+/// and quads row by row. Differences of varyings are taken within a quad.
+inline constexpr int kQuadPixels = 4;
 inline constexpr int kBlockSize = 4;
 inline constexpr int kBlockPixels = kBlockSize * kBlockSize;
 inline constexpr int kTileBlocks = kTileSize / kBlockSize;
 inline constexpr int kTilePixels = kTileSize * kTileSize;
+
+/// Where a pixel of a tile is kept, by its place in the tile.
+inline constexpr std::size_t place_of_pixel(int x, int y) {
+  const int block = y / kBlockSize * kTileBlocks + x / kBlockSize;
+  return static_cast<std::size_t>(block * kBlockPixels + ((y & 2) + (x >> 1 & 1)) * kQuadPixels +
+                                  ((y & 1) * 2 + (x & 1)));
+}
 
 /// A run of a tile's triangles that belong to one draw.
 struct VisibleRun {
@@ -122,13 +138,15 @@ struct VisibilityTile {
 /// Begins a tile that shows nothing, at the depth given or as the buffer has it.
 void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
                 std::optional<float> clear_depth);
-/// Shades what the tile shows, draw by draw, and forgets it.
-void shade_tile(VisibilityTile& tile);
+/// Shades what the tile shows, draw by draw.
+void shade_tile(const VisibilityTile& tile);
+/// Keeps the depths alone.
+void forget_seen(VisibilityTile& tile);
 /// Writes the tile's depths.
 void end_tile(const VisibilityTile& tile, Image& depth);
 
-/// Ids fit beside a pixel's number in 32 bits.
-inline constexpr std::size_t kMostVisible = (std::size_t{1} << 19) - 1;
+/// Ids fit beside a quad's number and its pixels in 32 bits (shade_lanes.inl).
+inline constexpr std::size_t kMostVisible = (std::size_t{1} << 18) - 1;
 
 /// Memory of draws, kept from frame to frame.
 struct LaneMemory {

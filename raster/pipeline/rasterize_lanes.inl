@@ -65,9 +65,7 @@ SOFTFOCUS_INLINE BlockRange blocks_of(const LaneTriangle& t, const VisibilityTil
 
 // Of the part of a block that begins with pixel (x, y).
 SOFTFOCUS_INLINE std::size_t place_in_tile(const VisibilityTile& tile, int x, int y) {
-  const int tile_x = x - tile.area.x_begin, tile_y = y - tile.area.y_begin;
-  const int block = tile_y / kBlockSize * kTileBlocks + tile_x / kBlockSize;
-  return static_cast<std::size_t>(block * kBlockPixels + tile_y % kBlockSize * kBlockSize);
+  return place_of_pixel(x - tile.area.x_begin, y - tile.area.y_begin);
 }
 
 template <class Writer>
@@ -78,27 +76,26 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   const int dy = range.y_begin - t.y_origin;
   // Edge functions over a part of a block, less the threshold: of the row's first one, and
   // the steps to the next part and row.
-  std::array<Ints, 3> row, per_block, per_row;
+  std::array<Ints, 3> row, per_part, per_row;
   for (std::size_t i = 0; i < 3; ++i) {
     row[i] = (lane_x() + dx) * t.per_x[i] + (lane_y() + dy) * t.per_y[i] +
              (t.edge[i] - std::int32_t{t.thresholds[i]});
-    per_block[i] = splat(t.per_x[i] * kBlockSize);
+    per_part[i] = splat(t.per_x[i] * kPartColumns);
     per_row[i] = splat(t.per_y[i] * kPartRows);
   }
   const Ints threshold1 = splat(std::int32_t{t.thresholds[1]});
   const Ints threshold2 = splat(std::int32_t{t.thresholds[2]});
   for (int y = range.y_begin; y < range.y_end; y += kPartRows) {
-    std::size_t at = place_in_tile(tile, range.x_begin, y);
     Ints e0 = row[0], e1 = row[1], e2 = row[2];
-    for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
+    for (int x = range.x_begin; x < range.x_end; x += kPartColumns) {
       const Mask covered = (e0 | e1 | e2) >= 0;
       if (any(covered)) {
-        writer.write(x, y, at, covered, to_floats(e1 + threshold1), to_floats(e2 + threshold2));
+        writer.write(x, y, place_in_tile(tile, x, y), covered, to_floats(e1 + threshold1),
+                     to_floats(e2 + threshold2));
       }
-      e0 += per_block[0];
-      e1 += per_block[1];
-      e2 += per_block[2];
-      at += kBlockPixels;
+      e0 += per_part[0];
+      e1 += per_part[1];
+      e2 += per_part[2];
     }
     for (std::size_t i = 0; i < 3; ++i) row[i] += per_row[i];
   }
@@ -120,18 +117,19 @@ SOFTFOCUS_INLINE void rasterize_large(const LaneTriangle& t, const VisibilityTil
       }
       if (outside) continue;
       for (int part = 0; part < kBlockParts; ++part) {
-        const int row = y + part * kPartRows;
+        const int left = x + part * kPartColumns % kBlockSize;
+        const int top = y + part * kPartColumns / kBlockSize * kPartRows;
         Ints covered = ~Ints{};
         std::array<Floats, 3> e{};
         for (std::size_t i = 0; i < 3; ++i) {
           for (int lane = 0; lane < kLanes; ++lane) {
-            const std::int64_t value = edge_at(edges[i], x + (lane & 3), row + (lane >> 2));
+            const std::int64_t value = edge_at(edges[i], left + lane_x(lane), top + lane_y(lane));
             e[i][lane] = static_cast<float>(value);
             if (value < t.thresholds[i]) covered[lane] = 0;
           }
         }
         if (!any(covered)) continue;
-        writer.write(x, row, place_in_tile(tile, x, row), covered, e[1], e[2]);
+        writer.write(left, top, place_in_tile(tile, left, top), covered, e[1], e[2]);
       }
     }
   }
@@ -195,18 +193,30 @@ void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DepthSta
   }
 }
 
+namespace {
+
+// place_of_pixel() backwards.
+SOFTFOCUS_INLINE int tile_x(std::uint32_t place) {
+  return static_cast<int>(place / kBlockPixels % kTileBlocks * kBlockSize + (place >> 1 & 2) +
+                          (place & 1));
+}
+SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
+  return static_cast<int>(place / (kBlockPixels * kTileBlocks) * kBlockSize + (place >> 2 & 2) +
+                          (place >> 1 & 1));
+}
+
+}  // namespace
+
 // `texel` is four halves.
 void set_unseen(const VisibilityTile& tile, Image& colour, const std::byte* texel) {
   constexpr std::size_t kTexelBytes = 8;
   for (std::size_t at = 0; at < kTilePixels; at += kLanes) {
     const Ints ids = load(&tile.ids[at]);
     for (unsigned rest = lane_bits(ids == 0); rest != 0; rest &= rest - 1) {
-      const std::size_t pixel = at + static_cast<std::size_t>(__builtin_ctz(rest));
-      const std::size_t block = pixel / kBlockPixels;
-      const auto x = static_cast<int>(block % kTileBlocks * kBlockSize + pixel % kBlockSize);
-      const auto y =
-          static_cast<int>(block / kTileBlocks * kBlockSize + pixel % kBlockPixels / kBlockSize);
-      const int column = tile.area.x_begin + x, line = tile.area.y_begin + y;
+      const auto pixel =
+          static_cast<std::uint32_t>(at) + static_cast<unsigned>(__builtin_ctz(rest));
+      const int column = tile.area.x_begin + tile_x(pixel),
+                line = tile.area.y_begin + tile_y(pixel);
       if (column >= tile.area.x_end || line >= tile.area.y_end) continue;
       std::memcpy(colour.bytes.data() + static_cast<std::size_t>(line) * colour.stride_bytes +
                       static_cast<std::size_t>(column) * kTexelBytes,

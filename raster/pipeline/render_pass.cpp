@@ -145,7 +145,10 @@ class TileDrawing {
                  is_cleared_ ? std::nullopt : pass_.clear_depth);
     }
     VisibilityTile& tile = *tile_;
-    if (tile.triangles.size() + item.bins.size() > kMostVisible) shade();
+    if (tile.triangles.size() + item.bins.size() > kMostVisible) {
+      shade();
+      forget_seen(tile);
+    }
     const auto first_id = static_cast<std::int32_t>(tile.triangles.size()) + 1;
     rasterize_lanes(pass_.isa, *item.lane_chunk, item.bins, item.draw->depth, pass_.profile, tile);
     const auto end_id = static_cast<std::int32_t>(tile.triangles.size()) + 1;

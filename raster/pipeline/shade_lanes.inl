@@ -3,70 +3,133 @@
 // A vertex stage in lanes has kVaryings, and is callable as
 //     void operator()(Ints index, std::array<Floats, 4>& position,
 //                     std::array<Floats, kVaryings>& varyings) const
-// A fragment stage in lanes has kInterpolation and kNeedsDerivatives as the scalar one, and
-//     template <class Fragment> std::array<Floats, 4> operator()(const Fragment&) const
-// where Fragment is a FragmentLanes: what the stage does not ask for is not computed.
+//
+// A fragment stage in lanes works in two steps, the first on the quads of a triangle, the
+// second on the pixels that are seen:
+//     static constexpr auto kInterpolation   // as the scalar stage's
+//     static constexpr std::size_t kInputs   // numbers that go from step to step
+//     template <class Quads> std::array<Floats, kInputs> inputs(const Quads&) const
+//     void shade(const FragmentBatch<kInputs>&, std::array<Floats, 4>* colours) const
+// Quads are QuadFragments: what the stage does not ask for is not computed. The steps take
+// many vectors each: what one vector waits for in a long chain of operations, or in memory,
+// the CPU fills with the others, which it could not see past a whole fragment stage.
 
 namespace {
 
-template <class Stage, class Interpolator, class Point>
-struct FragmentLanes {
+/// Quads of 2x2 pixels, each of one triangle.
+template <class Stage, class Interpolator>
+struct QuadFragments {
   const Interpolator& triangles;
   std::size_t provoking;
-  Mask front_facing;
-  Point here, corner, right, below;
+  const QuadTriangles& of_quads;
+  typename Interpolator::Point here;
 
-  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return at(i, here); }
-  SOFTFOCUS_INLINE Floats ddx(std::size_t i) const { return at(i, right) - at(i, corner); }
-  SOFTFOCUS_INLINE Floats ddy(std::size_t i) const { return at(i, below) - at(i, corner); }
-
-  SOFTFOCUS_INLINE Floats at(std::size_t i, const Point& point) const {
-    return triangles.value(i, Stage::kInterpolation[i], provoking, point);
+  SOFTFOCUS_INLINE Floats varying(std::size_t i) const {
+    return triangles.value(i, Stage::kInterpolation[i], provoking, here);
   }
-};
-
-// Fragments of a part of a block, which has whole 2x2 pixels. `corners` are those that
-// differences are taken between: in the first quarter of the lanes the 2x2 pixels' upper
-// left ones, in the second their right neighbours, in the third the lower.
-template <class Stage, class Interpolator, class Point>
-struct BlockFragmentLanes {
-  const Interpolator& triangles;
-  std::size_t provoking;
-  Mask front_facing;
-  Point here, corners;
-
-  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return at(i, here); }
+  // Along the quad's upper row and left column.
   SOFTFOCUS_INLINE Floats ddx(std::size_t i) const {
-    const Floats values = at(i, corners);
-    const Ints quad = quad_of_lane();
-    return pick(values, quad + kLanes / 4) - pick(values, quad);
+    const Floats values = varying(i);
+    return spread<1>(values) - spread<0>(values);
   }
   SOFTFOCUS_INLINE Floats ddy(std::size_t i) const {
-    const Floats values = at(i, corners);
-    const Ints quad = quad_of_lane();
-    return pick(values, quad + kLanes / 2) - pick(values, quad);
+    const Floats values = varying(i);
+    return spread<2>(values) - spread<0>(values);
   }
-
-  SOFTFOCUS_INLINE Floats at(std::size_t i, const Point& point) const {
-    return triangles.value(i, Stage::kInterpolation[i], provoking, point);
+  SOFTFOCUS_INLINE Mask front_facing() const {
+    std::int32_t lanes = 0;
+    for (std::size_t quad = 0; quad < kQuads; ++quad) {
+      lanes |= of_quads[quad]->front_facing ? 0xF << (quad * kQuadPixels) : 0;
+    }
+    return (lanes >> lane_numbers() & 1) != 0;
   }
 };
 
-// The pixels of a tile that show a run, as id - first_id above kPixelBits of pixel number.
-inline constexpr int kPixelBits = 12;
-static_assert(kTilePixels == 1 << kPixelBits);
-
-struct SeenPixels {
-  std::array<std::int32_t, kTilePixels + kLanes> entries;
+/// Pixels between the two steps.
+template <std::size_t kInputs>
+struct FragmentBatch {
+  static constexpr int kMost = 8 * kLanes;
+  alignas(64) std::array<std::array<float, kMost>, kInputs> inputs;
+  alignas(64) std::array<std::int32_t, kMost> offsets;  ///< in bytes from the tile's first pixel
   int count = 0;
-  /// Whole vectors of one triangle, by their first pixel.
-  std::array<std::int32_t, kTilePixels / kLanes> whole;
-  int whole_count = 0;
+
+  SOFTFOCUS_INLINE int vectors() const { return (count + kLanes - 1) / kLanes; }
+  SOFTFOCUS_INLINE Floats input(std::size_t i, int vector) const {
+    return load(&inputs[i][static_cast<std::size_t>(vector * kLanes)]);
+  }
+  SOFTFOCUS_INLINE bool has_room() const { return count <= kMost - kLanes; }
+
+  /// Appends the pixels of the mask.
+  SOFTFOCUS_INLINE void append(const std::array<Floats, kInputs>& values, Ints pixel_offsets,
+                               Mask seen) {
+    const auto at = static_cast<std::size_t>(count);
+    const unsigned bits = lane_bits(seen);
+    if (bits == kAllLaneBits) {
+#pragma GCC unroll 16
+      for (std::size_t i = 0; i < kInputs; ++i) store(&inputs[i][at], values[i]);
+      store(&offsets[at], pixel_offsets);
+    } else {
+      const Compression kept = compression(seen);
+#pragma GCC unroll 16
+      for (std::size_t i = 0; i < kInputs; ++i) store(&inputs[i][at], compress(values[i], kept));
+      store(&offsets[at], compress(pixel_offsets, kept));
+    }
+    count += __builtin_popcount(bits);
+  }
+  /// Fills the last vector up with its first pixel.
+  SOFTFOCUS_INLINE void fill_up() {
+    const int last = (vectors() - 1) * kLanes;
+    const Mask present = first_lanes(count - last);
+    for (std::array<float, kMost>& column : inputs) {
+      float* from = &column[static_cast<std::size_t>(last)];
+      store(from, select(present, load(from), splat(from[0])));
+    }
+  }
 };
 
-// Lists the pixels, and fills the last vector up with the last of them.
+// A quad that shows a triangle of a run: the triangle's id less the run's first, above the
+// quad's number, above a bit for each pixel that shows it.
+inline constexpr int kQuadBits = 10;
+static_assert(kTilePixels / kQuadPixels == 1 << kQuadBits);
+static_assert(kMostVisible >> (32 - kQuadBits - kQuadPixels) == 0);
+
+struct SeenQuads {
+  std::array<std::uint32_t, kTilePixels + 2 * kLanes> entries;
+  int count = 0;
+};
+
+SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
+  return entry >> (kQuadBits + kQuadPixels);
+}
+
+// Of the lanes that begin with a quad. Returns how many quads are listed then.
+SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& run, int quad,
+                                Mask in_area, std::uint32_t* entries, int count) {
+  const Ints ids = load(&tile.ids[static_cast<std::size_t>(quad * kQuadPixels)]);
+  unsigned rest = lane_bits((ids >= run.first_id) & (ids < run.end_id) & in_area);
+  while (rest != 0) {
+    const std::int32_t id = ids[__builtin_ctz(rest)];
+    const unsigned same = lane_bits(ids == id) & rest;
+    rest &= ~same;
+    const auto triangle = static_cast<std::uint32_t>(id - run.first_id);
+    const std::uint32_t first = (triangle << kQuadBits | static_cast<unsigned>(quad))
+                                << kQuadPixels;
+    if (same == kAllLaneBits) {
+      store(entries + count, first + as_bits(lane_numbers() << kQuadPixels) + 0xFu);
+      count += kQuads;
+      continue;
+    }
+    for (unsigned i = 0; i < kQuads; ++i) {
+      const unsigned pixels = same >> (i * kQuadPixels) & 0xFu;
+      entries[count] = first + (i << kQuadPixels) + pixels;
+      count += pixels != 0 ? 1 : 0;
+    }
+  }
+  return count;
+}
+
 SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& run,
-                                SeenPixels& seen) {
+                                SeenQuads& seen) {
   int x_begin = tile.area.x_end, y_begin = tile.area.y_end;
   int x_end = tile.area.x_begin, y_end = tile.area.y_begin;
   for (std::int32_t id = run.first_id; id < run.end_id; ++id) {
@@ -81,42 +144,34 @@ SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& ru
   x_end = std::min(x_end, tile.area.x_end) - tile.area.x_begin;
   y_end = std::min(y_end, tile.area.y_end) - tile.area.y_begin;
 
-  for (int block_y = y_begin / kBlockSize; block_y * kBlockSize < y_end; ++block_y) {
-    for (int block_x = x_begin / kBlockSize; block_x * kBlockSize < x_end; ++block_x) {
-      const int block = block_y * kTileBlocks + block_x;
+  int count = 0;
+  for (int y = y_begin & -kBlockSize; y < y_end; y += kBlockSize) {
+    for (int x = x_begin & -kBlockSize; x < x_end; x += kBlockSize) {
       for (int part = 0; part < kBlockParts; ++part) {
-        const int pixel = block * kBlockPixels + part * kLanes;
-        const Ints ids = load(&tile.ids[static_cast<std::size_t>(pixel)]);
-        Mask mask = (ids >= run.first_id) & (ids < run.end_id);
-        const Ints x = block_x * kBlockSize + lane_x();
-        const Ints y = block_y * kBlockSize + part * kPartRows + lane_y();
-        mask &= (x < x_end) & (y < y_end);
-        if (!any(mask)) continue;
-        const Ints entries = (ids - run.first_id) << kPixelBits | (pixel + lane_numbers());
-        if (all(mask & (ids == ids[0]))) {
-          seen.whole[static_cast<std::size_t>(seen.whole_count++)] = entries[0];
-        } else {
-          seen.count +=
-              compress_store(&seen.entries[static_cast<std::size_t>(seen.count)], entries, mask);
-        }
+        const int left = x + part * kPartColumns % kBlockSize;
+        const int top = y + part * kPartColumns / kBlockSize * kPartRows;
+        const Mask in_area = (left + lane_x() < x_end) & (top + lane_y() < y_end);
+        const int quad = static_cast<int>(place_of_pixel(left, top)) / kQuadPixels;
+        count = list_quads(tile, run, quad, in_area, seen.entries.data(), count);
       }
     }
   }
-  if (seen.count != 0) {
-    const auto count = static_cast<std::size_t>(seen.count);
-    store(&seen.entries[count], splat(seen.entries[count - 1]));
+  seen.count = count;
+  // Quads of which nothing is seen fill up the last vector and the one that is fetched ahead.
+  if (seen.count == 0) return;
+  const auto end = static_cast<std::size_t>(seen.count);
+  for (std::size_t i = 0; i < 2 * kQuads; ++i) {
+    seen.entries[end + i] = seen.entries[end - 1] >> kQuadPixels << kQuadPixels;
   }
 }
 
-// Asks for the vertices of the next vector's triangles, which were written long ago.
+// Asks for the vertices of quads to come, which were written long ago.
 SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
-                                     const std::int32_t* entries) {
-  std::int32_t last = -1;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const std::int32_t triangle = entries[lane] >> kPixelBits;
-    if (triangle == last) continue;
-    last = triangle;
-    for (const float* row : triangles[triangle]->vertices) __builtin_prefetch(row);
+                                     const std::uint32_t* entries) {
+  for (int quad = 0; quad < kQuads; ++quad) {
+    for (const float* row : triangles[triangle_of(entries[quad])]->vertices) {
+      __builtin_prefetch(row);
+    }
   }
 }
 
@@ -132,148 +187,86 @@ SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
           float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
 }
 
-SOFTFOCUS_INLINE void store_texels(const FragmentJob& job, const VisibilityTile& tile,
-                                   const std::int32_t* entries, int count,
-                                   const std::array<Floats, 4>& colour) {
-  alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
-  store_half_texels(halves.data(), to_half_texels(colour, job.profile->half_store));
-  std::byte* first = job.target->bytes.data() +
-                     static_cast<std::size_t>(tile.area.y_begin) * job.target->stride_bytes +
-                     static_cast<std::size_t>(tile.area.x_begin) * sizeof(std::uint64_t);
-  for (int lane = 0; lane < count; ++lane) {
-    const auto pixel = static_cast<std::uint32_t>(entries[lane]);
-    const std::uint32_t x = (pixel >> 4 & (kTileBlocks - 1)) * kBlockSize + (pixel & 3);
-    const std::uint32_t y =
-        (pixel & (kTilePixels - 1)) / (kBlockPixels * kTileBlocks) * kBlockSize + (pixel >> 2 & 3);
-    std::memcpy(first + y * job.target->stride_bytes + x * sizeof(std::uint64_t),
-                &halves[static_cast<std::size_t>(4 * lane)], sizeof(std::uint64_t));
-  }
+SOFTFOCUS_INLINE std::byte* first_texel(const FragmentJob& job, const VisibilityTile& tile) {
+  return job.target->bytes.data() +
+         static_cast<std::size_t>(tile.area.y_begin) * job.target->stride_bytes +
+         static_cast<std::size_t>(tile.area.x_begin) * sizeof(std::uint64_t);
 }
 
-// Rows of a block, of which a vector holds a whole part.
-SOFTFOCUS_INLINE void store_rows(const FragmentJob& job, int x, int y,
-                                 const std::array<Floats, 4>& colour) {
-  alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
-  store_half_texels(halves.data(), to_half_texels(colour, job.profile->half_store));
-  constexpr std::size_t kRowBytes = kBlockSize * sizeof(std::uint64_t);
-  std::byte* to = job.target->bytes.data() +
-                  static_cast<std::size_t>(y) * job.target->stride_bytes +
-                  static_cast<std::size_t>(x) * sizeof(std::uint64_t);
-  for (std::size_t row = 0; row < kPartRows; ++row, to += job.target->stride_bytes) {
-    std::memcpy(to, &halves[row * 4 * kBlockSize], kRowBytes);
-  }
-}
-
-// A vector of pixels by what triangles they show, as they come.
-template <class Interpolator, class Stage>
-SOFTFOCUS_INLINE void shade_mixed_lanes(const Stage& stage, const FragmentJob& job,
-                                        const VisibilityTile& tile,
-                                        const LaneTriangle* const* triangles,
-                                        const SeenPixels& seen) {
-  Interpolator interpolator;
-  for (int i = 0; i < seen.count; i += kLanes) {
-    const std::int32_t* list = &seen.entries[static_cast<std::size_t>(i)];
-    const Ints entries = load(list);
-    if (i + 2 * kLanes <= seen.count) fetch_vertices(triangles, list + kLanes);
-    const Ints pixel = entries & (kTilePixels - 1);
-    const Ints triangle = entries >> kPixelBits;
-    const Ints block = pixel >> 4;
-    const Ints x = tile.area.x_begin + (block & (kTileBlocks - 1)) * kBlockSize + (pixel & 3);
-    const Ints y = tile.area.y_begin + (block >> 4) * kBlockSize + (pixel >> 2 & 3);
-    static_assert(kTileBlocks == 16);
-
-    LaneSources sources;
-    for (unsigned rest = kAllLaneBits; rest != 0;) {
-      const Mask mask = triangle == triangle[__builtin_ctz(rest)];
-      const LaneTriangle& t = *triangles[list[__builtin_ctz(rest)] >> kPixelBits];
-      add_source(sources, t, mask, Interpolator::rows(t, job.provoking));
-      rest &= ~lane_bits(mask);
-    }
-    interpolator.load(sources);
-
-    const TrianglesOfLanes of_lanes{triangles, triangle};
-    using Point = decltype(interpolator.weights(x, y, of_lanes));
-    FragmentLanes<Stage, Interpolator, Point> fragment{
-        interpolator,
-        job.provoking,
-        of_sources(sources, &LaneTriangle::is_front_facing) != 0,
-        interpolator.weights(x, y, of_lanes),
-        {},
-        {},
-        {}};
-    if constexpr (Stage::kNeedsDerivatives) {
-      const Ints x0 = x & ~1;
-      const Ints y0 = y & ~1;
-      fragment.corner = interpolator.weights(x0, y0, of_lanes);
-      fragment.right = interpolator.weights(x0 + 1, y0, of_lanes);
-      fragment.below = interpolator.weights(x0, y0 + 1, of_lanes);
-    }
-    store_texels(job, tile, list, std::min(seen.count - i, kLanes), stage(fragment));
-  }
-}
-
-// Vectors that one triangle fills: its constants are set once for all that follow each
-// other, and differences are taken once for each 2x2 pixels.
-template <class Interpolator, class Stage>
-SOFTFOCUS_INLINE void shade_whole_lanes(const Stage& stage, const FragmentJob& job,
-                                        const VisibilityTile& tile,
-                                        const LaneTriangle* const* triangles,
-                                        const SeenPixels& seen) {
-  Interpolator interpolator;
-  std::int32_t loaded = -1;
-  for (int i = 0; i < seen.whole_count; ++i) {
-    const std::int32_t entry = seen.whole[static_cast<std::size_t>(i)];
-    const std::int32_t number = entry >> kPixelBits;
-    const LaneTriangle& t = *triangles[number];
-    if (number != loaded) {
-      LaneSources sources;
-      add_source(sources, t, ~Mask{}, Interpolator::rows(t, job.provoking));
-      interpolator.load(sources);
-      loaded = number;
-    }
-    const std::int32_t block = (entry & (kTilePixels - 1)) / kBlockPixels;
-    const int left = tile.area.x_begin + block % kTileBlocks * kBlockSize;
-    const int top = tile.area.y_begin + block / kTileBlocks * kBlockSize + (entry >> 2 & 3);
-    const Ints x = left + lane_x();
-    const Ints y = top + lane_y();
-
-    const TrianglesOfLanes of_lanes{triangles, splat(number)};
-    using Point = decltype(interpolator.weights(x, y, of_lanes));
-    if constexpr (Stage::kNeedsDerivatives && kLanes >= 8) {
-      const BlockFragmentLanes<Stage, Interpolator, Point> fragment{
-          interpolator, job.provoking, splat(-t.is_front_facing),
-          interpolator.weights(x, y, of_lanes),
-          interpolator.weights(left + block_corner_x(), top + block_corner_y(), of_lanes)};
-      store_rows(job, left, top, stage(fragment));
-    } else {
-      FragmentLanes<Stage, Interpolator, Point> fragment{interpolator,
-                                                         job.provoking,
-                                                         splat(-t.is_front_facing),
-                                                         interpolator.weights(x, y, of_lanes),
-                                                         {},
-                                                         {},
-                                                         {}};
-      if constexpr (Stage::kNeedsDerivatives) {
-        const Ints x0 = x & ~1;
-        const Ints y0 = y & ~1;
-        fragment.corner = interpolator.weights(x0, y0, of_lanes);
-        fragment.right = interpolator.weights(x0 + 1, y0, of_lanes);
-        fragment.below = interpolator.weights(x0, y0 + 1, of_lanes);
-      }
-      store_rows(job, left, top, stage(fragment));
+// The second step. Its own function, which all interpolators share.
+template <class Stage>
+[[gnu::noinline]] void shade_batch(const Stage& stage, const FragmentJob& job,
+                                   const VisibilityTile& tile,
+                                   FragmentBatch<Stage::kInputs>& batch) {
+  if (batch.count == 0) return;
+  batch.fill_up();
+  std::array<std::array<Floats, 4>, 8> colours;
+  stage.shade(batch, colours.data());
+  std::byte* first = first_texel(job, tile);
+  for (int vector = 0; vector < batch.vectors(); ++vector) {
+    alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
+    store_half_texels(halves.data(), to_half_texels(colours[static_cast<std::size_t>(vector)],
+                                                    job.profile->half_store));
+    const int begin = vector * kLanes;
+    const int count = std::min(batch.count - begin, kLanes);
+    for (int lane = 0; lane < count; ++lane) {
+      std::memcpy(first + batch.offsets[static_cast<std::size_t>(begin + lane)],
+                  &halves[static_cast<std::size_t>(4 * lane)], sizeof(std::uint64_t));
     }
   }
+  batch.count = 0;
 }
 
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
-  SeenPixels seen;
+  SeenQuads seen;
   list_seen(tile, run, seen);
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
-  shade_whole_lanes<Interpolator>(stage, job, tile, triangles, seen);
-  shade_mixed_lanes<Interpolator>(stage, job, tile, triangles, seen);
+  const auto stride = static_cast<std::int32_t>(job.target->stride_bytes);
+  const std::byte* first = first_texel(job, tile);
+  const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
+
+  FragmentBatch<Stage::kInputs> batch;
+  Interpolator interpolator{};
+  QuadTriangles of_quads{};
+  Ints loaded = splat(-1);
+  for (int i = 0; i < seen.count; i += kQuads) {
+    const std::uint32_t* entries = &seen.entries[static_cast<std::size_t>(i)];
+    const Ints entry = repeat_by_four(as_ints(load(entries)));
+    const Ints triangle = as_ints(as_bits(entry) >> (kQuadBits + kQuadPixels));
+    const Ints next = as_ints(as_bits(repeat_by_four(as_ints(load(entries + kQuads)))) >>
+                              (kQuadBits + kQuadPixels));
+    if (!all(next == triangle)) fetch_vertices(triangles, entries + kQuads);
+    if (!all(triangle == loaded)) {
+#pragma GCC unroll 4
+      for (std::size_t quad = 0; quad < kQuads; ++quad) {
+        of_quads[quad] = triangles[triangle_of(entries[quad])];
+      }
+      interpolator.load(of_quads, job.provoking);
+      loaded = triangle;
+    }
+    const Ints quad = entry >> kQuadPixels;
+    const Ints block = quad >> 2;
+    static_assert(kTileBlocks == 16 && kBlockPixels / kQuadPixels == 4);
+    const Ints x = (block & 15) * kBlockSize + (quad & 1) * 2 + (lane_numbers() & 1);
+    const Ints y = (block >> 4 & 15) * kBlockSize + (quad & 2) + (lane_numbers() >> 1 & 1);
+
+    const QuadFragments<Stage, Interpolator> fragments{
+        interpolator, job.provoking, of_quads,
+        interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y)};
+    const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
+    batch.append(stage.inputs(fragments),
+                 y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
+                 (entry & own_pixel) != 0);
+    // The rows of the picture that the second step writes.
+    for (int lane = 0; lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
+      __builtin_prefetch(first + offsets[lane], 1);
+    }
+    if (!batch.has_room()) shade_batch(stage, job, tile, batch);
+  }
+  shade_batch(stage, job, tile, batch);
 }
 
 template <class Stage>
@@ -319,7 +312,7 @@ SOFTFOCUS_INLINE Ints snapped(Floats window, Mask drawable, int bits) {
 
 template <class Stage>
 void shade_vertices(const Stage& stage, const VertexJob& job) {
-  constexpr std::size_t kQuantities = kVertexVaryings + Stage::kVaryings;
+  constexpr std::size_t kQuantities = vertex_row_size(Stage::kVaryings);
   const Profile& profile = *job.profile;
   const float half_width = static_cast<float>(job.width) * 0.5f;
   const float half_height = static_cast<float>(job.height) * 0.5f;
@@ -344,17 +337,24 @@ void shade_vertices(const Stage& stage, const VertexJob& job) {
     store(job.store.snapped_x + begin, snapped(x, drawable, profile.subpixel_bits));
     store(job.store.snapped_y + begin, snapped(y, drawable, profile.subpixel_bits));
 
-    alignas(64) std::array<std::array<float, kLanes>, kQuantities> columns;
-    store(columns[kVertexX].data(), x);
-    store(columns[kVertexY].data(), y);
-    store(columns[kVertexDepth].data(), depth);
-    store(columns[kVertexInverseW].data(), inverse_w);
+    std::array<Floats, kQuantities> quantities{};
+    quantities[kVertexX] = x;
+    quantities[kVertexY] = y;
+    quantities[kVertexDepth] = depth;
+    quantities[kVertexInverseW] = inverse_w;
     for (std::size_t i = 0; i < Stage::kVaryings; ++i) {
-      store(columns[kVertexVaryings + i].data(), varyings[i]);
+      quantities[kVertexVaryings + i] = varyings[i];
     }
-    float* row = job.store.rows + begin * job.store.stride;
-    for (std::size_t lane = 0; lane < kLanes; ++lane, row += job.store.stride) {
-      for (std::size_t k = 0; k < kQuantities; ++k) row[k] = columns[k][lane];
+    float* rows = job.store.rows + begin * job.store.stride;
+    for (std::size_t k = 0; k < kQuantities; k += 4) {
+      Floats* four = &quantities[k];
+      transpose_fours(four[0], four[1], four[2], four[3]);
+      // Vector i has vertex i and each fourth after it.
+      for (std::size_t vertex = 0; vertex < kLanes; ++vertex) {
+        std::memcpy(rows + vertex * job.store.stride + k,
+                    reinterpret_cast<const float*>(&four[vertex % 4]) + vertex / 4 * 4,
+                    4 * sizeof(float));
+      }
     }
   }
 }

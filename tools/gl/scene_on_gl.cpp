@@ -42,6 +42,7 @@ void set_material(const GlProgram& program, const Material& material) {
   set_uniform(program, "material_diffuse", material.diffuse);
   set_uniform(program, "material_specular", material.specular);
   set_uniform(program, "material_shininess", material.shininess);
+  set_uniform(program, "least_highlight", least_highlight(material.shininess));
   set_uniform(program, "material_lit", material.lit ? 1 : 0);
 }
 
