@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -191,6 +192,24 @@ TEST_CASE("lanes: every depth test, with and without writing") {
         check_all_isas(kTarget, state, vertices, profile_named(name));
       }
     }
+  }
+}
+
+TEST_CASE(
+    "lanes: depths that rounding takes past the far plane are cut off as in the scalar form") {
+  test::Random random{508};
+  DrawState state;
+  state.cull = Cull::none;
+  state.depth = DepthState{Compare::always, true};
+  for (const char* name : kProfileNames) {
+    Vertices vertices = random_triangles(random, kTarget, 3000, 40.0);
+    // Two corners, at times three, on the far plane or a hair before it.
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (i % 3 == 0 && i % 2 == 0) continue;
+      glm::vec4& position = vertices[i].position;
+      position.z = random.whole(0, 1) == 0 ? position.w : std::nextafter(position.w, 0.0f);
+    }
+    check_all_isas(kTarget, state, vertices, profile_named(name));
   }
 }
 

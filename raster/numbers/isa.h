@@ -7,9 +7,9 @@
 #include <span>
 #include <string_view>
 
-// AVX only on 64-bit x86, and not with mingw-w64's g++, which spills 32-byte vectors to
-// a stack that is aligned to 16 (GCC bug 54412).
-#if defined(__x86_64__) && !defined(_WIN32)
+// AVX only on 64-bit x86, unless SOFTFOCUS_NO_AVX forbids it, and not with mingw-w64's g++,
+// which spills 32-byte vectors to a stack that is aligned to 16 (GCC bug 54412).
+#if defined(__x86_64__) && !defined(_WIN32) && !defined(SOFTFOCUS_NO_AVX)
 #define SOFTFOCUS_HAS_AVX 1
 #else
 #define SOFTFOCUS_HAS_AVX 0
