@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -12,13 +13,34 @@
 #include <vector>
 
 namespace softfocus {
+namespace {
+
+inline void let_the_core_rest() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+// Loops follow each other closely, and to wake a sleeping thread takes tens of
+// microseconds: so long is waited awake first. Not by giving the core away, which is not
+// given back before another program's turn is over.
+template <class Condition>
+void wait_a_little(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds{60};
+  while (!condition() && std::chrono::steady_clock::now() < end) let_the_core_rest();
+}
+
+}  // namespace
 
 struct ThreadPool::State {
   std::mutex mutex;
   std::condition_variable work_ready;
   std::condition_variable work_done;
-  std::uint64_t generation = 0;  // counts the loops, so that a sleeper knows a new one
-  int busy_workers = 0;
+  // Written under the mutex, and looked at without it.
+  std::atomic<std::uint64_t> generation{0};  // counts the loops, so that a sleeper knows a new one
+  std::atomic<int> busy_workers{0};
   bool stopping = false;
 
   const std::function<void(int)>* body = nullptr;
@@ -42,14 +64,16 @@ struct ThreadPool::State {
 
   void work() {
     std::uint64_t seen = 0;
-    std::unique_lock lock(mutex);
     for (;;) {
-      work_ready.wait(lock, [&] { return stopping || generation != seen; });
-      if (stopping) return;
-      seen = generation;
-      lock.unlock();
+      wait_a_little([&] { return generation != seen; });
+      {
+        std::unique_lock lock(mutex);
+        work_ready.wait(lock, [&] { return stopping || generation != seen; });
+        if (stopping) return;
+        seen = generation;
+      }
       run_iterations();
-      lock.lock();
+      const std::lock_guard lock(mutex);
       if (--busy_workers == 0) work_done.notify_one();
     }
   }
@@ -94,6 +118,7 @@ void ThreadPool::for_each(int count, const std::function<void(int)>& body) {
   }
   state_->work_ready.notify_all();
   state_->run_iterations();
+  wait_a_little([&] { return state_->busy_workers == 0; });
   std::unique_lock lock(state_->mutex);
   state_->work_done.wait(lock, [&] { return state_->busy_workers == 0; });
   if (state_->failure) std::rethrow_exception(std::exchange(state_->failure, nullptr));

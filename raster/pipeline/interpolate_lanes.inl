@@ -139,19 +139,28 @@ struct PlanePoint {
   Floats x, y, w;
 };
 
-/// As PlaneInterpolator with PlanesFromOrigin. The vertices are in the planes' order.
-template <std::size_t N, Contraction contraction>
+/// As Plane.
+struct PlaneOfLanes {
+  Floats at_origin, per_x, per_y;
+};
+
+/// As PlaneInterpolator with PlanesFromOrigin, for varyings of these kinds.
+template <const auto& kinds, Contraction contraction>
 struct PlaneLanes {
+  static constexpr std::size_t N = kinds.size();
   using Point = PlanePoint;
-  VertexLanes<kVertexX, kVertexVaryings + N> vertices;
-  Floats x0, y0, dx01_over_area, dy01_over_area, dx20_over_area, dy20_over_area;
+  PlaneOfLanes inverse_w;
+  std::array<PlaneOfLanes, N> planes;  // a flat varying's value is at_origin
 
   SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
+    VertexLanes<kVertexX, kVertexVaryings + N> vertices;
+#pragma GCC unroll 3
     for (std::size_t vertex = 0; vertex < 3; ++vertex) {
       // A clockwise triangle's vertices 1 and `other` change places.
       const std::size_t other = provoking == 0 ? 2 : 0;
       const std::size_t swapped = vertex == 1 ? other : vertex == other ? 1 : vertex;
       std::array<const float*, kQuads> rows;
+#pragma GCC unroll 4
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         const LaneTriangle& t = *triangles[quad];
         rows[quad] = t.vertices[t.clockwise ? swapped : vertex];
@@ -165,52 +174,65 @@ struct PlaneLanes {
     const Floats dx20 = vertices.at(2, kVertexX) - x;
     const Floats dy20 = vertices.at(2, kVertexY) - y;
     const Floats one_over_area = 1.0f / (dx01 * dy20 - dx20 * dy01);
-    x0 = x - 0.5f;
-    y0 = y - 0.5f;
-    dx01_over_area = dx01 * one_over_area;
-    dy01_over_area = dy01 * one_over_area;
-    dx20_over_area = dx20 * one_over_area;
-    dy20_over_area = dy20 * one_over_area;
-  }
-
-  SOFTFOCUS_INLINE static Floats multiply_add(Floats a, Floats b, Floats c) {
-    if constexpr (contraction == Contraction::fused) return fused_multiply_add(a, b, c);
-    return a * b + c;
-  }
-
-  SOFTFOCUS_INLINE Floats plane_at(Floats a0, Floats a1, Floats a2, Floats x, Floats y) const {
-    const Floats da01 = a0 - a1;
-    const Floats da20 = a2 - a0;
-    const Floats per_x = da01 * dy20_over_area - da20 * dy01_over_area;
-    const Floats per_y = da20 * dx01_over_area - da01 * dx20_over_area;
-    const Floats at_origin = a0 - (per_x * x0 + per_y * y0);
-    return multiply_add(per_y, y, multiply_add(per_x, x, at_origin));
+    const Slopes slopes{x - 0.5f,
+                        y - 0.5f,
+                        dx01 * one_over_area,
+                        dy01 * one_over_area,
+                        dx20 * one_over_area,
+                        dy20 * one_over_area};
+    const Floats w0 = vertices.at(0, kVertexInverseW);
+    const Floats w1 = vertices.at(1, kVertexInverseW);
+    const Floats w2 = vertices.at(2, kVertexInverseW);
+    inverse_w = slopes.plane(w0, w1, w2);
+#pragma GCC unroll 16
+    for (std::size_t i = 0; i < N; ++i) {
+      const Floats a0 = vertices.at(0, kVertexVaryings + i);
+      const Floats a1 = vertices.at(1, kVertexVaryings + i);
+      const Floats a2 = vertices.at(2, kVertexVaryings + i);
+      switch (kinds[i]) {
+        case Interpolation::perspective: planes[i] = slopes.plane(a0 * w0, a1 * w1, a2 * w2); break;
+        case Interpolation::linear: planes[i] = slopes.plane(a0, a1, a2); break;
+        case Interpolation::flat:
+          // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
+          planes[i].at_origin = provoking == 0 ? a0 : a2;
+          break;
+      }
+    }
   }
 
   SOFTFOCUS_INLINE PlanePoint weights(Ints x, Ints y) const {
     const Floats column = to_floats(x);
     const Floats row = to_floats(y);
-    const Floats inverse_w =
-        plane_at(vertices.at(0, kVertexInverseW), vertices.at(1, kVertexInverseW),
-                 vertices.at(2, kVertexInverseW), column, row);
-    return {column, row, 1.0f / inverse_w};
+    return {column, row, 1.0f / at(inverse_w, column, row)};
   }
 
-  SOFTFOCUS_INLINE Floats value(std::size_t varying, Interpolation kind, std::size_t provoking,
+  SOFTFOCUS_INLINE Floats value(std::size_t varying, Interpolation kind, std::size_t,
                                 const PlanePoint& point) const {
-    const std::size_t k = kVertexVaryings + varying;
-    Floats a0 = vertices.at(0, k);
-    Floats a1 = vertices.at(1, k);
-    Floats a2 = vertices.at(2, k);
-    if (kind == Interpolation::flat) {
-      // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
-      return provoking == 0 ? a0 : a2;
+    const PlaneOfLanes& plane = planes[varying];
+    if (kind == Interpolation::flat) return plane.at_origin;
+    const Floats value = at(plane, point.x, point.y);
+    return kind == Interpolation::linear ? value : value * point.w;
+  }
+
+ private:
+  struct Slopes {
+    Floats x0, y0, dx01_over_area, dy01_over_area, dx20_over_area, dy20_over_area;
+
+    SOFTFOCUS_INLINE PlaneOfLanes plane(Floats a0, Floats a1, Floats a2) const {
+      const Floats da01 = a0 - a1;
+      const Floats da20 = a2 - a0;
+      const Floats per_x = da01 * dy20_over_area - da20 * dy01_over_area;
+      const Floats per_y = da20 * dx01_over_area - da01 * dx20_over_area;
+      return {a0 - (per_x * x0 + per_y * y0), per_x, per_y};
     }
-    if (kind == Interpolation::linear) return plane_at(a0, a1, a2, point.x, point.y);
-    a0 *= vertices.at(0, kVertexInverseW);
-    a1 *= vertices.at(1, kVertexInverseW);
-    a2 *= vertices.at(2, kVertexInverseW);
-    return plane_at(a0, a1, a2, point.x, point.y) * point.w;
+  };
+
+  SOFTFOCUS_INLINE static Floats at(const PlaneOfLanes& plane, Floats x, Floats y) {
+    return multiply_add(plane.per_y, y, multiply_add(plane.per_x, x, plane.at_origin));
+  }
+  SOFTFOCUS_INLINE static Floats multiply_add(Floats a, Floats b, Floats c) {
+    if constexpr (contraction == Contraction::fused) return fused_multiply_add(a, b, c);
+    return a * b + c;
   }
 };
 

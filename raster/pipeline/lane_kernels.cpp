@@ -30,9 +30,9 @@ void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
 
 void clear_unseen(Isa isa, const VisibilityTile& tile, Image& colour, glm::vec4 value,
                   const Profile& profile) {
-  Image texel = make_image(Format::rgba16f, 1, 1);
-  store_texel<Format::rgba16f>(texel, 0, 0, value, profile);
-  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, colour, texel.bytes.data());
+  Image row = make_image(Format::rgba16f, kBlockSize, 1);
+  clear_image(row, 0, 0, kBlockSize, 1, value, profile);
+  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, colour, row.bytes.data());
 }
 
 }  // namespace softfocus

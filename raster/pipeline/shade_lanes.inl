@@ -272,13 +272,12 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
 template <class Stage>
 void shade_fragments(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                      const VisibleRun& run) {
-  constexpr std::size_t N = Stage::kInterpolation.size();
   if (job.profile->attributes == AttributeSetup::exact_barycentric) {
-    shade_seen<BarycentricLanes<N>>(stage, job, tile, run);
+    shade_seen<BarycentricLanes<Stage::kInterpolation.size()>>(stage, job, tile, run);
   } else if (job.profile->interpolation == Contraction::fused) {
-    shade_seen<PlaneLanes<N, Contraction::fused>>(stage, job, tile, run);
+    shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, tile, run);
   } else {
-    shade_seen<PlaneLanes<N, Contraction::unfused>>(stage, job, tile, run);
+    shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::unfused>>(stage, job, tile, run);
   }
 }
 
