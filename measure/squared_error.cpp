@@ -28,8 +28,8 @@ PixelMap squared_error_map(const Image& a, const Image& b, const ToneTable& tone
 }
 
 double psnr_db(double mean_squared_error) {
-  return mean_squared_error > 0.0 ? -10.0 * std::log10(mean_squared_error)
-                                  : std::numeric_limits<double>::infinity();
+  if (mean_squared_error == 0.0) return std::numeric_limits<double>::infinity();
+  return -10.0 * std::log10(mean_squared_error);
 }
 
 }  // namespace softfocus

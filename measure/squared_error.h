@@ -12,7 +12,8 @@ namespace softfocus {
 /// values; its mean over pixels is the MSE. Both RGBA16F and of one size.
 PixelMap squared_error_map(const Image& a, const Image& b, const ToneTable& tone, ThreadPool& pool);
 
-/// Peak signal-to-noise ratio in decibels for a peak of 1: -10 log10(mse). Infinite for 0.
+/// Peak signal-to-noise ratio in decibels for a peak of 1: -10 log10(mse). Infinite for 0, NaN
+/// for NaN.
 double psnr_db(double mean_squared_error);
 
 }  // namespace softfocus
