@@ -59,6 +59,6 @@ TEST_CASE("flicker: the mean over steps, pixels and channels") {
 TEST_CASE("flicker: depth in alpha is not looked at") {
   const std::vector<Image> truth(2, plain_grey(4, 4, 0.5f));
   std::vector<Image> frames = truth;
-  set_depth(frames[1], [](int, int) { return 9.0f; });
+  set_depth(frames[1], [](int, int) { return 0.25f; });
   CHECK(flicker(frames, truth, clamped_tone()) == 0.0);
 }

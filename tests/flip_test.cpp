@@ -89,12 +89,14 @@ TEST_CASE("FLIP agrees with its two-dimensional oracle, borders and strips inclu
   for (int y = 20; y < 40; ++y) {
     for (int x = 8; x < 15; ++x) store_texel(b, x, y, {0.9f, 0.2f, 0.4f, 2.0f}, {});
   }
+  // A line, in which points are found, not edges.
+  for (int y = 0; y < 70; ++y) store_texel(b, 20, y, {1.0f, 1.0f, 1.0f, 2.0f}, {});
   const auto of_a = for_oracle(a);
   const auto of_b = for_oracle(b);
   for (const double pixels_per_degree : {20.0, kUsualPixelsPerDegree}) {
     const PixelMap map = flip(a, b, pixels_per_degree);
     for (const int y : {0, 21, 39, 63, 64, 69}) {
-      for (const int x : {0, 9, 15, 25}) {
+      for (const int x : {0, 9, 15, 20, 25}) {
         CAPTURE(x);
         CAPTURE(y);
         const double right = flip_oracle::flip(of_a, of_b, x, y, pixels_per_degree);
@@ -144,6 +146,20 @@ TEST_CASE("FLIP's filters sum to 1, its detectors to 1 and -1") {
   CHECK(filters.achromatic.radius() == 10);  // ceil(3 sqrt(0.04 / (2 pi^2)) 67.02)
   CHECK(filters.edge.radius() == 9);         // ceil(3 * 0.041 * 67.02)
   CHECK(filters.margin == 10);
+}
+
+TEST_CASE("FLIP's edge detector peaks, and its point detector is 0, at one standard deviation") {
+  const FlipFilters filters = flip_filters(3.0 / 0.041);  // a deviation of 3 pixels
+  const auto at = [](const FilterTaps& taps, int x) {
+    return taps.weights[static_cast<std::size_t>(taps.radius() + x)];
+  };
+  CHECK(at(filters.edge, -3) > at(filters.edge, -2));
+  CHECK(at(filters.edge, -3) > at(filters.edge, -4));
+  CHECK(at(filters.edge, 3) == -at(filters.edge, -3));
+  CHECK(at(filters.edge, 0) == 0.0);
+  CHECK(at(filters.point, 2) < 0.0);
+  CHECK(at(filters.point, 3) == Approx(0.0).epsilon(1e-9));
+  CHECK(at(filters.point, 4) > 0.0);
 }
 
 TEST_CASE("opponent colours of white are 100, 0, 0, and there is a way back") {

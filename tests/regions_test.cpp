@@ -72,6 +72,26 @@ TEST_CASE("regions: an edge in depth has a band as wide as its larger radius on 
   }
 }
 
+TEST_CASE("regions: a wide band ends where its radius does") {
+  constexpr PixelCoc kWide{30.0f, 2.0f};  // 15 at 4 m
+  const Image labels =
+      label_regions(with_depths(40, 3, [](int x, int) { return x < 20 ? 2.0f : 4.0f; }), kWide);
+  CHECK(label_at(labels, 3, 1) == Region::focus);
+  CHECK(label_at(labels, 4, 1) == Region::silhouette);
+  CHECK(label_at(labels, 35, 1) == Region::silhouette);
+  CHECK(label_at(labels, 36, 1) == Region::far_field);
+}
+
+TEST_CASE("regions: infinity is a depth like any other: its edges have a band") {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const Image labels =
+      label_regions(with_depths(40, 3, [](int x, int) { return x < 20 ? 2.0f : kInfinity; }), kCoc);
+  CHECK(label_at(labels, 10, 1) == Region::focus);
+  CHECK(label_at(labels, 11, 1) == Region::silhouette);
+  CHECK(label_at(labels, 28, 1) == Region::silhouette);
+  CHECK(label_at(labels, 29, 1) == Region::far_field);
+}
+
 TEST_CASE("regions: the band of a single pixel is a disc around it and its neighbours") {
   // Radius -8 at the pixel; it reaches 8 from itself and from each neighbour across an edge.
   const Image labels = label_regions(

@@ -76,7 +76,7 @@ TEST_CASE("squared error: colour counts by thirds, alpha not at all") {
   ThreadPool pool{1};
   const Image a = plain(4, 4, 0.5f, 0.5f, 0.5f);
   Image b = plain(4, 4, 0.5f, 1.0f, 0.5f);
-  set_depth(b, [](int, int) { return 7.0f; });
+  set_depth(b, [](int, int) { return 0.25f; });
   CHECK(mean(squared_error_map(a, b, clamped_tone(), pool)) == Approx(0.25 / 3.0).epsilon(1e-12));
 }
 
