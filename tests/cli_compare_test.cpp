@@ -88,10 +88,10 @@ TEST_CASE("compare: --json of equal pictures has no first difference and no PSNR
   CHECK(json["psnr_db"].is_null());
 }
 
-TEST_CASE("compare: --diff writes a map that is black but where the pictures differ") {
+TEST_CASE("compare: --diff-ulps writes a map that is black but where the pictures differ") {
   const TwoPictures files;
   const std::string map_file = files.directory.file("map.npy");
-  CHECK(run_program({"compare", files.a, files.b, "--diff", map_file}).status == 1);
+  CHECK(run_program({"compare", files.a, files.b, "--diff-ulps", map_file}).status == 1);
   const std::string bytes = read_file(map_file);
   const Image map = decode_npy(std::as_bytes(std::span{bytes})).image;
   for (int y = 0; y < 3; ++y) {
@@ -103,11 +103,14 @@ TEST_CASE("compare: --diff writes a map that is black but where the pictures dif
   }
 }
 
-TEST_CASE("compare: --diff can be a PNG or a PFM") {
+TEST_CASE("compare: --diff and --diff-ulps can be a PNG or a PFM") {
   const TwoPictures files;
-  for (const std::string name : {"map.png", "map.pfm"}) {
-    run_program({"compare", files.a, files.b, "--diff", files.directory.file(name)});
-    CHECK_NOTHROW(read_image_file(files.directory.file(name)));
+  for (const std::string option : {"--diff", "--diff-ulps"}) {
+    for (const std::string name : {"map.png", "map.pfm"}) {
+      const std::string map = files.directory.file(option + name);
+      run_program({"compare", files.a, files.b, option, map});
+      CHECK_NOTHROW(read_image_file(map));
+    }
   }
 }
 
@@ -200,11 +203,13 @@ TEST_CASE("compare: an error is status 2, one line that names the file") {
 
 TEST_CASE("compare: a map that cannot be written is an error, not a difference") {
   const TwoPictures files;
-  for (const std::string map : {"/nowhere/at/all.png", "map.gif"}) {
-    const ProgramRun run = run_program({"compare", files.a, files.b, "--diff", map});
-    CHECK(run.status == 2);
-    CHECK(is_one_line(run.err));
-    CHECK(contains(run.err, map));
+  for (const std::string option : {"--diff", "--diff-ulps"}) {
+    for (const std::string map : {"/nowhere/at/all.png", "map.gif"}) {
+      const ProgramRun run = run_program({"compare", files.a, files.b, option, map});
+      CHECK(run.status == 2);
+      CHECK(is_one_line(run.err));
+      CHECK(contains(run.err, map));
+    }
   }
   CHECK(files.directory.listing() == std::vector<std::string>{"a.npy", "b.npy"});
 }

@@ -36,7 +36,10 @@ TEST_CASE("help names every option of every subcommand, with units") {
   names_all("lens",
             {"--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
              "--fov DEGREES", "--height PIXELS", "--max-coc-film MM", "--at METRES ...", "--json"});
-  names_all("compare", {"A", "B", "--diff OUT", "--json"});
+  names_all("compare", {"A", "B", "--diff OUT", "--diff-ulps OUT", "--hdr", "--pixels-per-degree N",
+                        "--regions", "--depth FILE", "--focus METRES", "--focal-length MM",
+                        "--f-number N", "--coc-scale S", "--fov DEGREES", "--point PIXELS",
+                        "--flicker FRAME ...", "--against FRAME ...", "--json"});
   names_all("selftest", {"--threads N", "--isa NAME", "--json", "--print"});
   names_all("scenes", {"--scene-path DIR"});
   names_all("methods", {});

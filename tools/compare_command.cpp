@@ -1,14 +1,14 @@
-// softfocus compare: how two pictures differ, counted and shown.
+// softfocus compare: how two pictures differ, counted, measured and shown.
 
-#include <cmath>
-#include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "dof/difference.h"
+#include "measure/flicker.h"
+#include "measure/heat_map.h"
 #include "raster/numbers/half.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
+#include "tools/compare_options.h"
+#include "tools/compare_report.h"
 #include "tools/errors.h"
 #include "tools/image_file.h"
 #include "tools/option_values.h"
@@ -17,15 +17,25 @@
 namespace softfocus {
 namespace {
 
-struct CompareOptions {
-  std::string first;
-  std::string second;
-  std::string difference;
-  bool json = false;
+// As diff has it.
+constexpr int kEqual = 0;
+constexpr int kDifferent = 1;
+
+/// A picture and what its file is called.
+struct NamedPicture {
+  std::string name;
+  Picture picture;
 };
 
-std::string size_of(const Image& image) {
-  return std::to_string(image.width) + "x" + std::to_string(image.height);
+NamedPicture read_named(const std::string& name) { return {name, read_image_file(name)}; }
+
+void check_same_size(const NamedPicture& a, const NamedPicture& b) {
+  const Image& one = a.picture.image;
+  const Image& other = b.picture.image;
+  if (one.width == other.width && one.height == other.height) return;
+  throw UsageError("'" + a.name + "' is " + size_text({one.width, one.height}) + " pixels and '" +
+                   b.name + "' " + size_text({other.width, other.height}) +
+                   "; they must be of one size");
 }
 
 void clear_alpha(Image& image) {
@@ -35,80 +45,54 @@ void clear_alpha(Image& image) {
   }
 }
 
-/// The first differing value in both pictures.
-struct FirstDifference {
-  char channel;
-  float a;
-  float b;
-};
-FirstDifference first_difference(const Difference& d, const Image& a, const Image& b) {
-  const auto index = static_cast<std::size_t>(4 * d.first_x + d.first_channel);
-  return {"RGBA"[d.first_channel], half_to_float(row<std::uint16_t>(a, d.first_y)[index]),
-          half_to_float(row<std::uint16_t>(b, d.first_y)[index])};
-}
-
-std::string bucket_name(std::size_t bucket) {
-  if (bucket < 2) return std::to_string(bucket);
-  return std::to_string(1 << (bucket - 1)) + " to " + std::to_string((1 << bucket) - 1);
-}
-
-void print_text(const Difference& d, const Image& a, const Image& b) {
-  std::cout << "differing values    " << d.differing << " of " << d.values << '\n';
-  if (d.differing == 0) return;
-  const auto first = first_difference(d, a, b);
-  std::cout << "largest difference  " << d.max_ulp << " half-ULPs\n"
-            << "first difference    pixel " << d.first_x << ',' << d.first_y << " channel "
-            << first.channel << ": " << short_number(static_cast<double>(first.a)) << " and "
-            << short_number(static_cast<double>(first.b)) << '\n'
-            << "PSNR of colour      " << short_number(d.psnr_db) << " dB\n"
-            << "half-ULPs           values\n";
-  for (std::size_t bucket = 0; bucket < d.ulp_histogram.size(); ++bucket) {
-    if (d.ulp_histogram[bucket] == 0) continue;
-    const std::string name = bucket_name(bucket);
-    std::cout << "  " << name << std::string(18 - name.size(), ' ') << d.ulp_histogram[bucket]
-              << '\n';
-  }
-}
-
-void print_json(const Difference& d, const Image& a, const Image& b) {
-  using nlohmann::ordered_json;
-  ordered_json json{{"equal", d.differing == 0}, {"values", d.values},
-                    {"differing", d.differing},  {"max_half_ulps", d.max_ulp},
-                    {"psnr_db", nullptr},  // JSON has no infinity
-                    {"first", nullptr},          {"histogram", ordered_json::array()}};
-  if (std::isfinite(d.psnr_db)) json["psnr_db"] = d.psnr_db;
-  if (d.differing != 0) {
-    const auto first = first_difference(d, a, b);
-    json["first"] = {{"x", d.first_x},
-                     {"y", d.first_y},
-                     {"channel", std::string(1, first.channel)},
-                     {"a", first.a},
-                     {"b", first.b}};
-  }
-  for (std::size_t bucket = 0; bucket < d.ulp_histogram.size(); ++bucket) {
-    if (d.ulp_histogram[bucket] == 0) continue;
-    json["histogram"].push_back(
-        {{"half_ulps", bucket_name(bucket)}, {"values", d.ulp_histogram[bucket]}});
-  }
-  std::cout << json.dump(2) << '\n';
-}
-
-int compare(const CompareOptions& options) {
-  std::optional<FileFormat> difference_format;
-  if (!options.difference.empty()) {
-    difference_format = format_by_extension(options.difference);
-    if (!difference_format) {
-      throw UsageError("--diff '" + options.difference +
-                       "': the name must end in .png, .pfm or .npy");
+void check_depths(const NamedPicture& of) {
+  const Image& image = of.picture.image;
+  for (int y = 0; y < image.height; ++y) {
+    const auto values = row<std::uint16_t>(image, y);
+    for (std::size_t i = 3; i < values.size(); i += 4) {
+      const float depth = half_to_float(values[i]);
+      if (is_depth(depth)) continue;
+      throw FileError("--regions: alpha of '" + of.name + "' is no depth: it is " +
+                      short_number(static_cast<double>(depth)) + " at pixel " +
+                      std::to_string(i / 4) + "," + std::to_string(y) +
+                      " and must be metres above 0 everywhere");
     }
   }
-  Picture a = read_image_file(options.first);
-  Picture b = read_image_file(options.second);
-  if (a.image.width != b.image.width || a.image.height != b.image.height) {
-    throw UsageError("'" + options.first + "' is " + size_of(a.image) + " pixels and '" +
-                     options.second + "' " + size_of(b.image) + "; they must be of one size");
+}
+
+Image regions_of(const NamedPicture& depths, const CompareOptions& options) {
+  if (!depths.picture.has_alpha) {
+    throw UsageError("--regions: '" + depths.name +
+                     "' has no depth in alpha; give --depth with a .npy that has");
   }
-  // Where one has no alpha there is nothing to compare the other's with.
+  check_depths(depths);
+  const ThinLens lens = overruled(ThinLens{}, options.lens);
+  check_lens(lens, options.lens, "the default lens");
+  return label_regions(
+      depths.picture.image,
+      checked_pixel_coc(lens, options.fov_y_degrees.value_or(40.0), depths.picture.image.height,
+                        options.lens.coc_scale.value_or(1.0)));
+}
+
+std::optional<Image> regions_wanted(const NamedPicture& a, const NamedPicture& b,
+                                    const CompareOptions& options) {
+  if (!options.regions) return std::nullopt;
+  if (options.depth_file) {
+    const NamedPicture depths = read_named(*options.depth_file);
+    check_same_size(depths, b);
+    return regions_of(depths, options);
+  }
+  return regions_of(b.picture.has_alpha || !a.picture.has_alpha ? b : a, options);
+}
+
+void write_map(const std::optional<std::string>& name, const Image& map) {
+  WholeFile file{*name};
+  file.write(encode(map, *format_by_extension(*name)));
+  file.commit();
+}
+
+/// Where one has no alpha there is nothing to compare the other's with: both are cleared.
+Difference counted(Picture& a, Picture& b) {
   const bool with_alpha = a.has_alpha && b.has_alpha;
   if (!with_alpha) {
     clear_alpha(a.image);
@@ -120,28 +104,79 @@ int compare(const CompareOptions& options) {
     difference.values -= alphas;
     difference.ulp_histogram[0] -= alphas;
   }
-  if (difference_format) {
-    WholeFile file{options.difference};
-    file.write(encode(difference_picture(a.image, b.image), *difference_format));
-    file.commit();
+  return difference;
+}
+
+int compare_pictures(const CompareOptions& options) {
+  NamedPicture a = read_named(options.first);
+  NamedPicture b = read_named(options.second);
+  check_same_size(a, b);
+  const std::optional<Image> regions = regions_wanted(a, b, options);
+  const Image& image_a = a.picture.image;
+  const Image& image_b = b.picture.image;
+
+  CompareFindings findings;
+  findings.regions = options.regions;
+  Difference& difference = findings.difference;
+  difference = counted(a.picture, b.picture);
+  if (difference.differing != 0) {
+    const auto index = static_cast<std::size_t>(4 * difference.first_x + difference.first_channel);
+    findings.channel = "RGBA"[difference.first_channel];
+    findings.first_a = half_to_float(row<std::uint16_t>(image_a, difference.first_y)[index]);
+    findings.first_b = half_to_float(row<std::uint16_t>(image_b, difference.first_y)[index]);
   }
-  (options.json ? print_json : print_text)(difference, a.image, b.image);
-  return difference.differing == 0 ? 0 : 1;
+  // Equal pictures are one line of text, and need no measuring.
+  if (difference.differing != 0 || options.json || options.regions || options.flip_map_file) {
+    ThreadPool pool{hardware_threads()};
+    findings.measured =
+        measure_pictures(image_b, image_a, regions ? &*regions : nullptr, options.measures, pool);
+  }
+  if (options.point_radius_px) {
+    const double radius = *options.point_radius_px;
+    findings.point = {point_shape(image_a), point_shape(image_b), radius,
+                      disc_deviation(image_a, radius), disc_deviation(image_b, radius)};
+  }
+  if (options.flip_map_file)
+    write_map(options.flip_map_file, heat_picture(findings.measured->flip));
+  if (options.ulp_map_file) write_map(options.ulp_map_file, difference_picture(image_a, image_b));
+  (options.json ? print_compare_json : print_compare_text)(findings);
+  return difference.differing == 0 ? kEqual : kDifferent;
+}
+
+/// Two frames of each sequence are in memory at a time.
+int compare_sequences(const CompareOptions& options) {
+  const ToneTable tone = srgb_encoded(clamped_tone());
+  std::vector<double> steps;
+  NamedPicture before = read_named(options.frames.front());
+  NamedPicture truth_before = read_named(options.truth.front());
+  check_same_size(truth_before, before);
+  for (std::size_t t = 1; t < options.frames.size(); ++t) {
+    NamedPicture after = read_named(options.frames[t]);
+    NamedPicture truth_after = read_named(options.truth[t]);
+    check_same_size(after, before);
+    check_same_size(truth_after, before);
+    steps.push_back(flicker({before.picture.image, after.picture.image, truth_before.picture.image,
+                             truth_after.picture.image},
+                            tone));
+    before = std::move(after);
+    truth_before = std::move(truth_after);
+  }
+  (options.json ? print_flicker_json : print_flicker_text)(steps);
+  return mean_flicker(steps) == 0.0 ? kEqual : kDifferent;
 }
 
 }  // namespace
 
 Command add_compare_command(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
-      "compare", "Count the differences of two pictures; status 0 equal, 1 different, 2 error");
+      "compare", "Count and measure differences of pictures; status 0 equal, 1 different, 2 error");
   const auto options = std::make_shared<CompareOptions>();
-  add_argument(*parser, "A", "A picture: .npy, .pfm or .png", options->first);
-  add_argument(*parser, "B", "Another of the same size", options->second);
-  add_value(*parser, "--diff", "OUT",
-            "Write a map of the differences: black equal, blue 1 half-ULP to red 2^15",
-            [options](const std::string& text) { options->difference = text; });
-  parser->add_flag("--json", options->json, "Print JSON");
-  return {parser, [options] { return compare(*options); }};
+  add_compare_options(*parser, *options);
+  return {parser, [options] {
+            check_compare_options(*options);
+            return options->frames.empty() ? compare_pictures(*options)
+                                           : compare_sequences(*options);
+          }};
 }
 
 }  // namespace softfocus

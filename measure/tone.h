@@ -1,0 +1,43 @@
+#pragma once
+// What becomes of the light in a picture before it is measured: clamped, or put through a
+// film's curve, and encoded as a screen wants it.
+//
+// A half has only 65,536 values, so that any such curve is a table, and a curve of many
+// operations costs no more than a simple one.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace softfocus {
+
+/// For each half, by its bits, a value of 0 to 1. Infinity counts as the largest half;
+/// NaN and what is below 0 count as 0.
+using ToneTable = std::vector<double>;
+
+inline double toned(const ToneTable& table, std::uint16_t half) { return table[half]; }
+
+/// Light as it is, clamped to 1: what a PNG of this program keeps.
+ToneTable clamped_tone();
+
+/// Light times 2^`exposure_stops` through Narkowicz's fit of the ACES film curve (2016),
+/// with the exposure of 0.6 that the fit has built in taken out again, as HDR-FLIP has it
+/// (Andersson, Nilsson, Shirley, Akenine-Moller 2021):
+///
+///   x' = 0.6 x;  (x' (2.51 x' + 0.03)) / (x' (2.43 x' + 0.59) + 0.14), clamped to 0..1
+ToneTable filmic_tone(double exposure_stops = 0.0);
+
+/// The light, not clamped, that filmic_tone(0) takes to `value`, 0 < value < 1: the
+/// positive root of the quadratic.
+double filmic_inverse(double value);
+
+/// The same light as a screen is given it: through the sRGB curve (IEC 61966-2-1), in
+/// which equal steps look about equal.
+ToneTable srgb_encoded(ToneTable table);
+
+/// Luminance of linear light and, on encoded values, the luma that stands for it (BT.709).
+inline double luminance(double red, double green, double blue) {
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+}  // namespace softfocus
