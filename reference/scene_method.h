@@ -23,8 +23,8 @@ struct Sampling {
   int samples = 256;    ///< 1 to kMostSamples; with `until`, the most
   bool jitter = false;  ///< looks from all over the pixel and not from its centre alone
   /// Stops when half_set_rms() is at most this, which is tried at 16, 32, 64, ... samples.
-  std::optional<double> until;
-  ApertureShape aperture;
+  std::optional<double> until = {};
+  ApertureShape aperture = {};
 };
 
 /// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
