@@ -94,7 +94,7 @@ std::vector<glm::dvec2> pixel_offsets(bool jitter, int count) {
   // this one keeps its evenness and loses the order.
   const auto shuffled = [](std::uint32_t i) {
     constexpr std::uint32_t kShuffle = 5;
-    return reversed(scrambled(reversed(i), kShuffle) ^ scrambled(0, kShuffle));
+    return scrambled(i, kShuffle) ^ scrambled(0, kShuffle);
   };
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     offsets[i] = square_point(shuffled(static_cast<std::uint32_t>(i)), kPixelSeries) - 0.5;
