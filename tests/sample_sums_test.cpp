@@ -12,7 +12,7 @@ using namespace softfocus;
 
 namespace {
 
-constexpr Profile kIeee{};
+const Profile kIeee{};
 
 Image picture_of(int width, int height, glm::vec4 value) {
   Image picture = make_image(Format::rgba16f, width, height);
@@ -45,7 +45,7 @@ bool same_bits(const SampleSums& a, const SampleSums& b) {
 TEST_CASE("sums are the same on every vector unit and any number of threads") {
   test::Random random;
   for (const int width : {1, 3, 16, 17, 50}) {
-    for (const std::size_t count : {1, 3, 8}) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{8}}) {
       std::vector<Image> pictures;
       for (std::size_t i = 0; i < count; ++i) pictures.push_back(random_picture(width, 5, random));
       SampleSums plain = make_sample_sums(width, 5);
