@@ -131,6 +131,7 @@ struct Tracer {
   RayCamera camera;
   std::vector<glm::dvec2> points;   // of the lens, in metres
   std::vector<glm::dvec2> offsets;  // in the pixel
+  std::vector<glm::vec3> eyes;      // the lens's points in the world
 };
 
 glm::vec3 trace(const Tracer& tracer, int x, int y, std::uint32_t sample) {
@@ -146,10 +147,8 @@ glm::vec3 trace(const Tracer& tracer, int x, int y, std::uint32_t sample) {
   const int left = x & ~1, top = y & ~1;
   const BlockRays block{ray_through(left, top), ray_through(left + 1, top),
                         ray_through(left, top + 1)};
-  const View from_point = lens_view(input.view, point, input.focus_m, glm::dvec2{0.0},
-                                    input.pinhole.width, input.pinhole.height);
   return shade_hit(tracer.traced.meshes[hit.hit.geomID], {hit.hit.primID, hit.hit.u, hit.hit.v},
-                   glm::vec3{from_point.eye}, ray, block, input.profile);
+                   tracer.eyes[sample], ray, block, input.profile);
 }
 
 }  // namespace
@@ -158,11 +157,18 @@ std::string_view ray_traced_missing() { return {}; }
 
 SampledPicture ray_traced(const SceneMethodInput& input, ThreadPool& pool) {
   const int width = input.pinhole.width;
-  Tracer tracer{input, traced_scene(input),
+  Tracer tracer{input,
+                traced_scene(input),
                 ray_camera(input.view, input.focus_m, width, input.pinhole.height),
                 lens_points(input.sampling.aperture, kMostSamples),
-                pixel_offsets(input.sampling.jitter, kMostSamples)};
-  for (glm::dvec2& point : tracer.points) point *= input.aperture_radius_m;
+                pixel_offsets(input.sampling.jitter, kMostSamples),
+                {}};
+  for (glm::dvec2& point : tracer.points) {
+    point *= input.aperture_radius_m;
+    tracer.eyes.emplace_back(
+        lens_view(input.view, point, input.focus_m, glm::dvec2{0.0}, width, input.pinhole.height)
+            .eye);
+  }
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
     pool.for_each(sums.height, [&](int y) {
       for (int x = 0; x < width; ++x) {
