@@ -14,8 +14,8 @@ SOFTFOCUS_INLINE void add_to(double* totals, const Floats& values) {
 }  // namespace
 
 /// Of whole vectors of pixels: returns how many pixels they are.
-int add_row(const std::uint16_t* const* rows, int row_count, int width, double* red,
-            double* green, double* blue) {
+int add_row(const std::uint16_t* const* rows, int row_count, int width, double* red, double* green,
+            double* blue) {
   int x = 0;
   for (; x + kLanes <= width; x += kLanes) {
     const HalfTexels first = load_half_texels(rows[0] + 4 * x);
