@@ -27,6 +27,10 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--autofocus [X,Y]",
                        "--max-coc PIXELS",
                        "--leak A",
+                       "--samples N",
+                       "--jitter",
+                       "--until ERROR",
+                       "--aperture-blades N",
                        "--profile NAME",
                        "--threads N",
                        "--isa NAME",
@@ -72,7 +76,7 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
           static_cast<std::ptrdiff_t>(names.size()));
   };
   lists("scenes", {"cube-room", "figures", "sphere-world"});
-  lists("methods", {"pinhole", "two-pass", "one-pass"});
+  lists("methods", {"pinhole", "two-pass", "one-pass", "accumulation", "ray-traced"});
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
 }
 

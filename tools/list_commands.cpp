@@ -8,6 +8,7 @@
 
 #include "dof/method.h"
 #include "raster/numbers/profile.h"
+#include "reference/scene_method.h"
 #include "scenes/load_scene.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
@@ -57,6 +58,11 @@ Command add_methods_command(CLI::App& program) {
             for (const Method& method : methods()) {
               rows.push_back({std::string{method.name}, std::string{method.needs},
                               std::string{method.summary}});
+            }
+            for (const SceneMethod& method : scene_methods()) {
+              const char* lack = method.missing.empty() ? "" : " (not in this build)";
+              rows.push_back({std::string{method.name}, std::string{method.needs},
+                              std::string{method.summary} + lack});
             }
             print_aligned(rows);
             return kDone;

@@ -18,6 +18,22 @@ void add_method_option(CLI::App& parser, const Method*& method) {
             });
 }
 
+void add_method_option(CLI::App& parser, MethodChoice& method) {
+  add_value(parser, "--method", "NAME",
+            "Depth-of-field method (default: " + std::string{method.name()} + ")",
+            [&method](const std::string& text) {
+              method = {find_method(text), find_scene_method(text)};
+              if (method.filter != nullptr) return;
+              if (method.of_scene == nullptr) {
+                throw UsageError("--method '" + text + "': there are " + names_of(methods()) +
+                                 ", " + names_of(scene_methods()));
+              }
+              if (!method.of_scene->missing.empty()) {
+                throw UsageError("--method " + text + ": " + std::string{method.of_scene->missing});
+              }
+            });
+}
+
 void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px) {
   add_value(parser, "--max-coc", "PIXELS",
             "Filter size: largest radius, 0 to 1024 (default: the scene's, by height)",

@@ -6,12 +6,24 @@
 #include <string>
 
 #include "dof/method.h"
+#include "reference/scene_method.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
 
-/// Adds --method; `method` holds the default.
+/// A method of either table: a filter of the drawn picture or one that draws the scene.
+struct MethodChoice {
+  const Method* filter = nullptr;
+  const SceneMethod* of_scene = nullptr;
+
+  std::string_view name() const { return filter != nullptr ? filter->name : of_scene->name; }
+};
+
+/// Adds --method for filters; `method` holds the default.
 void add_method_option(CLI::App& parser, const Method*& method);
+
+/// The same for both tables. What a build lacks is refused here, with how to get it.
+void add_method_option(CLI::App& parser, MethodChoice& method);
 
 /// Adds --max-coc.
 void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px);

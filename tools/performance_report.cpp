@@ -45,10 +45,24 @@ std::string lens_lines(const UsedLens& used) {
          line("Focal length", short_number(used.lens.focal_length_mm) + " mm") +
          line("F-number", short_number(used.lens.f_number)) +
          line("Aperture", short_number(aperture_mm(used.lens)) + " mm") +
-         line("CoC scale", short_number(used.coc_scale)) +
-         line("Filter size",
+         line("CoC scale", short_number(used.coc_scale));
+}
+
+std::string filter_lines(const UsedLens& used) {
+  return line("Filter size",
               short_number(used.settings.max_coc_px) + " pixels (largest CoC radius)") +
          line("Leak", short_number(used.settings.leak));
+}
+
+std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
+  const int blades = sampling.aperture.blades;
+  std::string text = line("Samples", std::to_string(used.samples)) +
+                     line("Pixel jitter", sampling.jitter ? "yes" : "no") +
+                     line("Blades", blades == 0 ? "round" : std::to_string(blades));
+  if (used.half_set_rms) {
+    text += line("Half-sets differ by", short_number(*used.half_set_rms) + " (RMS, linear)");
+  }
+  return text;
 }
 
 }  // namespace
@@ -64,7 +78,7 @@ std::string_view name_of(Show show) {
 }
 
 bool has_depth_of_field(const RenderOptions& options) {
-  return options.show == Show::image && options.method->name != "pinhole";
+  return options.show == Show::image && options.method.name() != "pinhole";
 }
 
 std::string text_report(const RenderOptions& options, const RenderRecord& record) {
@@ -75,14 +89,19 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += line("Resolution", std::to_string(options.size.width) + " x " +
                                  std::to_string(options.size.height) + " pixels");
   text += line("Triangles", std::to_string(record.triangles));
-  text += line("Method", std::string{options.method->name});
+  text += line("Method", std::string{options.method.name()});
   text += line("Picture", std::string{name_of(options.show)});
   text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
                                      : line("GL driver", record.gl_renderer);
   text += line("Threads", std::to_string(options.pool.threads));
   text += line("Vector unit", std::string{isa_name(options.pool.isa)});
   text += "\n";
-  if (record.lens) text += lens_lines(*record.lens) + "\n";
+  if (record.lens) {
+    text += lens_lines(*record.lens);
+    text += record.sampled ? sampling_lines(options.sampling, *record.sampled)
+                           : filter_lines(*record.lens);
+    text += "\n";
+  }
 
   text += line("", "milliseconds   frames per second");
   text += time_line("Without depth of field", ms.draw, true);
@@ -102,7 +121,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"softfocus", SOFTFOCUS_VERSION},  {"scene", record.scene_name},
       {"title", record.scene_title},     {"frame", options.frame},
       {"width", options.size.width},     {"height", options.size.height},
-      {"triangles", record.triangles},   {"method", options.method->name},
+      {"triangles", record.triangles},   {"method", options.method.name()},
       {"show", name_of(options.show)},   {"profile", options.profile.name},
       {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
       {"output", options.output},
@@ -124,6 +143,13 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     if (used.autofocus_pixel) {
       json["lens"]["autofocus_pixel"] = {used.autofocus_pixel->x, used.autofocus_pixel->y};
     }
+  }
+  if (record.sampled) {
+    json["sampling"] = {{"samples", record.sampled->samples},
+                        {"jitter", options.sampling.jitter},
+                        {"aperture_blades", options.sampling.aperture.blades}};
+    if (record.sampled->half_set_rms)
+      json["sampling"]["half_set_rms"] = *record.sampled->half_set_rms;
   }
   json["without_depth_of_field"] = {{"ms", ms.draw}, {"fps", frames_per_second(ms.draw)}};
   if (has_depth_of_field(options)) {

@@ -29,12 +29,19 @@ struct UsedLens {
   std::optional<Pixel> autofocus_pixel;  ///< where the focus was found
 };
 
+/// What a method that draws the scene came to.
+struct UsedSamples {
+  int samples = 0;
+  std::optional<double> half_set_rms;
+};
+
 struct RenderRecord {
   std::string scene_name;
   std::string scene_title;
   std::size_t triangles = 0;
-  std::string gl_renderer;       ///< of --gl; else empty
-  std::optional<UsedLens> lens;  ///< none where the picture needs none
+  std::string gl_renderer;             ///< of --gl; else empty
+  std::optional<UsedLens> lens;        ///< none where the picture needs none
+  std::optional<UsedSamples> sampled;  ///< none of a filter
   StageTimes ms;
 };
 

@@ -68,12 +68,43 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
       checked_pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
 }
 
+/// The method that draws the scene itself, from many points of the lens.
+Image sampled_picture(const Scene& scene, const View& view, const Image& pinhole,
+                      const RenderOptions& options, RenderRecord& record, Progress& progress,
+                      ThreadPool& pool) {
+  const UsedLens& used = *record.lens;
+  const auto tell = [&](int samples) {
+    progress.show("sampling the lens, " + std::to_string(samples) + " of " +
+                  (options.sampling.until ? "at most " : "") +
+                  std::to_string(options.sampling.samples));
+  };
+  SampledPicture sampled = options.method.of_scene->render(
+      {scene, view, options.frame, pinhole, used.lens.focus_m,
+       aperture_radius_m(used.lens, used.coc_scale), options.sampling, options.profile, tell},
+      pool);
+  record.sampled = {sampled.samples, sampled.half_set_rms};
+  return std::move(sampled.picture);
+}
+
+/// What --until asked for and the samples did not give, as a line, or nothing.
+std::string until_warning(const RenderOptions& options, const RenderRecord& record) {
+  const Sampling& sampling = options.sampling;
+  if (!record.sampled || !sampling.until) return {};
+  const auto reached = record.sampled->half_set_rms;
+  if (reached && *reached <= *sampling.until) return {};
+  const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
+                                    : "half-sets are compared from 16 samples on";
+  return "--until " + short_number(*sampling.until) + ": not reached with " +
+         std::to_string(record.sampled->samples) + " samples: " + found;
+}
+
 Image shown_picture(Image scene, const RenderOptions& options, const Camera& camera,
                     const DofSettings& settings, FrameOnGl* on_gl, ThreadPool& pool) {
   switch (options.show) {
     case Show::image:
-      return on_gl != nullptr ? on_gl->filter(*options.method, settings, scene)
-                              : apply(*options.method, {scene, settings, options.profile}, pool);
+      return on_gl != nullptr
+                 ? on_gl->filter(*options.method.filter, settings, scene)
+                 : apply(*options.method.filter, {scene, settings, options.profile}, pool);
     case Show::pinhole: return scene;
     case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
     case Show::depth:
@@ -105,8 +136,8 @@ int render(const RenderOptions& options) {
   const int width = options.size.width, height = options.size.height;
   std::optional<FrameOnGl> on_gl;
   if (options.gl != nullptr) record.gl_renderer = on_gl.emplace(*options.gl).renderer();
+  const View view = camera_view(scene.camera, options.frame, width, height);
   Image drawn = timed(progress, "drawing", ms.draw, [&] {
-    const View view = camera_view(scene.camera, options.frame, width, height);
     if (on_gl) return on_gl->draw(scene, view, options.frame, width, height);
     return draw_scene(scene, view, options.frame, width, height, options.profile, pool);
   });
@@ -117,10 +148,17 @@ int render(const RenderOptions& options) {
           [&] { set_lens(*record.lens, drawn, options, scene.camera.fov_y_degrees); });
     settings = record.lens->settings;
   }
-  const Image picture = timed(progress, "filtering", ms.filter, [&] {
+  const bool from_lens = options.show == Show::image && options.method.of_scene != nullptr;
+  const Image picture = timed(progress, from_lens ? "sampling" : "filtering", ms.filter, [&] {
+    if (from_lens) return sampled_picture(scene, view, drawn, options, record, progress, pool);
     return shown_picture(std::move(drawn), options, scene.camera, settings,
                          on_gl ? &*on_gl : nullptr, pool);
   });
+
+  progress.clear();
+  if (const std::string warning = until_warning(options, record); !warning.empty()) {
+    std::cerr << "softfocus: warning: " << warning << '\n';
+  }
 
   const Bytes bytes =
       timed(progress, "encoding", ms.encode, [&] { return encode(picture, options.format); });

@@ -4,12 +4,14 @@
 #include <cstdint>
 
 #include "raster/images/image.h"
+#include "reference/sample_sums.h"
 #include "tools/driver_option.h"
 #include "tools/errors.h"
 #include "tools/memory_check.h"
 #include "tools/method_options.h"
 #include "tools/platform.h"
 #include "tools/profile_option.h"
+#include "tools/sampling_options.h"
 
 namespace softfocus {
 namespace {
@@ -80,6 +82,7 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
               options.leak = static_cast<float>(
                   parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
             });
+  add_sampling_options(parser, options.sampling);
 }
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
@@ -105,6 +108,10 @@ bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
 /// depth (4) and the largest encoding (12).
 constexpr std::uint64_t kBytesPerPixel = 40;
+
+/// And for a method that draws the scene: two sets of sums (24 bytes each) and the pictures
+/// of a group.
+constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 24 + 8 * kSampleGroup;
 
 }  // namespace
 
@@ -157,7 +164,17 @@ void complete(RenderOptions& options, const CLI::App& parser) {
                        "," + std::to_string(height - 1));
     }
   }
-  check_memory("--size", options.size, kBytesPerPixel);
+  const bool samples = options.method.of_scene != nullptr;
+  if (samples) {
+    complete_sampling(options.sampling, parser);
+  } else {
+    refuse_sampling_options(parser, options.method.name());
+  }
+  if (samples && options.gl != nullptr) {
+    throw UsageError("--gl and --method " + std::string{options.method.name()} +
+                     " exclude each other: it draws in the emulation; give one");
+  }
+  check_memory("--size", options.size, kBytesPerPixel + (samples ? kSamplingBytesPerPixel : 0));
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {

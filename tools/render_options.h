@@ -12,6 +12,7 @@
 #include "tools/gl/driver.h"
 #include "tools/image_file.h"
 #include "tools/lens_options.h"
+#include "tools/method_options.h"
 #include "tools/option_values.h"
 #include "tools/pool_options.h"
 
@@ -30,7 +31,8 @@ struct RenderOptions {
   Profile profile = profiles().front();
   const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
   PoolOptions pool;
-  const Method* method = find_method("two-pass");
+  MethodChoice method{.filter = find_method("two-pass")};
+  Sampling sampling;  ///< of a method that draws the scene
   LensOptions lens;
   bool autofocus = false;
   std::optional<Pixel> autofocus_pixel;  ///< the picture's centre if none

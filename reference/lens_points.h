@@ -1,0 +1,53 @@
+#pragma once
+// Where on the aperture a picture is seen from, and where in a pixel: low-discrepancy
+// points, the first n of which cover the area evenly whatever n is.
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <vector>
+
+namespace softfocus {
+
+/// The most points that a picture is sampled from.
+inline constexpr int kMostSamples = 65536;
+
+/// Point `index` of the square [0, 1) x [0, 1), in multiples of 2^-32: the (0, 2)-sequence of
+/// van der Corput and Sobol (1967), each axis with its digits scrambled after Owen (1995),
+/// by the hash of Laine and Karras (2011); then both turned by an exclusive or, so that
+/// point 0 is the centre. Every block of 2^k points that starts at a multiple of 2^k has one
+/// point in each of 2^k equal boxes, of any shape that halving gives. Sequences of another
+/// `series` are independent of each other.
+///
+/// Scrambled, because the plain sequence's first n points lie on average 1/(2n) beside the
+/// centre: everything out of focus would be moved.
+glm::dvec2 square_point(std::uint32_t index, std::uint32_t series);
+
+/// A disc of radius 1, or a regular polygon whose corners lie on its edge, one of them up.
+struct ApertureShape {
+  int blades = 0;  ///< corners, 3 to kMostBlades; 0: the disc
+};
+inline constexpr int kMostBlades = 64;
+
+/// A point of the square brought to the aperture, equal areas to equal areas, the centre
+/// to the centre: the concentric map of Shirley and Chiu (1997), which turns squares about
+/// the centre into circles, and for a polygon circles into polygons: a point at the
+/// fraction t of the way around lies at t of the perimeter.
+class ApertureMap {
+ public:
+  explicit ApertureMap(ApertureShape shape);
+  /// x to the right and y up, as the camera sees them, in radii of the disc.
+  glm::dvec2 operator()(glm::dvec2 square) const;
+
+ private:
+  std::vector<glm::dvec2> corners_;  // and the first again; none: a disc
+};
+
+/// The first `count` points of the lens, in radii; the first is the centre.
+std::vector<glm::dvec2> lens_points(ApertureShape shape, int count);
+
+/// As many offsets from a pixel's centre, in pixels from -0.5 to 0.5, in an order that has
+/// nothing to do with that of the lens's points; the first is 0. Without `jitter`
+/// all are.
+std::vector<glm::dvec2> pixel_offsets(bool jitter, int count);
+
+}  // namespace softfocus
