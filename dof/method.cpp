@@ -4,6 +4,7 @@
 
 #include "dof/one_pass.h"
 #include "dof/pinhole.h"
+#include "dof/scatter.h"
 #include "dof/two_pass.h"
 
 namespace softfocus {
@@ -17,6 +18,10 @@ constexpr std::array kMethods{
            kColourAndDepth, two_pass},
     Method{"one-pass", "one gather over rings: round and slower, the thesis 5.1", kColourAndDepth,
            one_pass},
+    Method{"scatter", "every pixel spread over its disc, after Potmesil and Chakravarty 1981",
+           kColourAndDepth, scatter_unsorted},
+    Method{"scatter-sorted", "the same in slabs of depth, one over the other", kColourAndDepth,
+           scatter_sorted},
 };
 
 }  // namespace
