@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "dof/diffusion.h"
 #include "dof/one_pass.h"
 #include "dof/pinhole.h"
 #include "dof/scatter.h"
@@ -22,6 +23,8 @@ constexpr std::array kMethods{
            kColourAndDepth, scatter_unsorted},
     Method{"scatter-sorted", "the same in slabs of depth, one over the other", kColourAndDepth,
            scatter_sorted},
+    Method{"diffusion", "colour flows like heat, after Kass, Lefohn and Owens 2006",
+           kColourAndDepth, diffusion},
 };
 
 }  // namespace
