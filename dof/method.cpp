@@ -3,6 +3,7 @@
 #include <array>
 
 #include "dof/diffusion.h"
+#include "dof/layers.h"
 #include "dof/one_pass.h"
 #include "dof/pinhole.h"
 #include "dof/scatter.h"
@@ -23,6 +24,8 @@ constexpr std::array kMethods{
            kColourAndDepth, scatter_unsorted},
     Method{"scatter-sorted", "the same in slabs of depth, one over the other", kColourAndDepth,
            scatter_sorted},
+    Method{"layers", "near, focus and far, each blurred by itself, after Scofield 1992",
+           kColourAndDepth, layers},
     Method{"diffusion", "colour flows like heat, after Kass, Lefohn and Owens 2006",
            kColourAndDepth, diffusion},
 };

@@ -29,13 +29,19 @@ constexpr std::array kSlabBegins{0.5f,  1.5f,  3.0f,   6.0f,   12.0f, 24.0f,
                                  48.0f, 96.0f, 192.0f, 384.0f, 768.0f};
 constexpr int kSlabs = 2 * static_cast<int>(kSlabBegins.size()) + 1;
 
-// The nearest first.
-int slab_of(float radius_px) {
+// The nearest first. The three layers have numbers that are not neighbours'.
+int slab_of(SlabRule rule, float radius_px) {
+  if (rule == SlabRule::one) return 0;
+  if (rule == SlabRule::layers) return radius_px < -0.5f ? 0 : radius_px > 0.5f ? 4 : 2;
   const float magnitude = std::fabs(radius_px);
   int steps = 0;
   for (const float begin : kSlabBegins) steps += magnitude > begin ? 1 : 0;
   const int focus = static_cast<int>(kSlabBegins.size());
   return radius_px < 0.0f ? focus - steps : focus + steps;
+}
+
+int slab_count(SlabRule rule) {
+  return rule == SlabRule::one ? 1 : rule == SlabRule::layers ? 5 : kSlabs;
 }
 
 // Red, green, blue and weight.
@@ -57,7 +63,7 @@ struct Sources {
   }
 };
 
-Sources make_sources(const DofInput& input, bool sorted, ThreadPool& pool) {
+Sources make_sources(const DofInput& input, SlabRule rule, ThreadPool& pool) {
   const Planes planes = split_picture(input, pool);
   const std::vector<float> largest = largest_of_rows(planes, 3, pool);
   Sources sources{planes.width,
@@ -80,7 +86,7 @@ Sources make_sources(const DofInput& input, bool sorted, ThreadPool& pool) {
     for (int x = 0; x < sources.width; ++x) {
       const float radius = from[3 * planes.plane + x];
       const int disc = disc_of(radius);
-      const int slab = sorted ? slab_of(radius) : 0;
+      const int slab = slab_of(rule, radius);
       const float weight = sources.discs.weights[static_cast<std::size_t>(disc)] * kUnitsOfLight;
       const std::size_t at = sources.at(x, y);
       float* light = &sources.light[4 * at];
@@ -139,8 +145,8 @@ struct RowBuffers {
   std::vector<float> colour;
 };
 
-void scatter(const DofInput& input, Image& result, bool sorted, ThreadPool& pool) {
-  const Sources sources = make_sources(input, sorted, pool);
+void scatter_spans(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  const Sources sources = make_sources(input, rule, pool);
   const int width = sources.width, height = sources.height;
   const int margin = sources.discs.reach + 3;
   const std::ptrdiff_t slab_stride = 4 * (static_cast<std::ptrdiff_t>(width) + 2 * margin);
@@ -150,7 +156,7 @@ void scatter(const DofInput& input, Image& result, bool sorted, ThreadPool& pool
   pool.for_each((height + kTaskRows - 1) / kTaskRows, [&](int task) {
     RowBuffers buffers = shelf.take();
     buffers.differences.resize(static_cast<std::size_t>(slab_stride) *
-                               static_cast<std::size_t>(sorted ? kSlabs : 1));
+                               static_cast<std::size_t>(slab_count(rule)));
     buffers.colour.resize(static_cast<std::size_t>(3 * padded));
     std::uint64_t* differences = buffers.differences.data();
     float* colour = buffers.colour.data();
@@ -207,10 +213,10 @@ std::uint64_t units(double value) {
   return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(value)));
 }
 
-void scatter_plain(const DofInput& input, Image& result, bool sorted, ThreadPool& pool) {
-  const Sources sources = make_sources(input, sorted, pool);
+void scatter_stamps(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  const Sources sources = make_sources(input, rule, pool);
   const int width = sources.width, height = sources.height;
-  const int slabs = sorted ? kSlabs : 1;
+  const int slabs = slab_count(rule);
   pool.for_each(height, [&](int y) {
     std::vector<Light> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(slabs));
     for (int from_y = 0; from_y < height; ++from_y) {
@@ -252,17 +258,18 @@ void scatter_plain(const DofInput& input, Image& result, bool sorted, ThreadPool
 
 }  // namespace
 
+void scatter_in_slabs(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  (pool.isa() == Isa::scalar ? scatter_stamps : scatter_spans)(input, result, rule, pool);
+}
+void scatter_in_slabs_plain(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  scatter_stamps(input, result, rule, pool);
+}
+
 void scatter_unsorted(const DofInput& input, Image& result, ThreadPool& pool) {
-  (pool.isa() == Isa::scalar ? scatter_plain : scatter)(input, result, false, pool);
+  scatter_in_slabs(input, result, SlabRule::one, pool);
 }
 void scatter_sorted(const DofInput& input, Image& result, ThreadPool& pool) {
-  (pool.isa() == Isa::scalar ? scatter_plain : scatter)(input, result, true, pool);
-}
-void scatter_unsorted_plain(const DofInput& input, Image& result, ThreadPool& pool) {
-  scatter_plain(input, result, false, pool);
-}
-void scatter_sorted_plain(const DofInput& input, Image& result, ThreadPool& pool) {
-  scatter_plain(input, result, true, pool);
+  scatter_in_slabs(input, result, SlabRule::doubling, pool);
 }
 
 }  // namespace softfocus

@@ -39,8 +39,12 @@ namespace softfocus {
 void scatter_unsorted(const DofInput& input, Image& result, ThreadPool& pool);
 void scatter_sorted(const DofInput& input, Image& result, ThreadPool& pool);
 
-/// Their oracles, which stamp each disc pixel by pixel; equal to the bit.
-void scatter_unsorted_plain(const DofInput& input, Image& result, ThreadPool& pool);
-void scatter_sorted_plain(const DofInput& input, Image& result, ThreadPool& pool);
+/// How depth is cut: not at all, into near, focus and far (layers.h), or into the slabs
+/// above.
+enum class SlabRule { one, layers, doubling };
+void scatter_in_slabs(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool);
+
+/// Its oracle, which stamps each disc pixel by pixel; equal to the bit.
+void scatter_in_slabs_plain(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool);
 
 }  // namespace softfocus

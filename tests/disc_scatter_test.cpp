@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "dof/layers.h"
 #include "dof/scatter.h"
 #include "dof/scatter_discs.h"
 #include "raster/images/texel.h"
@@ -23,14 +24,15 @@ Image filtered(Filter filter, const Image& scene, const DofSettings& settings, T
 
 TEST_CASE("scatter by spans gives the bits of scatter by stamps") {
   ThreadPool pool(3);
-  for (const auto& [fast, plain] :
-       {std::pair<Filter, Filter>{scatter_unsorted, scatter_unsorted_plain},
-        {scatter_sorted, scatter_sorted_plain}}) {
+  for (const SlabRule rule : {SlabRule::one, SlabRule::layers, SlabRule::doubling}) {
     for (const int size : {1, 2, 37, 64}) {
       const Image scene = random_scene_image(size, 66 - size, 1);
       for (const float max_coc : {0.0f, 0.7f, 2.0f, 9.4f, 100.0f}) {
         const DofSettings settings{.coc = {30.0f, 2.0f}, .max_coc_px = max_coc};
-        CHECK(equal(filtered(fast, scene, settings, pool), filtered(plain, scene, settings, pool)));
+        Image fast = make_image(Format::rgba16f, scene.width, scene.height), plain = fast;
+        scatter_in_slabs({scene, settings, {}}, fast, rule, pool);
+        scatter_in_slabs_plain({scene, settings, {}}, plain, rule, pool);
+        CHECK(equal(fast, plain));
       }
     }
   }
@@ -62,7 +64,8 @@ TEST_CASE("a scattered disc has a disc's area and second moment") {
   }
 }
 
-TEST_CASE("sorted scatter lets no light of the background over a near sharp object's inside") {
+TEST_CASE(
+    "sorted scatter and layers let no light of the background over a near sharp object's inside") {
   ThreadPool pool(2);
   // The left half in focus and black, the right half far and bright.
   Image scene = random_scene_image(64, 64, 3);
@@ -75,12 +78,16 @@ TEST_CASE("sorted scatter lets no light of the background over a near sharp obje
   const DofSettings settings{.coc = {12.0f, 2.0f}, .max_coc_px = 16.0f};
   const Image sorted = filtered(scatter_sorted, scene, settings, pool);
   for (int x = 0; x < 32; ++x) CHECK(load_texel(sorted, x, 30).x == 0.0f);
+  const Image layered = filtered(layers, scene, settings, pool);
+  for (int x = 0; x < 32; ++x) CHECK(load_texel(layered, x, 30).x == 0.0f);
   // Which the unsorted one does.
   const Image unsorted = filtered(scatter_unsorted, scene, settings, pool);
   CHECK(load_texel(unsorted, 31, 30).x > 1.0f);
 }
 
-TEST_CASE("sorted scatter puts a blurred foreground over a sharp background, half at its edge") {
+TEST_CASE(
+    "sorted scatter and layers put a blurred foreground over a sharp background, half at its "
+    "edge") {
   ThreadPool pool(2);
   Image scene = random_scene_image(96, 64, 4);
   for (int y = 0; y < 64; ++y) {
@@ -92,8 +99,10 @@ TEST_CASE("sorted scatter puts a blurred foreground over a sharp background, hal
   }
   // Radius 10 before the focus.
   const DofSettings settings{.coc = {10.0f, 2.0f}, .max_coc_px = 16.0f};
-  const Image result = filtered(scatter_sorted, scene, settings, pool);
-  CHECK(load_texel(result, 48, 32).x == doctest::Approx(0.5).epsilon(0.1));
-  CHECK(load_texel(result, 53, 32).x == doctest::Approx(0.8).epsilon(0.1));
-  CHECK(load_texel(result, 59, 32).x == 1.0f);
+  for (const Filter filter : {scatter_sorted, layers}) {
+    const Image result = filtered(filter, scene, settings, pool);
+    CHECK(load_texel(result, 48, 32).x == doctest::Approx(0.5).epsilon(0.1));
+    CHECK(load_texel(result, 53, 32).x == doctest::Approx(0.8).epsilon(0.1));
+    CHECK(load_texel(result, 59, 32).x == 1.0f);
+  }
 }

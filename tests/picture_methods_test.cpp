@@ -33,6 +33,7 @@ struct Claims {
 constexpr std::array kClaims{
     Claims{"scatter", 1, 0.002, 0.01, 0.0},
     Claims{"scatter-sorted", 1, 0.002, 0.01, 0.0},
+    Claims{"layers", 1, 0.002, 0.01, 0.0},
     Claims{"diffusion", 1, 0.002, 0.01, 0.002},
 };
 
