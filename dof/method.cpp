@@ -6,6 +6,7 @@
 #include "dof/layers.h"
 #include "dof/one_pass.h"
 #include "dof/pinhole.h"
+#include "dof/ring_bucket.h"
 #include "dof/scatter.h"
 #include "dof/two_pass.h"
 
@@ -28,6 +29,8 @@ constexpr std::array kMethods{
            kColourAndDepth, layers},
     Method{"diffusion", "colour flows like heat, after Kass, Lefohn and Owens 2006",
            kColourAndDepth, diffusion},
+    Method{"ring-bucket", "rings at half resolution, the near field apart, after Abadie 2018",
+           kColourAndDepth, ring_bucket},
 };
 
 }  // namespace
