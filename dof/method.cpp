@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "dof/circular_separable.h"
 #include "dof/diffusion.h"
 #include "dof/layers.h"
 #include "dof/one_pass.h"
@@ -31,6 +32,9 @@ constexpr std::array kMethods{
            kColourAndDepth, diffusion},
     Method{"ring-bucket", "rings at half resolution, the near field apart, after Abadie 2018",
            kColourAndDepth, ring_bucket},
+    Method{"circular-1", "a disc of one complex Gaussian, separable, after Garcia 2017",
+           kColourAndDepth, circular_one},
+    Method{"circular-2", "the same of two complex Gaussians", kColourAndDepth, circular_two},
 };
 
 }  // namespace

@@ -37,7 +37,8 @@ struct Claims {
 constexpr std::array kClaims{
     Claims{"scatter", 1, 0.002, 0.01, 0.0},      Claims{"scatter-sorted", 1, 0.002, 0.01, 0.0},
     Claims{"layers", 1, 0.002, 0.01, 0.0},       Claims{"diffusion", 1, 0.002, 0.01, 0.002},
-    Claims{"ring-bucket", 1, 0.1, 0.1, 0.01, 9},
+    Claims{"ring-bucket", 1, 0.1, 0.1, 0.01, 9}, Claims{"circular-1", 1, 0.03, 0.05, 0.002},
+    Claims{"circular-2", 1, 0.03, 0.05, 0.002},
 };
 
 Image filtered(const char* name, const Image& scene, const DofSettings& settings,
