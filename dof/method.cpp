@@ -7,6 +7,7 @@
 #include "dof/layers.h"
 #include "dof/one_pass.h"
 #include "dof/pinhole.h"
+#include "dof/post_process.h"
 #include "dof/ring_bucket.h"
 #include "dof/scatter.h"
 #include "dof/two_pass.h"
@@ -35,6 +36,8 @@ constexpr std::array kMethods{
     Method{"circular-1", "a disc of one complex Gaussian, separable, after Garcia 2017",
            kColourAndDepth, circular_one},
     Method{"circular-2", "the same of two complex Gaussians", kColourAndDepth, circular_two},
+    Method{"post-process", "blended from four sharpnesses, after Hammon 2007", kColourAndDepth,
+           post_process},
 };
 
 }  // namespace
