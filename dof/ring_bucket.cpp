@@ -19,6 +19,21 @@ constexpr int kTileSize = 16;
 constexpr int kMostRings = 5;
 constexpr int kResults = 7;
 
+// Planes of the half picture, after the colours.
+constexpr int kSize = 3;
+constexpr int kShare = 4;
+
+// The size of a sample that is not spread: it reaches no neighbour.
+constexpr float kLeastSize = 0.5f;
+
+// The radius squared that half resolution has by itself.
+constexpr float kHalfSquare = 4.0f;
+
+// How much of a pixel half resolution shows.
+float half_share(float radius_px) {
+  return std::clamp((radius_px * radius_px - 0.25f) * (1.0f / (kHalfSquare - 0.25f)), 0.0f, 1.0f);
+}
+
 // 2x2 pixels as one, in rows whose ends repeat for `margin` pixels and a vector.
 struct HalfPicture {
   int width, height, margin;
@@ -53,18 +68,20 @@ void halve_row(const Planes& full, int y, float* to, std::ptrdiff_t plane, int w
       for (std::size_t c = 0; c < 4; ++c) sum[c] += pair[c];
     }
     for (int c = 0; c < 3; ++c) to[c * plane + x] = sum[static_cast<std::size_t>(c)] / sum[3];
-    to[3 * plane + x] = 0.5f * nearest;
+    to[kSize * plane + x] =
+        std::max(0.5f * std::sqrt(std::max(nearest * nearest - kHalfSquare, 0.0f)), kLeastSize);
+    to[kShare * plane + x] = nearest < 0.0f ? half_share(nearest) : 0.0f;
   }
 }
 
 HalfPicture halve(const Planes& full, int margin, ThreadPool& pool) {
   HalfPicture half{(full.width + 1) / 2, (full.height + 1) / 2, margin, {}};
   const int padded = half.width + 2 * margin + 2 * kTileSize;
-  half.planes = make_planes(4, padded, half.height);
+  half.planes = make_planes(5, padded, half.height);
   pool.for_each(half.height, [&](int y) {
     float* first = plane_row(half.planes, 0, y);
     halve_row(full, y, first + margin, half.planes.plane, half.width);
-    for (int c = 0; c < 4; ++c, first += half.planes.plane) {
+    for (int c = 0; c < 5; ++c, first += half.planes.plane) {
       std::fill_n(first, margin, first[margin]);
       std::fill(first + margin + half.width, first + half.planes.stride,
                 first[margin + half.width - 1]);
@@ -75,7 +92,7 @@ HalfPicture halve(const Planes& full, int margin, ThreadPool& pool) {
 
 struct Tiles {
   int columns, rows;
-  std::vector<float> largest;  // |h| inside
+  std::vector<float> largest;  // size inside
 
   float at(int column, int row) const {
     return largest[static_cast<std::size_t>(row * columns + column)];
@@ -88,18 +105,18 @@ Tiles make_tiles(const HalfPicture& half, ThreadPool& pool) {
   tiles.largest.assign(static_cast<std::size_t>(tiles.columns * tiles.rows), 0.0f);
   pool.for_each(tiles.rows, [&](int row) {
     for (int y = row * kTileSize; y < std::min((row + 1) * kTileSize, half.height); ++y) {
-      const float* radius = half.at(0, y) + 3 * half.planes.plane;
+      const float* size = half.at(0, y) + kSize * half.planes.plane;
       for (int x = 0; x < half.width; ++x) {
         float& largest =
             tiles.largest[static_cast<std::size_t>(row * tiles.columns + x / kTileSize)];
-        largest = std::max(largest, std::fabs(radius[x]));
+        largest = std::max(largest, size[x]);
       }
     }
   });
   return tiles;
 }
 
-// K of a tile. `farthest` is the largest |h| of all.
+// K of a tile. `farthest` is the largest size of all.
 float reach_of_tile(const Tiles& tiles, int column, int row, float farthest) {
   const int steps = static_cast<int>(farthest) / kTileSize + 1;
   float reach = 0.0f;
@@ -149,7 +166,7 @@ Rings make_rings(float reach) {
   float least = 1.0f;
   for (int i = 1; i <= 32; ++i) {
     const float radius = reach * static_cast<float>(i) / 32.0f;
-    if (radius >= 0.25f) least = std::min(least, covered(rings, radius));
+    if (radius >= kLeastSize) least = std::min(least, covered(rings, radius));
   }
   rings.gain = 1.0f / std::max(least, 0.25f);
   return rings;
@@ -171,12 +188,13 @@ Planes gather(const HalfPicture& half, const Tiles& tiles, float farthest, Threa
       for (int y = -margin; y < height + margin; ++y) rows.push_back(half.at(x, first + y));
       for (int y = 0; y < height; ++y) {
         float* to = plane_row(results, 0, first + y) + 1 + x;
-        if (reach <= 0.25f) {
+        if (reach <= kLeastSize) {
           for (int c = 0; c < 6; ++c) {
             std::copy_n(rows[static_cast<std::size_t>(y + margin)] + c % 3 * half.planes.plane,
                         kTileSize, to + c * results.plane);
           }
-          std::fill_n(to + 6 * results.plane, kTileSize, 0.0f);
+          std::copy_n(rows[static_cast<std::size_t>(y + margin)] + kShare * half.planes.plane,
+                      kTileSize, to + 6 * results.plane);
           continue;
         }
         const BucketRow row{&rows[static_cast<std::size_t>(y + margin)],
@@ -225,7 +243,8 @@ void enlarge_row(const Planes& half, int plane, int y, int half_width, int width
 void ring_bucket(const DofInput& input, Image& result, ThreadPool& pool) {
   const Planes full = split_picture(input, pool);
   const std::vector<float> of_rows = largest_of_rows(full, 3, pool);
-  const float farthest = 0.5f * *std::max_element(of_rows.begin(), of_rows.end());
+  const float farthest =
+      std::max(0.5f * *std::max_element(of_rows.begin(), of_rows.end()), kLeastSize);
   const HalfPicture half = halve(full, static_cast<int>(farthest) + 3, pool);
   const Planes gathered = gather(half, make_tiles(half, pool), farthest, pool);
 
@@ -257,7 +276,8 @@ void ring_bucket(const DofInput& input, Image& result, ThreadPool& pool) {
       const float* near = far + 3 * width;
       float* to = out + static_cast<std::size_t>(c) * width;
       for (int x = 0; x < full.width; ++x) {
-        const float blur = std::clamp(std::fabs(radius[x]) - 0.5f, 0.0f, 1.0f);
+        const float blur =
+            radius[x] < 0.0f ? std::clamp(-radius[x] - 2.0f, 0.0f, 1.0f) : half_share(radius[x]);
         const float behind = sharp[x] + blur * (far[x] - sharp[x]);
         to[x] = behind + opacity[x] * (near[x] - behind);
       }

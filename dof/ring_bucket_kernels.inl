@@ -21,9 +21,8 @@ SOFTFOCUS_INLINE Floats mean(Floats sum, Floats weight) {
 
 void gather_rings(const BucketRow& row) {
   for (int x = 0; x < row.count; x += kLanes) {
-    const Floats own_radius = load(row.rows[0] + 3 * row.plane + x);
     // What lies behind a near pixel must be guessed from what does not reach it.
-    const Floats guess = select(own_radius < -0.25f, splat(1e-3f), splat(0.0f));
+    const Floats guess = load(row.rows[0] + 4 * row.plane + x) * 1e-3f;
     Bucket previous = empty_bucket(), near = empty_bucket();
     const BucketTap* tap = row.taps;
     for (int ring = row.rings; ring >= 0; --ring) {
@@ -34,20 +33,18 @@ void gather_rings(const BucketRow& row) {
       for (int i = 0; i < count; ++i, ++tap) {
         const float* from = row.rows[tap->dy] + tap->dx + x;
         const Floats r = load(from), g = load(from + row.plane), b = load(from + 2 * row.plane);
-        const Floats radius = load(from + 3 * row.plane);
-        const Floats size = absolute(radius);
+        const Floats size = load(from + 3 * row.plane);
+        const Floats share = load(from + 4 * row.plane);
         const Floats reached = saturate(size - splat(tap->distance_px - 0.5f));
         const Floats area = larger(size * size * row.density, splat(1.0f));
         const Floats weight = reached / area;
-        const Mask before_focus = radius < -0.25f;
-
-        const Floats near_weight = select(before_focus, weight, splat(0.0f));
+        const Floats near_weight = weight * share;
         near.weight = near.weight + near_weight;
         near.r = near.r + r * near_weight;
         near.g = near.g + g * near_weight;
         near.b = near.b + b * near_weight;
 
-        const Floats far_weight = select(before_focus, splat(0.0f), weight + guess / area);
+        const Floats far_weight = (weight + guess / area) * (1.0f - share);
         const Mask outer = size >= border;
         const Floats to_previous = select(outer, far_weight, splat(0.0f));
         const Floats to_current = far_weight - to_previous;
@@ -61,7 +58,7 @@ void gather_rings(const BucketRow& row) {
         current.g = current.g + g * to_current;
         current.b = current.b + b * to_current;
         current.radius = current.radius + size * to_current;
-        hits = hits + select(before_focus | outer, splat(0.0f), reached);
+        hits = hits + select(outer, splat(0.0f), reached * (1.0f - share));
       }
       const Floats occlusion =
           saturate(mean(previous.radius, previous.weight) - mean(current.radius, current.weight));

@@ -12,8 +12,8 @@ struct BucketTap {
 
 /// A row of a tile and its neighbours, in half-resolution pixels.
 struct BucketRow {
-  /// Red, green, blue and signed radius at the row's first pixel, of rows `dy` away at
-  /// rows[dy]; planes are `plane` apart. Taps to either side need no test.
+  /// Red, green, blue, size and share in the near field at the row's first pixel, of rows `dy` away
+  /// at rows[dy]; planes are `plane` apart. Taps to either side need no test.
   const float* const* rows;
   std::ptrdiff_t plane;
   int count;
