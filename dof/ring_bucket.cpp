@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <vector>
 
 #include "dof/picture_planes.h"
@@ -21,7 +23,9 @@ constexpr int kResults = 7;
 
 // Planes of the half picture, after the colours.
 constexpr int kSize = 3;
-constexpr int kShare = 4;
+constexpr int kLight = 4;  // 1 / size^2
+constexpr int kShare = 5;
+constexpr int kHalfPlanes = 6;
 
 // The size of a sample that is not spread: it reaches no neighbour.
 constexpr float kLeastSize = 0.5f;
@@ -68,8 +72,10 @@ void halve_row(const Planes& full, int y, float* to, std::ptrdiff_t plane, int w
       for (std::size_t c = 0; c < 4; ++c) sum[c] += pair[c];
     }
     for (int c = 0; c < 3; ++c) to[c * plane + x] = sum[static_cast<std::size_t>(c)] / sum[3];
-    to[kSize * plane + x] =
+    const float size =
         std::max(0.5f * std::sqrt(std::max(nearest * nearest - kHalfSquare, 0.0f)), kLeastSize);
+    to[kSize * plane + x] = size;
+    to[kLight * plane + x] = 1.0f / (size * size);
     to[kShare * plane + x] = nearest < 0.0f ? half_share(nearest) : 0.0f;
   }
 }
@@ -77,11 +83,11 @@ void halve_row(const Planes& full, int y, float* to, std::ptrdiff_t plane, int w
 HalfPicture halve(const Planes& full, int margin, ThreadPool& pool) {
   HalfPicture half{(full.width + 1) / 2, (full.height + 1) / 2, margin, {}};
   const int padded = half.width + 2 * margin + 2 * kTileSize;
-  half.planes = make_planes(5, padded, half.height);
+  half.planes = make_planes(kHalfPlanes, padded, half.height);
   pool.for_each(half.height, [&](int y) {
     float* first = plane_row(half.planes, 0, y);
     halve_row(full, y, first + margin, half.planes.plane, half.width);
-    for (int c = 0; c < 5; ++c, first += half.planes.plane) {
+    for (int c = 0; c < kHalfPlanes; ++c, first += half.planes.plane) {
       std::fill_n(first, margin, first[margin]);
       std::fill(first + margin + half.width, first + half.planes.stride,
                 first[margin + half.width - 1]);
@@ -92,44 +98,55 @@ HalfPicture halve(const Planes& full, int margin, ThreadPool& pool) {
 
 struct Tiles {
   int columns, rows;
-  std::vector<float> largest;  // size inside
+  std::vector<float> largest;            // size inside
+  std::vector<std::uint8_t> near_field;  // whether anything inside belongs there
 
-  float at(int column, int row) const {
-    return largest[static_cast<std::size_t>(row * columns + column)];
+  std::size_t at(int column, int row) const {
+    return static_cast<std::size_t>(row * columns + column);
   }
 };
 
 Tiles make_tiles(const HalfPicture& half, ThreadPool& pool) {
   Tiles tiles{
-      (half.width + kTileSize - 1) / kTileSize, (half.height + kTileSize - 1) / kTileSize, {}};
-  tiles.largest.assign(static_cast<std::size_t>(tiles.columns * tiles.rows), 0.0f);
+      (half.width + kTileSize - 1) / kTileSize, (half.height + kTileSize - 1) / kTileSize, {}, {}};
+  tiles.largest.assign(tiles.at(0, tiles.rows), 0.0f);
+  tiles.near_field.assign(tiles.largest.size(), 0);
   pool.for_each(tiles.rows, [&](int row) {
     for (int y = row * kTileSize; y < std::min((row + 1) * kTileSize, half.height); ++y) {
       const float* size = half.at(0, y) + kSize * half.planes.plane;
+      const float* share = half.at(0, y) + kShare * half.planes.plane;
       for (int x = 0; x < half.width; ++x) {
-        float& largest =
-            tiles.largest[static_cast<std::size_t>(row * tiles.columns + x / kTileSize)];
-        largest = std::max(largest, size[x]);
+        const std::size_t tile = tiles.at(x / kTileSize, row);
+        tiles.largest[tile] = std::max(tiles.largest[tile], size[x]);
+        if (share[x] > 0.0f) tiles.near_field[tile] = 1;
       }
     }
   });
   return tiles;
 }
 
-// K of a tile. `farthest` is the largest size of all.
-float reach_of_tile(const Tiles& tiles, int column, int row, float farthest) {
+// What reaches a tile: K, in quarters of a pixel, and whether any of it is near.
+struct Reach {
+  int quarters = 0;
+  bool near_field = false;
+};
+
+// `farthest` is the largest size of all.
+Reach reach_of_tile(const Tiles& tiles, int column, int row, float farthest) {
   const int steps = static_cast<int>(farthest) / kTileSize + 1;
-  float reach = 0.0f;
+  float largest = kLeastSize;
+  Reach reach;
   for (int y = std::max(row - steps, 0); y <= std::min(row + steps, tiles.rows - 1); ++y) {
     for (int x = std::max(column - steps, 0); x <= std::min(column + steps, tiles.columns - 1);
          ++x) {
       const int apart = std::max(std::abs(x - column), std::abs(y - row));
-      const float largest = tiles.at(x, y);
-      if (largest + 0.5f >= static_cast<float>((apart - 1) * kTileSize)) {
-        reach = std::max(reach, largest);
-      }
+      const float size = tiles.largest[tiles.at(x, y)];
+      if (size + 0.5f < static_cast<float>((apart - 1) * kTileSize)) continue;
+      largest = std::max(largest, size);
+      reach.near_field = reach.near_field || tiles.near_field[tiles.at(x, y)] != 0;
     }
   }
+  reach.quarters = static_cast<int>(std::ceil(4.0f * largest));
   return reach;
 }
 
@@ -175,20 +192,32 @@ Rings make_rings(float reach) {
 // The seven planes of results, with a pixel more at either end of a row.
 Planes gather(const HalfPicture& half, const Tiles& tiles, float farthest, ThreadPool& pool) {
   Planes results = make_planes(kResults, half.width + 2 + 2 * kTileSize, half.height);
+  std::vector<Reach> reaches(tiles.largest.size());
+  pool.for_each(tiles.rows, [&](int row) {
+    for (int column = 0; column < tiles.columns; ++column) {
+      reaches[tiles.at(column, row)] = reach_of_tile(tiles, column, row, farthest);
+    }
+  });
+  std::map<int, Rings> rings_of;
+  for (const Reach& reach : reaches) {
+    if (!rings_of.contains(reach.quarters)) {
+      rings_of.emplace(reach.quarters, make_rings(0.25f * static_cast<float>(reach.quarters)));
+    }
+  }
   pool.for_each(tiles.rows, [&](int tile_row) {
     std::vector<const float*> rows;
     const int first = tile_row * kTileSize;
     const int height = std::min(kTileSize, half.height - first);
     for (int column = 0; column < tiles.columns; ++column) {
       const int x = column * kTileSize;
-      const float reach = reach_of_tile(tiles, column, tile_row, farthest);
-      const Rings rings = make_rings(reach);
-      const int margin = static_cast<int>(reach) + 2;
+      const Reach reach = reaches[tiles.at(column, tile_row)];
+      const Rings& rings = rings_of.at(reach.quarters);
+      const int margin = reach.quarters / 4 + 2;
       rows.clear();
       for (int y = -margin; y < height + margin; ++y) rows.push_back(half.at(x, first + y));
       for (int y = 0; y < height; ++y) {
         float* to = plane_row(results, 0, first + y) + 1 + x;
-        if (reach <= kLeastSize) {
+        if (reach.quarters <= static_cast<int>(4.0f * kLeastSize)) {
           for (int c = 0; c < 6; ++c) {
             std::copy_n(rows[static_cast<std::size_t>(y + margin)] + c % 3 * half.planes.plane,
                         kTileSize, to + c * results.plane);
@@ -203,8 +232,9 @@ Planes gather(const HalfPicture& half, const Tiles& tiles, float farthest, Threa
                             rings.taps.data(),
                             rings.count,
                             rings.spacing_px,
-                            rings.density,
+                            1.0f / rings.density,
                             rings.gain,
+                            reach.near_field,
                             to,
                             results.plane};
         SOFTFOCUS_KERNEL(pool.isa(), gather_rings)(row);
@@ -245,7 +275,7 @@ void ring_bucket(const DofInput& input, Image& result, ThreadPool& pool) {
   const std::vector<float> of_rows = largest_of_rows(full, 3, pool);
   const float farthest =
       std::max(0.5f * *std::max_element(of_rows.begin(), of_rows.end()), kLeastSize);
-  const HalfPicture half = halve(full, static_cast<int>(farthest) + 3, pool);
+  const HalfPicture half = halve(full, static_cast<int>(farthest) + 4, pool);
   const Planes gathered = gather(half, make_tiles(half, pool), farthest, pool);
 
   Planes medians = make_planes(kResults, half.width + 2 + 2 * kTileSize, half.height);

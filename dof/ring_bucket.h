@@ -8,7 +8,8 @@
 //    to spread a pixel over what is missing has the size, in half-resolution pixels,
 //      a = max(1/2, sqrt(r^2 - 4) / 2);   t(r) = sat((r^2 - 1/4) / (4 - 1/4))
 //    and t is how much of a pixel half resolution shows.
-// 2. Tiles of 16x16 hold the largest a that reaches them from any tile: K. Their taps lie
+// 2. Tiles of 16x16 hold the largest a that reaches them from any tile, rounded up to
+//    quarters: K. Their taps lie
 //    on n = ceil(K) rings, 1 to 5, at i s pixels, s = max(K/n, 1), 8 i on ring i, rounded to
 //    pixels: 9 to 121 taps.
 // 3. A sample p at distance d weighs

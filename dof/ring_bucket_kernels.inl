@@ -17,12 +17,12 @@ SOFTFOCUS_INLINE Floats mean(Floats sum, Floats weight) {
   return sum / larger(weight, splat(1e-20f));
 }
 
-}  // namespace
-
-void gather_rings(const BucketRow& row) {
+template <bool near_field>
+SOFTFOCUS_INLINE void gather_fields(const BucketRow& row) {
   for (int x = 0; x < row.count; x += kLanes) {
     // What lies behind a near pixel must be guessed from what does not reach it.
-    const Floats guess = load(row.rows[0] + 4 * row.plane + x) * 1e-3f;
+    Floats guess = splat(0.0f);
+    if constexpr (near_field) guess = load(row.rows[0] + 5 * row.plane + x) * 1e-3f;
     Bucket previous = empty_bucket(), near = empty_bucket();
     const BucketTap* tap = row.taps;
     for (int ring = row.rings; ring >= 0; --ring) {
@@ -34,17 +34,19 @@ void gather_rings(const BucketRow& row) {
         const float* from = row.rows[tap->dy] + tap->dx + x;
         const Floats r = load(from), g = load(from + row.plane), b = load(from + 2 * row.plane);
         const Floats size = load(from + 3 * row.plane);
-        const Floats share = load(from + 4 * row.plane);
         const Floats reached = saturate(size - splat(tap->distance_px - 0.5f));
-        const Floats area = larger(size * size * row.density, splat(1.0f));
-        const Floats weight = reached / area;
-        const Floats near_weight = weight * share;
-        near.weight = near.weight + near_weight;
-        near.r = near.r + r * near_weight;
-        near.g = near.g + g * near_weight;
-        near.b = near.b + b * near_weight;
-
-        const Floats far_weight = (weight + guess / area) * (1.0f - share);
+        const Floats light = smaller(load(from + 4 * row.plane) * row.inverse_density, splat(1.0f));
+        Floats far_reached = reached, far_weight = reached * light;
+        if constexpr (near_field) {
+          const Floats share = load(from + 5 * row.plane);
+          const Floats near_weight = far_weight * share;
+          near.weight = near.weight + near_weight;
+          near.r = near.r + r * near_weight;
+          near.g = near.g + g * near_weight;
+          near.b = near.b + b * near_weight;
+          far_weight = (far_weight + guess * light) * (1.0f - share);
+          far_reached = reached * (1.0f - share);
+        }
         const Mask outer = size >= border;
         const Floats to_previous = select(outer, far_weight, splat(0.0f));
         const Floats to_current = far_weight - to_previous;
@@ -58,7 +60,7 @@ void gather_rings(const BucketRow& row) {
         current.g = current.g + g * to_current;
         current.b = current.b + b * to_current;
         current.radius = current.radius + size * to_current;
-        hits = hits + select(outer, splat(0.0f), reached * (1.0f - share));
+        hits = hits + select(outer, splat(0.0f), far_reached);
       }
       const Floats occlusion =
           saturate(mean(previous.radius, previous.weight) - mean(current.radius, current.weight));
@@ -84,6 +86,12 @@ void gather_rings(const BucketRow& row) {
           select(any_near, mean(near.b, near.weight), load(own + 2 * row.plane)));
     store(to + 6 * row.result_plane, saturate(near.weight * row.gain));
   }
+}
+
+}  // namespace
+
+void gather_rings(const BucketRow& row) {
+  row.near_field ? gather_fields<true>(row) : gather_fields<false>(row);
 }
 
 namespace {

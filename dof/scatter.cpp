@@ -141,7 +141,8 @@ Colour resolve(const Over& over) {
 }
 
 struct RowBuffers {
-  std::vector<std::uint64_t> differences;  // slab by slab, with a margin on either side
+  // Slab by slab, with a margin on either side; no four numbers across two cache lines.
+  std::vector<std::uint64_t, RowAllocator<std::uint64_t>> differences;
   std::vector<float> colour;
 };
 
