@@ -32,13 +32,21 @@ struct Claims {
   /// Width of the light that stands for a point: a method at half resolution sees none
   /// of a pixel.
   int point_size = 1;
+  /// What is sharp takes no light of a blurred background.
+  bool keeps_background_out = true;
+  /// A blurred foreground's light falls on what is sharp beside it.
+  bool spreads_foreground = true;
 };
 
 constexpr std::array kClaims{
-    Claims{"scatter", 1, 0.002, 0.01, 0.0},      Claims{"scatter-sorted", 1, 0.002, 0.01, 0.0},
-    Claims{"layers", 1, 0.002, 0.01, 0.0},       Claims{"diffusion", 1, 0.002, 0.01, 0.002},
-    Claims{"ring-bucket", 1, 0.1, 0.1, 0.01, 9}, Claims{"circular-1", 1, 0.03, 0.05, 0.002},
-    Claims{"circular-2", 1, 0.03, 0.05, 0.002},  Claims{"post-process", 1, 0.01, 0.05, 2.0},
+    Claims{"scatter", 1, 0.002, 0.01, 0.0, 1, false, true},
+    Claims{"scatter-sorted", 1, 0.002, 0.01, 0.0},
+    Claims{"layers", 1, 0.002, 0.01, 0.0},
+    Claims{"diffusion", 1, 0.002, 0.01, 0.002, 1, true, false},
+    Claims{"ring-bucket", 1, 0.1, 0.1, 0.01, 9},
+    Claims{"circular-1", 1, 0.03, 0.05, 0.002, 1, true, false},
+    Claims{"circular-2", 1, 0.03, 0.05, 0.002, 1, true, false},
+    Claims{"post-process", 1, 0.01, 0.05, 2.0},
 };
 
 Image filtered(const char* name, const Image& scene, const DofSettings& settings,
@@ -178,6 +186,39 @@ TEST_CASE("every method keeps an isolated point's light, and spreads it as far a
       CHECK(std::fabs(got.light / before.light - 1.0) <= claims.energy_error);
       CHECK(std::fabs(radius / 8.0 - 1.0) <= claims.radius_error);
     }
+  }
+}
+
+TEST_CASE("a sharp object takes no light of the background, by every method that says so") {
+  ThreadPool pool(2);
+  Image scene = make_image(Format::rgba16f, 64, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const float light = x < 32 ? 0.0f : 10.0f;
+      store_texel(scene, x, y, {light, light, light, x < 32 ? 2.0f : 50.0f}, {});
+    }
+  }
+  for (const Claims& claims : kClaims) {
+    const Image result = filtered(claims.name, scene, settings(12.0f, 16.0f), pool);
+    INFO(std::string{claims.name});
+    CHECK((load_texel(result, 31, 30).x == 0.0f) == claims.keeps_background_out);
+  }
+}
+
+TEST_CASE("a blurred foreground falls on what is sharp, by every method that says so") {
+  ThreadPool pool(2);
+  Image scene = make_image(Format::rgba16f, 96, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      const float light = x < 48 ? 10.0f : 0.0f;
+      store_texel(scene, x, y, {light, light, light, x < 48 ? 1.0f : 2.0f}, {});
+    }
+  }
+  for (const Claims& claims : kClaims) {
+    const Image result = filtered(claims.name, scene, settings(10.0f, 16.0f), pool);
+    INFO(std::string{claims.name});
+    CHECK((load_texel(result, 50, 32).x > 0.5f) == claims.spreads_foreground);
+    CHECK(load_texel(result, 70, 32).x < 1.0f);
   }
 }
 
