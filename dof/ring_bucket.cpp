@@ -164,6 +164,13 @@ float covered(const Rings& rings, float radius) {
   return sum / std::max(radius * radius * rings.density, 1.0f);
 }
 
+// Halves go outwards, those too that a cosine's last bit has made smaller: rings are
+// symmetric.
+int nearest_pixel(double offset) {
+  const int distance = static_cast<int>(std::fabs(offset) + (0.5 + 1e-9));
+  return offset < 0.0 ? -distance : distance;
+}
+
 Rings make_rings(float reach) {
   Rings rings{};
   rings.count = std::clamp(static_cast<int>(std::ceil(reach)), 1, kMostRings);
@@ -173,8 +180,8 @@ Rings make_rings(float reach) {
     for (int i = 0; i < steps; ++i) {
       const double degrees = 360.0 * i / steps;
       const double radius = static_cast<double>(rings.spacing_px) * ring;
-      const int dx = static_cast<int>(std::lround(radius * exact_math::cos_degrees(degrees)));
-      const int dy = static_cast<int>(std::lround(radius * exact_math::sin_degrees(degrees)));
+      const int dx = nearest_pixel(radius * exact_math::cos_degrees(degrees));
+      const int dy = nearest_pixel(radius * exact_math::sin_degrees(degrees));
       rings.taps.push_back({dx, dy, std::sqrt(static_cast<float>(dx * dx + dy * dy))});
     }
   }
