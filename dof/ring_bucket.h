@@ -15,7 +15,7 @@
 // 3. A sample p at distance d weighs
 //      w = sat(a - d + 1/2) / max(1, a^2 D),   D = taps / ((n + 1/2) s)^2
 //    It belongs to the near field by t where it lies before the focus, else to the far one.
-//    Far field, ring by ring from outside: samples whose a reaches past the ring's inner
+//    Far field, ring by ring from outside: samples whose a reaches past the ring's outer
 //    border join the bucket `previous`, the others `current`, and then
 //      occlusion = sat(mean a of previous - mean a of current)
 //      opacity of current = its sum of sat(a - d + 1/2) / taps of the ring

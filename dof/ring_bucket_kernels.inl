@@ -27,7 +27,7 @@ SOFTFOCUS_INLINE void gather_fields(const BucketRow& row) {
     const BucketTap* tap = row.taps;
     for (int ring = row.rings; ring >= 0; --ring) {
       const int count = ring > 0 ? 8 * ring : 1;
-      const Floats border = splat((static_cast<float>(ring) - 0.5f) * row.spacing_px);
+      const Floats border = splat((static_cast<float>(ring) + 0.5f) * row.spacing_px);
       Bucket current = empty_bucket();
       Floats hits = splat(0.0f);
       for (int i = 0; i < count; ++i, ++tap) {
@@ -47,7 +47,7 @@ SOFTFOCUS_INLINE void gather_fields(const BucketRow& row) {
           far_weight = (far_weight + guess * light) * (1.0f - share);
           far_reached = reached * (1.0f - share);
         }
-        const Mask outer = size >= border;
+        const Mask outer = size > border;
         const Floats to_previous = select(outer, far_weight, splat(0.0f));
         const Floats to_current = far_weight - to_previous;
         previous.weight = previous.weight + to_previous;

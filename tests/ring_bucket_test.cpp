@@ -97,7 +97,7 @@ struct Oracle {
         near.weight += reached * light * p.share;
         near.colour += reached * light * p.share * p.colour;
         const double w = (reached + 1e-3 * own.share) * light * (1.0 - p.share);
-        const bool joins = size >= (ring - 0.5) * spacing;
+        const bool joins = size > (ring + 0.5) * spacing;
         Bucket& bucket = joins ? previous : current;
         bucket.weight += w;
         bucket.colour += w * p.colour;
