@@ -2,8 +2,14 @@
 
 #include <array>
 
+#include "dof/circular_separable.h"
+#include "dof/diffusion.h"
+#include "dof/layers.h"
 #include "dof/one_pass.h"
 #include "dof/pinhole.h"
+#include "dof/post_process.h"
+#include "dof/ring_bucket.h"
+#include "dof/scatter.h"
 #include "dof/two_pass.h"
 
 namespace softfocus {
@@ -17,6 +23,21 @@ constexpr std::array kMethods{
            kColourAndDepth, two_pass},
     Method{"one-pass", "one gather over rings: round and slower, the thesis 5.1", kColourAndDepth,
            one_pass},
+    Method{"scatter", "every pixel spread over its disc, after Potmesil and Chakravarty 1981",
+           kColourAndDepth, scatter_unsorted},
+    Method{"scatter-sorted", "the same in slabs of depth, one over the other", kColourAndDepth,
+           scatter_sorted},
+    Method{"layers", "near, focus and far, each blurred by itself, after Scofield 1992",
+           kColourAndDepth, layers},
+    Method{"diffusion", "colour flows like heat, after Kass, Lefohn and Owens 2006",
+           kColourAndDepth, diffusion},
+    Method{"ring-bucket", "rings at half resolution, the near field apart, after Abadie 2018",
+           kColourAndDepth, ring_bucket},
+    Method{"circular-1", "a disc of one complex Gaussian, separable, after Garcia 2017",
+           kColourAndDepth, circular_one},
+    Method{"circular-2", "the same of two complex Gaussians", kColourAndDepth, circular_two},
+    Method{"post-process", "blended from four sharpnesses, after Hammon 2007", kColourAndDepth,
+           post_process},
 };
 
 }  // namespace

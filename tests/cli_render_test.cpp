@@ -1,5 +1,6 @@
 #include <map>
 
+#include "dof/method.h"
 #include "raster/images/texel.h"
 #include "tests/cli_render.h"
 
@@ -22,7 +23,8 @@ TEST_CASE("render: a picture is 1024 x 1024 if no size is given") {
 }
 
 TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads, by every method") {
-  for (const std::string method : {"pinhole", "two-pass", "one-pass"}) {
+  for (const Method& entry : methods()) {
+    const std::string method{entry.name};
     const auto with_threads = [&](const std::string& threads) {
       return rendered("figures", {"--method", method, "--max-coc", "6", "--threads", threads});
     };

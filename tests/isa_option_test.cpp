@@ -2,6 +2,7 @@
 
 #include "raster/numbers/isa.h"
 
+#include "dof/method.h"
 #include "tests/cli_refused.h"
 #include "tests/cli_render.h"
 
@@ -17,7 +18,8 @@ TEST_CASE("selftest passes on every vector unit of this CPU") {
 }
 
 TEST_CASE("render: the bytes are the same on every vector unit, by every method") {
-  for (const std::string method : {"pinhole", "two-pass", "one-pass"}) {
+  for (const Method& entry : methods()) {
+    const std::string method{entry.name};
     const auto on = [&](Isa isa) {
       return rendered("sphere-world",
                       {"--method", method, "--max-coc", "6", "--isa", std::string{isa_name(isa)}});

@@ -1,0 +1,11 @@
+#include "dof/layers.h"
+
+#include "dof/scatter.h"
+
+namespace softfocus {
+
+void layers(const DofInput& input, Image& result, ThreadPool& pool) {
+  scatter_in_slabs(input, result, SlabRule::layers, pool);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,94 @@
+#include "dof/picture_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dof/weights.h"
+#include "raster/images/texel.h"
+
+#define SOFTFOCUS_KERNELS "dof/picture_planes_kernels.inl"
+#include "raster/numbers/for_each_isa.inl"
+
+namespace softfocus {
+namespace {
+
+constexpr int kWidestVector = 16;
+
+float finite_colour(float value) {
+  const float cut = clamp_to_half(value);
+  return cut == cut ? cut : 0.0f;
+}
+
+}  // namespace
+
+Planes make_planes(int count, int width, int height) {
+  Planes planes;
+  planes.width = width;
+  planes.height = height;
+  planes.stride = (width + kWidestVector - 1) / kWidestVector * kWidestVector;
+  // Rows a multiple of 1 KiB apart would meet in a few sets of a cache.
+  if (planes.stride % 256 == 0) planes.stride += kWidestVector;
+  planes.plane = planes.stride * height;
+  planes.values =
+      std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(count * planes.plane));
+  return planes;
+}
+
+SplitTexel split_texel(const DofInput& input, int x, int y) {
+  const glm::vec4 texel = load_texel<Format::rgba16f>(input.scene, x, y);
+  const float magnitude = filter_radius(input.settings, texel.w);
+  const bool near = coc_radius_px(input.settings.coc, texel.w) < 0.0f;
+  return {finite_colour(texel.x), finite_colour(texel.y), finite_colour(texel.z),
+          near ? -magnitude : magnitude};
+}
+
+Planes split_picture(const DofInput& input, ThreadPool& pool) {
+  const Image& scene = input.scene;
+  Planes planes = make_planes(4, scene.width, scene.height);
+  pool.for_each(scene.height, [&](int y) {
+    float* to = plane_row(planes, 0, y);
+    if (pool.isa() != Isa::scalar) {
+      SOFTFOCUS_KERNEL(pool.isa(), split_row)
+      (input.settings, row<std::uint16_t>(scene, y).data(), scene.width,
+       static_cast<int>(planes.stride), to, planes.plane);
+      return;
+    }
+    for (int x = 0; x < planes.stride; ++x) {
+      const SplitTexel texel = split_texel(input, std::min(x, scene.width - 1), y);
+      to[x] = texel.r;
+      to[planes.plane + x] = texel.g;
+      to[2 * planes.plane + x] = texel.b;
+      to[3 * planes.plane + x] = texel.radius_px;
+    }
+  });
+  return planes;
+}
+
+void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
+               const float* b, Isa isa) {
+  if (isa != Isa::scalar) {
+    SOFTFOCUS_KERNEL(isa, merge_row)
+    (row<std::uint16_t>(input.scene, y).data(), r, g, b, result.width, input.profile.half_store,
+     row<std::uint16_t>(result, y).data());
+    return;
+  }
+  for (int x = 0; x < result.width; ++x) {
+    const float depth = load_texel<Format::rgba16f>(input.scene, x, y).w;
+    store_texel<Format::rgba16f>(
+        result, x, y, {clamp_to_half(r[x]), clamp_to_half(g[x]), clamp_to_half(b[x]), depth},
+        input.profile);
+  }
+}
+
+std::vector<float> largest_of_rows(const Planes& planes, int plane, ThreadPool& pool) {
+  std::vector<float> largest(static_cast<std::size_t>(planes.height));
+  pool.for_each(planes.height, [&](int y) {
+    const float* values = plane_row(planes, plane, y);
+    float most = 0.0f;
+    for (int x = 0; x < planes.width; ++x) most = std::max(most, std::fabs(values[x]));
+    largest[static_cast<std::size_t>(y)] = most;
+  });
+  return largest;
+}
+
+}  // namespace softfocus
