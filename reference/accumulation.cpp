@@ -1,30 +1,91 @@
 #include "reference/accumulation.h"
 
+#include <array>
+#include <utility>
 #include <vector>
 
+#include "dof/scratch_shelf.h"
 #include "reference/lens_view.h"
 #include "reference/take_samples.h"
 #include "scenes/draw_scene.h"
 
 namespace softfocus {
+namespace {
 
+// A group of samples of one tile, a row after the other.
+struct TileSamples {
+  std::array<std::vector<std::uint16_t>, kSampleGroup> texels;
+};
+
+constexpr std::size_t kTexelHalves = 4;
+
+static_assert(kSumTile % kTileSize == 0);
+
+void keep_tile(const Image& picture, const Rectangle& tile, std::vector<std::uint16_t>& texels) {
+  texels.resize(std::size_t{kTileSize} * kTileSize * kTexelHalves);
+  const auto begin = kTexelHalves * static_cast<std::size_t>(tile.x_begin);
+  const auto count = kTexelHalves * static_cast<std::size_t>(tile.x_end - tile.x_begin);
+  auto to = texels.begin();
+  for (int y = tile.y_begin; y < tile.y_end; ++y) {
+    const auto from = row<std::uint16_t>(picture, y).subspan(begin, count);
+    to = std::copy(from.begin(), from.end(), to);
+  }
+}
+
+void add_tile(const TileSamples& samples, std::size_t count, const Rectangle& tile,
+              SampleSums& sums, Isa isa) {
+  const int width = tile.x_end - tile.x_begin;
+  std::array<const std::uint16_t*, kSampleGroup> rows{};
+  for (std::size_t i = 0; i < count; ++i) rows[i] = samples.texels[i].data();
+  for (int y = tile.y_begin; y < tile.y_end; ++y) {
+    add_rows({rows.data(), count}, tile.x_begin, y, width, sums, isa);
+    for (std::size_t i = 0; i < count; ++i)
+      rows[i] += kTexelHalves * static_cast<std::size_t>(width);
+  }
+}
+
+}  // namespace
+
+// All views of a group are drawn into the same tile of one picture, one after the other, and
+// added up while it is in the core's cache: a sample's pixels never go to memory.
 SampledPicture accumulation(const SceneMethodInput& input, ThreadPool& pool) {
   const int width = input.pinhole.width, height = input.pinhole.height;
   const Sampling& sampling = input.sampling;
   const auto points = lens_points(sampling.aperture, sampling.samples);
   const auto offsets = pixel_offsets(sampling.jitter, sampling.samples);
-  PreparedScene prepared = prepare_scene(input.scene, input.profile, pool);
-  std::vector<Image> pictures;
+  const PreparedScene prepared = prepare_scene(input.scene, input.profile, pool);
+  Image picture = make_image(Format::rgba16f, width, height);
+  Image depth = make_image(Format::r32f, width, height);
+  std::vector<RenderPass> passes;
+  ScratchShelf<TileSamples> shelf;
+
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
     const auto count = static_cast<std::size_t>(end - begin);
-    while (pictures.size() < count) pictures.push_back(make_image(Format::rgba16f, width, height));
+    while (passes.size() < count) {
+      RenderPass& pass = passes.emplace_back(prepared.pass);
+      pass.targets.colour[0] = &picture;
+      pass.targets.depth = &depth;
+    }
+    std::vector<TileLists> views;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t sample = static_cast<std::size_t>(begin) + i;
       const View view = lens_view(input.view, points[sample] * input.aperture_radius_m,
                                   input.focus_m, offsets[sample], width, height);
-      draw_scene(prepared, view, input.frame, pictures[i], pool);
+      record_scene(prepared, view, input.frame, passes[i]);
+      views.push_back(sort_into_tiles(passes[i], pool));
     }
-    add_pictures({pictures.data(), count}, sums, pool);
+    pool.for_each(static_cast<int>(views[0].tiles.size()), [&](int tile) {
+      TileSamples samples = shelf.take();
+      const Rectangle area = tile_area(views[0], tile);
+      for (std::size_t i = 0; i < count; ++i) {
+        draw_tile(passes[i], views[i], tile);
+        keep_tile(picture, area, samples.texels[i]);
+      }
+      add_tile(samples, count, area, sums, pool.isa());
+      shelf.put_back(std::move(samples));
+    });
+    for (std::size_t i = 0; i < count; ++i) passes[i].draws.clear();
+    sums.count += end - begin;
   };
   return take_samples(input, add_samples, pool);
 }

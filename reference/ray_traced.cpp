@@ -177,9 +177,9 @@ SampledPicture ray_traced(const SceneMethodInput& input, ThreadPool& pool) {
         for (int i = begin; i < end; ++i) {
           sum += trace(tracer, x, y, static_cast<std::uint32_t>(i) ^ block);
         }
+        double* total = sums_at(sums, x, y);
         for (int channel = 0; channel < 3; ++channel) {
-          sums_row(sums, y, channel)[static_cast<std::size_t>(x)] +=
-              static_cast<double>(sum[channel]);
+          total[channel] += static_cast<double>(sum[channel]);
         }
       }
     });

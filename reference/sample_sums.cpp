@@ -1,5 +1,6 @@
 #include "reference/sample_sums.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -12,61 +13,67 @@
 namespace softfocus {
 namespace {
 
-std::size_t row_start(const SampleSums& sums, int y, int channel) {
-  return (static_cast<std::size_t>(y) * 3 + static_cast<std::size_t>(channel)) * sums.stride;
+constexpr int kChannels = 4;  // of a pixel, alpha too
+
+std::size_t place_of(const SampleSums& sums, int x, int y) {
+  const int tile = y / kSumTile * sums.tiles_x + x / kSumTile;
+  const int pixel = y % kSumTile * kSumTile + x % kSumTile;
+  return (static_cast<std::size_t>(tile) * kSumTile * kSumTile + static_cast<std::size_t>(pixel)) *
+         kChannels;
 }
 
 }  // namespace
 
 SampleSums make_sample_sums(int width, int height) {
-  SampleSums sums{width, height, 0, static_cast<std::size_t>(width), {}};
+  SampleSums sums{width, height, 0, (width + kSumTile - 1) / kSumTile, {}};
+  const int tiles_y = (height + kSumTile - 1) / kSumTile;
   // -0: what it is added to stays as it is, even -0.
-  sums.totals.assign(sums.stride * 3 * static_cast<std::size_t>(height), -0.0);
+  sums.totals.assign(place_of(sums, 0, tiles_y * kSumTile), -0.0);
   return sums;
 }
 
-std::span<double> sums_row(SampleSums& sums, int y, int channel) {
-  return std::span{sums.totals}.subspan(row_start(sums, y, channel), sums.stride);
+double* sums_at(SampleSums& sums, int x, int y) {
+  return sums.totals.data() + place_of(sums, x, y);
+}
+const double* sums_at(const SampleSums& sums, int x, int y) {
+  return sums.totals.data() + place_of(sums, x, y);
 }
 
-std::span<const double> sums_row(const SampleSums& sums, int y, int channel) {
-  return std::span{sums.totals}.subspan(row_start(sums, y, channel), sums.stride);
-}
-
-void add_row_plain(std::span<const std::uint16_t* const> rows, int width, double* red,
-                   double* green, double* blue) {
-  double* const totals[] = {red, green, blue};
-  for (int x = 0; x < width; ++x) {
-    for (int channel = 0; channel < 3; ++channel) {
-      const int at = 4 * x + channel;
-      float sum = half_to_float(rows[0][at]);
-      for (const std::uint16_t* row_of_next : rows.subspan(1)) {
-        sum += half_to_float(row_of_next[at]);
-      }
-      totals[channel][x] += static_cast<double>(sum);
-    }
+void add_row_plain(std::span<const std::uint16_t* const> rows, int halves, double* totals) {
+  for (int i = 0; i < halves; ++i) {
+    float sum = half_to_float(rows[0][i]);
+    for (const std::uint16_t* row_of_next : rows.subspan(1)) sum += half_to_float(row_of_next[i]);
+    totals[i] += static_cast<double>(sum);
   }
 }
 
+void add_rows(std::span<const std::uint16_t* const> rows, int x, int y, int width, SampleSums& sums,
+              Isa isa) {
+  assert(!rows.empty() && rows.size() <= kSampleGroup);
+  assert(x / kSumTile == (x + width - 1) / kSumTile);
+  double* totals = sums_at(sums, x, y);
+  const int halves = kChannels * width;
+  int done = 0;
+  if (isa != Isa::scalar) {
+    done =
+        SOFTFOCUS_KERNEL(isa, add_row)(rows.data(), static_cast<int>(rows.size()), halves, totals);
+  }
+  std::array<const std::uint16_t*, kSampleGroup> rest{};
+  for (std::size_t i = 0; i < rows.size(); ++i) rest[i] = rows[i] + done;
+  add_row_plain({rest.data(), rows.size()}, halves - done, totals + done);
+}
+
 void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool& pool) {
-  assert(!pictures.empty() && pictures.size() <= kSampleGroup);
   pool.for_each(sums.height, [&](int y) {
-    std::array<const std::uint16_t*, kSampleGroup> rows{};
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      assert(pictures[i].width == sums.width && pictures[i].height == sums.height);
-      rows[i] = row<std::uint16_t>(pictures[i], y).data();
+    for (int x = 0; x < sums.width; x += kSumTile) {
+      std::array<const std::uint16_t*, kSampleGroup> rows{};
+      for (std::size_t i = 0; i < pictures.size(); ++i) {
+        assert(pictures[i].width == sums.width && pictures[i].height == sums.height);
+        rows[i] = row<std::uint16_t>(pictures[i], y).data() + kChannels * x;
+      }
+      add_rows({rows.data(), pictures.size()}, x, y, std::min(kSumTile, sums.width - x), sums,
+               pool.isa());
     }
-    double* red = sums_row(sums, y, 0).data();
-    double* green = sums_row(sums, y, 1).data();
-    double* blue = sums_row(sums, y, 2).data();
-    int done = 0;
-    if (pool.isa() != Isa::scalar) {
-      done = SOFTFOCUS_KERNEL(pool.isa(), add_row)(rows.data(), static_cast<int>(pictures.size()),
-                                                   sums.width, red, green, blue);
-      for (const std::uint16_t*& rest : rows) rest += rest != nullptr ? 4 * done : 0;
-    }
-    add_row_plain({rows.data(), pictures.size()}, sums.width - done, red + done, green + done,
-                  blue + done);
   });
   sums.count += static_cast<int>(pictures.size());
 }
@@ -78,15 +85,15 @@ Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& pr
   pool.for_each(sums.height, [&](int y) {
     const auto from = row<std::uint16_t>(depth, y);
     const auto to = row<std::uint16_t>(picture, y);
-    for (int channel = 0; channel < 3; ++channel) {
-      const auto totals = sums_row(sums, y, channel);
-      for (std::size_t x = 0; x < totals.size(); ++x) {
-        const double mean = totals[x] / sums.count;
-        to[4 * x + static_cast<std::size_t>(channel)] =
-            float_to_half(static_cast<float>(mean), profile.half_store);
+    for (int x = 0; x < sums.width; ++x) {
+      const auto texel = static_cast<std::size_t>(kChannels * x);
+      const double* totals = sums_at(sums, x, y);
+      for (std::size_t c = 0; c < 3; ++c) {
+        to[texel + c] =
+            float_to_half(static_cast<float>(totals[c] / sums.count), profile.half_store);
       }
+      to[texel + 3] = from[texel + 3];
     }
-    for (std::size_t alpha = 3; alpha < to.size(); alpha += 4) to[alpha] = from[alpha];
   });
   return picture;
 }
@@ -97,11 +104,11 @@ double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadP
   std::vector<double> squares(static_cast<std::size_t>(all.height));
   pool.for_each(all.height, [&](int y) {
     double sum = 0.0;
-    for (int channel = 0; channel < 3; ++channel) {
-      const auto half = sums_row(first_half, y, channel);
-      const auto whole = sums_row(all, y, channel);
-      for (std::size_t x = 0; x < half.size(); ++x) {
-        const double difference = (2.0 * half[x] - whole[x]) / first_half.count;
+    for (int x = 0; x < all.width; ++x) {
+      const double* half = sums_at(first_half, x, y);
+      const double* whole = sums_at(all, x, y);
+      for (int c = 0; c < 3; ++c) {
+        const double difference = (2.0 * half[c] - whole[c]) / first_half.count;
         sum += difference * difference;
       }
     }

@@ -17,21 +17,30 @@ namespace softfocus {
 /// it, so the bits do not depend on who adds.
 inline constexpr int kSampleGroup = 8;
 
+/// The sums lie in tiles of so many pixels a side: what is added tile by tile is one run of
+/// memory.
+inline constexpr int kSumTile = 64;
+
 /// Linear red, green and blue of each pixel, summed in binary64: 65,536 halves lose nothing
 /// that a half could show, where a binary32 sum of equal values can be off by 2^-9 of itself.
 struct SampleSums {
   int width = 0;
   int height = 0;
   int count = 0;  ///< samples that are in
-  std::size_t stride = 0;
-  std::vector<double> totals;  ///< row by row, in each row `stride` reds, greens, blues
+  int tiles_x = 0;
+  std::vector<double> totals;  ///< four a pixel; alpha's mean nothing
 };
 
 SampleSums make_sample_sums(int width, int height);
 
-/// One row of a channel, 0 to 2: `width` sums.
-std::span<double> sums_row(SampleSums& sums, int y, int channel);
-std::span<const double> sums_row(const SampleSums& sums, int y, int channel);
+/// The sums of a pixel, and of those that follow it in its row of its tile.
+double* sums_at(SampleSums& sums, int x, int y);
+const double* sums_at(const SampleSums& sums, int x, int y);
+
+/// Adds one to kSampleGroup samples, RGBA16F, of `width` pixels of row y from x on, in one
+/// tile. The caller counts them.
+void add_rows(std::span<const std::uint16_t* const> rows, int x, int y, int width, SampleSums& sums,
+              Isa isa);
 
 /// Adds one to kSampleGroup RGBA16F pictures of the sums' size, one after the other.
 void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool& pool);
@@ -46,8 +55,7 @@ Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& pr
 /// sums when they had half as many.
 double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool);
 
-/// add_pictures() of one row without vectors.
-void add_row_plain(std::span<const std::uint16_t* const> rows, int width, double* red,
-                   double* green, double* blue);
+/// add_rows() of so many halves without vectors.
+void add_row_plain(std::span<const std::uint16_t* const> rows, int halves, double* totals);
 
 }  // namespace softfocus

@@ -3,32 +3,26 @@
 namespace {
 
 using Doubles [[gnu::vector_size(8 * SOFTFOCUS_LANES)]] = double;
+using Halves [[gnu::vector_size(2 * SOFTFOCUS_LANES)]] = std::uint16_t;
 
-SOFTFOCUS_INLINE void add_to(double* totals, const Floats& values) {
-  Doubles sum;
-  std::memcpy(&sum, totals, sizeof sum);
-  sum += __builtin_convertvector(values, Doubles);
-  std::memcpy(totals, &sum, sizeof sum);
+SOFTFOCUS_INLINE Floats load_halves(const std::uint16_t* from) {
+  Halves halves;
+  std::memcpy(&halves, from, sizeof halves);
+  return half_to_float(__builtin_convertvector(halves, Bits));
 }
 
 }  // namespace
 
-/// Of whole vectors of pixels: returns how many pixels they are.
-int add_row(const std::uint16_t* const* rows, int row_count, int width, double* red, double* green,
-            double* blue) {
-  int x = 0;
-  for (; x + kLanes <= width; x += kLanes) {
-    const HalfTexels first = load_half_texels(rows[0] + 4 * x);
-    Floats r = half_to_float(first.r), g = half_to_float(first.g), b = half_to_float(first.b);
-    for (int i = 1; i < row_count; ++i) {
-      const HalfTexels next = load_half_texels(rows[i] + 4 * x);
-      r += half_to_float(next.r);
-      g += half_to_float(next.g);
-      b += half_to_float(next.b);
-    }
-    add_to(red + x, r);
-    add_to(green + x, g);
-    add_to(blue + x, b);
+/// Of whole vectors: returns how many halves they are.
+int add_row(const std::uint16_t* const* rows, int row_count, int halves, double* totals) {
+  int done = 0;
+  for (; done + kLanes <= halves; done += kLanes) {
+    Floats sum = load_halves(rows[0] + done);
+    for (int i = 1; i < row_count; ++i) sum += load_halves(rows[i] + done);
+    Doubles total;
+    std::memcpy(&total, totals + done, sizeof total);
+    total += __builtin_convertvector(sum, Doubles);
+    std::memcpy(totals + done, &total, sizeof total);
   }
-  return x;
+  return done;
 }

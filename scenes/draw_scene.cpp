@@ -10,8 +10,7 @@ namespace softfocus {
 namespace {
 
 template <SurfaceVariant variant>
-void draw_surface(PreparedScene& prepared, const SurfaceDraw& surface) {
-  RenderPass& pass = prepared.pass;
+void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {
   const SurfaceVertexInput& input = surface.input;
   const auto vertices = static_cast<std::uint32_t>(input.mesh->positions.size());
   const SurfaceVertexStage<variant> vertex_stage{input};
@@ -29,8 +28,8 @@ void draw_surface(PreparedScene& prepared, const SurfaceDraw& surface) {
              surface_lane_stages<variant>(pass.isa));
 }
 
-void draw_surface(PreparedScene& prepared, const SurfaceDraw& surface) {
-  using DrawSurface = void (*)(PreparedScene&, const SurfaceDraw&);
+void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {
+  using DrawSurface = void (*)(const PreparedScene&, const SurfaceDraw&, RenderPass&);
   static constexpr DrawSurface kVariants[2][2][2] = {
       {{draw_surface<SurfaceVariant{false, false, false}>,
         draw_surface<SurfaceVariant{false, false, true}>},
@@ -41,7 +40,7 @@ void draw_surface(PreparedScene& prepared, const SurfaceDraw& surface) {
        {draw_surface<SurfaceVariant{true, true, false}>,
         draw_surface<SurfaceVariant{true, true, true}>}}};
   const SurfaceVariant variant = surface.variant;
-  kVariants[variant.textured][variant.specular][variant.two_sided](prepared, surface);
+  kVariants[variant.textured][variant.specular][variant.two_sided](prepared, surface, pass);
 }
 
 }  // namespace
@@ -63,22 +62,24 @@ PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPo
   return prepared;
 }
 
+void record_scene(const PreparedScene& prepared, const View& view, double frame, RenderPass& pass) {
+  pass.clear_colour = clear_colour(*prepared.scene);
+  pass.clear_depth = 1.0f;
+  pass.keep_depth = false;
+  for (const SurfaceDraw& surface : surface_draws(*prepared.scene, view, frame)) {
+    draw_surface(prepared, surface, pass);
+  }
+}
+
 void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& picture,
                 ThreadPool& pool) {
-  const Scene& scene = *prepared.scene;
-  RenderPass& pass = prepared.pass;
   if (prepared.depth.width != picture.width || prepared.depth.height != picture.height) {
     prepared.depth = make_image(Format::r32f, picture.width, picture.height);
   }
-  pass.targets.colour[0] = &picture;
-  pass.targets.depth = &prepared.depth;
-  pass.clear_colour = clear_colour(scene);
-  pass.clear_depth = 1.0f;
-  pass.keep_depth = false;
-  for (const SurfaceDraw& surface : surface_draws(scene, view, frame)) {
-    draw_surface(prepared, surface);
-  }
-  finish(pass, pool);
+  prepared.pass.targets.colour[0] = &picture;
+  prepared.pass.targets.depth = &prepared.depth;
+  record_scene(prepared, view, frame, prepared.pass);
+  finish(prepared.pass, pool);
 }
 
 Image draw_scene(const Scene& scene, const View& view, double frame, int width, int height,

@@ -38,4 +38,8 @@ PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPo
 void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& picture,
                 ThreadPool& pool);
 
+/// Records a frame's draws, and what is cleared before, into a pass that has its targets, and
+/// the profile and isa of prepare_scene(). Depths are not kept.
+void record_scene(const PreparedScene& prepared, const View& view, double frame, RenderPass& pass);
+
 }  // namespace softfocus

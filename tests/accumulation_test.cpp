@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "reference/lens_view.h"
+#include "reference/sample_sums.h"
 #include "scenes/load_scene.h"
 #include "tests/ground_truth_scenes.h"
 
@@ -59,6 +61,33 @@ TEST_CASE("accumulation: the same bits for any number of threads and on every ve
     ThreadPool pool{1, isa};
     CHECK(equal(accumulated(scene, sampling, 96, 64, pool).sampled.picture,
                 expected.sampled.picture));
+  }
+}
+
+TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes") {
+  const Scene scene = built_in("sphere-world");
+  const int width = 150, height = 70;  // parts of tiles
+  const Profile profile{};
+  const View pinhole_view = camera_view(scene.camera, 0.0, width, height);
+  const double radius_m = aperture_radius_m(scene.lens.lens, 1.0);
+  for (const int samples : {kSampleGroup, 2 * kSampleGroup + 3}) {
+    ThreadPool pool{2};
+    const Sampling sampling{.samples = samples, .jitter = true};
+    const Drawn drawn = accumulated(scene, sampling, width, height, pool);
+
+    const auto points = lens_points({}, samples);
+    const auto offsets = pixel_offsets(true, samples);
+    SampleSums sums = make_sample_sums(width, height);
+    std::vector<Image> group;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const View view = lens_view(pinhole_view, points[i] * radius_m, scene.lens.lens.focus_m,
+                                  offsets[i], width, height);
+      group.push_back(draw_scene(scene, view, 0.0, width, height, profile, pool));
+      if (group.size() < kSampleGroup && i + 1 < points.size()) continue;
+      add_pictures(group, sums, pool);
+      group.clear();
+    }
+    CHECK(equal(drawn.sampled.picture, mean_picture(sums, drawn.pinhole, profile, pool)));
   }
 }
 

@@ -2,6 +2,8 @@
 #include <string_view>
 
 #include "dof/method.h"
+#include "reference/accumulation.h"
+#include "reference/sample_sums.h"
 #include "scenes/draw_scene.h"
 #include "scenes/load_scene.h"
 #include "tools/golden_hashes.h"
@@ -45,6 +47,8 @@ std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
 
 std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
                                     std::span<const Profile> profiles, ThreadPool& pool) {
+  // A whole group of sums and a part of one.
+  const Sampling sampling{.samples = kSampleGroup + 3, .jitter = true, .aperture = {7}};
   std::vector<NamedHash> hashes;
   for (const auto& [name, scene] : scenes) {
     for (const auto [width, height] : kSizes) {
@@ -52,11 +56,24 @@ std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
       const View view = camera_view(scene.camera, kFrame, width, height);
       for (const Profile& profile : profiles) {
         const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
+        const std::string where =
+            ' ' + profile.name + ' ' + std::to_string(width) + 'x' + std::to_string(height);
         for (const Method& method : methods()) {
-          hashes.push_back({name + ' ' + std::string{method.name} + ' ' + profile.name + ' ' +
-                                std::to_string(width) + 'x' + std::to_string(height),
+          hashes.push_back({name + ' ' + std::string{method.name} + where,
                             hash_image(apply(method, {picture, settings, profile}, pool))});
         }
+        const SceneMethodInput from_lens{
+            scene,
+            view,
+            kFrame,
+            picture,
+            scene.lens.lens.focus_m,
+            aperture_radius_m(scene.lens.lens, scene.lens.coc_scale * kRows / height),
+            sampling,
+            profile,
+            {}};
+        hashes.push_back(
+            {name + " accumulation" + where, hash_image(accumulation(from_lens, pool).picture)});
       }
     }
   }

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "raster/images/image.h"
-#include "reference/sample_sums.h"
 #include "tools/driver_option.h"
 #include "tools/errors.h"
 #include "tools/memory_check.h"
@@ -109,9 +108,9 @@ bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b
 /// depth (4) and the largest encoding (12).
 constexpr std::uint64_t kBytesPerPixel = 40;
 
-/// And for a method that draws the scene: two sets of sums (24 bytes each) and the pictures
-/// of a group.
-constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 24 + 8 * kSampleGroup;
+/// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and
+/// its depth.
+constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
 
 }  // namespace
 

@@ -16,14 +16,6 @@ struct Batch {
   std::uint32_t end;
 };
 
-// The triangles of one chunk that touch one tile.
-struct TileWork {
-  const DrawCall* draw;
-  std::uint32_t chunk;          // of the draw
-  const LaneChunk* lane_chunk;  // of a draw in lanes
-  std::span<const Bin> bins;
-};
-
 // Gives every draw in lanes its part of the memory, in steps of whole vectors.
 void place_vertices(RenderPass& pass) {
   constexpr std::size_t kStep = 16;
@@ -82,7 +74,7 @@ void assemble_all_triangles(RenderPass& pass, ThreadPool& pool) {
   });
 }
 
-std::vector<std::vector<TileWork>> sort_into_tiles(const RenderPass& pass, std::size_t tiles) {
+std::vector<std::vector<TileWork>> work_of_tiles(const RenderPass& pass, std::size_t tiles) {
   std::vector<std::vector<TileWork>> work(tiles);
   const LaneChunk* lane_chunk = pass.memory.chunks.data();
   for (const DrawCall& draw : pass.draws) {
@@ -201,24 +193,35 @@ Rectangle target_area(const RenderTargets& targets) {
   return {0, 0, first->width, first->height};
 }
 
-void finish(RenderPass& pass, ThreadPool& pool) {
-  const Rectangle area = target_area(pass.targets);
-  const int tiles_x = (area.x_end + kTileSize - 1) / kTileSize;
-  const int tiles_y = (area.y_end + kTileSize - 1) / kTileSize;
-
+TileLists sort_into_tiles(RenderPass& pass, ThreadPool& pool) {
+  TileLists lists;
+  lists.area = target_area(pass.targets);
+  lists.tiles_x = (lists.area.x_end + kTileSize - 1) / kTileSize;
+  const int tiles_y = (lists.area.y_end + kTileSize - 1) / kTileSize;
   place_vertices(pass);
   shade_all_vertices(pass, pool);
   assemble_all_triangles(pass, pool);
-  const auto work = sort_into_tiles(pass, static_cast<std::size_t>(tiles_x * tiles_y));
-  pool.for_each(tiles_x * tiles_y, [&](int t) {
-    const int x = t % tiles_x * kTileSize;
-    const int y = t / tiles_x * kTileSize;
-    const Rectangle tile{x, y, std::min(x + kTileSize, area.x_end),
-                         std::min(y + kTileSize, area.y_end)};
-    TileDrawing drawing{pass, tile};
-    for (const TileWork& item : work[static_cast<std::size_t>(t)]) drawing.draw(item);
-    drawing.end();
-  });
+  lists.tiles = work_of_tiles(pass, static_cast<std::size_t>(lists.tiles_x * tiles_y));
+  return lists;
+}
+
+Rectangle tile_area(const TileLists& lists, int tile) {
+  const int x = tile % lists.tiles_x * kTileSize;
+  const int y = tile / lists.tiles_x * kTileSize;
+  return {x, y, std::min(x + kTileSize, lists.area.x_end),
+          std::min(y + kTileSize, lists.area.y_end)};
+}
+
+void draw_tile(const RenderPass& pass, const TileLists& lists, int tile) {
+  TileDrawing drawing{pass, tile_area(lists, tile)};
+  for (const TileWork& item : lists.tiles[static_cast<std::size_t>(tile)]) drawing.draw(item);
+  drawing.end();
+}
+
+void finish(RenderPass& pass, ThreadPool& pool) {
+  const TileLists lists = sort_into_tiles(pass, pool);
+  pool.for_each(static_cast<int>(lists.tiles.size()),
+                [&](int tile) { draw_tile(pass, lists, tile); });
   pass.draws.clear();
 }
 

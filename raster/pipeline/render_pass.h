@@ -8,8 +8,10 @@
 //   draw(pass, state, indices, vertex_count, vertex_stage, fragment_stage);   // draw.h
 //   finish(pass, pool);
 
+#include <cstdint>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "raster/numbers/isa.h"
@@ -40,6 +42,33 @@ struct RenderPass {
 /// Width and height of the targets, as the rectangle (0, 0) to (width, height). Needs
 /// at least one target.
 Rectangle target_area(const RenderTargets& targets);
+
+/// The triangles of one chunk of a draw that touch one tile.
+struct TileWork {
+  const DrawCall* draw;
+  std::uint32_t chunk;
+  const LaneChunk* lane_chunk;  ///< of a draw in lanes
+  std::span<const Bin> bins;
+};
+
+/// What the tiles of a pass are drawn from, row by row of tiles; good as long as the pass
+/// is left as it is.
+struct TileLists {
+  int tiles_x = 0;
+  Rectangle area;
+  std::vector<std::vector<TileWork>> tiles;
+};
+
+/// The first two loops of finish().
+TileLists sort_into_tiles(RenderPass& pass, ThreadPool& pool);
+
+/// A tile's pixels.
+Rectangle tile_area(const TileLists& lists, int tile);
+
+/// Clears and draws one tile of the targets. Tiles can be drawn in any order, and by several
+/// threads at once. Passes that show one scene from several points can so be drawn tile by
+/// tile, each while the tile is in a core's cache.
+void draw_tile(const RenderPass& pass, const TileLists& lists, int tile);
 
 /// Carries out the recorded draws and forgets them.
 void finish(RenderPass& pass, ThreadPool& pool);
