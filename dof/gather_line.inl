@@ -73,9 +73,30 @@ void gather_pair(const GatherNodes& line, int node, int covered, int touched,
   sums_of[1] = second;
 }
 
-/// Filters nodes 0 to count - 1, rounded up to an even number; taps reach `reach` nodes
-/// to each side. A result is two vectors of words: red and green, blue (low half first).
+/// Results as two vectors of words: red and green, blue (low half first).
 template <HalfRounding rounding>
+struct HalfResults {
+  static constexpr int kVectors = 2;
+  SOFTFOCUS_INLINE static void put(const Sums& sums, std::uint32_t* to) {
+    const HalfColour colour = resolve<rounding>(sums);
+    store(to, colour.r | colour.g << 16);
+    store(to + kLanes, colour.b);
+  }
+};
+/// Results as three vectors of binary32.
+struct FloatResults {
+  static constexpr int kVectors = 3;
+  SOFTFOCUS_INLINE static void put(const Sums& sums, std::uint32_t* to) {
+    const FloatColour colour = resolve(sums);
+    store(to, as_bits(colour.r));
+    store(to + kLanes, as_bits(colour.g));
+    store(to + 2 * kLanes, as_bits(colour.b));
+  }
+};
+
+/// Filters nodes 0 to count - 1, rounded up to an even number; taps reach `reach` nodes
+/// to each side.
+template <class Results>
 void gather_line(const GatherNodes& line, int count, int reach, float leak,
                  std::uint32_t* gathered) {
   for (int begin = 0; begin < count; begin += kBlock) {
@@ -96,10 +117,7 @@ void gather_line(const GatherNodes& line, int count, int reach, float leak,
         gather_pair<false>(line, node, bounds.covered, bounds.touched, leakages, sums);
       }
       for (int i = 0; i < 2; ++i) {
-        const HalfColour colour = resolve<rounding>(sums[i]);
-        std::uint32_t* to = gathered + (node + i) * 2 * kLanes;
-        store(to, colour.r | colour.g << 16);
-        store(to + kLanes, colour.b);
+        Results::put(sums[i], gathered + (node + i) * Results::kVectors * kLanes);
       }
     }
   }

@@ -21,6 +21,8 @@ constexpr std::array kMethods{
     Method{"pinhole", "everything sharp: no lens", "colour", pinhole},
     Method{"two-pass", "a horizontal and a vertical gather, after Zhou et al. 2007",
            kColourAndDepth, two_pass},
+    Method{"two-pass-single", "the same with RGBA32F between the passes", kColourAndDepth,
+           two_pass_single},
     Method{"one-pass", "one gather over rings: round and slower, the thesis 5.1", kColourAndDepth,
            one_pass},
     Method{"scatter", "every pixel spread over its disc, after Potmesil and Chakravarty 1981",

@@ -57,19 +57,20 @@ void filter_line(const Line& line, float leak, const Store& store) {
   }
 }
 
+template <Format between_format>
 void two_pass_lines(const DofInput& input, Image& result, ThreadPool& pool) {
   const Image& scene = input.scene;
   const DofSettings& settings = input.settings;
   const int taps = tap_count(largest_filter_radius(input, pool));
 
-  Image between = make_image(Format::rgba16f, scene.width, scene.height);
+  Image between = make_image(between_format, scene.width, scene.height);
   pool.for_each((scene.height + kColumns - 1) / kColumns, [&](int block) {
     Line line(scene.width, taps);
     const int end = std::min((block + 1) * kColumns, scene.height);
     for (int y = block * kColumns; y < end; ++y) {
       fill_line(line, settings, [&](int x) { return load_texel<Format::rgba16f>(scene, x, y); });
       filter_line(line, settings.leak, [&](int x, glm::vec4 value) {
-        store_texel<Format::rgba16f>(between, x, y, value, input.profile);
+        store_texel<between_format>(between, x, y, value, input.profile);
       });
     }
   });
@@ -78,7 +79,7 @@ void two_pass_lines(const DofInput& input, Image& result, ThreadPool& pool) {
     Line line(scene.height, taps);
     const int end = std::min((block + 1) * kColumns, scene.width);
     for (int x = block * kColumns; x < end; ++x) {
-      fill_line(line, settings, [&](int y) { return load_texel<Format::rgba16f>(between, x, y); });
+      fill_line(line, settings, [&](int y) { return load_texel<between_format>(between, x, y); });
       filter_line(line, settings.leak, [&](int y, glm::vec4 value) {
         store_texel<Format::rgba16f>(result, x, y, value, input.profile);
       });
@@ -90,9 +91,17 @@ void two_pass_lines(const DofInput& input, Image& result, ThreadPool& pool) {
 
 void two_pass(const DofInput& input, Image& result, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) {
-    two_pass_lines(input, result, pool);
+    two_pass_lines<Format::rgba16f>(input, result, pool);
   } else {
-    two_pass_strips(input, result, pool);
+    two_pass_strips(input, Between::half, result, pool);
+  }
+}
+
+void two_pass_single(const DofInput& input, Image& result, ThreadPool& pool) {
+  if (pool.isa() == Isa::scalar) {
+    two_pass_lines<Format::rgba32f>(input, result, pool);
+  } else {
+    two_pass_strips(input, Between::single, result, pool);
   }
 }
 

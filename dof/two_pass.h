@@ -19,8 +19,14 @@ namespace softfocus {
 /// grows with the largest radius that is in the picture, up to max_coc.
 void two_pass(const DofInput& input, Image& result, ThreadPool& pool);
 
+/// The same with RGBA32F between the passes: what storage as halves costs.
+void two_pass_single(const DofInput& input, Image& result, ThreadPool& pool);
+
 /// The same filter as a fragment shader would be written, every tap from the texture:
 /// the oracle of two_pass, equal to the bit.
 void two_pass_plain(const DofInput& input, Image& result, ThreadPool& pool);
+
+/// That of two_pass_single.
+void two_pass_single_plain(const DofInput& input, Image& result, ThreadPool& pool);
 
 }  // namespace softfocus

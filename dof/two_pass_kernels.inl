@@ -101,9 +101,45 @@ SOFTFOCUS_INLINE GatherNodes nodes_from(const GatherNodes& nodes, int node) {
 void gather(const StripFilter& filter, const GatherNodes& line, int count, int reach,
             std::uint32_t* gathered) {
   if (filter.rounding == HalfRounding::nearest_even) {
-    gather_line<HalfRounding::nearest_even>(line, count, reach, filter.settings.leak, gathered);
+    gather_line<HalfResults<HalfRounding::nearest_even>>(line, count, reach, filter.settings.leak,
+                                                         gathered);
   } else {
-    gather_line<HalfRounding::toward_zero>(line, count, reach, filter.settings.leak, gathered);
+    gather_line<HalfResults<HalfRounding::toward_zero>>(line, count, reach, filter.settings.leak,
+                                                        gathered);
+  }
+}
+
+/// Makes kLanes rows of what the first pass gave in a column nodes of the lines along y.
+SOFTFOCUS_INLINE void halves_to_nodes(const Strip& strip, int column, int node) {
+  Bits rg[kLanes], b[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const std::uint32_t* from = strip.gathered + (column * kLanes + i) * 2 * kLanes;
+    rg[i] = load(from);
+    b[i] = load(from + kLanes);
+  }
+  transpose(rg);
+  transpose(b);
+  for (int i = 0; i < kLanes; ++i) {
+    const int to = column * strip.capacity + node + i;
+    store_part(strip.down, to, half_to_float(rg[i] & 0xFFFFu), half_to_float(rg[i] >> 16),
+               half_to_float(b[i]), load(strip.down.whole + to * 4 * kLanes));
+  }
+}
+SOFTFOCUS_INLINE void singles_to_nodes(const Strip& strip, int column, int node) {
+  Bits r[kLanes], g[kLanes], b[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const std::uint32_t* from = strip.gathered + (column * kLanes + i) * 3 * kLanes;
+    r[i] = load(from);
+    g[i] = load(from + kLanes);
+    b[i] = load(from + 2 * kLanes);
+  }
+  transpose(r);
+  transpose(g);
+  transpose(b);
+  for (int i = 0; i < kLanes; ++i) {
+    const int to = column * strip.capacity + node + i;
+    store_part(strip.down, to, as_floats(r[i]), as_floats(g[i]), as_floats(b[i]),
+               load(strip.down.whole + to * 4 * kLanes));
   }
 }
 
@@ -119,20 +155,18 @@ void filter_across(const Strip& strip, const StripFilter& filter, const std::uin
     load_block(strip, filter.settings, rows, strip.x_begin - strip.halo + at, at,
                inside ? (at - strip.halo) / kLanes : -1, node);
   }
-  gather(filter, nodes_from(strip.across, strip.halo), strip.columns, strip.reach, strip.gathered);
+  const GatherNodes line = nodes_from(strip.across, strip.halo);
+  if (filter.between == Between::single) {
+    gather_line<FloatResults>(line, strip.columns, strip.reach, filter.settings.leak,
+                              strip.gathered);
+  } else {
+    gather(filter, line, strip.columns, strip.reach, strip.gathered);
+  }
   for (int column = 0; column < strip.columns / kLanes; ++column) {
-    Bits rg[kLanes], b[kLanes];
-    for (int i = 0; i < kLanes; ++i) {
-      const std::uint32_t* from = strip.gathered + (column * kLanes + i) * 2 * kLanes;
-      rg[i] = load(from);
-      b[i] = load(from + kLanes);
-    }
-    transpose(rg);
-    transpose(b);
-    for (int i = 0; i < kLanes; ++i) {
-      const int to = column * strip.capacity + node + i;
-      store_part(strip.down, to, half_to_float(rg[i] & 0xFFFFu), half_to_float(rg[i] >> 16),
-                 half_to_float(b[i]), load(strip.down.whole + to * 4 * kLanes));
+    if (filter.between == Between::single) {
+      singles_to_nodes(strip, column, node);
+    } else {
+      halves_to_nodes(strip, column, node);
     }
   }
 }

@@ -33,8 +33,8 @@ StripSizes strip_sizes(int lanes, const StripShape& shape, int batch) {
   sizes.along_x = static_cast<std::size_t>(2 * round_up(shape.reach, lanes) + columns + kPast);
   sizes.along_y = static_cast<std::size_t>(columns / lanes * capacity + kPast);
   const auto results = static_cast<std::size_t>(std::max(columns, capacity) + kPast);
-  // Eight vectors a node, a vector of depths for each along y, two for each result.
-  sizes.vectors = (8 * sizes.along_x + 8 * sizes.along_y + sizes.along_y + 2 * results) * vector;
+  // Eight vectors a node, a vector of depths for each along y, three for each result.
+  sizes.vectors = (8 * sizes.along_x + 8 * sizes.along_y + sizes.along_y + 3 * results) * vector;
   sizes.extents = 3 * (sizes.along_x + sizes.along_y);
   return sizes;
 }

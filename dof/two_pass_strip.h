@@ -18,11 +18,15 @@ namespace softfocus {
 int lanes_of(Isa isa);
 inline constexpr int kMostLanes = 16;
 
+/// How the colours between the passes are stored.
+enum class Between : std::uint8_t { half, single };
+
 /// What a strip is filtered with.
 struct StripFilter {
   DofSettings settings;
   HalfRounding rounding;
   Isa isa;
+  Between between = Between::half;
   bool past_caches = false;  ///< see write_past_caches(); needs an Image's rows
 };
 
@@ -37,7 +41,7 @@ struct Strip {
   GatherNodes across;       ///< of the rows at hand: halo + columns + halo nodes
   GatherNodes down;         ///< `capacity` nodes for each vector of columns
   std::uint32_t* depths;    ///< halves, a vector for each node of `down`
-  std::uint32_t* gathered;  ///< what a line's filter gives: two vectors a node
+  std::uint32_t* gathered;  ///< what a line's filter gives: two or three vectors a node
 
   int lead = 0;    ///< nodes before the first row, to be made when it comes
   int filled = 0;  ///< nodes of `down` that are there

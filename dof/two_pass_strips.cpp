@@ -4,7 +4,6 @@
 #include <array>
 
 #include "dof/scratch_shelf.h"
-#include "dof/two_pass_strip.h"
 
 namespace softfocus {
 namespace {
@@ -57,10 +56,10 @@ void filter_task(const StripTask& task, const StripFilter& filter, const Image& 
 
 }  // namespace
 
-void two_pass_strips(const DofInput& input, Image& result, ThreadPool& pool) {
+void two_pass_strips(const DofInput& input, Between between, Image& result, ThreadPool& pool) {
   const FocusMap map = pass_in_focus(input, result, pool);
   const std::vector<StripTask> tasks = plan_strips(map, input.scene.width, input.scene.height);
-  const StripFilter filter{input.settings, input.profile.half_store, pool.isa(),
+  const StripFilter filter{input.settings, input.profile.half_store, pool.isa(), between,
                            write_past_caches(result)};
   ScratchShelf<Strip> shelf;
   pool.for_each(static_cast<int>(tasks.size()), [&](int number) {

@@ -5,6 +5,7 @@
 
 #include "dof/focus_map.h"
 #include "dof/method.h"
+#include "dof/two_pass_strip.h"
 
 namespace softfocus {
 
@@ -19,7 +20,7 @@ struct StripTask {
 /// The parts of a picture that are not in focus, or reached by what is not.
 std::vector<StripTask> plan_strips(const FocusMap& map, int width, int height);
 
-/// As two_pass().
-void two_pass_strips(const DofInput& input, Image& result, ThreadPool& pool);
+/// As two_pass() or two_pass_single().
+void two_pass_strips(const DofInput& input, Between between, Image& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -75,9 +75,16 @@ SOFTFOCUS_INLINE void add_part(Sums& sums, Floats signed_radius_px, Floats light
 struct HalfColour {
   Bits r, g, b;
 };
+struct FloatColour {
+  Floats r, g, b;
+};
+SOFTFOCUS_INLINE FloatColour resolve(const Sums& sums) {
+  return {clamp_to_half(sums.r / sums.weight), clamp_to_half(sums.g / sums.weight),
+          clamp_to_half(sums.b / sums.weight)};
+}
 template <HalfRounding rounding>
 SOFTFOCUS_INLINE HalfColour resolve(const Sums& sums) {
-  return {float_to_half<rounding>(clamp_to_half(sums.r / sums.weight)),
-          float_to_half<rounding>(clamp_to_half(sums.g / sums.weight)),
-          float_to_half<rounding>(clamp_to_half(sums.b / sums.weight))};
+  const FloatColour colour = resolve(sums);
+  return {float_to_half<rounding>(colour.r), float_to_half<rounding>(colour.g),
+          float_to_half<rounding>(colour.b)};
 }

@@ -23,6 +23,7 @@ struct FilterPair {
   void (*plain)(const DofInput&, Image&, ThreadPool&);
 };
 constexpr std::array kFilters{FilterPair{"two-pass", two_pass, two_pass_plain},
+                              FilterPair{"two-pass-single", two_pass_single, two_pass_single_plain},
                               FilterPair{"one-pass", one_pass, one_pass_plain}};
 
 constexpr DofSettings kSettings{.coc = {12.0f, 2.0f}, .max_coc_px = 7.3f, .leak = 1.0f};

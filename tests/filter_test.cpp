@@ -154,8 +154,9 @@ TEST_CASE("the one-pass filter is equations 10 to 14 over a disc") {
 
 TEST_CASE("the fast filters equal their plain forms to the bit") {
   ThreadPool pool(2);
-  for (const auto& [fast, plain] :
-       {std::pair<Filter, Filter>{two_pass, two_pass_plain}, {one_pass, one_pass_plain}}) {
+  for (const auto& [fast, plain] : {std::pair<Filter, Filter>{two_pass, two_pass_plain},
+                                    {two_pass_single, two_pass_single_plain},
+                                    {one_pass, one_pass_plain}}) {
     for (const Profile& profile : profiles()) {
       for (const int size : {1, 2, 33}) {
         const Image scene = random_scene_image(size, 70 - size, 3);
