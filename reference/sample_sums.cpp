@@ -1,5 +1,6 @@
 #include "reference/sample_sums.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -20,9 +21,15 @@ std::size_t row_start(const SampleSums& sums, int y, int channel) {
 
 SampleSums make_sample_sums(int width, int height) {
   SampleSums sums{width, height, 0, static_cast<std::size_t>(width), {}};
-  // -0: what it is added to stays as it is, even -0.
-  sums.totals.assign(sums.stride * 3 * static_cast<std::size_t>(height), -0.0);
+  sums.totals.resize(sums.stride * 3 * static_cast<std::size_t>(height));
+  clear_sums(sums);
   return sums;
+}
+
+void clear_sums(SampleSums& sums) {
+  sums.count = 0;
+  // -0: what it is added to stays as it is, even -0.
+  std::fill(sums.totals.begin(), sums.totals.end(), -0.0);
 }
 
 std::span<double> sums_row(SampleSums& sums, int y, int channel) {
@@ -73,8 +80,15 @@ void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool&
 
 Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& profile,
                    ThreadPool& pool) {
-  assert(sums.count > 0);
   Image picture = make_image(Format::rgba16f, sums.width, sums.height);
+  store_mean(sums, depth, profile, picture, pool);
+  return picture;
+}
+
+void store_mean(const SampleSums& sums, const Image& depth, const Profile& profile, Image& picture,
+                ThreadPool& pool) {
+  assert(sums.count > 0);
+  assert(picture.width == sums.width && picture.height == sums.height);
   pool.for_each(sums.height, [&](int y) {
     const auto from = row<std::uint16_t>(depth, y);
     const auto to = row<std::uint16_t>(picture, y);
@@ -88,7 +102,14 @@ Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& pr
     }
     for (std::size_t alpha = 3; alpha < to.size(); alpha += 4) to[alpha] = from[alpha];
   });
-  return picture;
+}
+
+SampleSums later_samples(const SampleSums& first, const SampleSums& all) {
+  assert(first.count < all.count && first.totals.size() == all.totals.size());
+  SampleSums later = all;
+  later.count -= first.count;
+  for (std::size_t i = 0; i < later.totals.size(); ++i) later.totals[i] -= first.totals[i];
+  return later;
 }
 
 double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool) {

@@ -29,6 +29,9 @@ struct SampleSums {
 
 SampleSums make_sample_sums(int width, int height);
 
+/// Back to no samples, in the same memory.
+void clear_sums(SampleSums& sums);
+
 /// One row of a channel, 0 to 2: `width` sums.
 std::span<double> sums_row(SampleSums& sums, int y, int channel);
 std::span<const double> sums_row(const SampleSums& sums, int y, int channel);
@@ -40,6 +43,13 @@ void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool&
 /// picture. Needs one sample at least.
 Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& profile,
                    ThreadPool& pool);
+
+/// The same into a picture of that size.
+void store_mean(const SampleSums& sums, const Image& depth, const Profile& profile, Image& picture,
+                ThreadPool& pool);
+
+/// The samples of `all` that came after those of `first`. Needs `all` to have begun as `first`.
+SampleSums later_samples(const SampleSums& first, const SampleSums& all);
 
 /// How far the first half of the samples and the second lie apart: the root of the mean
 /// square, over pixels and colours, of the difference of their means. `first_half` are the
