@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPanelsInRow = 3;
 constexpr int kPanelWidth = 500, kPanelHeight = 470;  // pixels
-constexpr int kLeft = 76, kRight = 16, kTop = 44, kBottom = 58, kBetween = 14;
+constexpr int kLeft = 96, kRight = 16, kTop = 44, kBottom = 58, kBetween = 14;
 constexpr int kKeyRow = 24, kKeyColumns = 5;
 
 /// FLIP of a picture that is the truth itself, which no logarithm has.

@@ -84,6 +84,10 @@ RunTime ChartRunner::filter(const ChartEntry& entry) {
   settings.coc = scene_.coc;
   if (entry.max_coc_px) settings.max_coc_px = *entry.max_coc_px;
 
+  // Once without a clock: the contender before has filled the caches with its own.
+  draw_scene(prepared_.at(entry.profile), scene_.view, scene_.frame, drawn_, pool_);
+  entry.filter->apply({drawn_, settings, profile}, result_, pool_);
+
   const Clock::time_point start = Clock::now();
   draw_scene(prepared_.at(entry.profile), scene_.view, scene_.frame, drawn_, pool_);
   const Clock::time_point drawn = Clock::now();
@@ -98,6 +102,10 @@ RunTime ChartRunner::accumulate(int samples) {
     buffer_ = make_accumulation_buffer(input, pool_);
     sums_ = make_sample_sums(drawn_.width, drawn_.height);
   }
+  // Likewise; its first group is enough of it.
+  clear_sums(sums_);
+  add_views(*buffer_, input, 0, std::min(kSampleGroup, samples), sums_, pool_);
+
   const Clock::time_point start = Clock::now();
   clear_sums(sums_);
   while (sums_.count < samples) {

@@ -45,7 +45,7 @@ class ChartRunner {
   /// The scene must outlive it. `most_samples` is of the contenders.
   ChartRunner(const ChartScene& scene, int most_samples, ThreadPool& pool);
 
-  /// Draws a whole frame, by a filter or from the lens's points.
+  /// Draws a whole frame, by a filter or from the lens's points: once to warm up, then timed.
   RunTime run(const ChartEntry& entry);
 
   /// Of the last run.

@@ -18,7 +18,7 @@ constexpr double kLongMs = 1000.0;
 constexpr std::size_t kRoundsOfLong = 3;
 
 /// In drawings of a pinhole's picture, about: what the time left is reckoned by.
-constexpr double kFilterCost = 4.0, kMeasureCost = 40.0;
+constexpr double kFilterCost = 6.0, kMeasureCost = 40.0;
 
 double cost_of(const ChartEntry& entry) {
   return entry.filter != nullptr ? kFilterCost : static_cast<double>(entry.samples);
