@@ -58,8 +58,8 @@ TEST_CASE("without a subcommand there is the help, as wrong usage") {
   const ProgramRun run = run_program({});
   CHECK(run.status == 2);
   CHECK(run.out == "");
-  for (const char* command :
-       {"render", "scenes", "methods", "profiles", "lens", "compare", "bench", "selftest"}) {
+  for (const char* command : {"render", "scenes", "methods", "profiles", "lens", "compare", "bench",
+                              "chart", "selftest"}) {
     CHECK(contains(run.err, std::string{"\n  "} + command));
   }
 }
@@ -76,9 +76,9 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
           static_cast<std::ptrdiff_t>(names.size()));
   };
   lists("scenes", {"cube-room", "figures", "sphere-world"});
-  lists("methods", {"pinhole", "two-pass", "one-pass", "scatter", "scatter-sorted", "layers",
-                    "diffusion", "ring-bucket", "circular-1", "circular-2", "post-process",
-                    "accumulation", "ray-traced"});
+  lists("methods",
+        {"pinhole", "two-pass", "one-pass", "scatter", "scatter-sorted", "layers", "diffusion",
+         "ring-bucket", "circular-1", "circular-2", "post-process", "accumulation", "ray-traced"});
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
 }
 

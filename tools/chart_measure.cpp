@@ -10,8 +10,6 @@
 namespace softfocus {
 namespace {
 
-/// Of the pictures in the page: with 150 of them it stays below 25 MB.
-constexpr int kPictureSidePx = 205;
 constexpr int kLeastCropPx = 16, kMostCropPx = 64;
 
 std::string png_text(const Image& picture) { return base64(encode_png(picture)); }
@@ -21,7 +19,7 @@ int crop_side(const Image& picture) {
   return std::min(std::clamp(shorter / 8, kLeastCropPx, kMostCropPx), shorter);
 }
 
-int page_factor(int width, int height) { return reduction_factor(width, height, kPictureSidePx); }
+int page_factor(int width, int height) { return reduction_factor(width, height, kPagePicturePx); }
 
 }  // namespace
 

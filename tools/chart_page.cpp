@@ -45,7 +45,7 @@ std::string data_image(const std::string& png, const std::string& alt, const cha
 }
 
 std::string figure(const std::string& png, const std::string& alt, const std::string& caption,
-                   const char* attributes = "loading=\"lazy\"") {
+                   const char* attributes = "class=\"overview\" loading=\"lazy\"") {
   return "<figure>" + data_image(png, alt, attributes) + "<figcaption>" + html_text(caption) +
          "</figcaption></figure>\n";
 }

@@ -33,8 +33,9 @@ tr.best td { background: var(--best); }
 .point:target { outline: 3px solid var(--link); }
 .point p { margin: 0 0 .5rem; color: var(--faint); font-size: .875rem; }
 .row { display: flex; flex-wrap: wrap; gap: .5rem; margin-bottom: .5rem; }
-figure { margin: 0; }
+figure { margin: 0; width: min-content; }
 figcaption { color: var(--faint); font-size: .8rem; }
+.overview { width: 205px; }
 .crop { image-rendering: pixelated; width: 132px; height: 132px; }
 )";
 

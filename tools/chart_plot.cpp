@@ -11,8 +11,8 @@ namespace softfocus {
 namespace {
 
 constexpr int kPanelsInRow = 3;
-constexpr int kPanelWidth = 500, kPanelHeight = 470;  // pixels
-constexpr int kLeft = 96, kRight = 16, kTop = 44, kBottom = 58, kBetween = 14;
+constexpr int kPanelWidth = 520, kPanelHeight = 540;  // pixels
+constexpr int kLeft = 96, kRight = 16, kTop = 44, kBottom = 58, kBetween = 34;
 constexpr int kKeyRow = 24, kKeyColumns = 5;
 
 /// FLIP of a picture that is the truth itself, which no logarithm has.
@@ -28,6 +28,12 @@ struct Range {
   double least;
   double most;
 };
+
+constexpr Range kNothing{1e30, 0.0};
+
+void widen(Range& range, double value) {
+  range = {std::min(range.least, value), std::max(range.most, value)};
+}
 
 struct Layout {
   std::size_t columns;
@@ -128,8 +134,9 @@ std::string front_data(const ChartPanel& panel, double right_end_ms) {
 }
 
 std::string panel_script(std::size_t index, const ChartPanel& panel,
-                         const std::vector<std::string>& series, const Range& ms,
-                         const Layout& layout) {
+                         const std::vector<std::string>& series, const Layout& layout) {
+  Range ms = kNothing;
+  for (const ChartPoint& point : panel.points) widen(ms, point.median_ms);
   const std::string block = "$p" + std::to_string(index) + "_";
   const double floor = shown(panel.noise_floor.flip);
   std::string data = block + "front << END\n" + front_data(panel, ms.most * 1.3) + "END\n";
@@ -146,7 +153,8 @@ std::string panel_script(std::size_t index, const ChartPanel& panel,
     plots += ", " + name + " with linespoints " + style(i) + " notitle";
   }
   std::string script = data + panel_margins(index, layout);
-  script += "set title " + gnuplot_quoted(panel.scene) + " offset 0,-0.4\n";
+  script += "set title " + gnuplot_quoted(panel.scene) + " offset 0,-0.4\nset xrange " +
+            range_text(ms) + "\n";
   script += index % kPanelsInRow == 0
                 ? "set ylabel 'mean FLIP against the ground truth: lower is better'\nset ytics " +
                       tics(true) + "\n"
@@ -176,14 +184,10 @@ std::string series_name(const ChartEntry& entry) {
 
 std::string plot_script(const std::vector<ChartPanel>& panels, std::string_view terminal,
                         const std::filesystem::path& file) {
-  Range ms{1e30, 0.0}, flip{1e30, 0.0};
-  const auto widen = [](Range& range, double value) {
-    range = {std::min(range.least, value), std::max(range.most, value)};
-  };
+  Range flip = kNothing;
   for (const ChartPanel& panel : panels) {
     widen(flip, shown(panel.noise_floor.flip));
     for (const ChartPoint& point : panel.points) {
-      widen(ms, point.median_ms);
       widen(flip, shown(point.errors.flip));
     }
   }
@@ -197,9 +201,9 @@ std::string plot_script(const std::vector<ChartPanel>& panels, std::string_view 
                        "set grid lc rgb '#e4e4e4' lw 1 dt 1\nset xtics " +
                        tics(true) +
                        "\nset xlabel 'whole frame, milliseconds: further left is faster'\n" +
-                       "set xrange " + range_text(ms) + "\nset yrange " + range_text(flip) + "\n";
+                       "set yrange " + range_text(flip) + "\n";
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    script += panel_script(i, panels[i], series, ms, layout);
+    script += panel_script(i, panels[i], series, layout);
   }
   return script + key_script(series, layout) + "unset multiplot\nset output\n";
 }

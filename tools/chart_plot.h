@@ -12,8 +12,8 @@ namespace softfocus {
 
 /// The script that draws the panels into FILE in the `terminal` "svg" or "pngcairo". Each method
 /// has a colour and a shape, the same in all panels, with a line along its settings; the front is
-/// a grey stair, the noise floor a broken line. Axes are logarithmic and the same in all panels.
-/// Needs points with medians, one at least.
+/// a grey stair, the noise floor a broken line. Axes are logarithmic, that of FLIP the same in all
+/// panels. Needs points with medians, one at least.
 std::string plot_script(const std::vector<ChartPanel>& panels, std::string_view terminal,
                         const std::filesystem::path& file);
 

@@ -83,6 +83,21 @@ ChartTruth truth_of(Work& work, const ChartScene& scene, const std::string& key)
   return truth;
 }
 
+/// Where no circle is larger than the smallest radius, all radii give one picture.
+void measure_once(ChartPoint& point, const std::vector<ChartPoint>& before, const Image& picture,
+                  const ChartTruth& truth, const ChartScene& scene, ThreadPool& pool) {
+  const auto same = std::find_if(before.begin(), before.end(), [&](const ChartPoint& other) {
+    return other.picture_hash == point.picture_hash;
+  });
+  if (same == before.end()) {
+    measure_point(point, picture, truth.picture, scene.labels, pool);
+    return;
+  }
+  point.errors = same->errors;
+  point.worst = same->worst;
+  point.pictures = same->pictures;
+}
+
 /// Draws each contender's picture once, which also wakes it up for the timing, and measures
 /// those that are not kept.
 void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth,
@@ -100,7 +115,7 @@ void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth
       ++work.findings.kept;
       work.left.skipped(kMeasureCost);
     } else {
-      measure_point(point, runner.result(), truth.picture, scene.labels, work.pool);
+      measure_once(point, points, runner.result(), truth, scene, work.pool);
       save_point(point, key, file);
       work.left.done(kMeasureCost);
     }
@@ -164,7 +179,8 @@ ChartPanel measure_scene(Work& work, const std::string& name) {
                    .truth_samples = options.truth_samples,
                    .noise_floor = truth.noise_floor,
                    .truth_picture = page_picture(truth.picture)};
-  const std::string point_key = key + "; truth " + hash_text(hash_image(truth.picture));
+  const std::string point_key = key + "; truth " + hash_text(hash_image(truth.picture)) +
+                                "; pictures of " + std::to_string(kPagePicturePx);
   measure_errors(work, scene, truth, point_key, folder, runner, panel.points);
   measure_times(work, scene, folder, runner, panel.points);
   return panel;
