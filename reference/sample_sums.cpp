@@ -27,9 +27,15 @@ std::size_t place_of(const SampleSums& sums, int x, int y) {
 SampleSums make_sample_sums(int width, int height) {
   SampleSums sums{width, height, 0, (width + kSumTile - 1) / kSumTile, {}};
   const int tiles_y = (height + kSumTile - 1) / kSumTile;
-  // -0: what it is added to stays as it is, even -0.
-  sums.totals.assign(place_of(sums, 0, tiles_y * kSumTile), -0.0);
+  sums.totals.resize(place_of(sums, 0, tiles_y * kSumTile));
+  clear_sums(sums);
   return sums;
+}
+
+void clear_sums(SampleSums& sums) {
+  sums.count = 0;
+  // -0: what it is added to stays as it is, even -0.
+  std::fill(sums.totals.begin(), sums.totals.end(), -0.0);
 }
 
 double* sums_at(SampleSums& sums, int x, int y) {
@@ -80,8 +86,15 @@ void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool&
 
 Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& profile,
                    ThreadPool& pool) {
-  assert(sums.count > 0);
   Image picture = make_image(Format::rgba16f, sums.width, sums.height);
+  store_mean(sums, depth, profile, picture, pool);
+  return picture;
+}
+
+void store_mean(const SampleSums& sums, const Image& depth, const Profile& profile, Image& picture,
+                ThreadPool& pool) {
+  assert(sums.count > 0);
+  assert(picture.width == sums.width && picture.height == sums.height);
   pool.for_each(sums.height, [&](int y) {
     const auto from = row<std::uint16_t>(depth, y);
     const auto to = row<std::uint16_t>(picture, y);
@@ -95,7 +108,14 @@ Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& pr
       to[texel + 3] = from[texel + 3];
     }
   });
-  return picture;
+}
+
+SampleSums later_samples(const SampleSums& first, const SampleSums& all) {
+  assert(first.count < all.count && first.totals.size() == all.totals.size());
+  SampleSums later = all;
+  later.count -= first.count;
+  for (std::size_t i = 0; i < later.totals.size(); ++i) later.totals[i] -= first.totals[i];
+  return later;
 }
 
 double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool) {

@@ -33,6 +33,9 @@ struct SampleSums {
 
 SampleSums make_sample_sums(int width, int height);
 
+/// Forgets the samples, and keeps the memory.
+void clear_sums(SampleSums& sums);
+
 /// The sums of a pixel, and of those that follow it in its row of its tile.
 double* sums_at(SampleSums& sums, int x, int y);
 const double* sums_at(const SampleSums& sums, int x, int y);
@@ -49,6 +52,13 @@ void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool&
 /// picture. Needs one sample at least.
 Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& profile,
                    ThreadPool& pool);
+
+/// The same into an RGBA16F picture of the sums' size.
+void store_mean(const SampleSums& sums, const Image& depth, const Profile& profile, Image& picture,
+                ThreadPool& pool);
+
+/// The samples of `all` that came after those of `first`. Needs `all` to have begun as `first`.
+SampleSums later_samples(const SampleSums& first, const SampleSums& all);
 
 /// How far the first half of the samples and the second lie apart: the root of the mean
 /// square, over pixels and colours, of the difference of their means. `first_half` are the

@@ -58,8 +58,8 @@ TEST_CASE("without a subcommand there is the help, as wrong usage") {
   const ProgramRun run = run_program({});
   CHECK(run.status == 2);
   CHECK(run.out == "");
-  for (const char* command :
-       {"render", "scenes", "methods", "profiles", "lens", "compare", "bench", "selftest"}) {
+  for (const char* command : {"render", "scenes", "methods", "profiles", "lens", "compare", "bench",
+                              "chart", "selftest"}) {
     CHECK(contains(run.err, std::string{"\n  "} + command));
   }
 }

@@ -84,10 +84,10 @@ int run(std::vector<std::string> arguments) {
   program.require_subcommand(0, 1);
   program.get_formatter()->column_width(26);
   const std::vector<Command> commands{
-      add_render_command(program),     add_scenes_command(program),  add_methods_command(program),
-      add_profiles_command(program),   add_lens_command(program),    add_compare_command(program),
-      add_crosscheck_command(program), add_probe_command(program),   add_shaders_command(program),
-      add_bench_command(program),      add_selftest_command(program)};
+      add_render_command(program),     add_scenes_command(program), add_methods_command(program),
+      add_profiles_command(program),   add_lens_command(program),   add_compare_command(program),
+      add_crosscheck_command(program), add_probe_command(program),  add_shaders_command(program),
+      add_bench_command(program),      add_chart_command(program),  add_selftest_command(program)};
   // What is left over is ours to complain about, in check_rest().
   program.allow_extras();
   for (const Command& command : commands) command.parser->allow_extras();

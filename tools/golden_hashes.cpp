@@ -6,6 +6,8 @@
 #include <iterator>
 #include <map>
 
+#include "tools/hash_text.h"
+
 namespace softfocus {
 namespace {
 
@@ -62,12 +64,6 @@ std::string describe_failures(std::span<const HashCheck> checks) {
   return std::to_string(differing) + " of " + std::to_string(checks.size()) +
          " hashes differ; the first is '" + first->name + "': expected " + text(first->expected) +
          ", computed " + text(first->computed);
-}
-
-std::string hash_text(std::uint64_t hash) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(hash));
-  return text;
 }
 
 }  // namespace softfocus

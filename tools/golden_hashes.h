@@ -62,7 +62,4 @@ std::vector<HashCheck> check_hashes(std::span<const NamedHash> expected,
 /// What does not pass, in words that name the first; empty where all do.
 std::string describe_failures(std::span<const HashCheck> checks);
 
-/// 0x and 16 digits.
-std::string hash_text(std::uint64_t hash);
-
 }  // namespace softfocus

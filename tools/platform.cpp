@@ -20,14 +20,33 @@
 #endif
 
 #include <algorithm>
+#include <cstdio>
 
 namespace softfocus {
 namespace {
+
+#ifdef _WIN32
+constexpr const char* kDropped = " >NUL 2>NUL";
+std::FILE* open_pipe(const char* command) { return ::_popen(command, "wb"); }
+int close_pipe(std::FILE* pipe) { return ::_pclose(pipe); }
+#else
+constexpr const char* kDropped = " >/dev/null 2>&1";
+std::FILE* open_pipe(const char* command) { return ::popen(command, "w"); }
+int close_pipe(std::FILE* pipe) { return ::pclose(pipe); }
+#endif
 
 // Linux writes at most 2^31 - 4096 bytes a call, Windows counts them in 32 bits.
 constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
 
 }  // namespace
+
+bool run_with_input(const std::string& program, std::string_view input, Said said) {
+  const std::string command = program + (said == Said::dropped ? kDropped : "");
+  std::FILE* const pipe = open_pipe(command.c_str());
+  if (pipe == nullptr) return false;
+  const bool all = std::fwrite(input.data(), 1, input.size(), pipe) == input.size();
+  return close_pipe(pipe) == 0 && all;
+}
 
 #ifdef _WIN32
 

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace softfocus {
 
@@ -39,5 +41,12 @@ std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes);
 
 /// Closes a descriptor; false with errno set if what was written is lost.
 bool close_file(int descriptor);
+
+/// Whether what a program says on standard output and standard error is seen.
+enum class Said { shown, dropped };
+
+/// Runs a program of the system with that text as standard input and waits for its end. False if
+/// it cannot be run, or ends with another status than 0. `program` is one word without blanks.
+bool run_with_input(const std::string& program, std::string_view input, Said said);
 
 }  // namespace softfocus

@@ -9,6 +9,7 @@
 #include "tools/commands.h"
 #include "tools/errors.h"
 #include "tools/golden_hashes.h"
+#include "tools/hash_text.h"
 #include "tools/pool_options.h"
 
 namespace softfocus {

@@ -1,0 +1,40 @@
+#pragma once
+// What `chart` measures: for each method a list of settings.
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dof/method.h"
+
+namespace softfocus {
+
+/// One contender: a method with its settings. Those that it does not mind are left out.
+struct ChartEntry {
+  std::string method;
+  const Method* filter = nullptr;  ///< null: the accumulation of `samples` pictures
+  std::string profile = "ieee";    ///< a known profile
+  std::optional<float> max_coc_px{};
+  int samples = 0;
+};
+
+/// The names that --methods takes: every filter of dof/method.h, and accumulation.
+std::vector<std::string> chart_methods();
+
+/// The settings of one of them for pictures of that height; `quick`: fewer. A method for which
+/// the table has no line of its own gets the table's last one.
+std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, bool quick);
+
+/// {"max_coc_px": 16, "profile": "ieee"} or {"samples": 32}.
+nlohmann::ordered_json settings_json(const ChartEntry& entry);
+
+/// "max-coc 16, d3d11", "32 samples"; the profile ieee and no settings at all are not told.
+std::string settings_text(const ChartEntry& entry);
+
+/// Different for different entries, and fit for a file's name and for an address in a page:
+/// "two-pass-r16-d3d11".
+std::string entry_id(const ChartEntry& entry);
+
+}  // namespace softfocus
