@@ -33,7 +33,7 @@ TEST_CASE("chart: JSON has an entry for each point of each scene, with every key
         R"("median_ms":11.0,"psnr_db":30.5,"ssim":0.875,"flip":0.1,"flip_silhouette":0.5,)"
         R"("flip_near":null,"flip_focus":0.0,"flip_far":0.25,"filter_ms":2.5,"rounds":3,)"
         R"("on_front":true,"truth_samples":512,"noise_floor_flip":0.002,)"
-        R"("noise_floor_psnr_db":60.0,"picture_hash":"0000000000000123"})");
+        R"("noise_floor_psnr_db":60.0,"picture_hash":"0x0000000000000123"})");
   CHECK(list[3]["settings"] == nlohmann::ordered_json{{"samples", 64}});
   CHECK(list[3]["filter_ms"].is_null());
 }
@@ -54,7 +54,7 @@ TEST_CASE("chart: CSV is names and a line for each point") {
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
   CHECK(
       csv.find("\"a, \"\"b\"\"\",two-pass,max_coc_px=4.0;profile=ieee,11.0,30.5,0.875,0.1,0.5,,0.0,"
-               "0.25,2.5,3,true,512,0.002,60.0,0000000000000123\n") != csv.npos);
+               "0.25,2.5,3,true,512,0.002,60.0,0x0000000000000123\n") != csv.npos);
   CHECK(csv.find("accumulation,samples=64,700.0,30.5,0.875,0.01,0.5,,0.0,0.25,,1,true") !=
         csv.npos);
 }

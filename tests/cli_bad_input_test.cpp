@@ -64,7 +64,8 @@ TEST_CASE("bad input: circles past single precision") {
 }
 
 TEST_CASE("bad input: an unknown name is answered with the names there are") {
-  check_option_refused({"--method", "three-pass"}, {"'three-pass'", "pinhole, two-pass, one-pass"});
+  check_option_refused({"--method", "three-pass"},
+                       {"'three-pass'", "pinhole, two-pass, two-pass-single, one-pass"});
   check_option_refused({"--profile", "voodoo"}, {"'voodoo'", "ieee, d3d11, llvmpipe"});
   check_option_refused({"--show", "me"}, {"'me'", "image, pinhole, coc, depth"});
   check_option_refused({"--format", "gif"}, {"'gif'", "png, pfm, npy"});
