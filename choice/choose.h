@@ -13,8 +13,8 @@
 namespace softfocus {
 
 struct Goal {
-  double max_error = 0.02;            ///< mean FLIP; not looked at if there is a time
-  std::optional<double> max_time_ms;  ///< for the method, beside drawing
+  double max_error = 0.02;              ///< mean FLIP; not looked at if there is a time
+  std::optional<double> max_time_ms{};  ///< for the method, beside drawing
 };
 
 /// What the choice is bound by.
