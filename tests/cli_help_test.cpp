@@ -75,10 +75,10 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
     CHECK(std::count(run.out.begin(), run.out.end(), '\n') ==
           static_cast<std::ptrdiff_t>(names.size()));
   };
-  lists("scenes", {"cube-room", "figures", "sphere-world"});
+  lists("scenes", {"cube-room", "dunes", "figures", "lattice", "sphere-world"});
   lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "scatter",
                     "scatter-sorted", "layers", "diffusion", "ring-bucket", "circular-1",
-                    "circular-2", "post-process", "accumulation", "ray-traced"});
+                    "circular-2", "post-process", "accumulation", "ray-traced", "auto"});
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
 }
 

@@ -12,6 +12,7 @@
 #include "scenes/load_scene.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
+#include "tools/method_options.h"
 #include "tools/option_values.h"
 
 namespace softfocus {
@@ -64,6 +65,8 @@ Command add_methods_command(CLI::App& program) {
               rows.push_back({std::string{method.name}, std::string{method.needs},
                               std::string{method.summary} + lack});
             }
+            rows.push_back({std::string{kAutoMethod}, "the scene",
+                            "the cheapest of these that the scene needs for an error"});
             print_aligned(rows);
             return kDone;
           }};

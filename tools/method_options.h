@@ -11,18 +11,25 @@
 
 namespace softfocus {
 
-/// A method of either table: a filter of the drawn picture or one that draws the scene.
+/// What chooses a method by the scene (choice/choose.h).
+inline constexpr std::string_view kAutoMethod = "auto";
+
+/// A method of either table: a filter of the drawn picture or one that draws the scene. Or
+/// neither: the scene shall choose.
 struct MethodChoice {
   const Method* filter = nullptr;
   const SceneMethod* of_scene = nullptr;
 
-  std::string_view name() const { return filter != nullptr ? filter->name : of_scene->name; }
+  bool is_auto() const { return filter == nullptr && of_scene == nullptr; }
+  std::string_view name() const {
+    return is_auto() ? kAutoMethod : filter != nullptr ? filter->name : of_scene->name;
+  }
 };
 
 /// Adds --method for filters; `method` holds the default.
 void add_method_option(CLI::App& parser, const Method*& method);
 
-/// The same for both tables. What a build lacks is refused here, with how to get it.
+/// The same for both tables and for `auto`. What a build lacks is refused here, with how to get it.
 void add_method_option(CLI::App& parser, MethodChoice& method);
 
 /// Adds --max-coc.

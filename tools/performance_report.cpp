@@ -13,10 +13,11 @@ struct NamedTime {
 };
 constexpr std::array kStages{
     NamedTime{"load", &StageTimes::load},     NamedTime{"draw", &StageTimes::draw},
-    NamedTime{"focus", &StageTimes::focus},   NamedTime{"filter", &StageTimes::filter},
-    NamedTime{"encode", &StageTimes::encode}, NamedTime{"write", &StageTimes::write}};
+    NamedTime{"focus", &StageTimes::focus},   NamedTime{"choose", &StageTimes::choose},
+    NamedTime{"filter", &StageTimes::filter}, NamedTime{"encode", &StageTimes::encode},
+    NamedTime{"write", &StageTimes::write}};
 
-double cost_ms(const StageTimes& ms) { return ms.focus + ms.filter; }
+double cost_ms(const StageTimes& ms) { return ms.focus + ms.choose + ms.filter; }
 
 double frames_per_second(double ms) { return ms > 0.0 ? 1000.0 / ms : 0.0; }
 
@@ -54,6 +55,13 @@ std::string filter_lines(const UsedLens& used) {
          line("Leak", short_number(used.settings.leak));
 }
 
+std::string choice_lines(const Choice& choice) {
+  return line("Chosen", setting_text(choice)) + line("Because", choice.reason) +
+         line("Predicted error", short_number(choice.predicted_error) + " (mean FLIP)") +
+         line("Predicted time",
+              short_number(choice.predicted_ms) + " ms (two cores of the reference machine)");
+}
+
 std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
   const int blades = sampling.aperture.blades;
   std::string text = line("Samples", std::to_string(used.samples)) +
@@ -63,6 +71,37 @@ std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
     text += line("Half-sets differ by", short_number(*used.half_set_rms) + " (RMS, linear)");
   }
   return text;
+}
+
+nlohmann::ordered_json traits_json(const SceneTraits& traits) {
+  nlohmann::ordered_json json{{"nearest_px", traits.nearest_px},
+                              {"farthest_px", traits.farthest_px},
+                              {"blurred_share", traits.blurred_share},
+                              {"blur", traits.blur},
+                              {"ghosts", traits.ghosts}};
+  for (const RadiusTraits& of : traits.by_radius) {
+    json["blurred"].push_back(of.blurred);
+    json["lost"].push_back(of.lost);
+    json["near_edges"].push_back(of.near_edges);
+  }
+  return json;
+}
+
+nlohmann::ordered_json choice_json(const Choice& choice, const Goal& goal) {
+  nlohmann::ordered_json json{{"method", choice.method}};
+  if (choice.radius_px > 0.0f) json["max_coc_px"] = choice.radius_px;
+  if (choice.samples > 0) json["samples"] = choice.samples;
+  if (goal.max_time_ms) {
+    json["max_time_ms"] = *goal.max_time_ms;
+  } else {
+    json["max_error"] = goal.max_error;
+  }
+  json["meets_goal"] = choice.meets_goal;
+  json["predicted_error"] = choice.predicted_error;
+  json["predicted_ms"] = choice.predicted_ms;
+  json["reason"] = choice.reason;
+  json["traits"] = traits_json(choice.traits);
+  return json;
 }
 
 }  // namespace
@@ -90,6 +129,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
                                  std::to_string(options.size.height) + " pixels");
   text += line("Triangles", std::to_string(record.triangles));
   text += line("Method", std::string{options.method.name()});
+  if (record.used.choice) text += choice_lines(*record.used.choice);
   text += line("Picture", std::string{name_of(options.show)});
   text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
                                      : line("GL driver", record.gl_renderer);
@@ -98,7 +138,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += "\n";
   if (record.lens) {
     text += lens_lines(*record.lens);
-    text += record.sampled ? sampling_lines(options.sampling, *record.sampled)
+    text += record.sampled ? sampling_lines(record.used.sampling, *record.sampled)
                            : filter_lines(*record.lens);
     text += "\n";
   }
@@ -110,7 +150,10 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
     text += time_line("Cost of depth of field", cost_ms(ms), false);
   }
   text += "\n" + line("Stage", "milliseconds");
-  for (const NamedTime& stage : kStages) text += time_line(stage.name, ms.*stage.ms, false);
+  for (const NamedTime& stage : kStages) {
+    if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
+    text += time_line(stage.name, ms.*stage.ms, false);
+  }
   return text;
 }
 
@@ -144,10 +187,11 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       json["lens"]["autofocus_pixel"] = {used.autofocus_pixel->x, used.autofocus_pixel->y};
     }
   }
+  if (record.used.choice) json["choice"] = choice_json(*record.used.choice, options.goal);
   if (record.sampled) {
     json["sampling"] = {{"samples", record.sampled->samples},
-                        {"jitter", options.sampling.jitter},
-                        {"aperture_blades", options.sampling.aperture.blades}};
+                        {"jitter", record.used.sampling.jitter},
+                        {"aperture_blades", record.used.sampling.aperture.blades}};
     if (record.sampled->half_set_rms)
       json["sampling"]["half_set_rms"] = *record.sampled->half_set_rms;
   }
@@ -157,7 +201,10 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     json["with_depth_of_field"] = {{"ms", with}, {"fps", frames_per_second(with)}};
     json["cost_of_depth_of_field_ms"] = cost_ms(ms);
   }
-  for (const NamedTime& stage : kStages) json["stages_ms"][stage.name] = ms.*stage.ms;
+  for (const NamedTime& stage : kStages) {
+    if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
+    json["stages_ms"][stage.name] = ms.*stage.ms;
+  }
   // A file's name need not be UTF-8, but JSON must be.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

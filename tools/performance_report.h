@@ -16,6 +16,7 @@ struct StageTimes {
   double load = 0.0;
   double draw = 0.0;
   double focus = 0.0;   ///< finding the focus and the per-frame constants
+  double choose = 0.0;  ///< of auto: looking at the picture and at the table
   double filter = 0.0;  ///< the method, or the map that --show asks for
   double encode = 0.0;
   double write = 0.0;
@@ -29,6 +30,13 @@ struct UsedLens {
   std::optional<Pixel> autofocus_pixel;  ///< where the focus was found
 };
 
+/// What was at work: as it was asked for, or as auto chose it.
+struct UsedMethod {
+  MethodChoice method;
+  Sampling sampling;
+  std::optional<Choice> choice;  ///< of auto
+};
+
 /// What a method that draws the scene came to.
 struct UsedSamples {
   int samples = 0;
@@ -39,7 +47,8 @@ struct RenderRecord {
   std::string scene_name;
   std::string scene_title;
   std::size_t triangles = 0;
-  std::string gl_renderer;             ///< of --gl; else empty
+  std::string gl_renderer;  ///< of --gl; else empty
+  UsedMethod used;
   std::optional<UsedLens> lens;        ///< none where the picture needs none
   std::optional<UsedSamples> sampled;  ///< none of a filter
   StageTimes ms;

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "choice/choose.h"
 #include "dof/views.h"
 #include "raster/images/texel.h"
 #include "scenes/draw_scene.h"
@@ -73,22 +74,22 @@ Image sampled_picture(const Scene& scene, const View& view, const Image& pinhole
                       const RenderOptions& options, RenderRecord& record, Progress& progress,
                       ThreadPool& pool) {
   const UsedLens& used = *record.lens;
+  const Sampling& sampling = record.used.sampling;
   const auto tell = [&](int samples) {
     progress.show("sampling the lens, " + std::to_string(samples) + " of " +
-                  (options.sampling.until ? "at most " : "") +
-                  std::to_string(options.sampling.samples));
+                  (sampling.until ? "at most " : "") + std::to_string(sampling.samples));
   };
-  SampledPicture sampled = options.method.of_scene->render(
+  SampledPicture sampled = record.used.method.of_scene->render(
       {scene, view, options.frame, pinhole, used.lens.focus_m,
-       aperture_radius_m(used.lens, used.coc_scale), options.sampling, options.profile, tell},
+       aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell},
       pool);
   record.sampled = {sampled.samples, sampled.half_set_rms};
   return std::move(sampled.picture);
 }
 
 /// What --until asked for and the samples did not give, as a line, or nothing.
-std::string until_warning(const RenderOptions& options, const RenderRecord& record) {
-  const Sampling& sampling = options.sampling;
+std::string until_warning(const RenderRecord& record) {
+  const Sampling& sampling = record.used.sampling;
   if (!record.sampled || !sampling.until) return {};
   const auto reached = record.sampled->half_set_rms;
   if (reached && *reached <= *sampling.until) return {};
@@ -98,13 +99,35 @@ std::string until_warning(const RenderOptions& options, const RenderRecord& reco
          std::to_string(record.sampled->samples) + " samples: " + found;
 }
 
-Image shown_picture(Image scene, const RenderOptions& options, const Camera& camera,
-                    const DofSettings& settings, FrameOnGl* on_gl, ThreadPool& pool) {
+/// What auto was to keep to and foresees that it will not, as a line, or nothing.
+std::string goal_warning(const RenderOptions& options, const RenderRecord& record) {
+  if (!record.used.choice || record.used.choice->meets_goal) return {};
+  const Choice& choice = *record.used.choice;
+  return "--max-error " + short_number(options.goal.max_error) +
+         ": no method is foreseen to keep to it; " + setting_text(choice) +
+         " comes nearest, with a foreseen error of " + short_number(choice.predicted_error);
+}
+
+/// Lets auto choose, by the drawn picture.
+void choose_method(RenderRecord& record, const Image& drawn, const RenderOptions& options,
+                   ThreadPool& pool) {
+  DofSettings& settings = record.lens->settings;
+  const SceneTraits traits = scene_traits(drawn, settings.coc, pool);
+  const Choice choice = choose(traits, options.goal, {options.max_coc_px, record.triangles});
+  UsedMethod& used = record.used;
+  used.method = {find_method(choice.method), find_scene_method(choice.method)};
+  if (used.method.of_scene != nullptr) used.sampling.samples = choice.samples;
+  if (used.method.filter != nullptr) settings.max_coc_px = choice.radius_px;
+  used.choice = choice;
+}
+
+Image shown_picture(Image scene, const RenderOptions& options, const Method* filter,
+                    const Camera& camera, const DofSettings& settings, FrameOnGl* on_gl,
+                    ThreadPool& pool) {
   switch (options.show) {
     case Show::image:
-      return on_gl != nullptr
-                 ? on_gl->filter(*options.method.filter, settings, scene)
-                 : apply(*options.method.filter, {scene, settings, options.profile}, pool);
+      return on_gl != nullptr ? on_gl->filter(*filter, settings, scene)
+                              : apply(*filter, {scene, settings, options.profile}, pool);
     case Show::pinhole: return scene;
     case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
     case Show::depth:
@@ -148,16 +171,21 @@ int render(const RenderOptions& options) {
           [&] { set_lens(*record.lens, drawn, options, scene.camera.fov_y_degrees); });
     settings = record.lens->settings;
   }
-  const bool from_lens = options.show == Show::image && options.method.of_scene != nullptr;
+  record.used = {options.method, options.sampling, {}};
+  if (options.show == Show::image && options.method.is_auto()) {
+    timed(progress, "choosing", ms.choose, [&] { choose_method(record, drawn, options, pool); });
+    settings = record.lens->settings;
+  }
+  const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
   const Image picture = timed(progress, from_lens ? "sampling" : "filtering", ms.filter, [&] {
     if (from_lens) return sampled_picture(scene, view, drawn, options, record, progress, pool);
-    return shown_picture(std::move(drawn), options, scene.camera, settings,
-                         on_gl ? &*on_gl : nullptr, pool);
+    return shown_picture(std::move(drawn), options, record.used.method.filter, scene.camera,
+                         settings, on_gl ? &*on_gl : nullptr, pool);
   });
 
   progress.clear();
-  if (const std::string warning = until_warning(options, record); !warning.empty()) {
-    std::cerr << "softfocus: warning: " << warning << '\n';
+  for (const std::string& warning : {until_warning(record), goal_warning(options, record)}) {
+    if (!warning.empty()) std::cerr << "softfocus: warning: " << warning << '\n';
   }
 
   const Bytes bytes =

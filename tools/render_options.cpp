@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "raster/images/image.h"
+#include "tools/auto_options.h"
 #include "tools/driver_option.h"
 #include "tools/errors.h"
 #include "tools/memory_check.h"
@@ -82,6 +83,7 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
                   parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
             });
   add_sampling_options(parser, options.sampling);
+  add_auto_options(parser, options.goal);
 }
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
@@ -163,17 +165,19 @@ void complete(RenderOptions& options, const CLI::App& parser) {
                        "," + std::to_string(height - 1));
     }
   }
+  check_auto_options(parser, options.method);
   const bool samples = options.method.of_scene != nullptr;
   if (samples) {
     complete_sampling(options.sampling, parser);
-  } else {
+  } else if (!options.method.is_auto()) {
     refuse_sampling_options(parser, options.method.name());
   }
   if (samples && options.gl != nullptr) {
     throw UsageError("--gl and --method " + std::string{options.method.name()} +
                      " exclude each other: it draws in the emulation; give one");
   }
-  check_memory("--size", options.size, kBytesPerPixel + (samples ? kSamplingBytesPerPixel : 0));
+  const bool may_sample = samples || options.method.is_auto();
+  check_memory("--size", options.size, kBytesPerPixel + (may_sample ? kSamplingBytesPerPixel : 0));
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "choice/choose.h"
 #include "dof/method.h"
 #include "raster/numbers/profile.h"
 #include "tools/gl/driver.h"
@@ -33,6 +34,7 @@ struct RenderOptions {
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};
   Sampling sampling;  ///< of a method that draws the scene
+  Goal goal;          ///< of auto
   LensOptions lens;
   bool autofocus = false;
   std::optional<Pixel> autofocus_pixel;  ///< the picture's centre if none

@@ -1,0 +1,17 @@
+#pragma once
+// --max-error and --max-time: what `--method auto` is to keep to.
+
+#include <CLI/CLI.hpp>
+
+#include "choice/choose.h"
+#include "tools/method_options.h"
+
+namespace softfocus {
+
+void add_auto_options(CLI::App& parser, Goal& goal);
+
+/// Throws UsageError if both were given, or either without --method auto, or with it an
+/// option that it settles itself.
+void check_auto_options(const CLI::App& parser, const MethodChoice& method);
+
+}  // namespace softfocus
