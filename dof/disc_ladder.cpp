@@ -1,0 +1,98 @@
+#include "dof/disc_ladder.h"
+
+#include <cmath>
+
+namespace softfocus {
+namespace {
+
+constexpr RungStep kAlways{-1.0f, 1.0f};
+constexpr RungStep kNever{3e38f, 1.0f};
+
+// Half the width of a disc's row of pixels: its area there, halved, by the midpoint rule.
+double mean_half_width(double radius, int dy) {
+  constexpr int kSteps = 16;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double y = dy - 0.5 + (i + 0.5) / kSteps;
+    const double square = radius * radius - y * y;
+    if (square > 0.0) sum += std::sqrt(square);
+  }
+  return sum / kSteps;
+}
+
+std::vector<LadderSpan> disc_spans(double radius) {
+  std::vector<LadderSpan> spans;
+  for (int dy = 0;; ++dy) {
+    const double half_width = mean_half_width(radius, dy);
+    if (half_width == 0.0 && dy > 0) return spans;
+    if (half_width < 0.5) {
+      spans.push_back({0, static_cast<float>(2.0 * half_width), 0.0f});
+    } else {
+      const int whole = static_cast<int>(half_width - 0.5);
+      spans.push_back({whole, 1.0f, static_cast<float>(half_width - 0.5 - whole)});
+    }
+  }
+}
+
+// Of rows and columns the mean.
+double variance(const std::vector<LadderSpan>& spans) {
+  double area = 0.0, moment = 0.0;
+  for (std::size_t row = 0; row < spans.size(); ++row) {
+    const double rows = row == 0 ? 1.0 : 2.0;
+    const double dy = static_cast<double>(row);
+    for (int dx = -spans[row].whole - 1; dx <= spans[row].whole + 1; ++dx) {
+      const bool last = std::abs(dx) > spans[row].whole;
+      const double weight = rows * static_cast<double>(last ? spans[row].end : spans[row].centre);
+      area += weight;
+      moment += weight * 0.5 * (dx * dx + dy * dy);
+    }
+  }
+  return moment / area;
+}
+
+std::vector<LadderSpan> spans_of_variance(double wanted) {
+  double low = 0.5, high = 2.0 * std::sqrt(wanted) + 1.0;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (variance(disc_spans(middle)) < wanted ? low : high) = middle;
+  }
+  return disc_spans(0.5 * (low + high));
+}
+
+// A disc's second moment along an axis is a quarter of the radius squared. Of it, in
+// squared pixels of a level, (1 - 4^-level) / 3 comes with the pixels' size: a twelfth by
+// averaging 2x2 pixels level by level, a quarter on the way back by weights of 3/4 and 1/4.
+std::vector<LadderSpan> spans_of(double square, int level) {
+  const double pixel = std::ldexp(1.0, -2 * level);
+  return spans_of_variance(0.25 * square * pixel - (1.0 - pixel) / 3.0);
+}
+
+double square_of(int rung) {
+  return rung == 0 ? 0.0 : std::ldexp(rung % 2 == 1 ? 1.0 : 1.5, (rung - 1) / 2);
+}
+
+}  // namespace
+
+std::vector<LevelRungs> make_ladder(float largest_px) {
+  std::vector<LevelRungs> levels;
+  const double largest = static_cast<double>(largest_px) * static_cast<double>(largest_px);
+  int rung = 0;
+  do {
+    const int level = static_cast<int>(levels.size());
+    LevelRungs& rungs = levels.emplace_back();
+    const int end = kFineRungs + kLevelRungs * level;
+    for (int first = rung; rung < end; ++rung) {
+      const double square = square_of(rung), before = rung == 0 ? 0.0 : square_of(rung - 1);
+      const RungStep step{static_cast<float>(before), static_cast<float>(1.0 / (square - before))};
+      rungs.rungs.push_back(
+          {static_cast<float>(square), rung == first ? kAlways : step,
+           rung == 0 ? std::vector{LadderSpan{0, 1.0f, 0.0f}} : spans_of(square, level)});
+    }
+    const double last = square_of(rung - 1);
+    rungs.beyond = {static_cast<float>(last), static_cast<float>(1.0 / (square_of(rung) - last))};
+  } while (square_of(rung - 1) < largest);
+  levels.back().beyond = kNever;
+  return levels;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,205 @@
+#include "dof/disc_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "dof/disc_levels.h"
+#include "dof/scratch_shelf.h"
+
+#define SOFTFOCUS_KERNELS "dof/disc_layers_kernels.inl"
+#include "raster/numbers/for_each_isa.inl"
+
+namespace softfocus {
+namespace {
+
+constexpr int kLargestReach = 12;
+
+struct Workspace {
+  DiscTile tile;
+  DiscSums sums;
+  float blended[kDiscTileWidth];
+  float enlarged[4][kDiscTileWidth + 32];
+};
+
+struct Frame {
+  const std::vector<LevelRungs>& ladder;
+  std::vector<DiscLevel>& levels;
+  Isa isa;
+};
+
+struct Rectangle {
+  int x, y, width, height;
+};
+
+void blur_rung(const Frame& frame, std::size_t level, DiscSide side, std::size_t number,
+               const Rectangle& at, Workspace& work) {
+  const LevelRungs& rungs = frame.ladder[level];
+  const Rung& rung = rungs.rungs[number];
+  const DiscLevel& picture = frame.levels[level];
+  const int reach = static_cast<int>(rung.spans.size()) - 1;
+  const int index = side == DiscSide::near ? 0 : 1;
+  DiscRows rows[kDiscTileHeight + 2 * kLargestReach];
+  for (int y = 0; y < at.height + 2 * reach; ++y) {
+    rows[y] = disc_rows(picture, index, at.x, at.y + y - reach);
+  }
+  const bool last = number + 1 == rungs.rungs.size();
+  const DiscBlur blur{rows,
+                      picture.sides[picture.whole() ? 0 : index].planes.plane,
+                      at.width,
+                      at.height,
+                      side,
+                      picture.whole() && side == DiscSide::near ? -1.0f : 1.0f,
+                      rung.step,
+                      last ? rungs.beyond : rungs.rungs[number + 1].step,
+                      rung.spans.data(),
+                      reach};
+  SOFTFOCUS_KERNEL(frame.isa, blur_disc_tile)(blur, work.sums);
+  SOFTFOCUS_KERNEL(frame.isa, add_disc_sums)(work.sums, at.width, at.height, work.tile);
+}
+
+// Whether a level or a larger one has anything of that side to show in a rectangle.
+bool any_seen(const Frame& frame, std::size_t level, int side, const Rectangle& at) {
+  if (level == frame.levels.size()) return false;
+  if (rungs_near(frame.levels[level], side, at.x, at.y, at.width, at.height) != 0) return true;
+  return any_seen(frame, level + 1, side,
+                  {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2});
+}
+
+// Rows of the next level in those of a tile.
+void enlarge(const Frame& frame, const DiscLevel& from, int side, const Rectangle& at, int row,
+             Workspace& work) {
+  const int y = at.y + row;
+  const int inside = y / 2;
+  const int other = std::clamp(y % 2 == 0 ? inside - 1 : inside + 1, 0, from.height - 1);
+  for (int i = 0; i < 4; ++i) {
+    SOFTFOCUS_KERNEL(frame.isa, enlarge_disc_row)
+    (plane_row(from.seen[side], i, inside) + kDiscMargin + at.x / 2,
+     plane_row(from.seen[side], i, other) + kDiscMargin + at.x / 2, at.width + at.width % 2,
+     work.blended, work.enlarged[i]);
+  }
+}
+
+void start_tile(const Frame& frame, std::size_t level, const Rectangle& at, bool before_focus,
+                Workspace& work) {
+  const bool any =
+      before_focus && any_seen(frame, level + 1, 0,
+                               {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2});
+  for (int y = 0; y < at.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y);
+    float* to[] = {work.tile.red[row], work.tile.green[row], work.tile.blue[row],
+                   work.tile.transmitted[row]};
+    if (any) enlarge(frame, frame.levels[level + 1], 0, at, y, work);
+    for (int i = 0; i < 4; ++i) {
+      if (any) {
+        std::copy_n(work.enlarged[i], kDiscTileWidth, to[i]);
+      } else {
+        std::fill_n(to[i], kDiscTileWidth, i == 3 ? 1.0f : 0.0f);
+      }
+    }
+  }
+}
+
+void add_larger_behind(const Frame& frame, std::size_t level, const Rectangle& at,
+                       Workspace& work) {
+  if (!any_seen(frame, level + 1, 1,
+                {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2})) {
+    return;
+  }
+  for (int y = 0; y < at.height; ++y) {
+    enlarge(frame, frame.levels[level + 1], 1, at, y, work);
+    SOFTFOCUS_KERNEL(frame.isa, add_behind)
+    (work.enlarged[0], work.enlarged[1], work.enlarged[2], work.enlarged[3], at.width, y,
+     work.tile);
+  }
+}
+
+void blur_before(const Frame& frame, std::size_t level, const Rectangle& at, Workspace& work) {
+  const std::uint32_t rungs = rungs_near(frame.levels[level], 0, at.x, at.y, at.width, at.height);
+  const std::size_t least = level == 0 ? 1 : 0;
+  for (std::size_t i = frame.ladder[level].rungs.size(); i-- > least;) {
+    if ((rungs >> i & 1u) != 0) blur_rung(frame, level, DiscSide::near, i, at, work);
+  }
+}
+
+void blur_behind(const Frame& frame, std::size_t level, const Rectangle& at, Workspace& work) {
+  const std::uint32_t rungs = rungs_near(frame.levels[level], 1, at.x, at.y, at.width, at.height);
+  const std::size_t least = level == 0 ? 1 : 0;
+  for (std::size_t i = least; i < frame.ladder[level].rungs.size(); ++i) {
+    if ((rungs >> i & 1u) != 0) blur_rung(frame, level, DiscSide::far, i, at, work);
+  }
+}
+
+template <class Body>
+void for_each_tile(const DiscLevel& level, ThreadPool& pool, const Body& body) {
+  const int columns = (level.width + kDiscTileWidth - 1) / kDiscTileWidth;
+  const int rows = (level.height + kDiscTileHeight - 1) / kDiscTileHeight;
+  ScratchShelf<std::unique_ptr<Workspace>> shelf;
+  pool.for_each(columns * rows, [&](int task) {
+    std::unique_ptr<Workspace> work = shelf.take();
+    if (!work) work = std::make_unique<Workspace>();
+    const int x = task % columns * kDiscTileWidth, y = task / columns * kDiscTileHeight;
+    body(Rectangle{x, y, std::min(kDiscTileWidth, level.width - x),
+                   std::min(kDiscTileHeight, level.height - y)},
+         *work);
+    shelf.put_back(std::move(work));
+  });
+}
+
+void keep_tile(DiscLevel& level, int side, const Rectangle& at, const DiscTile& tile) {
+  for (int y = 0; y < at.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y);
+    const float* from[] = {tile.red[row], tile.green[row], tile.blue[row], tile.transmitted[row]};
+    for (int i = 0; i < 4; ++i) {
+      float* to = plane_row(level.seen[side], i, at.y + y) + kDiscMargin + at.x;
+      std::copy_n(from[i], at.width, to);
+      if (at.x == 0) to[-1] = to[0];
+      if (at.x + at.width == level.width) to[at.width] = to[at.width - 1];
+    }
+  }
+}
+
+void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
+  DiscLevel& level = frame.levels[number];
+  for (Planes& planes : level.seen) {
+    planes = make_planes(4, level.width + 2 * kDiscMargin + kDiscTileWidth, level.height);
+  }
+  for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
+    start_tile(frame, number, at, true, work);
+    blur_before(frame, number, at, work);
+    keep_tile(level, 0, at, work.tile);
+    start_tile(frame, number, at, false, work);
+    blur_behind(frame, number, at, work);
+    add_larger_behind(frame, number, at, work);
+    keep_tile(level, 1, at, work.tile);
+  });
+}
+
+}  // namespace
+
+void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
+  const std::vector<LevelRungs> ladder = make_ladder(std::min(
+      input.settings.max_coc_px, std::fabs(input.settings.coc.radius_at_infinity_px) * 1e9f));
+  std::vector<DiscLevel> levels = make_disc_levels(input, ladder, pool);
+  const Frame frame{ladder, levels, pool.isa()};
+  for (std::size_t i = levels.size(); i-- > 1;) see_level(frame, i, pool);
+  for_each_tile(levels[0], pool, [&](const Rectangle& at, Workspace& work) {
+    start_tile(frame, 0, at, true, work);
+    blur_before(frame, 0, at, work);
+    const std::uint32_t sharp = rungs_near(levels[0], 0, at.x, at.y, at.width, at.height) |
+                                rungs_near(levels[0], 1, at.x, at.y, at.width, at.height);
+    if ((sharp & 3u) != 0) blur_rung(frame, 0, DiscSide::focus, 0, at, work);
+    blur_behind(frame, 0, at, work);
+    add_larger_behind(frame, 0, at, work);
+    SOFTFOCUS_KERNEL(pool.isa(), resolve_disc_tile)(at.width, at.height, work.tile);
+    for (int y = 0; y < at.height; ++y) {
+      const std::size_t row = static_cast<std::size_t>(y);
+      store_span(input, result, at.x, at.y + y, at.width, work.tile.red[row], work.tile.green[row],
+                 work.tile.blue[row], pool.isa());
+    }
+  });
+}
+
+}  // namespace softfocus

@@ -1,0 +1,85 @@
+// Rows of disc_levels.cpp.
+
+namespace {
+
+#include "dof/disc_share.inl"
+#include "dof/repeating_texels.inl"
+#include "dof/weights.inl"
+
+SOFTFOCUS_INLINE Floats finite_colour(Bits half) {
+  const Floats value = clamp_to_half(half_to_float(half));
+  return select(value == value, value, splat(0.0f));
+}
+
+// Lanes 0, 2, 4, ... or 1, 3, 5, ... of two vectors.
+template <std::size_t first, std::size_t... lane>
+SOFTFOCUS_INLINE Floats every_other(Floats a, Floats b, std::index_sequence<lane...>) {
+  return __builtin_shufflevector(a, b, (2 * lane + first)...);
+}
+SOFTFOCUS_INLINE Floats add_pairs(Floats a, Floats b) {
+  using Lanes = std::make_index_sequence<SOFTFOCUS_LANES>;
+  return every_other<0>(a, b, Lanes{}) + every_other<1>(a, b, Lanes{});
+}
+
+}  // namespace
+
+/// Colours and signed squares of a row, from kDiscMargin pixels before its first on.
+void split_disc_row(const DofSettings& settings, const std::uint16_t* from, int width, int count,
+                    float* to, std::ptrdiff_t plane) {
+  for (int i = 0; i < count; i += kLanes) {
+    const HalfTexels texels = load_repeating(from, i - kDiscMargin, width);
+    store(to + i, finite_colour(texels.r));
+    store(to + plane + i, finite_colour(texels.g));
+    store(to + 2 * plane + i, finite_colour(texels.b));
+    const Floats depth_m = half_to_float(texels.a);
+    const Floats radius =
+        settings.coc.radius_at_infinity_px * (depth_m - settings.coc.focus_m) / depth_m;
+    const Floats magnitude = smaller(absolute(radius), splat(settings.max_coc_px));
+    const Floats square = magnitude * magnitude;
+    store(to + 3 * plane + i, select(radius < 0.0f, -square, square));
+  }
+}
+
+void halve_disc_rows(const DiscHalving& in) {
+  for (int x = 0; x < in.count; x += kLanes) {
+    Floats sums[5][2];
+    for (int half = 0; half < 2; ++half) {
+      const int at = 2 * x + half * kLanes;
+      for (int i = 0; i < 5; ++i) sums[i][half] = splat(0.0f);
+      for (const DiscRows& row : in.rows) {
+        const Floats square = in.sign * load(row.square + at);
+        const Floats share = share_from(in.beyond, square);
+        const Floats weight = load(row.weight + at) * share;
+        for (int i = 0; i < 3; ++i) {
+          sums[i][half] += load(row.colour + i * in.plane + at) * share;
+        }
+        sums[3][half] += weight;
+        sums[4][half] += weight * larger(square, splat(in.least_square));
+      }
+    }
+    for (int i = 0; i < 4; ++i) {
+      store(in.to + i * in.to_plane + x, 0.25f * add_pairs(sums[i][0], sums[i][1]));
+    }
+    const Floats weight = add_pairs(sums[3][0], sums[3][1]);
+    const Floats square = add_pairs(sums[4][0], sums[4][1]);
+    store(in.to + 4 * in.to_plane + x, select(weight > 0.0f, square / weight, splat(0.0f)));
+  }
+}
+
+/// Which rungs there are in a row, a bit each: `near` of negative squares, `far` of others,
+/// pixel by pixel added to what was there. Bit 0 is for rung `first_rung` and smaller ones.
+void mark_rungs(const float* square, const float* weight, int count, int first_rung,
+                std::uint32_t* near, std::uint32_t* far) {
+  // A float's upper bits count half octaves from 2^-127: 254 is 1 to 3/2, 255 to 2. There the
+  // first rung after the focus is.
+  const Ints offset = splat(253 + first_rung);
+  for (int x = 0; x < count; x += kLanes) {
+    const Floats value = load(square + x);
+    const Bits magnitude = as_bits(absolute(value));
+    const Ints rung = smaller(larger((Ints)(magnitude >> 22) - offset, splat(0)), splat(30));
+    const Bits own = select((magnitude & 0x3FFFFFu) == 0u, splat(1u), splat(3u)) << (Bits)rung;
+    const Bits bits = select(load(weight + x) > 0.0f, own, splat(0u));
+    store(near + x, load(near + x) | select(value < 0.0f, bits, splat(0u)));
+    store(far + x, load(far + x) | select(value < 0.0f, splat(0u), bits));
+  }
+}
