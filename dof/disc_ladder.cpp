@@ -8,13 +8,13 @@ namespace {
 constexpr RungStep kAlways{-1.0f, 1.0f};
 constexpr RungStep kNever{3e38f, 1.0f};
 
-// Half the width of a disc's row of pixels: its area there, halved, by the midpoint rule.
-double mean_half_width(double radius, int dy) {
+// Half the height of a disc's column of pixels: its area there, halved, by the midpoint rule.
+double mean_half_height(double radius, int dx) {
   constexpr int kSteps = 16;
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) {
-    const double y = dy - 0.5 + (i + 0.5) / kSteps;
-    const double square = radius * radius - y * y;
+    const double x = dx - 0.5 + (i + 0.5) / kSteps;
+    const double square = radius * radius - x * x;
     if (square > 0.0) sum += std::sqrt(square);
   }
   return sum / kSteps;
@@ -22,14 +22,14 @@ double mean_half_width(double radius, int dy) {
 
 std::vector<LadderSpan> disc_spans(double radius) {
   std::vector<LadderSpan> spans;
-  for (int dy = 0;; ++dy) {
-    const double half_width = mean_half_width(radius, dy);
-    if (half_width == 0.0 && dy > 0) return spans;
-    if (half_width < 0.5) {
-      spans.push_back({0, static_cast<float>(2.0 * half_width), 0.0f});
+  for (int dx = 0;; ++dx) {
+    const double half_height = mean_half_height(radius, dx);
+    if (half_height == 0.0 && dx > 0) return spans;
+    if (half_height < 0.5) {
+      spans.push_back({0, static_cast<float>(2.0 * half_height), 0.0f});
     } else {
-      const int whole = static_cast<int>(half_width - 0.5);
-      spans.push_back({whole, 1.0f, static_cast<float>(half_width - 0.5 - whole)});
+      const int whole = static_cast<int>(half_height - 0.5);
+      spans.push_back({whole, 1.0f, static_cast<float>(half_height - 0.5 - whole)});
     }
   }
 }
@@ -67,6 +67,18 @@ std::vector<LadderSpan> spans_of(double square, int level) {
   return spans_of_variance(0.25 * square * pixel - (1.0 - pixel) / 3.0);
 }
 
+// In the order of operations of the kernels.
+float area_of(const std::vector<LadderSpan>& spans) {
+  float area = 0.0f;
+  for (std::size_t dx = 0; dx < spans.size(); ++dx) {
+    float whole = 1.0f;
+    for (int dy = 1; dy <= spans[dx].whole; ++dy) whole += 1.0f + 1.0f;
+    const float column = spans[dx].centre * whole + spans[dx].end * (1.0f + 1.0f);
+    area += dx == 0 ? column : column + column;
+  }
+  return area;
+}
+
 double square_of(int rung) {
   return rung == 0 ? 0.0 : std::ldexp(rung % 2 == 1 ? 1.0 : 1.5, (rung - 1) / 2);
 }
@@ -84,9 +96,11 @@ std::vector<LevelRungs> make_ladder(float largest_px) {
     for (int first = rung; rung < end; ++rung) {
       const double square = square_of(rung), before = rung == 0 ? 0.0 : square_of(rung - 1);
       const RungStep step{static_cast<float>(before), static_cast<float>(1.0 / (square - before))};
-      rungs.rungs.push_back(
-          {static_cast<float>(square), rung == first ? kAlways : step,
-           rung == 0 ? std::vector{LadderSpan{0, 1.0f, 0.0f}} : spans_of(square, level)});
+      Rung& made = rungs.rungs.emplace_back();
+      made.square = static_cast<float>(square);
+      made.step = rung == first ? kAlways : step;
+      made.spans = rung == 0 ? std::vector{LadderSpan{0, 1.0f, 0.0f}} : spans_of(square, level);
+      made.area = area_of(made.spans);
     }
     const double last = square_of(rung - 1);
     rungs.beyond = {static_cast<float>(last), static_cast<float>(1.0 / (square_of(rung) - last))};

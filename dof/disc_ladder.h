@@ -21,7 +21,7 @@ struct RungStep {
   float begin, slope;
 };
 
-/// A row of a disc about x: `centre` times the pixels x - whole to x + whole, and `end`
+/// A column of a disc about y: `centre` times the pixels y - whole to y + whole, and `end`
 /// times the next on either side.
 struct LadderSpan {
   int whole;
@@ -31,7 +31,8 @@ struct LadderSpan {
 struct Rung {
   float square;  ///< of the radius in pixels of the picture
   RungStep step;
-  std::vector<LadderSpan> spans;  ///< at |dy| = 0, 1, ...; of coverages, not divided by the area
+  std::vector<LadderSpan> spans;  ///< at |dx| = 0, 1, ...; of coverages, not divided by the area
+  float area;                     ///< the disc's sum where there is 1 everywhere
 };
 
 /// The rungs of a level, the smallest first, and the step to the next level's. The first

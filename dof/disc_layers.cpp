@@ -15,16 +15,17 @@
 namespace softfocus {
 namespace {
 
-constexpr int kLargestReach = 12;
-
 struct Workspace {
   DiscTile tile;
-  DiscSums sums;
+  DiscScratch scratch;
+  float picture[kDiscTileRows][4][kDiscTileRow];  // of level 0: colours and signed squares
+  float ones[kDiscTileRow];
   float blended[kDiscTileWidth];
-  float enlarged[4][kDiscTileWidth + 32];
+  float enlarged[4][kDiscTileRow];
 };
 
 struct Frame {
+  const DofInput& input;
   const std::vector<LevelRungs>& ladder;
   std::vector<DiscLevel>& levels;
   Isa isa;
@@ -34,30 +35,44 @@ struct Rectangle {
   int x, y, width, height;
 };
 
+// The tile's part of the picture, for discs of any reach.
+void split_tile(const Frame& frame, const Rectangle& at, int apron, Workspace& work) {
+  const int last = frame.levels[0].height - 1;
+  for (int y = -apron; y < at.height + apron; ++y) {
+    split_disc_row(frame.input, at.x - kDiscMargin, std::clamp(at.y + y, 0, last), kDiscTileRow,
+                   work.picture[y + kDiscApron][0], kDiscTileRow, frame.isa);
+  }
+}
+
 void blur_rung(const Frame& frame, std::size_t level, DiscSide side, std::size_t number,
                const Rectangle& at, Workspace& work) {
   const LevelRungs& rungs = frame.ladder[level];
   const Rung& rung = rungs.rungs[number];
   const DiscLevel& picture = frame.levels[level];
   const int reach = static_cast<int>(rung.spans.size()) - 1;
-  const int index = side == DiscSide::near ? 0 : 1;
-  DiscRows rows[kDiscTileHeight + 2 * kLargestReach];
-  for (int y = 0; y < at.height + 2 * reach; ++y) {
-    rows[y] = disc_rows(picture, index, at.x, at.y + y - reach);
+  DiscRow rows[kDiscTileRows];
+  for (int y = 0; y < at.height + 2 * (reach + 1); ++y) {
+    if (level == 0) {
+      const float(*const row)[kDiscTileRow] = work.picture[y + kDiscApron - reach - 1];
+      rows[y] = {{row[0] + kDiscMargin, row[1] + kDiscMargin, row[2] + kDiscMargin,
+                  work.ones + kDiscMargin, row[3] + kDiscMargin}};
+    } else {
+      rows[y] = disc_row(picture, side == DiscSide::near ? 0 : 1, at.x, at.y + y - reach - 1);
+    }
   }
   const bool last = number + 1 == rungs.rungs.size();
   const DiscBlur blur{rows,
-                      picture.sides[picture.whole() ? 0 : index].planes.plane,
                       at.width,
                       at.height,
                       side,
-                      picture.whole() && side == DiscSide::near ? -1.0f : 1.0f,
+                      level == 0 && side == DiscSide::near ? -1.0f : 1.0f,
                       rung.step,
                       last ? rungs.beyond : rungs.rungs[number + 1].step,
                       rung.spans.data(),
-                      reach};
-  SOFTFOCUS_KERNEL(frame.isa, blur_disc_tile)(blur, work.sums);
-  SOFTFOCUS_KERNEL(frame.isa, add_disc_sums)(work.sums, at.width, at.height, work.tile);
+                      reach,
+                      rung.area};
+  SOFTFOCUS_KERNEL(frame.isa, blur_disc_tile)(blur, work.scratch);
+  SOFTFOCUS_KERNEL(frame.isa, add_disc_sums)(work.scratch, at.width, at.height, work.tile);
 }
 
 // Whether a level or a larger one has anything of that side to show in a rectangle.
@@ -89,14 +104,13 @@ void start_tile(const Frame& frame, std::size_t level, const Rectangle& at, bool
                                {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2});
   for (int y = 0; y < at.height; ++y) {
     const std::size_t row = static_cast<std::size_t>(y);
-    float* to[] = {work.tile.red[row], work.tile.green[row], work.tile.blue[row],
-                   work.tile.transmitted[row]};
     if (any) enlarge(frame, frame.levels[level + 1], 0, at, y, work);
     for (int i = 0; i < 4; ++i) {
+      float* to = work.tile.channel[i][row];
       if (any) {
-        std::copy_n(work.enlarged[i], kDiscTileWidth, to[i]);
+        std::copy_n(work.enlarged[i], kDiscTileWidth, to);
       } else {
-        std::fill_n(to[i], kDiscTileWidth, i == 3 ? 1.0f : 0.0f);
+        std::fill_n(to, kDiscTileWidth, i == kDiscTransmitted ? 1.0f : 0.0f);
       }
     }
   }
@@ -111,8 +125,7 @@ void add_larger_behind(const Frame& frame, std::size_t level, const Rectangle& a
   for (int y = 0; y < at.height; ++y) {
     enlarge(frame, frame.levels[level + 1], 1, at, y, work);
     SOFTFOCUS_KERNEL(frame.isa, add_behind)
-    (work.enlarged[0], work.enlarged[1], work.enlarged[2], work.enlarged[3], at.width, y,
-     work.tile);
+    (work.enlarged, at.width, y, work.tile);
   }
 }
 
@@ -139,7 +152,10 @@ void for_each_tile(const DiscLevel& level, ThreadPool& pool, const Body& body) {
   ScratchShelf<std::unique_ptr<Workspace>> shelf;
   pool.for_each(columns * rows, [&](int task) {
     std::unique_ptr<Workspace> work = shelf.take();
-    if (!work) work = std::make_unique<Workspace>();
+    if (!work) {
+      work = std::make_unique<Workspace>();
+      std::fill_n(work->ones, kDiscTileRow, 1.0f);
+    }
     const int x = task % columns * kDiscTileWidth, y = task / columns * kDiscTileHeight;
     body(Rectangle{x, y, std::min(kDiscTileWidth, level.width - x),
                    std::min(kDiscTileHeight, level.height - y)},
@@ -151,10 +167,9 @@ void for_each_tile(const DiscLevel& level, ThreadPool& pool, const Body& body) {
 void keep_tile(DiscLevel& level, int side, const Rectangle& at, const DiscTile& tile) {
   for (int y = 0; y < at.height; ++y) {
     const std::size_t row = static_cast<std::size_t>(y);
-    const float* from[] = {tile.red[row], tile.green[row], tile.blue[row], tile.transmitted[row]};
     for (int i = 0; i < 4; ++i) {
       float* to = plane_row(level.seen[side], i, at.y + y) + kDiscMargin + at.x;
-      std::copy_n(from[i], at.width, to);
+      std::copy_n(tile.channel[i][row], at.width, to);
       if (at.x == 0) to[-1] = to[0];
       if (at.x + at.width == level.width) to[at.width] = to[at.width - 1];
     }
@@ -164,7 +179,7 @@ void keep_tile(DiscLevel& level, int side, const Rectangle& at, const DiscTile& 
 void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
   DiscLevel& level = frame.levels[number];
   for (Planes& planes : level.seen) {
-    planes = make_planes(4, level.width + 2 * kDiscMargin + kDiscTileWidth, level.height);
+    planes = make_disc_planes(4, level);
   }
   for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
     start_tile(frame, number, at, true, work);
@@ -183,9 +198,10 @@ void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
   const std::vector<LevelRungs> ladder = make_ladder(std::min(
       input.settings.max_coc_px, std::fabs(input.settings.coc.radius_at_infinity_px) * 1e9f));
   std::vector<DiscLevel> levels = make_disc_levels(input, ladder, pool);
-  const Frame frame{ladder, levels, pool.isa()};
+  const Frame frame{input, ladder, levels, pool.isa()};
   for (std::size_t i = levels.size(); i-- > 1;) see_level(frame, i, pool);
   for_each_tile(levels[0], pool, [&](const Rectangle& at, Workspace& work) {
+    split_tile(frame, at, kDiscApron, work);
     start_tile(frame, 0, at, true, work);
     blur_before(frame, 0, at, work);
     const std::uint32_t sharp = rungs_near(levels[0], 0, at.x, at.y, at.width, at.height) |
@@ -196,8 +212,8 @@ void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
     SOFTFOCUS_KERNEL(pool.isa(), resolve_disc_tile)(at.width, at.height, work.tile);
     for (int y = 0; y < at.height; ++y) {
       const std::size_t row = static_cast<std::size_t>(y);
-      store_span(input, result, at.x, at.y + y, at.width, work.tile.red[row], work.tile.green[row],
-                 work.tile.blue[row], pool.isa());
+      store_span(input, result, at.x, at.y + y, at.width, work.tile.channel[0][row],
+                 work.tile.channel[1][row], work.tile.channel[2][row], pool.isa());
     }
   });
 }

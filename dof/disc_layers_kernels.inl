@@ -10,87 +10,110 @@ SOFTFOCUS_INLINE Floats by_turns(Floats a, Floats b, std::index_sequence<lane...
   return __builtin_shufflevector(a, b, (from + lane / 2 + (lane & 1) * kLanes)...);
 }
 
-// One vector of a channel of a tile's sums, the row `from` being spread over the rows that
-// its disc reaches: `first` to `last` of -reach to reach.
-SOFTFOCUS_INLINE void spread_row(const float* from, const LadderSpan* spans, int reach, int first,
-                                 int last, float* middle) {
-  Floats sum = load(from);
-  int whole = 0;
-  for (int dy = reach; dy >= 0; --dy) {
-    const LadderSpan span = spans[dy];
-    while (whole < span.whole) {
-      ++whole;
-      sum += load(from - whole) + load(from + whole);
+// Sums of columns of a disc, a vector of them: at columns[dx] what is dx pixels from the
+// middle. `at` is in the row of the middle.
+SOFTFOCUS_INLINE void sum_columns(const float* at, const LadderSpan* spans, int reach,
+                                  float* columns) {
+  Floats sum = load(at);
+  int dx = reach;
+  for (int dy = 1;; ++dy) {
+    const Floats pair = load(at - dy * kDiscTileRow) + load(at + dy * kDiscTileRow);
+    while (spans[dx].whole == dy - 1) {
+      store(columns + dx * kDiscTileRow, spans[dx].centre * sum + spans[dx].end * pair);
+      if (--dx < 0) return;
     }
-    const Floats row =
-        span.centre * sum + span.end * (load(from - whole - 1) + load(from + whole + 1));
-    if (-dy >= first && -dy <= last) {
-      float* to = middle - dy * kDiscTileWidth;
-      store(to, load(to) + row);
+    sum += pair;
+  }
+}
+
+// Discs' sums of a channel that fills the rows from `reach + 1` above the tile on.
+SOFTFOCUS_INLINE void sum_discs(const DiscBlur& in, const float (*rows)[kDiscTileRow], int width,
+                                float (*columns)[kDiscTileRow], float (*to)[kDiscTileWidth]) {
+  for (int y = 0; y < in.height; ++y) {
+    const float* row = rows[y + in.reach + 1];
+    for (int x = kDiscMargin - kLanes * ((in.reach + kLanes - 1) / kLanes);
+         x < kDiscMargin + width + in.reach; x += kLanes) {
+      sum_columns(row + x, in.spans, in.reach, columns[0] + x);
     }
-    if (dy > 0 && dy >= first && dy <= last) {
-      float* to = middle + dy * kDiscTileWidth;
-      store(to, load(to) + row);
+    for (int x = 0; x < width; x += kLanes) {
+      const float* middle = columns[0] + kDiscMargin + x;
+      Floats sum = load(middle);
+      for (int dx = 1; dx <= in.reach; ++dx) {
+        middle += kDiscTileRow;
+        sum += load(middle - dx) + load(middle + dx);
+      }
+      store(to[y] + x, sum);
     }
   }
 }
 
 }  // namespace
 
-void blur_disc_tile(const DiscBlur& in, DiscSums& out) {
-  constexpr int kRow = kDiscTileWidth + 2 * kDiscMargin;
-  float row[5][kRow];
-  const int end = (in.width + kLanes - 1) / kLanes * kLanes;
-  for (int i = 0; i < 5; ++i) {
-    for (int y = 0; y < in.height; ++y) {
-      for (int x = 0; x < end; x += kLanes) store(&out.sums[i][y][x], splat(0.0f));
-    }
-  }
-  for (int y = -in.reach; y < in.height + in.reach; ++y) {
-    const DiscRows& from = in.rows[y + in.reach];
-    for (int i = 0; i < end + 2 * kDiscMargin; i += kLanes) {
-      const int x = i - kDiscMargin;
-      const Floats signed_square = load(from.square + x);
-      const Floats square = in.sign * signed_square;
-      const Floats weight = load(from.weight + x);
+/// Sums over the rung's discs in scratch.sums: of its colours and of its share, and of
+/// what is seen where nothing nearer is.
+void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch) {
+  const int width = (in.width + kLanes - 1) / kLanes * kLanes;
+  const int rows = in.height + 2 * (in.reach + 1);
+  const int margin = in.reach > 0 ? kDiscMargin : 0;
+  Mask all_ones = splat(-1), all_equal = splat(-1);
+  for (int y = 0; y < rows; ++y) {
+    const DiscRow& from = in.rows[y];
+    float* shares = scratch.share[y] + kDiscMargin;
+    float* seens = scratch.seen[y] + kDiscMargin;
+    for (int x = -margin; x < width + margin; x += kLanes) {
+      const Floats signed_square = load(from.channel[kDiscSquare] + x);
+      const Floats weight = load(from.channel[kDiscWeight] + x);
       Floats share, seen;
       if (in.side == DiscSide::focus) {
         share = 1.0f - share_from(in.end, absolute(signed_square));
         seen = 1.0f - share_from(in.end, -signed_square);
       } else {
+        const Floats square = in.sign * signed_square;
         const Floats begun = share_from(in.begin, square), ended = share_from(in.end, square);
         share = begun - ended;
         seen = in.side == DiscSide::near ? 1.0f - weight * ended : weight * begun;
       }
-      for (int c = 0; c < 3; ++c) {
-        store(&row[c][i], load(from.colour + c * in.plane + x) * share);
-      }
-      store(&row[3][i], weight * share);
-      store(&row[4][i], seen);
+      store(shares + x, share);
+      store(seens + x, seen);
+      all_ones &= seen == 1.0f;
+      all_equal &= seen == weight * share;
     }
-    const int first = y < in.reach ? -y : -in.reach;
-    const int last = in.height - 1 - y < in.reach ? in.height - 1 - y : in.reach;
-    for (int i = 0; i < 5; ++i) {
-      for (int x = 0; x < end; x += kLanes) {
-        spread_row(&row[i][kDiscMargin + x], in.spans, in.reach, first, last,
-                   &out.sums[i][0][0] + y * kDiscTileWidth + x);
+  }
+  for (int i = 0; i < 4; ++i) {
+    for (int y = 0; y < rows; ++y) {
+      const float* from = in.rows[y].channel[i];
+      for (int x = -margin; x < width + margin; x += kLanes) {
+        store(scratch.product[y] + kDiscMargin + x,
+              load(from + x) * load(scratch.share[y] + kDiscMargin + x));
       }
     }
+    sum_discs(in, scratch.product, width, scratch.columns, scratch.sums[i]);
+  }
+  if (all(all_ones)) {
+    for (int y = 0; y < in.height; ++y) {
+      for (int x = 0; x < width; x += kLanes) store(scratch.sums[4][y] + x, splat(in.area));
+    }
+  } else if (all(all_equal)) {
+    std::memcpy(scratch.sums[4], scratch.sums[kDiscWeight], sizeof scratch.sums[4]);
+  } else {
+    sum_discs(in, scratch.seen, width, scratch.columns, scratch.sums[4]);
   }
 }
 
-void add_disc_sums(const DiscSums& in, int width, int height, DiscTile& tile) {
+/// Puts a rung behind what is seen of nearer ones.
+void add_disc_sums(const DiscScratch& in, int width, int height, DiscTile& tile) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; x += kLanes) {
-      const Floats seen = load(&in.sums[4][y][x]);
-      const Floats transmitted = load(&tile.transmitted[y][x]);
-      const Floats scale =
-          select(seen > 0.0f, transmitted / select(seen > 0.0f, seen, splat(1.0f)), splat(0.0f));
-      store(&tile.red[y][x], load(&tile.red[y][x]) + load(&in.sums[0][y][x]) * scale);
-      store(&tile.green[y][x], load(&tile.green[y][x]) + load(&in.sums[1][y][x]) * scale);
-      store(&tile.blue[y][x], load(&tile.blue[y][x]) + load(&in.sums[2][y][x]) * scale);
-      store(&tile.transmitted[y][x],
-            larger(transmitted - load(&in.sums[3][y][x]) * scale, splat(0.0f)));
+      const Floats seen = load(in.sums[4][y] + x);
+      float* through = tile.channel[kDiscTransmitted][y] + x;
+      const Floats transmitted = load(through);
+      const Mask any = seen > 0.0f;
+      const Floats scale = select(any, transmitted / select(any, seen, splat(1.0f)), splat(0.0f));
+      for (int i = 0; i < 3; ++i) {
+        float* to = tile.channel[i][y] + x;
+        store(to, load(to) + load(in.sums[i][y] + x) * scale);
+      }
+      store(through, larger(transmitted - load(in.sums[kDiscWeight][y] + x) * scale, splat(0.0f)));
     }
   }
 }
@@ -114,15 +137,15 @@ void enlarge_disc_row(const float* inside, const float* other, int count, float*
   }
 }
 
-/// Puts a row behind what is seen of another.
-void add_behind(const float* red, const float* green, const float* blue, const float* transmitted,
-                int width, int y, DiscTile& tile) {
+/// Puts a row behind what is seen of another; both have colour and transmittance.
+void add_behind(const float (*from)[kDiscTileRow], int width, int y, DiscTile& tile) {
   for (int x = 0; x < width; x += kLanes) {
-    const Floats open = load(&tile.transmitted[y][x]);
-    store(&tile.red[y][x], load(&tile.red[y][x]) + open * load(red + x));
-    store(&tile.green[y][x], load(&tile.green[y][x]) + open * load(green + x));
-    store(&tile.blue[y][x], load(&tile.blue[y][x]) + open * load(blue + x));
-    store(&tile.transmitted[y][x], open * load(transmitted + x));
+    const Floats open = load(tile.channel[kDiscTransmitted][y] + x);
+    for (int i = 0; i < 3; ++i) {
+      float* to = tile.channel[i][y] + x;
+      store(to, load(to) + open * load(from[i] + x));
+    }
+    store(tile.channel[kDiscTransmitted][y] + x, open * load(from[kDiscTransmitted] + x));
   }
 }
 
@@ -130,10 +153,10 @@ void add_behind(const float* red, const float* green, const float* blue, const f
 void resolve_disc_tile(int width, int height, DiscTile& tile) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; x += kLanes) {
-      const Floats opacity = 1.0f - load(&tile.transmitted[y][x]);
-      store(&tile.red[y][x], load(&tile.red[y][x]) / opacity);
-      store(&tile.green[y][x], load(&tile.green[y][x]) / opacity);
-      store(&tile.blue[y][x], load(&tile.blue[y][x]) / opacity);
+      const Floats opacity = 1.0f - load(tile.channel[kDiscTransmitted][y] + x);
+      for (int i = 0; i < 3; ++i) {
+        store(tile.channel[i][y] + x, load(tile.channel[i][y] + x) / opacity);
+      }
     }
   }
 }

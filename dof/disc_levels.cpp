@@ -10,140 +10,188 @@
 namespace softfocus {
 namespace {
 
+// Pixels of a level that become one task's share of the next.
+constexpr int kTaskWidth = 256;
+constexpr int kTaskHeight = 16;
+static_assert(kTaskHeight == 2 * kDiscBlock);
+
+constexpr std::array<float, kTaskWidth> kOnes = [] {
+  std::array<float, kTaskWidth> ones{};
+  for (float& one : ones) one = 1.0f;
+  return ones;
+}();
+
 DiscLevel make_level(int width, int height) {
   DiscLevel level{};
   level.width = width;
   level.height = height;
   level.block_columns = (width + kDiscBlock - 1) / kDiscBlock;
   level.block_rows = (height + kDiscBlock - 1) / kDiscBlock;
-  return level;
-}
-
-int padded_width(const DiscLevel& level) { return level.width + 2 * kDiscMargin + kDiscTileWidth; }
-
-void mark_blocks(DiscLevel& level, int first_rung, std::uint32_t all, int strip, Isa isa) {
-  const std::size_t row = static_cast<std::size_t>(level.block_columns) * kDiscBlock;
-  std::vector<std::uint32_t> near(row), far(row);
-  for (DiscPicture& picture : level.sides) {
-    if (picture.near.empty()) continue;
-    const int side = static_cast<int>(&picture - level.sides);
-    std::fill(near.begin(), near.end(), 0u);
-    std::fill(far.begin(), far.end(), 0u);
-    for (int y = strip * kDiscBlock; y < std::min((strip + 1) * kDiscBlock, level.height); ++y) {
-      const DiscRows rows = disc_rows(level, side, 0, y);
-      SOFTFOCUS_KERNEL(isa, mark_rungs)
-      (rows.square, rows.weight, level.width, first_rung, near.data(), far.data());
-    }
-    for (int column = 0; column < level.block_columns; ++column) {
-      std::uint32_t in_near = 0, in_far = 0;
-      for (int x = 0; x < kDiscBlock; ++x) {
-        in_near |= near[static_cast<std::size_t>(column * kDiscBlock + x)];
-        in_far |= far[static_cast<std::size_t>(column * kDiscBlock + x)];
-      }
-      const auto at = static_cast<std::size_t>(strip * level.block_columns + column);
-      picture.near[at] = in_near & all;
-      picture.far[at] = in_far & all;
-    }
-  }
-}
-
-void add_marks(DiscLevel& level, DiscPicture& picture) {
   const auto blocks = static_cast<std::size_t>(level.block_columns * level.block_rows);
-  picture.near.assign(blocks, 0);
-  picture.far.assign(blocks, 0);
-}
-
-DiscLevel split_level(const DofInput& input, ThreadPool& pool) {
-  DiscLevel level = make_level(input.scene.width, input.scene.height);
-  const int padded = padded_width(level);
-  level.ones.assign(static_cast<std::size_t>(padded), 1.0f);
-  level.sides[0].planes = make_planes(4, padded, level.height);
-  add_marks(level, level.sides[0]);
-  Planes& planes = level.sides[0].planes;
-  pool.for_each(level.block_rows, [&](int strip) {
-    for (int y = strip * kDiscBlock; y < std::min((strip + 1) * kDiscBlock, level.height); ++y) {
-      SOFTFOCUS_KERNEL(pool.isa(), split_disc_row)
-      (input.settings, row<std::uint16_t>(input.scene, y).data(), level.width,
-       static_cast<int>(planes.stride), plane_row(planes, 0, y), planes.plane);
-    }
-    mark_blocks(level, 0, (1u << kFineRungs) - 1, strip, pool.isa());
-  });
+  for (std::vector<std::uint32_t>& rungs : level.rungs) rungs.assign(blocks, 0);
   return level;
 }
 
-DiscLevel halve_level(const DiscLevel& from, const LevelRungs& of, const LevelRungs& next,
-                      int first_rung, ThreadPool& pool) {
-  DiscLevel level = make_level((from.width + 1) / 2, (from.height + 1) / 2);
-  const int padded = padded_width(level);
-  for (DiscPicture& picture : level.sides) {
-    picture.planes = make_planes(5, padded, level.height);
-    add_marks(level, picture);
+// The rungs of pixels in a row of blocks, gathered row by row.
+struct Marks {
+  std::array<std::uint32_t, kTaskWidth> rungs[2]{};
+
+  // Into the level's blocks from x on, and away.
+  void keep(DiscLevel& level, int x, int y, int count) {
+    for (int side = 0; side < 2; ++side) {
+      for (int i = 0; i < count; i += kDiscBlock) {
+        std::uint32_t any = 0;
+        for (int j = i; j < std::min(i + kDiscBlock, count); ++j) {
+          any |= rungs[side][static_cast<std::size_t>(j)];
+        }
+        level.rungs[side][static_cast<std::size_t>(y / kDiscBlock * level.block_columns +
+                                                   (x + i) / kDiscBlock)] = any;
+      }
+      rungs[side].fill(0);
+    }
   }
-  pool.for_each(level.block_rows, [&](int strip) {
-    for (int y = strip * kDiscBlock; y < std::min((strip + 1) * kDiscBlock, level.height); ++y) {
+};
+
+void repeat_ends(const DiscLevel& level, int x, int count, float* row, std::ptrdiff_t stride) {
+  if (x == 0) std::fill_n(row, kDiscMargin, row[kDiscMargin]);
+  if (x + count == level.width) {
+    std::fill(row + kDiscMargin + level.width, row + stride, row[kDiscMargin + level.width - 1]);
+  }
+}
+
+struct Halving {
+  const DofInput& input;
+  DiscLevel& from;
+  DiscLevel& to;
+  bool whole;  // from the picture itself
+  RungStep beyond;
+  float least_square;
+  int first_rung, next_first_rung;
+};
+
+// Of the picture at x, kTaskHeight rows from y on: marks, and the next level.
+void halve_task(const Halving& halving, int from_x, int from_y, Isa isa) {
+  DiscLevel& from = halving.from;
+  DiscLevel& to = halving.to;
+  const int width = std::min(kTaskWidth, from.width - from_x);
+  const int x = from_x / 2, count = std::min(kTaskWidth / 2, to.width - x);
+  float split[2][4][kTaskWidth];
+  Marks marks, next_marks;
+  for (int y = from_y; y < std::min(from_y + kTaskHeight, 2 * to.height); y += 2) {
+    DiscRow rows[2][2];  // of sides
+    for (int i = 0; i < 2; ++i) {
       for (int side = 0; side < 2; ++side) {
-        Planes& planes = level.sides[side].planes;
-        const int from_side = from.whole() ? 0 : side;
-        float* to = plane_row(planes, 0, y);
-        const DiscHalving halving{
-            {disc_rows(from, from_side, 0, 2 * y), disc_rows(from, from_side, 0, 2 * y + 1)},
-            from.sides[from_side].planes.plane,
-            from.whole() && side == 0 ? -1.0f : 1.0f,
-            of.beyond,
-            next.rungs[0].square,
-            level.width,
-            to + kDiscMargin,
-            planes.plane};
-        SOFTFOCUS_KERNEL(pool.isa(), halve_disc_rows)(halving);
-        for (int i = 0; i < 5; ++i, to += planes.plane) {
-          std::fill_n(to, kDiscMargin, to[kDiscMargin]);
-          std::fill(to + kDiscMargin + level.width, to + planes.stride,
-                    to[kDiscMargin + level.width - 1]);
+        if (!halving.whole) {
+          rows[side][i] = disc_row(from, side, from_x, y + i);
+        } else {
+          float(*const row)[kTaskWidth] = split[i];
+          if (side == 0) {
+            split_disc_row(halving.input, from_x, std::min(y + i, from.height - 1), kTaskWidth,
+                           row[0], kTaskWidth, isa);
+          }
+          rows[side][i] = {{row[0], row[1], row[2], kOnes.data(), row[3]}};
         }
       }
+      if (halving.whole) {
+        SOFTFOCUS_KERNEL(isa, mark_rungs)
+        (rows[0][i].channel[kDiscSquare], rows[0][i].channel[kDiscWeight], width,
+         halving.first_rung, marks.rungs[0].data(), marks.rungs[1].data());
+      }
     }
-    mark_blocks(level, first_rung, (1u << next.rungs.size()) - 1, strip, pool.isa());
-  });
-  return level;
+    for (int side = 0; side < 2; ++side) {
+      Planes& planes = to.sides[side];
+      float* row = plane_row(planes, 0, y / 2) + x;
+      const DiscHalving halves{{rows[side][0], rows[side][1]},
+                               halving.whole && side == 0 ? -1.0f : 1.0f,
+                               halving.beyond,
+                               halving.least_square,
+                               count,
+                               row + kDiscMargin,
+                               planes.plane};
+      SOFTFOCUS_KERNEL(isa, halve_disc_rows)(halves);
+      SOFTFOCUS_KERNEL(isa, mark_rungs)
+      (row + kDiscMargin + kDiscSquare * planes.plane,
+       row + kDiscMargin + kDiscWeight * planes.plane, count, halving.next_first_rung,
+       next_marks.rungs[side].data(), next_marks.rungs[side].data());
+      for (int i = 0; i < kDiscChannels; ++i) {
+        repeat_ends(to, x, count, plane_row(planes, i, y / 2), planes.stride);
+      }
+    }
+    if (halving.whole && (y + 2) % kDiscBlock == 0) marks.keep(from, from_x, y, width);
+  }
+  if (halving.whole) {
+    const int last = std::min(from_y + kTaskHeight, from.height) - 1;
+    if ((2 * to.height) % kDiscBlock != 0 && last == from.height - 1) {
+      marks.keep(from, from_x, last, width);
+    }
+  }
+  next_marks.keep(to, x, from_y / 2, count);
 }
 
 }  // namespace
 
-DiscRows disc_rows(const DiscLevel& level, int side, int x, int y) {
-  const Planes& planes = level.sides[level.whole() ? 0 : side].planes;
-  const float* colour = plane_row(planes, 0, std::clamp(y, 0, level.height - 1)) + kDiscMargin + x;
-  if (level.whole()) {
-    return {colour, level.ones.data() + kDiscMargin + x, colour + 3 * planes.plane};
-  }
-  return {colour, colour + 3 * planes.plane, colour + 4 * planes.plane};
+void split_disc_row(const DofInput& input, int x, int y, int count, float* to,
+                    std::ptrdiff_t channel, Isa isa) {
+  SOFTFOCUS_KERNEL(isa, split_disc_row)
+  (input.settings, row<std::uint16_t>(input.scene, y).data(), x, input.scene.width, count, to,
+   channel);
+}
+
+Planes make_disc_planes(int count, const DiscLevel& level) {
+  return make_planes(count, level.width + 2 * kDiscMargin + kDiscTileWidth, level.height);
+}
+
+DiscRow disc_row(const DiscLevel& level, int side, int x, int y) {
+  const Planes& planes = level.sides[side];
+  const float* at = plane_row(planes, 0, std::clamp(y, 0, level.height - 1)) + kDiscMargin + x;
+  DiscRow row;
+  for (int i = 0; i < kDiscChannels; ++i) row.channel[i] = at + i * planes.plane;
+  return row;
 }
 
 std::vector<DiscLevel> make_disc_levels(const DofInput& input,
                                         const std::vector<LevelRungs>& ladder, ThreadPool& pool) {
   std::vector<DiscLevel> levels;
-  levels.reserve(ladder.size());
-  levels.push_back(split_level(input, pool));
-  int first_rung = kFineRungs;
-  for (std::size_t i = 1; i < ladder.size(); ++i) {
-    levels.push_back(halve_level(levels[i - 1], ladder[i - 1], ladder[i], first_rung, pool));
-    first_rung += static_cast<int>(ladder[i].rungs.size());
+  levels.push_back(make_level(input.scene.width, input.scene.height));
+  int first_rung = 0, next_first_rung = kFineRungs;
+  for (std::size_t i = 1; i <= ladder.size(); ++i) {
+    DiscLevel& from = levels.back();
+    DiscLevel to = make_level((from.width + 1) / 2, (from.height + 1) / 2);
+    for (Planes& planes : to.sides) planes = make_disc_planes(kDiscChannels, to);
+    const bool last = i == ladder.size();
+    if (last && i > 1) break;
+    const Halving halving{input,
+                          from,
+                          to,
+                          i == 1,
+                          ladder[i - 1].beyond,
+                          last ? 0.0f : ladder[i].rungs[0].square,
+                          first_rung,
+                          next_first_rung};
+    const int columns = (from.width + kTaskWidth - 1) / kTaskWidth;
+    const int rows = (from.height + kTaskHeight - 1) / kTaskHeight;
+    pool.for_each(columns * rows, [&](int task) {
+      halve_task(halving, task % columns * kTaskWidth, task / columns * kTaskHeight, pool.isa());
+    });
+    if (last) break;
+    levels.push_back(std::move(to));
+    first_rung = next_first_rung;
+    next_first_rung += kLevelRungs;
   }
   return levels;
 }
 
 std::uint32_t rungs_near(const DiscLevel& level, int side, int x, int y, int width, int height) {
-  const DiscPicture& picture = level.sides[level.whole() ? 0 : side];
-  const std::vector<std::uint32_t>& marks = level.whole() && side == 0 ? picture.near : picture.far;
-  const auto block = [](int at, int count) {
-    return std::clamp((at + kDiscMargin) / kDiscBlock - 1, 0, count - 1);
-  };
-  constexpr int kReach = 10;
+  const int left = std::clamp((x - kDiscApron) / kDiscBlock, 0, level.block_columns - 1);
+  const int right =
+      std::clamp((x + width - 1 + kDiscApron) / kDiscBlock, 0, level.block_columns - 1);
+  const int top = std::clamp((y - kDiscApron) / kDiscBlock, 0, level.block_rows - 1);
+  const int bottom =
+      std::clamp((y + height - 1 + kDiscApron) / kDiscBlock, 0, level.block_rows - 1);
   std::uint32_t rungs = 0;
-  for (int row = block(y - kReach, level.block_rows);
-       row <= block(y + height - 1 + kReach, level.block_rows); ++row) {
-    for (int column = block(x - kReach, level.block_columns);
-         column <= block(x + width - 1 + kReach, level.block_columns); ++column) {
-      rungs |= marks[static_cast<std::size_t>(row * level.block_columns + column)];
+  for (int row = top; row <= bottom; ++row) {
+    for (int column = left; column <= right; ++column) {
+      rungs |= level.rungs[side][static_cast<std::size_t>(row * level.block_columns + column)];
     }
   }
   return rungs;

@@ -11,33 +11,36 @@
 namespace softfocus {
 
 /// Blocks of pixels that know which rungs are in them.
-inline constexpr int kDiscBlock = 16;
-
-/// What a level has of one side of the focus. Level 0 has both sides in one.
-struct DiscPicture {
-  Planes planes;  ///< red, green, blue times weight; weight; square. Level 0 has no weight
-  std::vector<std::uint32_t> near, far;  ///< of blocks: rungs of the level, a bit each
-};
+inline constexpr int kDiscBlock = 8;
 
 struct DiscLevel {
   int width, height;
   int block_columns, block_rows;
-  DiscPicture sides[2];     ///< before the focus, behind it; of level 0 the first is both
-  Planes seen[2];           ///< what is seen of this level and larger ones: colour, transmittance
-  std::vector<float> ones;  ///< weights of level 0
-
-  bool whole() const { return !ones.empty(); }
+  std::vector<std::uint32_t> rungs[2];  ///< of blocks: the level's, a bit each, on either side
+  /// The channels of DiscRow, before and behind the focus. Level 0 has none: it is the
+  /// picture itself.
+  Planes sides[2];
+  /// What is seen of this level and of larger ones, colour and transmittance.
+  Planes seen[2];
 };
 
 /// The row of one side at pixel x, which may lie kDiscMargin outside; rows outside repeat.
-DiscRows disc_rows(const DiscLevel& level, int side, int x, int y);
+/// Not of level 0.
+DiscRow disc_row(const DiscLevel& level, int side, int x, int y);
+
+/// Planes with room for a level's tiles and a margin.
+Planes make_disc_planes(int count, const DiscLevel& level);
 
 /// Levels for the rungs of a ladder, without what is seen of them.
 std::vector<DiscLevel> make_disc_levels(const DofInput& input,
                                         const std::vector<LevelRungs>& ladder, ThreadPool& pool);
 
-/// The rungs of one side whose pixels may reach into a rectangle of a level from at most
-/// kDiscMargin pixels away.
+/// `count` pixels of a row of the picture from `x` on, as rows of level 0: colours and
+/// signed squares, `channel` floats apart. Its edges repeat outwards.
+void split_disc_row(const DofInput& input, int x, int y, int count, float* to,
+                    std::ptrdiff_t channel, Isa isa);
+
+/// The rungs of one side whose pixels may reach into a rectangle of a level.
 std::uint32_t rungs_near(const DiscLevel& level, int side, int x, int y, int width, int height);
 
 }  // namespace softfocus

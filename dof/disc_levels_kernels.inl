@@ -23,46 +23,45 @@ SOFTFOCUS_INLINE Floats add_pairs(Floats a, Floats b) {
 
 }  // namespace
 
-/// Colours and signed squares of a row, from kDiscMargin pixels before its first on.
-void split_disc_row(const DofSettings& settings, const std::uint16_t* from, int width, int count,
-                    float* to, std::ptrdiff_t plane) {
+/// Colours and signed squares of the `count` pixels of a row from `x` on, `channel` floats
+/// apart; the picture's edges repeat outwards.
+void split_disc_row(const DofSettings& settings, const std::uint16_t* from, int x, int width,
+                    int count, float* to, std::ptrdiff_t channel) {
   for (int i = 0; i < count; i += kLanes) {
-    const HalfTexels texels = load_repeating(from, i - kDiscMargin, width);
+    const HalfTexels texels = load_repeating(from, x + i, width);
     store(to + i, finite_colour(texels.r));
-    store(to + plane + i, finite_colour(texels.g));
-    store(to + 2 * plane + i, finite_colour(texels.b));
+    store(to + channel + i, finite_colour(texels.g));
+    store(to + 2 * channel + i, finite_colour(texels.b));
     const Floats depth_m = half_to_float(texels.a);
     const Floats radius =
         settings.coc.radius_at_infinity_px * (depth_m - settings.coc.focus_m) / depth_m;
     const Floats magnitude = smaller(absolute(radius), splat(settings.max_coc_px));
     const Floats square = magnitude * magnitude;
-    store(to + 3 * plane + i, select(radius < 0.0f, -square, square));
+    store(to + 3 * channel + i, select(radius < 0.0f, -square, square));
   }
 }
 
 void halve_disc_rows(const DiscHalving& in) {
   for (int x = 0; x < in.count; x += kLanes) {
-    Floats sums[5][2];
+    Floats sums[kDiscChannels][2];
     for (int half = 0; half < 2; ++half) {
       const int at = 2 * x + half * kLanes;
-      for (int i = 0; i < 5; ++i) sums[i][half] = splat(0.0f);
-      for (const DiscRows& row : in.rows) {
-        const Floats square = in.sign * load(row.square + at);
+      for (int i = 0; i < kDiscChannels; ++i) sums[i][half] = splat(0.0f);
+      for (const DiscRow& row : in.rows) {
+        const Floats square = in.sign * load(row.channel[kDiscSquare] + at);
         const Floats share = share_from(in.beyond, square);
-        const Floats weight = load(row.weight + at) * share;
-        for (int i = 0; i < 3; ++i) {
-          sums[i][half] += load(row.colour + i * in.plane + at) * share;
-        }
-        sums[3][half] += weight;
-        sums[4][half] += weight * larger(square, splat(in.least_square));
+        const Floats weight = load(row.channel[kDiscWeight] + at) * share;
+        for (int i = 0; i < 3; ++i) sums[i][half] += load(row.channel[i] + at) * share;
+        sums[kDiscWeight][half] += weight;
+        sums[kDiscSquare][half] += weight * larger(square, splat(in.least_square));
       }
     }
     for (int i = 0; i < 4; ++i) {
-      store(in.to + i * in.to_plane + x, 0.25f * add_pairs(sums[i][0], sums[i][1]));
+      store(in.to + i * in.plane + x, 0.25f * add_pairs(sums[i][0], sums[i][1]));
     }
-    const Floats weight = add_pairs(sums[3][0], sums[3][1]);
-    const Floats square = add_pairs(sums[4][0], sums[4][1]);
-    store(in.to + 4 * in.to_plane + x, select(weight > 0.0f, square / weight, splat(0.0f)));
+    const Floats weight = add_pairs(sums[kDiscWeight][0], sums[kDiscWeight][1]);
+    const Floats square = add_pairs(sums[kDiscSquare][0], sums[kDiscSquare][1]);
+    store(in.to + kDiscSquare * in.plane + x, select(weight > 0.0f, square / weight, splat(0.0f)));
   }
 }
 
