@@ -35,6 +35,15 @@ struct Rectangle {
   int x, y, width, height;
 };
 
+// The farthest that discs of some rungs reach.
+int reach_of(const LevelRungs& level, std::uint32_t rungs) {
+  std::size_t reach = 1;
+  for (std::size_t i = 0; i < level.rungs.size(); ++i) {
+    if ((rungs >> i & 1u) != 0) reach = std::max(reach, level.rungs[i].spans.size());
+  }
+  return static_cast<int>(reach) - 1;
+}
+
 // The tile's part of the picture, for discs of any reach.
 void split_tile(const Frame& frame, const Rectangle& at, int apron, Workspace& work) {
   const int last = frame.levels[0].height - 1;
@@ -201,12 +210,12 @@ void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
   const Frame frame{input, ladder, levels, pool.isa()};
   for (std::size_t i = levels.size(); i-- > 1;) see_level(frame, i, pool);
   for_each_tile(levels[0], pool, [&](const Rectangle& at, Workspace& work) {
-    split_tile(frame, at, kDiscApron, work);
+    const std::uint32_t near = rungs_near(levels[0], 0, at.x, at.y, at.width, at.height);
+    const std::uint32_t far = rungs_near(levels[0], 1, at.x, at.y, at.width, at.height);
+    split_tile(frame, at, reach_of(ladder[0], near | far) + 1, work);
     start_tile(frame, 0, at, true, work);
     blur_before(frame, 0, at, work);
-    const std::uint32_t sharp = rungs_near(levels[0], 0, at.x, at.y, at.width, at.height) |
-                                rungs_near(levels[0], 1, at.x, at.y, at.width, at.height);
-    if ((sharp & 3u) != 0) blur_rung(frame, 0, DiscSide::focus, 0, at, work);
+    if (((near | far) & 1u) != 0) blur_rung(frame, 0, DiscSide::focus, 0, at, work);
     blur_behind(frame, 0, at, work);
     add_larger_behind(frame, 0, at, work);
     SOFTFOCUS_KERNEL(pool.isa(), resolve_disc_tile)(at.width, at.height, work.tile);

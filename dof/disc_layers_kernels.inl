@@ -10,39 +10,57 @@ SOFTFOCUS_INLINE Floats by_turns(Floats a, Floats b, std::index_sequence<lane...
   return __builtin_shufflevector(a, b, (from + lane / 2 + (lane & 1) * kLanes)...);
 }
 
-// Sums of columns of a disc, a vector of them: at columns[dx] what is dx pixels from the
-// middle. `at` is in the row of the middle.
+// Vectors that are worked on together, so that what is the same for all is fetched once:
+// a row of a tile is one or several times as many, with its margins and without.
+using ColumnVectors = std::make_index_sequence<5>;
+using TileVectors = std::make_index_sequence<4>;
+static_assert(kDiscTileRow % (5 * 16) == 0 && kDiscTileWidth % (4 * 16) == 0);
+
+// Sums of columns of a disc: at columns[dx] what is dx pixels from the middle. `at` is in
+// the row of the middle.
+template <std::size_t... i>
 SOFTFOCUS_INLINE void sum_columns(const float* at, const LadderSpan* spans, int reach,
-                                  float* columns) {
-  Floats sum = load(at);
+                                  float* columns, std::index_sequence<i...>) {
+  Floats sum[] = {load(at + i * kLanes)...};
+  const float* above = at;
+  const float* below = at;
   int dx = reach;
   for (int dy = 1;; ++dy) {
-    const Floats pair = load(at - dy * kDiscTileRow) + load(at + dy * kDiscTileRow);
+    above -= kDiscTileRow;
+    below += kDiscTileRow;
+    const Floats pair[] = {(load(above + i * kLanes) + load(below + i * kLanes))...};
     while (spans[dx].whole == dy - 1) {
-      store(columns + dx * kDiscTileRow, spans[dx].centre * sum + spans[dx].end * pair);
+      const Floats centre = splat(spans[dx].centre), end = splat(spans[dx].end);
+      float* to = columns + dx * kDiscTileRow;
+      ((store(to + i * kLanes, centre * sum[i] + end * pair[i])), ...);
       if (--dx < 0) return;
     }
-    sum += pair;
+    ((sum[i] += pair[i]), ...);
   }
 }
 
+// Discs from the sums of their columns.
+template <std::size_t... i>
+SOFTFOCUS_INLINE void add_columns(const float* columns, int reach, float* to,
+                                  std::index_sequence<i...>) {
+  Floats sum[] = {load(columns + i * kLanes)...};
+  for (int dx = 1; dx <= reach; ++dx) {
+    columns += kDiscTileRow;
+    ((sum[i] += load(columns - dx + i * kLanes) + load(columns + dx + i * kLanes)), ...);
+  }
+  ((store(to + i * kLanes, sum[i])), ...);
+}
+
 // Discs' sums of a channel that fills the rows from `reach + 1` above the tile on.
-SOFTFOCUS_INLINE void sum_discs(const DiscBlur& in, const float (*rows)[kDiscTileRow], int width,
+SOFTFOCUS_INLINE void sum_discs(const DiscBlur& in, const float (*rows)[kDiscTileRow],
                                 float (*columns)[kDiscTileRow], float (*to)[kDiscTileWidth]) {
   for (int y = 0; y < in.height; ++y) {
     const float* row = rows[y + in.reach + 1];
-    for (int x = kDiscMargin - kLanes * ((in.reach + kLanes - 1) / kLanes);
-         x < kDiscMargin + width + in.reach; x += kLanes) {
-      sum_columns(row + x, in.spans, in.reach, columns[0] + x);
+    for (int x = 0; x < kDiscTileRow; x += 5 * kLanes) {
+      sum_columns(row + x, in.spans, in.reach, columns[0] + x, ColumnVectors{});
     }
-    for (int x = 0; x < width; x += kLanes) {
-      const float* middle = columns[0] + kDiscMargin + x;
-      Floats sum = load(middle);
-      for (int dx = 1; dx <= in.reach; ++dx) {
-        middle += kDiscTileRow;
-        sum += load(middle - dx) + load(middle + dx);
-      }
-      store(to[y] + x, sum);
+    for (int x = 0; x < kDiscTileWidth; x += 4 * kLanes) {
+      add_columns(columns[0] + kDiscMargin + x, in.reach, to[y] + x, TileVectors{});
     }
   }
 }
@@ -52,17 +70,13 @@ SOFTFOCUS_INLINE void sum_discs(const DiscBlur& in, const float (*rows)[kDiscTil
 /// Sums over the rung's discs in scratch.sums: of its colours and of its share, and of
 /// what is seen where nothing nearer is.
 void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch) {
-  const int width = (in.width + kLanes - 1) / kLanes * kLanes;
   const int rows = in.height + 2 * (in.reach + 1);
-  const int margin = in.reach > 0 ? kDiscMargin : 0;
   Mask all_ones = splat(-1), all_equal = splat(-1);
   for (int y = 0; y < rows; ++y) {
     const DiscRow& from = in.rows[y];
-    float* shares = scratch.share[y] + kDiscMargin;
-    float* seens = scratch.seen[y] + kDiscMargin;
-    for (int x = -margin; x < width + margin; x += kLanes) {
-      const Floats signed_square = load(from.channel[kDiscSquare] + x);
-      const Floats weight = load(from.channel[kDiscWeight] + x);
+    for (int x = 0; x < kDiscTileRow; x += kLanes) {
+      const Floats signed_square = load(from.channel[kDiscSquare] - kDiscMargin + x);
+      const Floats weight = load(from.channel[kDiscWeight] - kDiscMargin + x);
       Floats share, seen;
       if (in.side == DiscSide::focus) {
         share = 1.0f - share_from(in.end, absolute(signed_square));
@@ -73,30 +87,30 @@ void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch) {
         share = begun - ended;
         seen = in.side == DiscSide::near ? 1.0f - weight * ended : weight * begun;
       }
-      store(shares + x, share);
-      store(seens + x, seen);
+      store(scratch.share[y] + x, share);
+      store(scratch.seen[y] + x, seen);
       all_ones &= seen == 1.0f;
       all_equal &= seen == weight * share;
     }
   }
   for (int i = 0; i < 4; ++i) {
     for (int y = 0; y < rows; ++y) {
-      const float* from = in.rows[y].channel[i];
-      for (int x = -margin; x < width + margin; x += kLanes) {
-        store(scratch.product[y] + kDiscMargin + x,
-              load(from + x) * load(scratch.share[y] + kDiscMargin + x));
+      const float* from = in.rows[y].channel[i] - kDiscMargin;
+      for (int x = 0; x < kDiscTileRow; x += kLanes) {
+        store(scratch.product[y] + x, load(from + x) * load(scratch.share[y] + x));
       }
     }
-    sum_discs(in, scratch.product, width, scratch.columns, scratch.sums[i]);
+    sum_discs(in, scratch.product, scratch.columns, scratch.sums[i]);
   }
   if (all(all_ones)) {
     for (int y = 0; y < in.height; ++y) {
-      for (int x = 0; x < width; x += kLanes) store(scratch.sums[4][y] + x, splat(in.area));
+      for (int x = 0; x < kDiscTileWidth; x += kLanes)
+        store(scratch.sums[4][y] + x, splat(in.area));
     }
   } else if (all(all_equal)) {
     std::memcpy(scratch.sums[4], scratch.sums[kDiscWeight], sizeof scratch.sums[4]);
   } else {
-    sum_discs(in, scratch.seen, width, scratch.columns, scratch.sums[4]);
+    sum_discs(in, scratch.seen, scratch.columns, scratch.sums[4]);
   }
 }
 

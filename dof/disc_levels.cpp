@@ -59,6 +59,11 @@ void repeat_ends(const DiscLevel& level, int x, int count, float* row, std::ptrd
   }
 }
 
+// Rows below the picture repeat its last.
+const std::uint16_t* texel_row(const DofInput& input, int y) {
+  return row<std::uint16_t>(input.scene, std::min(y, input.scene.height - 1)).data();
+}
+
 struct Halving {
   const DofInput& input;
   DiscLevel& from;
@@ -79,40 +84,47 @@ void halve_task(const Halving& halving, int from_x, int from_y, Isa isa) {
   Marks marks, next_marks;
   for (int y = from_y; y < std::min(from_y + kTaskHeight, 2 * to.height); y += 2) {
     DiscRow rows[2][2];  // of sides
+    bool larger[2] = {!halving.whole, !halving.whole};
     for (int i = 0; i < 2; ++i) {
-      for (int side = 0; side < 2; ++side) {
-        if (!halving.whole) {
-          rows[side][i] = disc_row(from, side, from_x, y + i);
-        } else {
-          float(*const row)[kTaskWidth] = split[i];
-          if (side == 0) {
-            split_disc_row(halving.input, from_x, std::min(y + i, from.height - 1), kTaskWidth,
-                           row[0], kTaskWidth, isa);
-          }
-          rows[side][i] = {{row[0], row[1], row[2], kOnes.data(), row[3]}};
-        }
+      if (!halving.whole) {
+        for (int side = 0; side < 2; ++side) rows[side][i] = disc_row(from, side, from_x, y + i);
+        continue;
       }
-      if (halving.whole) {
-        SOFTFOCUS_KERNEL(isa, mark_rungs)
-        (rows[0][i].channel[kDiscSquare], rows[0][i].channel[kDiscWeight], width,
-         halving.first_rung, marks.rungs[0].data(), marks.rungs[1].data());
+      float(*const row)[kTaskWidth] = split[i];
+      rows[0][i] = rows[1][i] = {{row[0], row[1], row[2], kOnes.data(), row[3]}};
+      SOFTFOCUS_KERNEL(isa, split_disc_squares)
+      (halving.input.settings, texel_row(halving.input, y + i), from_x, from.width, kTaskWidth,
+       row[3]);
+      const MarkedRungs marked =
+          SOFTFOCUS_KERNEL(isa, mark_rungs)(row[3], kOnes.data(), width, halving.first_rung,
+                                            marks.rungs[0].data(), marks.rungs[1].data());
+      larger[0] = larger[0] || marked.near >> kFineRungs != 0;
+      larger[1] = larger[1] || marked.far >> kFineRungs != 0;
+    }
+    if (halving.whole && (larger[0] || larger[1])) {
+      for (int i = 0; i < 2; ++i) {
+        SOFTFOCUS_KERNEL(isa, split_disc_colours)
+        (texel_row(halving.input, y + i), from_x, from.width, kTaskWidth, split[i][0], kTaskWidth);
       }
     }
     for (int side = 0; side < 2; ++side) {
       Planes& planes = to.sides[side];
-      float* row = plane_row(planes, 0, y / 2) + x;
-      const DiscHalving halves{{rows[side][0], rows[side][1]},
-                               halving.whole && side == 0 ? -1.0f : 1.0f,
-                               halving.beyond,
-                               halving.least_square,
-                               count,
-                               row + kDiscMargin,
-                               planes.plane};
-      SOFTFOCUS_KERNEL(isa, halve_disc_rows)(halves);
-      SOFTFOCUS_KERNEL(isa, mark_rungs)
-      (row + kDiscMargin + kDiscSquare * planes.plane,
-       row + kDiscMargin + kDiscWeight * planes.plane, count, halving.next_first_rung,
-       next_marks.rungs[side].data(), next_marks.rungs[side].data());
+      float* row = plane_row(planes, 0, y / 2) + kDiscMargin + x;
+      if (larger[side]) {
+        const DiscHalving halves{{rows[side][0], rows[side][1]},
+                                 halving.whole && side == 0 ? -1.0f : 1.0f,
+                                 halving.beyond,
+                                 halving.least_square,
+                                 count,
+                                 row,
+                                 planes.plane};
+        SOFTFOCUS_KERNEL(isa, halve_disc_rows)(halves);
+        SOFTFOCUS_KERNEL(isa, mark_rungs)
+        (row + kDiscSquare * planes.plane, row + kDiscWeight * planes.plane, count,
+         halving.next_first_rung, next_marks.rungs[side].data(), next_marks.rungs[side].data());
+      } else {
+        for (int i = 0; i < kDiscChannels; ++i) std::fill_n(row + i * planes.plane, count, 0.0f);
+      }
       for (int i = 0; i < kDiscChannels; ++i) {
         repeat_ends(to, x, count, plane_row(planes, i, y / 2), planes.stride);
       }
@@ -132,9 +144,10 @@ void halve_task(const Halving& halving, int from_x, int from_y, Isa isa) {
 
 void split_disc_row(const DofInput& input, int x, int y, int count, float* to,
                     std::ptrdiff_t channel, Isa isa) {
-  SOFTFOCUS_KERNEL(isa, split_disc_row)
-  (input.settings, row<std::uint16_t>(input.scene, y).data(), x, input.scene.width, count, to,
-   channel);
+  const std::uint16_t* from = texel_row(input, y);
+  SOFTFOCUS_KERNEL(isa, split_disc_colours)(from, x, input.scene.width, count, to, channel);
+  SOFTFOCUS_KERNEL(isa, split_disc_squares)
+  (input.settings, from, x, input.scene.width, count, to + 3 * channel);
 }
 
 Planes make_disc_planes(int count, const DiscLevel& level) {

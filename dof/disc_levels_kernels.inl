@@ -23,21 +23,28 @@ SOFTFOCUS_INLINE Floats add_pairs(Floats a, Floats b) {
 
 }  // namespace
 
-/// Colours and signed squares of the `count` pixels of a row from `x` on, `channel` floats
-/// apart; the picture's edges repeat outwards.
-void split_disc_row(const DofSettings& settings, const std::uint16_t* from, int x, int width,
-                    int count, float* to, std::ptrdiff_t channel) {
+/// Signed squares of the radii of `count` pixels of a row from `x` on; the picture's edges
+/// repeat outwards.
+void split_disc_squares(const DofSettings& settings, const std::uint16_t* from, int x, int width,
+                        int count, float* to) {
+  for (int i = 0; i < count; i += kLanes) {
+    const Floats depth_m = half_to_float(load_repeating(from, x + i, width).a);
+    const Floats radius =
+        settings.coc.radius_at_infinity_px * (depth_m - settings.coc.focus_m) / depth_m;
+    const Floats magnitude = smaller(absolute(radius), splat(settings.max_coc_px));
+    const Floats square = magnitude * magnitude;
+    store(to + i, select(radius < 0.0f, -square, square));
+  }
+}
+
+/// Of the same their colours, `channel` floats apart.
+void split_disc_colours(const std::uint16_t* from, int x, int width, int count, float* to,
+                        std::ptrdiff_t channel) {
   for (int i = 0; i < count; i += kLanes) {
     const HalfTexels texels = load_repeating(from, x + i, width);
     store(to + i, finite_colour(texels.r));
     store(to + channel + i, finite_colour(texels.g));
     store(to + 2 * channel + i, finite_colour(texels.b));
-    const Floats depth_m = half_to_float(texels.a);
-    const Floats radius =
-        settings.coc.radius_at_infinity_px * (depth_m - settings.coc.focus_m) / depth_m;
-    const Floats magnitude = smaller(absolute(radius), splat(settings.max_coc_px));
-    const Floats square = magnitude * magnitude;
-    store(to + 3 * channel + i, select(radius < 0.0f, -square, square));
   }
 }
 
@@ -67,18 +74,30 @@ void halve_disc_rows(const DiscHalving& in) {
 
 /// Which rungs there are in a row, a bit each: `near` of negative squares, `far` of others,
 /// pixel by pixel added to what was there. Bit 0 is for rung `first_rung` and smaller ones.
-void mark_rungs(const float* square, const float* weight, int count, int first_rung,
-                std::uint32_t* near, std::uint32_t* far) {
+/// Returns those of the row, together.
+MarkedRungs mark_rungs(const float* square, const float* weight, int count, int first_rung,
+                       std::uint32_t* near, std::uint32_t* far) {
   // A float's upper bits count half octaves from 2^-127: 254 is 1 to 3/2, 255 to 2. There the
   // first rung after the focus is.
   const Ints offset = splat(253 + first_rung);
+  Bits all_near = splat(0u), all_far = splat(0u);
   for (int x = 0; x < count; x += kLanes) {
     const Floats value = load(square + x);
     const Bits magnitude = as_bits(absolute(value));
     const Ints rung = smaller(larger((Ints)(magnitude >> 22) - offset, splat(0)), splat(30));
     const Bits own = select((magnitude & 0x3FFFFFu) == 0u, splat(1u), splat(3u)) << (Bits)rung;
     const Bits bits = select(load(weight + x) > 0.0f, own, splat(0u));
-    store(near + x, load(near + x) | select(value < 0.0f, bits, splat(0u)));
-    store(far + x, load(far + x) | select(value < 0.0f, splat(0u), bits));
+    const Bits near_bits = select(value < 0.0f, bits, splat(0u));
+    const Bits far_bits = select(value < 0.0f, splat(0u), bits);
+    store(near + x, load(near + x) | near_bits);
+    store(far + x, load(far + x) | far_bits);
+    all_near |= near_bits;
+    all_far |= far_bits;
   }
+  MarkedRungs marked{};
+  for (int i = 0; i < kLanes; ++i) {
+    marked.near |= all_near[i];
+    marked.far |= all_far[i];
+  }
+  return marked;
 }

@@ -12,7 +12,7 @@ namespace softfocus {
 inline constexpr int kDiscTileWidth = 64;
 inline constexpr int kDiscTileHeight = 32;
 /// Pixels that rows of a level go on to either side, its last repeated.
-inline constexpr int kDiscMargin = 16;
+inline constexpr int kDiscMargin = 8;
 inline constexpr int kDiscTileRow = kDiscTileWidth + 2 * kDiscMargin;
 /// Rows above and below that a disc of any rung reaches, and one more.
 inline constexpr int kDiscApron = 8;
@@ -27,6 +27,11 @@ enum class DiscSide { near, focus, far };
 inline constexpr int kDiscWeight = 3, kDiscSquare = 4, kDiscChannels = 5;
 struct DiscRow {
   const float* channel[kDiscChannels];
+};
+
+/// Rungs of a level that there are on either side, a bit each; larger ones too.
+struct MarkedRungs {
+  std::uint32_t near, far;
 };
 
 /// Two rows of a level, to be one of the next.
