@@ -191,13 +191,22 @@ void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
     planes = make_disc_planes(4, level);
   }
   for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
-    start_tile(frame, number, at, true, work);
-    blur_before(frame, number, at, work);
-    keep_tile(level, 0, at, work.tile);
-    start_tile(frame, number, at, false, work);
-    blur_behind(frame, number, at, work);
-    add_larger_behind(frame, number, at, work);
-    keep_tile(level, 1, at, work.tile);
+    // Tiles that nobody asks for are left out: a tile of the smaller level asks for half its
+    // size, and two pixels, if there is anything in them.
+    constexpr int kAcross = kDiscTileWidth / 2 + 2, kDown = kDiscTileHeight / 2 + 2;
+    const Rectangle around{at.x - kAcross, at.y - kDown, at.width + 2 * kAcross,
+                           at.height + 2 * kDown};
+    if (any_seen(frame, number, 0, around)) {
+      start_tile(frame, number, at, true, work);
+      blur_before(frame, number, at, work);
+      keep_tile(level, 0, at, work.tile);
+    }
+    if (any_seen(frame, number, 1, around)) {
+      start_tile(frame, number, at, false, work);
+      blur_behind(frame, number, at, work);
+      add_larger_behind(frame, number, at, work);
+      keep_tile(level, 1, at, work.tile);
+    }
   });
 }
 

@@ -51,16 +51,21 @@ SOFTFOCUS_INLINE void add_columns(const float* columns, int reach, float* to,
   ((store(to + i * kLanes, sum[i])), ...);
 }
 
-// Discs' sums of a channel that fills the rows from `reach + 1` above the tile on.
+// Discs' sums of a channel that fills the rows from `reach + 1` above the tile on. The next
+// row's columns come first: what has just been stored is slow to load at another alignment.
 SOFTFOCUS_INLINE void sum_discs(const DiscBlur& in, const float (*rows)[kDiscTileRow],
-                                float (*columns)[kDiscTileRow], float (*to)[kDiscTileWidth]) {
-  for (int y = 0; y < in.height; ++y) {
-    const float* row = rows[y + in.reach + 1];
-    for (int x = 0; x < kDiscTileRow; x += 5 * kLanes) {
-      sum_columns(row + x, in.spans, in.reach, columns[0] + x, ColumnVectors{});
+                                DiscScratch& scratch, float (*to)[kDiscTileWidth]) {
+  for (int y = 0; y <= in.height; ++y) {
+    if (y < in.height) {
+      for (int x = 0; x < kDiscTileRow; x += 5 * kLanes) {
+        sum_columns(rows[y + in.reach + 1] + x, in.spans, in.reach, scratch.columns[y % 2][0] + x,
+                    ColumnVectors{});
+      }
     }
+    if (y == 0) continue;
     for (int x = 0; x < kDiscTileWidth; x += 4 * kLanes) {
-      add_columns(columns[0] + kDiscMargin + x, in.reach, to[y] + x, TileVectors{});
+      add_columns(scratch.columns[1 - y % 2][0] + kDiscMargin + x, in.reach, to[y - 1] + x,
+                  TileVectors{});
     }
   }
 }
@@ -100,17 +105,18 @@ void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch) {
         store(scratch.product[y] + x, load(from + x) * load(scratch.share[y] + x));
       }
     }
-    sum_discs(in, scratch.product, scratch.columns, scratch.sums[i]);
+    sum_discs(in, scratch.product, scratch, scratch.sums[i]);
   }
+  scratch.seen_sums = kDiscChannels - 1;
   if (all(all_ones)) {
     for (int y = 0; y < in.height; ++y) {
       for (int x = 0; x < kDiscTileWidth; x += kLanes)
         store(scratch.sums[4][y] + x, splat(in.area));
     }
   } else if (all(all_equal)) {
-    std::memcpy(scratch.sums[4], scratch.sums[kDiscWeight], sizeof scratch.sums[4]);
+    scratch.seen_sums = kDiscWeight;
   } else {
-    sum_discs(in, scratch.seen, scratch.columns, scratch.sums[4]);
+    sum_discs(in, scratch.seen, scratch, scratch.sums[4]);
   }
 }
 
@@ -118,7 +124,7 @@ void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch) {
 void add_disc_sums(const DiscScratch& in, int width, int height, DiscTile& tile) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; x += kLanes) {
-      const Floats seen = load(in.sums[4][y] + x);
+      const Floats seen = load(in.sums[in.seen_sums][y] + x);
       float* through = tile.channel[kDiscTransmitted][y] + x;
       const Floats transmitted = load(through);
       const Mask any = seen > 0.0f;
@@ -167,9 +173,9 @@ void add_behind(const float (*from)[kDiscTileRow], int width, int y, DiscTile& t
 void resolve_disc_tile(int width, int height, DiscTile& tile) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; x += kLanes) {
-      const Floats opacity = 1.0f - load(tile.channel[kDiscTransmitted][y] + x);
+      const Floats scale = 1.0f / (1.0f - load(tile.channel[kDiscTransmitted][y] + x));
       for (int i = 0; i < 3; ++i) {
-        store(tile.channel[i][y] + x, load(tile.channel[i][y] + x) / opacity);
+        store(tile.channel[i][y] + x, load(tile.channel[i][y] + x) * scale);
       }
     }
   }

@@ -2,24 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <utility>
+
+#include "dof/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/disc_levels_kernels.inl"
 #include "raster/numbers/for_each_isa.inl"
 
 namespace softfocus {
 namespace {
-
-// Pixels of a level that become one task's share of the next.
-constexpr int kTaskWidth = 256;
-constexpr int kTaskHeight = 16;
-static_assert(kTaskHeight == 2 * kDiscBlock);
-
-constexpr std::array<float, kTaskWidth> kOnes = [] {
-  std::array<float, kTaskWidth> ones{};
-  for (float& one : ones) one = 1.0f;
-  return ones;
-}();
 
 DiscLevel make_level(int width, int height) {
   DiscLevel level{};
@@ -32,31 +23,36 @@ DiscLevel make_level(int width, int height) {
   return level;
 }
 
-// The rungs of pixels in a row of blocks, gathered row by row.
-struct Marks {
-  std::array<std::uint32_t, kTaskWidth> rungs[2]{};
-
-  // Into the level's blocks from x on, and away.
-  void keep(DiscLevel& level, int x, int y, int count) {
-    for (int side = 0; side < 2; ++side) {
-      for (int i = 0; i < count; i += kDiscBlock) {
-        std::uint32_t any = 0;
-        for (int j = i; j < std::min(i + kDiscBlock, count); ++j) {
-          any |= rungs[side][static_cast<std::size_t>(j)];
-        }
-        level.rungs[side][static_cast<std::size_t>(y / kDiscBlock * level.block_columns +
-                                                   (x + i) / kDiscBlock)] = any;
-      }
-      rungs[side].fill(0);
-    }
-  }
+// What a task works with. Rows have room for whole vectors.
+struct RowScratch {
+  std::vector<float> split[2];          // channels of level 0, but its weights
+  std::vector<std::uint32_t> marks[2];  // of sides: rungs of pixels in a row of blocks
+  std::vector<std::uint32_t> next_marks[2];
 };
 
-void repeat_ends(const DiscLevel& level, int x, int count, float* row, std::ptrdiff_t stride) {
-  if (x == 0) std::fill_n(row, kDiscMargin, row[kDiscMargin]);
-  if (x + count == level.width) {
-    std::fill(row + kDiscMargin + level.width, row + stride, row[kDiscMargin + level.width - 1]);
+// Into the level's row of blocks from marks of its pixels, which are cleared.
+void keep_marks(DiscLevel& level, int side, int y, std::vector<std::uint32_t>& marks) {
+  std::uint32_t* blocks =
+      &level.rungs[side][static_cast<std::size_t>(y / kDiscBlock * level.block_columns)];
+  for (int column = 0; column < level.block_columns; ++column) {
+    const std::uint32_t* from = marks.data() + column * kDiscBlock;
+    std::uint32_t any = 0;
+    for (int i = 0; i < kDiscBlock; ++i) any |= from[i];
+    blocks[column] = any;
   }
+  std::fill(marks.begin(), marks.end(), 0u);
+}
+
+void repeat_ends(const DiscLevel& level, float* row, std::ptrdiff_t stride) {
+  std::fill_n(row, kDiscMargin, row[kDiscMargin]);
+  std::fill(row + kDiscMargin + level.width, row + stride, row[kDiscMargin + level.width - 1]);
+}
+
+int padded_width(const DiscLevel& level) { return level.width + 2 * kDiscMargin + kDiscTileWidth; }
+
+// Whether a row, which may lie below the last, has anything on a side.
+bool row_filled(const DiscLevel& level, int side, int y) {
+  return level.filled[side][static_cast<std::size_t>(std::min(y, level.height - 1))] != 0;
 }
 
 // Rows below the picture repeat its last.
@@ -71,73 +67,92 @@ struct Halving {
   bool whole;  // from the picture itself
   RungStep beyond;
   float least_square;
-  int first_rung, next_first_rung;
+  int first_rung;  // of `to`
+  const float* ones;
 };
 
-// Of the picture at x, kTaskHeight rows from y on: marks, and the next level.
-void halve_task(const Halving& halving, int from_x, int from_y, Isa isa) {
+// Two rows of the picture as rows of level 0. Says on which sides they have anything for
+// the next level; only then colours are there.
+void split_two_rows(const Halving& halving, int y, RowScratch& scratch, DiscRow* rows, bool* larger,
+                    Isa isa) {
+  const int width = halving.from.width, padded = padded_width(halving.from);
+  for (int i = 0; i < 2; ++i) {
+    float* row = scratch.split[i].data();
+    rows[i] = {{row, row + padded, row + 2 * padded, halving.ones, row + 3 * padded}};
+    SOFTFOCUS_KERNEL(isa, split_disc_squares)
+    (halving.input.settings, texel_row(halving.input, y + i), 0, width, width + kDiscTileWidth,
+     row + 3 * padded);
+    const MarkedRungs marked = SOFTFOCUS_KERNEL(isa, mark_rungs)(
+        row + 3 * padded, halving.ones, width, 0, scratch.marks[0].data(), scratch.marks[1].data());
+    larger[0] = larger[0] || marked.near >> kFineRungs != 0;
+    larger[1] = larger[1] || marked.far >> kFineRungs != 0;
+  }
+  if (!larger[0] && !larger[1]) return;
+  for (int i = 0; i < 2; ++i) {
+    SOFTFOCUS_KERNEL(isa, split_disc_colours)
+    (texel_row(halving.input, y + i), 0, width, width + kDiscTileWidth, scratch.split[i].data(),
+     padded);
+  }
+}
+
+// A row of a side of the next level.
+void halve_rows(const Halving& halving, const DiscRow* rows, int side, int y, RowScratch& scratch,
+                Isa isa) {
+  DiscLevel& to = halving.to;
+  Planes& planes = to.sides[side];
+  float* row = plane_row(planes, 0, y) + kDiscMargin;
+  const DiscHalving halves{{rows[0], rows[1]}, halving.whole && side == 0 ? -1.0f : 1.0f,
+                           halving.beyond,     halving.least_square,
+                           to.width,           row,
+                           planes.plane};
+  SOFTFOCUS_KERNEL(isa, halve_disc_rows)(halves);
+  std::uint32_t* marks = scratch.next_marks[side].data();
+  const MarkedRungs marked = SOFTFOCUS_KERNEL(isa, mark_rungs)(
+      row + kDiscSquare * planes.plane, row + kDiscWeight * planes.plane, to.width,
+      halving.first_rung, marks, marks);
+  to.filled[side][static_cast<std::size_t>(y)] = marked.far != 0;
+  for (int i = 0; i < kDiscChannels; ++i) {
+    repeat_ends(to, plane_row(planes, i, y), planes.stride);
+  }
+}
+
+void halve_task(const Halving& halving, int task, RowScratch& scratch, Isa isa) {
   DiscLevel& from = halving.from;
   DiscLevel& to = halving.to;
-  const int width = std::min(kTaskWidth, from.width - from_x);
-  const int x = from_x / 2, count = std::min(kTaskWidth / 2, to.width - x);
-  float split[2][4][kTaskWidth];
-  Marks marks, next_marks;
-  for (int y = from_y; y < std::min(from_y + kTaskHeight, 2 * to.height); y += 2) {
-    DiscRow rows[2][2];  // of sides
-    bool larger[2] = {!halving.whole, !halving.whole};
-    for (int i = 0; i < 2; ++i) {
-      if (!halving.whole) {
-        for (int side = 0; side < 2; ++side) rows[side][i] = disc_row(from, side, from_x, y + i);
-        continue;
-      }
-      float(*const row)[kTaskWidth] = split[i];
-      rows[0][i] = rows[1][i] = {{row[0], row[1], row[2], kOnes.data(), row[3]}};
-      SOFTFOCUS_KERNEL(isa, split_disc_squares)
-      (halving.input.settings, texel_row(halving.input, y + i), from_x, from.width, kTaskWidth,
-       row[3]);
-      const MarkedRungs marked =
-          SOFTFOCUS_KERNEL(isa, mark_rungs)(row[3], kOnes.data(), width, halving.first_rung,
-                                            marks.rungs[0].data(), marks.rungs[1].data());
-      larger[0] = larger[0] || marked.near >> kFineRungs != 0;
-      larger[1] = larger[1] || marked.far >> kFineRungs != 0;
-    }
-    if (halving.whole && (larger[0] || larger[1])) {
-      for (int i = 0; i < 2; ++i) {
-        SOFTFOCUS_KERNEL(isa, split_disc_colours)
-        (texel_row(halving.input, y + i), from_x, from.width, kTaskWidth, split[i][0], kTaskWidth);
-      }
-    }
+  for (int side = 0; side < 2; ++side) {
+    const auto padded = static_cast<std::size_t>(padded_width(from));
+    if (halving.whole) scratch.split[side].resize(4 * padded);
+    scratch.marks[side].resize(padded);
+    scratch.next_marks[side].resize(padded);
+  }
+  const int end = std::min((task + 1) * kDiscBlock, to.height);
+  for (int y = task * kDiscBlock; y < end; ++y) {
     for (int side = 0; side < 2; ++side) {
-      Planes& planes = to.sides[side];
-      float* row = plane_row(planes, 0, y / 2) + kDiscMargin + x;
-      if (larger[side]) {
-        const DiscHalving halves{{rows[side][0], rows[side][1]},
-                                 halving.whole && side == 0 ? -1.0f : 1.0f,
-                                 halving.beyond,
-                                 halving.least_square,
-                                 count,
-                                 row,
-                                 planes.plane};
-        SOFTFOCUS_KERNEL(isa, halve_disc_rows)(halves);
-        SOFTFOCUS_KERNEL(isa, mark_rungs)
-        (row + kDiscSquare * planes.plane, row + kDiscWeight * planes.plane, count,
-         halving.next_first_rung, next_marks.rungs[side].data(), next_marks.rungs[side].data());
-      } else {
-        for (int i = 0; i < kDiscChannels; ++i) std::fill_n(row + i * planes.plane, count, 0.0f);
-      }
-      for (int i = 0; i < kDiscChannels; ++i) {
-        repeat_ends(to, x, count, plane_row(planes, i, y / 2), planes.stride);
+      DiscRow rows[2];
+      bool larger[2] = {false, false};
+      if (!halving.whole) {
+        for (int i = 0; i < 2; ++i) {
+          rows[i] = disc_row(from, side, 0, 2 * y + i);
+          larger[side] = larger[side] || row_filled(from, side, 2 * y + i);
+        }
+        if (larger[side]) halve_rows(halving, rows, side, y, scratch, isa);
+      } else if (side == 0) {
+        split_two_rows(halving, 2 * y, scratch, rows, larger, isa);
+        for (int i = 0; i < 2; ++i) {
+          if (larger[i]) halve_rows(halving, rows, i, y, scratch, isa);
+        }
       }
     }
-    if (halving.whole && (y + 2) % kDiscBlock == 0) marks.keep(from, from_x, y, width);
-  }
-  if (halving.whole) {
-    const int last = std::min(from_y + kTaskHeight, from.height) - 1;
-    if ((2 * to.height) % kDiscBlock != 0 && last == from.height - 1) {
-      marks.keep(from, from_x, last, width);
+    if (halving.whole && (2 * y + 2) % kDiscBlock == 0) {
+      for (int i = 0; i < 2; ++i) keep_marks(from, i, 2 * y, scratch.marks[i]);
     }
   }
-  next_marks.keep(to, x, from_y / 2, count);
+  for (int i = 0; i < 2; ++i) {
+    if (halving.whole && (2 * end) % kDiscBlock != 0) {
+      keep_marks(from, i, 2 * (end - 1), scratch.marks[i]);
+    }
+    keep_marks(to, i, end - 1, scratch.next_marks[i]);
+  }
 }
 
 }  // namespace
@@ -151,13 +166,18 @@ void split_disc_row(const DofInput& input, int x, int y, int count, float* to,
 }
 
 Planes make_disc_planes(int count, const DiscLevel& level) {
-  return make_planes(count, level.width + 2 * kDiscMargin + kDiscTileWidth, level.height);
+  return make_planes(count, padded_width(level), level.height);
 }
 
 DiscRow disc_row(const DiscLevel& level, int side, int x, int y) {
-  const Planes& planes = level.sides[side];
-  const float* at = plane_row(planes, 0, std::clamp(y, 0, level.height - 1)) + kDiscMargin + x;
+  const int inside = std::clamp(y, 0, level.height - 1);
   DiscRow row;
+  if (!row_filled(level, side, inside)) {
+    for (const float*& channel : row.channel) channel = level.zeros.data() + kDiscMargin + x;
+    return row;
+  }
+  const Planes& planes = level.sides[side];
+  const float* at = plane_row(planes, 0, inside) + kDiscMargin + x;
   for (int i = 0; i < kDiscChannels; ++i) row.channel[i] = at + i * planes.plane;
   return row;
 }
@@ -166,30 +186,36 @@ std::vector<DiscLevel> make_disc_levels(const DofInput& input,
                                         const std::vector<LevelRungs>& ladder, ThreadPool& pool) {
   std::vector<DiscLevel> levels;
   levels.push_back(make_level(input.scene.width, input.scene.height));
-  int first_rung = 0, next_first_rung = kFineRungs;
-  for (std::size_t i = 1; i <= ladder.size(); ++i) {
+  const std::vector<float> ones(static_cast<std::size_t>(padded_width(levels[0])), 1.0f);
+  int first_rung = kFineRungs;
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    // After the last level comes one that stays empty: it is for level 0 to be marked.
+    const bool last = i + 1 == ladder.size();
+    if (last && i > 0) break;
     DiscLevel& from = levels.back();
     DiscLevel to = make_level((from.width + 1) / 2, (from.height + 1) / 2);
-    for (Planes& planes : to.sides) planes = make_disc_planes(kDiscChannels, to);
-    const bool last = i == ladder.size();
-    if (last && i > 1) break;
+    to.zeros.assign(static_cast<std::size_t>(padded_width(to)), 0.0f);
+    for (int side = 0; side < 2; ++side) {
+      to.sides[side] = make_disc_planes(kDiscChannels, to);
+      to.filled[side].assign(static_cast<std::size_t>(to.height), 0);
+    }
     const Halving halving{input,
                           from,
                           to,
-                          i == 1,
-                          ladder[i - 1].beyond,
-                          last ? 0.0f : ladder[i].rungs[0].square,
+                          i == 0,
+                          ladder[i].beyond,
+                          last ? 0.0f : ladder[i + 1].rungs[0].square,
                           first_rung,
-                          next_first_rung};
-    const int columns = (from.width + kTaskWidth - 1) / kTaskWidth;
-    const int rows = (from.height + kTaskHeight - 1) / kTaskHeight;
-    pool.for_each(columns * rows, [&](int task) {
-      halve_task(halving, task % columns * kTaskWidth, task / columns * kTaskHeight, pool.isa());
+                          ones.data()};
+    ScratchShelf<RowScratch> shelf;
+    pool.for_each((to.height + kDiscBlock - 1) / kDiscBlock, [&](int task) {
+      RowScratch scratch = shelf.take();
+      halve_task(halving, task, scratch, pool.isa());
+      shelf.put_back(std::move(scratch));
     });
     if (last) break;
     levels.push_back(std::move(to));
-    first_rung = next_first_rung;
-    next_first_rung += kLevelRungs;
+    first_rung += kLevelRungs;
   }
   return levels;
 }

@@ -20,6 +20,8 @@ struct DiscLevel {
   /// The channels of DiscRow, before and behind the focus. Level 0 has none: it is the
   /// picture itself.
   Planes sides[2];
+  std::vector<std::uint8_t> filled[2];  ///< of rows: others are not in `sides`, they are `zeros`
+  std::vector<float> zeros;
   /// What is seen of this level and of larger ones, colour and transmittance.
   Planes seen[2];
 };

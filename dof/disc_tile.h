@@ -68,8 +68,9 @@ struct DiscScratch {
   float share[kDiscTileRows][kDiscTileRow];
   float seen[kDiscTileRows][kDiscTileRow];  ///< the share that the rung hides or is
   float product[kDiscTileRows][kDiscTileRow];
-  float columns[kDiscApron][kDiscTileRow];
+  float columns[2][kDiscApron][kDiscTileRow];                  ///< of rows by turns
   float sums[kDiscChannels][kDiscTileHeight][kDiscTileWidth];  ///< discs' sums; last of `seen`
+  int seen_sums;  ///< which of the sums are those of `seen`: those of the weight may be the same
 };
 
 }  // namespace softfocus
