@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dof/disc_levels.h"
+#include "dof/picture_planes.h"
 #include "dof/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/disc_layers_kernels.inl"
@@ -20,7 +21,6 @@ struct Workspace {
   DiscScratch scratch;
   float picture[kDiscTileRows][4][kDiscTileRow];  // of level 0: colours and signed squares
   float ones[kDiscTileRow];
-  float blended[kDiscTileWidth];
   float enlarged[4][kDiscTileRow];
 };
 
@@ -102,7 +102,7 @@ void enlarge(const Frame& frame, const DiscLevel& from, int side, const Rectangl
     SOFTFOCUS_KERNEL(frame.isa, enlarge_disc_row)
     (plane_row(from.seen[side], i, inside) + kDiscMargin + at.x / 2,
      plane_row(from.seen[side], i, other) + kDiscMargin + at.x / 2, at.width + at.width % 2,
-     work.blended, work.enlarged[i]);
+     work.enlarged[i]);
   }
 }
 
@@ -187,9 +187,6 @@ void keep_tile(DiscLevel& level, int side, const Rectangle& at, const DiscTile& 
 
 void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
   DiscLevel& level = frame.levels[number];
-  for (Planes& planes : level.seen) {
-    planes = make_disc_planes(4, level);
-  }
   for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
     // Tiles that nobody asks for are left out: a tile of the smaller level asks for half its
     // size, and two pixels, if there is anything in them.
@@ -215,13 +212,14 @@ void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
 void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
   const std::vector<LevelRungs> ladder = make_ladder(std::min(
       input.settings.max_coc_px, std::fabs(input.settings.coc.radius_at_infinity_px) * 1e9f));
-  std::vector<DiscLevel> levels = make_disc_levels(input, ladder, pool);
+  DiscLevels made = make_disc_levels(input, ladder, pool);
+  std::vector<DiscLevel>& levels = made.levels;
   const Frame frame{input, ladder, levels, pool.isa()};
   for (std::size_t i = levels.size(); i-- > 1;) see_level(frame, i, pool);
   for_each_tile(levels[0], pool, [&](const Rectangle& at, Workspace& work) {
     const std::uint32_t near = rungs_near(levels[0], 0, at.x, at.y, at.width, at.height);
     const std::uint32_t far = rungs_near(levels[0], 1, at.x, at.y, at.width, at.height);
-    split_tile(frame, at, reach_of(ladder[0], near | far) + 1, work);
+    if ((near | far) != 0) split_tile(frame, at, reach_of(ladder[0], near | far) + 1, work);
     start_tile(frame, 0, at, true, work);
     blur_before(frame, 0, at, work);
     if (((near | far) & 1u) != 0) blur_rung(frame, 0, DiscSide::focus, 0, at, work);

@@ -139,19 +139,14 @@ void add_disc_sums(const DiscScratch& in, int width, int height, DiscTile& tile)
 }
 
 /// A row of `count` pixels, an even number, from rows of pixels of twice the size: three
-/// quarters of `inside`, in which it lies, and one of `other`; across the same. `blended` has
-/// room for a vector more at either end than the large pixels.
-void enlarge_disc_row(const float* inside, const float* other, int count, float* blended,
-                      float* to) {
-  const int large = count / 2;
-  for (int x = -1; x < large + 1; x += kLanes) {
-    store(blended + 1 + x, 0.75f * load(inside + x) + 0.25f * load(other + x));
-  }
+/// quarters of `inside`, in which it lies, and one of `other`; across the same.
+void enlarge_disc_row(const float* inside, const float* other, int count, float* to) {
   using Lanes = std::make_index_sequence<SOFTFOCUS_LANES>;
-  for (int x = 0; x < large; x += kLanes) {
-    const Floats own = 0.75f * load(blended + 1 + x);
-    const Floats even = own + 0.25f * load(blended + x);
-    const Floats odd = own + 0.25f * load(blended + 2 + x);
+  for (int x = 0; x < count / 2; x += kLanes) {
+    const Floats own = 0.75f * (0.75f * load(inside + x) + 0.25f * load(other + x));
+    const Floats left = 0.75f * load(inside + x - 1) + 0.25f * load(other + x - 1);
+    const Floats right = 0.75f * load(inside + x + 1) + 0.25f * load(other + x + 1);
+    const Floats even = own + 0.25f * left, odd = own + 0.25f * right;
     store(to + 2 * x, by_turns<0>(even, odd, Lanes{}));
     store(to + 2 * x + kLanes, by_turns<kLanes / 2>(even, odd, Lanes{}));
   }

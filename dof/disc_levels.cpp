@@ -50,9 +50,40 @@ void repeat_ends(const DiscLevel& level, float* row, std::ptrdiff_t stride) {
 
 int padded_width(const DiscLevel& level) { return level.width + 2 * kDiscMargin + kDiscTileWidth; }
 
+std::ptrdiff_t row_stride(const DiscLevel& level) {
+  const std::ptrdiff_t stride = (padded_width(level) + 15) / 16 * 16;
+  // Rows a multiple of 1 KiB apart would meet in a few sets of a cache.
+  return stride % 256 == 0 ? stride + 16 : stride;
+}
+
 // Whether a row, which may lie below the last, has anything on a side.
 bool row_filled(const DiscLevel& level, int side, int y) {
   return level.filled[side][static_cast<std::size_t>(std::min(y, level.height - 1))] != 0;
+}
+
+// Gives every level but the first its planes.
+std::unique_ptr<float[]> share_memory(std::vector<DiscLevel>& levels) {
+  constexpr int kPlanes = 2 * (kDiscChannels + kDiscTransmitted + 1);
+  std::size_t floats = 0;
+  for (const DiscLevel& level : levels) {
+    if (&level == &levels[0]) continue;
+    floats += static_cast<std::size_t>(kPlanes * row_stride(level) * level.height);
+  }
+  auto memory = std::make_unique_for_overwrite<float[]>(floats);
+  float* next = memory.get();
+  for (DiscLevel& level : levels) {
+    if (&level == &levels[0]) continue;
+    const std::ptrdiff_t plane = row_stride(level) * level.height;
+    for (std::size_t side = 0; side < 2; ++side) {
+      level.sides[side] = {row_stride(level), plane, next};
+      next += kDiscChannels * plane;
+      level.seen[side] = {row_stride(level), plane, next};
+      next += (kDiscTransmitted + 1) * plane;
+      level.filled[side].assign(static_cast<std::size_t>(level.height), 0);
+    }
+    level.zeros.assign(static_cast<std::size_t>(padded_width(level)), 0.0f);
+  }
+  return memory;
 }
 
 // Rows below the picture repeat its last.
@@ -99,7 +130,7 @@ void split_two_rows(const Halving& halving, int y, RowScratch& scratch, DiscRow*
 void halve_rows(const Halving& halving, const DiscRow* rows, int side, int y, RowScratch& scratch,
                 Isa isa) {
   DiscLevel& to = halving.to;
-  Planes& planes = to.sides[side];
+  const DiscPlanes& planes = to.sides[side];
   float* row = plane_row(planes, 0, y) + kDiscMargin;
   const DiscHalving halves{{rows[0], rows[1]}, halving.whole && side == 0 ? -1.0f : 1.0f,
                            halving.beyond,     halving.least_square,
@@ -165,10 +196,6 @@ void split_disc_row(const DofInput& input, int x, int y, int count, float* to,
   (input.settings, from, x, input.scene.width, count, to + 3 * channel);
 }
 
-Planes make_disc_planes(int count, const DiscLevel& level) {
-  return make_planes(count, padded_width(level), level.height);
-}
-
 DiscRow disc_row(const DiscLevel& level, int side, int x, int y) {
   const int inside = std::clamp(y, 0, level.height - 1);
   DiscRow row;
@@ -176,48 +203,37 @@ DiscRow disc_row(const DiscLevel& level, int side, int x, int y) {
     for (const float*& channel : row.channel) channel = level.zeros.data() + kDiscMargin + x;
     return row;
   }
-  const Planes& planes = level.sides[side];
+  const DiscPlanes& planes = level.sides[side];
   const float* at = plane_row(planes, 0, inside) + kDiscMargin + x;
   for (int i = 0; i < kDiscChannels; ++i) row.channel[i] = at + i * planes.plane;
   return row;
 }
 
-std::vector<DiscLevel> make_disc_levels(const DofInput& input,
-                                        const std::vector<LevelRungs>& ladder, ThreadPool& pool) {
-  std::vector<DiscLevel> levels;
+DiscLevels make_disc_levels(const DofInput& input, const std::vector<LevelRungs>& ladder,
+                            ThreadPool& pool) {
+  DiscLevels result;
+  std::vector<DiscLevel>& levels = result.levels;
   levels.push_back(make_level(input.scene.width, input.scene.height));
+  // One level at least: halving marks the rungs of level 0.
+  while (levels.size() < std::max(ladder.size(), std::size_t{2})) {
+    levels.push_back(make_level((levels.back().width + 1) / 2, (levels.back().height + 1) / 2));
+  }
+  result.memory = share_memory(levels);
   const std::vector<float> ones(static_cast<std::size_t>(padded_width(levels[0])), 1.0f);
   int first_rung = kFineRungs;
-  for (std::size_t i = 0; i < ladder.size(); ++i) {
-    // After the last level comes one that stays empty: it is for level 0 to be marked.
-    const bool last = i + 1 == ladder.size();
-    if (last && i > 0) break;
-    DiscLevel& from = levels.back();
-    DiscLevel to = make_level((from.width + 1) / 2, (from.height + 1) / 2);
-    to.zeros.assign(static_cast<std::size_t>(padded_width(to)), 0.0f);
-    for (int side = 0; side < 2; ++side) {
-      to.sides[side] = make_disc_planes(kDiscChannels, to);
-      to.filled[side].assign(static_cast<std::size_t>(to.height), 0);
-    }
-    const Halving halving{input,
-                          from,
-                          to,
-                          i == 0,
-                          ladder[i].beyond,
-                          last ? 0.0f : ladder[i + 1].rungs[0].square,
-                          first_rung,
-                          ones.data()};
+  for (std::size_t i = 0; i + 1 < levels.size(); ++i, first_rung += kLevelRungs) {
+    const float square = i + 1 < ladder.size() ? ladder[i + 1].rungs[0].square : 0.0f;
+    const Halving halving{input,  levels[i],  levels[i + 1], i == 0, ladder[i].beyond,
+                          square, first_rung, ones.data()};
     ScratchShelf<RowScratch> shelf;
-    pool.for_each((to.height + kDiscBlock - 1) / kDiscBlock, [&](int task) {
+    pool.for_each((levels[i + 1].height + kDiscBlock - 1) / kDiscBlock, [&](int task) {
       RowScratch scratch = shelf.take();
       halve_task(halving, task, scratch, pool.isa());
       shelf.put_back(std::move(scratch));
     });
-    if (last) break;
-    levels.push_back(std::move(to));
-    first_rung += kLevelRungs;
   }
-  return levels;
+  levels.resize(ladder.size());
+  return result;
 }
 
 std::uint32_t rungs_near(const DiscLevel& level, int side, int x, int y, int width, int height) {
