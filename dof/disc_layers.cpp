@@ -209,9 +209,13 @@ void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
 
 }  // namespace
 
+std::vector<LevelRungs> disc_ladder_of(const DofInput& input) {
+  return make_ladder(input.settings.max_coc_px);
+}
+
 void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
-  const std::vector<LevelRungs> ladder = make_ladder(std::min(
-      input.settings.max_coc_px, std::fabs(input.settings.coc.radius_at_infinity_px) * 1e9f));
+  if (pool.isa() == Isa::scalar) return disc_layers_plain(input, result, pool);
+  const std::vector<LevelRungs> ladder = disc_ladder_of(input);
   DiscLevels made = make_disc_levels(input, ladder, pool);
   std::vector<DiscLevel>& levels = made.levels;
   const Frame frame{input, ladder, levels, pool.isa()};
