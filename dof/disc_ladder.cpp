@@ -1,6 +1,8 @@
 #include "dof/disc_ladder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace softfocus {
 namespace {
@@ -8,29 +10,36 @@ namespace {
 constexpr RungStep kAlways{-1.0f, 1.0f};
 constexpr RungStep kNever{3e38f, 1.0f};
 
-// Half the height of a disc's column of pixels: its area there, halved, by the midpoint rule.
-double mean_half_height(double radius, int dx) {
+// A disc's part in a column of pixels, and in the column's middle pixel: areas.
+struct ColumnArea {
+  double all, middle;
+};
+ColumnArea column_area(double radius, int dx) {
   constexpr int kSteps = 16;
-  double sum = 0.0;
+  ColumnArea area{0.0, 0.0};
   for (int i = 0; i < kSteps; ++i) {
     const double x = dx - 0.5 + (i + 0.5) / kSteps;
     const double square = radius * radius - x * x;
-    if (square > 0.0) sum += std::sqrt(square);
+    if (square <= 0.0) continue;
+    const double height = 2.0 * std::sqrt(square);
+    area.all += height / kSteps;
+    area.middle += std::fmin(height, 1.0) / kSteps;
   }
-  return sum / kSteps;
+  return area;
 }
 
+// All pixels of a column but its ends weigh as the middle one, which makes rows and columns
+// alike: what a column's ends are to it, the outermost columns are to a row.
 std::vector<LadderSpan> disc_spans(double radius) {
   std::vector<LadderSpan> spans;
   for (int dx = 0;; ++dx) {
-    const double half_height = mean_half_height(radius, dx);
-    if (half_height == 0.0 && dx > 0) return spans;
-    if (half_height < 0.5) {
-      spans.push_back({0, static_cast<float>(2.0 * half_height), 0.0f});
-    } else {
-      const int whole = static_cast<int>(half_height - 0.5);
-      spans.push_back({whole, 1.0f, static_cast<float>(half_height - 0.5 - whole)});
-    }
+    const ColumnArea area = column_area(radius, dx);
+    if (area.all == 0.0) return spans;
+    const double half = 0.5 * (area.all - area.middle);
+    int whole = static_cast<int>(half / area.middle);
+    if (dx > 0) whole = std::min(whole, spans.back().whole);
+    spans.push_back(
+        {whole, static_cast<float>(area.middle), static_cast<float>(half - whole * area.middle)});
   }
 }
 

@@ -77,8 +77,8 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
   };
   lists("scenes", {"cube-room", "figures", "sphere-world"});
   lists("methods", {"pinhole", "two-pass", "one-pass", "scatter", "scatter-sorted", "layers",
-                    "diffusion", "ring-bucket", "circular-1", "circular-2", "post-process",
-                    "accumulation", "ray-traced"});
+                    "diffusion", "ring-bucket", "circular-1", "circular-2", "disc-layers",
+                    "post-process", "accumulation", "ray-traced"});
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
 }
 
