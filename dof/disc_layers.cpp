@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "dof/disc_levels.h"
-#include "dof/picture_planes.h"
 #include "dof/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/disc_layers_kernels.inl"
@@ -84,57 +83,54 @@ void blur_rung(const Frame& frame, std::size_t level, DiscSide side, std::size_t
   SOFTFOCUS_KERNEL(frame.isa, add_disc_sums)(work.scratch, at.width, at.height, work.tile);
 }
 
+// Where a tile lies in the next level, and the pixels around it that enlarging takes.
+Rectangle in_next_level(const Rectangle& at) {
+  return {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2};
+}
+
 // Whether a level or a larger one has anything of that side to show in a rectangle.
 bool any_seen(const Frame& frame, std::size_t level, int side, const Rectangle& at) {
   if (level == frame.levels.size()) return false;
   if (rungs_near(frame.levels[level], side, at.x, at.y, at.width, at.height) != 0) return true;
-  return any_seen(frame, level + 1, side,
-                  {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2});
+  return any_seen(frame, level + 1, side, in_next_level(at));
 }
 
-// Rows of the next level in those of a tile.
+// A row of what is seen of the next level, in pixels of a tile's.
 void enlarge(const Frame& frame, const DiscLevel& from, int side, const Rectangle& at, int row,
-             Workspace& work) {
+             float* const (&to)[kDiscTransmitted + 1]) {
   const int y = at.y + row;
   const int inside = y / 2;
   const int other = std::clamp(y % 2 == 0 ? inside - 1 : inside + 1, 0, from.height - 1);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i <= kDiscTransmitted; ++i) {
     SOFTFOCUS_KERNEL(frame.isa, enlarge_disc_row)
     (plane_row(from.seen[side], i, inside) + kDiscMargin + at.x / 2,
-     plane_row(from.seen[side], i, other) + kDiscMargin + at.x / 2, at.width + at.width % 2,
-     work.enlarged[i]);
+     plane_row(from.seen[side], i, other) + kDiscMargin + at.x / 2, at.width + at.width % 2, to[i]);
   }
 }
 
 void start_tile(const Frame& frame, std::size_t level, const Rectangle& at, bool before_focus,
                 Workspace& work) {
-  const bool any =
-      before_focus && any_seen(frame, level + 1, 0,
-                               {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2});
+  const bool any = before_focus && any_seen(frame, level + 1, 0, in_next_level(at));
   for (int y = 0; y < at.height; ++y) {
     const std::size_t row = static_cast<std::size_t>(y);
-    if (any) enlarge(frame, frame.levels[level + 1], 0, at, y, work);
-    for (int i = 0; i < 4; ++i) {
-      float* to = work.tile.channel[i][row];
-      if (any) {
-        std::copy_n(work.enlarged[i], kDiscTileWidth, to);
-      } else {
-        std::fill_n(to, kDiscTileWidth, i == kDiscTransmitted ? 1.0f : 0.0f);
-      }
+    float* const to[] = {work.tile.channel[0][row], work.tile.channel[1][row],
+                         work.tile.channel[2][row], work.tile.channel[3][row]};
+    if (any) {
+      enlarge(frame, frame.levels[level + 1], 0, at, y, to);
+    } else {
+      for (int i = 0; i < 3; ++i) std::fill_n(to[i], kDiscTileWidth, 0.0f);
+      std::fill_n(to[kDiscTransmitted], kDiscTileWidth, 1.0f);
     }
   }
 }
 
 void add_larger_behind(const Frame& frame, std::size_t level, const Rectangle& at,
                        Workspace& work) {
-  if (!any_seen(frame, level + 1, 1,
-                {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2})) {
-    return;
-  }
+  if (!any_seen(frame, level + 1, 1, in_next_level(at))) return;
+  float* const to[] = {work.enlarged[0], work.enlarged[1], work.enlarged[2], work.enlarged[3]};
   for (int y = 0; y < at.height; ++y) {
-    enlarge(frame, frame.levels[level + 1], 1, at, y, work);
-    SOFTFOCUS_KERNEL(frame.isa, add_behind)
-    (work.enlarged, at.width, y, work.tile);
+    enlarge(frame, frame.levels[level + 1], 1, at, y, to);
+    SOFTFOCUS_KERNEL(frame.isa, add_behind)(work.enlarged, at.width, y, work.tile);
   }
 }
 
@@ -229,12 +225,10 @@ void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
     if (((near | far) & 1u) != 0) blur_rung(frame, 0, DiscSide::focus, 0, at, work);
     blur_behind(frame, 0, at, work);
     add_larger_behind(frame, 0, at, work);
-    SOFTFOCUS_KERNEL(pool.isa(), resolve_disc_tile)(at.width, at.height, work.tile);
-    for (int y = 0; y < at.height; ++y) {
-      const std::size_t row = static_cast<std::size_t>(y);
-      store_span(input, result, at.x, at.y + y, at.width, work.tile.channel[0][row],
-                 work.tile.channel[1][row], work.tile.channel[2][row], pool.isa());
-    }
+    SOFTFOCUS_KERNEL(pool.isa(), store_disc_tile)
+    (work.tile, row<std::uint16_t>(input.scene, at.y).data() + 4 * at.x,
+     input.scene.stride_bytes / 2, at.width, at.height, input.profile.half_store,
+     row<std::uint16_t>(result, at.y).data() + 4 * at.x, result.stride_bytes / 2);
   });
 }
 

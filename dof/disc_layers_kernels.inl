@@ -3,6 +3,8 @@
 namespace {
 
 #include "dof/disc_share.inl"
+#include "dof/repeating_texels.inl"
+#include "dof/weights.inl"
 
 // The lanes from `from` on of two vectors by turns.
 template <std::size_t from, std::size_t... lane>
@@ -66,6 +68,29 @@ SOFTFOCUS_INLINE void sum_discs(const DiscBlur& in, const float (*rows)[kDiscTil
     for (int x = 0; x < kDiscTileWidth; x += 4 * kLanes) {
       add_columns(scratch.columns[1 - y % 2][0] + kDiscMargin + x, in.reach, to[y - 1] + x,
                   TileVectors{});
+    }
+  }
+}
+
+template <HalfRounding rounding>
+SOFTFOCUS_INLINE void store_tile(const DiscTile& tile, const std::uint16_t* scene,
+                                 std::size_t scene_row, int width, int height, std::uint16_t* to,
+                                 std::size_t row) {
+  for (int y = 0; y < height; ++y, scene += scene_row, to += row) {
+    for (int x = 0; x < width; x += kLanes) {
+      const Floats scale = 1.0f / (1.0f - load(tile.channel[kDiscTransmitted][y] + x));
+      const HalfTexels texels{
+          float_to_half<rounding>(clamp_to_half(load(tile.channel[0][y] + x) * scale)),
+          float_to_half<rounding>(clamp_to_half(load(tile.channel[1][y] + x) * scale)),
+          float_to_half<rounding>(clamp_to_half(load(tile.channel[2][y] + x) * scale)),
+          stored_depth(load_repeating(scene, x, width).a)};
+      if (x + kLanes <= width) {
+        stream_texel_words(to + 4 * x, interleave(texels));
+      } else {
+        std::uint16_t last[4 * kLanes];
+        store_half_texels(last, texels);
+        std::memcpy(to + 4 * x, last, 4 * sizeof *last * static_cast<std::size_t>(width - x));
+      }
     }
   }
 }
@@ -164,14 +189,15 @@ void add_behind(const float (*from)[kDiscTileRow], int width, int y, DiscTile& t
   }
 }
 
-/// Divides by the opacity reached.
-void resolve_disc_tile(int width, int height, DiscTile& tile) {
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; x += kLanes) {
-      const Floats scale = 1.0f / (1.0f - load(tile.channel[kDiscTransmitted][y] + x));
-      for (int i = 0; i < 3; ++i) {
-        store(tile.channel[i][y] + x, load(tile.channel[i][y] + x) * scale);
-      }
-    }
+/// Divides by the opacity reached, and puts the tile's pixels into the picture, with the
+/// scene's depth. Rows are `scene_row` and `row` halves apart.
+void store_disc_tile(const DiscTile& tile, const std::uint16_t* scene, std::size_t scene_row,
+                     int width, int height, HalfRounding rounding, std::uint16_t* to,
+                     std::size_t row) {
+  if (rounding == HalfRounding::nearest_even) {
+    store_tile<HalfRounding::nearest_even>(tile, scene, scene_row, width, height, to, row);
+  } else {
+    store_tile<HalfRounding::toward_zero>(tile, scene, scene_row, width, height, to, row);
   }
+  finish_streaming();
 }
