@@ -4,6 +4,7 @@
 
 #include "dof/circular_separable.h"
 #include "dof/diffusion.h"
+#include "dof/disc_layers.h"
 #include "dof/layers.h"
 #include "dof/one_pass.h"
 #include "dof/pinhole.h"
@@ -38,6 +39,8 @@ constexpr std::array kMethods{
     Method{"circular-1", "a disc of one complex Gaussian, separable, after Garcia 2017",
            kColourAndDepth, circular_one},
     Method{"circular-2", "the same of two complex Gaussians", kColourAndDepth, circular_two},
+    Method{"disc-layers", "layers of equal circles, each a disc, the nearer over the farther",
+           kColourAndDepth, disc_layers},
     Method{"post-process", "blended from four sharpnesses, after Hammon 2007", kColourAndDepth,
            post_process},
 };

@@ -64,20 +64,25 @@ Planes split_picture(const DofInput& input, ThreadPool& pool) {
   return planes;
 }
 
-void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
-               const float* b, Isa isa) {
+void store_span(const DofInput& input, Image& result, int x, int y, int count, const float* r,
+                const float* g, const float* b, Isa isa) {
   if (isa != Isa::scalar) {
     SOFTFOCUS_KERNEL(isa, merge_row)
-    (row<std::uint16_t>(input.scene, y).data(), r, g, b, result.width, input.profile.half_store,
-     row<std::uint16_t>(result, y).data());
+    (row<std::uint16_t>(input.scene, y).data() + 4 * x, r, g, b, count, input.profile.half_store,
+     row<std::uint16_t>(result, y).data() + 4 * x);
     return;
   }
-  for (int x = 0; x < result.width; ++x) {
-    const float depth = load_texel<Format::rgba16f>(input.scene, x, y).w;
+  for (int i = 0; i < count; ++i) {
+    const float depth = load_texel<Format::rgba16f>(input.scene, x + i, y).w;
     store_texel<Format::rgba16f>(
-        result, x, y, {clamp_to_half(r[x]), clamp_to_half(g[x]), clamp_to_half(b[x]), depth},
+        result, x + i, y, {clamp_to_half(r[i]), clamp_to_half(g[i]), clamp_to_half(b[i]), depth},
         input.profile);
   }
+}
+
+void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
+               const float* b, Isa isa) {
+  store_span(input, result, 0, y, result.width, r, g, b, isa);
 }
 
 std::vector<float> largest_of_rows(const Planes& planes, int plane, ThreadPool& pool) {

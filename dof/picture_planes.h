@@ -51,6 +51,10 @@ Planes split_picture(const DofInput& input, ThreadPool& pool);
 void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
                const float* b, Isa isa);
 
+/// The same of `count` pixels from `x` on; the colours are theirs alone.
+void store_span(const DofInput& input, Image& result, int x, int y, int count, const float* r,
+                const float* g, const float* b, Isa isa);
+
 /// The largest magnitude in each row of a plane.
 std::vector<float> largest_of_rows(const Planes& planes, int plane, ThreadPool& pool);
 

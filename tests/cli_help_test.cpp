@@ -76,9 +76,10 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
           static_cast<std::ptrdiff_t>(names.size()));
   };
   lists("scenes", {"cube-room", "dunes", "figures", "lattice", "sphere-world"});
-  lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "scatter",
-                    "scatter-sorted", "layers", "diffusion", "ring-bucket", "circular-1",
-                    "circular-2", "post-process", "accumulation", "ray-traced", "auto"});
+  lists("methods",
+        {"pinhole", "two-pass", "two-pass-single", "one-pass", "scatter", "scatter-sorted",
+         "layers", "diffusion", "ring-bucket", "circular-1", "circular-2", "post-process",
+         "disc-layers", "accumulation", "ray-traced", "auto"});
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
 }
 

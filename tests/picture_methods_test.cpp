@@ -46,6 +46,7 @@ constexpr std::array kClaims{
     Claims{"ring-bucket", 1, 0.1, 0.1, 0.01, 9},
     Claims{"circular-1", 1, 0.03, 0.05, 0.002, 1, true, false},
     Claims{"circular-2", 1, 0.03, 0.05, 0.002, 1, true, false},
+    Claims{"disc-layers", 1, 0.002, 0.02, 0.002},
     Claims{"post-process", 1, 0.01, 0.05, 2.0},
 };
 
