@@ -35,6 +35,7 @@ tr.best td { background: var(--best); }
 .row { display: flex; flex-wrap: wrap; gap: .5rem; margin-bottom: .5rem; }
 figure { margin: 0; width: min-content; }
 figcaption { color: var(--faint); font-size: .8rem; }
+.overview, .crop { max-width: none; }
 .overview { width: 205px; }
 .crop { image-rendering: pixelated; width: 132px; height: 132px; }
 )";
