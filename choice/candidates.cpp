@@ -11,6 +11,8 @@ constexpr double kDrawnPixelNs = 5.0, kDrawnTriangleNs = 25.0;
 
 constexpr CostModel kNothing{};
 constexpr CostModel kTwoPass{.pixel = 1.5f, .blurred_pixel = 3.0f, .blurred_pixel_radius = 0.1f};
+constexpr CostModel kDiscLayers{
+    .pixel = 3.0f, .blurred_pixel = 11.0f, .blurred_pixel_radius = 0.05f};
 constexpr CostModel kCircular{.pixel = 8.0f, .blurred_pixel = 9.0f, .blurred_pixel_radius = 0.9f};
 constexpr CostModel kScatter{.pixel = 30.0f, .blurred_pixel = 25.0f, .blurred_pixel_radius = 1.0f};
 
@@ -23,6 +25,11 @@ constexpr std::array kCandidates{
     Candidate{"two-pass",        2, -1, {0.003f, 0.471f, 0.038f, 1.458f, 0.757f, 0.000f}, kTwoPass},
     Candidate{"two-pass",        3, -1, {0.005f, 0.496f, 0.011f, 1.481f, 1.318f, 0.000f}, kTwoPass},
     Candidate{"two-pass",        4, -1, {0.007f, 0.346f, 0.115f, 1.113f, 1.809f, 0.000f}, kTwoPass},
+    Candidate{"disc-layers",     1, -1, {0.001f, 0.339f, 0.000f, 1.695f, 0.000f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     2, -1, {0.000f, 0.173f, 0.182f, 1.565f, 0.099f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     3, -1, {0.000f, 0.173f, 0.188f, 1.515f, 0.151f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     4, -1, {0.001f, 0.134f, 0.215f, 0.769f, 0.154f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     5, -1, {0.001f, 0.129f, 0.216f, 0.000f, 0.272f, 0.000f}, kDiscLayers},
     Candidate{"circular-1",      2, -1, {0.002f, 0.522f, 0.019f, 1.511f, 0.924f, 0.000f}, kCircular},
     Candidate{"circular-1",      3, -1, {0.000f, 0.617f, 0.000f, 1.480f, 1.475f, 0.000f}, kCircular},
     Candidate{"circular-1",      4, -1, {0.001f, 0.629f, 0.043f, 0.581f, 1.967f, 0.000f}, kCircular},
