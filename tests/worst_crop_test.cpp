@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/measure_pictures.h"
+#include "tests/raster_helpers.h"
 
 using namespace softfocus;
 
