@@ -75,6 +75,8 @@ TEST_CASE("chart: writes five files, and goes on from what is there to the same 
     CHECK(point["noise_floor_flip"] < point["flip"]);
   }
   CHECK(list[3]["psnr_db"] > list[0]["psnr_db"]);  // blurred is nearer to the truth than sharp
+  CHECK(list[3]["flip"] != list[0]["flip"]);  // the settings count
+  CHECK(list[6]["flip"] != list[3]["flip"]);
 
   const std::string csv = read_file(out + "/chart.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 8);

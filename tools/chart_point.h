@@ -61,8 +61,8 @@ struct ChartPanel {
   std::string scene;
   std::string title;
   int truth_samples = 0;
-  ChartErrors noise_floor;    ///< one half of the truth's samples against the other
-  std::string truth_picture;  ///< reduced
+  ChartErrors noise_floor{};    ///< one half of the truth's samples against the other
+  std::string truth_picture{};  ///< reduced
   std::vector<ChartPoint> points{};
 };
 
