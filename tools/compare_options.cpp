@@ -84,17 +84,8 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_value(parser, "--depth", "FILE",
             "Picture whose alpha is the depth for --regions (default: B, or A if B has none)",
             [&options](const std::string& text) { options.depth_file = text; });
-  const ThinLens standard;
-  add_lens_options(parser, options.lens,
-                   {.focus = short_number(standard.focus_m),
-                    .focal_length = short_number(standard.focal_length_mm),
-                    .f_number = short_number(standard.f_number),
-                    .coc_scale = "1"});
-  add_value(parser, "--fov", "DEGREES", "Vertical field of view (default: 40)",
-            [&options](const std::string& text) {
-              options.fov_y_degrees =
-                  parse_number("--fov", text, 0.01, 179.0, "degrees from 0.01 to 179");
-            });
+  add_own_lens_options(parser, options.lens,
+                       [&options](double degrees) { options.fov_y_degrees = degrees; });
   add_value(parser, "--point", "PIXELS",
             "The pictures are of one bright point on black: compare light and shape with the disc "
             "of this radius",

@@ -124,17 +124,8 @@ void print_json(const LensFigures& f, const LensCommandOptions& options) {
 }
 
 void add_options(CLI::App& parser, LensCommandOptions& options) {
-  const ThinLens standard;
-  add_lens_options(parser, options.lens,
-                   {.focus = short_number(standard.focus_m),
-                    .focal_length = short_number(standard.focal_length_mm),
-                    .f_number = short_number(standard.f_number),
-                    .coc_scale = "1"});
-  add_value(parser, "--fov", "DEGREES", "Vertical field of view (default: 40)",
-            [&options](const std::string& text) {
-              options.fov_y_degrees =
-                  parse_number("--fov", text, 0.01, 179.0, "degrees from 0.01 to 179");
-            });
+  add_own_lens_options(parser, options.lens,
+                       [&options](double degrees) { options.fov_y_degrees = degrees; });
   add_value(parser, "--height", "PIXELS", "Height of the picture (default: 1024)",
             [&options](const std::string& text) {
               options.height_px =

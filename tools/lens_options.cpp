@@ -1,6 +1,7 @@
 #include "tools/lens_options.h"
 
 #include <cmath>
+#include <utility>
 
 #include "tools/errors.h"
 #include "tools/option_values.h"
@@ -49,6 +50,20 @@ void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults
       [&place = options.coc_scale](const std::string& text) {
         place = parse_number("--coc-scale", text, 0.0, 1e6, "a factor from 0 to 1000000");
       });
+}
+
+void add_own_lens_options(CLI::App& parser, LensOptions& options,
+                          std::function<void(double degrees)> on_fov) {
+  const ThinLens standard;
+  add_lens_options(parser, options,
+                   {.focus = short_number(standard.focus_m),
+                    .focal_length = short_number(standard.focal_length_mm),
+                    .f_number = short_number(standard.f_number),
+                    .coc_scale = "1"});
+  add_value(parser, "--fov", "DEGREES", "Vertical field of view (default: 40)",
+            [on_fov = std::move(on_fov)](const std::string& text) {
+              on_fov(parse_number("--fov", text, 0.01, 179.0, "degrees from 0.01 to 179"));
+            });
 }
 
 ThinLens overruled(ThinLens lens, const LensOptions& options) {

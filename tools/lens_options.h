@@ -2,6 +2,7 @@
 // The lens on the command line, as `render` and `lens` share it.
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,10 @@ struct LensDefaults {
   std::string focus, focal_length, f_number, coc_scale;
 };
 void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults& defaults);
+
+/// The same with a plain lens's values as defaults, and --fov: where no scene has a lens.
+void add_own_lens_options(CLI::App& parser, LensOptions& options,
+                          std::function<void(double degrees)> on_fov);
 
 /// `lens` with what was given put in.
 ThinLens overruled(ThinLens lens, const LensOptions& options);
