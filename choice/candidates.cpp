@@ -18,34 +18,34 @@ constexpr CostModel kScatter{.pixel = 30.0f, .blurred_pixel = 25.0f, .blurred_pi
 
 // clang-format off
 constexpr std::array kCandidates{
-    //        method             R   N   share   fine    blurred lost    near    ghosts   cost
-    Candidate{"pinhole",        -1, -1, {0.004f, 0.000f, 1.480f, 0.000f, 0.000f, 0.000f}, kNothing},
-    Candidate{"two-pass",        0, -1, {0.003f, 0.562f, 0.000f, 1.575f, 0.000f, 0.000f}, kTwoPass},
-    Candidate{"two-pass",        1, -1, {0.003f, 0.486f, 0.000f, 1.623f, 0.000f, 0.000f}, kTwoPass},
-    Candidate{"two-pass",        2, -1, {0.003f, 0.471f, 0.038f, 1.458f, 0.757f, 0.000f}, kTwoPass},
-    Candidate{"two-pass",        3, -1, {0.005f, 0.496f, 0.011f, 1.481f, 1.318f, 0.000f}, kTwoPass},
-    Candidate{"two-pass",        4, -1, {0.007f, 0.346f, 0.115f, 1.113f, 1.809f, 0.000f}, kTwoPass},
-    Candidate{"disc-layers",     1, -1, {0.001f, 0.339f, 0.000f, 1.695f, 0.000f, 0.000f}, kDiscLayers},
-    Candidate{"disc-layers",     2, -1, {0.000f, 0.173f, 0.182f, 1.565f, 0.099f, 0.000f}, kDiscLayers},
-    Candidate{"disc-layers",     3, -1, {0.000f, 0.173f, 0.188f, 1.515f, 0.151f, 0.000f}, kDiscLayers},
-    Candidate{"disc-layers",     4, -1, {0.001f, 0.134f, 0.215f, 0.769f, 0.154f, 0.000f}, kDiscLayers},
-    Candidate{"disc-layers",     5, -1, {0.001f, 0.129f, 0.216f, 0.000f, 0.272f, 0.000f}, kDiscLayers},
-    Candidate{"circular-1",      2, -1, {0.002f, 0.522f, 0.019f, 1.511f, 0.924f, 0.000f}, kCircular},
-    Candidate{"circular-1",      3, -1, {0.000f, 0.617f, 0.000f, 1.480f, 1.475f, 0.000f}, kCircular},
-    Candidate{"circular-1",      4, -1, {0.001f, 0.629f, 0.043f, 0.581f, 1.967f, 0.000f}, kCircular},
-    Candidate{"scatter-sorted",  2, -1, {0.000f, 0.312f, 0.192f, 1.475f, 0.500f, 0.000f}, kScatter},
-    Candidate{"scatter-sorted",  3, -1, {0.000f, 0.339f, 0.193f, 1.232f, 0.670f, 0.000f}, kScatter},
-    Candidate{"scatter-sorted",  4, -1, {0.000f, 0.341f, 0.233f, 0.211f, 0.778f, 0.000f}, kScatter},
-    Candidate{"scatter-sorted",  5, -1, {0.000f, 0.423f, 0.188f, 0.000f, 1.347f, 0.000f}, kScatter},
-    Candidate{"accumulation",   -1,  0, {0.000f, 0.267f, 0.000f, 0.000f, 0.000f, 2.178f}, kNothing},
-    Candidate{"accumulation",   -1,  1, {0.001f, 0.068f, 0.000f, 0.000f, 0.000f, 1.743f}, kNothing},
-    Candidate{"accumulation",   -1,  2, {0.000f, 0.075f, 0.000f, 0.000f, 0.000f, 1.995f}, kNothing},
-    Candidate{"accumulation",   -1,  3, {0.000f, 0.059f, 0.000f, 0.000f, 0.000f, 1.523f}, kNothing},
-    Candidate{"accumulation",   -1,  4, {0.000f, 0.038f, 0.000f, 0.000f, 0.000f, 1.433f}, kNothing},
-    Candidate{"accumulation",   -1,  5, {0.000f, 0.038f, 0.000f, 0.000f, 0.000f, 1.433f}, kNothing},
-    Candidate{"accumulation",   -1,  6, {0.000f, 0.038f, 0.000f, 0.000f, 0.000f, 1.433f}, kNothing},
-    Candidate{"accumulation",   -1,  7, {0.000f, 0.038f, 0.000f, 0.000f, 0.000f, 1.433f}, kNothing},
-    Candidate{"accumulation",   -1,  8, {0.000f, 0.038f, 0.000f, 0.000f, 0.000f, 1.433f}, kNothing},
+    //        method             R   N   always   fine    blurred lost    near    far     ghosts   cost
+    Candidate{"pinhole",        -1, -1, {0.0029f, 0.000f, 1.512f, 0.000f, 0.000f, 0.000f, 0.000f}, kNothing},
+    Candidate{"two-pass",        0, -1, {0.0035f, 0.471f, 0.000f, 1.526f, 0.308f, 0.000f, 0.000f}, kTwoPass},
+    Candidate{"two-pass",        1, -1, {0.0035f, 0.230f, 0.252f, 1.407f, 0.294f, 0.000f, 0.000f}, kTwoPass},
+    Candidate{"two-pass",        2, -1, {0.0039f, 0.385f, 0.092f, 1.205f, 0.587f, 0.751f, 0.000f}, kTwoPass},
+    Candidate{"two-pass",        3, -1, {0.0040f, 0.240f, 0.129f, 1.023f, 0.647f, 3.804f, 0.000f}, kTwoPass},
+    Candidate{"two-pass",        4, -1, {0.0039f, 0.245f, 0.104f, 1.039f, 0.670f, 5.225f, 0.000f}, kTwoPass},
+    Candidate{"disc-layers",     1, -1, {0.0033f, 0.000f, 0.279f, 1.478f, 0.144f, 0.000f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     2, -1, {0.0033f, 0.013f, 0.187f, 1.375f, 0.235f, 0.000f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     3, -1, {0.0034f, 0.156f, 0.059f, 1.524f, 0.279f, 0.000f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     4, -1, {0.0035f, 0.108f, 0.114f, 1.299f, 0.231f, 0.055f, 0.000f}, kDiscLayers},
+    Candidate{"disc-layers",     5, -1, {0.0035f, 0.053f, 0.156f, 0.000f, 0.209f, 0.039f, 0.000f}, kDiscLayers},
+    Candidate{"circular-1",      2, -1, {0.0040f, 0.445f, 0.040f, 1.278f, 0.675f, 0.848f, 0.000f}, kCircular},
+    Candidate{"circular-1",      3, -1, {0.0040f, 0.363f, 0.000f, 1.169f, 0.829f, 3.035f, 0.000f}, kCircular},
+    Candidate{"circular-1",      4, -1, {0.0040f, 0.349f, 0.000f, 0.734f, 0.829f, 3.956f, 0.000f}, kCircular},
+    Candidate{"scatter-sorted",  2, -1, {0.0040f, 0.209f, 0.132f, 1.368f, 0.532f, 0.000f, 0.000f}, kScatter},
+    Candidate{"scatter-sorted",  3, -1, {0.0042f, 0.305f, 0.000f, 1.380f, 0.634f, 0.889f, 0.000f}, kScatter},
+    Candidate{"scatter-sorted",  4, -1, {0.0042f, 0.297f, 0.013f, 1.025f, 0.611f, 1.135f, 0.000f}, kScatter},
+    Candidate{"scatter-sorted",  5, -1, {0.0042f, 0.262f, 0.041f, 0.000f, 0.597f, 1.127f, 0.000f}, kScatter},
+    Candidate{"accumulation",   -1,  0, {0.0022f, 0.143f, 0.000f, 0.000f, 0.000f, 0.000f, 2.362f}, kNothing},
+    Candidate{"accumulation",   -1,  1, {0.0011f, 0.049f, 0.000f, 0.000f, 0.000f, 0.000f, 1.753f}, kNothing},
+    Candidate{"accumulation",   -1,  2, {0.0008f, 0.044f, 0.000f, 0.000f, 0.000f, 0.000f, 2.140f}, kNothing},
+    Candidate{"accumulation",   -1,  3, {0.0005f, 0.031f, 0.000f, 0.000f, 0.000f, 0.000f, 1.720f}, kNothing},
+    Candidate{"accumulation",   -1,  4, {0.0004f, 0.036f, 0.000f, 0.000f, 0.000f, 0.000f, 1.393f}, kNothing},
+    Candidate{"accumulation",   -1,  5, {0.0003f, 0.036f, 0.000f, 0.000f, 0.000f, 0.000f, 1.393f}, kNothing},
+    Candidate{"accumulation",   -1,  6, {0.0002f, 0.036f, 0.000f, 0.000f, 0.000f, 0.000f, 1.393f}, kNothing},
+    Candidate{"accumulation",   -1,  7, {0.0001f, 0.036f, 0.000f, 0.000f, 0.000f, 0.000f, 1.393f}, kNothing},
+    Candidate{"accumulation",   -1,  8, {0.0001f, 0.036f, 0.000f, 0.000f, 0.000f, 0.000f, 1.393f}, kNothing},
 };
 // clang-format on
 
@@ -57,8 +57,8 @@ std::span<const Candidate> candidates() { return kCandidates; }
 
 double predicted_error(const Candidate& candidate, const SceneTraits& traits) {
   const ErrorModel& model = candidate.error;
-  double error = product(model.share, traits.blurred_share) +
-                 product(model.fine, traits.by_radius.front().blurred);
+  double error =
+      static_cast<double>(model.always) + product(model.fine, traits.by_radius.front().blurred);
   if (candidate.samples >= 0) {
     return error +
            product(model.ghosts, traits.ghosts[static_cast<std::size_t>(candidate.samples)]);
@@ -67,7 +67,8 @@ double predicted_error(const Candidate& candidate, const SceneTraits& traits) {
   const RadiusTraits& of = traits.by_radius[static_cast<std::size_t>(candidate.radius)];
   error += product(model.blurred, of.blurred);
   error += product(model.lost, of.lost);
-  return error + product(model.near_edges, of.near_edges);
+  error += product(model.near_edges, of.near_edges);
+  return error + product(model.far_edges, of.far_edges);
 }
 
 double predicted_ms(const Candidate& candidate, const SceneTraits& traits, std::size_t triangles) {

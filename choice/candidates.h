@@ -15,11 +15,12 @@ namespace softfocus {
 /// Mean FLIP against the ground truth, as a sum of a scene's traits times these. Fitted so
 /// that what a picture is really off by is seldom more.
 struct ErrorModel {
-  float share = 0.0f;       ///< of blurred_share
+  float always = 0.0f;      ///< what even a good picture is off by
   float fine = 0.0f;        ///< of blurred by the least radius: what small circles touch
   float blurred = 0.0f;     ///< of blurred; of the pinhole of blur
   float lost = 0.0f;        ///< of lost
   float near_edges = 0.0f;  ///< of near_edges
+  float far_edges = 0.0f;   ///< of far_edges
   float ghosts = 0.0f;      ///< of ghosts
 };
 
@@ -42,7 +43,7 @@ struct Candidate {
 /// From what is cheap to what is not.
 std::span<const Candidate> candidates();
 
-/// Foreseen mean FLIP; 0 if no circle reaches half a pixel.
+/// Foreseen mean FLIP of a picture in which a circle reaches half a pixel.
 double predicted_error(const Candidate& candidate, const SceneTraits& traits);
 
 /// Foreseen milliseconds for the method, the pinhole's picture being there; `triangles` is

@@ -13,6 +13,9 @@ namespace {
 
 constexpr float kHalfAPixel = 0.5f;
 
+/// Times that differ by no more than this factor count as equal: they are foreseen no better.
+constexpr double kAsFast = 1.05;
+
 std::string number_text(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -69,6 +72,15 @@ const Choice* best_below(const std::vector<Choice>& choices, double ms) {
   return best;
 }
 
+const Choice* best_within(const std::vector<Choice>& choices, double ms) {
+  const Choice* best = nullptr;
+  for (const Choice& choice : choices) {
+    if (choice.predicted_ms > ms) continue;
+    if (best == nullptr || choice.predicted_error < best->predicted_error) best = &choice;
+  }
+  return best;
+}
+
 Choice cheapest_within(const std::vector<Choice>& choices, double max_error) {
   const Choice* found = nullptr;
   const Choice* nearest = &choices.front();
@@ -77,10 +89,12 @@ Choice cheapest_within(const std::vector<Choice>& choices, double max_error) {
     if (choice.predicted_error > max_error) continue;
     if (found == nullptr || choice.predicted_ms < found->predicted_ms) found = &choice;
   }
-  Choice chosen = found != nullptr ? *found : *nearest;
+  const Choice& cheapest = found != nullptr ? *found : *nearest;
+  Choice chosen =
+      found != nullptr ? *best_within(choices, kAsFast * found->predicted_ms) : *nearest;
   chosen.meets_goal = found != nullptr;
   chosen.reason = blur_text(chosen.traits);
-  if (const Choice* cheaper = best_below(choices, chosen.predicted_ms)) {
+  if (const Choice* cheaper = best_below(choices, cheapest.predicted_ms)) {
     chosen.reason += "; of all that is cheaper, " + off_by(*cheaper);
   } else {
     chosen.reason += ", which is hardly seen; nothing is cheaper";
@@ -89,14 +103,12 @@ Choice cheapest_within(const std::vector<Choice>& choices, double max_error) {
 }
 
 Choice most_accurate_within(const std::vector<Choice>& choices, double max_time_ms) {
-  const Choice* found = &choices.front();  // the pinhole's, which takes no time
+  const Choice* found = best_within(choices, max_time_ms);
+  if (found == nullptr) found = &choices.front();  // the pinhole's, which takes no time
   const Choice* next = nullptr;
   for (const Choice& choice : choices) {
-    if (choice.predicted_ms <= max_time_ms) {
-      if (choice.predicted_error < found->predicted_error) found = &choice;
-    } else if (next == nullptr || choice.predicted_ms < next->predicted_ms) {
-      next = &choice;
-    }
+    if (choice.predicted_ms <= max_time_ms) continue;
+    if (next == nullptr || choice.predicted_ms < next->predicted_ms) next = &choice;
   }
   Choice chosen = *found;
   chosen.reason = blur_text(chosen.traits) + "; nothing as fast is foreseen to be more accurate";
@@ -117,6 +129,7 @@ Choice choose(const SceneTraits& traits, const Goal& goal, const ChoiceLimits& l
   }
   if (largest_px(traits) < kHalfAPixel) {
     Choice sharp = choices.front();
+    sharp.predicted_error = 0.0;
     sharp.reason = "no circle reaches half a pixel: the largest radius is " +
                    number_text(static_cast<double>(largest_px(traits)));
     return sharp;
@@ -124,6 +137,8 @@ Choice choose(const SceneTraits& traits, const Goal& goal, const ChoiceLimits& l
   return goal.max_time_ms ? most_accurate_within(choices, *goal.max_time_ms)
                           : cheapest_within(choices, goal.max_error);
 }
+
+bool is_sharp(const Choice& choice) { return choice.method == "pinhole"; }
 
 std::string setting_text(const Choice& choice) {
   std::string text{choice.method};

@@ -43,7 +43,7 @@ struct Tap {
   float weight;  // W without a cut
   float reach_px;
   float near_edge;  // |C_q - C_p| across an edge whose nearer side is blurred before the focus
-  float edge_part;  // what of the ring lies within the larger circle, times D
+  float far_edge;   // across any other edge
 };
 
 float signed_radius(const PixelCoc& coc, float depth_m) {
@@ -86,33 +86,27 @@ float within(float reach_px, float distance_px) {
 
 float ring_area(float distance_px) { return 0.75f * distance_px * distance_px; }
 
-/// within() grows with the reach, so that of a cut reach is the lesser of the reach's and
-/// the cut's: this is the cut's.
-struct CutTables {
-  std::array<ByCut, kRingsPx.size()> area;    // times the ring's area
-  std::array<ByCut, kRingsPx.size()> length;  // times D
-  ByCut lengths;                              // the sum of D over taps that a cut lets in
-};
+/// By ring: its area as far as a cut lets it in. within() grows with the reach, so that W of a
+/// cut reach is the lesser of the reach's and of this.
+using CutAreas = std::array<ByCut, kRingsPx.size()>;
 
-CutTables cut_tables() {
-  CutTables tables{};
+CutAreas cut_areas() {
+  CutAreas areas{};
   for (std::size_t ring = 0; ring < kRingsPx.size(); ++ring) {
     const auto distance_px = static_cast<float>(kRingsPx[ring]);
     for (std::size_t cut = 0; cut < kCuts; ++cut) {
       const float part = cut == kUncut ? 1.0f : within(kFilterRadiiPx[cut], distance_px);
-      tables.area[ring][cut] = part * ring_area(distance_px);
-      tables.length[ring][cut] = part * distance_px;
-      if (part > 0.0f) tables.lengths[cut] += 4.0f * distance_px;
+      areas[ring][cut] = part * ring_area(distance_px);
     }
   }
-  return tables;
+  return areas;
 }
 
 struct Sight {
   const Image& picture;
   const PixelCoc& coc;
   std::size_t rings;  // that any circle of the picture reaches
-  CutTables cuts;
+  CutAreas cut_areas;
 };
 
 const std::uint16_t* texel_at(const Sight& sight, int x, int y) {
@@ -138,16 +132,16 @@ void add_tap(const Sight& sight, const Point& p, const std::uint16_t* texel, std
                          : edge && p.radius_px < 0.0f ? here
                                                       : std::min(here, there);
   const float part = within(reach_px, distance_px);
-  const float edge_part = edge ? within(std::max(here, there), distance_px) : 0.0f;
-  if (part == 0.0f && edge_part == 0.0f) return;
+  if (part == 0.0f) return;
   Tap& tap = taps.all[taps.count++];
   tap.colour = {seen(texel[0]), seen(texel[1]), seen(texel[2])};
   tap.ring = ring;
   tap.weight = part * ring_area(distance_px);
-  tap.reach_px = part > 0.0f ? reach_px : 0.0f;
+  tap.reach_px = reach_px;
   const bool near = edge && (before ? radius_px : p.radius_px) < -kHalfAPixel;
-  tap.near_edge = near ? difference(tap.colour, p.colour) : 0.0f;
-  tap.edge_part = edge_part * distance_px;
+  const float step = edge ? difference(tap.colour, p.colour) : 0.0f;
+  tap.near_edge = near ? step : 0.0f;
+  tap.far_edge = near ? 0.0f : step;
 }
 
 /// The texels of a point and of its taps, ring by ring. Fetched one point ahead: they lie
@@ -176,7 +170,7 @@ Texels texels_around(const Sight& sight, int x, int y, std::uint32_t hash) {
 
 /// What a lens makes of a point, for each cut.
 struct LensSums {
-  ByCut red{}, green{}, blue{}, weights{}, near_edges{};
+  ByCut red{}, green{}, blue{}, weights{}, near_edges{}, far_edges{};
 };
 
 LensSums lens_sums(const Sight& sight, const Point& p, std::span<const Tap> taps) {
@@ -186,16 +180,15 @@ LensSums lens_sums(const Sight& sight, const Point& p, std::span<const Tap> taps
   sums.blue.fill(p.colour[2]);
   sums.weights.fill(1.0f);
   for (const Tap& tap : taps) {
-    const ByCut& area = sight.cuts.area[tap.ring];
-    const ByCut& length = sight.cuts.length[tap.ring];
+    const ByCut& area = sight.cut_areas[tap.ring];
     for (std::size_t cut = 0; cut < area.size(); ++cut) {
       const float weight = tap.weight < area[cut] ? tap.weight : area[cut];
       sums.red[cut] += weight * tap.colour[0];
       sums.green[cut] += weight * tap.colour[1];
       sums.blue[cut] += weight * tap.colour[2];
       sums.weights[cut] += weight;
-      const float part = tap.edge_part < length[cut] ? tap.edge_part : length[cut];
-      sums.near_edges[cut] += part * tap.near_edge;
+      sums.near_edges[cut] += weight * tap.near_edge;
+      sums.far_edges[cut] += weight * tap.far_edge;
     }
   }
   return sums;
@@ -209,7 +202,7 @@ Colour mean_of(const LensSums& sums, std::size_t cut) {
 // Sums of what SceneTraits has means of.
 struct Sums {
   double blurred_share = 0.0, blur = 0.0;
-  std::array<double, kFilterRadiiPx.size()> lost{}, blurred{}, near_edges{};
+  std::array<double, kFilterRadiiPx.size()> lost{}, blurred{}, near_edges{}, far_edges{};
   std::array<double, kSampleCounts.size()> ghosts{};
 
   void add(const Sums& other) {
@@ -219,6 +212,7 @@ struct Sums {
       lost[i] += other.lost[i];
       blurred[i] += other.blurred[i];
       near_edges[i] += other.near_edges[i];
+      far_edges[i] += other.far_edges[i];
     }
     for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i] += other.ghosts[i];
   }
@@ -260,7 +254,8 @@ void add_point(const Sight& sight, const Texels& texels, Sums& sums) {
     const Colour cut = mean_of(lens, i);
     sums.lost[i] += static_cast<double>(felt(difference(cut, mean)));
     sums.blurred[i] += static_cast<double>(felt(difference(cut, p.colour)));
-    sums.near_edges[i] += static_cast<double>(felt(lens.near_edges[i] / sight.cuts.lengths[i]));
+    sums.near_edges[i] += static_cast<double>(felt(lens.near_edges[i] / lens.weights[i]));
+    sums.far_edges[i] += static_cast<double>(felt(lens.far_edges[i] / lens.weights[i]));
   }
   add_ghosts(p, taps, mean, sums);
 }
@@ -299,7 +294,7 @@ SceneTraits scene_traits(const Image& pinhole, const PixelCoc& coc, ThreadPool& 
 
   const int columns = std::min(kPointsAcross, pinhole.width);
   const int rows = std::min(kPointsAcross, pinhole.height);
-  const Sight sight{pinhole, coc, rings_within(largest_px(traits)), cut_tables()};
+  const Sight sight{pinhole, coc, rings_within(largest_px(traits)), cut_areas()};
   std::vector<Sums> of_rows(static_cast<std::size_t>(rows));
   pool.for_each(rows, [&](int j) {
     Sums& sums = of_rows[static_cast<std::size_t>(j)];
@@ -318,7 +313,8 @@ SceneTraits scene_traits(const Image& pinhole, const PixelCoc& coc, ThreadPool& 
   traits.blurred_share = mean(sums.blurred_share);
   traits.blur = mean(sums.blur);
   for (std::size_t i = 0; i < kFilterRadiiPx.size(); ++i) {
-    traits.by_radius[i] = {mean(sums.lost[i]), mean(sums.blurred[i]), mean(sums.near_edges[i])};
+    traits.by_radius[i] = {mean(sums.lost[i]), mean(sums.blurred[i]), mean(sums.near_edges[i]),
+                           mean(sums.far_edges[i])};
   }
   for (std::size_t i = 0; i < kSampleCounts.size(); ++i) traits.ghosts[i] = mean(sums.ghosts[i]);
   return traits;

@@ -37,9 +37,10 @@ inline constexpr std::array<int, 9> kSampleCounts{8, 16, 32, 64, 128, 256, 512, 
 struct RadiusTraits {
   float lost = 0.0f;     ///< F(|m_R - m|): blur that the filter cannot give
   float blurred = 0.0f;  ///< F(|m_R - C|): blur that it gives, a disc or not
-  /// F(sum of D |C_q - C_p| over the sum of D), the first over edges within the larger of
-  /// both circles whose nearer side lies before the focus, blurred by half a pixel or more.
+  /// F(sum of W_R |C_q - C_p| / (1 + sum W_R)), the first sum over edges whose nearer side lies
+  /// before the focus, blurred by half a pixel or more: what one should see through, and behind.
   float near_edges = 0.0f;
+  float far_edges = 0.0f;  ///< the same over all other edges
 };
 
 /// Radii are signed, in pixels, of a magnitude up to 1,024.

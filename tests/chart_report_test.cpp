@@ -23,6 +23,22 @@ TEST_CASE("chart: the front leaves out what is slower and no nearer to the truth
   CHECK(panel.points[3].on_front);
 }
 
+TEST_CASE("chart: auto makes no front, and is on it if no fixed method as near is a tenth faster") {
+  const auto panel_with = [](double ms, double flip) {
+    ChartPanel panel = test::chart_panel("figures");
+    panel.points.push_back(test::chart_point("auto", 0, {ms}, flip));
+    settle_points(panel);
+    return panel;
+  };
+  // two-pass takes 11 ms for 0.1.
+  CHECK(panel_with(12.0, 0.1).points.back().on_front);
+  CHECK_FALSE(panel_with(12.2, 0.1).points.back().on_front);
+  CHECK(panel_with(12.2, 0.09).points.back().on_front);
+  const ChartPanel better = panel_with(5.0, 0.001);
+  CHECK(better.points.back().on_front);
+  CHECK(better.points[1].on_front);
+}
+
 TEST_CASE("chart: JSON has an entry for each point of each scene, with every key") {
   const auto list = chart_json({test::chart_panel("figures"), test::chart_panel("other")});
   REQUIRE(list.size() == 8);

@@ -22,10 +22,11 @@ std::vector<std::string> texts(const std::string& method, int height_px, bool qu
 
 }  // namespace
 
-TEST_CASE("chart settings: every filter of the table has some, and accumulation") {
+TEST_CASE("chart settings: every filter of the table has some, and accumulation, and auto") {
   const auto names = chart_methods();
-  CHECK(names.size() == methods().size() + 1);
-  CHECK(names.back() == "accumulation");
+  CHECK(names.size() == methods().size() + 2);
+  CHECK(names[methods().size()] == "accumulation");
+  CHECK(names.back() == "auto");
   for (const Method& method : methods()) {
     CAPTURE(method.name);
     CHECK(std::count(names.begin(), names.end(), method.name) == 1);
@@ -54,6 +55,7 @@ TEST_CASE("chart settings: no two entries have an id in common") {
   CHECK(ids.size() == entries);
   CHECK(ids.contains("two-pass-r16-d3d11"));
   CHECK(ids.contains("accumulation-s8"));
+  CHECK(ids.contains("auto-e0.02"));
   CHECK(ids.contains("pinhole"));
 }
 
@@ -76,6 +78,16 @@ TEST_CASE("chart settings: accumulation takes 8 to 64 samples and draws the scen
   CHECK(texts("accumulation", 1024, false) ==
         std::vector<std::string>{"8 samples", "16 samples", "32 samples", "64 samples"});
   CHECK(chart_entries("accumulation", 1024, false).front().filter == nullptr);
+}
+
+TEST_CASE("chart settings: auto takes errors, and says what it chose once it has") {
+  CHECK(texts("auto", 1024, false) ==
+        std::vector<std::string>{"max-error 0.05", "max-error 0.02", "max-error 0.01"});
+  ChartEntry entry = chart_entries("auto", 1024, true).at(1);
+  CHECK(entry.filter == nullptr);
+  entry.chosen = "two-pass, radius 8";
+  CHECK(settings_text(entry) == "max-error 0.02: two-pass, radius 8");
+  CHECK(settings_json(entry).dump() == R"({"max_error":0.02,"chosen":"two-pass, radius 8"})");
 }
 
 TEST_CASE("chart settings: as JSON they name what the method minds, and nothing else") {

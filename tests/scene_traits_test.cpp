@@ -46,7 +46,7 @@ TEST_CASE("scene traits: all in focus, there is no blur and nothing to lose") {
   CHECK(traits.blurred_share == 0.0f);
   CHECK(traits.blur == 0.0f);
   for (const RadiusTraits& of : traits.by_radius) {
-    CHECK(of.lost + of.blurred + of.near_edges == 0.0f);
+    CHECK(of.lost + of.blurred + of.near_edges + of.far_edges == 0.0f);
   }
 }
 
@@ -70,9 +70,15 @@ TEST_CASE("scene traits: a ramp of depth has no edges, a step has, before the fo
   const SceneTraits of_near = traits_of(picture_of(grey, near_step));
   for (std::size_t i = 0; i < kFilterRadiiPx.size(); ++i) {
     CHECK(of_ramp.by_radius[i].near_edges == 0.0f);
+    CHECK(of_ramp.by_radius[i].far_edges == 0.0f);
     CHECK(of_far.by_radius[i].near_edges == 0.0f);
+    CHECK(of_near.by_radius[i].far_edges == 0.0f);
   }
   CHECK(of_near.by_radius[2].near_edges > 0.001f);
+  const auto blurred_step = [](int x, int) { return x < kSide / 2 ? 4.0f : 8.0f; };
+  const SceneTraits of_blurred = traits_of(picture_of(grey, blurred_step));
+  CHECK(of_blurred.by_radius[2].far_edges > 0.001f);
+  CHECK(of_blurred.by_radius[2].near_edges == 0.0f);
   CHECK(of_near.blurred_share == doctest::Approx(0.5).epsilon(0.05));
 }
 

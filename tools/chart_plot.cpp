@@ -109,6 +109,12 @@ std::string style(std::size_t series) {
          std::to_string(series % kShapes + 1);
 }
 
+/// auto's points are rings around those of what it chose.
+std::string curve(const std::string& name, std::size_t series) {
+  if (name == "auto") return " with points lc rgb '#000000' lw 2.5 ps 2.4 pt 6";
+  return " with linespoints " + style(series);
+}
+
 constexpr const char* kFrontStyle = "lc rgb '#c8c8c8' lw 7";
 constexpr const char* kFloorStyle = "lc rgb '#707070' lw 1.5 dt 2";
 
@@ -120,7 +126,7 @@ std::string line(const ChartPoint& point) {
 std::string front_data(const ChartPanel& panel, double right_end_ms) {
   std::vector<const ChartPoint*> front;
   for (const ChartPoint& point : panel.points) {
-    if (point.on_front) front.push_back(&point);
+    if (point.on_front && !point.entry.max_error) front.push_back(&point);
   }
   std::sort(front.begin(), front.end(),
             [](const ChartPoint* a, const ChartPoint* b) { return a->median_ms < b->median_ms; });
@@ -150,7 +156,7 @@ std::string panel_script(std::size_t index, const ChartPanel& panel,
     if (lines.empty()) continue;
     const std::string name = block + std::to_string(i);
     data += name + " << END\n" + lines + "END\n";
-    plots += ", " + name + " with linespoints " + style(i) + " notitle";
+    plots += ", " + name + curve(series[i], i) + " notitle";
   }
   std::string script = data + panel_margins(index, layout);
   script += "set title " + gnuplot_quoted(panel.scene) + " offset 0,-0.4\nset xrange " +
@@ -170,7 +176,7 @@ std::string key_script(const std::vector<std::string>& series, const Layout& lay
       "set key center center horizontal Left reverse maxcols " + std::to_string(kKeyColumns) +
       " width 1 samplen 3\nplot ";
   for (std::size_t i = 0; i < series.size(); ++i) {
-    script += "NaN with linespoints " + style(i) + " title " + gnuplot_quoted(series[i]) + ", ";
+    script += "NaN" + curve(series[i], i) + " title " + gnuplot_quoted(series[i]) + ", ";
   }
   return script + "NaN with lines " + kFrontStyle + " title 'best for its time', NaN with lines " +
          kFloorStyle + " title 'noise of the truth'\n";

@@ -1,5 +1,6 @@
 #include "tools/chart_report.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tools/chart_key.h"
@@ -12,6 +13,10 @@ namespace softfocus {
 namespace {
 
 using nlohmann::ordered_json;
+
+/// What auto may take longer than the method that it chose, by a factor: it looks at the
+/// picture first. That, and what times of one run differ by.
+constexpr double kChoosing = 1.1;
 
 ordered_json point_json(const ChartPanel& panel, const ChartPoint& point) {
   ordered_json json{{"scene", panel.scene},
@@ -56,12 +61,22 @@ std::string csv_field(const ordered_json& value) {
 
 void settle_points(ChartPanel& panel) {
   std::vector<TwoCosts> costs;
+  std::vector<ChartPoint*> fixed;
   for (ChartPoint& point : panel.points) {
     point.median_ms = spread_of(point.times.frame_ms).median;
     point.on_front = false;
+    if (point.entry.max_error) continue;
     costs.push_back({point.median_ms, point.errors.flip});
+    fixed.push_back(&point);
   }
-  for (const std::size_t i : pareto_front(costs)) panel.points[i].on_front = true;
+  for (const std::size_t i : pareto_front(costs)) fixed[i]->on_front = true;
+  for (ChartPoint& point : panel.points) {
+    if (!point.entry.max_error) continue;
+    point.on_front = std::none_of(fixed.begin(), fixed.end(), [&](const ChartPoint* other) {
+      return other->errors.flip <= point.errors.flip &&
+             other->median_ms * kChoosing < point.median_ms;
+    });
+  }
 }
 
 ordered_json chart_json(const std::vector<ChartPanel>& panels) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "measure/regions.h"
 #include "scenes/load_scene.h"
@@ -64,56 +65,98 @@ SceneMethodInput accumulation_input(const ChartScene& scene, int samples) {
           .progress = {}};
 }
 
-ChartRunner::ChartRunner(const ChartScene& scene, int most_samples, ThreadPool& pool)
-    : scene_(scene), most_samples_(most_samples), pool_(pool) {
+ChartRunner::ChartRunner(const ChartScene& scene, ThreadPool& pool)
+    : scene_(scene), views_(accumulation_input(scene, kSampleCounts.back())), pool_(pool) {
   const int width = scene.pinhole.width, height = scene.pinhole.height;
   drawn_ = make_image(Format::rgba16f, width, height);
   result_ = make_image(Format::rgba16f, width, height);
 }
 
 RunTime ChartRunner::run(const ChartEntry& entry) {
+  if (entry.max_error) return choose(*entry.max_error);
   return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
+}
+
+PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
+  const auto found = prepared_.find(profile);
+  if (found != prepared_.end()) return found->second;
+  return prepared_.emplace(profile, prepare_scene(scene_.scene, *find_profile(profile), pool_))
+      .first->second;
+}
+
+void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
+  filter.apply({drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
 }
 
 RunTime ChartRunner::filter(const ChartEntry& entry) {
   const Profile profile = *find_profile(entry.profile);
-  if (!prepared_.contains(entry.profile)) {
-    prepared_.emplace(entry.profile, prepare_scene(scene_.scene, profile, pool_));
-  }
-  DofSettings settings;
-  settings.coc = scene_.coc;
-  if (entry.max_coc_px) settings.max_coc_px = *entry.max_coc_px;
-
+  PreparedScene& prepared = prepared_for(entry.profile);
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
   // Once without a clock: the contender before has filled the caches with its own.
-  draw_scene(prepared_.at(entry.profile), scene_.view, scene_.frame, drawn_, pool_);
-  entry.filter->apply({drawn_, settings, profile}, result_, pool_);
+  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  filter_drawn(*entry.filter, max_coc_px, profile);
 
   const Clock::time_point start = Clock::now();
-  draw_scene(prepared_.at(entry.profile), scene_.view, scene_.frame, drawn_, pool_);
+  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
   const Clock::time_point drawn = Clock::now();
-  entry.filter->apply({drawn_, settings, profile}, result_, pool_);
+  filter_drawn(*entry.filter, max_coc_px, profile);
   const Clock::time_point end = Clock::now();
   return {ms_between(start, end), ms_between(drawn, end)};
 }
 
-RunTime ChartRunner::accumulate(int samples) {
-  const SceneMethodInput input = accumulation_input(scene_, most_samples_);
+// Likewise: a first group is enough.
+void ChartRunner::warm_up_views() {
   if (!buffer_) {
-    buffer_ = make_accumulation_buffer(input, pool_);
+    buffer_ = make_accumulation_buffer(views_, pool_);
     sums_ = make_sample_sums(drawn_.width, drawn_.height);
   }
-  // Likewise; its first group is enough of it.
   clear_sums(sums_);
-  add_views(*buffer_, input, 0, std::min(kSampleGroup, samples), sums_, pool_);
+  add_views(*buffer_, views_, 0, kSampleGroup, sums_, pool_);
+}
 
-  const Clock::time_point start = Clock::now();
+void ChartRunner::add_all_views(int samples) {
   clear_sums(sums_);
   while (sums_.count < samples) {
     const int end = std::min(sums_.count + kSampleGroup, samples);
-    add_views(*buffer_, input, sums_.count, end, sums_, pool_);
+    add_views(*buffer_, views_, sums_.count, end, sums_, pool_);
   }
-  store_mean(sums_, scene_.pinhole, input.profile, result_, pool_);
+  store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
+}
+
+RunTime ChartRunner::accumulate(int samples) {
+  warm_up_views();
+  const Clock::time_point start = Clock::now();
+  add_all_views(samples);
   return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+void ChartRunner::carry_out(const Choice& choice) {
+  if (choice.samples > 0) return add_all_views(choice.samples);
+  if (is_sharp(choice)) return std::swap(drawn_, result_);
+  filter_drawn(*find_method(choice.method), choice.radius_px, views_.profile);
+}
+
+RunTime ChartRunner::choose(double max_error) {
+  PreparedScene& prepared = prepared_for(std::string{views_.profile.name});
+  const auto chosen = [&] {
+    return softfocus::choose(scene_traits(drawn_, scene_.coc, pool_), {max_error},
+                             {{}, triangle_count(scene_.scene)});
+  };
+  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  const Choice before = chosen();
+  chosen_ = setting_text(before);
+  if (before.samples > 0) {
+    warm_up_views();
+  } else {
+    carry_out(before);
+  }
+
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  carry_out(chosen());
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
 }
 
 }  // namespace softfocus

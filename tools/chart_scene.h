@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "choice/choose.h"
 #include "reference/accumulation.h"
 #include "scenes/draw_scene.h"
 #include "tools/chart_options.h"
@@ -33,7 +34,7 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
 /// For the methods that draw the scene; no jitter, for a filter looks from pixels' centres too.
 SceneMethodInput accumulation_input(const ChartScene& scene, int samples);
 
-/// Milliseconds of one run.
+/// Milliseconds of one run. What auto takes to choose counts as filtering.
 struct RunTime {
   double frame_ms = 0.0;
   std::optional<double> filter_ms;  ///< none if nothing was filtered
@@ -42,27 +43,37 @@ struct RunTime {
 /// Makes contenders' pictures again and again in the same memory.
 class ChartRunner {
  public:
-  /// The scene must outlive it. `most_samples` is of the contenders.
-  ChartRunner(const ChartScene& scene, int most_samples, ThreadPool& pool);
+  /// The scene must outlive it.
+  ChartRunner(const ChartScene& scene, ThreadPool& pool);
 
-  /// Draws a whole frame, by a filter or from the lens's points: once to warm up, then timed.
+  /// Draws a whole frame, by a filter, from the lens's points or by what auto chooses: once to
+  /// warm up, then timed.
   RunTime run(const ChartEntry& entry);
 
   /// Of the last run.
   const Image& result() const { return result_; }
+  /// What auto chose last, in words.
+  const std::string& chosen() const { return chosen_; }
 
  private:
   RunTime filter(const ChartEntry& entry);
   RunTime accumulate(int samples);
+  RunTime choose(double max_error);
+  PreparedScene& prepared_for(const std::string& profile);
+  void filter_drawn(const Method& filter, float max_coc_px, const Profile& profile);
+  void warm_up_views();
+  void add_all_views(int samples);
+  void carry_out(const Choice& choice);
 
   const ChartScene& scene_;
-  int most_samples_;
+  SceneMethodInput views_;  // with as many points of the lens as anything here takes
   ThreadPool& pool_;
   std::map<std::string, PreparedScene> prepared_;  // by profile
   std::optional<AccumulationBuffer> buffer_;
   SampleSums sums_;
   Image drawn_;
   Image result_;
+  std::string chosen_;
 };
 
 }  // namespace softfocus

@@ -8,7 +8,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kAccumulation = "accumulation";
+constexpr std::string_view kAccumulation = "accumulation", kAuto = "auto";
 
 /// Every radius is taken with every profile. Radii are --max-coc for a picture 1024 rows high,
 /// scaled with the height as those of scenes are.
@@ -19,6 +19,8 @@ struct SettingsOfMethod {
   std::vector<std::string_view> profiles{"ieee"};
   std::vector<int> samples{};
   std::vector<int> quick_samples{};
+  std::vector<double> max_errors{};
+  std::vector<double> quick_max_errors{};
 };
 
 const std::vector<SettingsOfMethod>& table() {
@@ -27,6 +29,7 @@ const std::vector<SettingsOfMethod>& table() {
       {"two-pass", {4, 8, 16, 32, 64}, {4, 16, 64}, {"ieee", "d3d11"}},
       {"one-pass", {4, 8, 16, 32, 64}, {4, 16, 64}},
       {kAccumulation, {}, {}, {}, {8, 16, 32, 64}, {8, 32}},
+      {kAuto, {}, {}, {}, {}, {}, {0.05, 0.02, 0.01}, {0.05, 0.02}},
       // Of every other method.
       {"", {16, 32, 64}, {16, 64}},
   };
@@ -45,6 +48,7 @@ std::vector<std::string> chart_methods() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.emplace_back(method.name);
   names.emplace_back(kAccumulation);
+  names.emplace_back(kAuto);
   return names;
 }
 
@@ -54,6 +58,9 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
   const Method* const filter = find_method(method);
   for (const int samples : quick ? of.quick_samples : of.samples) {
     entries.push_back({.method = method, .samples = samples});
+  }
+  for (const double error : quick ? of.quick_max_errors : of.max_errors) {
+    entries.push_back({.method = method, .max_error = error});
   }
   const std::vector<double>& radii = quick ? of.quick_radii : of.radii_at_1024;
   for (const std::string_view profile : of.profiles) {
@@ -69,6 +76,7 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
 }
 
 nlohmann::ordered_json settings_json(const ChartEntry& entry) {
+  if (entry.max_error) return {{"max_error", *entry.max_error}, {"chosen", entry.chosen}};
   if (entry.filter == nullptr) return {{"samples", entry.samples}};
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   if (entry.max_coc_px) json["max_coc_px"] = *entry.max_coc_px;
@@ -77,6 +85,10 @@ nlohmann::ordered_json settings_json(const ChartEntry& entry) {
 }
 
 std::string settings_text(const ChartEntry& entry) {
+  if (entry.max_error) {
+    return "max-error " + short_number(*entry.max_error) +
+           (entry.chosen.empty() ? "" : ": " + entry.chosen);
+  }
   if (entry.filter == nullptr) return std::to_string(entry.samples) + " samples";
   std::string text;
   if (entry.max_coc_px) text = "max-coc " + short_number(double{*entry.max_coc_px});
@@ -86,6 +98,7 @@ std::string settings_text(const ChartEntry& entry) {
 
 std::string entry_id(const ChartEntry& entry) {
   std::string id = entry.method;
+  if (entry.max_error) return id + "-e" + short_number(*entry.max_error);
   if (entry.filter == nullptr) return id + "-s" + std::to_string(entry.samples);
   if (entry.max_coc_px) id += "-r" + short_number(double{*entry.max_coc_px});
   if (entry.profile != "ieee") id += "-" + entry.profile;

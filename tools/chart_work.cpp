@@ -19,9 +19,10 @@ constexpr double kLongMs = 1000.0;
 constexpr std::size_t kRoundsOfLong = 3;
 
 /// In drawings of a pinhole's picture, about: what the time left is reckoned by.
-constexpr double kFilterCost = 6.0, kMeasureCost = 40.0;
+constexpr double kFilterCost = 6.0, kAutoCost = 60.0, kMeasureCost = 40.0;
 
 double cost_of(const ChartEntry& entry) {
+  if (entry.max_error) return kAutoCost;
   return entry.filter != nullptr ? kFilterCost : static_cast<double>(entry.samples);
 }
 
@@ -108,6 +109,7 @@ void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth
     work.show(scene.scene.name + ": error of " + entry.method + ", " + settings_text(entry));
     ChartPoint point{.entry = entry};
     runner.run(entry);
+    if (entry.max_error) point.entry.chosen = runner.chosen();
     point.picture_hash = hash_image(runner.result());
     work.left.done(cost_of(entry));
     ++work.findings.all;
@@ -172,9 +174,7 @@ ChartPanel measure_scene(Work& work, const std::string& name) {
   std::filesystem::create_directories(folder);
   const ChartTruth truth = truth_of(work, scene, key);
 
-  int most_samples = 1;
-  for (const ChartEntry& entry : work.entries) most_samples = std::max(most_samples, entry.samples);
-  ChartRunner runner{scene, most_samples, work.pool};
+  ChartRunner runner{scene, work.pool};
   ChartPanel panel{.scene = scene.scene.name,
                    .title = scene.scene.title,
                    .truth_samples = options.truth_samples,

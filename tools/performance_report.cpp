@@ -83,6 +83,7 @@ nlohmann::ordered_json traits_json(const SceneTraits& traits) {
     json["blurred"].push_back(of.blurred);
     json["lost"].push_back(of.lost);
     json["near_edges"].push_back(of.near_edges);
+    json["far_edges"].push_back(of.far_edges);
   }
   return json;
 }

@@ -179,6 +179,7 @@ int render(const RenderOptions& options) {
   const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
   const Image picture = timed(progress, from_lens ? "sampling" : "filtering", ms.filter, [&] {
     if (from_lens) return sampled_picture(scene, view, drawn, options, record, progress, pool);
+    if (record.used.choice && is_sharp(*record.used.choice)) return std::move(drawn);
     return shown_picture(std::move(drawn), options, record.used.method.filter, scene.camera,
                          settings, on_gl ? &*on_gl : nullptr, pool);
   });
