@@ -22,9 +22,10 @@ struct AccumulationBuffer {
   std::vector<glm::dvec2> points;   ///< of the lens, in radii of the aperture
   std::vector<glm::dvec2> offsets;  ///< of the pixels
   PreparedScene prepared;
-  /// That every view is drawn into, tile by tile.
+  /// The targets of every view, which keep nothing.
   Image picture, depth;
   std::vector<RenderPass> passes;  ///< of a group's views
+  std::vector<TileLists> views;    ///< of the passes
 };
 
 /// For up to `input.sampling.samples` points. The scene must outlive it.

@@ -6,6 +6,7 @@
 #include "raster/pipeline/block_lanes.inl"
 #include "raster/pipeline/interpolate_lanes.inl"
 #include "raster/pipeline/shade_lanes.inl"
+#include "raster/pipeline/vertex_lanes.inl"
 
 namespace {
 
@@ -62,16 +63,21 @@ struct SurfaceVertexLanes {
   static constexpr std::size_t kVaryings = Layout::kCount;
   const SurfaceVertexInput& input;
 
-  SOFTFOCUS_INLINE void operator()(Ints index, std::array<Floats, 4>& position,
-                                   std::array<Floats, kVaryings>& varyings) const {
+  SOFTFOCUS_INLINE void position(Ints index, std::array<Floats, 4>& in_clip_space) const {
     const Vec3Lanes p = load_vectors(input.mesh->positions, index);
     for (int i = 0; i < 4; ++i) {
       const glm::mat4& m = input.to_clip;
-      position[static_cast<std::size_t>(i)] =
+      in_clip_space[static_cast<std::size_t>(i)] =
           ((m[0][i] * p.x + m[1][i] * p.y) + m[2][i] * p.z) + m[3][i];
     }
-    varyings[Layout::kDepth] = position[3];
+  }
 
+  SOFTFOCUS_INLINE void operator()(Ints index, std::array<Floats, 4>& in_clip_space,
+                                   std::array<Floats, kVaryings>& varyings) const {
+    position(index, in_clip_space);
+    varyings[Layout::kDepth] = in_clip_space[3];
+
+    const Vec3Lanes p = load_vectors(input.mesh->positions, index);
     const glm::mat4& w = input.to_world;
     const Vec3Lanes world{((w[0][0] * p.x + w[1][0] * p.y) + w[2][0] * p.z) + w[3][0],
                           ((w[0][1] * p.x + w[1][1] * p.y) + w[2][1] * p.z) + w[3][1],
@@ -193,6 +199,11 @@ struct SurfaceFragmentLanes {
 };
 
 }  // namespace
+
+template <SurfaceVariant variant>
+unsigned place_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {
+  return place_vertices(SurfaceVertexLanes<variant>{stage.input}, job);
+}
 
 template <SurfaceVariant variant>
 void shade_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {

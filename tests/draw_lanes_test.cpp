@@ -78,7 +78,8 @@ Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Ve
     REQUIRE(can_draw_in_lanes(pass, state));
     draw_lanes(pass, state, indices, count, vertex_stage, MixedColour{},
                LaneStages<test::ListedVertices<4>, MixedColour>{
-                   SOFTFOCUS_KERNEL(isa, shade_listed), SOFTFOCUS_KERNEL(isa, shade_mixed)});
+                   SOFTFOCUS_KERNEL(isa, place_listed), SOFTFOCUS_KERNEL(isa, shade_listed),
+                   SOFTFOCUS_KERNEL(isa, shade_mixed)});
   }
   finish(pass, pool);
   return drawn;
@@ -273,7 +274,8 @@ TEST_CASE("lanes: a pass mixes draws in lanes with draws that blend") {
     const std::vector<std::uint32_t> indices = test::indices_up_to(opaque.size());
     const auto count = static_cast<std::uint32_t>(opaque.size());
     const LaneStages<test::ListedVertices<4>, MixedColour> stages{
-        SOFTFOCUS_KERNEL(isa, shade_listed), SOFTFOCUS_KERNEL(isa, shade_mixed)};
+        SOFTFOCUS_KERNEL(isa, place_listed), SOFTFOCUS_KERNEL(isa, shade_listed),
+        SOFTFOCUS_KERNEL(isa, shade_mixed)};
     for (int i = 0; i < 2; ++i) {
       const test::ListedVertices<4> solid{i == 0 ? &opaque : &over};
       if (isa == Isa::scalar) {

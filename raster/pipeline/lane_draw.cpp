@@ -149,7 +149,8 @@ void end_tile(const VisibilityTile& tile, Image& depth) {
 }
 
 void shade_tile(const VisibilityTile& tile) {
-  for (const VisibleRun& run : tile.runs) run.draw->shade_seen(tile, run);
+  for (const VisibleRun& run : tile.runs)
+    run.draw->lane_steps->shade_seen(run.draw->lane_draw.get(), tile, run);
 }
 
 }  // namespace softfocus

@@ -28,17 +28,27 @@ inline constexpr std::size_t vertex_row_size(std::size_t varyings) {
   return (kVertexVaryings + varyings + 3) / 4 * 4;
 }
 
+/// From row to row: whole lines of a cache, of which few vertices then have two.
+inline constexpr std::size_t kLineFloats = 16;
+inline constexpr std::size_t vertex_stride(std::size_t varyings) {
+  return (kVertexVaryings + varyings + kLineFloats - 1) / kLineFloats * kLineFloats;
+}
+
 /// Beside the clip codes: a window position that set-up takes for no number.
 inline constexpr unsigned kNotDrawable = 1u << 30;
 
-/// The shaded vertices of a draw. Rows for set-up that reads one quantity of many, and
-/// columns for shading that reads all of one.
+/// The vertices of a draw. Columns of what set-up asks of every vertex, and rows of those that
+/// the triangles to be drawn have.
 struct VertexStore {
-  float* rows = nullptr;  ///< `stride` floats a vertex
+  float* rows = nullptr;  ///< `stride` floats a vertex, at lines of a cache
   std::size_t stride = 0;
   std::int32_t* snapped_x = nullptr;  ///< in 1/256 pixel from the centre of pixel (0, 0)
   std::int32_t* snapped_y = nullptr;
   std::int32_t* codes = nullptr;  ///< clip_code(), kNotDrawable
+  float* x = nullptr;             ///< in the window, and the depth there
+  float* y = nullptr;
+  float* depth = nullptr;
+  std::uint8_t* used = nullptr;  ///< 1: the row is wanted; else 0
 };
 
 /// The largest triangle, in 1/256 pixel along x and y, whose edge functions 32 bits hold
@@ -129,6 +139,9 @@ struct VisibleRun {
 /// The depth buffer of a tile while it is drawn, and which triangle is seen in each pixel.
 struct VisibilityTile {
   Rectangle area;  ///< in the target; x_begin and y_begin are multiples of kTileSize
+  /// Where its pixels go when they are shaded, RGBA16F: the upper left one.
+  std::byte* texels;
+  std::size_t stride_bytes;
   alignas(64) std::array<float, kTilePixels> depth;
   alignas(64) std::array<std::int32_t, kTilePixels> ids;  ///< from 1 on; 0: none
   std::vector<const LaneTriangle*> triangles;             ///< by id - 1
@@ -148,10 +161,16 @@ void end_tile(const VisibilityTile& tile, Image& depth);
 /// Ids fit beside a quad's number and its pixels in 32 bits (shade_lanes.inl).
 inline constexpr std::size_t kMostVisible = (std::size_t{1} << 18) - 1;
 
+struct alignas(4 * kLineFloats) CacheLine {
+  std::array<float, kLineFloats> floats;
+};
+
 /// Memory of draws, kept from frame to frame.
 struct LaneMemory {
-  std::vector<float> rows;
-  std::vector<std::int32_t> columns;
+  std::vector<CacheLine> rows;
+  std::vector<std::int32_t> integer_columns;
+  std::vector<float> float_columns;
+  std::vector<std::uint8_t> used;  ///< all 0 between frames
   std::vector<LaneChunk> chunks;
 };
 

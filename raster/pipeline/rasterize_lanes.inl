@@ -208,21 +208,18 @@ SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
 }  // namespace
 
 // `texels` are a block's row of one, four halves each.
-void set_unseen(const VisibilityTile& tile, Image& colour, const std::byte* texels) {
+void set_unseen(const VisibilityTile& tile, const std::byte* texels) {
   constexpr std::size_t kTexelBytes = 8;
   const int width = tile.area.x_end - tile.area.x_begin;
   const int height = tile.area.y_end - tile.area.y_begin;
-  std::byte* first = colour.bytes.data() +
-                     static_cast<std::size_t>(tile.area.y_begin) * colour.stride_bytes +
-                     static_cast<std::size_t>(tile.area.x_begin) * kTexelBytes;
   for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
     const Ints ids = load(&tile.ids[place]);
     const unsigned unseen = lane_bits(ids == 0);
     const int left = tile_x(place), top = tile_y(place);
     if (unseen == kAllLaneBits && left + kPartColumns <= width && top + kPartRows <= height) {
-      std::byte* to = first + static_cast<std::size_t>(top) * colour.stride_bytes +
+      std::byte* to = tile.texels + static_cast<std::size_t>(top) * tile.stride_bytes +
                       static_cast<std::size_t>(left) * kTexelBytes;
-      for (int row = 0; row < kPartRows; ++row, to += colour.stride_bytes) {
+      for (int row = 0; row < kPartRows; ++row, to += tile.stride_bytes) {
         std::memcpy(to, texels, kPartColumns * kTexelBytes);
       }
       continue;
@@ -231,7 +228,7 @@ void set_unseen(const VisibilityTile& tile, Image& colour, const std::byte* texe
       const int lane = __builtin_ctz(rest);
       const int x = left + lane_x(lane), y = top + lane_y(lane);
       if (x >= width || y >= height) continue;
-      std::memcpy(first + static_cast<std::size_t>(y) * colour.stride_bytes +
+      std::memcpy(tile.texels + static_cast<std::size_t>(y) * tile.stride_bytes +
                       static_cast<std::size_t>(x) * kTexelBytes,
                   texels, kTexelBytes);
     }

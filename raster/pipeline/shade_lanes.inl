@@ -1,8 +1,4 @@
-// The fragment stage over what is seen of a draw in a tile, and the vertex stage.
-//
-// A vertex stage in lanes has kVaryings, and is callable as
-//     void operator()(Ints index, std::array<Floats, 4>& position,
-//                     std::array<Floats, kVaryings>& varyings) const
+// The fragment stage over what is seen of a draw in a tile.
 //
 // A fragment stage in lanes works in two steps, the first on the quads of a triangle, the
 // second on the pixels that are seen:
@@ -187,12 +183,6 @@ SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
           float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
 }
 
-SOFTFOCUS_INLINE std::byte* first_texel(const FragmentJob& job, const VisibilityTile& tile) {
-  return job.target->bytes.data() +
-         static_cast<std::size_t>(tile.area.y_begin) * job.target->stride_bytes +
-         static_cast<std::size_t>(tile.area.x_begin) * sizeof(std::uint64_t);
-}
-
 // The second step. Its own function, which all interpolators share.
 template <class Stage>
 [[gnu::noinline]] void shade_batch(const Stage& stage, const FragmentJob& job,
@@ -202,7 +192,7 @@ template <class Stage>
   batch.fill_up();
   std::array<std::array<Floats, 4>, 8> colours;
   stage.shade(batch, colours.data());
-  std::byte* first = first_texel(job, tile);
+  std::byte* first = tile.texels;
   for (int vector = 0; vector < batch.vectors(); ++vector) {
     alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
     store_half_texels(halves.data(), to_half_texels(colours[static_cast<std::size_t>(vector)],
@@ -224,8 +214,8 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   list_seen(tile, run, seen);
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
-  const auto stride = static_cast<std::int32_t>(job.target->stride_bytes);
-  const std::byte* first = first_texel(job, tile);
+  const auto stride = static_cast<std::int32_t>(tile.stride_bytes);
+  const std::byte* first = tile.texels;
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
 
   FragmentBatch<Stage::kInputs> batch;
@@ -278,83 +268,6 @@ void shade_fragments(const Stage& stage, const FragmentJob& job, const Visibilit
     shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, tile, run);
   } else {
     shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::unfused>>(stage, job, tile, run);
-  }
-}
-
-SOFTFOCUS_INLINE Mask is_finite(Floats v) { return (as_bits(v) & 0x7F800000u) != 0x7F800000u; }
-
-// As clip_code().
-SOFTFOCUS_INLINE Ints clip_codes(const std::array<Floats, 4>& position, float guard_band) {
-  const Floats edge = guard_band * position[3];
-  const std::array<Floats, 6> distances{edge - position[0],        edge + position[0],
-                                        edge - position[1],        edge + position[1],
-                                        position[3] + position[2], position[3] - position[2]};
-  Ints codes{};
-  for (std::size_t plane = 0; plane < 6; ++plane) {
-    codes |= (distances[plane] < 0.0f) & splat(1 << plane);
-  }
-  const Mask finite = is_finite(position[0]) & is_finite(position[1]) & is_finite(position[2]) &
-                      is_finite(position[3]);
-  return select(finite, codes, splat(static_cast<std::int32_t>(kNotFinite)));
-}
-
-SOFTFOCUS_INLINE Floats to_window_lanes(Floats ndc, float half_size, Contraction contraction) {
-  const Floats half = splat(half_size);
-  return contraction == Contraction::fused ? fused_multiply_add(ndc, half, half)
-                                           : ndc * half + half;
-}
-
-SOFTFOCUS_INLINE Ints snapped(Floats window, Mask drawable, int bits) {
-  const Floats steps = nearest((window - 0.5f) * static_cast<float>(1 << bits));
-  return truncate(select(drawable, steps, splat(0.0f))) << (kSubpixelBits - bits);
-}
-
-template <class Stage>
-void shade_vertices(const Stage& stage, const VertexJob& job) {
-  constexpr std::size_t kQuantities = vertex_row_size(Stage::kVaryings);
-  const Profile& profile = *job.profile;
-  const float half_width = static_cast<float>(job.width) * 0.5f;
-  const float half_height = static_cast<float>(job.height) * 0.5f;
-  for (std::uint32_t begin = job.begin; begin < job.end; begin += kLanes) {
-    // Lanes past the last vertex do it once more; there is room for them.
-    const Ints index = smaller(static_cast<std::int32_t>(begin) + lane_numbers(),
-                               splat(static_cast<std::int32_t>(job.end) - 1));
-    std::array<Floats, 4> position;
-    std::array<Floats, Stage::kVaryings> varyings;
-    stage(index, position, varyings);
-
-    // As to_window() and setup.cpp's is_drawable().
-    const Floats inverse_w = 1.0f / position[3];
-    const Floats x = to_window_lanes(position[0] * inverse_w, half_width, profile.viewport);
-    const Floats y = to_window_lanes(position[1] * inverse_w, half_height, profile.viewport);
-    const Floats depth = to_window_lanes(position[2] * inverse_w, 0.5f, profile.viewport);
-    const Mask drawable = (absolute(x) < kLargestPosition) & (absolute(y) < kLargestPosition) &
-                          is_finite(depth) & is_finite(inverse_w) & (inverse_w > 0.0f);
-    const Ints codes = clip_codes(position, profile.guard_band) |
-                       (~drawable & static_cast<std::int32_t>(kNotDrawable));
-    store(job.store.codes + begin, codes);
-    store(job.store.snapped_x + begin, snapped(x, drawable, profile.subpixel_bits));
-    store(job.store.snapped_y + begin, snapped(y, drawable, profile.subpixel_bits));
-
-    std::array<Floats, kQuantities> quantities{};
-    quantities[kVertexX] = x;
-    quantities[kVertexY] = y;
-    quantities[kVertexDepth] = depth;
-    quantities[kVertexInverseW] = inverse_w;
-    for (std::size_t i = 0; i < Stage::kVaryings; ++i) {
-      quantities[kVertexVaryings + i] = varyings[i];
-    }
-    float* rows = job.store.rows + begin * job.store.stride;
-    for (std::size_t k = 0; k < kQuantities; k += 4) {
-      Floats* four = &quantities[k];
-      transpose_fours(four[0], four[1], four[2], four[3]);
-      // Vector i has vertex i and each fourth after it.
-      for (std::size_t vertex = 0; vertex < kLanes; ++vertex) {
-        std::memcpy(rows + vertex * job.store.stride + k,
-                    reinterpret_cast<const float*>(&four[vertex % 4]) + vertex / 4 * 4,
-                    4 * sizeof(float));
-      }
-    }
   }
 }
 
