@@ -4,6 +4,7 @@
 #include "raster/images/sample_lanes.inl"
 #include "raster/numbers/vector_math_lanes.inl"
 #include "raster/pipeline/block_lanes.inl"
+#include "raster/pipeline/edge_lanes.inl"
 #include "raster/pipeline/interpolate_lanes.inl"
 #include "raster/pipeline/shade_lanes.inl"
 #include "raster/pipeline/vertex_lanes.inl"
@@ -193,7 +194,9 @@ struct SurfaceFragmentLanes {
     const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
     if constexpr (!variant.two_sided) return seen;
     const std::size_t back = Layout::kBack + at;
-    return select(in.front_facing(), seen,
+    const Mask front_facing = in.front_facing();
+    if (all(front_facing)) return seen;
+    return select(front_facing, seen,
                   Vec3Lanes{in.varying(back), in.varying(back + 1), in.varying(back + 2)});
   }
 };

@@ -1,6 +1,7 @@
 // The stages of draw_lanes_test.cpp for vector units.
 
 #include "raster/pipeline/block_lanes.inl"
+#include "raster/pipeline/edge_lanes.inl"
 #include "raster/pipeline/interpolate_lanes.inl"
 #include "raster/pipeline/shade_lanes.inl"
 #include "raster/pipeline/vertex_lanes.inl"

@@ -84,6 +84,7 @@ struct BarycentricLanes {
     inverse_area = spread<3>(rows);
     of_quads = &triangles;
     for (const LaneTriangle* t : triangles) any_large = any_large || t->large != nullptr;
+    if (any_large) load_wide();
   }
 
   SOFTFOCUS_INLINE Weights weights(Ints x, Ints y) const {
@@ -104,14 +105,51 @@ struct BarycentricLanes {
     return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
   }
 
-  // Edge functions that 32 bits do not hold.
-  void weigh_large(const Ints& x, const Ints& y, std::array<Floats, 3>& l) const {
+  // Edge functions that 32 bits do not hold, and with them those of the other quads.
+  struct WideEdge {
+    WideLanes at_origin, per_x, per_y;
+  };
+  std::array<WideEdge, 3> wide;
+  bool any_huge;
+
+  void load_wide() {
+    any_huge = false;
+    alignas(64) std::array<std::array<std::array<double, kLanes>, 3>, 3> numbers;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const LaneTriangle& t = *(*of_quads)[lane / kQuadPixels];
+      any_huge = any_huge || (t.large != nullptr && !t.large->fits_doubles);
+      for (std::size_t i = 0; i < 3; ++i) {
+        numbers[i][0][lane] = t.large != nullptr ? t.large->edge[i] : t.edge[i];
+        numbers[i][1][lane] = t.large != nullptr ? t.large->per_x[i] : t.per_x[i];
+        numbers[i][2][lane] = t.large != nullptr ? t.large->per_y[i] : t.per_y[i];
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      wide[i] = {load_wide(numbers[i][0]), load_wide(numbers[i][1]), load_wide(numbers[i][2])};
+    }
+  }
+  static WideLanes load_wide(const std::array<double, kLanes>& numbers) {
+    WideLanes v;
+    std::memcpy(&v, numbers.data(), sizeof v);
+    return v;
+  }
+
+  SOFTFOCUS_INLINE void weigh_large(Ints x, Ints y, std::array<Floats, 3>& l) const {
+    const WideLanes dx = widen(x - x_origin);
+    const WideLanes dy = widen(y - y_origin);
+    for (std::size_t i = 0; i < 3; ++i) {
+      l[i] = narrow(wide[i].at_origin + (dx * wide[i].per_x + dy * wide[i].per_y));
+    }
+    if (any_huge) weigh_huge(x, y, l);
+  }
+
+  void weigh_huge(const Ints& x, const Ints& y, std::array<Floats, 3>& l) const {
     for (int lane = 0; lane < kLanes; ++lane) {
       const LaneTriangle& t = *(*of_quads)[static_cast<std::size_t>(lane / kQuadPixels)];
       if (t.large == nullptr) continue;
 #pragma GCC unroll 3
       for (std::size_t i = 0; i < 3; ++i) {
-        l[i][lane] = static_cast<float>(edge_at(t.large->edges[i], x[lane], y[lane]));
+        l[i][lane] = static_cast<float>(edge_at(t.large->exact.edges[i], x[lane], y[lane]));
       }
     }
   }

@@ -56,6 +56,19 @@ struct VertexStore {
 /// 2 * 22528 * (22528 + 8 * 256) < 2^31.
 inline constexpr std::int32_t kSmallExtent = 88 * 256;
 
+/// The edge functions of a triangle that is not small.
+struct LargeEdges {
+  EdgeFunctions exact;
+  /// In binary64, counted from the triangle's pixel (x_origin, y_origin): exact too if it
+  /// extends to no more than kWideExtent.
+  std::array<double, 3> edge, per_x, per_y;
+  bool fits_doubles;
+};
+
+/// In 1/256 pixel along x and y. Values in the blocks that the bounds touch, and the sums on the
+/// way to them, stay below 2 * 2^33 * (2^17 + 8) < 2^53.
+inline constexpr std::int64_t kWideExtent = 1 << 25;
+
 /// A triangle that is drawn.
 struct LaneTriangle {
   // Three times four numbers, which kernels load at once.
@@ -73,7 +86,7 @@ struct LaneTriangle {
   bool clockwise;
   bool front_facing;
   std::array<const float*, 3> vertices;
-  const EdgeFunctions* large;  ///< of a triangle that is not small, else null
+  const LargeEdges* large;  ///< of a triangle that is not small, else null
 };
 static_assert(offsetof(LaneTriangle, edge) == 0 &&
               offsetof(LaneTriangle, per_x) == 4 * sizeof(float) &&
@@ -93,7 +106,7 @@ struct LaneChunk {
   std::vector<TileBins> tiles;
   // What clipping made, and the edges of large triangles; they do not move.
   std::deque<std::array<float, vertex_row_size(kMaxVaryings)>> new_vertices;
-  std::deque<EdgeFunctions> large;
+  std::deque<LargeEdges> large;
 };
 
 /// Empties it, and keeps its memory.

@@ -102,10 +102,39 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
 }
 
 template <class Writer>
-SOFTFOCUS_INLINE void rasterize_large(const LaneTriangle& t, const VisibilityTile& tile,
-                                      Writer& writer) {
+SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile& tile,
+                                     Writer& writer) {
   const BlockRange range = blocks_of(t, tile);
-  const auto& edges = t.large->edges;
+  const WideLanes x = widen(lane_x() + (range.x_begin - t.x_origin));
+  const WideLanes y = widen(lane_y() + (range.y_begin - t.y_origin));
+  std::array<WideLanes, 3> row, per_part, per_row;
+  std::array<Floats, 3> thresholds;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double per_x = t.large->per_x[i], per_y = t.large->per_y[i];
+    row[i] = wide_splat(t.large->edge[i]) + (x * wide_splat(per_x) + y * wide_splat(per_y));
+    per_part[i] = wide_splat(per_x * kPartColumns);
+    per_row[i] = wide_splat(per_y * kPartRows);
+    thresholds[i] = splat(static_cast<float>(t.thresholds[i]));
+  }
+  for (int top = range.y_begin; top < range.y_end; top += kPartRows) {
+    std::array<WideLanes, 3> e = row;
+    for (int left = range.x_begin; left < range.x_end; left += kPartColumns) {
+      const Floats e0 = narrow(e[0]), e1 = narrow(e[1]), e2 = narrow(e[2]);
+      const Mask covered = (e0 >= thresholds[0]) & (e1 >= thresholds[1]) & (e2 >= thresholds[2]);
+      if (any(covered)) {
+        writer.write(left, top, place_in_tile(tile, left, top), covered, e1, e2);
+      }
+      for (std::size_t i = 0; i < 3; ++i) e[i] = e[i] + per_part[i];
+    }
+    for (std::size_t i = 0; i < 3; ++i) row[i] = row[i] + per_row[i];
+  }
+}
+
+// Far larger than pictures are.
+template <class Writer>
+void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& writer) {
+  const BlockRange range = blocks_of(t, tile);
+  const auto& edges = t.large->exact.edges;
   for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
     for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
       // Where an edge function is largest in the block.
@@ -157,8 +186,10 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Dept
                                       splat(t.inverse_area)};
     if (t.large == nullptr) {
       rasterize_small(t, tile, writer);
+    } else if (t.large->fits_doubles) {
+      rasterize_wide(t, tile, writer);
     } else {
-      rasterize_large(t, tile, writer);
+      rasterize_huge(t, tile, writer);
     }
   }
 }
