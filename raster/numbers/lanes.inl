@@ -95,6 +95,14 @@ SOFTFOCUS_INLINE unsigned lane_bits(Mask mask) {
   return bits;
 #endif
 }
+/// Bit i is set where lane i is negative: of a mask that need not be made.
+SOFTFOCUS_INLINE unsigned sign_bits(Ints v) {
+#if SOFTFOCUS_LANES == 16 || SOFTFOCUS_LANES == 8 || defined(__SSE2__)
+  return lane_bits(v);
+#else
+  return lane_bits(v < 0);
+#endif
+}
 inline constexpr unsigned kAllLaneBits = (1u << SOFTFOCUS_LANES) - 1;
 SOFTFOCUS_INLINE bool any(Mask mask) { return lane_bits(mask) != 0; }
 SOFTFOCUS_INLINE bool all(Mask mask) { return lane_bits(mask) == kAllLaneBits; }

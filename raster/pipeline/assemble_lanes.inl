@@ -92,6 +92,7 @@ SOFTFOCUS_INLINE void store_to(std::array<float, kLanes>& column, Floats v) {
 
 SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t lane,
                                     const AssembleJob& job, LaneTriangle& t) {
+#pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
     t.edge[i] = columns.edge[i][lane];
     t.per_x[i] = columns.per_x[i][lane];
@@ -103,6 +104,7 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
     // Chunks have vertices in common.
     std::atomic_ref{job.vertices.used[vertex]}.store(1, std::memory_order_relaxed);
   }
+#pragma GCC unroll 4
   for (std::size_t i = 0; i < 4; ++i) {
     t.bounds[i] = static_cast<std::int16_t>(columns.bounds[i][lane]);
   }
@@ -177,6 +179,7 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
     if (!any(kept | slow)) continue;
 
     EdgeLanes edges;
+#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t from = (i + 1) % 3;
       const std::size_t to = (i + 2) % 3;

@@ -70,7 +70,9 @@ struct DrawCall {
   std::shared_ptr<void> lane_draw = nullptr;
   std::uint32_t vertex_stride = 0;  ///< floats that a vertex takes
   DepthState depth = {};
-  /// All of it lies beyond one plane of the view; found on the way.
+  // What is found on the way: where its rows begin, and whether all of it lies beyond one plane of
+  // the view.
+  std::size_t first_line = 0;
   bool is_outside = false;
 };
 

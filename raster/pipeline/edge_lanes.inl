@@ -22,6 +22,18 @@ SOFTFOCUS_INLINE WideLanes wide_splat(double value) {
   return {HalfDoubles{} + value, HalfDoubles{} + value};
 }
 
+/// A number for each quad.
+SOFTFOCUS_INLINE WideLanes wide_repeat(const std::array<double, kQuads>& v) {
+#if SOFTFOCUS_LANES == 16
+  const HalfDoubles low = {v[0], v[0], v[0], v[0], v[1], v[1], v[1], v[1]};
+  const HalfDoubles high = {v[2], v[2], v[2], v[2], v[3], v[3], v[3], v[3]};
+#else
+  const HalfDoubles low = HalfDoubles{} + v[0];
+  const HalfDoubles high = HalfDoubles{} + v[kQuads - 1];
+#endif
+  return {low, high};
+}
+
 template <std::size_t... lane>
 SOFTFOCUS_INLINE WideLanes widen_lanes(Ints v, std::index_sequence<lane...>) {
   const HalfInts low = __builtin_shufflevector(v, v, lane...);

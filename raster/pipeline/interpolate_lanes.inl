@@ -112,31 +112,29 @@ struct BarycentricLanes {
   std::array<WideEdge, 3> wide;
   bool any_huge;
 
-  void load_wide() {
+  SOFTFOCUS_INLINE void load_wide() {
     any_huge = false;
-    alignas(64) std::array<std::array<std::array<double, kLanes>, 3>, 3> numbers;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const LaneTriangle& t = *(*of_quads)[lane / kQuadPixels];
-      any_huge = any_huge || (t.large != nullptr && !t.large->fits_doubles);
-      for (std::size_t i = 0; i < 3; ++i) {
-        numbers[i][0][lane] = t.large != nullptr ? t.large->edge[i] : t.edge[i];
-        numbers[i][1][lane] = t.large != nullptr ? t.large->per_x[i] : t.per_x[i];
-        numbers[i][2][lane] = t.large != nullptr ? t.large->per_y[i] : t.per_y[i];
-      }
+    for (const LaneTriangle* t : *of_quads) {
+      any_huge = any_huge || (t->large != nullptr && !t->large->fits_doubles);
     }
+#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
-      wide[i] = {load_wide(numbers[i][0]), load_wide(numbers[i][1]), load_wide(numbers[i][2])};
+      std::array<double, kQuads> at_origin, along_x, along_y;
+#pragma GCC unroll 4
+      for (std::size_t quad = 0; quad < kQuads; ++quad) {
+        const LaneTriangle& t = *(*of_quads)[quad];
+        at_origin[quad] = t.large != nullptr ? t.large->edge[i] : t.edge[i];
+        along_x[quad] = t.large != nullptr ? t.large->per_x[i] : t.per_x[i];
+        along_y[quad] = t.large != nullptr ? t.large->per_y[i] : t.per_y[i];
+      }
+      wide[i] = {wide_repeat(at_origin), wide_repeat(along_x), wide_repeat(along_y)};
     }
-  }
-  static WideLanes load_wide(const std::array<double, kLanes>& numbers) {
-    WideLanes v;
-    std::memcpy(&v, numbers.data(), sizeof v);
-    return v;
   }
 
   SOFTFOCUS_INLINE void weigh_large(Ints x, Ints y, std::array<Floats, 3>& l) const {
     const WideLanes dx = widen(x - x_origin);
     const WideLanes dy = widen(y - y_origin);
+#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       l[i] = narrow(wide[i].at_origin + (dx * wide[i].per_x + dy * wide[i].per_y));
     }

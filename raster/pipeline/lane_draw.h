@@ -69,8 +69,8 @@ struct LargeEdges {
 /// way to them, stay below 2 * 2^33 * (2^17 + 8) < 2^53.
 inline constexpr std::int64_t kWideExtent = 1 << 25;
 
-/// A triangle that is drawn.
-struct LaneTriangle {
+/// A triangle that is drawn, in two lines of a cache.
+struct alignas(64) LaneTriangle {
   // Three times four numbers, which kernels load at once.
   /// Edge functions at the pixel (x_origin, y_origin), of a small triangle.
   std::array<std::int32_t, 3> edge;

@@ -77,6 +77,7 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   // Edge functions over a part of a block, less the threshold: of the row's first one, and
   // the steps to the next part and row.
   std::array<Ints, 3> row, per_part, per_row;
+#pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
     row[i] = (lane_x() + dx) * t.per_x[i] + (lane_y() + dy) * t.per_y[i] +
              (t.edge[i] - std::int32_t{t.thresholds[i]});
@@ -88,9 +89,9 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   for (int y = range.y_begin; y < range.y_end; y += kPartRows) {
     Ints e0 = row[0], e1 = row[1], e2 = row[2];
     for (int x = range.x_begin; x < range.x_end; x += kPartColumns) {
-      const Mask covered = (e0 | e1 | e2) >= 0;
-      if (any(covered)) {
-        writer.write(x, y, place_in_tile(tile, x, y), covered, to_floats(e1 + threshold1),
+      const Ints signs = e0 | e1 | e2;
+      if (sign_bits(signs) != kAllLaneBits) {
+        writer.write(x, y, place_in_tile(tile, x, y), signs >= 0, to_floats(e1 + threshold1),
                      to_floats(e2 + threshold2));
       }
       e0 += per_part[0];
@@ -109,6 +110,7 @@ SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile
   const WideLanes y = widen(lane_y() + (range.y_begin - t.y_origin));
   std::array<WideLanes, 3> row, per_part, per_row;
   std::array<Floats, 3> thresholds;
+#pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
     const double per_x = t.large->per_x[i], per_y = t.large->per_y[i];
     row[i] = wide_splat(t.large->edge[i]) + (x * wide_splat(per_x) + y * wide_splat(per_y));
@@ -124,8 +126,10 @@ SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile
       if (any(covered)) {
         writer.write(left, top, place_in_tile(tile, left, top), covered, e1, e2);
       }
+#pragma GCC unroll 3
       for (std::size_t i = 0; i < 3; ++i) e[i] = e[i] + per_part[i];
     }
+#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) row[i] = row[i] + per_row[i];
   }
 }
