@@ -18,7 +18,7 @@ constexpr std::size_t kTileHalves = std::size_t{kTileSize} * kTileSize * kTexelH
 
 // A group of samples of one tile, each a row after the other.
 struct TileSamples {
-  std::vector<std::uint16_t> halves = std::vector<std::uint16_t>(kSampleGroup * kTileHalves);
+  std::vector<std::uint16_t> halves = std::vector<std::uint16_t>(kViewGroup * kTileHalves);
   TileMemory memory;
 };
 
@@ -28,11 +28,11 @@ std::uint16_t* texels_of(TileSamples& samples, std::size_t i) {
 
 static_assert(kSumTile % kTileSize == 0);
 
-void add_tile(TileSamples& samples, std::size_t count, const Rectangle& tile, SampleSums& sums,
-              Isa isa) {
+void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const Rectangle& tile,
+              SampleSums& sums, Isa isa) {
   const int width = tile.x_end - tile.x_begin;
   std::array<const std::uint16_t*, kSampleGroup> rows{};
-  for (std::size_t i = 0; i < count; ++i) rows[i] = texels_of(samples, i);
+  for (std::size_t i = 0; i < count; ++i) rows[i] = texels_of(samples, first + i);
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     add_rows({rows.data(), count}, tile.x_begin, y, width, sums, isa);
     for (std::size_t i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ SampledPicture accumulation(const SceneMethodInput& input, ThreadPool& pool) {
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
     add_views(buffer, input, begin, end, sums, pool);
   };
-  return take_samples(input, add_samples, pool);
+  return take_samples(input, add_samples, kViewGroup, pool);
 }
 
 AccumulationBuffer make_accumulation_buffer(const SceneMethodInput& input, ThreadPool& pool) {
@@ -66,8 +66,13 @@ AccumulationBuffer make_accumulation_buffer(const SceneMethodInput& input, Threa
 void add_views(AccumulationBuffer& buffer, const SceneMethodInput& input, int begin, int end,
                SampleSums& sums, ThreadPool& pool) {
   const auto count = static_cast<std::size_t>(end - begin);
+  assert(begin % kSampleGroup == 0 && end - begin <= kViewGroup);
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
-  while (buffer.passes.size() < count) buffer.passes.emplace_back(buffer.prepared.pass);
+  for (std::size_t i = buffer.passes.size(); i < count; ++i) {
+    RenderPass& pass = buffer.passes.emplace_back();
+    pass.profile = buffer.prepared.pass.profile;
+    pass.isa = buffer.prepared.pass.isa;
+  }
   if (buffer.views.size() < count) buffer.views.resize(count);
   const std::span passes = std::span{buffer.passes}.first(count);
   const std::span views = std::span{buffer.views}.first(count);
@@ -90,7 +95,11 @@ void add_views(AccumulationBuffer& buffer, const SceneMethodInput& input, int be
       draw_tile_aside(passes[i], views[i], tile, samples.memory,
                       reinterpret_cast<std::byte*>(texels_of(samples, i)));
     }
-    add_tile(samples, count, area, sums, pool.isa());
+    // The sums come from memory for the first, and are at hand for the second.
+    for (std::size_t first = 0; first < count; first += kSampleGroup) {
+      add_tile(samples, first, std::min<std::size_t>(count - first, kSampleGroup), area, sums,
+               pool.isa());
+    }
     shelf.put_back(std::move(samples));
   });
   for (RenderPass& pass : passes) pass.draws.clear();

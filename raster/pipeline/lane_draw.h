@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -117,7 +118,13 @@ inline LaneTriangle& next_triangle(LaneChunk& chunk) {
   if (chunk.triangle_count == chunk.triangles.size()) {
     chunk.triangles.resize(2 * chunk.triangles.size() + 128);
   }
-  return chunk.triangles[chunk.triangle_count++];
+  LaneTriangle& triangle = chunk.triangles[chunk.triangle_count++];
+  // Those to come, which were read last in another frame.
+  constexpr std::size_t kBytesAhead = 8 * sizeof(LaneTriangle);
+  const char* ahead = reinterpret_cast<const char*>(&triangle) + kBytesAhead;
+  __builtin_prefetch(ahead, 1);
+  __builtin_prefetch(ahead + kLineFloats * sizeof(float), 1);
+  return triangle;
 }
 
 /// Appends a triangle that was set up by itself, for the caller to give it vertices.
@@ -180,7 +187,8 @@ struct alignas(4 * kLineFloats) CacheLine {
 
 /// Memory of draws, kept from frame to frame.
 struct LaneMemory {
-  std::vector<CacheLine> rows;
+  std::unique_ptr<CacheLine[]> rows;  ///< never all of it touched: few vertices are used
+  std::size_t row_lines = 0;
   std::vector<std::int32_t> integer_columns;
   std::vector<float> float_columns;
   std::vector<std::uint8_t> used;  ///< all 0 between frames

@@ -89,13 +89,21 @@ inline constexpr int kQuadBits = 10;
 static_assert(kTilePixels / kQuadPixels == 1 << kQuadBits);
 static_assert(kMostVisible >> (32 - kQuadBits - kQuadPixels) == 0);
 
+// Vertices are asked for so many vectors before they are read: a few hundred cycles.
+inline constexpr int kQuadsAhead = 3;
+
 struct SeenQuads {
-  std::array<std::uint32_t, kTilePixels + 2 * kLanes> entries;
+  std::array<std::uint32_t, kTilePixels + (kQuadsAhead + 1) * kLanes> entries;
   int count = 0;
 };
 
 SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   return entry >> (kQuadBits + kQuadPixels);
+}
+
+// Of kQuads entries, each in the lanes of its quad.
+SOFTFOCUS_INLINE Ints triangles_of(const std::uint32_t* entries) {
+  return as_ints(as_bits(repeat_by_four(as_ints(load(entries)))) >> (kQuadBits + kQuadPixels));
 }
 
 // Of the lanes that begin with a quad. Returns how many quads are listed then.
@@ -153,10 +161,10 @@ SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& ru
     }
   }
   seen.count = count;
-  // Quads of which nothing is seen fill up the last vector and the one that is fetched ahead.
+  // Quads of which nothing is seen fill up the last vector and those that are fetched ahead.
   if (seen.count == 0) return;
   const auto end = static_cast<std::size_t>(seen.count);
-  for (std::size_t i = 0; i < 2 * kQuads; ++i) {
+  for (std::size_t i = 0; i < (kQuadsAhead + 1) * kQuads; ++i) {
     seen.entries[end + i] = seen.entries[end - 1] >> kQuadPixels << kQuadPixels;
   }
 }
@@ -225,10 +233,9 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   for (int i = 0; i < seen.count; i += kQuads) {
     const std::uint32_t* entries = &seen.entries[static_cast<std::size_t>(i)];
     const Ints entry = repeat_by_four(as_ints(load(entries)));
-    const Ints triangle = as_ints(as_bits(entry) >> (kQuadBits + kQuadPixels));
-    const Ints next = as_ints(as_bits(repeat_by_four(as_ints(load(entries + kQuads)))) >>
-                              (kQuadBits + kQuadPixels));
-    if (!all(next == triangle)) fetch_vertices(triangles, entries + kQuads);
+    const Ints triangle = triangles_of(entries);
+    const std::uint32_t* ahead = entries + kQuadsAhead * kQuads;
+    if (!all(triangles_of(ahead) == triangles_of(ahead - kQuads))) fetch_vertices(triangles, ahead);
     if (!all(triangle == loaded)) {
 #pragma GCC unroll 4
       for (std::size_t quad = 0; quad < kQuads; ++quad) {

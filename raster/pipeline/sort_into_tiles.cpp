@@ -60,7 +60,10 @@ void give_memory(RenderPass& pass) {
   }
   LaneMemory& memory = pass.memory;
   if (memory.chunks.size() < chunks) memory.chunks.resize(chunks);
-  if (memory.rows.size() < lines) memory.rows.resize(lines);
+  if (memory.row_lines < lines) {
+    memory.rows.reset(new CacheLine[lines]);  // not zeroed, and so not in memory yet
+    memory.row_lines = lines;
+  }
   if (memory.used.size() < vertices) {
     memory.used.resize(vertices);
     memory.integer_columns.resize(3 * vertices);
