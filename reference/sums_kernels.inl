@@ -3,13 +3,6 @@
 namespace {
 
 using Doubles [[gnu::vector_size(8 * SOFTFOCUS_LANES)]] = double;
-using Halves [[gnu::vector_size(2 * SOFTFOCUS_LANES)]] = std::uint16_t;
-
-SOFTFOCUS_INLINE Floats load_halves(const std::uint16_t* from) {
-  Halves halves;
-  std::memcpy(&halves, from, sizeof halves);
-  return half_to_float(__builtin_convertvector(halves, Bits));
-}
 
 }  // namespace
 

@@ -406,6 +406,16 @@ SOFTFOCUS_INLINE Floats half_to_float(Bits half) {
   return as_floats(sign | select(magnitude >= kHalfInfinity, special, as_bits(scaled)));
 #endif
 }
+/// Of kLanes halves side by side.
+SOFTFOCUS_INLINE Floats load_halves(const std::uint16_t* from) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_maskz_cvtph_ps(0xFFFF, _mm256_loadu_si256((const __m256i*)from));
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)from));
+#else
+  return half_to_float(Bits{from[0], from[1], from[2], from[3]});
+#endif
+}
 
 /// As float_to_half().
 template <HalfRounding rounding>

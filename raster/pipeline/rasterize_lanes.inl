@@ -173,6 +173,10 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Dept
                    const Profile& profile, VisibilityTile& tile) {
   // A triangle was written long ago, by another thread perhaps.
   constexpr std::size_t kAhead = 6;
+  for (std::size_t i = 0; i < std::min(kAhead, bins.size()); ++i) {
+    __builtin_prefetch(&chunk.triangles[bins[i].triangle]);
+    __builtin_prefetch(&chunk.triangles[bins[i].triangle].bounds);
+  }
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const auto* ahead = reinterpret_cast<const char*>(
         &chunk.triangles[bins[std::min(i + kAhead, bins.size() - 1)].triangle]);

@@ -122,7 +122,12 @@ class TileDrawing {
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                std::byte* texels) {
   TileDrawing drawing{pass, tile_area(lists, tile), memory, texels};
-  for (const TileWork& item : work_of_tile(lists, tile)) drawing.draw(item);
+  const std::span<const TileWork> work = work_of_tile(lists, tile);
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    // What is drawn next was listed long ago.
+    if (i + 1 < work.size()) __builtin_prefetch(work[i + 1].bins.data());
+    drawing.draw(work[i]);
+  }
   drawing.end();
 }
 

@@ -106,28 +106,37 @@ SOFTFOCUS_INLINE Ints triangles_of(const std::uint32_t* entries) {
   return as_ints(as_bits(repeat_by_four(as_ints(load(entries)))) >> (kQuadBits + kQuadPixels));
 }
 
+SOFTFOCUS_INLINE std::uint32_t quad_entry(const VisibleRun& run, std::int32_t id, int quad,
+                                          unsigned pixels) {
+  const auto triangle = static_cast<std::uint32_t>(id - run.first_id);
+  return (triangle << kQuadBits | static_cast<unsigned>(quad)) << kQuadPixels | pixels;
+}
+
 // Of the lanes that begin with a quad. Returns how many quads are listed then.
 SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& run, int quad,
                                 Mask in_area, std::uint32_t* entries, int count) {
-  const Ints ids = load(&tile.ids[static_cast<std::size_t>(quad * kQuadPixels)]);
-  unsigned rest = lane_bits((ids >= run.first_id) & (ids < run.end_id) & in_area);
-  while (rest != 0) {
-    const std::int32_t id = ids[__builtin_ctz(rest)];
-    const unsigned same = lane_bits(ids == id) & rest;
+  const std::int32_t* first_id = &tile.ids[static_cast<std::size_t>(quad * kQuadPixels)];
+  const Ints ids = load(first_id);
+  const unsigned seen = lane_bits((ids >= run.first_id) & (ids < run.end_id) & in_area);
+  if (seen == 0) return count;
+  if (seen == kAllLaneBits && all(ids == ids[0])) {
+    store(entries + count,
+          quad_entry(run, ids[0], quad, 0xFu) + as_bits(lane_numbers() << kQuadPixels));
+    return count + kQuads;
+  }
+  // The triangle that each quad's first pixel shows, and then the others.
+  const unsigned as_first = lane_bits(ids == spread<0>(ids)) & seen;
+  for (int i = 0; i < kQuads; ++i) {
+    const unsigned pixels = as_first >> (i * kQuadPixels) & 0xFu;
+    entries[count] = quad_entry(run, first_id[i * kQuadPixels], quad + i, pixels);
+    count += pixels != 0 ? 1 : 0;
+  }
+  for (unsigned rest = seen & ~as_first; rest != 0;) {
+    const int lane = __builtin_ctz(rest);
+    const int i = lane / kQuadPixels;
+    const unsigned same = lane_bits(ids == first_id[lane]) & rest & 0xFu << (i * kQuadPixels);
     rest &= ~same;
-    const auto triangle = static_cast<std::uint32_t>(id - run.first_id);
-    const std::uint32_t first = (triangle << kQuadBits | static_cast<unsigned>(quad))
-                                << kQuadPixels;
-    if (same == kAllLaneBits) {
-      store(entries + count, first + as_bits(lane_numbers() << kQuadPixels) + 0xFu);
-      count += kQuads;
-      continue;
-    }
-    for (unsigned i = 0; i < kQuads; ++i) {
-      const unsigned pixels = same >> (i * kQuadPixels) & 0xFu;
-      entries[count] = first + (i << kQuadPixels) + pixels;
-      count += pixels != 0 ? 1 : 0;
-    }
+    entries[count++] = quad_entry(run, first_id[lane], quad + i, same >> (i * kQuadPixels));
   }
   return count;
 }
@@ -224,6 +233,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
   const auto stride = static_cast<std::int32_t>(tile.stride_bytes);
   const std::byte* first = tile.texels;
+  const bool in_picture = tile.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
 
   FragmentBatch<Stage::kInputs> batch;
@@ -257,8 +267,8 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     batch.append(stage.inputs(fragments),
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
                  (entry & own_pixel) != 0);
-    // The rows of the picture that the second step writes.
-    for (int lane = 0; lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
+    // The rows of the picture that the second step writes; those of a tile alone are at hand.
+    for (int lane = 0; in_picture && lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
       __builtin_prefetch(first + offsets[lane], 1);
     }
     if (!batch.has_room()) shade_batch(stage, job, tile, batch);
