@@ -21,9 +21,11 @@ DrawCall& draw_of(const Part& part) { return part.pass->draws[part.draw]; }
 
 bool is_in_lanes(const DrawCall& draw) { return draw.lane_steps != nullptr; }
 
-// A draw of few vertices takes all steps at once, while what it writes is in a core's cache.
+// A small draw takes all steps at once, while what it writes is in a core's cache.
 bool is_small(const DrawCall& draw) {
-  return is_in_lanes(draw) && draw.vertex_count <= kChunkVertices;
+  constexpr std::uint32_t kMostChunks = 4;
+  return is_in_lanes(draw) && draw.vertex_count <= kChunkVertices &&
+         draw.chunk_count <= kMostChunks;
 }
 
 // Columns in steps of whole vectors.
@@ -117,7 +119,8 @@ unsigned place_and_shade(const Part& part, SmallColumns& columns) {
   return common;
 }
 
-// Of draws in lanes that are not small, the positions alone. Finds the draws that are outside.
+// Of draws in lanes that are not small, the positions alone. Finds the draws that are outside:
+// of vertices that have all one clip code, no triangle is left.
 void place_all_vertices(std::span<RenderPass> passes, ThreadPool& pool) {
   const std::vector<Part> parts = vertices_of(passes, [](const DrawCall&) { return true; });
   std::vector<unsigned> common_codes(parts.size());
