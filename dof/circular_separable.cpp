@@ -8,7 +8,7 @@
 
 #include "dof/circular_kernel.h"
 #include "dof/picture_planes.h"
-#include "dof/scratch_shelf.h"
+#include "raster/scratch_shelf.h"
 #include "raster/numbers/exact_math.h"
 
 #define SOFTFOCUS_KERNELS "dof/circular_kernels.inl"

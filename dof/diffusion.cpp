@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "dof/scratch_shelf.h"
+#include "raster/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/diffusion_kernels.inl"
 #include "raster/numbers/for_each_isa.inl"

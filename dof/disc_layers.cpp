@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dof/disc_levels.h"
-#include "dof/scratch_shelf.h"
+#include "raster/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/disc_layers_kernels.inl"
 #include "raster/numbers/for_each_isa.inl"

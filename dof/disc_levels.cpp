@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "dof/scratch_shelf.h"
+#include "raster/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/disc_levels_kernels.inl"
 #include "raster/numbers/for_each_isa.inl"

@@ -5,7 +5,7 @@
 
 #include "dof/focus_map.h"
 #include "dof/one_pass.h"
-#include "dof/scratch_shelf.h"
+#include "raster/scratch_shelf.h"
 #include "dof/weights.h"
 
 #define SOFTFOCUS_KERNELS "dof/one_pass_kernels.inl"

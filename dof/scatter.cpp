@@ -10,7 +10,7 @@
 
 #include "dof/picture_planes.h"
 #include "dof/scatter_discs.h"
-#include "dof/scratch_shelf.h"
+#include "raster/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/scatter_kernels.inl"
 #include "raster/numbers/for_each_isa.inl"

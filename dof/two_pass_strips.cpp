@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "dof/scratch_shelf.h"
+#include "raster/scratch_shelf.h"
 
 namespace softfocus {
 namespace {

@@ -22,15 +22,21 @@ struct AccumulationBuffer {
   std::vector<glm::dvec2> points;   ///< of the lens, in radii of the aperture
   std::vector<glm::dvec2> offsets;  ///< of the pixels
   PreparedScene prepared;
-  /// That every view is drawn into, tile by tile.
+  /// The targets of every view, which keep nothing.
   Image picture, depth;
   std::vector<RenderPass> passes;  ///< of a group's views
+  std::vector<TileLists> views;    ///< of the passes
 };
 
 /// For up to `input.sampling.samples` points. The scene must outlive it.
 AccumulationBuffer make_accumulation_buffer(const SceneMethodInput& input, ThreadPool& pool);
 
-/// Draws the samples `begin` to `end` - 1, at most kSampleGroup, and adds them to the sums: all of
+/// So many views are drawn together. Memory for their vertices and triangles grows with it, and
+/// the sums are fetched the less often.
+inline constexpr int kViewGroup = 2 * kSampleGroup;
+
+/// Draws the samples `begin` to `end` - 1, at most kViewGroup, from a multiple of kSampleGroup on,
+/// and adds them to the sums: all of
 /// them into the same tile, one after the other, and then the next tile, so that a sample's
 /// pixels stay in a core's cache and never go to memory.
 /// Needs a buffer that was made for as many points, and the input's scene and profile.

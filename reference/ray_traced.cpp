@@ -185,7 +185,7 @@ SampledPicture ray_traced(const SceneMethodInput& input, ThreadPool& pool) {
     });
     sums.count += end - begin;
   };
-  return take_samples(input, add_samples, pool);
+  return take_samples(input, add_samples, kSampleGroup, pool);
 }
 
 }  // namespace softfocus

@@ -98,14 +98,25 @@ void store_mean(const SampleSums& sums, const Image& depth, const Profile& profi
   pool.for_each(sums.height, [&](int y) {
     const auto from = row<std::uint16_t>(depth, y);
     const auto to = row<std::uint16_t>(picture, y);
-    for (int x = 0; x < sums.width; ++x) {
-      const auto texel = static_cast<std::size_t>(kChannels * x);
-      const double* totals = sums_at(sums, x, y);
-      for (std::size_t c = 0; c < 3; ++c) {
-        to[texel + c] =
-            float_to_half(static_cast<float>(totals[c] / sums.count), profile.half_store);
+    for (int tile_x = 0; tile_x < sums.width; tile_x += kSumTile) {
+      const int end = std::min(tile_x + kSumTile, sums.width);
+      int x = tile_x;
+      if (pool.isa() != Isa::scalar) {
+        const auto first = static_cast<std::size_t>(kChannels * x);
+        x += SOFTFOCUS_KERNEL(pool.isa(), store_means)(sums_at(sums, x, y), sums.count,
+                                                       profile.half_store, &from[first],
+                                                       kChannels * (end - x), &to[first]) /
+             kChannels;
       }
-      to[texel + 3] = from[texel + 3];
+      for (; x < end; ++x) {
+        const auto texel = static_cast<std::size_t>(kChannels * x);
+        const double* totals = sums_at(sums, x, y);
+        for (std::size_t c = 0; c < 3; ++c) {
+          to[texel + c] =
+              float_to_half(static_cast<float>(totals[c] / sums.count), profile.half_store);
+        }
+        to[texel + 3] = from[texel + 3];
+      }
     }
   });
 }

@@ -8,10 +8,11 @@
 
 namespace softfocus {
 
-/// Adds the samples `begin` to `end` - 1, at most kSampleGroup, to the sums and their count.
+/// Adds the samples `begin` to `end` - 1, as many as a step has, to the sums and their count.
 using AddSamples = std::function<void(int begin, int end, SampleSums& sums)>;
 
-SampledPicture take_samples(const SceneMethodInput& input, const AddSamples& add_samples,
+/// In steps of kSampleGroup, and from 16 samples on of `step`: kSampleGroup or twice that.
+SampledPicture take_samples(const SceneMethodInput& input, const AddSamples& add_samples, int step,
                             ThreadPool& pool);
 
 }  // namespace softfocus

@@ -14,7 +14,8 @@ namespace softfocus {
 
 template <SurfaceVariant variant>
 SurfaceLaneStages<variant> surface_lane_stages(Isa isa) {
-  return {SOFTFOCUS_KERNEL(isa, shade_surface_vertices<variant>),
+  return {SOFTFOCUS_KERNEL(isa, place_surface_vertices<variant>),
+          SOFTFOCUS_KERNEL(isa, shade_surface_vertices<variant>),
           SOFTFOCUS_KERNEL(isa, shade_surface_fragments<variant>)};
 }
 

@@ -4,8 +4,10 @@
 #include "raster/images/sample_lanes.inl"
 #include "raster/numbers/vector_math_lanes.inl"
 #include "raster/pipeline/block_lanes.inl"
+#include "raster/pipeline/edge_lanes.inl"
 #include "raster/pipeline/interpolate_lanes.inl"
 #include "raster/pipeline/shade_lanes.inl"
+#include "raster/pipeline/vertex_lanes.inl"
 
 namespace {
 
@@ -62,16 +64,21 @@ struct SurfaceVertexLanes {
   static constexpr std::size_t kVaryings = Layout::kCount;
   const SurfaceVertexInput& input;
 
-  SOFTFOCUS_INLINE void operator()(Ints index, std::array<Floats, 4>& position,
-                                   std::array<Floats, kVaryings>& varyings) const {
+  SOFTFOCUS_INLINE void position(Ints index, std::array<Floats, 4>& in_clip_space) const {
     const Vec3Lanes p = load_vectors(input.mesh->positions, index);
     for (int i = 0; i < 4; ++i) {
       const glm::mat4& m = input.to_clip;
-      position[static_cast<std::size_t>(i)] =
+      in_clip_space[static_cast<std::size_t>(i)] =
           ((m[0][i] * p.x + m[1][i] * p.y) + m[2][i] * p.z) + m[3][i];
     }
-    varyings[Layout::kDepth] = position[3];
+  }
 
+  SOFTFOCUS_INLINE void operator()(Ints index, std::array<Floats, 4>& in_clip_space,
+                                   std::array<Floats, kVaryings>& varyings) const {
+    position(index, in_clip_space);
+    varyings[Layout::kDepth] = in_clip_space[3];
+
+    const Vec3Lanes p = load_vectors(input.mesh->positions, index);
     const glm::mat4& w = input.to_world;
     const Vec3Lanes world{((w[0][0] * p.x + w[1][0] * p.y) + w[2][0] * p.z) + w[3][0],
                           ((w[0][1] * p.x + w[1][1] * p.y) + w[2][1] * p.z) + w[3][1],
@@ -187,12 +194,19 @@ struct SurfaceFragmentLanes {
     const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
     if constexpr (!variant.two_sided) return seen;
     const std::size_t back = Layout::kBack + at;
-    return select(in.front_facing(), seen,
+    const Mask front_facing = in.front_facing();
+    if (all(front_facing)) return seen;
+    return select(front_facing, seen,
                   Vec3Lanes{in.varying(back), in.varying(back + 1), in.varying(back + 2)});
   }
 };
 
 }  // namespace
+
+template <SurfaceVariant variant>
+unsigned place_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {
+  return place_vertices(SurfaceVertexLanes<variant>{stage.input}, job);
+}
 
 template <SurfaceVariant variant>
 void shade_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {

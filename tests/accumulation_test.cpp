@@ -70,7 +70,7 @@ TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes"
   const Profile profile{};
   const View pinhole_view = camera_view(scene.camera, 0.0, width, height);
   const double radius_m = aperture_radius_m(scene.lens.lens, 1.0);
-  for (const int samples : {kSampleGroup, 2 * kSampleGroup + 3}) {
+  for (const int samples : {kSampleGroup, 2 * kViewGroup + kSampleGroup + 3}) {
     ThreadPool pool{2};
     const Sampling sampling{.samples = samples, .jitter = true};
     const Drawn drawn = accumulated(scene, sampling, width, height, pool);

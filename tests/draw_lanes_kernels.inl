@@ -1,8 +1,10 @@
 // The stages of draw_lanes_test.cpp for vector units.
 
 #include "raster/pipeline/block_lanes.inl"
+#include "raster/pipeline/edge_lanes.inl"
 #include "raster/pipeline/interpolate_lanes.inl"
 #include "raster/pipeline/shade_lanes.inl"
+#include "raster/pipeline/vertex_lanes.inl"
 
 namespace {
 
@@ -10,12 +12,20 @@ struct ListedLanes {
   static constexpr std::size_t kVaryings = 4;
   const std::vector<VertexOutput<4>>& list;
 
-  void operator()(Ints index, std::array<Floats, 4>& position,
-                  std::array<Floats, 4>& varyings) const {
+  void position(Ints index, std::array<Floats, 4>& in_clip_space) const {
     for (int lane = 0; lane < kLanes; ++lane) {
       const VertexOutput<4>& vertex = list[static_cast<std::size_t>(index[lane])];
       for (int i = 0; i < 4; ++i) {
-        position[static_cast<std::size_t>(i)][lane] = vertex.position[i];
+        in_clip_space[static_cast<std::size_t>(i)][lane] = vertex.position[i];
+      }
+    }
+  }
+  void operator()(Ints index, std::array<Floats, 4>& in_clip_space,
+                  std::array<Floats, 4>& varyings) const {
+    position(index, in_clip_space);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const VertexOutput<4>& vertex = list[static_cast<std::size_t>(index[lane])];
+      for (int i = 0; i < 4; ++i) {
         varyings[static_cast<std::size_t>(i)][lane] = vertex.varyings[static_cast<std::size_t>(i)];
       }
     }
@@ -39,6 +49,10 @@ struct MixedLanes {
 };
 
 }  // namespace
+
+unsigned place_listed(const test::ListedVertices<4>& stage, const VertexJob& job) {
+  return place_vertices(ListedLanes{*stage.list}, job);
+}
 
 void shade_listed(const test::ListedVertices<4>& stage, const VertexJob& job) {
   shade_vertices(ListedLanes{*stage.list}, job);

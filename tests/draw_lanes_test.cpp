@@ -57,6 +57,11 @@ struct Target {
   int height;
 };
 
+LaneStages<test::ListedVertices<4>, MixedColour> stages_for(Isa isa) {
+  return {SOFTFOCUS_KERNEL(isa, place_listed), SOFTFOCUS_KERNEL(isa, shade_listed),
+          SOFTFOCUS_KERNEL(isa, shade_mixed)};
+}
+
 Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Vertices& vertices,
                  const Profile& profile, int threads = 1) {
   Drawn drawn{make_image(Format::rgba16f, target.width, target.height),
@@ -76,9 +81,7 @@ Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Ve
     draw(pass, state, indices, count, vertex_stage, MixedColour{});
   } else {
     REQUIRE(can_draw_in_lanes(pass, state));
-    draw_lanes(pass, state, indices, count, vertex_stage, MixedColour{},
-               LaneStages<test::ListedVertices<4>, MixedColour>{
-                   SOFTFOCUS_KERNEL(isa, shade_listed), SOFTFOCUS_KERNEL(isa, shade_mixed)});
+    draw_lanes(pass, state, indices, count, vertex_stage, MixedColour{}, stages_for(isa));
   }
   finish(pass, pool);
   return drawn;
@@ -127,6 +130,16 @@ TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
       check_all_isas(kTarget, {}, random_triangles(random, kTarget, 1500, size),
                      profile_named(name));
     }
+  }
+}
+
+TEST_CASE("lanes: triangles as large as the guard band lets them be have the scalar form's bits") {
+  test::Random random{511};
+  const Target target{kMaxImageSize, 9};
+  DrawState state;
+  state.cull = Cull::none;
+  for (const double size : {60e3, 300e3}) {
+    check_all_isas(target, state, random_triangles(random, target, 16, size), {});
   }
 }
 
@@ -272,14 +285,12 @@ TEST_CASE("lanes: a pass mixes draws in lanes with draws that blend") {
     pass.clear_depth = 1.0f;
     const std::vector<std::uint32_t> indices = test::indices_up_to(opaque.size());
     const auto count = static_cast<std::uint32_t>(opaque.size());
-    const LaneStages<test::ListedVertices<4>, MixedColour> stages{
-        SOFTFOCUS_KERNEL(isa, shade_listed), SOFTFOCUS_KERNEL(isa, shade_mixed)};
     for (int i = 0; i < 2; ++i) {
       const test::ListedVertices<4> solid{i == 0 ? &opaque : &over};
       if (isa == Isa::scalar) {
         draw(pass, {}, indices, count, solid, MixedColour{});
       } else {
-        draw_lanes(pass, {}, indices, count, solid, MixedColour{}, stages);
+        draw_lanes(pass, {}, indices, count, solid, MixedColour{}, stages_for(isa));
       }
       DrawState blending = test::adding_state();
       blending.depth = DepthState{};
@@ -295,6 +306,108 @@ TEST_CASE("lanes: a pass mixes draws in lanes with draws that blend") {
     const Drawn drawn = draw_both(isa);
     CHECK(equal(drawn.colour, expected.colour));
     CHECK(equal(drawn.depth, expected.depth));
+  }
+}
+
+TEST_CASE("lanes: a vertex is shaded where triangles that are drawn have it, and else left") {
+  // Vertex 3 belongs to a triangle that faces away, 4 to none.
+  const auto at = [](float x, float y) {
+    return VertexOutput<4>{test::at_window({x, y}, 64, 64), {}};
+  };
+  const Vertices vertices{at(4, 4), at(60, 4), at(60, 60), at(4, 60), at(32, 32)};
+  const std::vector<std::uint32_t> indices{0, 2, 1, 0, 2, 3};
+  Image colour = make_image(Format::rgba16f, 64, 64), depth = make_image(Format::r32f, 64, 64);
+  for (const Isa isa : available_isas()) {
+    if (isa == Isa::scalar) continue;
+    RenderPass pass;
+    pass.targets.colour[0] = &colour;
+    pass.targets.depth = &depth;
+    pass.isa = isa;
+    ThreadPool pool{1, isa};
+    for (const bool again : {false, true}) {
+      draw_lanes(pass, {}, indices, 5, test::ListedVertices<4>{&vertices}, MixedColour{},
+                 stages_for(isa));
+      TileLists lists;
+      if (again) std::memset(pass.memory.rows.get(), 0x7F, 5 * sizeof(CacheLine));
+      sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
+      for (std::size_t i = 0; again && i < 5; ++i) {
+        CHECK((pass.memory.rows[i].floats[kVertexInverseW] == 1.0f) == (i < 3));
+      }
+      pass.draws.clear();
+    }
+  }
+}
+
+TEST_CASE("lanes: a draw beyond one plane of the view is set aside with its vertices alone") {
+  test::Random random{512};
+  Vertices beside = random_triangles(random, kTarget, 2000, 4.0);
+  for (VertexOutput<4>& vertex : beside) vertex.position.x = -20.0f * vertex.position.w;
+  Vertices across = beside;
+  across[1000].position.x = 0.0f;
+  Image colour = make_image(Format::rgba16f, kTarget.width, kTarget.height);
+  Image depth = make_image(Format::r32f, kTarget.width, kTarget.height);
+  for (const Isa isa : available_isas()) {
+    if (isa == Isa::scalar) continue;
+    RenderPass pass;
+    pass.targets.colour[0] = &colour;
+    pass.targets.depth = &depth;
+    pass.isa = isa;
+    const std::vector<std::uint32_t> indices = test::indices_up_to(beside.size());
+    for (const std::size_t count : {std::size_t{900}, beside.size()}) {
+      for (const Vertices* vertices : {&beside, &across}) {
+        draw_lanes(pass, {}, std::span{indices}.first(count), static_cast<std::uint32_t>(count),
+                   test::ListedVertices<4>{vertices}, MixedColour{}, stages_for(isa));
+      }
+    }
+    TileLists lists;
+    ThreadPool pool{2, isa};
+    sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
+    CHECK(pass.draws[0].is_outside);
+    CHECK(pass.draws[1].is_outside);  // that vertex is not among its first 900
+    CHECK(pass.draws[2].is_outside);
+    CHECK(!pass.draws[3].is_outside);
+  }
+}
+
+TEST_CASE("lanes: a tile drawn aside has the bits that the target would have") {
+  test::Random random{513};
+  const Vertices vertices = random_triangles(random, kTarget, 400, 30.0);
+  const std::vector<std::uint32_t> indices = test::indices_up_to(vertices.size());
+  const auto count = static_cast<std::uint32_t>(vertices.size());
+  for (const Isa isa : available_isas()) {
+    const Drawn expected = draw_mixed(isa, kTarget, {}, vertices, {});
+    Drawn drawn{make_image(Format::rgba16f, kTarget.width, kTarget.height),
+                make_image(Format::r32f, kTarget.width, kTarget.height)};
+    RenderPass pass;
+    pass.targets.colour[0] = &drawn.colour;
+    pass.targets.depth = &drawn.depth;
+    pass.isa = isa;
+    pass.clear_colour = glm::vec4{0.25f};
+    pass.clear_depth = 0.75f;
+    const test::ListedVertices<4> stage{&vertices};
+    if (isa == Isa::scalar) {
+      draw(pass, {}, indices, count, stage, MixedColour{});
+    } else {
+      draw_lanes(pass, {}, indices, count, stage, MixedColour{}, stages_for(isa));
+    }
+    TileLists lists;
+    ThreadPool pool{1, isa};
+    sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
+    TileMemory memory;
+    for (int tile = 0; tile < tile_count(lists); ++tile) {
+      const Rectangle area = tile_area(lists, tile);
+      const auto row_bytes = static_cast<std::size_t>(area.x_end - area.x_begin) * 8;
+      std::vector<std::byte> texels(row_bytes * kTileSize);
+      draw_tile_aside(pass, lists, tile, memory, texels.data());
+      bool all_equal = true;
+      for (int y = area.y_begin; y < area.y_end; ++y) {
+        const auto from = row<std::uint16_t>(expected.colour, y);
+        all_equal = all_equal &&
+                    std::memcmp(&texels[static_cast<std::size_t>(y - area.y_begin) * row_bytes],
+                                &from[static_cast<std::size_t>(4 * area.x_begin)], row_bytes) == 0;
+      }
+      CHECK(all_equal);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // Each function of lanes.inl over a vector of arguments, for lane_functions_test.cpp.
 
 void lanes_half_to_float(const std::uint32_t* a, float* to) { store(to, half_to_float(load(a))); }
+void lanes_load_halves(const std::uint16_t* a, float* to) { store(to, load_halves(a)); }
 void lanes_to_half_nearest(const float* a, std::uint32_t* to) {
   store(to, float_to_half<HalfRounding::nearest_even>(load(a)));
 }
@@ -33,6 +34,7 @@ void lanes_fused_multiply_add(const float* a, const float* b, const float* c, fl
 }
 
 unsigned lanes_positive_bits(const std::int32_t* a) { return lane_bits(load(a) > 0); }
+unsigned lanes_sign_bits(const std::int32_t* a) { return sign_bits(load(a)); }
 bool lanes_any_positive(const std::int32_t* a) { return any(load(a) > 0); }
 bool lanes_all_positive(const std::int32_t* a) { return all(load(a) > 0); }
 unsigned lanes_first(int count) { return lane_bits(first_lanes(count)); }

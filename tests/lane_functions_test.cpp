@@ -109,6 +109,21 @@ TEST_CASE("lanes turn every half into the float that it is") {
   }
 }
 
+TEST_CASE("lanes turn halves that lie side by side into floats") {
+  std::vector<std::uint16_t> halves(0x10000);
+  for (std::size_t i = 0; i < halves.size(); ++i) halves[i] = static_cast<std::uint16_t>(i);
+  for (const Isa isa : units()) {
+    const auto count = static_cast<std::size_t>(lanes(isa));
+    std::array<float, kMost> floats{};
+    for (std::size_t i = 0; i < halves.size(); i += count) {
+      SOFTFOCUS_KERNEL(isa, lanes_load_halves)(&halves[i], floats.data());
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        REQUIRE(same(floats[lane], half_to_float(halves[i + lane])));
+      }
+    }
+  }
+}
+
 TEST_CASE("lanes round floats of all kinds to the scalar form's half") {
   for (const std::vector<float>& floats : {floats_of_all_kinds(), floats_about_halves()}) {
     for (const Isa isa : units()) {
@@ -185,6 +200,8 @@ TEST_CASE("lanes tell which, whether any and whether all") {
         if (set) expected.push_back(values[lane]);
       }
       REQUIRE(SOFTFOCUS_KERNEL(isa, lanes_positive_bits)(values.data()) == bits);
+      // Lane 0 is 5 or 0.
+      REQUIRE(SOFTFOCUS_KERNEL(isa, lanes_sign_bits)(values.data()) == (all & ~1u & ~bits));
       REQUIRE(SOFTFOCUS_KERNEL(isa, lanes_any_positive)(values.data()) == (bits != 0));
       REQUIRE(SOFTFOCUS_KERNEL(isa, lanes_all_positive)(values.data()) == (bits == all));
       const int left = SOFTFOCUS_KERNEL(isa, lanes_compress_positive)(values.data(), kept.data());

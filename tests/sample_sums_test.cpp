@@ -66,6 +66,26 @@ TEST_CASE("sums are the same on every vector unit and any number of threads") {
   }
 }
 
+TEST_CASE("means are the same on every vector unit, rounded either way") {
+  test::Random random{23};
+  ThreadPool plain{1, Isa::scalar};
+  for (const int width : {1, 5, 64, 67, 150}) {
+    SampleSums sums = make_sample_sums(width, 3);
+    for (double& total : sums.totals)
+      total = random.between(-40.0, 40.0) * random.between(0.0, 1.0);
+    sums.count = 7;
+    const Image depth = picture_of(width, 3, {1.0f, 2.0f, 3.0f, 4.0f});
+    for (const char* name : {"ieee", "llvmpipe"}) {
+      const Profile profile = test::profile_named(name);
+      const Image expected = mean_picture(sums, depth, profile, plain);
+      for (const Isa isa : available_isas()) {
+        ThreadPool pool{2, isa};
+        CHECK(equal(mean_picture(sums, depth, profile, pool), expected));
+      }
+    }
+  }
+}
+
 TEST_CASE("the mean of one picture is that picture, -0 and infinities included") {
   test::Random random;
   ThreadPool pool{2};

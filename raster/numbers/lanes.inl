@@ -95,6 +95,14 @@ SOFTFOCUS_INLINE unsigned lane_bits(Mask mask) {
   return bits;
 #endif
 }
+/// Bit i is set where lane i is negative: of a mask that need not be made.
+SOFTFOCUS_INLINE unsigned sign_bits(Ints v) {
+#if SOFTFOCUS_LANES == 16 || SOFTFOCUS_LANES == 8 || defined(__SSE2__)
+  return lane_bits(v);
+#else
+  return lane_bits(v < 0);
+#endif
+}
 inline constexpr unsigned kAllLaneBits = (1u << SOFTFOCUS_LANES) - 1;
 SOFTFOCUS_INLINE bool any(Mask mask) { return lane_bits(mask) != 0; }
 SOFTFOCUS_INLINE bool all(Mask mask) { return lane_bits(mask) == kAllLaneBits; }
@@ -396,6 +404,16 @@ SOFTFOCUS_INLINE Floats half_to_float(Bits half) {
   const Bits special = 0x7F800000u | quiet | (magnitude & 0x3FFu) << 13;
   const Floats scaled = as_floats(magnitude << 13) * 0x1p112f;
   return as_floats(sign | select(magnitude >= kHalfInfinity, special, as_bits(scaled)));
+#endif
+}
+/// Of kLanes halves side by side.
+SOFTFOCUS_INLINE Floats load_halves(const std::uint16_t* from) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_maskz_cvtph_ps(0xFFFF, _mm256_loadu_si256((const __m256i*)from));
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)from));
+#else
+  return half_to_float(Bits{from[0], from[1], from[2], from[3]});
 #endif
 }
 

@@ -92,15 +92,19 @@ SOFTFOCUS_INLINE void store_to(std::array<float, kLanes>& column, Floats v) {
 
 SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t lane,
                                     const AssembleJob& job, LaneTriangle& t) {
+#pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
     t.edge[i] = columns.edge[i][lane];
     t.per_x[i] = columns.per_x[i][lane];
     t.per_y[i] = columns.per_y[i][lane];
     t.depth[i] = columns.depth[i][lane];
     t.thresholds[i] = static_cast<std::int8_t>(columns.threshold[i][lane]);
-    t.vertices[i] =
-        job.vertices.rows + static_cast<std::size_t>(columns.index[i][lane]) * job.vertices.stride;
+    const auto vertex = static_cast<std::size_t>(columns.index[i][lane]);
+    t.vertices[i] = job.vertices.rows + vertex * job.vertices.stride;
+    // Chunks have vertices in common.
+    std::atomic_ref{job.vertices.used[vertex]}.store(1, std::memory_order_relaxed);
   }
+#pragma GCC unroll 4
   for (std::size_t i = 0; i < 4; ++i) {
     t.bounds[i] = static_cast<std::int16_t>(columns.bounds[i][lane]);
   }
@@ -117,7 +121,6 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
 void assemble(const AssembleJob& job, LaneChunk& chunk) {
   constexpr std::int32_t kClipBits = (1 << 6) - 1;
   const VertexStore& vertices = job.vertices;
-  const auto stride = static_cast<std::int32_t>(vertices.stride);
   const bool planes = job.profile->attributes == AttributeSetup::planes_from_origin;
   TriangleColumns columns;
 
@@ -167,16 +170,16 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
       const bool keeps_clockwise = front_is_clockwise == (job.cull == Cull::back);
       kept &= keeps_clockwise ? clockwise : ~clockwise;
     }
-    const IntCorners rows = {index[0] * stride, index[1] * stride, index[2] * stride};
     Corners window_x{}, window_y{};
     if (planes || job.cull_unsnapped) {
-      window_x = gather_corners(vertices.rows + kVertexX, rows, kept);
-      window_y = gather_corners(vertices.rows + kVertexY, rows, kept);
+      window_x = gather_corners(vertices.x, index, kept);
+      window_y = gather_corners(vertices.y, index, kept);
     }
     if (job.cull_unsnapped) kept &= ~culled_unsnapped(job, window_x, window_y);
     if (!any(kept | slow)) continue;
 
     EdgeLanes edges;
+#pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t from = (i + 1) % 3;
       const std::size_t to = (i + 2) % 3;
@@ -210,7 +213,7 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
       store_to(columns.inverse_area, 1.0f / to_floats(positive_area));
       columns.clockwise = lane_bits(clockwise);
 
-      const Corners depth = gather_corners(vertices.rows + kVertexDepth, rows, kept);
+      const Corners depth = gather_corners(vertices.depth, index, kept);
       const Corners fields = planes
                                  ? depth_plane(window_x, window_y, depth, clockwise, job.provoking)
                                  : Corners{depth[0], depth[1] - depth[0], depth[2] - depth[0]};

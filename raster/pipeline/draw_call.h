@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 
 #include "raster/pipeline/state.h"
@@ -34,14 +35,28 @@ struct LaneChunk;
 struct VisibilityTile;
 struct VisibleRun;
 
+/// The steps of a draw in lanes, each on what was recorded of it.
+struct LaneSteps {
+  /// Where the vertices are to go; before anything else.
+  void (*use_store)(void* draw, const VertexStore& store);
+  /// Positions of the vertices begin <= i < end. Returns the clip codes that all have.
+  unsigned (*place_vertices)(const void* draw, std::uint32_t begin, std::uint32_t end);
+  /// Clips and sets up the triangles of a chunk, and sorts them into tiles.
+  void (*assemble)(const void* draw, std::uint32_t number, LaneChunk& chunk);
+  /// Runs the vertex stage over those of the vertices that triangles to be drawn have.
+  void (*shade_vertices)(const void* draw, std::uint32_t begin, std::uint32_t end);
+  /// Shades the pixels of a tile that show a run of the draw's triangles.
+  void (*shade_seen)(const void* draw, const VisibilityTile& tile, const VisibleRun& run);
+};
+
 struct DrawCall {
   std::uint32_t vertex_count = 0;
   std::uint32_t chunk_count = 0;
-  /// Runs the vertex stage over vertices begin <= i < end.
-  std::function<void(std::uint32_t begin, std::uint32_t end)> shade_vertices;
 
   // --- one fragment after the other ---
 
+  /// Runs the vertex stage over vertices begin <= i < end.
+  std::function<void(std::uint32_t begin, std::uint32_t end)> shade_vertices;
   /// Clips and sets up the triangles of a chunk, and sorts them into tiles.
   std::function<void(std::uint32_t chunk)> assemble;
   std::function<std::span<const Bin>(std::uint32_t chunk)> bins;
@@ -51,14 +66,14 @@ struct DrawCall {
 
   // --- in lanes ---
 
-  bool in_lanes = false;
+  const LaneSteps* lane_steps = nullptr;  ///< none: the draw is not in lanes
+  std::shared_ptr<void> lane_draw = nullptr;
   std::uint32_t vertex_stride = 0;  ///< floats that a vertex takes
-  DepthState depth;
-  /// Where the vertices are to go; before anything else.
-  std::function<void(const VertexStore& store)> use_store;
-  std::function<void(std::uint32_t number, LaneChunk& chunk)> assemble_lanes;
-  /// Shades the pixels of a tile that show a run of the draw's triangles.
-  std::function<void(const VisibilityTile& tile, const VisibleRun& run)> shade_seen;
+  DepthState depth = {};
+  // What is found on the way: where its rows begin, and whether all of it lies beyond one plane of
+  // the view.
+  std::size_t first_line = 0;
+  bool is_outside = false;
 };
 
 }  // namespace softfocus

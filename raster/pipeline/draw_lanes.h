@@ -27,14 +27,14 @@ struct VertexJob {
 
 /// What is seen of a draw in a tile.
 struct FragmentJob {
-  Image* target;  ///< RGBA16F
   std::size_t provoking;
   const Profile* profile;
 };
 
-/// The stages of a draw, compiled for a vector unit (shade_lanes.inl).
+/// The stages of a draw, compiled for a vector unit (vertex_lanes.inl, shade_lanes.inl).
 template <class VertexStage, class FragmentStage>
 struct LaneStages {
+  unsigned (*place_vertices)(const VertexStage&, const VertexJob&);
   void (*shade_vertices)(const VertexStage&, const VertexJob&);
   void (*shade_fragments)(const FragmentStage&, const FragmentJob&, const VisibilityTile&,
                           const VisibleRun&);
@@ -111,7 +111,35 @@ struct LaneDraw {
     }
     bin_triangles(chunk, (clip.x_end + kTileSize - 1) / kTileSize);
   }
+
+  VertexJob vertex_job(std::uint32_t begin, std::uint32_t end) const {
+    return {store, begin, end, clip.x_end, clip.y_end, &profile};
+  }
 };
+
+template <class Draw>
+const Draw& as(const void* draw) {
+  return *static_cast<const Draw*>(draw);
+}
+
+template <class Draw>
+inline constexpr LaneSteps kLaneSteps{
+    [](void* draw, const VertexStore& store) { static_cast<Draw*>(draw)->store = store; },
+    [](const void* draw, std::uint32_t begin, std::uint32_t end) {
+      const Draw& d = as<Draw>(draw);
+      return d.stages.place_vertices(d.vertex_stage, d.vertex_job(begin, end));
+    },
+    [](const void* draw, std::uint32_t number, LaneChunk& chunk) {
+      as<Draw>(draw).assemble(chunk, number);
+    },
+    [](const void* draw, std::uint32_t begin, std::uint32_t end) {
+      const Draw& d = as<Draw>(draw);
+      d.stages.shade_vertices(d.vertex_stage, d.vertex_job(begin, end));
+    },
+    [](const void* draw, const VisibilityTile& tile, const VisibleRun& run) {
+      const Draw& d = as<Draw>(draw);
+      d.stages.shade_fragments(d.fragment_stage, d.fragments, tile, run);
+    }};
 
 }  // namespace draw_detail
 
@@ -123,39 +151,27 @@ void draw_lanes(RenderPass& pass, const DrawState& state, std::span<const std::u
   assert(can_draw_in_lanes(pass, state));
   assert(indices.size() % 3 == 0);
   using Draw = draw_detail::LaneDraw<VertexStage, FragmentStage>;
-  const auto recorded =
-      std::make_shared<Draw>(Draw{state,
-                                  pass.profile,
-                                  pass.isa,
-                                  target_area(pass.targets),
-                                  indices,
-                                  vertex_count,
-                                  std::move(vertex_stage),
-                                  std::move(fragment_stage),
-                                  stages,
-                                  {pass.targets.colour[0], provoking_index(state), nullptr},
-                                  {}});
+  const auto recorded = std::make_shared<Draw>(Draw{state,
+                                                    pass.profile,
+                                                    pass.isa,
+                                                    target_area(pass.targets),
+                                                    indices,
+                                                    vertex_count,
+                                                    std::move(vertex_stage),
+                                                    std::move(fragment_stage),
+                                                    stages,
+                                                    {provoking_index(state), nullptr},
+                                                    {}});
   recorded->fragments.profile = &recorded->profile;
 
   const auto triangles = static_cast<std::uint32_t>(indices.size() / 3);
   DrawCall call;
   call.vertex_count = vertex_count;
-  call.vertex_stride = vertex_row_size(Draw::N);
   call.chunk_count = (triangles + kChunkTriangles - 1) / kChunkTriangles;
+  call.lane_steps = &draw_detail::kLaneSteps<Draw>;
+  call.lane_draw = recorded;
+  call.vertex_stride = vertex_stride(Draw::N);
   call.depth = *state.depth;
-  call.in_lanes = true;
-  call.use_store = [recorded](const VertexStore& store) { recorded->store = store; };
-  call.shade_vertices = [recorded](std::uint32_t begin, std::uint32_t end) {
-    recorded->stages.shade_vertices(recorded->vertex_stage,
-                                    {recorded->store, begin, end, recorded->clip.x_end,
-                                     recorded->clip.y_end, &recorded->profile});
-  };
-  call.assemble_lanes = [recorded](std::uint32_t number, LaneChunk& chunk) {
-    recorded->assemble(chunk, number);
-  };
-  call.shade_seen = [recorded](const VisibilityTile& tile, const VisibleRun& run) {
-    recorded->stages.shade_fragments(recorded->fragment_stage, recorded->fragments, tile, run);
-  };
   pass.draws.push_back(std::move(call));
 }
 

@@ -84,6 +84,7 @@ struct BarycentricLanes {
     inverse_area = spread<3>(rows);
     of_quads = &triangles;
     for (const LaneTriangle* t : triangles) any_large = any_large || t->large != nullptr;
+    if (any_large) load_wide();
   }
 
   SOFTFOCUS_INLINE Weights weights(Ints x, Ints y) const {
@@ -104,14 +105,49 @@ struct BarycentricLanes {
     return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
   }
 
-  // Edge functions that 32 bits do not hold.
-  void weigh_large(const Ints& x, const Ints& y, std::array<Floats, 3>& l) const {
+  // Edge functions that 32 bits do not hold, and with them those of the other quads.
+  struct WideEdge {
+    WideLanes at_origin, per_x, per_y;
+  };
+  std::array<WideEdge, 3> wide;
+  bool any_huge;
+
+  SOFTFOCUS_INLINE void load_wide() {
+    any_huge = false;
+    for (const LaneTriangle* t : *of_quads) {
+      any_huge = any_huge || (t->large != nullptr && !t->large->fits_doubles);
+    }
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::array<double, kQuads> at_origin, along_x, along_y;
+#pragma GCC unroll 4
+      for (std::size_t quad = 0; quad < kQuads; ++quad) {
+        const LaneTriangle& t = *(*of_quads)[quad];
+        at_origin[quad] = t.large != nullptr ? t.large->edge[i] : t.edge[i];
+        along_x[quad] = t.large != nullptr ? t.large->per_x[i] : t.per_x[i];
+        along_y[quad] = t.large != nullptr ? t.large->per_y[i] : t.per_y[i];
+      }
+      wide[i] = {wide_repeat(at_origin), wide_repeat(along_x), wide_repeat(along_y)};
+    }
+  }
+
+  SOFTFOCUS_INLINE void weigh_large(Ints x, Ints y, std::array<Floats, 3>& l) const {
+    const WideLanes dx = widen(x - x_origin);
+    const WideLanes dy = widen(y - y_origin);
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) {
+      l[i] = narrow(wide[i].at_origin + (dx * wide[i].per_x + dy * wide[i].per_y));
+    }
+    if (any_huge) weigh_huge(x, y, l);
+  }
+
+  void weigh_huge(const Ints& x, const Ints& y, std::array<Floats, 3>& l) const {
     for (int lane = 0; lane < kLanes; ++lane) {
       const LaneTriangle& t = *(*of_quads)[static_cast<std::size_t>(lane / kQuadPixels)];
       if (t.large == nullptr) continue;
 #pragma GCC unroll 3
       for (std::size_t i = 0; i < 3; ++i) {
-        l[i][lane] = static_cast<float>(edge_at(t.large->edges[i], x[lane], y[lane]));
+        l[i][lane] = static_cast<float>(edge_at(t.large->exact.edges[i], x[lane], y[lane]));
       }
     }
   }

@@ -27,11 +27,22 @@ void for_each_tile(const TileRange& tiles, const Visit& visit) {
   }
 }
 
-bool is_small(const EdgeFunctions& functions) {
-  return std::all_of(functions.edges.begin(), functions.edges.end(), [](const EdgeFunction& edge) {
-    constexpr std::int64_t kLargest = std::int64_t{kSmallExtent} * kSubpixelOne;
-    return std::abs(edge.per_x) <= kLargest && std::abs(edge.per_y) <= kLargest;
+bool extends_to(const EdgeFunctions& functions, std::int64_t extent) {
+  const std::int64_t largest = extent * kSubpixelOne;
+  return std::all_of(functions.edges.begin(), functions.edges.end(), [&](const EdgeFunction& edge) {
+    return std::abs(edge.per_x) <= largest && std::abs(edge.per_y) <= largest;
   });
+}
+
+LargeEdges large_edges(const EdgeFunctions& functions, int x_origin, int y_origin) {
+  LargeEdges large{functions, {}, {}, {}, extends_to(functions, kWideExtent)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const EdgeFunction& edge = functions.edges[i];
+    large.edge[i] = static_cast<double>(edge_at(edge, x_origin, y_origin));
+    large.per_x[i] = static_cast<double>(edge.per_x);
+    large.per_y[i] = static_cast<double>(edge.per_y);
+  }
+  return large;
 }
 
 std::array<float, 3> depth_fields(const TriangleSetup& setup, std::size_t provoking,
@@ -61,7 +72,9 @@ LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
   LaneTriangle t{};
   t.x_origin = setup.bounds.x_begin;
   t.y_origin = setup.bounds.y_begin;
-  if (!is_small(functions)) t.large = &chunk.large.emplace_back(functions);
+  if (!extends_to(functions, kSmallExtent)) {
+    t.large = &chunk.large.emplace_back(large_edges(functions, t.x_origin, t.y_origin));
+  }
   for (std::size_t i = 0; i < 3; ++i) {
     const EdgeFunction& edge = functions.edges[i];
     t.thresholds[i] = edge.owns_centres ? 0 : 1;
@@ -149,7 +162,8 @@ void end_tile(const VisibilityTile& tile, Image& depth) {
 }
 
 void shade_tile(const VisibilityTile& tile) {
-  for (const VisibleRun& run : tile.runs) run.draw->shade_seen(tile, run);
+  for (const VisibleRun& run : tile.runs)
+    run.draw->lane_steps->shade_seen(run.draw->lane_draw.get(), tile, run);
 }
 
 }  // namespace softfocus

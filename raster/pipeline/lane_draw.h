@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,17 +29,27 @@ inline constexpr std::size_t vertex_row_size(std::size_t varyings) {
   return (kVertexVaryings + varyings + 3) / 4 * 4;
 }
 
+/// From row to row: whole lines of a cache, of which few vertices then have two.
+inline constexpr std::size_t kLineFloats = 16;
+inline constexpr std::size_t vertex_stride(std::size_t varyings) {
+  return (kVertexVaryings + varyings + kLineFloats - 1) / kLineFloats * kLineFloats;
+}
+
 /// Beside the clip codes: a window position that set-up takes for no number.
 inline constexpr unsigned kNotDrawable = 1u << 30;
 
-/// The shaded vertices of a draw. Rows for set-up that reads one quantity of many, and
-/// columns for shading that reads all of one.
+/// The vertices of a draw. Columns of what set-up asks of every vertex, and rows of those that
+/// the triangles to be drawn have.
 struct VertexStore {
-  float* rows = nullptr;  ///< `stride` floats a vertex
+  float* rows = nullptr;  ///< `stride` floats a vertex, at lines of a cache
   std::size_t stride = 0;
   std::int32_t* snapped_x = nullptr;  ///< in 1/256 pixel from the centre of pixel (0, 0)
   std::int32_t* snapped_y = nullptr;
   std::int32_t* codes = nullptr;  ///< clip_code(), kNotDrawable
+  float* x = nullptr;             ///< in the window, and the depth there
+  float* y = nullptr;
+  float* depth = nullptr;
+  std::uint8_t* used = nullptr;  ///< 1: the row is wanted; else 0
 };
 
 /// The largest triangle, in 1/256 pixel along x and y, whose edge functions 32 bits hold
@@ -46,8 +57,21 @@ struct VertexStore {
 /// 2 * 22528 * (22528 + 8 * 256) < 2^31.
 inline constexpr std::int32_t kSmallExtent = 88 * 256;
 
-/// A triangle that is drawn.
-struct LaneTriangle {
+/// The edge functions of a triangle that is not small.
+struct LargeEdges {
+  EdgeFunctions exact;
+  /// In binary64, counted from the triangle's pixel (x_origin, y_origin): exact too if it
+  /// extends to no more than kWideExtent.
+  std::array<double, 3> edge, per_x, per_y;
+  bool fits_doubles;
+};
+
+/// In 1/256 pixel along x and y. Values in the blocks that the bounds touch, and the sums on the
+/// way to them, stay below 2 * 2^33 * (2^17 + 8) < 2^53.
+inline constexpr std::int64_t kWideExtent = 1 << 25;
+
+/// A triangle that is drawn, in two lines of a cache.
+struct alignas(64) LaneTriangle {
   // Three times four numbers, which kernels load at once.
   /// Edge functions at the pixel (x_origin, y_origin), of a small triangle.
   std::array<std::int32_t, 3> edge;
@@ -63,7 +87,7 @@ struct LaneTriangle {
   bool clockwise;
   bool front_facing;
   std::array<const float*, 3> vertices;
-  const EdgeFunctions* large;  ///< of a triangle that is not small, else null
+  const LargeEdges* large;  ///< of a triangle that is not small, else null
 };
 static_assert(offsetof(LaneTriangle, edge) == 0 &&
               offsetof(LaneTriangle, per_x) == 4 * sizeof(float) &&
@@ -83,7 +107,7 @@ struct LaneChunk {
   std::vector<TileBins> tiles;
   // What clipping made, and the edges of large triangles; they do not move.
   std::deque<std::array<float, vertex_row_size(kMaxVaryings)>> new_vertices;
-  std::deque<EdgeFunctions> large;
+  std::deque<LargeEdges> large;
 };
 
 /// Empties it, and keeps its memory.
@@ -94,7 +118,13 @@ inline LaneTriangle& next_triangle(LaneChunk& chunk) {
   if (chunk.triangle_count == chunk.triangles.size()) {
     chunk.triangles.resize(2 * chunk.triangles.size() + 128);
   }
-  return chunk.triangles[chunk.triangle_count++];
+  LaneTriangle& triangle = chunk.triangles[chunk.triangle_count++];
+  // Those to come, which were read last in another frame.
+  constexpr std::size_t kBytesAhead = 8 * sizeof(LaneTriangle);
+  const char* ahead = reinterpret_cast<const char*>(&triangle) + kBytesAhead;
+  __builtin_prefetch(ahead, 1);
+  __builtin_prefetch(ahead + kLineFloats * sizeof(float), 1);
+  return triangle;
 }
 
 /// Appends a triangle that was set up by itself, for the caller to give it vertices.
@@ -129,6 +159,9 @@ struct VisibleRun {
 /// The depth buffer of a tile while it is drawn, and which triangle is seen in each pixel.
 struct VisibilityTile {
   Rectangle area;  ///< in the target; x_begin and y_begin are multiples of kTileSize
+  /// Where its pixels go when they are shaded, RGBA16F: the upper left one.
+  std::byte* texels;
+  std::size_t stride_bytes;
   alignas(64) std::array<float, kTilePixels> depth;
   alignas(64) std::array<std::int32_t, kTilePixels> ids;  ///< from 1 on; 0: none
   std::vector<const LaneTriangle*> triangles;             ///< by id - 1
@@ -148,10 +181,17 @@ void end_tile(const VisibilityTile& tile, Image& depth);
 /// Ids fit beside a quad's number and its pixels in 32 bits (shade_lanes.inl).
 inline constexpr std::size_t kMostVisible = (std::size_t{1} << 18) - 1;
 
+struct alignas(4 * kLineFloats) CacheLine {
+  std::array<float, kLineFloats> floats;
+};
+
 /// Memory of draws, kept from frame to frame.
 struct LaneMemory {
-  std::vector<float> rows;
-  std::vector<std::int32_t> columns;
+  std::unique_ptr<CacheLine[]> rows;  ///< never all of it touched: few vertices are used
+  std::size_t row_lines = 0;
+  std::vector<std::int32_t> integer_columns;
+  std::vector<float> float_columns;
+  std::vector<std::uint8_t> used;  ///< all 0 between frames
   std::vector<LaneChunk> chunks;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/fixed_point.h"
@@ -28,11 +29,10 @@ void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
   SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, state, profile, tile);
 }
 
-void clear_unseen(Isa isa, const VisibilityTile& tile, Image& colour, glm::vec4 value,
-                  const Profile& profile) {
+void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile) {
   Image row = make_image(Format::rgba16f, kBlockSize, 1);
   clear_image(row, 0, 0, kBlockSize, 1, value, profile);
-  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, colour, row.bytes.data());
+  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, row.bytes.data());
 }
 
 }  // namespace softfocus

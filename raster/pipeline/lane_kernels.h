@@ -39,8 +39,7 @@ void assemble_lanes(Isa isa, const AssembleJob& job, LaneChunk& chunk);
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DepthState& state, const Profile& profile, VisibilityTile& tile);
 
-/// Sets the pixels of an RGBA16F image that show nothing in the tile.
-void clear_unseen(Isa isa, const VisibilityTile& tile, Image& colour, glm::vec4 value,
-                  const Profile& profile);
+/// Sets the pixels of the tile that show nothing.
+void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile);
 
 }  // namespace softfocus

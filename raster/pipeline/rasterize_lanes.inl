@@ -77,6 +77,7 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   // Edge functions over a part of a block, less the threshold: of the row's first one, and
   // the steps to the next part and row.
   std::array<Ints, 3> row, per_part, per_row;
+#pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
     row[i] = (lane_x() + dx) * t.per_x[i] + (lane_y() + dy) * t.per_y[i] +
              (t.edge[i] - std::int32_t{t.thresholds[i]});
@@ -88,9 +89,9 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   for (int y = range.y_begin; y < range.y_end; y += kPartRows) {
     Ints e0 = row[0], e1 = row[1], e2 = row[2];
     for (int x = range.x_begin; x < range.x_end; x += kPartColumns) {
-      const Mask covered = (e0 | e1 | e2) >= 0;
-      if (any(covered)) {
-        writer.write(x, y, place_in_tile(tile, x, y), covered, to_floats(e1 + threshold1),
+      const Ints signs = e0 | e1 | e2;
+      if (sign_bits(signs) != kAllLaneBits) {
+        writer.write(x, y, place_in_tile(tile, x, y), signs >= 0, to_floats(e1 + threshold1),
                      to_floats(e2 + threshold2));
       }
       e0 += per_part[0];
@@ -102,10 +103,42 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
 }
 
 template <class Writer>
-SOFTFOCUS_INLINE void rasterize_large(const LaneTriangle& t, const VisibilityTile& tile,
-                                      Writer& writer) {
+SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile& tile,
+                                     Writer& writer) {
   const BlockRange range = blocks_of(t, tile);
-  const auto& edges = t.large->edges;
+  const WideLanes x = widen(lane_x() + (range.x_begin - t.x_origin));
+  const WideLanes y = widen(lane_y() + (range.y_begin - t.y_origin));
+  std::array<WideLanes, 3> row, per_part, per_row;
+  std::array<Floats, 3> thresholds;
+#pragma GCC unroll 3
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double per_x = t.large->per_x[i], per_y = t.large->per_y[i];
+    row[i] = wide_splat(t.large->edge[i]) + (x * wide_splat(per_x) + y * wide_splat(per_y));
+    per_part[i] = wide_splat(per_x * kPartColumns);
+    per_row[i] = wide_splat(per_y * kPartRows);
+    thresholds[i] = splat(static_cast<float>(t.thresholds[i]));
+  }
+  for (int top = range.y_begin; top < range.y_end; top += kPartRows) {
+    std::array<WideLanes, 3> e = row;
+    for (int left = range.x_begin; left < range.x_end; left += kPartColumns) {
+      const Floats e0 = narrow(e[0]), e1 = narrow(e[1]), e2 = narrow(e[2]);
+      const Mask covered = (e0 >= thresholds[0]) & (e1 >= thresholds[1]) & (e2 >= thresholds[2]);
+      if (any(covered)) {
+        writer.write(left, top, place_in_tile(tile, left, top), covered, e1, e2);
+      }
+#pragma GCC unroll 3
+      for (std::size_t i = 0; i < 3; ++i) e[i] = e[i] + per_part[i];
+    }
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) row[i] = row[i] + per_row[i];
+  }
+}
+
+// Far larger than pictures are.
+template <class Writer>
+void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& writer) {
+  const BlockRange range = blocks_of(t, tile);
+  const auto& edges = t.large->exact.edges;
   for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
     for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
       // Where an edge function is largest in the block.
@@ -140,6 +173,10 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Dept
                    const Profile& profile, VisibilityTile& tile) {
   // A triangle was written long ago, by another thread perhaps.
   constexpr std::size_t kAhead = 6;
+  for (std::size_t i = 0; i < std::min(kAhead, bins.size()); ++i) {
+    __builtin_prefetch(&chunk.triangles[bins[i].triangle]);
+    __builtin_prefetch(&chunk.triangles[bins[i].triangle].bounds);
+  }
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const auto* ahead = reinterpret_cast<const char*>(
         &chunk.triangles[bins[std::min(i + kAhead, bins.size() - 1)].triangle]);
@@ -157,8 +194,10 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Dept
                                       splat(t.inverse_area)};
     if (t.large == nullptr) {
       rasterize_small(t, tile, writer);
+    } else if (t.large->fits_doubles) {
+      rasterize_wide(t, tile, writer);
     } else {
-      rasterize_large(t, tile, writer);
+      rasterize_huge(t, tile, writer);
     }
   }
 }
@@ -208,21 +247,18 @@ SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
 }  // namespace
 
 // `texels` are a block's row of one, four halves each.
-void set_unseen(const VisibilityTile& tile, Image& colour, const std::byte* texels) {
+void set_unseen(const VisibilityTile& tile, const std::byte* texels) {
   constexpr std::size_t kTexelBytes = 8;
   const int width = tile.area.x_end - tile.area.x_begin;
   const int height = tile.area.y_end - tile.area.y_begin;
-  std::byte* first = colour.bytes.data() +
-                     static_cast<std::size_t>(tile.area.y_begin) * colour.stride_bytes +
-                     static_cast<std::size_t>(tile.area.x_begin) * kTexelBytes;
   for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
     const Ints ids = load(&tile.ids[place]);
     const unsigned unseen = lane_bits(ids == 0);
     const int left = tile_x(place), top = tile_y(place);
     if (unseen == kAllLaneBits && left + kPartColumns <= width && top + kPartRows <= height) {
-      std::byte* to = first + static_cast<std::size_t>(top) * colour.stride_bytes +
+      std::byte* to = tile.texels + static_cast<std::size_t>(top) * tile.stride_bytes +
                       static_cast<std::size_t>(left) * kTexelBytes;
-      for (int row = 0; row < kPartRows; ++row, to += colour.stride_bytes) {
+      for (int row = 0; row < kPartRows; ++row, to += tile.stride_bytes) {
         std::memcpy(to, texels, kPartColumns * kTexelBytes);
       }
       continue;
@@ -231,7 +267,7 @@ void set_unseen(const VisibilityTile& tile, Image& colour, const std::byte* texe
       const int lane = __builtin_ctz(rest);
       const int x = left + lane_x(lane), y = top + lane_y(lane);
       if (x >= width || y >= height) continue;
-      std::memcpy(first + static_cast<std::size_t>(y) * colour.stride_bytes +
+      std::memcpy(tile.texels + static_cast<std::size_t>(y) * tile.stride_bytes +
                       static_cast<std::size_t>(x) * kTexelBytes,
                   texels, kTexelBytes);
     }

@@ -2,101 +2,23 @@
 
 #include <algorithm>
 #include <cassert>
-#include <memory>
+#include <cstring>
+#include <utility>
 
 #include "raster/images/texel.h"
 #include "raster/pipeline/lane_kernels.h"
+#include "raster/scratch_shelf.h"
 
 namespace softfocus {
 namespace {
 
-struct Batch {
-  std::size_t draw;
-  std::uint32_t begin;
-  std::uint32_t end;
-};
+constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
 
-// Gives every draw in lanes its part of the memory, in steps of whole vectors.
-void place_vertices(RenderPass& pass) {
-  constexpr std::size_t kStep = 16;
-  const auto room = [](const DrawCall& draw) {
-    return draw.in_lanes ? (draw.vertex_count + kStep - 1) / kStep * kStep : 0;
-  };
-  std::size_t floats = 0, vertices = 0;
-  for (const DrawCall& draw : pass.draws) {
-    vertices += room(draw);
-    floats += room(draw) * draw.vertex_stride;
-  }
-  LaneMemory& memory = pass.memory;
-  if (memory.rows.size() < floats) memory.rows.resize(floats);
-  if (memory.columns.size() < 3 * vertices) memory.columns.resize(3 * vertices);
-  float* row = memory.rows.data();
-  std::int32_t* column = memory.columns.data();
-  for (const DrawCall& draw : pass.draws) {
-    if (!draw.in_lanes) continue;
-    draw.use_store({row, draw.vertex_stride, column, column + room(draw), column + 2 * room(draw)});
-    row += room(draw) * draw.vertex_stride;
-    column += 3 * room(draw);
-  }
-}
-
-void shade_all_vertices(const RenderPass& pass, ThreadPool& pool) {
-  std::vector<Batch> batches;
-  for (std::size_t d = 0; d < pass.draws.size(); ++d) {
-    const std::uint32_t count = pass.draws[d].vertex_count;
-    for (std::uint32_t begin = 0; begin < count; begin += kChunkVertices) {
-      batches.push_back({d, begin, std::min(begin + kChunkVertices, count)});
-    }
-  }
-  pool.for_each(static_cast<int>(batches.size()), [&](int i) {
-    const Batch& batch = batches[static_cast<std::size_t>(i)];
-    pass.draws[batch.draw].shade_vertices(batch.begin, batch.end);
-  });
-}
-
-// Chunks of all draws are numbered through, as LaneMemory has them.
-void assemble_all_triangles(RenderPass& pass, ThreadPool& pool) {
-  std::vector<Batch> chunks;
-  for (std::size_t d = 0; d < pass.draws.size(); ++d) {
-    for (std::uint32_t c = 0; c < pass.draws[d].chunk_count; ++c) chunks.push_back({d, c, c + 1});
-  }
-  if (pass.memory.chunks.size() < chunks.size()) pass.memory.chunks.resize(chunks.size());
-  pool.for_each(static_cast<int>(chunks.size()), [&](int i) {
-    const Batch& chunk = chunks[static_cast<std::size_t>(i)];
-    const DrawCall& draw = pass.draws[chunk.draw];
-    if (draw.in_lanes) {
-      LaneChunk& lane_chunk = pass.memory.chunks[static_cast<std::size_t>(i)];
-      clear(lane_chunk);
-      draw.assemble_lanes(chunk.begin, lane_chunk);
-    } else {
-      draw.assemble(chunk.begin);
-    }
-  });
-}
-
-std::vector<std::vector<TileWork>> work_of_tiles(const RenderPass& pass, std::size_t tiles) {
-  std::vector<std::vector<TileWork>> work(tiles);
-  const LaneChunk* lane_chunk = pass.memory.chunks.data();
-  for (const DrawCall& draw : pass.draws) {
-    for (std::uint32_t c = 0; c < draw.chunk_count; ++c, ++lane_chunk) {
-      if (draw.in_lanes) {
-        for (const TileBins& of_tile : lane_chunk->tiles) {
-          work[of_tile.tile].push_back(
-              {&draw, c, lane_chunk,
-               std::span{lane_chunk->bins}.subspan(of_tile.begin, of_tile.end - of_tile.begin)});
-        }
-        continue;
-      }
-      const std::span<const Bin> bins = draw.bins(c);
-      for (std::size_t begin = 0; begin < bins.size();) {
-        std::size_t end = begin + 1;
-        while (end < bins.size() && bins[end].tile == bins[begin].tile) ++end;
-        work[bins[begin].tile].push_back({&draw, c, nullptr, bins.subspan(begin, end - begin)});
-        begin = end;
-      }
-    }
-  }
-  return work;
+// Of an area of an RGBA16F image. Image is const or not, and so is the byte.
+template <class AnyImage>
+auto* first_texel(AnyImage& image, const Rectangle& area) {
+  return image.bytes.data() + static_cast<std::size_t>(area.y_begin) * image.stride_bytes +
+         static_cast<std::size_t>(area.x_begin) * kTexelBytes;
 }
 
 void clear_colours(const RenderPass& pass, const Rectangle& area) {
@@ -112,10 +34,12 @@ void clear_colours(const RenderPass& pass, const Rectangle& area) {
 // Where they come first, clearing is left to it: most pixels are drawn over.
 class TileDrawing {
  public:
-  TileDrawing(const RenderPass& pass, const Rectangle& area) : pass_(pass), area_(area) {}
+  /// Shades draws in lanes into `texels` if that is not null, and else into the target.
+  TileDrawing(const RenderPass& pass, const Rectangle& area, TileMemory& memory, std::byte* texels)
+      : pass_(pass), area_(area), memory_(memory), texels_(texels) {}
 
   void draw(const TileWork& item) {
-    if (item.draw->in_lanes) {
+    if (item.draw->lane_steps != nullptr) {
       draw_lanes(item);
       return;
     }
@@ -131,12 +55,8 @@ class TileDrawing {
 
  private:
   void draw_lanes(const TileWork& item) {
-    if (!tile_) {
-      tile_.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
-      begin_tile(*tile_, area_, *pass_.targets.depth,
-                 is_cleared_ ? std::nullopt : pass_.clear_depth);
-    }
-    VisibilityTile& tile = *tile_;
+    if (!has_begun_) begin_lanes();
+    VisibilityTile& tile = *memory_;
     if (tile.triangles.size() + item.bins.size() > kMostVisible) {
       shade();
       forget_seen(tile);
@@ -151,19 +71,34 @@ class TileDrawing {
     }
   }
 
+  void begin_lanes() {
+    has_begun_ = true;
+    if (!memory_) memory_.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
+    begin_tile(*memory_, area_, *pass_.targets.depth,
+               is_cleared_ ? std::nullopt : pass_.clear_depth);
+    if (texels_ != nullptr) {
+      memory_->texels = texels_;
+      memory_->stride_bytes = kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
+    } else {
+      Image& target = *pass_.targets.colour[0];
+      memory_->texels = first_texel(target, area_);
+      memory_->stride_bytes = target.stride_bytes;
+    }
+  }
+
   void shade() {
     if (!is_cleared_ && pass_.clear_colour) {
-      clear_unseen(pass_.isa, *tile_, *pass_.targets.colour[0], *pass_.clear_colour, pass_.profile);
+      clear_unseen(pass_.isa, *memory_, *pass_.clear_colour, pass_.profile);
     }
     is_cleared_ = true;
-    shade_tile(*tile_);
+    shade_tile(*memory_);
   }
 
   void leave_lanes(bool needs_depth) {
-    if (!tile_) return;
+    if (!has_begun_) return;
     shade();
-    if (needs_depth) end_tile(*tile_, *pass_.targets.depth);
-    tile_.reset();
+    if (needs_depth) end_tile(*memory_, *pass_.targets.depth);
+    has_begun_ = false;
   }
 
   void clear() {
@@ -178,9 +113,23 @@ class TileDrawing {
 
   const RenderPass& pass_;
   Rectangle area_;
-  std::unique_ptr<VisibilityTile> tile_;
+  TileMemory& memory_;
+  std::byte* texels_;
+  bool has_begun_ = false;
   bool is_cleared_ = false;
 };
+
+void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
+               std::byte* texels) {
+  TileDrawing drawing{pass, tile_area(lists, tile), memory, texels};
+  const std::span<const TileWork> work = work_of_tile(lists, tile);
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    // What is drawn next was listed long ago.
+    if (i + 1 < work.size()) __builtin_prefetch(work[i + 1].bins.data());
+    drawing.draw(work[i]);
+  }
+  drawing.end();
+}
 
 }  // namespace
 
@@ -193,35 +142,42 @@ Rectangle target_area(const RenderTargets& targets) {
   return {0, 0, first->width, first->height};
 }
 
-TileLists sort_into_tiles(RenderPass& pass, ThreadPool& pool) {
-  TileLists lists;
-  lists.area = target_area(pass.targets);
-  lists.tiles_x = (lists.area.x_end + kTileSize - 1) / kTileSize;
-  const int tiles_y = (lists.area.y_end + kTileSize - 1) / kTileSize;
-  place_vertices(pass);
-  shade_all_vertices(pass, pool);
-  assemble_all_triangles(pass, pool);
-  lists.tiles = work_of_tiles(pass, static_cast<std::size_t>(lists.tiles_x * tiles_y));
-  return lists;
+void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory) {
+  draw_tile(pass, lists, tile, memory, nullptr);
 }
 
-Rectangle tile_area(const TileLists& lists, int tile) {
-  const int x = tile % lists.tiles_x * kTileSize;
-  const int y = tile / lists.tiles_x * kTileSize;
-  return {x, y, std::min(x + kTileSize, lists.area.x_end),
-          std::min(y + kTileSize, lists.area.y_end)};
-}
-
-void draw_tile(const RenderPass& pass, const TileLists& lists, int tile) {
-  TileDrawing drawing{pass, tile_area(lists, tile)};
-  for (const TileWork& item : lists.tiles[static_cast<std::size_t>(tile)]) drawing.draw(item);
-  drawing.end();
+void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
+                     std::byte* texels) {
+  assert(pass.clear_colour && pass.clear_depth);
+  const std::span<const TileWork> work = work_of_tile(lists, tile);
+  const bool in_lanes = std::all_of(work.begin(), work.end(), [](const TileWork& item) {
+    return item.draw->lane_steps != nullptr;
+  });
+  if (in_lanes && !work.empty()) {
+    draw_tile(pass, lists, tile, memory, texels);
+    return;
+  }
+  draw_tile(pass, lists, tile, memory);
+  const Rectangle area = tile_area(lists, tile);
+  const std::size_t row_bytes = kTexelBytes * static_cast<std::size_t>(area.x_end - area.x_begin);
+  const Image& target = *pass.targets.colour[0];
+  const std::byte* from = first_texel(target, area);
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    std::memcpy(texels, from, row_bytes);
+    from += target.stride_bytes;
+    texels += row_bytes;
+  }
 }
 
 void finish(RenderPass& pass, ThreadPool& pool) {
-  const TileLists lists = sort_into_tiles(pass, pool);
-  pool.for_each(static_cast<int>(lists.tiles.size()),
-                [&](int tile) { draw_tile(pass, lists, tile); });
+  TileLists lists;
+  sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
+  ScratchShelf<TileMemory> shelf;
+  pool.for_each(tile_count(lists), [&](int tile) {
+    TileMemory memory = shelf.take();
+    draw_tile(pass, lists, tile, memory);
+    shelf.put_back(std::move(memory));
+  });
   pass.draws.clear();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // A render pass: draw calls are recorded, then carried out together. finish() runs
-// three loops over the pool: vertices; triangles (clip, set up, sort into tiles);
+// four loops over the pool: vertices; triangles (clip, set up, sort into tiles); of draws in
+// lanes, whose vertices were no more than positions, the vertices that these triangles have;
 // tiles (fragments). Within a pixel, fragments merge in the order of submission, so
 // the result depends neither on tiles nor on threads.
 //
@@ -10,6 +11,7 @@
 
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,19 +58,33 @@ struct TileWork {
 struct TileLists {
   int tiles_x = 0;
   Rectangle area;
-  std::vector<std::vector<TileWork>> tiles;
+  std::vector<TileWork> work;         ///< tile by tile, each in the order of submission
+  std::vector<std::uint32_t> begins;  ///< of each tile in `work`; and its end
 };
 
-/// The first two loops of finish().
-TileLists sort_into_tiles(RenderPass& pass, ThreadPool& pool);
+/// The loops of finish() before the last, for several passes at once; memory of lists is used
+/// again. Needs as many lists as passes.
+void sort_into_tiles(std::span<RenderPass> passes, std::span<TileLists> lists, ThreadPool& pool);
+
+int tile_count(const TileLists& lists);
+std::span<const TileWork> work_of_tile(const TileLists& lists, int tile);
 
 /// A tile's pixels.
 Rectangle tile_area(const TileLists& lists, int tile);
 
+/// Memory that draw_tile() needs, for one tile after the other; made on first use.
+using TileMemory = std::unique_ptr<VisibilityTile>;
+
 /// Clears and draws one tile of the targets. Tiles can be drawn in any order, and by several
-/// threads at once. Passes that show one scene from several points can so be drawn tile by
-/// tile, each while the tile is in a core's cache.
-void draw_tile(const RenderPass& pass, const TileLists& lists, int tile);
+/// threads at once, each with its memory. Passes that show one scene from several points can
+/// so be drawn tile by tile, each while the tile is in a core's cache.
+void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory);
+
+/// The same to another place: the tile's rows of RGBA16F texels without a gap. What the
+/// targets hold there is lost. Needs one target for colour, a depth buffer, and that both are
+/// cleared.
+void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
+                     std::byte* texels);
 
 /// Carries out the recorded draws and forgets them.
 void finish(RenderPass& pass, ThreadPool& pool);

@@ -1,8 +1,4 @@
-// The fragment stage over what is seen of a draw in a tile, and the vertex stage.
-//
-// A vertex stage in lanes has kVaryings, and is callable as
-//     void operator()(Ints index, std::array<Floats, 4>& position,
-//                     std::array<Floats, kVaryings>& varyings) const
+// The fragment stage over what is seen of a draw in a tile.
 //
 // A fragment stage in lanes works in two steps, the first on the quads of a triangle, the
 // second on the pixels that are seen:
@@ -93,8 +89,11 @@ inline constexpr int kQuadBits = 10;
 static_assert(kTilePixels / kQuadPixels == 1 << kQuadBits);
 static_assert(kMostVisible >> (32 - kQuadBits - kQuadPixels) == 0);
 
+// Vertices are asked for so many vectors before they are read: a few hundred cycles.
+inline constexpr int kQuadsAhead = 3;
+
 struct SeenQuads {
-  std::array<std::uint32_t, kTilePixels + 2 * kLanes> entries;
+  std::array<std::uint32_t, kTilePixels + (kQuadsAhead + 1) * kLanes> entries;
   int count = 0;
 };
 
@@ -102,28 +101,42 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   return entry >> (kQuadBits + kQuadPixels);
 }
 
+// Of kQuads entries, each in the lanes of its quad.
+SOFTFOCUS_INLINE Ints triangles_of(const std::uint32_t* entries) {
+  return as_ints(as_bits(repeat_by_four(as_ints(load(entries)))) >> (kQuadBits + kQuadPixels));
+}
+
+SOFTFOCUS_INLINE std::uint32_t quad_entry(const VisibleRun& run, std::int32_t id, int quad,
+                                          unsigned pixels) {
+  const auto triangle = static_cast<std::uint32_t>(id - run.first_id);
+  return (triangle << kQuadBits | static_cast<unsigned>(quad)) << kQuadPixels | pixels;
+}
+
 // Of the lanes that begin with a quad. Returns how many quads are listed then.
 SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& run, int quad,
                                 Mask in_area, std::uint32_t* entries, int count) {
-  const Ints ids = load(&tile.ids[static_cast<std::size_t>(quad * kQuadPixels)]);
-  unsigned rest = lane_bits((ids >= run.first_id) & (ids < run.end_id) & in_area);
-  while (rest != 0) {
-    const std::int32_t id = ids[__builtin_ctz(rest)];
-    const unsigned same = lane_bits(ids == id) & rest;
+  const std::int32_t* first_id = &tile.ids[static_cast<std::size_t>(quad * kQuadPixels)];
+  const Ints ids = load(first_id);
+  const unsigned seen = lane_bits((ids >= run.first_id) & (ids < run.end_id) & in_area);
+  if (seen == 0) return count;
+  if (seen == kAllLaneBits && all(ids == ids[0])) {
+    store(entries + count,
+          quad_entry(run, ids[0], quad, 0xFu) + as_bits(lane_numbers() << kQuadPixels));
+    return count + kQuads;
+  }
+  // The triangle that each quad's first pixel shows, and then the others.
+  const unsigned as_first = lane_bits(ids == spread<0>(ids)) & seen;
+  for (int i = 0; i < kQuads; ++i) {
+    const unsigned pixels = as_first >> (i * kQuadPixels) & 0xFu;
+    entries[count] = quad_entry(run, first_id[i * kQuadPixels], quad + i, pixels);
+    count += pixels != 0 ? 1 : 0;
+  }
+  for (unsigned rest = seen & ~as_first; rest != 0;) {
+    const int lane = __builtin_ctz(rest);
+    const int i = lane / kQuadPixels;
+    const unsigned same = lane_bits(ids == first_id[lane]) & rest & 0xFu << (i * kQuadPixels);
     rest &= ~same;
-    const auto triangle = static_cast<std::uint32_t>(id - run.first_id);
-    const std::uint32_t first = (triangle << kQuadBits | static_cast<unsigned>(quad))
-                                << kQuadPixels;
-    if (same == kAllLaneBits) {
-      store(entries + count, first + as_bits(lane_numbers() << kQuadPixels) + 0xFu);
-      count += kQuads;
-      continue;
-    }
-    for (unsigned i = 0; i < kQuads; ++i) {
-      const unsigned pixels = same >> (i * kQuadPixels) & 0xFu;
-      entries[count] = first + (i << kQuadPixels) + pixels;
-      count += pixels != 0 ? 1 : 0;
-    }
+    entries[count++] = quad_entry(run, first_id[lane], quad + i, same >> (i * kQuadPixels));
   }
   return count;
 }
@@ -157,10 +170,10 @@ SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& ru
     }
   }
   seen.count = count;
-  // Quads of which nothing is seen fill up the last vector and the one that is fetched ahead.
+  // Quads of which nothing is seen fill up the last vector and those that are fetched ahead.
   if (seen.count == 0) return;
   const auto end = static_cast<std::size_t>(seen.count);
-  for (std::size_t i = 0; i < 2 * kQuads; ++i) {
+  for (std::size_t i = 0; i < (kQuadsAhead + 1) * kQuads; ++i) {
     seen.entries[end + i] = seen.entries[end - 1] >> kQuadPixels << kQuadPixels;
   }
 }
@@ -187,12 +200,6 @@ SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
           float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
 }
 
-SOFTFOCUS_INLINE std::byte* first_texel(const FragmentJob& job, const VisibilityTile& tile) {
-  return job.target->bytes.data() +
-         static_cast<std::size_t>(tile.area.y_begin) * job.target->stride_bytes +
-         static_cast<std::size_t>(tile.area.x_begin) * sizeof(std::uint64_t);
-}
-
 // The second step. Its own function, which all interpolators share.
 template <class Stage>
 [[gnu::noinline]] void shade_batch(const Stage& stage, const FragmentJob& job,
@@ -202,7 +209,7 @@ template <class Stage>
   batch.fill_up();
   std::array<std::array<Floats, 4>, 8> colours;
   stage.shade(batch, colours.data());
-  std::byte* first = first_texel(job, tile);
+  std::byte* first = tile.texels;
   for (int vector = 0; vector < batch.vectors(); ++vector) {
     alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
     store_half_texels(halves.data(), to_half_texels(colours[static_cast<std::size_t>(vector)],
@@ -224,8 +231,9 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   list_seen(tile, run, seen);
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
-  const auto stride = static_cast<std::int32_t>(job.target->stride_bytes);
-  const std::byte* first = first_texel(job, tile);
+  const auto stride = static_cast<std::int32_t>(tile.stride_bytes);
+  const std::byte* first = tile.texels;
+  const bool in_picture = tile.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
 
   FragmentBatch<Stage::kInputs> batch;
@@ -235,10 +243,9 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   for (int i = 0; i < seen.count; i += kQuads) {
     const std::uint32_t* entries = &seen.entries[static_cast<std::size_t>(i)];
     const Ints entry = repeat_by_four(as_ints(load(entries)));
-    const Ints triangle = as_ints(as_bits(entry) >> (kQuadBits + kQuadPixels));
-    const Ints next = as_ints(as_bits(repeat_by_four(as_ints(load(entries + kQuads)))) >>
-                              (kQuadBits + kQuadPixels));
-    if (!all(next == triangle)) fetch_vertices(triangles, entries + kQuads);
+    const Ints triangle = triangles_of(entries);
+    const std::uint32_t* ahead = entries + kQuadsAhead * kQuads;
+    if (!all(triangles_of(ahead) == triangles_of(ahead - kQuads))) fetch_vertices(triangles, ahead);
     if (!all(triangle == loaded)) {
 #pragma GCC unroll 4
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
@@ -260,8 +267,8 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     batch.append(stage.inputs(fragments),
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
                  (entry & own_pixel) != 0);
-    // The rows of the picture that the second step writes.
-    for (int lane = 0; lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
+    // The rows of the picture that the second step writes; those of a tile alone are at hand.
+    for (int lane = 0; in_picture && lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
       __builtin_prefetch(first + offsets[lane], 1);
     }
     if (!batch.has_room()) shade_batch(stage, job, tile, batch);
@@ -278,83 +285,6 @@ void shade_fragments(const Stage& stage, const FragmentJob& job, const Visibilit
     shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, tile, run);
   } else {
     shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::unfused>>(stage, job, tile, run);
-  }
-}
-
-SOFTFOCUS_INLINE Mask is_finite(Floats v) { return (as_bits(v) & 0x7F800000u) != 0x7F800000u; }
-
-// As clip_code().
-SOFTFOCUS_INLINE Ints clip_codes(const std::array<Floats, 4>& position, float guard_band) {
-  const Floats edge = guard_band * position[3];
-  const std::array<Floats, 6> distances{edge - position[0],        edge + position[0],
-                                        edge - position[1],        edge + position[1],
-                                        position[3] + position[2], position[3] - position[2]};
-  Ints codes{};
-  for (std::size_t plane = 0; plane < 6; ++plane) {
-    codes |= (distances[plane] < 0.0f) & splat(1 << plane);
-  }
-  const Mask finite = is_finite(position[0]) & is_finite(position[1]) & is_finite(position[2]) &
-                      is_finite(position[3]);
-  return select(finite, codes, splat(static_cast<std::int32_t>(kNotFinite)));
-}
-
-SOFTFOCUS_INLINE Floats to_window_lanes(Floats ndc, float half_size, Contraction contraction) {
-  const Floats half = splat(half_size);
-  return contraction == Contraction::fused ? fused_multiply_add(ndc, half, half)
-                                           : ndc * half + half;
-}
-
-SOFTFOCUS_INLINE Ints snapped(Floats window, Mask drawable, int bits) {
-  const Floats steps = nearest((window - 0.5f) * static_cast<float>(1 << bits));
-  return truncate(select(drawable, steps, splat(0.0f))) << (kSubpixelBits - bits);
-}
-
-template <class Stage>
-void shade_vertices(const Stage& stage, const VertexJob& job) {
-  constexpr std::size_t kQuantities = vertex_row_size(Stage::kVaryings);
-  const Profile& profile = *job.profile;
-  const float half_width = static_cast<float>(job.width) * 0.5f;
-  const float half_height = static_cast<float>(job.height) * 0.5f;
-  for (std::uint32_t begin = job.begin; begin < job.end; begin += kLanes) {
-    // Lanes past the last vertex do it once more; there is room for them.
-    const Ints index = smaller(static_cast<std::int32_t>(begin) + lane_numbers(),
-                               splat(static_cast<std::int32_t>(job.end) - 1));
-    std::array<Floats, 4> position;
-    std::array<Floats, Stage::kVaryings> varyings;
-    stage(index, position, varyings);
-
-    // As to_window() and setup.cpp's is_drawable().
-    const Floats inverse_w = 1.0f / position[3];
-    const Floats x = to_window_lanes(position[0] * inverse_w, half_width, profile.viewport);
-    const Floats y = to_window_lanes(position[1] * inverse_w, half_height, profile.viewport);
-    const Floats depth = to_window_lanes(position[2] * inverse_w, 0.5f, profile.viewport);
-    const Mask drawable = (absolute(x) < kLargestPosition) & (absolute(y) < kLargestPosition) &
-                          is_finite(depth) & is_finite(inverse_w) & (inverse_w > 0.0f);
-    const Ints codes = clip_codes(position, profile.guard_band) |
-                       (~drawable & static_cast<std::int32_t>(kNotDrawable));
-    store(job.store.codes + begin, codes);
-    store(job.store.snapped_x + begin, snapped(x, drawable, profile.subpixel_bits));
-    store(job.store.snapped_y + begin, snapped(y, drawable, profile.subpixel_bits));
-
-    std::array<Floats, kQuantities> quantities{};
-    quantities[kVertexX] = x;
-    quantities[kVertexY] = y;
-    quantities[kVertexDepth] = depth;
-    quantities[kVertexInverseW] = inverse_w;
-    for (std::size_t i = 0; i < Stage::kVaryings; ++i) {
-      quantities[kVertexVaryings + i] = varyings[i];
-    }
-    float* rows = job.store.rows + begin * job.store.stride;
-    for (std::size_t k = 0; k < kQuantities; k += 4) {
-      Floats* four = &quantities[k];
-      transpose_fours(four[0], four[1], four[2], four[3]);
-      // Vector i has vertex i and each fourth after it.
-      for (std::size_t vertex = 0; vertex < kLanes; ++vertex) {
-        std::memcpy(rows + vertex * job.store.stride + k,
-                    reinterpret_cast<const float*>(&four[vertex % 4]) + vertex / 4 * 4,
-                    4 * sizeof(float));
-      }
-    }
   }
 }
 
