@@ -66,6 +66,14 @@ void clear(LaneChunk& chunk) {
   chunk.large.clear();
 }
 
+void enlarge(LaneChunk& chunk) {
+  const std::uint32_t room = chunk.triangle_room + kChunkTriangles;
+  std::unique_ptr<LaneTriangle[]> triangles{new LaneTriangle[room]};  // not zeroed
+  std::copy_n(chunk.triangles.get(), chunk.triangle_count, triangles.get());
+  chunk.triangles = std::move(triangles);
+  chunk.triangle_room = room;
+}
+
 LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
                                   std::size_t provoking, const Profile& profile) {
   const auto& functions = std::get<EdgeFunctions>(setup.coverage);
@@ -96,7 +104,7 @@ LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
 
 void bin_triangles(LaneChunk& chunk, int tiles_x) {
   if (chunk.triangle_count == 0) return;
-  const auto triangles = std::span{chunk.triangles}.first(chunk.triangle_count);
+  const auto triangles = std::span{chunk.triangles.get(), chunk.triangle_count};
   TileRange all = tiles_of(triangles.front());
   for (const LaneTriangle& t : triangles) {
     const TileRange tiles = tiles_of(t);

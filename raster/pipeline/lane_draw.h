@@ -101,8 +101,10 @@ struct TileBins {
 };
 
 struct LaneChunk {
-  std::vector<LaneTriangle> triangles;  ///< the first triangle_count of them
+  /// The first triangle_count of them; the others are not touched.
+  std::unique_ptr<LaneTriangle[]> triangles;
   std::uint32_t triangle_count = 0;
+  std::uint32_t triangle_room = 0;
   std::vector<Bin> bins;
   std::vector<TileBins> tiles;
   // What clipping made, and the edges of large triangles; they do not move.
@@ -113,11 +115,12 @@ struct LaneChunk {
 /// Empties it, and keeps its memory.
 void clear(LaneChunk& chunk);
 
+/// Makes room for more triangles.
+void enlarge(LaneChunk& chunk);
+
 /// Appends a triangle, for the caller to fill in.
 inline LaneTriangle& next_triangle(LaneChunk& chunk) {
-  if (chunk.triangle_count == chunk.triangles.size()) {
-    chunk.triangles.resize(2 * chunk.triangles.size() + 128);
-  }
+  if (chunk.triangle_count == chunk.triangle_room) enlarge(chunk);
   LaneTriangle& triangle = chunk.triangles[chunk.triangle_count++];
   // Those to come, which were read last in another frame.
   constexpr std::size_t kBytesAhead = 8 * sizeof(LaneTriangle);
