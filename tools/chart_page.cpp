@@ -146,7 +146,7 @@ std::string introduction(const ChartMade& made) {
          "different as can be. In the maps black is right and pale yellow is wrong. The stair "
          "joins what is best for its time, the rows in colour in the table: nothing is both faster "
          "and nearer to the truth. The broken line is the noise of the truth itself: below it no "
-         "difference means anything.</p>\n";
+         "difference means anything. The rings are auto, which chooses from the others.</p>\n";
 }
 
 }  // namespace
