@@ -56,7 +56,8 @@ AccumulationBuffer make_accumulation_buffer(const SceneMethodInput& input, Threa
   const Sampling& sampling = input.sampling;
   return {lens_points(sampling.aperture, sampling.samples),
           pixel_offsets(sampling.jitter, sampling.samples),
-          prepare_scene(input.scene, input.profile, pool),
+          input.prepared != nullptr ? std::move(*input.prepared)
+                                    : prepare_scene(input.scene, input.profile, pool),
           make_image(Format::rgba16f, width, height),
           make_image(Format::r32f, width, height),
           {},

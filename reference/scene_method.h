@@ -13,6 +13,7 @@
 #include "raster/numbers/profile.h"
 #include "raster/parallel.h"
 #include "reference/lens_points.h"
+#include "scenes/draw_scene.h"
 #include "scenes/scene.h"
 #include "scenes/view.h"
 
@@ -42,6 +43,9 @@ struct SceneMethodInput {
   Profile profile;
   /// Told how many samples are in, now and then, on the calling thread. May be empty.
   std::function<void(int samples)> progress;
+  /// What the pinhole's picture was drawn from, to be taken over, or null: then the scene is
+  /// prepared anew where that is needed.
+  PreparedScene* prepared = nullptr;
 };
 
 struct SampledPicture {

@@ -71,8 +71,8 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
 
 /// The method that draws the scene itself, from many points of the lens.
 Image sampled_picture(const Scene& scene, const View& view, const Image& pinhole,
-                      const RenderOptions& options, RenderRecord& record, Progress& progress,
-                      ThreadPool& pool) {
+                      PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
+                      Progress& progress, ThreadPool& pool) {
   const UsedLens& used = *record.lens;
   const Sampling& sampling = record.used.sampling;
   const auto tell = [&](int samples) {
@@ -81,7 +81,7 @@ Image sampled_picture(const Scene& scene, const View& view, const Image& pinhole
   };
   SampledPicture sampled = record.used.method.of_scene->render(
       {scene, view, options.frame, pinhole, used.lens.focus_m,
-       aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell},
+       aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell, prepared},
       pool);
   record.sampled = {sampled.samples, sampled.half_set_rms};
   return std::move(sampled.picture);
@@ -160,9 +160,13 @@ int render(const RenderOptions& options) {
   std::optional<FrameOnGl> on_gl;
   if (options.gl != nullptr) record.gl_renderer = on_gl.emplace(*options.gl).renderer();
   const View view = camera_view(scene.camera, options.frame, width, height);
+  std::optional<PreparedScene> prepared;
   Image drawn = timed(progress, "drawing", ms.draw, [&] {
     if (on_gl) return on_gl->draw(scene, view, options.frame, width, height);
-    return draw_scene(scene, view, options.frame, width, height, options.profile, pool);
+    prepared = prepare_scene(scene, options.profile, pool);
+    Image picture = make_image(Format::rgba16f, width, height);
+    draw_scene(*prepared, view, options.frame, picture, pool);
+    return picture;
   });
 
   DofSettings settings;
@@ -177,8 +181,12 @@ int render(const RenderOptions& options) {
     settings = record.lens->settings;
   }
   const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
+  if (!from_lens) prepared.reset();
   const Image picture = timed(progress, from_lens ? "sampling" : "filtering", ms.filter, [&] {
-    if (from_lens) return sampled_picture(scene, view, drawn, options, record, progress, pool);
+    if (from_lens) {
+      return sampled_picture(scene, view, drawn, prepared ? &*prepared : nullptr, options, record,
+                             progress, pool);
+    }
     if (record.used.choice && is_sharp(*record.used.choice)) return std::move(drawn);
     return shown_picture(std::move(drawn), options, record.used.method.filter, scene.camera,
                          settings, on_gl ? &*on_gl : nullptr, pool);
