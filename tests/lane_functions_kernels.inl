@@ -33,6 +33,17 @@ void lanes_fused_multiply_add(const float* a, const float* b, const float* c, fl
   store(to, fused_multiply_add(load(a), load(b), load(c)));
 }
 
+void lanes_multiply_add_pairs(const std::int32_t* a, const std::int32_t* b, std::int32_t* to) {
+  store(to, multiply_add_pairs(load(a), load(b)));
+}
+void lanes_gather_pairs(const std::int32_t* base, const std::int32_t* index, std::int32_t* first,
+                        std::int32_t* second) {
+  const IntPairs pairs = gather_pairs(base, load(index));
+  store(first, pairs.first);
+  store(second, pairs.second);
+}
+void lanes_rough_reciprocal(const float* a, float* to) { store(to, rough_reciprocal(load(a))); }
+
 unsigned lanes_positive_bits(const std::int32_t* a) { return lane_bits(load(a) > 0); }
 unsigned lanes_sign_bits(const std::int32_t* a) { return sign_bits(load(a)); }
 bool lanes_any_positive(const std::int32_t* a) { return any(load(a) > 0); }

@@ -262,3 +262,71 @@ TEST_CASE("lanes take pixels of halves apart and put them together") {
     }
   }
 }
+
+TEST_CASE("lanes: pairs of signed 16-bit numbers are multiplied and added in 32 bits") {
+  std::vector<std::int32_t> a, b;
+  std::uint32_t state = 1;
+  for (int i = 0; i < 4096; ++i) {
+    for (std::vector<std::int32_t>* list : {&a, &b}) {
+      state = state * 1664525u + 1013904223u;
+      // -2^15 in all four gives 2^31, which no lane holds.
+      const std::uint32_t low = state >> 8 & 7u;
+      const std::uint32_t word = low == 0 ? 0x7FFF7FFFu : low == 1 ? 0x80018001u : state;
+      list->push_back(static_cast<std::int32_t>(word));
+    }
+  }
+  for (const Isa isa : units()) {
+    int wrong = 0;
+    for (std::size_t i = 0; i < a.size(); i += lanes(isa)) {
+      std::array<std::int32_t, kMost> results{};
+      SOFTFOCUS_KERNEL(isa, lanes_multiply_add_pairs)(&a[i], &b[i], results.data());
+      for (std::size_t lane = 0; lane < lanes(isa); ++lane) {
+        const std::int32_t x = a[i + lane], y = b[i + lane];
+        const std::int64_t expected =
+            std::int64_t{static_cast<std::int16_t>(x)} * static_cast<std::int16_t>(y) +
+            std::int64_t{x >> 16} * (y >> 16);
+        if (expected < 0x80000000 && results[lane] != expected) ++wrong;
+      }
+    }
+    INFO(std::string{isa_name(isa)});
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("lanes: a rough reciprocal is wrong by less than 2^-11") {
+  std::vector<float> weights;
+  for (int i = 1; i <= 1 << 21; i += i < 4096 ? 1 : 97) weights.push_back(static_cast<float>(i));
+  while (weights.size() % kMost != 0) weights.push_back(1.0f);
+  for (const Isa isa : units()) {
+    double most = 0;
+    for (std::size_t i = 0; i < weights.size(); i += lanes(isa)) {
+      std::array<float, kMost> results{};
+      SOFTFOCUS_KERNEL(isa, lanes_rough_reciprocal)(&weights[i], results.data());
+      for (std::size_t lane = 0; lane < lanes(isa); ++lane) {
+        const double product = static_cast<double>(results[lane]) * weights[i + lane];
+        most = std::max(most, std::fabs(product - 1.0));
+      }
+    }
+    INFO(std::string{isa_name(isa)});
+    CHECK(most < 0x1p-11);
+  }
+}
+
+TEST_CASE("lanes: pairs of numbers are gathered from a table of pairs") {
+  std::vector<std::int32_t> table(2 * 65536);
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<std::int32_t>(i * 40503u);
+  std::array<std::int32_t, kMost> index{};
+  for (std::size_t i = 0; i < kMost; ++i) index[i] = static_cast<std::int32_t>(i * i * 291 % 65536);
+  index[3] = 65535;
+  for (const Isa isa : units()) {
+    std::array<std::int32_t, kMost> first{}, second{};
+    SOFTFOCUS_KERNEL(isa, lanes_gather_pairs)
+    (table.data(), index.data(), first.data(), second.data());
+    INFO(std::string{isa_name(isa)});
+    for (std::size_t lane = 0; lane < lanes(isa); ++lane) {
+      const auto at = 2 * static_cast<std::size_t>(index[lane]);
+      CHECK(first[lane] == table[at]);
+      CHECK(second[lane] == table[at + 1]);
+    }
+  }
+}

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "scenes/draw_scene.h"
+#include "tools/bench_arithmetic.h"
 #include "tools/bench_options.h"
 #include "tools/bench_report.h"
 #include "tools/bench_work.h"
@@ -54,10 +55,24 @@ std::vector<TimedStage> stages_of(const BenchWork& work, Draw draws, Filter filt
                                                           }}};
 }
 
+void print(const BenchRecord& record) {
+  std::cout << (record.options.json ? bench_json(record) : bench_text(record));
+}
+
 int bench(const BenchOptions& options) {
   Progress progress;
+  const auto show_run = [&](int run) {
+    progress.show("run " + std::to_string(run + 1) + " of " + std::to_string(options.runs));
+  };
   progress.show("preparing");
   const BenchWork work = make_work(options);
+  if (options.arithmetic != Arithmetic::floats) {
+    ThreadPool pool{options.pool.threads, options.pool.isa};
+    const BenchRecord record = bench_arithmetic(options, work, pool, show_run);
+    progress.clear();
+    print(record);
+    return kDone;
+  }
 
   std::unique_ptr<RepeatedOnGl> on_gl;
   std::vector<TimedStage> peers;
@@ -79,15 +94,9 @@ int bench(const BenchOptions& options) {
     peer = {std::string{options.versus->name}, on_gl->renderer(),
             equal(on_gl->picture(), frame.filtered)};
   }
-  const BenchRecord record{options, work,
-                           time_in_pairs(ours, peers, options.runs,
-                                         [&](int run) {
-                                           progress.show("run " + std::to_string(run + 1) + " of " +
-                                                         std::to_string(options.runs));
-                                         }),
-                           peer};
+  const BenchRecord record{options, work, time_in_pairs(ours, peers, options.runs, show_run), peer};
   progress.clear();
-  std::cout << (options.json ? bench_json(record) : bench_text(record));
+  print(record);
   return kDone;
 }
 

@@ -1,6 +1,7 @@
 #include "tools/bench_options.h"
 
 #include "scenes/sphere_field.h"
+#include "tools/arithmetic_option.h"
 #include "tools/driver_option.h"
 #include "tools/errors.h"
 #include "tools/memory_check.h"
@@ -41,6 +42,7 @@ void add_subject_options(CLI::App& parser, BenchOptions& options) {
 void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_subject_options(parser, options);
   add_method_option(parser, options.method);
+  add_arithmetic_option(parser, options.arithmetic);
   add_lens_options(parser, options.lens,
                    {.focus = "the scene's",
                     .focal_length = "the scene's",
@@ -72,6 +74,7 @@ void complete(BenchOptions& options, const CLI::App& parser) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;
+  check_arithmetic(options.arithmetic, options.method->name, options.versus != nullptr);
   check_memory(options.image ? "--image" : "--size", options.size, kBytesPerPixel);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dof/arithmetic.h"
 #include "dof/method.h"
 #include "raster/numbers/profile.h"
 #include "tools/gl/driver.h"
@@ -25,6 +26,7 @@ struct BenchOptions {
   PictureSize size;
   double frame = 0.0;
   const Method* method = find_method("two-pass");
+  Arithmetic arithmetic = Arithmetic::floats;
   LensOptions lens;
   std::optional<float> max_coc_px;
   Profile profile = profiles().front();

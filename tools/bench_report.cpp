@@ -43,8 +43,11 @@ std::string heading(const BenchRecord& record) {
   const PoolOptions& pool = record.options.pool;
   std::string text = work.name + ", ";
   if (work.scene) text += std::to_string(triangle_count(*work.scene)) + " triangles, ";
-  text += size_text(work.size) + ", " + std::string{work.method->name} + ", max-coc " +
-          short_number(static_cast<double>(work.settings.max_coc_px)) + "\n";
+  text += size_text(work.size) + ", " + std::string{work.method->name} +
+          (record.options.arithmetic == Arithmetic::floats
+               ? ""
+               : " " + std::string{arithmetic_name(record.options.arithmetic)}) +
+          ", max-coc " + short_number(static_cast<double>(work.settings.max_coc_px)) + "\n";
   text += "profile " + work.profile.name + ", " + std::to_string(pool.threads) +
           (pool.threads == 1 ? " thread, " : " threads, ") + std::string{isa_name(pool.isa)} +
           ", " + std::to_string(record.options.runs) + " runs, " +
@@ -108,6 +111,7 @@ std::string bench_json(const BenchRecord& record) {
                     {"triangles", nullptr},
                     {"size", size_text(work.size)},
                     {"method", work.method->name},
+                    {"arithmetic", arithmetic_name(record.options.arithmetic)},
                     {"max_coc", work.settings.max_coc_px},
                     {"profile", work.profile.name},
                     {"threads", pool.threads},

@@ -2,6 +2,7 @@
 
 #include "scenes/load_scene.h"
 #include "scenes/sphere_field.h"
+#include "tools/arithmetic_option.h"
 #include "tools/bench_picture.h"
 #include "tools/method_options.h"
 #include "tools/scene_warnings.h"
@@ -34,6 +35,7 @@ DofSettings chosen_settings(const BenchOptions& options, const FilmedFrom& from,
   check_lens(lens, options.lens, name);
   settings.coc = checked_pixel_coc(lens, from.fov_y_degrees, options.size.height,
                                    options.lens.coc_scale.value_or(from.lens.coc_scale));
+  check_arithmetic(options.arithmetic, settings);
   return settings;
 }
 

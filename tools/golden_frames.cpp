@@ -1,6 +1,7 @@
 #include <array>
 #include <string_view>
 
+#include "dof/arithmetic.h"
 #include "dof/method.h"
 #include "reference/accumulation.h"
 #include "reference/sample_sums.h"
@@ -61,6 +62,12 @@ std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
         for (const Method& method : methods()) {
           hashes.push_back({name + ' ' + std::string{method.name} + where,
                             hash_image(apply(method, {picture, settings, profile}, pool))});
+        }
+        for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
+          Image filtered = make_image(picture.format, width, height);
+          two_pass_in(arithmetic, {picture, settings, profile}, filtered, pool);
+          hashes.push_back({name + " two-pass-" + std::string{arithmetic_name(arithmetic)} + where,
+                            hash_image(filtered)});
         }
         const SceneMethodInput from_lens{
             scene,

@@ -130,6 +130,9 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
                                  std::to_string(options.size.height) + " pixels");
   text += line("Triangles", std::to_string(record.triangles));
   text += line("Method", std::string{options.method.name()});
+  if (options.arithmetic != Arithmetic::floats) {
+    text += line("Arithmetic", std::string{arithmetic_name(options.arithmetic)});
+  }
   if (record.used.choice) text += choice_lines(*record.used.choice);
   text += line("Picture", std::string{name_of(options.show)});
   text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
@@ -170,6 +173,9 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
       {"output", options.output},
   };
+  if (options.arithmetic != Arithmetic::floats) {
+    json["arithmetic"] = arithmetic_name(options.arithmetic);
+  }
   if (!record.gl_renderer.empty()) {
     json["profile"] = nullptr;
     json["gl_driver"] = record.gl_renderer;

@@ -9,6 +9,7 @@
 #include "raster/images/texel.h"
 #include "scenes/draw_scene.h"
 #include "scenes/load_scene.h"
+#include "tools/arithmetic_option.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/errors.h"
@@ -67,6 +68,7 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
   }
   used.settings.coc =
       checked_pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
+  if (options.show == Show::image) check_arithmetic(options.arithmetic, used.settings);
 }
 
 /// The method that draws the scene itself, from many points of the lens.
@@ -126,6 +128,11 @@ Image shown_picture(Image scene, const RenderOptions& options, const Method* fil
                     ThreadPool& pool) {
   switch (options.show) {
     case Show::image:
+      if (options.arithmetic != Arithmetic::floats) {
+        Image result = make_image(scene.format, scene.width, scene.height);
+        two_pass_in(options.arithmetic, {scene, settings, options.profile}, result, pool);
+        return result;
+      }
       return on_gl != nullptr ? on_gl->filter(*filter, settings, scene)
                               : apply(*filter, {scene, settings, options.profile}, pool);
     case Show::pinhole: return scene;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "raster/images/image.h"
+#include "tools/arithmetic_option.h"
 #include "tools/auto_options.h"
 #include "tools/driver_option.h"
 #include "tools/errors.h"
@@ -63,6 +64,7 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
 
 void add_method_options(CLI::App& parser, RenderOptions& options) {
   add_method_option(parser, options.method);
+  add_arithmetic_option(parser, options.arithmetic);
   add_lens_options(parser, options.lens,
                    {.focus = "the scene's",
                     .focal_length = "the scene's",
@@ -166,6 +168,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     }
   }
   check_auto_options(parser, options.method);
+  check_arithmetic(options.arithmetic, options.method.name(), options.gl != nullptr);
   const bool samples = options.method.of_scene != nullptr;
   if (samples) {
     complete_sampling(options.sampling, parser);

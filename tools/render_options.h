@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "choice/choose.h"
+#include "dof/arithmetic.h"
 #include "dof/method.h"
 #include "raster/numbers/profile.h"
 #include "tools/gl/driver.h"
@@ -33,6 +34,7 @@ struct RenderOptions {
   const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};
+  Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;  ///< of a method that draws the scene
   Goal goal;          ///< of auto
   LensOptions lens;

@@ -11,23 +11,13 @@
 namespace softfocus {
 namespace {
 
-// The two texels along one axis, and the second's weight in 1/256.
-struct Taps8 {
-  int first;
-  int second;
-  int weight;
-};
-
 // A position in 24.8 fixed point, less half a texel. What no integer holds comes out
 // at the far end, whatever its sign: x86 converts it to the least integer, from which
 // the subtraction wraps round to the largest ones.
-std::int32_t less_half_texel(float position_256) {
-  return std::bit_cast<std::int32_t>(std::bit_cast<std::uint32_t>(round_to_int(position_256)) -
-                                     128u);
-}
+std::int32_t less_half_texel(float position_256) { return from_centre(round_to_int(position_256)); }
 
 // `size` is the level's, `base_size` level 0's: the path is chosen by the latter.
-Taps8 taps8(float coordinate, int size, int base_size, Wrap wrap) {
+FixedTaps taps8(float coordinate, int size, int base_size, Wrap wrap) {
   const auto length = static_cast<float>(size);
   if (wrap == Wrap::repeat && !std::has_single_bit(static_cast<unsigned>(base_size))) {
     const float fraction = coordinate - std::floor(coordinate);
@@ -37,13 +27,7 @@ Taps8 taps8(float coordinate, int size, int base_size, Wrap wrap) {
     return {first, first == size - 1 ? 0 : first + 1, position & 255};
   }
   const std::int32_t position = less_half_texel(coordinate * static_cast<float>(size * 256));
-  const int index = position >> 8;
-  if (wrap == Wrap::repeat) {
-    return {index & (size - 1), (index + 1) & (size - 1), position & 255};
-  }
-  // Left of the first texel's centre both are the first texel.
-  const int first = std::clamp(index, 0, size - 1);
-  return {first, index >= 0 && index < size - 1 ? index + 1 : first, position & 255};
+  return wrap == Wrap::repeat ? repeated_taps(position, size) : clamped_taps(position, size);
 }
 
 using Texel8 = std::array<int, 4>;
@@ -62,8 +46,8 @@ Texel8 lerp4(const Texel8& a, const Texel8& b, int weight) {
 }
 
 Texel8 bilinear(const Image& image, const Image& base, const Sampler& sampler, glm::vec2 uv) {
-  const Taps8 u = taps8(uv.x, image.width, base.width, sampler.wrap_u);
-  const Taps8 v = taps8(uv.y, image.height, base.height, sampler.wrap_v);
+  const FixedTaps u = taps8(uv.x, image.width, base.width, sampler.wrap_u);
+  const FixedTaps v = taps8(uv.y, image.height, base.height, sampler.wrap_v);
   const auto along_row = [&](int y) {
     return lerp4(load(image, u.first, y), load(image, u.second, y), u.weight);
   };

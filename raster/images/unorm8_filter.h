@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "raster/images/fixed_bilinear.h"
 #include "raster/images/image.h"
 #include "raster/images/sampler.h"
 
@@ -13,10 +14,6 @@ namespace softfocus {
 
 /// Whether llvmpipe filters this format with this sampler in integers.
 bool is_filtered_in_integers(Format format, const Sampler& sampler);
-
-/// a + weight / 256 (b - a), rounded to nearest, ties up. Needs 0 <= weight, a, b <= 255;
-/// lies between a and b.
-constexpr int lerp_unorm8(int a, int b, int weight) { return a + ((weight * (b - a) + 128) >> 8); }
 
 /// Bilinear fetch from level `level` of a texture, mixed with the next level by
 /// `next_weight` (0 <= weight < 1, cut to 8 bits; 0 reads one level). Values are

@@ -142,6 +142,19 @@ SOFTFOCUS_INLINE Floats larger(Floats a, Floats b) {
 SOFTFOCUS_INLINE Ints smaller(Ints a, Ints b) { return a < b ? a : b; }
 SOFTFOCUS_INLINE Ints larger(Ints a, Ints b) { return a > b ? a : b; }
 
+/// Each lane as two signed numbers of 16 bits: both products, added.
+SOFTFOCUS_INLINE Ints multiply_add_pairs(Ints a, Ints b) {
+#if SOFTFOCUS_LANES == 16
+  return (Ints)_mm512_maskz_madd_epi16(0xFFFF, (__m512i)a, (__m512i)b);
+#elif SOFTFOCUS_LANES == 8
+  return (Ints)_mm256_madd_epi16((__m256i)a, (__m256i)b);
+#elif defined(__SSE2__)
+  return (Ints)_mm_madd_epi16((__m128i)a, (__m128i)b);
+#else
+  return (a << 16 >> 16) * (b << 16 >> 16) + (a >> 16) * (b >> 16);
+#endif
+}
+
 SOFTFOCUS_INLINE Floats to_floats(Ints v) { return __builtin_convertvector(v, Floats); }
 /// The integer part. Needs values that an int32 holds.
 SOFTFOCUS_INLINE Ints truncate(Floats v) { return __builtin_convertvector(v, Ints); }
@@ -156,6 +169,20 @@ SOFTFOCUS_INLINE Floats square_root(Floats v) {
 #else
   for (int i = 0; i < kLanes; ++i) v[i] = std::sqrt(v[i]);
   return v;
+#endif
+}
+
+/// 1 / v, wrong by less than 2^-11 of it; how much, differs between CPUs. Needs a normal
+/// number between 2^-100 and 2^100.
+SOFTFOCUS_INLINE Floats rough_reciprocal(Floats v) {
+#if SOFTFOCUS_LANES == 16
+  return (Floats)_mm512_maskz_rcp14_ps(0xFFFF, (__m512)v);
+#elif SOFTFOCUS_LANES == 8
+  return (Floats)_mm256_rcp_ps((__m256)v);
+#elif defined(__SSE2__)
+  return (Floats)_mm_rcp_ps((__m128)v);
+#else
+  return 1.0f / v;
 #endif
 }
 
@@ -256,6 +283,42 @@ SOFTFOCUS_INLINE Floats gather(const float* base, Ints index, Mask mask) {
   Floats v{};
   for (int i = 0; i < kLanes; ++i) {
     if (mask[i] != 0) v[i] = base[index[i]];
+  }
+  return v;
+#endif
+}
+
+/// Pairs of numbers: base[2 index] and base[2 index + 1] of each lane.
+struct IntPairs {
+  Ints first, second;
+};
+template <std::size_t... lane>
+SOFTFOCUS_INLINE IntPairs unzip_lanes(Ints lower, Ints upper, std::index_sequence<lane...>) {
+  return {__builtin_shufflevector(lower, upper, (2 * lane)...),
+          __builtin_shufflevector(lower, upper, (2 * lane + 1)...)};
+}
+SOFTFOCUS_INLINE IntPairs gather_pairs(const std::int32_t* base, Ints index) {
+#if SOFTFOCUS_LANES == 16
+  const __m512i i = (__m512i)index;
+  const __m512i zero = _mm512_setzero_si512();
+  const __m256i i_lower = _mm512_maskz_extracti64x4_epi64(0xFF, i, 0);
+  const __m256i i_upper = _mm512_maskz_extracti64x4_epi64(0xFF, i, 1);
+  return unzip_lanes((Ints)_mm512_mask_i32gather_epi64(zero, 0xFF, i_lower, base, 8),
+                     (Ints)_mm512_mask_i32gather_epi64(zero, 0xFF, i_upper, base, 8),
+                     std::make_index_sequence<kLanes>{});
+#elif SOFTFOCUS_LANES == 8
+  const auto* pairs = reinterpret_cast<const long long*>(base);
+  const __m256i zero = _mm256_setzero_si256(), all = _mm256_cmpeq_epi64(zero, zero);
+  const __m128i i_lower = _mm256_castsi256_si128((__m256i)index);
+  const __m128i i_upper = _mm256_extracti128_si256((__m256i)index, 1);
+  return unzip_lanes((Ints)_mm256_mask_i32gather_epi64(zero, pairs, i_lower, all, 8),
+                     (Ints)_mm256_mask_i32gather_epi64(zero, pairs, i_upper, all, 8),
+                     std::make_index_sequence<kLanes>{});
+#else
+  IntPairs v{};
+  for (int i = 0; i < kLanes; ++i) {
+    v.first[i] = base[2 * index[i]];
+    v.second[i] = base[2 * index[i] + 1];
   }
   return v;
 #endif
@@ -535,6 +598,17 @@ SOFTFOCUS_INLINE void stream_texel_words(std::uint16_t* to, const TexelWords& wo
   _mm_stream_si128((__m128i*)(to + 2 * kLanes), (__m128i)words.second);
 #else
   store_texel_words(to, words);
+#endif
+}
+SOFTFOCUS_INLINE void stream_bits(void* to, Bits v) {
+#if SOFTFOCUS_LANES == 16
+  _mm512_stream_si512((__m512i*)to, (__m512i)v);
+#elif SOFTFOCUS_LANES == 8
+  _mm256_stream_si256((__m256i*)to, (__m256i)v);
+#elif defined(__SSE2__)
+  _mm_stream_si128((__m128i*)to, (__m128i)v);
+#else
+  std::memcpy(to, &v, sizeof v);
 #endif
 }
 SOFTFOCUS_INLINE void finish_streaming() {

@@ -1,0 +1,105 @@
+// The filter for 8-bit colour, RGBA8 and RGB565.
+
+#include "dof/fixed/moving_sums.h"
+
+namespace softfocus::fixed {
+namespace {
+
+Ring ring_of(const Stream& stream) {
+  const Settings& settings = stream.settings;
+  Ring ring{};
+  ring.rows = ring_rows(settings);
+  const size_t pixels = static_cast<size_t>(ring.rows) * settings.width;
+  uint8_t* at = stream.memory;
+  const auto take = [&at](size_t bytes) {
+    uint8_t* part = at;
+    at += bytes;
+    return part;
+  };
+  ring.colours = take(4 * pixels);
+  ring.line = take(4u * settings.width);
+  ring.columns = reinterpret_cast<Sums*>(take(sizeof(Sums) * settings.width));
+  ring.changes = reinterpret_cast<Sums*>(take(sizeof(Sums) * 4 * (settings.reach + 1u)));
+  ring.taps = reinterpret_cast<Tap*>(take(2 * sizeof(Tap) * settings.reach));
+  ring.reaches_there = reinterpret_cast<uint32_t*>(take(4 * ring.rows));
+  ring.codes = take(settings.depth == SOFTFOCUS_FIXED_DEPTH8 ? pixels : 2 * pixels);
+  ring.reaches = take(pixels);
+  ring.alphas = settings.colour == SOFTFOCUS_FIXED_RGBA8 ? take(pixels) : nullptr;
+  ring.farthest = take(ring.rows);
+  ring.farthest_beyond = take(ring.rows);
+  return ring;
+}
+
+constexpr uint32_t expand5(uint32_t value) { return value << 3 | value >> 2; }
+constexpr uint32_t expand6(uint32_t value) { return value << 2 | value >> 4; }
+// 31 v / 255 and 63 v / 255, rounded to nearest, for bytes.
+constexpr uint32_t reduce5(uint32_t byte) { return (byte * 249 + 1014) >> 11; }
+constexpr uint32_t reduce6(uint32_t byte) { return (byte * 253 + 505) >> 10; }
+
+void take_row(Stream* stream, const void* colours, const void* depths) {
+  const Ring ring = ring_of(*stream);
+  const uint32_t width = stream->settings.width;
+  const uint32_t slot = slot_of(*stream, stream->rows_in);
+  put_codes(*stream, ring, depths, slot);
+  auto* line = static_cast<uint32_t*>(ring.line);
+  if (stream->settings.colour == SOFTFOCUS_FIXED_RGBA8) {
+    const auto* bytes = static_cast<const uint8_t*>(colours);
+    uint8_t* alphas = static_cast<uint8_t*>(ring.alphas) + static_cast<size_t>(slot) * width;
+    for (uint32_t x = 0; x < width; ++x, bytes += 4) {
+      line[x] = pack(uint32_t{bytes[0]} << 2, uint32_t{bytes[1]} << 2, uint32_t{bytes[2]} << 2);
+      alphas[x] = bytes[3];
+    }
+  } else {
+    const auto* words = static_cast<const uint16_t*>(colours);
+    for (uint32_t x = 0; x < width; ++x) {
+      const uint32_t word = words[x];
+      line[x] =
+          pack(expand5(word >> 11) << 2, expand6(word >> 5 & 63u) << 2, expand5(word & 31u) << 2);
+    }
+  }
+  filter_across(*stream, ring, slot);
+}
+
+/// The second pass of row rows_out.
+void give_row(Stream* stream, void* out) {
+  const Ring ring = ring_of(*stream);
+  const uint32_t width = stream->settings.width;
+  const uint32_t slot = slot_of(*stream, stream->rows_out);
+  const size_t first = static_cast<size_t>(slot) * width;
+  filter_down(*stream, ring, stream->rows_out);
+  const auto* line = static_cast<const uint32_t*>(ring.line);
+  if (stream->settings.colour == SOFTFOCUS_FIXED_RGBA8) {
+    auto* bytes = static_cast<uint8_t*>(out);
+    const uint8_t* alphas = static_cast<const uint8_t*>(ring.alphas) + first;
+    for (uint32_t x = 0; x < width; ++x, bytes += 4) {
+      bytes[0] = static_cast<uint8_t>(red(line[x]) >> 2);
+      bytes[1] = static_cast<uint8_t>(green(line[x]) >> 2);
+      bytes[2] = static_cast<uint8_t>(blue(line[x]) >> 2);
+      bytes[3] = alphas[x];
+    }
+  } else {
+    auto* words = static_cast<uint16_t*>(out);
+    for (uint32_t x = 0; x < width; ++x) {
+      words[x] =
+          static_cast<uint16_t>(reduce5(red(line[x]) >> 2) << 11 |
+                                reduce6(green(line[x]) >> 2) << 5 | reduce5(blue(line[x]) >> 2));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softfocus::fixed
+
+using namespace softfocus::fixed;
+
+int softfocus_fixed_begin(Stream* stream, const Settings* settings, const Weights* table,
+                          void* memory, size_t bytes) {
+  if (settings == nullptr) return SOFTFOCUS_FIXED_BAD_ARGUMENT;
+  if (settings->colour == SOFTFOCUS_FIXED_RGBA16F) return SOFTFOCUS_FIXED_BAD_FORMAT;
+  const int error =
+      begin_stream(stream, settings, table, memory, bytes, softfocus_fixed_memory(settings));
+  if (error != 0) return error;
+  stream->take = take_row;
+  stream->give = give_row;
+  return 0;
+}

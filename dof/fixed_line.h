@@ -1,0 +1,58 @@
+#pragma once
+// Lines of pixels on their way through a pass of the fixed-point filter: as many at once as
+// a vector has lanes, node i holding pixel i of each. Nodes go in block by block, kLanes at
+// once, and come out `reach` nodes later.
+
+#include <cstdint>
+
+namespace softfocus {
+
+// Weights as the kernels use them: two words for each depth code. Numbers of 20 bits are split
+// as 2^5 h + l, for products of 16 bits: h lies in the upper half of a word, l in its lowest 5
+// bits. The bits between hold the rest:
+//   first word   whole; reach and side (kKeyShift); the upper 4 bits of the leakage
+//   second word  edge; the leakage's lower 11 bits; below 0 if the leakage is less than 1
+
+inline constexpr int kSplitBits = 5;
+inline constexpr std::int32_t kSplitMask = 0x7FFF001F;
+inline constexpr int kKeyShift = 5;
+inline constexpr std::int32_t kKeyMask = 0x7F;  // reach << 1 | beyond
+inline constexpr int kLeakShift = 5;            // in an edge's word
+inline constexpr int kLeakBitsThere = 11;
+inline constexpr std::int32_t kLeaking = INT32_MIN;
+
+/// Nodes lie in a ring, a vector each, as their numbers say modulo `node_slots`. Sums of 4
+/// numbers (weight, red, green, blue) are kept for either side of the focus: a slot of sums
+/// is 8 vectors.
+struct FixedLine {
+  int reach;               ///< no pixel reaches farther
+  unsigned node_slots;     ///< a power of two, at least reach + 2 kLanes
+  unsigned sum_slots;      ///< a power of two, at least 2 reach + 2
+  std::uint32_t* colours;  ///< three of 10 bits, red in the lowest
+  std::int32_t* wholes;    ///< the table's words for a node
+  std::int32_t* edges;
+  std::uint32_t* sums;     ///< differences along the line
+  std::uint32_t* running;  ///< their sums up to the node that came out last: 8 vectors
+  int touched[2];          ///< the last node that differences on this side go to
+};
+
+/// A part of a picture that a thread filters in one go, and how; strides in bytes.
+struct FixedStrip {
+  const std::int32_t* words;    ///< two for each code
+  int width, height;            ///< of the picture
+  const std::uint8_t* picture;  ///< RGBA8
+  std::ptrdiff_t picture_stride;
+  const void* codes;
+  int code_bytes;
+  std::uint8_t* result;  ///< RGBA8
+  std::ptrdiff_t result_stride;
+  bool past_caches;  ///< writes it past the caches
+
+  int x_begin, x_end, y_begin, y_end;  ///< x_begin and y_begin multiples of the lanes
+  int halo;                            ///< the reach in whole vectors
+  FixedLine across;
+  FixedLine* down;        ///< one for each vector of columns
+  std::uint32_t* passed;  ///< what comes out of `across`: a vector for each column
+};
+
+}  // namespace softfocus

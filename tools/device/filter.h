@@ -1,0 +1,25 @@
+#pragma once
+// What run_filter.cpp measures: fixed_run.cpp and float_run.cpp each have these
+// functions, and one of them is linked.
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tools/device/frame_settings.h"
+
+namespace softfocus::device {
+
+/// Bytes that the filter wants of its caller, rows in and out not counted.
+size_t filter_bytes(const FrameSettings& settings);
+
+/// Takes the memory (aligned for any type) and makes the tables; nullptr if it refuses.
+struct Filter;
+Filter* begin_filter(const FrameSettings& settings, uint8_t* memory, size_t bytes);
+
+/// Takes a row; whether one came out, into `out`.
+bool put_row(Filter& filter, const uint16_t* colour, const uint8_t* depth, uint16_t* out);
+
+/// After the last row: whether there is another to come out, into `out`.
+bool next_row(Filter& filter, uint16_t* out);
+
+}  // namespace softfocus::device

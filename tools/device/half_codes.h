@@ -1,0 +1,42 @@
+#pragma once
+// Colours and depths as halves (IEEE 754 binary16: sign, 5 bits of exponent, 10 of
+// fraction) into the codes of a small device, in integers: every desktop makes the same
+// frame. Rounded to the nearest code, upwards from the middle.
+
+#include <stdint.h>
+
+namespace softfocus::device {
+
+/// A half in 1/2^24, the smallest there is: exact. Negative values and NaN are 0,
+/// infinity is 2^40, past every other.
+constexpr int64_t half_in_q24(uint16_t half) {
+  const int exponent = half >> 10 & 31;
+  const int64_t fraction = half & 1023;
+  if (half > 0x7C00) return 0;
+  if (exponent == 31) return int64_t{1} << 40;
+  return exponent == 0 ? fraction : (1024 + fraction) << (exponent - 1);
+}
+
+/// 0 to 1 as 0 to `largest`, at most 255.
+constexpr uint16_t level_of_half(uint16_t half, int largest) {
+  constexpr int64_t one = 1 << 24;
+  const int64_t value = half_in_q24(half);
+  return static_cast<uint16_t>(((value < one ? value : one) * largest + one / 2) >> 24);
+}
+
+constexpr uint16_t rgb565_of_halves(const uint16_t* rgb) {
+  return static_cast<uint16_t>(level_of_half(rgb[0], 31) << 11 | level_of_half(rgb[1], 63) << 5 |
+                               level_of_half(rgb[2], 31));
+}
+
+/// A depth in metres as 0 at near to 255 at far, what lies outside moved to the end.
+constexpr uint8_t depth_code_of_half(uint16_t half, uint32_t near_um, uint32_t far_um) {
+  // At most 2^40 / 2^4 * 10^6: below 2^56.
+  const int64_t depth_um = (half_in_q24(half) >> 4) * 1000000 >> 20;
+  if (depth_um <= near_um) return 0;
+  if (depth_um >= far_um) return 255;
+  const int64_t range = int64_t{far_um} - near_um;
+  return static_cast<uint8_t>(((depth_um - near_um) * 255 + range / 2) / range);
+}
+
+}  // namespace softfocus::device
