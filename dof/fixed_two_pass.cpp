@@ -8,8 +8,8 @@
 #include "dof/fixed_line.h"
 #include "dof/fixed_rows.h"
 #include "dof/focus_map.h"
-#include "dof/scratch_shelf.h"
 #include "dof/two_pass_strip.h"
+#include "raster/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/fixed_two_pass_kernels.inl"
 #include "raster/numbers/for_each_isa.inl"
