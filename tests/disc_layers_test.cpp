@@ -64,6 +64,29 @@ TEST_CASE("disc-layers is what its oracle says, at any size and radius") {
   }
 }
 
+TEST_CASE("disc-layers is what its oracle says where hardly anything is blurred") {
+  // 40 (z - 2) / z: near the focus but for one pixel, whose circle has 6 to 37 pixels.
+  const DofSettings of = settings(40.0f, 40.0f);
+  const int width = 330, height = 70;
+  ThreadPool plain(2, Isa::scalar), pool(2);
+  for (const float depth_m : {1.05f, 1.7f, 30.0f}) {
+    for (const int x : {61, 126, 131, 190}) {
+      Image scene = random_scene_image(width, height, 7);
+      for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u) {
+          glm::vec4 texel = load_texel<Format::rgba16f>(scene, u, v);
+          texel.w = u == x && v == x / 4 ? depth_m : 2.0f;
+          store_texel(scene, u, v, texel, {});
+        }
+      }
+      Image expected = make_image(scene.format, width, height);
+      disc_layers_plain({scene, of, {}}, expected, plain);
+      INFO(x, ", ", depth_m);
+      CHECK(equal(blurred(scene, of, pool), expected));
+    }
+  }
+}
+
 TEST_CASE("a rung's disc has the second moment of its circle") {
   // Of level 0, where pixels have no size of their own.
   const std::vector<LevelRungs> ladder = make_ladder(7.0f);
