@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dof/fixed/fixed.h"
+#include "dof/fixed_two_pass.h"
 #include "dof/method.h"
 
 namespace softfocus {
@@ -20,6 +21,9 @@ enum class Arithmetic : std::uint8_t {
 /// "float", "fixed", "fixed-8".
 std::string_view arithmetic_name(Arithmetic arithmetic);
 std::span<const Arithmetic> arithmetics();
+
+/// The largest radius that integers have.
+inline constexpr float kLargestFixedRadiusPx = SOFTFOCUS_FIXED_LARGEST_REACH + 1;
 
 /// What settings integers cannot have, as a sentence, or nullptr: circles are at most 64
 /// pixels, the leak factor is 0 or 1/16 and more, the focus lies nearer than 4294 m, the
@@ -37,9 +41,13 @@ struct BytePicture {
   Image colours;  ///< RGBA8, alpha 255
   std::vector<std::uint16_t> depths;
 };
-BytePicture byte_picture(const Image& picture);
+BytePicture byte_picture(const Image& picture, ThreadPool& pool);
 
 /// The two-pass filter of `input` in that arithmetic. Needs settings without error.
 void two_pass_in(Arithmetic arithmetic, const DofInput& input, Image& result, ThreadPool& pool);
+
+/// The same with Arithmetic::fixed_8 and a table from fixed_table(half_table(...)), which is made
+/// once a lens.
+void two_pass_bytes(const Image& scene, const FixedTable& table, Image& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -54,16 +54,23 @@ TEST_CASE("chart settings: no two entries have an id in common") {
   }
   CHECK(ids.size() == entries);
   CHECK(ids.contains("two-pass-r16-d3d11"));
+  CHECK(ids.contains("two-pass-r16-fixed-8"));
   CHECK(ids.contains("accumulation-s8"));
   CHECK(ids.contains("auto-e0.02"));
   CHECK(ids.contains("pinhole"));
 }
 
-TEST_CASE("chart settings: two-pass takes radii of 4 to 64 in ieee and in a GPU's profile") {
+TEST_CASE(
+    "chart settings: two-pass takes radii of 4 to 64, in a GPU's profile and in integers too") {
   CHECK(texts("two-pass", 1024, false) ==
         std::vector<std::string>{"max-coc 4", "max-coc 8", "max-coc 16", "max-coc 32", "max-coc 64",
                                  "max-coc 4, d3d11", "max-coc 8, d3d11", "max-coc 16, d3d11",
-                                 "max-coc 32, d3d11", "max-coc 64, d3d11"});
+                                 "max-coc 32, d3d11", "max-coc 64, d3d11", "max-coc 4, fixed-8",
+                                 "max-coc 8, fixed-8", "max-coc 16, fixed-8", "max-coc 32, fixed-8",
+                                 "max-coc 64, fixed-8"});
+  // Integers have circles of up to 64 pixels.
+  CHECK(texts("two-pass", 2048, false).back() == "max-coc 64, fixed-8");
+  CHECK(texts("two-pass", 2048, false).size() == 14);
 }
 
 TEST_CASE("chart settings: radii follow the picture's height, and stay what a filter takes") {

@@ -60,10 +60,12 @@ TEST_CASE("chart: writes five files, and goes on from what is there to the same 
   CHECK(listing_of(out) == kFiles);
 
   const json list = json::parse(read_file(out + "/chart.json"));
-  REQUIRE(list.size() == 7);
+  REQUIRE(list.size() == 10);
   CHECK(list[0]["method"] == "pinhole");
   CHECK(list[1]["settings"] == json{{"max_coc_px", 0.25}, {"profile", "ieee"}});
   CHECK(list[6]["settings"] == json{{"max_coc_px", 4.0}, {"profile", "d3d11"}});
+  CHECK(list[9]["settings"] ==
+        json{{"max_coc_px", 4.0}, {"profile", "ieee"}, {"arithmetic", "fixed-8"}});
   for (const json& point : list) {
     CHECK(point["scene"] == "figures");
     CHECK(point["rounds"] == 3);
@@ -75,11 +77,14 @@ TEST_CASE("chart: writes five files, and goes on from what is there to the same 
     CHECK(point["noise_floor_flip"] < point["flip"]);
   }
   CHECK(list[3]["psnr_db"] > list[0]["psnr_db"]);  // blurred is nearer to the truth than sharp
-  CHECK(list[3]["flip"] != list[0]["flip"]);  // the settings count
+  CHECK(list[3]["flip"] != list[0]["flip"]);       // the settings count
   CHECK(list[6]["flip"] != list[3]["flip"]);
+  CHECK(list[9]["flip"] != list[3]["flip"]);  // bytes are another picture, but hardly
+  CHECK(list[9]["flip"].get<double>() ==
+        doctest::Approx(list[3]["flip"].get<double>()).epsilon(0.2));
 
   const std::string csv = read_file(out + "/chart.csv");
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 8);
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 11);
   CHECK(read_file(out + "/chart.png").starts_with("\x89PNG"));
   CHECK(contains(read_file(out + "/chart.svg"), "</svg>"));
   CHECK(contains(read_file(out + "/index.html"), "</html>"));
@@ -87,7 +92,7 @@ TEST_CASE("chart: writes five files, and goes on from what is there to the same 
   const std::string truth = read_file(out + "/cache/figures.truth.npy");
   const ProgramRun second = run_program(small_chart(out));
   CHECK(second.status == 0);
-  CHECK(second.out.starts_with("went on: 15 of 15 results were there already\n"));
+  CHECK(second.out.starts_with("went on: 21 of 21 results were there already\n"));
   CHECK(json::parse(read_file(out + "/chart.json")) == list);
   CHECK(read_file(out + "/chart.csv") == csv);
   CHECK(read_file(out + "/cache/figures.truth.npy") == truth);
@@ -103,11 +108,11 @@ TEST_CASE("chart: what is missing or damaged is measured again, the rest is kept
   write_file(out + "/cache/figures/two-pass-r1.json", "{");
   const ProgramRun run = run_program(small_chart(out));
   CHECK(run.status == 0);
-  CHECK(run.out.starts_with("went on: 13 of 15 results"));
+  CHECK(run.out.starts_with("went on: 19 of 21 results"));
   CHECK(json::parse(read_file(out + "/chart.json")) == before);
 
   const ProgramRun more = run_program(small_chart(out, {"--rounds", "4"}));
-  CHECK(more.out.starts_with("went on: 8 of 15 results"));  // the truth and the errors
+  CHECK(more.out.starts_with("went on: 11 of 21 results"));  // the truth and the errors
   CHECK(json::parse(read_file(out + "/chart.json"))[0]["rounds"] == 4);
   CHECK_FALSE(contains(run_program(small_chart(out, {"--again"})).out, "went on"));
 }

@@ -36,7 +36,7 @@ std::vector<SceneFrame> scene_frames() {
                      {},
                      0xFFFFFFFF,
                      0};
-    const BytePicture bytes = byte_picture(frame.drawn);
+    const BytePicture bytes = byte_picture(frame.drawn, pool);
     std::vector<double> depths;
     for (const std::uint16_t half : bytes.depths) {
       depths.push_back(half_to_float(half) * 1e6);

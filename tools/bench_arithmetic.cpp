@@ -14,7 +14,7 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
       work.scene ? draw_scene(*work.scene, work.view, work.frame, width, height, work.profile, pool)
                  : work.picture;
   const bool bytes = options.arithmetic == Arithmetic::fixed_8;
-  const BytePicture byte_form = bytes ? byte_picture(picture) : BytePicture{};
+  const BytePicture byte_form = bytes ? byte_picture(picture, pool) : BytePicture{};
   const FixedTable table = fixed_table(half_table(fixed_lens(work.settings)));
   Image ours = make_image(bytes ? Format::rgba8 : Format::rgba16f, width, height);
   Image theirs = make_image(Format::rgba16f, width, height);

@@ -185,7 +185,12 @@ std::string key_script(const std::vector<std::string>& series, const Layout& lay
 }  // namespace
 
 std::string series_name(const ChartEntry& entry) {
-  return entry.profile == "ieee" ? entry.method : entry.method + ", " + entry.profile;
+  std::string name = entry.method;
+  if (entry.profile != "ieee") name += ", " + entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    name += ", " + std::string{arithmetic_name(entry.arithmetic)};
+  }
+  return name;
 }
 
 std::string plot_script(const std::vector<ChartPanel>& panels, std::string_view terminal,

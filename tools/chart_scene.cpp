@@ -65,6 +65,12 @@ SceneMethodInput accumulation_input(const ChartScene& scene, int samples) {
           .progress = {}};
 }
 
+bool can_run(const ChartScene& scene, const ChartEntry& entry) {
+  if (entry.arithmetic == Arithmetic::floats) return true;
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
+  return fixed_settings_error({.coc = scene.coc, .max_coc_px = max_coc_px}) == nullptr;
+}
+
 ChartRunner::ChartRunner(const ChartScene& scene, ThreadPool& pool)
     : scene_(scene), views_(accumulation_input(scene, kSampleCounts.back())), pool_(pool) {
   const int width = scene.pinhole.width, height = scene.pinhole.height;
@@ -88,18 +94,34 @@ void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Pro
   filter.apply({drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
 }
 
+// What belongs to a lens is made once, as it would be for many frames.
+const FixedTable& ChartRunner::table_for(float max_coc_px) {
+  const auto found = tables_.find(max_coc_px);
+  if (found != tables_.end()) return found->second;
+  const fixed::Lens lens = fixed_lens({.coc = scene_.coc, .max_coc_px = max_coc_px});
+  return tables_.emplace(max_coc_px, fixed_table(half_table(lens))).first->second;
+}
+
+void ChartRunner::filter_drawn(const ChartEntry& entry, const Profile& profile) {
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
+  if (entry.arithmetic == Arithmetic::fixed_8) {
+    two_pass_bytes(drawn_, table_for(max_coc_px), result_, pool_);
+  } else {
+    filter_drawn(*entry.filter, max_coc_px, profile);
+  }
+}
+
 RunTime ChartRunner::filter(const ChartEntry& entry) {
   const Profile profile = *find_profile(entry.profile);
   PreparedScene& prepared = prepared_for(entry.profile);
-  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
   // Once without a clock: the contender before has filled the caches with its own.
   draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
-  filter_drawn(*entry.filter, max_coc_px, profile);
+  filter_drawn(entry, profile);
 
   const Clock::time_point start = Clock::now();
   draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
   const Clock::time_point drawn = Clock::now();
-  filter_drawn(*entry.filter, max_coc_px, profile);
+  filter_drawn(entry, profile);
   const Clock::time_point end = Clock::now();
   return {ms_between(start, end), ms_between(drawn, end)};
 }

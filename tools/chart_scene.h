@@ -40,6 +40,9 @@ struct RunTime {
   std::optional<double> filter_ms;  ///< none if nothing was filtered
 };
 
+/// Whether the scene's lens is one that the contender's arithmetic has.
+bool can_run(const ChartScene& scene, const ChartEntry& entry);
+
 /// Makes contenders' pictures again and again in the same memory.
 class ChartRunner {
  public:
@@ -61,6 +64,8 @@ class ChartRunner {
   RunTime choose(double max_error);
   PreparedScene& prepared_for(const std::string& profile);
   void filter_drawn(const Method& filter, float max_coc_px, const Profile& profile);
+  void filter_drawn(const ChartEntry& entry, const Profile& profile);
+  const FixedTable& table_for(float max_coc_px);
   void warm_up_views();
   void add_all_views(int samples);
   void carry_out(const Choice& choice);
@@ -69,6 +74,7 @@ class ChartRunner {
   SceneMethodInput views_;  // with as many points of the lens as anything here takes
   ThreadPool& pool_;
   std::map<std::string, PreparedScene> prepared_;  // by profile
+  std::map<float, FixedTable> tables_;             // by radius
   std::optional<AccumulationBuffer> buffer_;
   SampleSums sums_;
   Image drawn_;

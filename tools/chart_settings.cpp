@@ -8,7 +8,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kAccumulation = "accumulation", kAuto = "auto";
+constexpr std::string_view kAccumulation = "accumulation", kAuto = "auto", kTwoPass = "two-pass";
 
 /// Every radius is taken with every profile. Radii are --max-coc for a picture 1024 rows high,
 /// scaled with the height as those of scenes are.
@@ -26,7 +26,7 @@ struct SettingsOfMethod {
 const std::vector<SettingsOfMethod>& table() {
   static const std::vector<SettingsOfMethod> kTable{
       {"pinhole", {}, {}},
-      {"two-pass", {4, 8, 16, 32, 64}, {4, 16, 64}, {"ieee", "d3d11"}},
+      {kTwoPass, {4, 8, 16, 32, 64}, {4, 16, 64}, {"ieee", "d3d11"}},
       {"one-pass", {4, 8, 16, 32, 64}, {4, 16, 64}},
       {kAccumulation, {}, {}, {}, {8, 16, 32, 64}, {8, 32}},
       {kAuto, {}, {}, {}, {}, {}, {0.05, 0.02, 0.01}, {0.05, 0.02}},
@@ -72,6 +72,14 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
       entries.back().max_coc_px = static_cast<float>(scaled);
     }
   }
+  if (method == kTwoPass) {
+    for (const double radius : radii) {
+      const auto scaled = static_cast<float>(radius * height_px / 1024.0);
+      ChartEntry entry{.method = method, .filter = filter, .max_coc_px = scaled};
+      entry.arithmetic = Arithmetic::fixed_8;
+      if (scaled <= kLargestFixedRadiusPx) entries.push_back(std::move(entry));
+    }
+  }
   return entries;
 }
 
@@ -81,6 +89,9 @@ nlohmann::ordered_json settings_json(const ChartEntry& entry) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   if (entry.max_coc_px) json["max_coc_px"] = *entry.max_coc_px;
   json["profile"] = entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    json["arithmetic"] = arithmetic_name(entry.arithmetic);
+  }
   return json;
 }
 
@@ -93,6 +104,9 @@ std::string settings_text(const ChartEntry& entry) {
   std::string text;
   if (entry.max_coc_px) text = "max-coc " + short_number(double{*entry.max_coc_px});
   if (entry.profile != "ieee") text += (text.empty() ? "" : ", ") + entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    text += ", " + std::string{arithmetic_name(entry.arithmetic)};
+  }
   return text;
 }
 
@@ -102,6 +116,9 @@ std::string entry_id(const ChartEntry& entry) {
   if (entry.filter == nullptr) return id + "-s" + std::to_string(entry.samples);
   if (entry.max_coc_px) id += "-r" + short_number(double{*entry.max_coc_px});
   if (entry.profile != "ieee") id += "-" + entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    id += "-" + std::string{arithmetic_name(entry.arithmetic)};
+  }
   return id;
 }
 

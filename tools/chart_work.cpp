@@ -106,6 +106,10 @@ void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth
                     const std::string& key, const std::filesystem::path& folder,
                     ChartRunner& runner, std::vector<ChartPoint>& points) {
   for (const ChartEntry& entry : work.entries) {
+    if (!can_run(scene, entry)) {
+      work.left.skipped(kMeasureCost + (work.options.rounds + 1) * cost_of(entry));
+      continue;
+    }
     work.show(scene.scene.name + ": error of " + entry.method + ", " + settings_text(entry));
     ChartPoint point{.entry = entry};
     runner.run(entry);
