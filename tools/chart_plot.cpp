@@ -19,9 +19,9 @@ constexpr int kKeyRow = 24, kKeyColumns = 5;
 constexpr double kLeastFlip = 1e-5;
 
 /// Told apart by eye in neighbours and on white; past the end they come again with other shapes.
-constexpr std::array kColours{"#000000", "#d62728", "#1f77b4", "#2ca02c", "#ff7f0e",
-                              "#9467bd", "#8c564b", "#e377c2", "#17becf", "#bcbd22",
-                              "#003f88", "#7f0000", "#00a087", "#ffb000", "#606060"};
+constexpr std::array kColours{"#000000", "#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd",
+                              "#8c564b", "#e377c2", "#17becf", "#bcbd22", "#003f88", "#7f0000",
+                              "#00a087", "#ffb000", "#606060", "#a8d800"};
 constexpr int kShapes = 15;  // of gnuplot's
 
 struct Range {
