@@ -99,6 +99,49 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "auto: of what takes up to a twentieth longer than the cheapest, the most accurate is taken") {
+  const SceneTraits traits = blurred_traits(1.0f);
+  const auto is_open = [&](const Candidate& candidate) {
+    return candidate.radius <= 0 ||
+           kFilterRadiiPx[static_cast<std::size_t>(candidate.radius - 1)] < largest_px(traits);
+  };
+  int not_the_cheapest = 0;
+  for (double error = 0.02; error < 0.16; error += 0.002) {
+    double cheapest_ms = 1e9;
+    for (const Candidate& candidate : candidates()) {
+      if (is_open(candidate) && predicted_error(candidate, traits) <= error) {
+        cheapest_ms = std::min(cheapest_ms, predicted_ms(candidate, traits, 0));
+      }
+    }
+    const Choice choice = within_error(traits, error);
+    CAPTURE(error);
+    for (const Candidate& candidate : candidates()) {
+      if (!is_open(candidate) || predicted_ms(candidate, traits, 0) > 1.05 * cheapest_ms) continue;
+      CHECK(choice.predicted_error <= predicted_error(candidate, traits));
+    }
+    not_the_cheapest += choice.predicted_ms > cheapest_ms ? 1 : 0;
+  }
+  CHECK(not_the_cheapest > 0);
+}
+
+TEST_CASE("auto: edges of either kind are foreseen to cost what the table says") {
+  for (const Candidate& candidate : candidates()) {
+    if (candidate.radius < 0) continue;
+    const SceneTraits plain = blurred_traits(1.0f);
+    const auto more = [&](float RadiusTraits::*edges) {
+      SceneTraits traits = plain;
+      traits.by_radius[static_cast<std::size_t>(candidate.radius)].*edges += 0.5f;
+      return predicted_error(candidate, traits) - predicted_error(candidate, plain);
+    };
+    CAPTURE(candidate.method);
+    CHECK(more(&RadiusTraits::near_edges) ==
+          doctest::Approx(0.5 * static_cast<double>(candidate.error.near_edges)).epsilon(1e-4));
+    CHECK(more(&RadiusTraits::far_edges) ==
+          doctest::Approx(0.5 * static_cast<double>(candidate.error.far_edges)).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("auto: no filter is given more room than the largest circle or --max-coc") {
   const SceneTraits traits = blurred_traits(1.0f);
   for (const float limit : {1.0f, 2.0f, 8.0f, 12.0f, 20.0f, 64.0f}) {

@@ -121,6 +121,14 @@ void check_all_isas(const Target& target, const DrawState& state, const Vertices
 constexpr std::array kProfileNames{"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41"};
 constexpr Target kTarget{150, 97};
 
+RenderPass pass_into(Image& colour, Image& depth, Isa isa) {
+  RenderPass pass;
+  pass.targets.colour[0] = &colour;
+  pass.targets.depth = &depth;
+  pass.isa = isa;
+  return pass;
+}
+
 }  // namespace
 
 TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
@@ -319,10 +327,7 @@ TEST_CASE("lanes: a vertex is shaded where triangles that are drawn have it, and
   Image colour = make_image(Format::rgba16f, 64, 64), depth = make_image(Format::r32f, 64, 64);
   for (const Isa isa : available_isas()) {
     if (isa == Isa::scalar) continue;
-    RenderPass pass;
-    pass.targets.colour[0] = &colour;
-    pass.targets.depth = &depth;
-    pass.isa = isa;
+    RenderPass pass = pass_into(colour, depth, isa);
     ThreadPool pool{1, isa};
     for (const bool again : {false, true}) {
       draw_lanes(pass, {}, indices, 5, test::ListedVertices<4>{&vertices}, MixedColour{},
@@ -348,10 +353,7 @@ TEST_CASE("lanes: a draw beyond one plane of the view is set aside with its vert
   Image depth = make_image(Format::r32f, kTarget.width, kTarget.height);
   for (const Isa isa : available_isas()) {
     if (isa == Isa::scalar) continue;
-    RenderPass pass;
-    pass.targets.colour[0] = &colour;
-    pass.targets.depth = &depth;
-    pass.isa = isa;
+    RenderPass pass = pass_into(colour, depth, isa);
     const std::vector<std::uint32_t> indices = test::indices_up_to(beside.size());
     for (const std::size_t count : {std::size_t{900}, beside.size()}) {
       for (const Vertices* vertices : {&beside, &across}) {

@@ -133,13 +133,13 @@ void ChartRunner::warm_up_views() {
     sums_ = make_sample_sums(drawn_.width, drawn_.height);
   }
   clear_sums(sums_);
-  add_views(*buffer_, views_, 0, kSampleGroup, sums_, pool_);
+  add_views(*buffer_, views_, 0, kViewGroup, sums_, pool_);
 }
 
 void ChartRunner::add_all_views(int samples) {
   clear_sums(sums_);
   while (sums_.count < samples) {
-    const int end = std::min(sums_.count + kSampleGroup, samples);
+    const int end = std::min(sums_.count + kViewGroup, samples);
     add_views(*buffer_, views_, sums_.count, end, sums_, pool_);
   }
   store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
@@ -159,7 +159,7 @@ void ChartRunner::carry_out(const Choice& choice) {
 }
 
 RunTime ChartRunner::choose(double max_error) {
-  PreparedScene& prepared = prepared_for(std::string{views_.profile.name});
+  PreparedScene& prepared = prepared_for(views_.profile.name);
   const auto chosen = [&] {
     return softfocus::choose(scene_traits(drawn_, scene_.coc, pool_), {max_error},
                              {{}, triangle_count(scene_.scene)});

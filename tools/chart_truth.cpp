@@ -1,5 +1,6 @@
 #include "tools/chart_truth.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "tools/chart_key.h"
@@ -27,7 +28,7 @@ ChartTruth make_truth(const ChartScene& scene, int samples,
   SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
   const auto add_until = [&](int last) {
     while (sums.count < last) {
-      add_views(buffer, input, sums.count, sums.count + kSampleGroup, sums, pool);
+      add_views(buffer, input, sums.count, std::min(sums.count + kViewGroup, last), sums, pool);
       on_samples(sums.count);
     }
   };

@@ -45,6 +45,17 @@ struct Ring {
   uint32_t rows;
 };
 
+/// Hands out a stream's memory, part by part.
+struct Parts {
+  uint8_t* next;
+
+  uint8_t* take(size_t bytes) {
+    uint8_t* part = next;
+    next += bytes;
+    return part;
+  }
+};
+
 constexpr uint32_t ring_rows(const Settings& settings) { return 2u * settings.reach + 1u; }
 
 /// The slot of a row: one of the last `rows` that came in, or the next one, which comes

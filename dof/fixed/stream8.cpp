@@ -10,23 +10,18 @@ Ring ring_of(const Stream& stream) {
   Ring ring{};
   ring.rows = ring_rows(settings);
   const size_t pixels = static_cast<size_t>(ring.rows) * settings.width;
-  uint8_t* at = stream.memory;
-  const auto take = [&at](size_t bytes) {
-    uint8_t* part = at;
-    at += bytes;
-    return part;
-  };
-  ring.colours = take(4 * pixels);
-  ring.line = take(4u * settings.width);
-  ring.columns = reinterpret_cast<Sums*>(take(sizeof(Sums) * settings.width));
-  ring.changes = reinterpret_cast<Sums*>(take(sizeof(Sums) * 4 * (settings.reach + 1u)));
-  ring.taps = reinterpret_cast<Tap*>(take(2 * sizeof(Tap) * settings.reach));
-  ring.reaches_there = reinterpret_cast<uint32_t*>(take(4 * ring.rows));
-  ring.codes = take(settings.depth == SOFTFOCUS_FIXED_DEPTH8 ? pixels : 2 * pixels);
-  ring.reaches = take(pixels);
-  ring.alphas = settings.colour == SOFTFOCUS_FIXED_RGBA8 ? take(pixels) : nullptr;
-  ring.farthest = take(ring.rows);
-  ring.farthest_beyond = take(ring.rows);
+  Parts parts{stream.memory};
+  ring.colours = parts.take(4 * pixels);
+  ring.line = parts.take(4u * settings.width);
+  ring.columns = reinterpret_cast<Sums*>(parts.take(sizeof(Sums) * settings.width));
+  ring.changes = reinterpret_cast<Sums*>(parts.take(sizeof(Sums) * 4 * (settings.reach + 1u)));
+  ring.taps = reinterpret_cast<Tap*>(parts.take(2 * sizeof(Tap) * settings.reach));
+  ring.reaches_there = reinterpret_cast<uint32_t*>(parts.take(4 * ring.rows));
+  ring.codes = parts.take(settings.depth == SOFTFOCUS_FIXED_DEPTH8 ? pixels : 2 * pixels);
+  ring.reaches = parts.take(pixels);
+  ring.alphas = settings.colour == SOFTFOCUS_FIXED_RGBA8 ? parts.take(pixels) : nullptr;
+  ring.farthest = parts.take(ring.rows);
+  ring.farthest_beyond = parts.take(ring.rows);
   return ring;
 }
 

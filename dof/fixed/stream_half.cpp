@@ -107,20 +107,15 @@ Ring ring_of(const Stream& stream) {
   Ring ring{};
   ring.rows = ring_rows(settings);
   const size_t pixels = static_cast<size_t>(ring.rows) * settings.width;
-  uint8_t* at = stream.memory;
-  const auto take = [&at](size_t bytes) {
-    uint8_t* part = at;
-    at += bytes;
-    return part;
-  };
-  ring.taps = reinterpret_cast<Tap*>(take(2 * sizeof(Tap) * settings.reach));
-  ring.reaches_there = reinterpret_cast<uint32_t*>(take(4 * ring.rows));
-  ring.colours = take(6 * pixels);
-  ring.alphas = take(2 * pixels);
-  ring.codes = take(2 * pixels);
-  ring.reaches = take(pixels);
-  ring.farthest = take(ring.rows);
-  ring.farthest_beyond = take(ring.rows);
+  Parts parts{stream.memory};
+  ring.taps = reinterpret_cast<Tap*>(parts.take(2 * sizeof(Tap) * settings.reach));
+  ring.reaches_there = reinterpret_cast<uint32_t*>(parts.take(4 * ring.rows));
+  ring.colours = parts.take(6 * pixels);
+  ring.alphas = parts.take(2 * pixels);
+  ring.codes = parts.take(2 * pixels);
+  ring.reaches = parts.take(pixels);
+  ring.farthest = parts.take(ring.rows);
+  ring.farthest_beyond = parts.take(ring.rows);
   return ring;
 }
 
