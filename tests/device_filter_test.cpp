@@ -101,10 +101,12 @@ TEST_CASE("a half becomes the nearest level and the nearest code of depth") {
       const double level = std::floor(std::fmin(value, 1.0) * largest + 0.5);
       wrong_levels += device::level_of_half(half, largest) != static_cast<int>(level);
     }
-    const double exact = std::fmin(std::fmax((value - 0.25) / 7.75, 0.0), 1.0) * 255.0;
-    const int code = device::depth_code_of_half(half, 250000, 8000000);
-    // Half a code, and what whole micrometres cut off.
-    wrong_codes += !(std::fabs(code - exact) <= 0.5 + 1e-4);
+    for (const int largest : {255, 65535}) {
+      const double exact = std::fmin(std::fmax((value - 0.25) / 7.75, 0.0), 1.0) * largest;
+      const int code = device::depth_code_of_half(half, 250000, 8000000, largest);
+      // Half a code, and what whole micrometres cut off: up to 1/7.75 of 10^-6.
+      wrong_codes += !(std::fabs(code - exact) <= 0.5 + 1.3e-7 * largest);
+    }
   }
   CHECK(wrong_levels == 0);
   CHECK(wrong_codes == 0);
@@ -115,5 +117,7 @@ TEST_CASE("negative and NaN halves are level 0, infinity is the last") {
     CHECK(device::level_of_half(static_cast<std::uint16_t>(half), 255) == 0);
   }
   CHECK(device::level_of_half(kHalfInfinity, 255) == 255);
-  CHECK(device::depth_code_of_half(kHalfInfinity, 250000, 8000000) == 255);
+  for (const int largest : {255, 65535}) {
+    CHECK(device::depth_code_of_half(kHalfInfinity, 250000, 8000000, largest) == largest);
+  }
 }

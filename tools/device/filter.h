@@ -1,6 +1,6 @@
 #pragma once
-// What run_filter.cpp measures: fixed_run.cpp and float_run.cpp each have these
-// functions, and one of them is linked.
+// What run_filter.cpp measures: every *_run.cpp has what is declared here, and one of them
+// is linked.
 
 #include <stddef.h>
 #include <stdint.h>
@@ -8,6 +8,9 @@
 #include "tools/device/frame_settings.h"
 
 namespace softfocus::device {
+
+/// The only one that the filter takes.
+extern const FrameFormat kFilterFormat;
 
 /// Bytes that the filter wants of its caller, rows in and out not counted.
 size_t filter_bytes(const FrameSettings& settings);
@@ -17,9 +20,9 @@ struct Filter;
 Filter* begin_filter(const FrameSettings& settings, uint8_t* memory, size_t bytes);
 
 /// Takes a row; whether one came out, into `out`.
-bool put_row(Filter& filter, const uint16_t* colour, const uint8_t* depth, uint16_t* out);
+bool put_row(Filter& filter, const void* colour, const void* depth, void* out);
 
 /// After the last row: whether there is another to come out, into `out`.
-bool next_row(Filter& filter, uint16_t* out);
+bool next_row(Filter& filter, void* out);
 
 }  // namespace softfocus::device

@@ -1,52 +1,25 @@
-// The fixed-point filter for run_filter.cpp.
+// The fixed-point filter on RGB565 with 8-bit depth, for run_filter.cpp.
 
 #include "dof/fixed/softfocus_fixed.h"
 #include "tools/device/filter.h"
 
 namespace softfocus::device {
 
-struct Filter {
-  softfocus_fixed_stream stream;
-  uint32_t rows_in;
-  softfocus_fixed_weights table[256];
-};
+const FrameFormat kFilterFormat = FrameFormat::rgb565;
 
 namespace {
 
-softfocus_fixed_settings stream_settings(const FrameSettings& settings) {
-  const auto radius = static_cast<uint8_t>(settings.max_radius_px);
-  return {static_cast<uint16_t>(settings.width), static_cast<uint16_t>(settings.height),
-          static_cast<uint8_t>(radius > 0 ? radius - 1 : 0), SOFTFOCUS_FIXED_RGB565,
-          SOFTFOCUS_FIXED_DEPTH8};
+constexpr uint8_t kColour = SOFTFOCUS_FIXED_RGB565;
+constexpr uint8_t kDepth = SOFTFOCUS_FIXED_DEPTH8;
+constexpr size_t kCodes = 256;
+constexpr auto begin_stream = softfocus_fixed_begin;
+
+int make_table(const softfocus_fixed_lens& lens, const FrameSettings& settings,
+               softfocus_fixed_weights* table) {
+  return softfocus_fixed_table8(&lens, settings.near_um, settings.far_um, table);
 }
 
 }  // namespace
-
-size_t filter_bytes(const FrameSettings& settings) {
-  const softfocus_fixed_settings of_stream = stream_settings(settings);
-  return sizeof(Filter) + softfocus_fixed_memory(&of_stream);
-}
-
-Filter* begin_filter(const FrameSettings& settings, uint8_t* memory, size_t bytes) {
-  auto& filter = *reinterpret_cast<Filter*>(memory);
-  filter.rows_in = 0;
-  const softfocus_fixed_lens lens = {settings.radius_at_infinity_q16, settings.focus_um,
-                                     settings.max_radius_px * SOFTFOCUS_FIXED_ONE_PIXEL,
-                                     SOFTFOCUS_FIXED_ONE_PIXEL};
-  const softfocus_fixed_settings of_stream = stream_settings(settings);
-  const bool begun =
-      softfocus_fixed_table8(&lens, settings.near_um, settings.far_um, filter.table) == 0 &&
-      softfocus_fixed_begin(&filter.stream, &of_stream, filter.table, memory + sizeof(Filter),
-                            bytes - sizeof(Filter)) == 0;
-  return begun ? &filter : nullptr;
-}
-
-bool put_row(Filter& filter, const uint16_t* colour, const uint8_t* depth, uint16_t* out) {
-  return softfocus_fixed_put_row(&filter.stream, filter.rows_in++, colour, depth, out) == 1;
-}
-
-bool next_row(Filter& filter, uint16_t* out) {
-  return softfocus_fixed_finish_row(&filter.stream, out) == 1;
-}
-
 }  // namespace softfocus::device
+
+#include "tools/device/fixed_run.inl"

@@ -5,6 +5,8 @@
 
 namespace softfocus::device {
 
+const FrameFormat kFilterFormat = FrameFormat::rgb565;
+
 struct Filter {
   int width;
   float fifths[32];  ///< of 5 bits
@@ -51,21 +53,24 @@ Filter* begin_filter(const FrameSettings& settings, uint8_t* memory, size_t byte
   return &filter;
 }
 
-bool next_row(Filter& filter, uint16_t* out) {
+bool next_row(Filter& filter, void* to) {
+  auto* const out = static_cast<uint16_t*>(to);
   end_float_rows(*filter.filter);
   if (!take_float_row(*filter.filter, filter.colour)) return false;
   for (int x = 0; x < filter.width; ++x) out[x] = to_rgb565(filter.colour + 3 * x);
   return true;
 }
 
-bool put_row(Filter& filter, const uint16_t* colour, const uint8_t* depth, uint16_t* out) {
+bool put_row(Filter& filter, const void* from, const void* depth, void* to) {
+  const auto* const colour = static_cast<const uint16_t*>(from);
+  auto* const out = static_cast<uint16_t*>(to);
   for (int x = 0; x < filter.width; ++x) {
-    float* const to = filter.colour + 3 * x;
-    to[0] = filter.fifths[colour[x] >> 11];
-    to[1] = filter.sixths[colour[x] >> 5 & 63];
-    to[2] = filter.fifths[colour[x] & 31];
+    float* const rgb = filter.colour + 3 * x;
+    rgb[0] = filter.fifths[colour[x] >> 11];
+    rgb[1] = filter.sixths[colour[x] >> 5 & 63];
+    rgb[2] = filter.fifths[colour[x] & 31];
   }
-  put_float_row(*filter.filter, filter.colour, depth);
+  put_float_row(*filter.filter, filter.colour, static_cast<const uint8_t*>(depth));
   if (!take_float_row(*filter.filter, filter.colour)) return false;
   for (int x = 0; x < filter.width; ++x) out[x] = to_rgb565(filter.colour + 3 * x);
   return true;

@@ -29,14 +29,16 @@ constexpr uint16_t rgb565_of_halves(const uint16_t* rgb) {
                                level_of_half(rgb[2], 31));
 }
 
-/// A depth in metres as 0 at near to 255 at far, what lies outside moved to the end.
-constexpr uint8_t depth_code_of_half(uint16_t half, uint32_t near_um, uint32_t far_um) {
+/// A depth in metres as 0 at near to `largest`, at most 65535, at far; what lies outside
+/// moved to the end.
+constexpr uint16_t depth_code_of_half(uint16_t half, uint32_t near_um, uint32_t far_um,
+                                      int largest) {
   // At most 2^40 / 2^4 * 10^6: below 2^56.
   const int64_t depth_um = (half_in_q24(half) >> 4) * 1000000 >> 20;
   if (depth_um <= near_um) return 0;
-  if (depth_um >= far_um) return 255;
+  if (depth_um >= far_um) return static_cast<uint16_t>(largest);
   const int64_t range = int64_t{far_um} - near_um;
-  return static_cast<uint8_t>(((depth_um - near_um) * 255 + range / 2) / range);
+  return static_cast<uint16_t>(((depth_um - near_um) * largest + range / 2) / range);
 }
 
 }  // namespace softfocus::device

@@ -44,6 +44,7 @@ void filter_frame() {
   const int in = open_to_read("frame");
   FrameSettings settings;
   if (in < 0 || !read_bytes(in, &settings, sizeof settings)) give_up("No file \"frame\"");
+  if (settings.format != kFilterFormat) give_up("The frame has another format");
   const int out = open_to_write("filtered");
   if (out < 0) give_up("The file \"filtered\" cannot be written");
 
@@ -53,10 +54,11 @@ void filter_frame() {
   report("instructions_per_tick", instructions_per_tick());
 
   Buffers buffers{free_memory()};
-  const size_t row_bytes = settings.width * sizeof(uint16_t);
-  auto* const colour = reinterpret_cast<uint16_t*>(buffers.take(row_bytes));
-  auto* const filtered = reinterpret_cast<uint16_t*>(buffers.take(row_bytes));
-  uint8_t* const depth = buffers.take(settings.width);
+  const size_t row_bytes = settings.width * colour_bytes(settings.format);
+  const size_t row_depth_bytes = settings.width * depth_bytes(settings.format);
+  uint8_t* const colour = buffers.take(row_bytes);
+  uint8_t* const filtered = buffers.take(row_bytes);
+  uint8_t* const depth = buffers.take(row_depth_bytes);
   const size_t bytes = filter_bytes(settings);
   uint8_t* const memory = buffers.take(bytes);
 
@@ -70,7 +72,7 @@ void filter_frame() {
   uint32_t rows_out = 0;
   bool written = true;
   for (uint32_t y = 0; y < settings.height; ++y) {
-    if (!read_bytes(in, colour, row_bytes) || !read_bytes(in, depth, settings.width)) {
+    if (!read_bytes(in, colour, row_bytes) || !read_bytes(in, depth, row_depth_bytes)) {
       give_up("The file \"frame\" is too short");
     }
     rows.start();
@@ -92,7 +94,7 @@ void filter_frame() {
   report("begin_instructions", beginning.instructions);
   report("row_instructions", rows.instructions);
   report("filter_bytes", bytes);
-  report("row_buffer_bytes", 2 * row_bytes + settings.width);
+  report("row_buffer_bytes", 2 * row_bytes + row_depth_bytes);
   report("static_bytes", static_bytes());
   report("stack_bytes", deepest_stack_bytes());
 }
