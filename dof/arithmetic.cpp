@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 
-#include "dof/fixed_rows.h"
 #include "dof/fixed_two_pass.h"
 #include "dof/two_pass.h"
 #include "raster/images/texel.h"
@@ -123,8 +122,8 @@ void two_pass_in(Arithmetic arithmetic, const DofInput& input, Image& result, Th
   switch (arithmetic) {
     case Arithmetic::floats: two_pass(input, result, pool); return;
     case Arithmetic::fixed:
-      fixed_two_pass_rows(input.scene, SOFTFOCUS_FIXED_DEPTH_IN_ALPHA, nullptr,
-                          half_table(fixed_lens(input.settings)), result, pool);
+      fixed_two_pass(input.scene, fixed_table(half_table(fixed_lens(input.settings))), result,
+                     pool);
       return;
     case Arithmetic::fixed_8:
       two_pass_bytes(input.scene, fixed_table(half_table(fixed_lens(input.settings))), result,

@@ -1,98 +1,114 @@
-// A pass of the fixed-point filter along lines (dof/fixed_line.h).
+// A pass of the fixed-point filter along lines (dof/fixed_line.h), of either kind of colours.
 
-/// Weight and colours, each times a weight.
-struct FixedSums {
-  Bits weight, r, g, b;
-};
+#include "dof/fixed_colours.inl"
+#include "dof/fixed_half_colours.inl"
 
-SOFTFOCUS_INLINE FixedSums plus(const FixedSums& a, const FixedSums& b) {
+template <class Sum>
+SOFTFOCUS_INLINE FixedSums<Sum> plus(const FixedSums<Sum>& a, const FixedSums<Sum>& b) {
   return {a.weight + b.weight, a.r + b.r, a.g + b.g, a.b + b.b};
 }
-SOFTFOCUS_INLINE FixedSums minus(const FixedSums& a, const FixedSums& b) {
+template <class Sum>
+SOFTFOCUS_INLINE FixedSums<Sum> minus(const FixedSums<Sum>& a, const FixedSums<Sum>& b) {
   return {a.weight - b.weight, a.r - b.r, a.g - b.g, a.b - b.b};
 }
-SOFTFOCUS_INLINE FixedSums masked(const FixedSums& a, Mask mask) {
-  const Bits kept = as_bits(mask);
-  return {a.weight & kept, a.r & kept, a.g & kept, a.b & kept};
+template <class Sum>
+SOFTFOCUS_INLINE FixedSums<Sum> masked(const FixedSums<Sum>& a, Mask mask) {
+  return {kept(a.weight, mask), kept(a.r, mask), kept(a.g, mask), kept(a.b, mask)};
 }
-SOFTFOCUS_INLINE FixedSums load_fixed(const std::uint32_t* from) {
-  return {load(from), load(from + kLanes), load(from + 2 * kLanes), load(from + 3 * kLanes)};
-}
-SOFTFOCUS_INLINE void store_fixed(std::uint32_t* to, const FixedSums& sums) {
-  store(to, sums.weight);
-  store(to + kLanes, sums.r);
-  store(to + 2 * kLanes, sums.g);
-  store(to + 3 * kLanes, sums.b);
+template <class Sum>
+SOFTFOCUS_INLINE FixedSums<Sum> leaked(const FixedSums<Sum>& a, Bits leak) {
+  return {leaked(a.weight, leak), leaked(a.r, leak), leaked(a.g, leak), leaked(a.b, leak)};
 }
 
-/// A colour of 10 bits times a weight, c l + 2^5 c h: 2^5 c has 15 bits.
-SOFTFOCUS_INLINE Bits times(Bits c, Ints split_weight) {
-  return as_bits(multiply_add_pairs(as_ints(c | c << (16 + kSplitBits)), split_weight));
+template <class Sum>
+SOFTFOCUS_INLINE FixedSums<Sum> load_fixed(const std::uint32_t* from) {
+  constexpr int kNext = static_cast<int>(sizeof(Sum) / sizeof(std::uint32_t));
+  FixedSums<Sum> sums;
+  sums.weight = load(from);
+  load_sum(from + kLanes, sums.r);
+  load_sum(from + kLanes + kNext, sums.g);
+  load_sum(from + kLanes + 2 * kNext, sums.b);
+  return sums;
 }
-SOFTFOCUS_INLINE FixedSums weighed(Ints word, Bits colour) {
-  const Ints weight = word & kSplitMask;
-  return {as_bits((weight >> 16 << kSplitBits) + (weight & 31)), times(colour & 0x3FFu, weight),
-          times(colour >> 10 & 0x3FFu, weight), times(colour >> 20, weight)};
+template <class Sum>
+SOFTFOCUS_INLINE void store_fixed(std::uint32_t* to, const FixedSums<Sum>& sums) {
+  constexpr int kNext = static_cast<int>(sizeof(Sum) / sizeof(std::uint32_t));
+  store(to, sums.weight);
+  store_sum(to + kLanes, sums.r);
+  store_sum(to + kLanes + kNext, sums.g);
+  store_sum(to + kLanes + 2 * kNext, sums.b);
 }
 
 SOFTFOCUS_INLINE Ints key_of(Ints whole) { return whole >> kKeyShift & kKeyMask; }
 
 /// Differences of one side of the focus at a node.
+template <class Colours>
 SOFTFOCUS_INLINE std::uint32_t* sums_at(const FixedLine& line, int node, int side) {
   const unsigned slot = static_cast<unsigned>(node) & (line.sum_slots - 1);
-  return line.sums + (slot * 8u + static_cast<unsigned>(side) * 4u) * kLanes;
+  return line.sums + (slot * 2u + static_cast<unsigned>(side)) * Colours::kSumVectors * kLanes;
 }
 SOFTFOCUS_INLINE int node_at(const FixedLine& line, int node) {
   return static_cast<int>(static_cast<unsigned>(node) & (line.node_slots - 1)) * kLanes;
 }
-
-SOFTFOCUS_INLINE void add_to(std::uint32_t* slot, const FixedSums& sums) {
-  store_fixed(slot, plus(load_fixed(slot), sums));
+template <class Colours>
+SOFTFOCUS_INLINE std::uint32_t* colours_at(const FixedLine& line, int node) {
+  return line.colours + Colours::kWords * node_at(line, node);
 }
-SOFTFOCUS_INLINE void take_from(std::uint32_t* slot, const FixedSums& sums) {
-  store_fixed(slot, minus(load_fixed(slot), sums));
+
+template <class Sum>
+SOFTFOCUS_INLINE void add_to(std::uint32_t* slot, const FixedSums<Sum>& sums) {
+  store_fixed(slot, plus(load_fixed<Sum>(slot), sums));
+}
+template <class Sum>
+SOFTFOCUS_INLINE void take_from(std::uint32_t* slot, const FixedSums<Sum>& sums) {
+  store_fixed(slot, minus(load_fixed<Sum>(slot), sums));
 }
 
 /// The differences of a node whose pixels all reach equally far that are still to be put
 /// down: the next node's go to the same places if it is like it.
+template <class Colours>
 struct PendingNode {
   int key = 0;  ///< reach << 1 | beyond; 0 if there is none
-  FixedSums inner{}, outer{};
+  FixedSums<typename Colours::Sum> inner{}, outer{};
 };
 
 /// `node` is that after the pending one.
-SOFTFOCUS_INLINE void put_down(const FixedLine& line, int node, PendingNode& pending) {
+template <class Colours>
+SOFTFOCUS_INLINE void put_down(const FixedLine& line, int node, PendingNode<Colours>& pending) {
   if (pending.key == 0) return;
   const int reach = pending.key >> 1, side = pending.key & 1;
-  add_to(sums_at(line, node - reach, side), pending.inner);
-  take_from(sums_at(line, node + reach, side), pending.outer);
+  add_to(sums_at<Colours>(line, node - reach, side), pending.inner);
+  take_from(sums_at<Colours>(line, node + reach, side), pending.outer);
   pending.key = 0;
 }
 
 /// A pixel adds `edge` at its reach and `whole` up to there: a difference of edge (outer)
 /// at -reach, whole - edge (inner) one further, the same two back at reach and one past it.
-SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode& pending) {
+template <class Colours>
+SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours>& pending) {
   const int at = node_at(line, node);
   const Ints whole = load(line.wholes + at);
   const Ints key = key_of(whole);
   const int first = key[0];
-  const bool alike = all(key == first);
+  const bool alike = equal_lane_bits(key, splat(first)) == kAllLaneBits;
   if (alike && first < 2) {
     put_down(line, node, pending);
     return;
   }
-  const Bits colour = load(line.colours + at);
-  const FixedSums outer = weighed(load(line.edges + at), colour);
-  const FixedSums inner = minus(weighed(whole, colour), outer);
+  const auto colour = Colours::load_pixels(colours_at<Colours>(line, node));
+  const auto outer = Colours::weighed(load(line.edges + at), colour);
+  const auto inner = minus(Colours::weighed(whole, colour), outer);
   if (alike) {
     const int reach = first >> 1, side = first & 1;
+    std::uint32_t* const before = sums_at<Colours>(line, node - reach, side);
+    std::uint32_t* const after = sums_at<Colours>(line, node + reach, side);
     if (pending.key == first) {
-      add_to(sums_at(line, node - reach, side), plus(outer, pending.inner));
-      take_from(sums_at(line, node + reach, side), plus(inner, pending.outer));
+      add_to(before, plus(outer, pending.inner));
+      take_from(after, plus(inner, pending.outer));
     } else {
       put_down(line, node, pending);
-      add_to(sums_at(line, node - reach, side), outer);
-      take_from(sums_at(line, node + reach, side), inner);
+      add_to(before, outer);
+      take_from(after, inner);
     }
     pending = {first, inner, outer};
     if (node + reach > line.touched[side]) line.touched[side] = node + reach;
@@ -104,111 +120,94 @@ SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode& pendin
   for (unsigned left = lane_bits(key >= 2); left != 0;) {
     const std::int32_t one = keys[__builtin_ctz(left)];
     const Mask same = key == one;
-    left &= ~lane_bits(same);
+    left &= ~equal_lane_bits(key, splat(one));
     const int reach = one >> 1, side = one & 1;
-    const FixedSums some_outer = masked(outer, same), some_inner = masked(inner, same);
-    add_to(sums_at(line, node - reach, side), some_outer);
-    add_to(sums_at(line, node - reach + 1, side), some_inner);
-    take_from(sums_at(line, node + reach, side), some_inner);
-    take_from(sums_at(line, node + reach + 1, side), some_outer);
+    const auto some_outer = masked(outer, same), some_inner = masked(inner, same);
+    add_to(sums_at<Colours>(line, node - reach, side), some_outer);
+    add_to(sums_at<Colours>(line, node - reach + 1, side), some_inner);
+    take_from(sums_at<Colours>(line, node + reach, side), some_inner);
+    take_from(sums_at<Colours>(line, node + reach + 1, side), some_outer);
     if (node + reach > line.touched[side]) line.touched[side] = node + reach;
   }
 }
 
-/// floor(sum / weight) below 1024. The reciprocal is too small by 2^-12 to 3 2^-12 of it: the
-/// estimate is right or less by one, and the remainder tells.
-SOFTFOCUS_INLINE Bits exact_quotient(Bits sum, Bits weight, Floats reciprocal) {
-  const Ints estimate = truncate(to_floats(as_ints(sum)) * reciprocal);
-  const Ints rest = as_ints(sum) - estimate * as_ints(weight);
-  return as_bits(estimate - (rest >= as_ints(weight)));
+template <class Sum>
+SOFTFOCUS_INLINE void run_over(std::uint32_t* slot, FixedSums<Sum>& running) {
+  running = plus(running, load_fixed<Sum>(slot));
+  store_fixed(slot, FixedSums<Sum>{});
 }
 
-/// Colours of 10 bits in a word, or of 8.
-template <int bits>
-SOFTFOCUS_INLINE Bits quotients(const FixedSums& sums) {
-  const Bits weight = sums.weight;
-  const Floats reciprocal = rough_reciprocal(to_floats(as_ints(weight))) * (1.0f - 0x1p-11f);
-  const Bits half = bits == 10 ? weight >> 1 : weight << 1;
-  constexpr int kCut = 10 - bits;
-  return exact_quotient((sums.r + half) >> kCut, weight, reciprocal) |
-         exact_quotient((sums.g + half) >> kCut, weight, reciprocal) << bits |
-         exact_quotient((sums.b + half) >> kCut, weight, reciprocal) << 2 * bits;
-}
-
-/// What `quotients` gives of a pixel that nothing is added to.
-template <int bits>
-SOFTFOCUS_INLINE Bits unchanged(Bits colour) {
-  if constexpr (bits == 10) return colour;
-  const Bits rounded = colour + (2u | 2u << 10 | 2u << 20);  // up to 1022: no carry
-  return (rounded >> 2 & 0xFFu) | (rounded >> 4 & 0xFF00u) | (rounded >> 6 & 0xFF0000u);
-}
-
-/// floor(sum leak), sum below 2^31.
-SOFTFOCUS_INLINE Bits leaked(Bits sum, Bits leak) {
-  return (sum >> 15) * leak + ((sum & 0x7FFFu) * leak >> 15);
-}
-
-SOFTFOCUS_INLINE void run_over(std::uint32_t* slot, FixedSums& running) {
-  running = plus(running, load_fixed(slot));
-  store_fixed(slot, {splat(0u), splat(0u), splat(0u), splat(0u)});
-}
-
-/// What comes out at a node.
-template <int bits>
-SOFTFOCUS_INLINE Bits receive(const FixedLine& line, int node, FixedSums near_side,
-                              FixedSums beyond_side, bool any_beyond) {
-  const int at = node_at(line, node);
-  const Ints whole = load(line.wholes + at);
+/// What differs for a node with pixels that are nearly sharp. One that reaches nothing is not
+/// among the sums yet. Of one that does not take all from beyond the focus, the sums beyond
+/// are cut, but for its own share.
+template <class Colours>
+SOFTFOCUS_INLINE void take_nearly_sharp(const FixedLine& line, int node, Ints edge,
+                                        FixedSums<typename Colours::Sum>& near_side,
+                                        FixedSums<typename Colours::Sum>& beyond_side) {
+  const Ints whole = load(line.wholes + node_at(line, node));
   const Ints key = key_of(whole);
-  // Its own share is among the sums of its side already if it reaches anything.
-  const Mask in_beyond = (key >= 2) & ((key & 1) != 0);
-  const Mask to_add = (key < 2) | in_beyond;
-  if (any(to_add)) {
-    const FixedSums own = weighed(whole, load(line.colours + at));
-    near_side = plus(near_side, masked(own, to_add));
-    beyond_side = minus(beyond_side, masked(own, in_beyond));
+  const Mask reaches_nothing = key < 2;
+  const Mask in_beyond = (edge < 0) & (key >= 2) & ((key & 1) != 0);
+  const auto own = Colours::weighed(whole, Colours::load_pixels(colours_at<Colours>(line, node)));
+  near_side = plus(near_side, masked(own, reaches_nothing | in_beyond));
+  beyond_side = minus(beyond_side, masked(own, in_beyond));
+  if (any((edge < 0) & (beyond_side.weight != 0u))) {
+    const Ints below_one = (edge >> kLeakShift & ((1 << kLeakBitsThere) - 1)) |
+                           (whole >> (kKeyShift + 7) & 15) << kLeakBitsThere;
+    beyond_side = leaked(beyond_side, as_bits(select(whole < 0, splat(1 << 15), below_one)));
   }
-  if (any_beyond) {
-    const Ints edge = load(line.edges + at);
-    if (any((edge < 0) & (beyond_side.weight != 0u))) {
-      const Ints below_one = (edge >> kLeakShift & ((1 << kLeakBitsThere) - 1)) |
-                             (whole >> (kKeyShift + 7) & 15) << kLeakBitsThere;
-      const Bits leak = as_bits(select(edge < 0, below_one, splat(1 << 15)));
-      beyond_side = {leaked(beyond_side.weight, leak), leaked(beyond_side.r, leak),
-                     leaked(beyond_side.g, leak), leaked(beyond_side.b, leak)};
-    }
-    near_side = plus(near_side, beyond_side);
-  }
-  return quotients<bits>(near_side);
 }
 
+/// Stores what comes out at a node.
+template <class Colours, bool last>
+SOFTFOCUS_INLINE void receive(const FixedLine& line, int node,
+                              FixedSums<typename Colours::Sum> near_side,
+                              FixedSums<typename Colours::Sum> beyond_side, bool any_beyond,
+                              std::uint32_t* out) {
+  const Ints edge = load(line.edges + node_at(line, node));
+  if (sign_bits(edge) != 0) {
+    take_nearly_sharp<Colours>(line, node, edge, near_side, beyond_side);
+  }
+  if (any_beyond) near_side = plus(near_side, beyond_side);
+  Colours::template store_quotients<last>(out, near_side);
+}
+
+template <class Colours>
 SOFTFOCUS_INLINE void begin_line(FixedLine& line) {
-  std::memset(line.sums, 0, sizeof(std::uint32_t) * line.sum_slots * 8 * kLanes);
-  std::memset(line.running, 0, sizeof(std::uint32_t) * 8 * kLanes);
+  constexpr std::size_t kSlot =
+      sizeof(std::uint32_t) * 2 * static_cast<std::size_t>(Colours::kSumVectors) * kLanes;
+  std::memset(line.sums, 0, kSlot * line.sum_slots);
+  std::memset(line.running, 0, kSlot);
   line.touched[0] = line.touched[1] = INT32_MIN;
 }
 
 /// Takes kLanes nodes from `node`, which lie in the line, and stores what comes out at the
-/// kLanes nodes from `node` - reach; only from node `wanted` on is it computed.
-template <int bits>
+/// kLanes nodes from `node` - reach; only from node `wanted` on is it computed. `last`: this
+/// is the second pass.
+template <class Colours, bool last>
 void filter_nodes(FixedLine& line, int node, int wanted, std::uint32_t* out) {
-  FixedSums running[2] = {load_fixed(line.running), load_fixed(line.running + 4 * kLanes)};
-  PendingNode pending;
+  using Sums = FixedSums<typename Colours::Sum>;
+  std::uint32_t* const beyond_running = line.running + Colours::kSumVectors * kLanes;
+  Sums running[2] = {load_fixed<typename Colours::Sum>(line.running),
+                     load_fixed<typename Colours::Sum>(beyond_running)};
+  PendingNode<Colours> pending;
   for (int i = 0; i < kLanes; ++i) {
     spread_node(line, node + i, pending);
     const int done = node + i - line.reach;
     // The differences of a pixel end one past its reach.
     const bool any_near = done - 1 <= line.touched[0];
     const bool any_beyond = done - 1 <= line.touched[1];
-    if (any_near) run_over(sums_at(line, done, 0), running[0]);
-    if (any_beyond) run_over(sums_at(line, done, 1), running[1]);
+    if (any_near) run_over(sums_at<Colours>(line, done, 0), running[0]);
+    if (any_beyond) run_over(sums_at<Colours>(line, done, 1), running[1]);
     if (done < wanted) continue;
-    const Bits colour = any_near || any_beyond
-                            ? receive<bits>(line, done, running[0], running[1], any_beyond)
-                            : unchanged<bits>(load(line.colours + node_at(line, done)));
-    store(out + i * kLanes, colour);
+    std::uint32_t* const to = out + i * Colours::kWords * kLanes;
+    if (any_near || any_beyond) {
+      receive<Colours, last>(line, done, running[0], running[1], any_beyond, to);
+    } else {
+      Colours::template store_unchanged<last>(to, colours_at<Colours>(line, done));
+    }
   }
   put_down(line, node + kLanes, pending);
   store_fixed(line.running, running[0]);
-  store_fixed(line.running + 4 * kLanes, running[1]);
+  store_fixed(beyond_running, running[1]);
 }

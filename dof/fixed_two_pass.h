@@ -27,12 +27,14 @@ struct FixedTable {
 };
 FixedTable fixed_table(std::vector<fixed::Weights> weights);
 
-/// Filters an RGBA8 picture into another image of its size and format. Codes of depth lie row
-/// by row without gaps; the table has an entry for each code of 8 or 16 bits. `scalar` runs
-/// the rows of dof/fixed.
+/// Filters an RGBA8 or RGBA16F picture into another image of its size and format. Codes of depth
+/// lie row by row without gaps; the table has an entry for each code of 8 or 16 bits. `scalar`
+/// runs the rows of dof/fixed.
 void fixed_two_pass(const Image& picture, std::span<const std::uint8_t> codes,
                     const FixedTable& table, Image& result, ThreadPool& pool);
 void fixed_two_pass(const Image& picture, std::span<const std::uint16_t> codes,
                     const FixedTable& table, Image& result, ThreadPool& pool);
+/// The same with the alpha of RGBA16F for codes.
+void fixed_two_pass(const Image& picture, const FixedTable& table, Image& result, ThreadPool& pool);
 
 }  // namespace softfocus

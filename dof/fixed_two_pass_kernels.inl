@@ -45,9 +45,10 @@ SOFTFOCUS_INLINE int row_inside(const FixedStrip& strip, int y) {
 }
 
 // Rows lie too far apart for the hardware to see what comes next.
-SOFTFOCUS_INLINE void fetch_ahead(const FixedStrip& strip, int x, int y) {
+SOFTFOCUS_INLINE void fetch_ahead(const FixedStrip& strip, int x, int y, int pixel_bytes) {
   const std::ptrdiff_t ahead = x + 2 * kLanes;
-  __builtin_prefetch(strip.picture + y * strip.picture_stride + 4 * ahead);
+  __builtin_prefetch(strip.picture + y * strip.picture_stride + pixel_bytes * ahead);
+  if (strip.codes == nullptr) return;
   __builtin_prefetch(static_cast<const std::uint8_t*>(strip.codes) +
                      (static_cast<std::ptrdiff_t>(y) * strip.width + ahead) * strip.code_bytes);
 }
@@ -62,35 +63,131 @@ SOFTFOCUS_INLINE Ints codes_at(const FixedStrip& strip, int x, int y) {
   return __builtin_convertvector(load_repeating<Shorts>(row, x, strip.width), Ints);
 }
 
-SOFTFOCUS_INLINE Bits pixels_at(const FixedStrip& strip, int x, int y) {
-  const std::uint8_t* row = strip.picture + y * strip.picture_stride;
-  return load_repeating<Bits>(reinterpret_cast<const std::uint32_t*>(row), x, strip.width);
-}
-
-/// Makes words of kLanes rows those of as many nodes along x.
+/// Makes words of kLanes rows those of as many nodes along x, `step` vectors apart.
 template <class Vector, class Number>
 SOFTFOCUS_INLINE void store_transposed(const FixedLine& line, Vector (&rows)[kLanes], Number* words,
-                                       int x) {
+                                       int step, int x) {
   transpose(rows);
 #pragma GCC unroll 16
-  for (int i = 0; i < kLanes; ++i) store(words + node_at(line, x + i), rows[i]);
+  for (int i = 0; i < kLanes; ++i) store(words + step * node_at(line, x + i), rows[i]);
 }
+
+// --- what pictures of either format are ---
+
+struct BytePixels : SmallColours {
+  SOFTFOCUS_INLINE static Bits pixels_at(const FixedStrip& strip, int x, int y) {
+    const std::uint8_t* row = strip.picture + y * strip.picture_stride;
+    return load_repeating<Bits>(reinterpret_cast<const std::uint32_t*>(row), x, strip.width);
+  }
+
+  SOFTFOCUS_INLINE static Ints codes(const FixedStrip& strip, int x, int y, const Bits&) {
+    return codes_at(strip, x, y);
+  }
+
+  /// Makes colours of kLanes rows nodes.
+  SOFTFOCUS_INLINE static void load_colours(const FixedStrip& strip, int x, int y, Bits*) {
+    Bits colours[kLanes];
+#pragma GCC unroll 16
+    for (int i = 0; i < kLanes; ++i) {
+      const int row = row_inside(strip, y + i);
+      fetch_ahead(strip, x, row, 4);
+      colours[i] = colours_from_bytes(pixels_at(strip, x, row));
+    }
+    store_transposed(strip.across, colours, strip.across.colours, 1, x);
+  }
+
+  /// Writes `count` pixels, `words` from the second pass.
+  SOFTFOCUS_INLINE static void store_pixels(const FixedStrip& strip, int x, int y, int count,
+                                            const std::uint32_t* words) {
+    const Bits alpha = pixels_at(strip, x, y) & kAlphaByte;
+    const Bits pixels = bytes_from_colours(load(words)) | alpha;
+    std::uint8_t* to = strip.result + y * strip.result_stride + 4 * x;
+    if (count == kLanes && strip.past_caches) {
+      stream_bits(to, pixels);
+    } else if (count == kLanes) {
+      std::memcpy(to, &pixels, sizeof pixels);
+    } else {
+      std::memcpy(to, &pixels, 4 * static_cast<std::size_t>(count));
+    }
+  }
+};
+
+struct HalfPixels : HalfColours {
+  SOFTFOCUS_INLINE static HalfTexels pixels_at(const FixedStrip& strip, int x, int y) {
+    const auto* row =
+        reinterpret_cast<const std::uint16_t*>(strip.picture + y * strip.picture_stride);
+    if (x >= 0 && x + kLanes <= strip.width) return load_half_texels(row + 4 * x);
+    std::uint16_t halves[4 * kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      const int inside = x + i < 0 ? 0 : x + i < strip.width ? x + i : strip.width - 1;
+      std::memcpy(halves + 4 * i, row + 4 * inside, 4 * sizeof(std::uint16_t));
+    }
+    return load_half_texels(halves);
+  }
+
+  /// Infinities count as the largest half, NaN as 0.
+  SOFTFOCUS_INLINE static Bits finite(Bits half) {
+    const Bits magnitude = half & 0x7FFFu;
+    return select(magnitude > kHalfInfinity, splat(0u),
+                  select(magnitude == std::uint32_t{kHalfInfinity}, half - 1u, half));
+  }
+
+  SOFTFOCUS_INLINE static Ints codes(const FixedStrip& strip, int x, int y, const Bits& alpha) {
+    return strip.codes != nullptr ? codes_at(strip, x, y) : as_ints(alpha);
+  }
+
+  /// The same; stores their alpha, which may be the codes.
+  SOFTFOCUS_INLINE static void load_colours(const FixedStrip& strip, int x, int y, Bits* alpha) {
+    Bits rg[kLanes], b[kLanes];
+#pragma GCC unroll 16
+    for (int i = 0; i < kLanes; ++i) {
+      const int row = row_inside(strip, y + i);
+      fetch_ahead(strip, x, row, 8);
+      HalfTexels texels = pixels_at(strip, x, row);
+      // True of more than those that are not finite, but seldom.
+      if (any(((texels.r | texels.g | texels.b) & std::uint32_t{kHalfInfinity}) ==
+              std::uint32_t{kHalfInfinity})) {
+        texels.r = finite(texels.r);
+        texels.g = finite(texels.g);
+        texels.b = finite(texels.b);
+      }
+      rg[i] = texels.r | texels.g << 16;
+      b[i] = texels.b;
+      alpha[i] = texels.a;
+    }
+    store_transposed(strip.across, rg, strip.across.colours, kWords, x);
+    store_transposed(strip.across, b, strip.across.colours + kLanes, kWords, x);
+  }
+
+  SOFTFOCUS_INLINE static void store_pixels(const FixedStrip& strip, int x, int y, int count,
+                                            const std::uint32_t* words) {
+    const Bits rg = load(words);
+    const TexelWords pixels = interleave(
+        HalfTexels{rg & 0xFFFFu, rg >> 16, load(words + kLanes), pixels_at(strip, x, y).a});
+    std::uint8_t* row = strip.result + y * strip.result_stride;
+    auto* to = reinterpret_cast<std::uint16_t*>(row) + 4 * x;
+    if (count == kLanes && strip.past_caches) {
+      stream_texel_words(to, pixels);
+    } else if (count == kLanes) {
+      store_texel_words(to, pixels);
+    } else {
+      std::memcpy(to, &pixels, 8 * static_cast<std::size_t>(count));
+    }
+  }
+};
+
+// --- the passes ---
 
 /// Makes nodes x to x + kLanes - 1 of the line along x from the rows from y, and what the
 /// line along y, if there is one, needs beside their colours.
+template <class Pixels>
 SOFTFOCUS_INLINE void load_block(const FixedStrip& strip, int x, int y, FixedLine* down) {
-  Bits colours[kLanes];
-#pragma GCC unroll 16
-  for (int i = 0; i < kLanes; ++i) {
-    const int row = row_inside(strip, y + i);
-    fetch_ahead(strip, x, row);
-    colours[i] = colours_from_bytes(pixels_at(strip, x, row));
-  }
-  store_transposed(strip.across, colours, strip.across.colours, x);
+  Bits alpha[kLanes];
+  Pixels::load_colours(strip, x, y, alpha);
   Ints wholes[kLanes], edges[kLanes];
 #pragma GCC unroll 16
   for (int i = 0; i < kLanes; ++i) {
-    const Ints codes = codes_at(strip, x, row_inside(strip, y + i));
+    const Ints codes = Pixels::codes(strip, x, row_inside(strip, y + i), alpha[i]);
     const IntPairs words = gather_pairs(strip.words, codes);
     wholes[i] = words.first;
     edges[i] = words.second;
@@ -100,64 +197,66 @@ SOFTFOCUS_INLINE void load_block(const FixedStrip& strip, int x, int y, FixedLin
       store(down->edges + at, edges[i]);
     }
   }
-  store_transposed(strip.across, wholes, strip.across.wholes, x);
-  store_transposed(strip.across, edges, strip.across.edges, x);
+  store_transposed(strip.across, wholes, strip.across.wholes, 1, x);
+  store_transposed(strip.across, edges, strip.across.edges, 1, x);
 }
 
 /// The first pass of the rows from y: they become nodes of the lines along y.
+template <class Pixels>
 SOFTFOCUS_INLINE void filter_across_fixed(FixedStrip& strip, int y) {
-  begin_line(strip.across);
+  constexpr int kStep = Pixels::kWords * kLanes;
+  begin_line<Pixels>(strip.across);
   const int columns = strip.x_end - strip.x_begin;
   const int end = strip.x_begin + (columns + kLanes - 1) / kLanes * kLanes;
   for (int x = strip.x_begin - strip.halo; x < end + strip.halo; x += kLanes) {
     const bool inside = x >= strip.x_begin && x < end;
-    load_block(strip, x, y, inside ? strip.down + (x - strip.x_begin) / kLanes : nullptr);
+    load_block<Pixels>(strip, x, y, inside ? strip.down + (x - strip.x_begin) / kLanes : nullptr);
     // Room for the nodes that come out before the strip begins lies before `passed`.
-    filter_nodes<10>(strip.across, x, strip.x_begin,
-                     strip.passed + (x - strip.across.reach - strip.x_begin) * kLanes);
+    filter_nodes<Pixels, false>(strip.across, x, strip.x_begin,
+                                strip.passed + (x - strip.across.reach - strip.x_begin) * kStep);
   }
   for (int x = strip.x_begin; x < end; x += kLanes) {
-    Bits colours[kLanes];
-#pragma GCC unroll 16
-    for (int i = 0; i < kLanes; ++i) {
-      colours[i] = load(strip.passed + (x - strip.x_begin + i) * kLanes);
-    }
     const FixedLine& down = strip.down[(x - strip.x_begin) / kLanes];
-    store_transposed(down, colours, down.colours, y);
+    for (int word = 0; word < Pixels::kWords; ++word) {
+      Bits colours[kLanes];
+#pragma GCC unroll 16
+      for (int i = 0; i < kLanes; ++i) {
+        colours[i] = load(strip.passed + (x - strip.x_begin + i) * kStep + word * kLanes);
+      }
+      store_transposed(down, colours, down.colours + word * kLanes, Pixels::kWords, y);
+    }
   }
 }
 
 /// The second pass of the nodes from y, in all columns; stores the rows that are finished.
+template <class Pixels>
 SOFTFOCUS_INLINE void filter_down_fixed(FixedStrip& strip, int y) {
   for (int x = strip.x_begin; x < strip.x_end; x += kLanes) {
     FixedLine& line = strip.down[(x - strip.x_begin) / kLanes];
-    std::uint32_t out[kLanes * kLanes];
-    filter_nodes<8>(line, y, strip.y_begin, out);
+    std::uint32_t out[kLanes * Pixels::kWords * kLanes];
+    filter_nodes<Pixels, true>(line, y, strip.y_begin, out);
     const int inside = strip.x_end - x < kLanes ? strip.x_end - x : kLanes;
     for (int i = 0; i < kLanes; ++i) {
       const int row = y + i - line.reach;
       if (row < strip.y_begin || row >= strip.y_end) continue;
-      const Bits alpha = pixels_at(strip, x, row) & kAlphaByte;
-      const Bits pixels = bytes_from_colours(load(out + i * kLanes)) | alpha;
-      std::uint8_t* to = strip.result + row * strip.result_stride + 4 * x;
-      if (inside == kLanes && strip.past_caches) {
-        stream_bits(to, pixels);
-      } else if (inside == kLanes) {
-        std::memcpy(to, &pixels, sizeof pixels);
-      } else {
-        std::memcpy(to, &pixels, 4 * static_cast<std::size_t>(inside));
-      }
+      Pixels::store_pixels(strip, x, row, inside, out + i * Pixels::kWords * kLanes);
     }
   }
 }
 
-}  // namespace
-
-void filter_fixed_strip(FixedStrip& strip) {
-  for (int i = 0; strip.x_begin + i * kLanes < strip.x_end; ++i) begin_line(strip.down[i]);
+template <class Pixels>
+SOFTFOCUS_INLINE void filter_strip(FixedStrip& strip) {
+  for (int i = 0; strip.x_begin + i * kLanes < strip.x_end; ++i) {
+    begin_line<Pixels>(strip.down[i]);
+  }
   for (int y = strip.y_begin - strip.halo; y - strip.across.reach < strip.y_end; y += kLanes) {
-    filter_across_fixed(strip, y);
-    filter_down_fixed(strip, y);
+    filter_across_fixed<Pixels>(strip, y);
+    filter_down_fixed<Pixels>(strip, y);
   }
   if (strip.past_caches) finish_streaming();
 }
+
+}  // namespace
+
+void filter_fixed_bytes(FixedStrip& strip) { filter_strip<BytePixels>(strip); }
+void filter_fixed_halves(FixedStrip& strip) { filter_strip<HalfPixels>(strip); }

@@ -1,7 +1,6 @@
 #include "tools/bench_arithmetic.h"
 
 #include "dof/arithmetic.h"
-#include "dof/fixed_rows.h"
 #include "dof/fixed_two_pass.h"
 #include "scenes/draw_scene.h"
 
@@ -19,15 +18,14 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
   Image ours = make_image(bytes ? Format::rgba8 : Format::rgba16f, width, height);
   Image theirs = make_image(Format::rgba16f, width, height);
 
-  const std::vector<TimedStage> fixed{
-      {"dof", [&] {
-         if (bytes) {
-           fixed_two_pass(byte_form.colours, byte_form.depths, table, ours, pool);
-         } else {
-           fixed_two_pass_rows(picture, SOFTFOCUS_FIXED_DEPTH_IN_ALPHA, nullptr, table.weights,
-                               ours, pool);
-         }
-       }}};
+  const std::vector<TimedStage> fixed{{"dof", [&] {
+                                         if (bytes) {
+                                           fixed_two_pass(byte_form.colours, byte_form.depths,
+                                                          table, ours, pool);
+                                         } else {
+                                           fixed_two_pass(picture, table, ours, pool);
+                                         }
+                                       }}};
   const std::vector<TimedStage> floats{
       {"dof", [&] {
          work.method->apply({picture, work.settings, work.profile}, theirs, pool);

@@ -103,6 +103,15 @@ SOFTFOCUS_INLINE unsigned sign_bits(Ints v) {
   return lane_bits(v < 0);
 #endif
 }
+/// Bit i is set where the lanes i are equal: lane_bits(a == b), but for the vector of a mask, which
+/// compilers make on the way there.
+SOFTFOCUS_INLINE unsigned equal_lane_bits(Ints a, Ints b) {
+#if SOFTFOCUS_LANES == 16
+  return _mm512_cmpeq_epi32_mask((__m512i)a, (__m512i)b);
+#else
+  return lane_bits(a == b);
+#endif
+}
 inline constexpr unsigned kAllLaneBits = (1u << SOFTFOCUS_LANES) - 1;
 SOFTFOCUS_INLINE bool any(Mask mask) { return lane_bits(mask) != 0; }
 SOFTFOCUS_INLINE bool all(Mask mask) { return lane_bits(mask) == kAllLaneBits; }
