@@ -9,7 +9,7 @@ struct FixedSums {
 
 /// A weight that the table's word holds in two parts.
 SOFTFOCUS_INLINE Ints split_weight(Ints word) { return word & kSplitMask; }
-SOFTFOCUS_INLINE Bits whole_weight(Ints split) {
+SOFTFOCUS_INLINE Bits joined_weight(Ints split) {
   return as_bits(multiply_add_pairs(split, splat(1 << (16 + kSplitBits) | 1)));
 }
 
@@ -39,8 +39,8 @@ struct SmallColours {
   }
   SOFTFOCUS_INLINE static FixedSums<Bits> weighed(Ints word, Pixels colour) {
     const Ints split = split_weight(word);
-    return {whole_weight(split), times(colour & 0x3FFu, split), times(colour >> 10 & 0x3FFu, split),
-            times(colour >> 20, split)};
+    return {joined_weight(split), times(colour & 0x3FFu, split),
+            times(colour >> 10 & 0x3FFu, split), times(colour >> 20, split)};
   }
 
   /// floor(sum / weight) below 1024. The reciprocal is too small by 2^-12 to 3 2^-12 of it: the

@@ -108,7 +108,7 @@ struct HalfColours {
             multiply_low_signed(half.mantissa_odd, weight >> 32) << half.shift_odd};
   }
   SOFTFOCUS_INLINE static FixedSums<WideSum> weighed(Ints word, const Pixels& colour) {
-    const Bits weight = whole_weight(split_weight(word));
+    const Bits weight = joined_weight(split_weight(word));
     const Longs longs = (Longs)weight;
     return {weight, times(colour.r, longs), times(colour.g, longs), times(colour.b, longs)};
   }

@@ -10,7 +10,7 @@ namespace softfocus {
 // Weights as the kernels use them: two words for each depth code. Numbers of 20 bits are split
 // as 2^5 h + l, for products of 16 bits: h lies in the upper half of a word, l in its lowest 5
 // bits. The bits between hold the rest:
-//   first word   whole; reach and side (kKeyShift); the upper 4 bits of the leakage; below 0 if
+//   first word   whole - edge; reach and side (kKeyShift); the upper 4 bits of the leakage; below 0 if
 //                that is 1
 //   second word  edge; the leakage's lower 11 bits; below 0 if the pixel is nearly sharp: its
 //                leakage is less than 1, or it reaches nothing
@@ -36,7 +36,7 @@ struct FixedLine {
   unsigned node_slots;     ///< a power of two, at least reach + 2 kLanes
   unsigned sum_slots;      ///< a power of two, at least 2 reach + 2
   std::uint32_t* colours;  ///< in the words of fixed_colours.inl or fixed_half_colours.inl
-  std::int32_t* wholes;    ///< the table's words for a node
+  std::int32_t* inners;    ///< the table's words for a node
   std::int32_t* edges;
   std::uint32_t* sums;     ///< differences along the line
   std::uint32_t* running;  ///< a slot: their sums up to the node that came out last

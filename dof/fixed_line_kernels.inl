@@ -39,7 +39,7 @@ SOFTFOCUS_INLINE void store_fixed(std::uint32_t* to, const FixedSums<Sum>& sums)
   store_sum(to + kLanes + 2 * kNext, sums.b);
 }
 
-SOFTFOCUS_INLINE Ints key_of(Ints whole) { return whole >> kKeyShift & kKeyMask; }
+SOFTFOCUS_INLINE Ints key_of(Ints inner) { return inner >> kKeyShift & kKeyMask; }
 
 /// Differences of one side of the focus at a node.
 template <class Colours>
@@ -87,8 +87,8 @@ SOFTFOCUS_INLINE void put_down(const FixedLine& line, int node, PendingNode<Colo
 template <class Colours>
 SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours>& pending) {
   const int at = node_at(line, node);
-  const Ints whole = load(line.wholes + at);
-  const Ints key = key_of(whole);
+  const Ints inner_word = load(line.inners + at);
+  const Ints key = key_of(inner_word);
   const int first = key[0];
   const bool alike = equal_lane_bits(key, splat(first)) == kAllLaneBits;
   if (alike && first < 2) {
@@ -97,7 +97,7 @@ SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours
   }
   const auto colour = Colours::load_pixels(colours_at<Colours>(line, node));
   const auto outer = Colours::weighed(load(line.edges + at), colour);
-  const auto inner = minus(Colours::weighed(whole, colour), outer);
+  const auto inner = Colours::weighed(inner_word, colour);
   if (alike) {
     const int reach = first >> 1, side = first & 1;
     std::uint32_t* const before = sums_at<Colours>(line, node - reach, side);
@@ -144,17 +144,18 @@ template <class Colours>
 SOFTFOCUS_INLINE void take_nearly_sharp(const FixedLine& line, int node, Ints edge,
                                         FixedSums<typename Colours::Sum>& near_side,
                                         FixedSums<typename Colours::Sum>& beyond_side) {
-  const Ints whole = load(line.wholes + node_at(line, node));
-  const Ints key = key_of(whole);
+  const Ints inner = load(line.inners + node_at(line, node));
+  const Ints key = key_of(inner);
   const Mask reaches_nothing = key < 2;
   const Mask in_beyond = (edge < 0) & (key >= 2) & ((key & 1) != 0);
-  const auto own = Colours::weighed(whole, Colours::load_pixels(colours_at<Colours>(line, node)));
+  const auto colour = Colours::load_pixels(colours_at<Colours>(line, node));
+  const auto own = plus(Colours::weighed(inner, colour), Colours::weighed(edge, colour));
   near_side = plus(near_side, masked(own, reaches_nothing | in_beyond));
   beyond_side = minus(beyond_side, masked(own, in_beyond));
   if (any((edge < 0) & (beyond_side.weight != 0u))) {
     const Ints below_one = (edge >> kLeakShift & ((1 << kLeakBitsThere) - 1)) |
-                           (whole >> (kKeyShift + 7) & 15) << kLeakBitsThere;
-    beyond_side = leaked(beyond_side, as_bits(select(whole < 0, splat(1 << 15), below_one)));
+                           (inner >> (kKeyShift + 7) & 15) << kLeakBitsThere;
+    beyond_side = leaked(beyond_side, as_bits(select(inner < 0, splat(1 << 15), below_one)));
   }
 }
 

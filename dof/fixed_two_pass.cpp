@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include "dof/fixed/weights.h"
@@ -110,8 +111,8 @@ void filter_in_lanes(const FixedStrip& whole, int reach, bool halves, ThreadPool
   const LineShape shape = line_shape(reach, lanes_of(pool.isa()), halves);
   const int columns = columns_of_strip(shape);
   const int across = (whole.width + columns - 1) / columns;
-  // Enough parts that no thread waits long for the last.
-  const int wanted = (2 * pool.threads() + across - 1) / across;
+  // What a part takes hardly depends on what is in it: as many for one thread as for another.
+  const int wanted = pool.threads() / std::gcd(pool.threads(), across);
   const int rows =
       std::max(rounded_up((whole.height + wanted - 1) / wanted, shape.lanes), kLeastRows);
   const int down = (whole.height + rows - 1) / rows;
@@ -165,7 +166,7 @@ FixedTable fixed_table(std::vector<fixed::Weights> weights) {
   for (const fixed::Weights& entry : table.weights) {
     const int key = entry.reach << 1 | entry.beyond;
     const int leak = entry.leak & (fixed::kLeakOne - 1);
-    table.words.push_back(split(entry.whole) | key << kKeyShift |
+    table.words.push_back(split(entry.whole - entry.edge) | key << kKeyShift |
                           leak >> kLeakBitsThere << (kKeyShift + 7) |
                           (entry.leak == fixed::kLeakOne ? kLeaksAll : 0));
     table.words.push_back(split(entry.edge) | (leak & ((1 << kLeakBitsThere) - 1)) << kLeakShift |

@@ -184,20 +184,20 @@ template <class Pixels>
 SOFTFOCUS_INLINE void load_block(const FixedStrip& strip, int x, int y, FixedLine* down) {
   Bits alpha[kLanes];
   Pixels::load_colours(strip, x, y, alpha);
-  Ints wholes[kLanes], edges[kLanes];
+  Ints inners[kLanes], edges[kLanes];
 #pragma GCC unroll 16
   for (int i = 0; i < kLanes; ++i) {
     const Ints codes = Pixels::codes(strip, x, row_inside(strip, y + i), alpha[i]);
     const IntPairs words = gather_pairs(strip.words, codes);
-    wholes[i] = words.first;
+    inners[i] = words.first;
     edges[i] = words.second;
     if (down != nullptr) {
       const int at = node_at(*down, y + i);
-      store(down->wholes + at, wholes[i]);
+      store(down->inners + at, inners[i]);
       store(down->edges + at, edges[i]);
     }
   }
-  store_transposed(strip.across, wholes, strip.across.wholes, 1, x);
+  store_transposed(strip.across, inners, strip.across.inners, 1, x);
   store_transposed(strip.across, edges, strip.across.edges, 1, x);
 }
 
