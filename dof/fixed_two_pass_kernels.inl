@@ -181,7 +181,7 @@ struct HalfPixels : HalfColours {
 /// Makes nodes x to x + kLanes - 1 of the line along x from the rows from y, and what the
 /// line along y, if there is one, needs beside their colours.
 template <class Pixels>
-SOFTFOCUS_INLINE void load_block(const FixedStrip& strip, int x, int y, FixedLine* down) {
+void load_block(const FixedStrip& strip, int x, int y, FixedLine* down) {
   Bits alpha[kLanes];
   Pixels::load_colours(strip, x, y, alpha);
   Ints inners[kLanes], edges[kLanes];
@@ -201,16 +201,41 @@ SOFTFOCUS_INLINE void load_block(const FixedStrip& strip, int x, int y, FixedLin
   store_transposed(strip.across, edges, strip.across.edges, 1, x);
 }
 
+/// Makes `count` nodes from `first` what node `like` is.
+template <class Pixels>
+SOFTFOCUS_INLINE void repeat_node(const FixedLine& line, int like, int first, int count) {
+  const std::uint32_t* colours = colours_at<Pixels>(line, like);
+  const Ints inner = load(line.inners + node_at(line, like));
+  const Ints edge = load(line.edges + node_at(line, like));
+  for (int node = first; node < first + count; ++node) {
+    for (int word = 0; word < Pixels::kWords; ++word) {
+      store(colours_at<Pixels>(line, node) + word * kLanes, load(colours + word * kLanes));
+    }
+    store(line.inners + node_at(line, node), inner);
+    store(line.edges + node_at(line, node), edge);
+  }
+}
+
 /// The first pass of the rows from y: they become nodes of the lines along y.
 template <class Pixels>
-SOFTFOCUS_INLINE void filter_across_fixed(FixedStrip& strip, int y) {
+void filter_across_fixed(FixedStrip& strip, int y) {
   constexpr int kStep = Pixels::kWords * kLanes;
   begin_line<Pixels>(strip.across);
   const int columns = strip.x_end - strip.x_begin;
   const int end = strip.x_begin + (columns + kLanes - 1) / kLanes * kLanes;
+  int loaded_to = strip.x_begin - strip.halo;
+  if (strip.x_begin == 0) {
+    load_block<Pixels>(strip, 0, y, strip.down);
+    repeat_node<Pixels>(strip.across, 0, -strip.halo, strip.halo);
+    loaded_to = kLanes;
+  }
   for (int x = strip.x_begin - strip.halo; x < end + strip.halo; x += kLanes) {
-    const bool inside = x >= strip.x_begin && x < end;
-    load_block<Pixels>(strip, x, y, inside ? strip.down + (x - strip.x_begin) / kLanes : nullptr);
+    if (x >= strip.width) {
+      repeat_node<Pixels>(strip.across, x - 1, x, kLanes);
+    } else if (x >= loaded_to) {
+      const bool inside = x >= strip.x_begin && x < end;
+      load_block<Pixels>(strip, x, y, inside ? strip.down + (x - strip.x_begin) / kLanes : nullptr);
+    }
     // Room for the nodes that come out before the strip begins lies before `passed`.
     filter_nodes<Pixels, false>(strip.across, x, strip.x_begin,
                                 strip.passed + (x - strip.across.reach - strip.x_begin) * kStep);
@@ -230,7 +255,7 @@ SOFTFOCUS_INLINE void filter_across_fixed(FixedStrip& strip, int y) {
 
 /// The second pass of the nodes from y, in all columns; stores the rows that are finished.
 template <class Pixels>
-SOFTFOCUS_INLINE void filter_down_fixed(FixedStrip& strip, int y) {
+void filter_down_fixed(FixedStrip& strip, int y) {
   for (int x = strip.x_begin; x < strip.x_end; x += kLanes) {
     FixedLine& line = strip.down[(x - strip.x_begin) / kLanes];
     std::uint32_t out[kLanes * Pixels::kWords * kLanes];
@@ -246,11 +271,22 @@ SOFTFOCUS_INLINE void filter_down_fixed(FixedStrip& strip, int y) {
 
 template <class Pixels>
 SOFTFOCUS_INLINE void filter_strip(FixedStrip& strip) {
-  for (int i = 0; strip.x_begin + i * kLanes < strip.x_end; ++i) {
-    begin_line<Pixels>(strip.down[i]);
+  const int blocks = (strip.x_end - strip.x_begin + kLanes - 1) / kLanes;
+  for (int i = 0; i < blocks; ++i) begin_line<Pixels>(strip.down[i]);
+  int passed_to = strip.y_begin - strip.halo;
+  if (strip.y_begin == 0) {
+    filter_across_fixed<Pixels>(strip, 0);
+    for (int i = 0; i < blocks; ++i) {
+      repeat_node<Pixels>(strip.down[i], 0, -strip.halo, strip.halo);
+    }
+    passed_to = kLanes;
   }
   for (int y = strip.y_begin - strip.halo; y - strip.across.reach < strip.y_end; y += kLanes) {
-    filter_across_fixed<Pixels>(strip, y);
+    if (y >= strip.height) {
+      for (int i = 0; i < blocks; ++i) repeat_node<Pixels>(strip.down[i], y - 1, y, kLanes);
+    } else if (y >= passed_to) {
+      filter_across_fixed<Pixels>(strip, y);
+    }
     filter_down_fixed<Pixels>(strip, y);
   }
   if (strip.past_caches) finish_streaming();
