@@ -64,8 +64,8 @@ SOFTFOCUS_INLINE void take_from(std::uint32_t* slot, const FixedSums<Sum>& sums)
   store_fixed(slot, minus(load_fixed<Sum>(slot), sums));
 }
 
-/// The differences of a node whose pixels all reach equally far that are still to be put
-/// down: the next node's go to the same places if it is like it.
+/// The differences of a node's pixels of one key that are still to be put down: those of the
+/// next node's that have it too go to the same places.
 template <class Colours>
 struct PendingNode {
   int key = 0;  ///< reach << 1 | beyond; 0 if there is none
@@ -82,6 +82,10 @@ SOFTFOCUS_INLINE void put_down(const FixedLine& line, int node, PendingNode<Colo
   pending.key = 0;
 }
 
+SOFTFOCUS_INLINE void touch(FixedLine& line, int last, int side) {
+  if (last > line.touched[side]) line.touched[side] = last;
+}
+
 /// A pixel adds `edge` at its reach and `whole` up to there: a difference of edge (outer)
 /// at -reach, whole - edge (inner) one further, the same two back at reach and one past it.
 template <class Colours>
@@ -89,46 +93,51 @@ SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours
   const int at = node_at(line, node);
   const Ints inner_word = load(line.inners + at);
   const Ints key = key_of(inner_word);
-  const int first = key[0];
-  const bool alike = equal_lane_bits(key, splat(first)) == kAllLaneBits;
-  if (alike && first < 2) {
+  int chosen = key[0];
+  const bool alike = equal_lane_bits(key, splat(chosen)) == kAllLaneBits;
+  unsigned left = alike ? static_cast<unsigned>(chosen >= 2) : lane_bits(key >= 2);
+  if (left == 0) {
     put_down(line, node, pending);
     return;
   }
   const auto colour = Colours::load_pixels(colours_at<Colours>(line, node));
-  const auto outer = Colours::weighed(load(line.edges + at), colour);
-  const auto inner = Colours::weighed(inner_word, colour);
-  if (alike) {
-    const int reach = first >> 1, side = first & 1;
-    std::uint32_t* const before = sums_at<Colours>(line, node - reach, side);
-    std::uint32_t* const after = sums_at<Colours>(line, node + reach, side);
-    if (pending.key == first) {
-      add_to(before, plus(outer, pending.inner));
-      take_from(after, plus(inner, pending.outer));
-    } else {
-      put_down(line, node, pending);
-      add_to(before, outer);
-      take_from(after, inner);
+  auto outer = Colours::weighed(load(line.edges + at), colour);
+  auto inner = Colours::weighed(inner_word, colour);
+  if (!alike) {
+    // Pixels of one key go the way of a node that is alike, those of others are put down.
+    std::int32_t keys[kLanes];
+    store(keys, key);
+    const unsigned like_pending = equal_lane_bits(key, splat(pending.key)) & left;
+    chosen = like_pending != 0 ? pending.key : keys[__builtin_ctz(left)];
+    for (left &= ~equal_lane_bits(key, splat(chosen)); left != 0;) {
+      const std::int32_t one = keys[__builtin_ctz(left)];
+      const Mask same = key == one;
+      left &= ~equal_lane_bits(key, splat(one));
+      const int reach = one >> 1, side = one & 1;
+      const auto some_outer = masked(outer, same), some_inner = masked(inner, same);
+      add_to(sums_at<Colours>(line, node - reach, side), some_outer);
+      add_to(sums_at<Colours>(line, node - reach + 1, side), some_inner);
+      take_from(sums_at<Colours>(line, node + reach, side), some_inner);
+      take_from(sums_at<Colours>(line, node + reach + 1, side), some_outer);
+      touch(line, node + reach, side);
     }
-    pending = {first, inner, outer};
-    if (node + reach > line.touched[side]) line.touched[side] = node + reach;
-    return;
+    const Mask same = key == chosen;
+    outer = masked(outer, same);
+    inner = masked(inner, same);
   }
-  put_down(line, node, pending);
-  std::int32_t keys[kLanes];
-  store(keys, key);
-  for (unsigned left = lane_bits(key >= 2); left != 0;) {
-    const std::int32_t one = keys[__builtin_ctz(left)];
-    const Mask same = key == one;
-    left &= ~equal_lane_bits(key, splat(one));
-    const int reach = one >> 1, side = one & 1;
-    const auto some_outer = masked(outer, same), some_inner = masked(inner, same);
-    add_to(sums_at<Colours>(line, node - reach, side), some_outer);
-    add_to(sums_at<Colours>(line, node - reach + 1, side), some_inner);
-    take_from(sums_at<Colours>(line, node + reach, side), some_inner);
-    take_from(sums_at<Colours>(line, node + reach + 1, side), some_outer);
-    if (node + reach > line.touched[side]) line.touched[side] = node + reach;
+  const int reach = chosen >> 1, side = chosen & 1;
+  std::uint32_t* const before = sums_at<Colours>(line, node - reach, side);
+  std::uint32_t* const after = sums_at<Colours>(line, node + reach, side);
+  if (pending.key == chosen) {
+    add_to(before, plus(outer, pending.inner));
+    take_from(after, plus(inner, pending.outer));
+  } else {
+    put_down(line, node, pending);
+    add_to(before, outer);
+    take_from(after, inner);
   }
+  pending = {chosen, inner, outer};
+  touch(line, node + reach, side);
 }
 
 template <class Sum>
