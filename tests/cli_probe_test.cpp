@@ -16,6 +16,7 @@ void check_same_arithmetic(const Profile& a, const Profile& b) {
   CHECK(a.denormals == b.denormals);
   CHECK(a.texture_unit == b.texture_unit);
   CHECK(a.bilinear_weights == b.bilinear_weights);
+  CHECK(a.bilinear_filter == b.bilinear_filter);
   CHECK(a.lerp == b.lerp);
   CHECK(a.viewport == b.viewport);
   CHECK(a.guard_band == b.guard_band);

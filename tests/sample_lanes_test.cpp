@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "raster/images/decoded_texture.h"
+#include "raster/images/fixed_bilinear.h"
 #include "tests/raster_helpers.h"
 
 namespace softfocus {
@@ -53,6 +54,20 @@ constexpr std::array kSizes{Size{1, 1}, Size{1, 7},  Size{6, 1},    Size{3, 5},
 
 // A multiple of every unit's lanes.
 constexpr std::size_t kPoints = 192;
+
+// The known ones, and d3d11's texture unit filtering the other way and without its weights.
+std::vector<Profile> tested_profiles() {
+  std::vector<Profile> list(profiles().begin(), profiles().end());
+  Profile profile = profile_named("d3d11");
+  profile.name = "d3d11 in floats";
+  profile.bilinear_filter = BilinearFilter::floats;
+  list.push_back(profile);
+  profile.name = "in integers by float weights";
+  profile.bilinear_filter = BilinearFilter::integers;
+  profile.bilinear_weights = BilinearWeights::binary32;
+  list.push_back(profile);
+  return list;
+}
 
 std::span<const Isa> vector_isas() { return available_isas().subspan(1); }
 
@@ -158,7 +173,7 @@ int count_wrong(Isa isa, const Texture& texture, const Profile& profile, Random&
 
 TEST_CASE("pixels sampled in lanes have the bits of pixels sampled one by one") {
   for (const Isa isa : vector_isas()) {
-    for (const Profile& profile : profiles()) {
+    for (const Profile& profile : tested_profiles()) {
       Random random{41};
       for (const Format format : kFormats) {
         int wrong = 0;
@@ -174,7 +189,7 @@ TEST_CASE("pixels sampled in lanes have the bits of pixels sampled one by one") 
 
 TEST_CASE("so have infinities, NaN, both zeros and subnormals among the texels") {
   for (const Isa isa : vector_isas()) {
-    for (const Profile& profile : profiles()) {
+    for (const Profile& profile : tested_profiles()) {
       Random random{43};
       for (const Format format : {Format::rgba16f, Format::rgba32f}) {
         Image image = make_image(format, 8, 8);
@@ -200,7 +215,7 @@ TEST_CASE("levels that halve no size are sampled in lanes all the same") {
   }
   for (const Isa isa : vector_isas()) {
     Random random{45};
-    for (const Profile& profile : profiles()) {
+    for (const Profile& profile : tested_profiles()) {
       CHECK_MESSAGE(count_wrong(isa, texture, profile, random) == 0, isa_name(isa), ", ",
                     profile.name);
     }
@@ -209,13 +224,17 @@ TEST_CASE("levels that halve no size are sampled in lanes all the same") {
 
 TEST_CASE("so are profiles that have no arithmetic in lanes") {
   const Texture texture = mipmapped(Format::srgb8, {16, 16}, 46);
+  const Texture bytes = mipmapped(Format::rgba8, {16, 16}, 46);
   Profile fused_plain = profile_named("ieee");
   fused_plain.lerp = Contraction::fused;
+  Profile fused_integers = fused_plain;
+  fused_integers.bilinear_filter = BilinearFilter::integers;
   Profile keeping = profile_named("llvmpipe");
   keeping.denormals = Denormals::keep;
   for (const Isa isa : vector_isas()) {
     Random random{47};
     CHECK(count_wrong(isa, texture, fused_plain, random) == 0);
+    CHECK(count_wrong(isa, bytes, fused_integers, random) == 0);
     CHECK(count_wrong(isa, texture, keeping, random) == 0);
   }
 }
@@ -231,15 +250,63 @@ TEST_CASE("the least weights of a next level underflow in lanes as in one pixel"
     points.insert(points.end(), 16, {0.3f, 0.3f, std::ldexp(1.0f, exponent)});
   }
   for (const Isa isa : vector_isas()) {
-    for (const Profile& profile : profiles()) {
+    for (const Profile& profile : tested_profiles()) {
       const DecodedTexture decoded = decode_texture(texture, profile);
       CHECK(count_wrong(isa, texture, decoded, sampler, profile, points) == 0);
     }
   }
 }
 
+TEST_CASE("in lanes bytes in integers are the sums of the header that stands alone, over 255") {
+  const Texture texture = random_texture(Format::rgba8, 32, 16, 51);
+  const auto bytes = [&](int y) { return row<std::uint8_t>(texture.levels[0], y); };
+  const Profile profile = tested_profiles().back();
+  const DecodedTexture decoded = decode_texture(texture, profile);
+  const Sampler sampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::repeat};
+  Random random{52};
+  std::vector<SamplePoint> points;
+  std::vector<std::array<float, 3>> expected;
+  for (std::size_t i = 0; i < kPoints * 8; ++i) {
+    const int u_256 = random.whole(-256 * 8, 256 * 40);
+    const int v_256 = random.whole(-256 * 40, 256 * 40);
+    points.push_back({static_cast<float>(u_256) / (256.0f * 32.0f),
+                      static_cast<float>(v_256) / (256.0f * 16.0f), 0.0f});
+    const FixedTaps u = clamped_taps(from_centre(u_256), 32);
+    const FixedTaps v = repeated_taps(from_centre(v_256), 16);
+    std::array<float, 3> colour{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto at = [&](int x, int y) { return bytes(y)[4 * static_cast<std::size_t>(x) + c]; };
+      const int sum =
+          bilinear_sum_unorm8(at(u.first, v.first), at(u.second, v.first), at(u.first, v.second),
+                              at(u.second, v.second), u.weight, v.weight);
+      colour[c] = static_cast<float>(sum) / (65536.0f * 255.0f);
+    }
+    expected.push_back(colour);
+  }
+  for (const Isa isa : vector_isas()) {
+    std::vector<SampledColour> colours(points.size());
+    SOFTFOCUS_KERNEL(isa, sample_all)(decoded, sampler, profile, points, colours);
+    int wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto [r, g, b] = expected[i];
+      wrong += !same(colours[i].r, r) || !same(colours[i].g, g) || !same(colours[i].b, b);
+    }
+    CHECK_MESSAGE(wrong == 0, isa_name(isa));
+  }
+}
+
+namespace {
+
+// A channel of a decoded texel as a fetch gives it.
+float linear(const DecodedTexture& decoded, const Profile& profile, float value) {
+  if (!decoded.are_bytes) return value;
+  return profile.texture_unit == TextureUnit::plain ? value / 255.0f : value * (1.0f / 255.0f);
+}
+
+}  // namespace
+
 TEST_CASE("a decoded texture holds each texel as the profile's texture unit fetches it") {
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : tested_profiles()) {
     if (profile.texture_unit == TextureUnit::softpipe) continue;
     for (const Format format : kFormats) {
       const Texture texture = mipmapped(format, {5, 3}, 48);
@@ -250,7 +317,8 @@ TEST_CASE("a decoded texture holds each texel as the profile's texture unit fetc
         const float* texel = &decoded.texels[static_cast<std::size_t>(decoded.starts[level])];
         for (int i = 0; i < image.width * image.height; ++i, texel += 4) {
           const glm::vec4 expected = fetch_texel(image, i % image.width, i / image.width, profile);
-          for (int c = 0; c < 4; ++c) wrong += !same(texel[c] * decoded.scale, expected[c]);
+          for (int c = 0; c < 4; ++c)
+            wrong += !same(linear(decoded, profile, texel[c]), expected[c]);
         }
       }
       CHECK_MESSAGE(wrong == 0, profile.name, ", format ", static_cast<int>(format));

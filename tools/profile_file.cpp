@@ -28,6 +28,7 @@ constexpr std::array<std::string_view, 2> kUnormWords{"half-up", "nearest-even"}
 constexpr std::array<std::string_view, 2> kDenormalWords{"keep", "flush"};
 constexpr std::array<std::string_view, 3> kTextureWords{"plain", "llvmpipe", "softpipe"};
 constexpr std::array<std::string_view, 2> kWeightWords{"binary32", "fixed-8"};
+constexpr std::array<std::string_view, 2> kFilterWords{"floats", "integers"};
 constexpr std::array<std::string_view, 2> kFusedWords{"unfused", "fused"};
 constexpr std::array<std::string_view, 2> kClippingWords{"plain", "mesa"};
 constexpr std::array<std::string_view, 2> kCoverageWords{"edge-functions", "scanlines"};
@@ -49,6 +50,8 @@ void for_each_choice(const Visit& visit) {
                                "the arithmetic of texture addresses and filters"});
   visit(ChoiceKey<BilinearWeights>{"bilinear_weights", &P::bilinear_weights, kWeightWords,
                                    "precision of filter weights, in a plain texture unit"});
+  visit(ChoiceKey<BilinearFilter>{"bilinear_filter", &P::bilinear_filter, kFilterWords,
+                                  "of bytes and halves, in a plain texture unit"});
   visit(ChoiceKey<Contraction>{"lerp", &P::lerp, kFusedWords, "a + t (b - a) in filters"});
   visit(ChoiceKey<Contraction>{"viewport", &P::viewport, kFusedWords, "ndc * scale + translate"});
   visit(ChoiceKey<Clipping>{"clipping", &P::clipping, kClippingWords,

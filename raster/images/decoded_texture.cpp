@@ -5,6 +5,7 @@
 #include <cassert>
 #include <limits>
 
+#include "raster/images/fixed_filter.h"
 #include "raster/images/texel.h"
 #include "raster/images/unorm8_filter.h"
 #include "raster/numbers/lerp.h"
@@ -16,10 +17,12 @@ bool is_8_bit(Format format) {
   return bytes_per_texel(format) == static_cast<std::size_t>(channel_count(format));
 }
 
-// Whether llvmpipe may filter texels in integers, so that they are left from 0 to 255.
-bool is_unscaled(Format format, const Profile& profile) {
-  return profile.texture_unit == TextureUnit::llvmpipe &&
-         (format == Format::r8 || format == Format::rgba8);
+// Whether texels are left from 0 to 255, to be filtered in integers: by llvmpipe with most
+// samplers.
+bool stay_bytes(Format format, const Profile& profile) {
+  const bool may_be =
+      profile.texture_unit == TextureUnit::llvmpipe || has_fixed_filter(format, profile);
+  return may_be && (format == Format::r8 || format == Format::rgba8);
 }
 
 // Of each code, what fetch_texel() makes of it in the colours and in alpha.
@@ -42,7 +45,7 @@ Codes decode_codes(Format format, const Profile& profile) {
   return codes;
 }
 
-Codes unscaled_codes() {
+Codes codes_as_they_are() {
   Codes codes{};
   for (std::size_t code = 0; code < 256; ++code) codes.colour[code] = static_cast<float>(code);
   codes.alpha = codes.colour;
@@ -113,10 +116,11 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile) {
   decoded.texels.resize(floats);
 
   const Format format = texture.levels[0].format;
-  const bool unscaled = is_unscaled(format, profile);
-  if (unscaled) decoded.scale = 1.0f / 255.0f;
+  decoded.are_bytes = stay_bytes(format, profile);
   Codes codes{};
-  if (is_8_bit(format)) codes = unscaled ? unscaled_codes() : decode_codes(format, profile);
+  if (is_8_bit(format)) {
+    codes = decoded.are_bytes ? codes_as_they_are() : decode_codes(format, profile);
+  }
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
     float* to = decoded.texels.data() + decoded.starts[i];
     if (is_8_bit(format)) {
@@ -135,6 +139,10 @@ LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sam
   const bool fused = profile.lerp == Contraction::fused;
   if (profile.texture_unit == TextureUnit::plain) {
     if (fused) return LaneArithmetic::by_sample;
+    if (texture.are_bytes) return LaneArithmetic::plain_integers;
+    if (sampler.filter != Filter::nearest && has_fixed_filter(format, profile)) {
+      return LaneArithmetic::by_sample;  // halves' sums do not fit in a float
+    }
     return profile.bilinear_weights == BilinearWeights::fixed_8 ? LaneArithmetic::plain_fixed_8
                                                                 : LaneArithmetic::plain;
   }
@@ -142,7 +150,7 @@ LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sam
   const bool flushes_texels = format == Format::r32f || format == Format::rgba32f;
   if (profile.denormals == Denormals::keep || flushes_texels) return LaneArithmetic::by_sample;
   const auto in_floats = fused ? LaneArithmetic::llvmpipe_fused : LaneArithmetic::llvmpipe_unfused;
-  if (sampler.filter == Filter::nearest || !is_unscaled(format, profile)) return in_floats;
+  if (sampler.filter == Filter::nearest || !texture.are_bytes) return in_floats;
   return is_filtered_in_integers(format, sampler) ? LaneArithmetic::llvmpipe_integers
                                                   : LaneArithmetic::by_sample;
 }

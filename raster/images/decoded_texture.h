@@ -27,14 +27,14 @@ struct DecodedAxis {
 struct DecodedTexture {
   const Texture* source = nullptr;  ///< what it was made of, which must outlive it
   int level_count = 0;
-  /// What texels are to be multiplied by: 1, or 1/255 where llvmpipe may filter them in
-  /// integers and they are 0 to 255.
-  float scale = 1.0f;
+  /// Whether texels are left from 0 to 255, for they are filtered in integers: to_linear()
+  /// follows the filter.
+  bool are_bytes = false;
   DecodedAxis u, v;
   /// Where each level's texels start in `texels`, in floats. Rows lie without gaps.
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
-  /// Red, green, blue and alpha of each texel, as fetch_texel() gives them but for
-  /// `scale`. Empty where sample() must do: for softpipe, for more levels than
+  /// Red, green, blue and alpha of each texel, as fetch_texel() gives them or as
+  /// `are_bytes` says. Empty where sample() must do: for softpipe, for more levels than
   /// kMaxDecodedLevels and for 2^31 floats and more.
   std::vector<float, RowAllocator<float>> texels;
 };
@@ -48,6 +48,7 @@ enum class LaneArithmetic : std::uint8_t {
   by_sample,
   plain,              ///< the plain unit with binary32 weights, nothing fused
   plain_fixed_8,      ///< the same with weights of 8 bits
+  plain_integers,     ///< its filter in integers, of bytes
   llvmpipe_fused,     ///< llvmpipe's float filter
   llvmpipe_unfused,   ///< the same, nothing fused
   llvmpipe_integers,  ///< its filter of 8-bit integers

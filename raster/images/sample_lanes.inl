@@ -84,6 +84,23 @@ SOFTFOCUS_INLINE Floats mix(Floats a, Floats b, Floats t) {
   }
 }
 
+/// Between a colour of a level and one of the next.
+///
+/// filter_fixed()'s sum, rounded once. Whole texels make a level's colours exact multiples of
+/// 2^-16 below 2^8, products and sums on the way too, for nothing needs more than 24 bits. To
+/// these a third weight of 8 bits adds 8 more. So wholes and fractions are mixed apart: exact
+/// multiples of 2^-8 below 2^8 and of 2^-24 below 1, of which only the sum is rounded.
+template <LaneArithmetic arithmetic>
+SOFTFOCUS_INLINE Floats mix_levels(Floats fine, Floats coarse, Floats weight) {
+  if constexpr (arithmetic == LaneArithmetic::plain_integers) {
+    const Floats fine_whole = to_floats(truncate(fine)), coarse_whole = to_floats(truncate(coarse));
+    return mix<arithmetic>(fine_whole, coarse_whole, weight) +
+           mix<arithmetic>(fine - fine_whole, coarse - coarse_whole, weight);
+  } else {
+    return mix<arithmetic>(fine, coarse, weight);
+  }
+}
+
 /// A bilinear fetch a lane: where its texels lie, first row's before second's, and weights.
 struct FetchLanes {
   alignas(64) std::int32_t offsets[4][kLanes];
@@ -141,7 +158,7 @@ SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine
   const Floats next = filter_level<arithmetic, neighbours, group>(texels, coarse);
   const Floats weight = spread<group>(next_weight);
   // A weight of 0 leaves alone what the sum would not: infinities, NaN, -0.
-  return select(weight > 0.0f, mix<arithmetic>(colour, next, weight), colour);
+  return select(weight > 0.0f, mix_levels<arithmetic>(colour, next, weight), colour);
 }
 
 /// Not inlined: beside each other in one function, g++ computes all addresses of all forms
@@ -189,7 +206,7 @@ SOFTFOCUS_INLINE TapLanes taps(const AxisLanes& axis) {
   } else if constexpr (is_llvmpipe(arithmetic)) {
     return llvmpipe_taps(axis);
   } else {
-    return plain_taps(axis, arithmetic == LaneArithmetic::plain_fixed_8);
+    return plain_taps(axis, arithmetic != LaneArithmetic::plain);
   }
 }
 
@@ -246,7 +263,7 @@ SOFTFOCUS_INLINE LevelLanes choose_levels(Floats lod, int last, bool trilinear) 
     }
     return levels;
   } else {
-    return choose_plain_levels(lod, last, trilinear, arithmetic == LaneArithmetic::plain_fixed_8);
+    return choose_plain_levels(lod, last, trilinear, arithmetic != LaneArithmetic::plain);
   }
 }
 
@@ -303,6 +320,19 @@ SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, R
   }
 }
 
+/// What fetch_texel() makes of bytes that were left from 0 to 255, and what comes of mixing
+/// them.
+template <LaneArithmetic arithmetic>
+SOFTFOCUS_INLINE Floats to_linear(const DecodedTexture& texture, Floats value) {
+  if constexpr (arithmetic == LaneArithmetic::plain_integers) {
+    return value / 255.0f;
+  } else if constexpr (is_llvmpipe(arithmetic)) {
+    return texture.are_bytes ? value * (1.0f / 255.0f) : value;
+  } else {
+    return value;
+  }
+}
+
 template <LaneArithmetic arithmetic>
 [[gnu::noinline]] void sample_batch(const DecodedTexture& texture, const Sampler& sampler,
                                     const Profile& profile, SamplePoints points, int count,
@@ -336,11 +366,9 @@ template <LaneArithmetic arithmetic>
       }
       filter_plan<arithmetic>(texture.texels.data(), plan, colours[i]);
     }
-    if constexpr (is_llvmpipe(arithmetic)) {
-      colours[i].r *= texture.scale;
-      colours[i].g *= texture.scale;
-      colours[i].b *= texture.scale;
-    }
+    colours[i].r = to_linear<arithmetic>(texture, colours[i].r);
+    colours[i].g = to_linear<arithmetic>(texture, colours[i].g);
+    colours[i].b = to_linear<arithmetic>(texture, colours[i].b);
   }
 }
 
@@ -360,6 +388,8 @@ SOFTFOCUS_INLINE void sample_lanes(const DecodedTexture& texture, const Sampler&
     case plain: return sample_batch<plain>(texture, sampler, profile, points, count, colours);
     case plain_fixed_8:
       return sample_batch<plain_fixed_8>(texture, sampler, profile, points, count, colours);
+    case plain_integers:
+      return sample_batch<plain_integers>(texture, sampler, profile, points, count, colours);
     case llvmpipe_fused:
       return sample_batch<llvmpipe_fused>(texture, sampler, profile, points, count, colours);
     case llvmpipe_unfused:

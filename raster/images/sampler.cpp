@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raster/images/bilinear.h"
+#include "raster/images/fixed_filter.h"
 #include "raster/images/llvmpipe_sampler.h"
 #include "raster/images/softpipe_sampler.h"
 #include "raster/images/texel.h"
@@ -35,11 +36,23 @@ float to_texels(float coordinate, int size) {
   return std::clamp(coordinate * static_cast<float>(size), -kLargestCoordinate, kLargestCoordinate);
 }
 
+// The nearest multiple of 1/256 in 256ths; below 2^31, as what to_texels() gives is below 2^22.
+std::int32_t to_256ths(float value) {
+  return static_cast<std::int32_t>(std::nearbyint(value * 256.0f));
+}
+
+FixedTaps fixed_taps(float coordinate, int size, Wrap wrap) {
+  const std::int32_t position = to_256ths(to_texels(coordinate, size) - 0.5f);
+  const int index = position >> 8;
+  return {wrap_index(index, size, wrap), wrap_index(index + 1, size, wrap), position & 255};
+}
+
 Taps bilinear_taps(float coordinate, int size, Wrap wrap, BilinearWeights weights) {
-  float position = to_texels(coordinate, size) - 0.5f;
   if (weights == BilinearWeights::fixed_8) {
-    position = std::nearbyint(position * 256.0f) * (1.0f / 256.0f);
+    const FixedTaps taps = fixed_taps(coordinate, size, wrap);
+    return {taps.first, taps.second, static_cast<float>(taps.weight) * (1.0f / 256.0f)};
   }
+  const float position = to_texels(coordinate, size) - 0.5f;
   const float base = std::floor(position);
   const int index = static_cast<int>(base);
   return {wrap_index(index, size, wrap), wrap_index(index + 1, size, wrap), position - base};
@@ -61,6 +74,11 @@ glm::vec4 sample_bilinear(const Image& level, const Sampler& sampler, glm::vec2 
       [&](float a, float b, float t) { return lerp(a, b, t, profile.lerp); });
 }
 
+FixedFetch fixed_fetch(const Image& level, const Sampler& sampler, glm::vec2 uv) {
+  return {&level, fixed_taps(uv.x, level.width, sampler.wrap_u),
+          fixed_taps(uv.y, level.height, sampler.wrap_v)};
+}
+
 }  // namespace
 
 glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
@@ -76,15 +94,18 @@ glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, f
   const auto image = [&](float index) -> const Image& {
     return texture.levels[static_cast<std::size_t>(index)];
   };
-  switch (sampler.filter) {
-    case Filter::nearest: return sample_nearest(image(level + 0.5f), sampler, uv);
-    case Filter::bilinear: return sample_bilinear(image(level + 0.5f), sampler, uv, profile);
-    case Filter::trilinear: break;
+  if (sampler.filter == Filter::nearest) return sample_nearest(image(level + 0.5f), sampler, uv);
+  const bool trilinear = sampler.filter == Filter::trilinear;
+  const float base = std::floor(trilinear ? level : level + 0.5f);
+  float weight = trilinear ? level - base : 0.0f;
+  if (has_fixed_filter(image(base).format, profile)) {
+    const int weight_256 = to_256ths(weight);
+    const FixedFetch fine = fixed_fetch(image(base), sampler, uv);
+    return filter_fixed(fine, weight_256 > 0 ? fixed_fetch(image(base + 1.0f), sampler, uv) : fine,
+                        weight_256, profile);
   }
-  const float base = std::floor(level);
-  float weight = level - base;
   if (profile.bilinear_weights == BilinearWeights::fixed_8) {
-    weight = std::nearbyint(weight * 256.0f) * (1.0f / 256.0f);
+    weight = static_cast<float>(to_256ths(weight)) * (1.0f / 256.0f);
   }
   const glm::vec4 fine = sample_bilinear(image(base), sampler, uv, profile);
   if (weight == 0.0f) return fine;

@@ -18,6 +18,13 @@ enum class BilinearWeights : std::uint8_t {
   fixed_8,   ///< rounded to 8 fractional bits first (D3D11.3 7.18.8: 16.8 coordinates)
 };
 
+/// In which arithmetic the plain unit filters linear bytes and halves; other formats always
+/// are in floats.
+enum class BilinearFilter : std::uint8_t {
+  floats,    ///< decoded, then lerps in binary32
+  integers,  ///< exact sums with 8-bit weights, whatever the others' are (fixed_filter.h)
+};
+
 /// Whether a product and the sum it feeds are rounded once or twice.
 enum class Contraction : std::uint8_t { unfused, fused };
 
@@ -26,7 +33,7 @@ enum class UnormRounding : std::uint8_t { half_up, nearest_even };
 
 /// In which arithmetic textures are addressed and filtered.
 enum class TextureUnit : std::uint8_t {
-  /// As the specifications describe it, in the weights that `bilinear_weights` names.
+  /// As the specifications describe it, by `bilinear_weights` and `bilinear_filter`.
   plain,
   /// Mesa 22.3 llvmpipe: 8-bit textures in 8-bit integers, its own wrapping in floats.
   llvmpipe,
@@ -79,6 +86,7 @@ struct Profile {
 
   TextureUnit texture_unit = TextureUnit::plain;
   BilinearWeights bilinear_weights = BilinearWeights::binary32;  ///< of the plain unit
+  BilinearFilter bilinear_filter = BilinearFilter::floats;       ///< of the plain unit
   Contraction lerp = Contraction::unfused;                       ///< a + t (b - a)
 
   /// ndc * scale + translate, of vertices that clipping did not make: those it made

@@ -80,15 +80,18 @@ std::vector<Candidate> variants(const Profile& profile, Value Profile::*member,
 std::vector<Candidate> texture_candidates(const Profile& profile) {
   std::vector<Candidate> candidates;
   const auto add = [&](const char* name, TextureUnit unit, BilinearWeights weights,
-                       Contraction lerp) {
+                       Contraction lerp) -> Profile& {
     candidates.push_back({name, profile});
     candidates.back().profile.texture_unit = unit;
     candidates.back().profile.bilinear_weights = weights;
     candidates.back().profile.lerp = lerp;
+    return candidates.back().profile;
   };
   using enum Contraction;
   add("plain, 8-bit weights, unfused", TextureUnit::plain, BilinearWeights::fixed_8, unfused);
   add("plain, 8-bit weights, fused", TextureUnit::plain, BilinearWeights::fixed_8, fused);
+  add("plain, in integers", TextureUnit::plain, BilinearWeights::fixed_8, unfused).bilinear_filter =
+      BilinearFilter::integers;
   add("plain, float weights, unfused", TextureUnit::plain, BilinearWeights::binary32, unfused);
   add("plain, float weights, fused", TextureUnit::plain, BilinearWeights::binary32, fused);
   add("llvmpipe, unfused", TextureUnit::llvmpipe, BilinearWeights::binary32, unfused);
