@@ -224,7 +224,8 @@ TEST_CASE("a bilinear fetch is (a + s (b - a)) along rows, then along columns, i
   const Texture texture = random_texture(Format::rgba16f, 16, 16, 6, -8.0f, 8.0f);
   const Sampler sampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::clamp_to_edge};
   for (const std::string_view name : {"ieee", "llvmpipe", "llvmpipe-sse41", "softpipe", "d3d11"}) {
-    const Profile profile = profile_named(name);
+    Profile profile = profile_named(name);
+    profile.bilinear_filter = BilinearFilter::floats;
     const bool fused = profile.lerp == Contraction::fused;
     const auto mix = [&](float a, float b, float t) {
       const float difference = b - a;

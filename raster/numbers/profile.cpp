@@ -16,7 +16,8 @@ Profile d3d11() {
           .summary = "the Direct3D 11.3 specification: stores truncate, 8-bit bilinear weights",
           .half_store = HalfRounding::toward_zero,
           .denormals = Denormals::flush,
-          .bilinear_weights = BilinearWeights::fixed_8};
+          .bilinear_weights = BilinearWeights::fixed_8,
+          .bilinear_filter = BilinearFilter::integers};
 }
 
 // Mesa's software rasterizers were measured; docs/exactness.md has every operation.
