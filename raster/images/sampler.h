@@ -46,6 +46,7 @@ struct Sampler {
 ///   row j:     c_j = lerp(texel(i, j), texel(i + 1, j), t_u)
 ///   result:    lerp(c_j, c_j+1, t_v)
 /// Texels are decoded before they are filtered.
+/// Bytes and halves that the profile filters in integers: see fixed_filter.h.
 glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
                  const Profile& profile);
 
