@@ -1,10 +1,10 @@
 #pragma once
 // --arithmetic, as `render` and `bench` share it.
 
-#include <CLI/CLI.hpp>
 #include <string_view>
 
 #include "dof/arithmetic.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

@@ -25,22 +25,22 @@ void add_auto_options(CLI::App& parser, Goal& goal) {
 }
 
 void check_auto_options(const CLI::App& parser, const MethodChoice& method) {
-  if (parser.count("--max-error") != 0 && parser.count("--max-time") != 0) {
+  if (is_given(parser, "--max-error") && is_given(parser, "--max-time")) {
     throw UsageError("--max-error and --max-time exclude each other; give one");
   }
   for (const char* option : {"--max-error", "--max-time"}) {
-    if (parser.count(option) == 0 || method.is_auto()) continue;
+    if (!is_given(parser, option) || method.is_auto()) continue;
     throw UsageError(std::string{option} + ": the method " + std::string{method.name()} +
                      " keeps to no bound; give --method auto");
   }
   if (!method.is_auto()) return;
-  if (parser.count("--gl") != 0) {
+  if (is_given(parser, "--gl")) {
     throw UsageError(
         "--gl and --method auto exclude each other: what auto may choose no driver can do; "
         "give a method");
   }
   for (const char* option : {"--samples", "--until", "--jitter", "--aperture-blades"}) {
-    if (parser.count(option) == 0) continue;
+    if (!is_given(parser, option)) continue;
     throw UsageError(std::string{option} +
                      ": the method auto settles by itself how the lens is sampled; "
                      "give --method accumulation");

@@ -1,10 +1,9 @@
 #pragma once
 // --max-error and --max-time: what `--method auto` is to keep to.
 
-#include <CLI/CLI.hpp>
-
 #include "choice/choose.h"
 #include "tools/method_options.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

@@ -103,8 +103,8 @@ int bench(const BenchOptions& options) {
 }  // namespace
 
 Command add_bench_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "bench", "Time the drawing and the filter, alone or in turn with a GL driver");
+  CLI::App* parser = add_command(
+      program, "bench", "Time the drawing and the filter, alone or in turn with a GL driver");
   const auto options = std::make_shared<BenchOptions>();
   add_bench_options(*parser, *options);
   return {parser, [parser, options] {

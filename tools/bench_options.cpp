@@ -19,7 +19,7 @@ constexpr int kMostRuns = 1000;
 constexpr std::uint64_t kBytesPerPixel = 72;
 
 void add_subject_options(CLI::App& parser, BenchOptions& options) {
-  parser.add_option("SCENE", options.scene, "A scene or a file, as render takes it")->type_name("");
+  add_optional_argument(parser, "SCENE", "A scene or a file, as render takes it", options.scene);
   const std::string numbers =
       std::to_string(kLeastFieldTriangles) + " to " + std::to_string(kMostFieldTriangles);
   add_value(parser, "--triangles", "N",
@@ -59,7 +59,7 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
             });
   add_value(parser, "--vs", "DRIVER", "Time this GL driver too, in turn: " + names_of(drivers()),
             [&options](const std::string& text) { options.versus = &parse_driver("--vs", text); });
-  parser.add_flag("--json", options.json, "Print JSON");
+  add_flag(parser, "--json", "Print JSON", options.json);
 }
 
 void complete(BenchOptions& options, const CLI::App& parser) {
@@ -70,7 +70,7 @@ void complete(BenchOptions& options, const CLI::App& parser) {
                                             : "more than one thing to measure is given"} +
                      "; give a SCENE (softfocus scenes), --triangles N or --image WxH");
   }
-  if (options.image && parser.count("--size") != 0) {
+  if (options.image && is_given(parser, "--size")) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;

@@ -1,7 +1,6 @@
 #pragma once
 // Everything that `bench` is told.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "tools/gl/driver.h"
 #include "tools/lens_options.h"
 #include "tools/option_values.h"
+#include "tools/parser.h"
 #include "tools/pool_options.h"
 
 namespace softfocus {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "scenes/file_bytes.h"
 #include "tools/chart_key.h"
@@ -53,10 +54,7 @@ std::string plotted(const std::vector<ChartPanel>& panels, const char* terminal,
 void write_chart(const std::vector<ChartPanel>& panels, const ChartOptions& options) {
   const std::filesystem::path& directory = options.directory;
   write_text(directory / "chart.csv", chart_csv(panels));
-  write_text(
-      directory / "chart.json",
-      chart_json(panels).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-          "\n");
+  write_json(directory / "chart.json", chart_json(panels));
   const std::filesystem::path scratch = directory / "cache" / "plot";
   write_text(directory / "chart.png", plotted(panels, "pngcairo", scratch));
   const std::string svg = plotted(panels, "svg", scratch);
@@ -108,7 +106,7 @@ int chart(const ChartOptions& options) {
 
 Command add_chart_command(CLI::App& program) {
   CLI::App* parser =
-      program.add_subcommand("chart", "Measure speed against accuracy of all methods, and draw it");
+      add_command(program, "chart", "Measure speed against accuracy of all methods, and draw it");
   const auto options = std::make_shared<ChartOptions>();
   add_chart_options(*parser, *options);
   return {parser, [options] {

@@ -61,8 +61,8 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
       parser, "--size", "WxH",
       "Width and height in pixels (default: 1024x1024; 256x256 with --quick)",
       [&options](const std::string& text) { options.given_size = parse_size("--size", text); });
-  parser.add_flag("--quick", options.quick,
-                  "A small size, fewer settings and rounds: under a minute");
+  add_flag(parser, "--quick", "A small size, fewer settings and rounds: under a minute",
+           options.quick);
   add_value(parser, "--samples", "N",
             "Of the ground truth, a multiple of 16 from 128 to 65536 (default: 4096; 512 with "
             "--quick)",
@@ -84,7 +84,7 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
   add_pool_options(parser, options.pool, "the pictures are the same");
-  parser.add_flag("--again", options.again, "Measure all anew, whatever DIR holds");
+  add_flag(parser, "--again", "Measure all anew, whatever DIR holds", options.again);
 }
 
 void complete(ChartOptions& options) {

@@ -1,13 +1,13 @@
 #pragma once
 // Everything that `chart` is told.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/option_values.h"
+#include "tools/parser.h"
 #include "tools/pool_options.h"
 
 namespace softfocus {

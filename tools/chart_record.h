@@ -2,7 +2,7 @@
 // What `chart` keeps in files to go on with later, as JSON.
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 

@@ -2,8 +2,9 @@
 // The table of subcommands. Adding one touches its own file, this list and
 // command_line.cpp.
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "tools/parser.h"
 
 namespace softfocus {
 

@@ -168,8 +168,9 @@ int compare_sequences(const CompareOptions& options) {
 }  // namespace
 
 Command add_compare_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "compare", "Count and measure differences of pictures; status 0 equal, 1 different, 2 error");
+  CLI::App* parser = add_command(
+      program, "compare",
+      "Count and measure differences of pictures; status 0 equal, 1 different, 2 error");
   const auto options = std::make_shared<CompareOptions>();
   add_compare_options(*parser, *options);
   return {parser, [options] {

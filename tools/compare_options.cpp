@@ -19,10 +19,8 @@ void add_map(CLI::App& parser, const std::string& name, const std::string& help,
 
 void add_frames(CLI::App& parser, const std::string& name, const std::string& help,
                 std::vector<std::string>& files) {
-  parser
-      .add_option_function<std::vector<std::string>>(
-          name, [&files](const std::vector<std::string>& names) { files = names; }, help)
-      ->type_name("FRAME");
+  add_value_list(parser, name, "FRAME", help,
+                 [&files](const std::vector<std::string>& names) { files = names; });
 }
 
 /// The first of the options for --regions that was given, or none.
@@ -60,9 +58,9 @@ void check_sequences(const CompareOptions& options) {
 
 void add_compare_options(CLI::App& parser, CompareOptions& options) {
   // check_compare_options() asks for them: with --flicker there are none.
-  parser.add_option("A", options.first, "A picture: .npy, .pfm or .png")->type_name("");
-  parser.add_option("B", options.second, "What it should be: a picture of the same size")
-      ->type_name("");
+  add_optional_argument(parser, "A", "A picture: .npy, .pfm or .png", options.first);
+  add_optional_argument(parser, "B", "What it should be: a picture of the same size",
+                        options.second);
   add_map(parser, "--diff",
           "Write a map of FLIP, what a viewer sees of the differences: black 0 over purple, red "
           "and orange to pale yellow 1",
@@ -70,17 +68,18 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_map(parser, "--diff-ulps",
           "Write a map of differing bits: black equal, blue 1 half-ULP to red 2^15",
           options.ulp_map_file);
-  parser.add_flag("--hdr", options.measures.hdr_flip,
-                  "HDR-FLIP too: the largest over all exposures of B");
+  add_flag(parser, "--hdr", "HDR-FLIP too: the largest over all exposures of B",
+           options.measures.hdr_flip);
   add_value(parser, "--pixels-per-degree", "N",
             "Of the viewer's sight, for FLIP (default: 67.0206, a 4K screen as wide as it is far)",
             [&options](const std::string& text) {
               options.measures.pixels_per_degree = parse_number(
                   "--pixels-per-degree", text, 1.0, 500.0, "pixels per degree from 1 to 500");
             });
-  parser.add_flag("--regions", options.regions,
-                  "Measure by region too: silhouette band, near field, focus, far field, by the "
-                  "depth in B's alpha and the lens");
+  add_flag(parser, "--regions",
+           "Measure by region too: silhouette band, near field, focus, far field, by the "
+           "depth in B's alpha and the lens",
+           options.regions);
   add_value(parser, "--depth", "FILE",
             "Picture whose alpha is the depth for --regions (default: B, or A if B has none)",
             [&options](const std::string& text) { options.depth_file = text; });
@@ -97,7 +96,7 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
              options.frames);
   add_frames(parser, "--against", "The same frames of the ground truth, for --flicker",
              options.truth);
-  parser.add_flag("--json", options.json, "Print JSON");
+  add_flag(parser, "--json", "Print JSON", options.json);
 }
 
 void check_compare_options(const CompareOptions& options) {

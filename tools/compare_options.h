@@ -1,13 +1,13 @@
 #pragma once
 // What `compare` is asked: two pictures and what to say of them, or two sequences.
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "measure/measures.h"
 #include "tools/lens_options.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

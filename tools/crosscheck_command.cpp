@@ -240,9 +240,9 @@ Shaders checked_shaders(const std::string& text) {
 }  // namespace
 
 Command add_crosscheck_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("crosscheck",
-                                            "Compare the emulation with GL drivers, value by "
-                                            "value; status 0 equal, 1 different, 2 error");
+  CLI::App* parser = add_command(program, "crosscheck",
+                                 "Compare the emulation with GL drivers, value by "
+                                 "value; status 0 equal, 1 different, 2 error");
   const auto options = std::make_shared<CrosscheckOptions>();
   add_driver_option(*parser, "Driver to compare with, may be repeated (default: Mesa's three)",
                     [options](const Driver& driver) {
@@ -260,8 +260,8 @@ Command add_crosscheck_command(CLI::App& program) {
             [options](const std::string& text) { options->shaders = checked_shaders(text); });
   add_value(*parser, "--diff", "DIR", "Write a picture there for each case that differs",
             [options](const std::string& text) { options->pictures = checked_folder(text); });
-  parser->add_flag("--quick", options->quick, "A representative part, under a minute");
-  parser->add_flag("--json", options->json, "Print JSON");
+  add_flag(*parser, "--quick", "A representative part, under a minute", options->quick);
+  add_flag(*parser, "--json", "Print JSON", options->json);
   return {parser, [options] { return crosscheck(*options); }};
 }
 

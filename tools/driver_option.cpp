@@ -15,17 +15,9 @@ const Driver& parse_driver(std::string_view option, const std::string& text) {
 
 void add_driver_option(CLI::App& parser, const std::string& help,
                        std::function<void(const Driver&)> take) {
-  parser
-      .add_option(
-          "--driver",
-          [take = std::move(take)](const CLI::results_t& names) {
-            for (const std::string& name : names) take(parse_driver("--driver", name));
-            return true;
-          },
-          help)
-      ->type_name("NAME")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_repeatable_value(
+      parser, "--driver", "NAME", help,
+      [take = std::move(take)](const std::string& name) { take(parse_driver("--driver", name)); });
 }
 
 }  // namespace softfocus

@@ -1,12 +1,12 @@
 #pragma once
 // --driver NAME and other options that name a GL driver.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <string_view>
 
 #include "tools/gl/driver.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

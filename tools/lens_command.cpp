@@ -138,24 +138,21 @@ void add_options(CLI::App& parser, LensCommandOptions& options) {
               options.largest_coc_mm = parse_number("--max-coc-film", text, 1e-9, 1e3,
                                                     "a diameter in millimetres above 0");
             });
-  parser
-      .add_option_function<std::vector<std::string>>(
-          "--at",
-          [&options](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) {
-              options.distances_m.push_back(
-                  parse_number("--at", text, 1e-6, 1e9, "distances in metres above 0"));
-            }
-          },
-          "Distances to tell the circle for (default: 1/4 to 10 times the focus)")
-      ->type_name("METRES ...");
-  parser.add_flag("--json", options.json, "Print JSON");
+  add_value_list(parser, "--at", "METRES ...",
+                 "Distances to tell the circle for (default: 1/4 to 10 times the focus)",
+                 [&options](const std::vector<std::string>& texts) {
+                   for (const std::string& text : texts) {
+                     options.distances_m.push_back(
+                         parse_number("--at", text, 1e-6, 1e9, "distances in metres above 0"));
+                   }
+                 });
+  add_flag(parser, "--json", "Print JSON", options.json);
 }
 
 }  // namespace
 
 Command add_lens_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("lens", "Print what a lens does, in numbers");
+  CLI::App* parser = add_command(program, "lens", "Print what a lens does, in numbers");
   const auto options = std::make_shared<LensCommandOptions>();
   add_options(*parser, *options);
   return {parser, [options] {

@@ -1,13 +1,13 @@
 #pragma once
 // The lens on the command line, as `render` and `lens` share it.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "dof/lens.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

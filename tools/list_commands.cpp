@@ -38,7 +38,7 @@ void print_aligned(const std::vector<Row>& rows) {
 }  // namespace
 
 Command add_scenes_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("scenes", "List the scenes: name, title");
+  CLI::App* parser = add_command(program, "scenes", "List the scenes: name, title");
   const auto path = std::make_shared<std::vector<std::filesystem::path>>();
   add_scene_path(*parser, *path);
   return {parser, [path] {
@@ -53,7 +53,7 @@ Command add_scenes_command(CLI::App& program) {
 
 Command add_methods_command(CLI::App& program) {
   CLI::App* parser =
-      program.add_subcommand("methods", "List the depth-of-field methods: name, needs, summary");
+      add_command(program, "methods", "List the depth-of-field methods: name, needs, summary");
   return {parser, [] {
             std::vector<Row> rows;
             for (const Method& method : methods()) {
@@ -73,8 +73,7 @@ Command add_methods_command(CLI::App& program) {
 }
 
 Command add_profiles_command(CLI::App& program) {
-  CLI::App* parser =
-      program.add_subcommand("profiles", "List the GPUs to agree with: name, summary");
+  CLI::App* parser = add_command(program, "profiles", "List the GPUs to agree with: name, summary");
   return {parser, [] {
             std::vector<Row> rows;
             for (const Profile& profile : profiles()) {

@@ -1,13 +1,13 @@
 #pragma once
 // --method and --max-coc, as `render` and `bench` share them.
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "dof/method.h"
 #include "reference/scene_method.h"
 #include "scenes/scene.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

@@ -28,37 +28,16 @@ std::optional<int> whole(std::string_view text) {
 
 }  // namespace
 
-void add_value(CLI::App& parser, const std::string& name, const std::string& type,
-               const std::string& help, std::function<void(const std::string&)> take) {
-  const std::string shown = name.substr(0, name.find(','));
-  const auto take_once = [shown, take = std::move(take)](const CLI::results_t& values) {
-    if (values.size() > 1) throw UsageError(shown + " is given twice; give it once");
-    // CLI11 takes whatever comes next for the value.
-    if (values.front().starts_with("--")) {
-      throw UsageError(shown + " needs a value and is followed by '" + values.front() + "'");
-    }
-    take(values.front());
-    return true;
-  };
-  parser.add_option(name, take_once, help)
-      ->type_name(type)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
 void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories) {
-  const auto take = [&directories](const CLI::results_t& names) {
-    for (const std::string& name : names) {
-      std::error_code unreadable;
-      if (!std::filesystem::is_directory(name, unreadable)) {
-        throw UsageError("--scene-path '" + name + "': give a directory that exists");
-      }
-      directories.emplace_back(name);
-    }
-    return true;
-  };
-  parser.add_option("--scene-path", take, "Directory to look for scenes in first; may be repeated")
-      ->type_name("DIR")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_repeatable_value(
+      parser, "--scene-path", "DIR", "Directory to look for scenes in first; may be repeated",
+      [&directories](const std::string& name) {
+        std::error_code unreadable;
+        if (!std::filesystem::is_directory(name, unreadable)) {
+          throw UsageError("--scene-path '" + name + "': give a directory that exists");
+        }
+        directories.emplace_back(name);
+      });
 }
 
 void add_frame(CLI::App& parser, double& frame) {
@@ -66,11 +45,6 @@ void add_frame(CLI::App& parser, double& frame) {
             [&frame](const std::string& text) {
               frame = parse_number("--frame", text, 0.0, 1e9, "a frame from 0 to 1000000000");
             });
-}
-
-void add_argument(CLI::App& parser, const std::string& name, const std::string& help,
-                  std::string& value) {
-  parser.add_option(name, value, help)->type_name("")->required();
 }
 
 double parse_number(std::string_view option, const std::string& text, double least, double most,

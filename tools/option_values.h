@@ -2,12 +2,13 @@
 // From an option's text to its value, with one kind of message: the option, what was
 // given, and what would be right.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "tools/parser.h"
 
 namespace softfocus {
 
@@ -22,20 +23,11 @@ struct Pixel {
   int y = 0;
 };
 
-/// Adds an option that takes one value and may be given once. `type` stands for the
-/// value in the help; `take` gets the text and throws UsageError.
-void add_value(CLI::App& parser, const std::string& name, const std::string& type,
-               const std::string& help, std::function<void(const std::string&)> take);
-
 /// Adds --scene-path, which may be repeated: directories that must exist.
 void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories);
 
 /// Adds --frame, a time of the animation.
 void add_frame(CLI::App& parser, double& frame);
-
-/// A positional argument that must be given.
-void add_argument(CLI::App& parser, const std::string& name, const std::string& help,
-                  std::string& value);
 
 /// A finite decimal number from `least` to `most`; `wanted` ends the message "give ...".
 double parse_number(std::string_view option, const std::string& text, double least, double most,

@@ -1,10 +1,10 @@
 #pragma once
 // What work runs on, on the command line: --threads and --isa, the same for every command.
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "raster/parallel.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

@@ -48,8 +48,8 @@ int probe(const ProbeOptions& options) {
 }  // namespace
 
 Command add_probe_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "probe", "Find out by experiment what a GL driver computes, and print its profile");
+  CLI::App* parser = add_command(
+      program, "probe", "Find out by experiment what a GL driver computes, and print its profile");
   const auto options = std::make_shared<ProbeOptions>();
   add_driver_option(*parser, "Driver to ask (default: llvmpipe)", [options](const Driver& driver) {
     if (options->driver != nullptr) throw UsageError("--driver is given twice; give it once");

@@ -1,11 +1,11 @@
 #pragma once
 // --profile NAME|FILE, the same for every command that takes one.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
 #include "raster/numbers/profile.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

@@ -229,7 +229,7 @@ int render(const RenderOptions& options) {
 }  // namespace
 
 Command add_render_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("render", "Render a scene to a picture");
+  CLI::App* parser = add_command(program, "render", "Render a scene to a picture");
   const auto options = std::make_shared<RenderOptions>();
   add_render_options(*parser, *options);
   return {parser, [parser, options] {

@@ -96,8 +96,8 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
   add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
             [&options](const std::string& text) { options.report = text; });
-  parser.add_flag("--json", options.json, "Print the report as JSON on standard output");
-  parser.add_flag("-v,--verbose", options.verbose, "Say on standard error what was chosen");
+  add_flag(parser, "--json", "Print the report as JSON on standard output", options.json);
+  add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);
 }
 
 /// Whether two names lead to one file, there already or not.
@@ -132,7 +132,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     throw UsageError("-o is missing: give a .png, .pfm or .npy file, or - for standard output");
   }
   const bool to_standard_output = options.output == "-";
-  if (parser.count("--format") == 0 && !to_standard_output) {
+  if (!is_given(parser, "--format") && !to_standard_output) {
     const auto format = format_by_extension(options.output);
     if (!format) {
       throw UsageError("-o '" + options.output +
@@ -146,7 +146,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (to_standard_output && is_terminal(kStandardOutput)) {
     throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
   }
-  if (options.gl != nullptr && parser.count("--profile") != 0) {
+  if (options.gl != nullptr && is_given(parser, "--profile")) {
     throw UsageError("--gl and --profile exclude each other: a driver is what it is");
   }
   if (options.report && options.report->empty()) {

@@ -1,7 +1,6 @@
 #pragma once
 // Everything that `render` is told.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 #include "tools/lens_options.h"
 #include "tools/method_options.h"
 #include "tools/option_values.h"
+#include "tools/parser.h"
 #include "tools/pool_options.h"
 
 namespace softfocus {

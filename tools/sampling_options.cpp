@@ -20,8 +20,9 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
               sampling.samples =
                   parse_whole("--samples", text, 1, kMostSamples, "a whole number from 1 to 65536");
             });
-  parser.add_flag("--jitter", sampling.jitter,
-                  "Of the same: look from all over each pixel, not from its centre alone");
+  add_flag(parser, "--jitter",
+           "Of the same: look from all over each pixel, not from its centre alone",
+           sampling.jitter);
   add_value(parser, "--until", "ERROR",
             "Of the same: stop when two half-sets of samples differ by this RMS of linear values",
             [&sampling](const std::string& text) {
@@ -40,12 +41,12 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
 }
 
 void complete_sampling(Sampling& sampling, const CLI::App& parser) {
-  if (sampling.until && parser.count("--samples") == 0) sampling.samples = kMostSamples;
+  if (sampling.until && !is_given(parser, "--samples")) sampling.samples = kMostSamples;
 }
 
 void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
   for (const char* option : kOptions) {
-    if (parser.count(option) == 0) continue;
+    if (!is_given(parser, option)) continue;
     throw UsageError(std::string{option} + ": the method " + std::string{method} +
                      " does not sample the lens; give --method " + names_of(scene_methods()));
   }

@@ -2,9 +2,8 @@
 // --samples, --jitter, --until and --aperture-blades: how the methods that draw the scene
 // themselves sample the lens.
 
-#include <CLI/CLI.hpp>
-
 #include "reference/scene_method.h"
+#include "tools/parser.h"
 
 namespace softfocus {
 

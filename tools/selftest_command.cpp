@@ -65,13 +65,13 @@ int selftest(const SelftestOptions& options) {
 }  // namespace
 
 Command add_selftest_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand(
-      "selftest", "Check that this machine gives the bits that every other gives");
+  CLI::App* parser = add_command(program, "selftest",
+                                 "Check that this machine gives the bits that every other gives");
   const auto options = std::make_shared<SelftestOptions>();
   add_pool_options(*parser, options->pool, "the hashes are the same");
-  parser->add_flag("--json", options->json, "Print every hash, expected and computed, as JSON");
-  parser->add_flag("--print", options->print,
-                   "Print what was computed as the table's source, and compare nothing");
+  add_flag(*parser, "--json", "Print every hash, expected and computed, as JSON", options->json);
+  add_flag(*parser, "--print", "Print what was computed as the table's source, and compare nothing",
+           options->print);
   return {parser, [options] { return selftest(*options); }};
 }
 

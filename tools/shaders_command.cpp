@@ -43,7 +43,7 @@ int write_shaders(const std::filesystem::path& folder) {
 }  // namespace
 
 Command add_shaders_command(CLI::App& program) {
-  CLI::App* parser = program.add_subcommand("shaders", "List the GLSL shaders, or write them out");
+  CLI::App* parser = add_command(program, "shaders", "List the GLSL shaders, or write them out");
   const auto folder = std::make_shared<std::optional<std::string>>();
   add_value(*parser, "-o,--output", "DIR", "Write every shader into this folder",
             [folder](const std::string& text) { *folder = text; });

@@ -1,0 +1,46 @@
+#pragma once
+// What the commands ask of the parser. CLI11's headers take longer to compile than most
+// of what is here: only parser.cpp and command_line.cpp include them.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace softfocus {
+
+/// Adds a command to the program. The program owns its parser.
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help);
+
+/// Adds an option without a value, which sets `given`.
+void add_flag(CLI::App& parser, const std::string& name, const std::string& help, bool& given);
+
+/// Adds an option that takes one value and may be given once. `type` stands for the
+/// value in the help; `take` gets the text and throws UsageError.
+void add_value(CLI::App& parser, const std::string& name, const std::string& type,
+               const std::string& help, std::function<void(const std::string&)> take);
+
+/// The same, but it may be given often: `take` gets one text after the other.
+void add_repeatable_value(CLI::App& parser, const std::string& name, const std::string& type,
+                          const std::string& help, std::function<void(const std::string&)> take);
+
+/// Adds an option that takes all values up to the next option.
+void add_value_list(CLI::App& parser, const std::string& name, const std::string& type,
+                    const std::string& help,
+                    std::function<void(const std::vector<std::string>&)> take);
+
+/// A positional argument that must be given.
+void add_argument(CLI::App& parser, const std::string& name, const std::string& help,
+                  std::string& value);
+
+/// A positional argument that need not be given.
+void add_optional_argument(CLI::App& parser, const std::string& name, const std::string& help,
+                           std::string& value);
+
+/// Whether an option, by one of its names, is on the command line that was parsed.
+bool is_given(const CLI::App& parser, const std::string& option);
+
+}  // namespace softfocus
