@@ -15,5 +15,8 @@
 #include <immintrin.h>
 #endif
 
-// Vectors travel in registers only where a function is inlined.
+// Vectors travel in registers only where a function is inlined. Builds in which speed is no
+// matter may define it as `inline`.
+#ifndef SOFTFOCUS_INLINE
 #define SOFTFOCUS_INLINE [[gnu::always_inline]] inline
+#endif
