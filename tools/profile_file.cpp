@@ -93,7 +93,9 @@ std::string profile_text(const Profile& profile, const std::string& heading) {
   text << "name = " << quoted(profile.name) << "\nsummary = " << quoted(profile.summary) << "\n\n";
   for_each_choice([&](const auto& choice) {
     const auto value = static_cast<std::size_t>(profile.*choice.member);
-    std::string line = std::string(choice.key) + " = " + quoted(std::string(choice.words[value]));
+    std::string line{choice.key};
+    line += " = ";
+    line += quoted(std::string(choice.words[value]));
     line.resize(std::max<std::size_t>(line.size(), 40), ' ');
     text << line << "  # " << choice.meaning << ": " << joined(choice.words) << '\n';
   });
