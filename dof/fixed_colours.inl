@@ -43,8 +43,9 @@ struct SmallColours {
             times(colour >> 10 & 0x3FFu, split), times(colour >> 20, split)};
   }
 
-  /// floor(sum / weight) below 1024. The reciprocal is too small by 2^-12 to 3 2^-12 of it: the
-  /// estimate is right or less by one, and the remainder tells.
+  /// floor(sum / weight) below 1024. The reciprocal is too small by 2^-13 to 7 2^-13 of it, which
+  /// is more than floats round away and less than a step: the estimate is right or less by one,
+  /// and the remainder tells.
   SOFTFOCUS_INLINE static Bits quotient(Bits sum, Bits weight, Floats reciprocal) {
     const Ints estimate = truncate(to_floats(as_ints(sum)) * reciprocal);
     const Ints rest = as_ints(sum) - estimate * as_ints(weight);

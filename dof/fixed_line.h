@@ -3,6 +3,7 @@
 // a vector has lanes, node i holding pixel i of each. Nodes go in block by block, kLanes at
 // once, and come out `reach` nodes later.
 
+#include <cstddef>
 #include <cstdint>
 
 namespace softfocus {
@@ -10,8 +11,8 @@ namespace softfocus {
 // Weights as the kernels use them: two words for each depth code. Numbers of 20 bits are split
 // as 2^5 h + l, for products of 16 bits: h lies in the upper half of a word, l in its lowest 5
 // bits. The bits between hold the rest:
-//   first word   whole - edge; reach and side (kKeyShift); the upper 4 bits of the leakage; below 0 if
-//                that is 1
+//   first word   whole - edge; reach and side (kKeyShift); the upper 4 bits of the leakage;
+//                below 0 if the leakage is 1
 //   second word  edge; the leakage's lower 11 bits; below 0 if the pixel is nearly sharp: its
 //                leakage is less than 1, or it reaches nothing
 
@@ -33,7 +34,7 @@ inline constexpr int kHalfColourWords = 2, kHalfSumVectors = 7;    ///< RGBA16F
 /// Sums are kept for either side of the focus: a slot is two of them.
 struct FixedLine {
   int reach;               ///< no pixel reaches farther
-  unsigned node_slots;     ///< a power of two, at least reach + 2 kLanes
+  unsigned node_slots;     ///< a power of two, at least reach + kLanes
   unsigned sum_slots;      ///< a power of two, at least 2 reach + 2
   std::uint32_t* colours;  ///< in the words of fixed_colours.inl or fixed_half_colours.inl
   std::int32_t* inners;    ///< the table's words for a node

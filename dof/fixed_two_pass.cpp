@@ -46,7 +46,7 @@ struct LineShape {
 LineShape line_shape(int reach, int lanes, bool halves) {
   return {reach,
           lanes,
-          std::bit_ceil(static_cast<unsigned>(reach + 2 * lanes)),
+          std::bit_ceil(static_cast<unsigned>(reach + lanes)),
           std::bit_ceil(static_cast<unsigned>(2 * reach + 2)),
           static_cast<unsigned>(halves ? kHalfColourWords : kSmallColourWords),
           2u * static_cast<unsigned>(halves ? kHalfSumVectors : kSmallSumVectors)};
@@ -126,9 +126,9 @@ void filter_in_lanes(const FixedStrip& whole, int reach, bool halves, ThreadPool
     strip.y_end = std::min(strip.y_begin + rows, whole.height);
     lay_out(strip, memory, shape);
     if (halves) {
-      SOFTFOCUS_KERNEL(pool.isa(), filter_fixed_halves)(strip);
+      SOFTFOCUS_KERNEL(pool.isa(), filter_strip_of_halves)(strip);
     } else {
-      SOFTFOCUS_KERNEL(pool.isa(), filter_fixed_bytes)(strip);
+      SOFTFOCUS_KERNEL(pool.isa(), filter_strip_of_bytes)(strip);
     }
     shelf.put_back(std::move(memory));
   });

@@ -4,8 +4,8 @@
 //
 // In integers a sum does not depend on its order. So what a pixel adds to its neighbours
 // along a line is not added neighbour by neighbour: four differences go to where its weight
-// changes, and running sums along the line do the rest. The cost does not depend on the
-// radius.
+// changes, and running sums along the line do the rest. The work does not grow with the
+// radius, only the memory that it goes through.
 
 #include <cstdint>
 #include <span>
@@ -27,7 +27,8 @@ struct FixedTable {
 };
 FixedTable fixed_table(std::vector<fixed::Weights> weights);
 
-/// Filters an RGBA8 or RGBA16F picture into another image of its size and format. Codes of depth
+/// Filters an RGBA8 or RGBA16F picture of up to 16384 pixels a side into another image of its
+/// size and format. Codes of depth
 /// lie row by row without gaps; the table has an entry for each code of 8 or 16 bits. `scalar`
 /// runs the rows of dof/fixed.
 void fixed_two_pass(const Image& picture, std::span<const std::uint8_t> codes,

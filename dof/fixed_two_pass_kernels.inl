@@ -136,7 +136,7 @@ struct HalfPixels : HalfColours {
     return strip.codes != nullptr ? codes_at(strip, x, y) : as_ints(alpha);
   }
 
-  /// The same; stores their alpha, which may be the codes.
+  /// Makes colours of kLanes rows nodes. Stores their alpha, a vector a row: it may be the codes.
   SOFTFOCUS_INLINE static void load_colours(const FixedStrip& strip, int x, int y, Bits* alpha) {
     Bits rg[kLanes], b[kLanes];
 #pragma GCC unroll 16
@@ -294,5 +294,5 @@ SOFTFOCUS_INLINE void filter_strip(FixedStrip& strip) {
 
 }  // namespace
 
-void filter_fixed_bytes(FixedStrip& strip) { filter_strip<BytePixels>(strip); }
-void filter_fixed_halves(FixedStrip& strip) { filter_strip<HalfPixels>(strip); }
+void filter_strip_of_bytes(FixedStrip& strip) { filter_strip<BytePixels>(strip); }
+void filter_strip_of_halves(FixedStrip& strip) { filter_strip<HalfPixels>(strip); }

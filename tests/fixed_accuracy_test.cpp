@@ -120,11 +120,25 @@ std::vector<Lens> lenses(const SceneFrame& frame, std::uint32_t radius_px) {
   return list;
 }
 
-void check_radius(std::uint32_t radius_px) {
+/// Any leakage that a lens may have, and a radius that is not whole.
+std::vector<Lens> unusual_lenses(const SceneFrame& frame, std::uint32_t radius_px) {
+  std::vector<Lens> list;
+  const std::uint32_t focus = frame.near_um + (frame.far_um - frame.near_um) / 3;
+  for (const std::uint32_t leak : {0u, 4096u, 65536u, 0xFFFFFFFFu}) {
+    for (const std::uint32_t at_infinity : {1u, 16u}) {
+      const std::uint32_t radius = (radius_px << 16) - 12345;
+      list.push_back({at_infinity * radius / 8, focus, radius, leak});
+    }
+  }
+  return list;
+}
+
+void check_lenses(std::uint32_t radius_px,
+                  std::vector<Lens> lenses_of(const SceneFrame&, std::uint32_t)) {
   Error all;
   double worst = 1e9, worst_unrounded = 1e9;
   for (const SceneFrame& frame : frames()) {
-    for (const Lens& lens : lenses(frame, radius_px)) {
+    for (const Lens& lens : lenses_of(frame, radius_px)) {
       Error error;
       add_error(error, frame, lens);
       worst = std::fmin(worst, psnr(error.squares, error.count));
@@ -150,13 +164,17 @@ void check_radius(std::uint32_t radius_px) {
 }  // namespace
 
 TEST_CASE("fixed point: small circles are within 55 dB and 2 levels of binary64") {
-  for (const std::uint32_t radius : {1u, 2u, 4u, 8u}) check_radius(radius);
+  for (const std::uint32_t radius : {1u, 2u, 4u, 8u}) check_lenses(radius, lenses);
 }
 TEST_CASE("fixed point: circles of radius 16 are within 55 dB and 2 levels of binary64") {
-  check_radius(16);
+  check_lenses(16, lenses);
 }
 TEST_CASE("fixed point: circles of radius 32 are within 55 dB and 2 levels of binary64") {
-  check_radius(32);
+  check_lenses(32, lenses);
+}
+
+TEST_CASE("fixed point: any leakage and broken radii are within 55 dB and 2 levels of binary64") {
+  for (const std::uint32_t radius : {2u, 8u, 16u}) check_lenses(radius, unusual_lenses);
 }
 
 TEST_CASE("fixed point: halves are within 60 dB of the filter in binary32") {

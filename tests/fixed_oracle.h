@@ -89,6 +89,40 @@ inline Picture3<std::int64_t> wide_filter8(Picture3<std::int64_t> bytes,
   return wide_pass(wide_pass(bytes, weights, 1, 0, nearest), weights, 0, 1, nearest_byte);
 }
 
+// Halves in units of 2^-24, by the definition of binary16.
+inline std::int64_t half_units(std::uint32_t half) {
+  const std::uint32_t exponent = half >> 10 & 31, mantissa = half & 1023;
+  std::int64_t units = exponent == 0 ? mantissa : mantissa + 1024;
+  for (std::uint32_t i = 1; i < exponent; ++i) units *= 2;
+  if (exponent == 31) units = mantissa == 0 ? half_units(0x7BFF) : 0;
+  return (half & 0x8000) != 0 ? -units : units;
+}
+
+/// The half nearest to sum / weight, by a search among all of them.
+inline std::uint16_t nearest_half(std::int64_t sum, std::int64_t weight) {
+  const std::int64_t magnitude = sum < 0 ? -sum : sum;
+  std::uint32_t below = 0, above = 0x7BFF;  // below <= quotient, if above > below + 1
+  while (above - below > 1) {
+    const std::uint32_t middle = (below + above) / 2;
+    (half_units(middle) * weight <= magnitude ? below : above) = middle;
+  }
+  const std::int64_t midway = (half_units(below) + half_units(above)) * weight;
+  const bool up = 2 * magnitude > midway || (2 * magnitude == midway && below % 2 == 1);
+  return static_cast<std::uint16_t>((up ? above : below) | (sum < 0 ? 0x8000u : 0u));
+}
+
+/// Both passes of an RGBA16F picture, from half_units() to the bits of halves.
+inline Picture3<std::int64_t> wide_filter16(const Picture3<std::int64_t>& halves,
+                                            const std::vector<Weights>& weights) {
+  const auto as_units = [](std::int64_t sum, std::int64_t weight) {
+    return half_units(nearest_half(sum, weight));
+  };
+  const auto as_bits = [](std::int64_t sum, std::int64_t weight) {
+    return std::int64_t{nearest_half(sum, weight)};
+  };
+  return wide_pass(wide_pass(halves, weights, 1, 0, as_units), weights, 0, 1, as_bits);
+}
+
 /// What a pixel is for the equations themselves: its radius in pixels, cut to the largest,
 /// and its side.
 struct ExactPixel {

@@ -86,44 +86,15 @@ std::vector<std::uint8_t> expected8(const PackedPicture& picture,
   return expected;
 }
 
-// Halves in units of 2^-24, by the definition of binary16.
-std::int64_t half_units(std::uint32_t half) {
-  const std::uint32_t exponent = half >> 10 & 31, mantissa = half & 1023;
-  std::int64_t units = exponent == 0 ? mantissa : mantissa + 1024;
-  for (std::uint32_t i = 1; i < exponent; ++i) units *= 2;
-  if (exponent == 31) units = mantissa == 0 ? half_units(0x7BFF) : 0;
-  return (half & 0x8000) != 0 ? -units : units;
-}
-
-/// The half nearest to sum / weight, by a search among all of them.
-std::uint16_t nearest_half(std::int64_t sum, std::int64_t weight) {
-  const std::int64_t magnitude = sum < 0 ? -sum : sum;
-  std::uint32_t below = 0, above = 0x7BFF;  // below <= quotient, if above > below + 1
-  while (above - below > 1) {
-    const std::uint32_t middle = (below + above) / 2;
-    (half_units(middle) * weight <= magnitude ? below : above) = middle;
-  }
-  const std::int64_t midway = (half_units(below) + half_units(above)) * weight;
-  const bool up = 2 * magnitude > midway || (2 * magnitude == midway && below % 2 == 1);
-  return static_cast<std::uint16_t>((up ? above : below) | (sum < 0 ? 0x8000u : 0u));
-}
-
 std::vector<std::uint8_t> expected16(const PackedPicture& picture,
                                      const std::vector<Weights>& table) {
   const std::vector<Weights> weights = weights_of(picture, table);
-  const auto as_half = [](std::int64_t sum, std::int64_t weight) {
-    return half_units(nearest_half(sum, weight));
-  };
-  const auto as_bits = [](std::int64_t sum, std::int64_t weight) {
-    return std::int64_t{nearest_half(sum, weight)};
-  };
   const Channels halves = channels(picture.settings, [&](std::size_t i) {
     return Pixel3{half_units(number_at<std::uint16_t>(picture.colours, 4 * i)),
                   half_units(number_at<std::uint16_t>(picture.colours, 4 * i + 1)),
                   half_units(number_at<std::uint16_t>(picture.colours, 4 * i + 2))};
   });
-  const Channels filtered =
-      wide_pass(wide_pass(halves, weights, 1, 0, as_half), weights, 0, 1, as_bits);
+  const Channels filtered = wide_filter16(halves, weights);
   std::vector<std::uint8_t> expected = picture.colours;
   for (std::size_t i = 0; i < filtered.pixels.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {

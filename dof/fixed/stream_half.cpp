@@ -1,6 +1,7 @@
 // The filter for RGBA16F: colours are Q16.24 in 64 bits, which holds every half exactly,
 // and so do the sums: below 2^20.2 2^40. Between the passes colours are halves again.
 
+#include "dof/fixed/quotient.h"
 #include "dof/fixed/ring.h"
 #include "dof/fixed/weights.h"
 
@@ -17,27 +18,26 @@ inline int64_t decode(uint32_t half) {
 
 /// The half nearest to sum / weight, Q16.24; a tie goes to the even one. The sign is the
 /// sum's, and + for 0.
-inline uint16_t encode_quotient(int64_t sum, uint32_t weight) {
-  const uint32_t sign = sum < 0 ? 0x8000u : 0u;
-  const uint64_t magnitude = static_cast<uint64_t>(sum < 0 ? -sum : sum);
-  const uint64_t whole = magnitude / weight;
-  const auto rest = static_cast<uint32_t>(magnitude % weight);
-  int cut = 0;  // bits of `whole` that a half has no room for
-  while (whole >> cut >= 2048) ++cut;
-  auto kept = static_cast<uint32_t>(whole >> cut);
-  bool up = false;
-  if (cut == 0) {
-    up = 2 * rest > weight || (2 * rest == weight && (kept & 1u) != 0);
-  } else {
-    const uint64_t lost = whole & ((uint64_t{1} << cut) - 1);
-    const uint64_t tie = uint64_t{1} << (cut - 1);
-    up = lost > tie || (lost == tie && (rest > 0 || (kept & 1u) != 0));
-  }
+///
+/// In units of 2^-25 the magnitude is 2 |sum| / weight, below 2^41. Of that n has the upper
+/// 12 bits, one more than a half has room for. The reciprocal finds n or at most 3 less: its
+/// own error of 0.06 % is 2.5 of 4096, bits cut off are 1/8, and n is rounded downwards.
+inline uint16_t encode_quotient(int64_t sum, uint32_t weight, const Divisor& divisor) {
+  const uint64_t twice = 2 * static_cast<uint64_t>(sum < 0 ? -sum : sum);
+  int cut = 0;
+  uint64_t end = uint64_t{weight} << 12;
+  for (; twice >= end; end <<= 1) ++cut;
+  const uint64_t step = end >> 12;                                              // weight 2^cut
+  const auto top = static_cast<uint32_t>(twice >> cut << divisor.shift >> 17);  // below 2^16
+  uint32_t n = (top * divisor.reciprocal) >> 19;
+  uint64_t rest = twice - n * step;
+  for (; rest >= step; rest -= step) ++n;
+  const bool up = (n & 1u) != 0 && (rest > 0 || (n & 2u) != 0);
   // 1024 to 2047 of cut 0 are the normal halves of the least exponent: code and value in
   // units of 2^-24 are the same there. A carry runs into the exponent.
-  kept += (static_cast<uint32_t>(cut) << 10) + (up ? 1 : 0);
-  if (kept > kHalfLargest) kept = kHalfLargest;
-  return static_cast<uint16_t>(sign | kept);
+  uint32_t code = (n >> 1) + (static_cast<uint32_t>(cut) << 10) + (up ? 1 : 0);
+  if (code > kHalfLargest) code = kHalfLargest;
+  return static_cast<uint16_t>((sum < 0 ? 0x8000u : 0u) | code);
 }
 
 struct WideSums {
@@ -96,8 +96,10 @@ inline void add_tap(const Source& source, size_t pixel, size_t colour_pixel,
 /// Stores the three halves of a pixel, `step` apart.
 inline void resolve(const BothSides& sides, uint32_t leak, uint16_t* to, size_t step) {
   const uint32_t weight = sides.near.weight + leaked(sides.beyond.weight, leak);
+  const Divisor divisor = make_divisor(weight);
   for (int i = 0; i < 3; ++i) {
-    *to = encode_quotient(sides.near.colour[i] + leaked(sides.beyond.colour[i], leak), weight);
+    *to = encode_quotient(sides.near.colour[i] + leaked(sides.beyond.colour[i], leak), weight,
+                          divisor);
     to += step;
   }
 }

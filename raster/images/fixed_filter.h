@@ -25,8 +25,8 @@ struct FixedFetch {
 /// Bytes: the sum S in 2^-24 of 255 is exact in 32 bits; the result is S rounded to binary32 (a
 /// single level's needs no rounding), and divided by 255 2^24: four equal texels give what
 /// a nearest fetch gives. Halves: the sum in 2^-48 is exact and rounded once to binary32.
-/// A channel in which any texel that is read is infinite or NaN is filtered in floats, with
-/// the profile's lerp, and is infinite or NaN.
+/// A channel in which one of the four texels is infinite or NaN, or of the eight where
+/// next_weight is above 0, whatever it weighs, is filtered in floats, with the profile's lerp.
 glm::vec4 filter_fixed(const FixedFetch& fine, const FixedFetch& coarse, int next_weight,
                        const Profile& profile);
 

@@ -181,7 +181,7 @@ SOFTFOCUS_INLINE Floats square_root(Floats v) {
 #endif
 }
 
-/// 1 / v, wrong by less than 2^-11 of it; how much, differs between CPUs. Needs a normal
+/// 1 / v, wrong by at most 1.5 2^-12 of it; how much, differs between CPUs. Needs a normal
 /// number between 2^-100 and 2^100.
 SOFTFOCUS_INLINE Floats rough_reciprocal(Floats v) {
 #if SOFTFOCUS_LANES == 16

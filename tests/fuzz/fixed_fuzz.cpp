@@ -78,6 +78,38 @@ void check_picture(Input& input, const Settings& settings, const std::vector<Wei
   }
 }
 
+/// The same of RGBA16F.
+void check_halves(Input& input, const Settings& settings, const std::vector<Weights>& table) {
+  Image picture = make_image(Format::rgba16f, settings.width, settings.height);
+  std::vector<std::uint8_t> codes;
+  std::vector<Weights> weights;
+  Picture3<std::int64_t> channels{settings.width, settings.height, {}};
+  for (int y = 0; y < picture.height; ++y) {
+    const auto halves = row<std::uint16_t>(picture, y);
+    for (std::size_t x = 0; x < halves.size(); x += 4) {
+      for (std::size_t c = 0; c < 4; ++c) halves[x + c] = input.next<std::uint16_t>();
+      channels.pixels.push_back(
+          {half_units(halves[x]), half_units(halves[x + 1]), half_units(halves[x + 2])});
+      codes.push_back(input.next<std::uint8_t>());
+      weights.push_back(table[codes.back()]);
+    }
+  }
+  const Picture3<std::int64_t> expected = wide_filter16(channels, weights);
+  for (const Isa isa : available_isas()) {  // scalar ones are the rows
+    ThreadPool pool(1, isa);
+    Image result = picture;
+    fixed_two_pass(picture, codes, fixed_table(table), result, pool);
+    for (int y = 0; y < picture.height; ++y) {
+      const auto halves = row<std::uint16_t>(result, y);
+      for (std::size_t i = 0; i < halves.size(); ++i) {
+        const int x = static_cast<int>(i / 4);
+        demand(halves[i] ==
+               (i % 4 == 3 ? row<std::uint16_t>(picture, y)[i] : expected.at(x, y)[i % 4]));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -95,9 +127,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // Small, for the plain evaluation has 127 taps a pixel and pass.
   const auto width = static_cast<std::uint16_t>(1 + input.next<std::uint8_t>() % 40);
   const auto height = static_cast<std::uint16_t>(1 + input.next<std::uint8_t>() % 24);
-  check_picture(
-      input,
-      {width, height, reach_of(lens.largest_radius), SOFTFOCUS_FIXED_RGBA8, SOFTFOCUS_FIXED_DEPTH8},
-      table);
+  const std::uint8_t reach = reach_of(lens.largest_radius);
+  if (input.next<std::uint8_t>() % 2 == 0) {
+    check_picture(input, {width, height, reach, SOFTFOCUS_FIXED_RGBA8, SOFTFOCUS_FIXED_DEPTH8},
+                  table);
+  } else {
+    check_halves(input, {width, height, reach, SOFTFOCUS_FIXED_RGBA16F, SOFTFOCUS_FIXED_DEPTH8},
+                 table);
+  }
   return 0;
 }
