@@ -60,7 +60,8 @@ std::optional<ChartTruth> load_truth(const std::string& key, const std::filesyst
   try {
     ChartTruth truth{read_image_file(with_ending(file, ".npy")).image,
                      errors_of(json->at("noise_floor"))};
-    if (hash_text(hash_image(truth.picture)) != json->at("picture_hash")) return std::nullopt;
+    const auto picture_hash = json->at("picture_hash").get<std::string>();
+    if (hash_text(hash_image(truth.picture)) != picture_hash) return std::nullopt;
     return truth;
   } catch (const FileError&) {
   } catch (const nlohmann::json::exception&) {
