@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "raster/scratch_shelf.h"
+#include "raster/threads/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/diffusion_kernels.inl"
-#include "raster/numbers/for_each_isa.inl"
+#include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {

@@ -7,7 +7,7 @@
 #include "raster/numbers/half.h"
 
 #define SOFTFOCUS_KERNELS "dof/focus_kernels.inl"
-#include "raster/numbers/for_each_isa.inl"
+#include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {

@@ -1,6 +1,6 @@
 #include "dof/layers.h"
 
-#include "dof/scatter.h"
+#include "dof/scatter/scatter.h"
 
 namespace softfocus {
 

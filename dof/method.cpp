@@ -2,16 +2,16 @@
 
 #include <array>
 
-#include "dof/circular_separable.h"
+#include "dof/circular_separable/circular_separable.h"
 #include "dof/diffusion.h"
-#include "dof/disc_layers.h"
+#include "dof/disc_layers/disc_layers.h"
 #include "dof/layers.h"
-#include "dof/one_pass.h"
+#include "dof/one_pass/one_pass.h"
 #include "dof/pinhole.h"
-#include "dof/post_process.h"
-#include "dof/ring_bucket.h"
-#include "dof/scatter.h"
-#include "dof/two_pass.h"
+#include "dof/post_process/post_process.h"
+#include "dof/ring_bucket/ring_bucket.h"
+#include "dof/scatter/scatter.h"
+#include "dof/two_pass/two_pass.h"
 
 namespace softfocus {
 namespace {

@@ -8,7 +8,7 @@
 #include "dof/lens.h"
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
-#include "raster/parallel.h"
+#include "raster/threads/parallel.h"
 
 namespace softfocus {
 

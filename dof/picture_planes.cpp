@@ -7,7 +7,7 @@
 #include "raster/images/texel.h"
 
 #define SOFTFOCUS_KERNELS "dof/picture_planes_kernels.inl"
-#include "raster/numbers/for_each_isa.inl"
+#include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {

@@ -1,5 +1,5 @@
-#include "tools/command_line.h"
-#include "tools/platform.h"
+#include "tools/cli/command_line.h"
+#include "tools/cli/platform.h"
 
 int main(int argc, char** argv) {
   softfocus::prepare_process();

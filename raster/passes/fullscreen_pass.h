@@ -9,7 +9,7 @@
 #include "raster/images/image.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/profile.h"
-#include "raster/parallel.h"
+#include "raster/threads/parallel.h"
 
 namespace softfocus {
 

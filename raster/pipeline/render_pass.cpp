@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "raster/images/texel.h"
-#include "raster/pipeline/lane_kernels.h"
-#include "raster/scratch_shelf.h"
+#include "raster/pipeline/lanes/lane_kernels.h"
+#include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
 namespace {

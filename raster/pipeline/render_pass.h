@@ -16,11 +16,11 @@
 #include <span>
 #include <vector>
 
-#include "raster/numbers/isa.h"
+#include "raster/lanes/isa.h"
 #include "raster/numbers/profile.h"
-#include "raster/parallel.h"
+#include "raster/threads/parallel.h"
 #include "raster/pipeline/draw_call.h"
-#include "raster/pipeline/lane_draw.h"
+#include "raster/pipeline/lanes/lane_draw.h"
 #include "raster/pipeline/merge.h"
 #include "raster/pipeline/state.h"
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "raster/pipeline/render_pass.h"
-#include "raster/scratch_shelf.h"
+#include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "dof/fixed_two_pass.h"
-#include "tests/fixed_oracle.h"
+#include "dof/fixed_pictures/fixed_two_pass.h"
+#include "tests/support/fixed_oracle.h"
 
 namespace {
 

@@ -1,10 +1,10 @@
 // Any bytes as each kind of picture: a picture, or the error that is meant for the user.
 
-#include "scenes/scene_error.h"
-#include "scenes/texture_file.h"
+#include "scenes/load/scene_error.h"
+#include "scenes/load/texture_file.h"
 #include "tests/fuzz/fuzz_input.h"
-#include "tools/errors.h"
-#include "tools/image_file.h"
+#include "tools/cli/errors.h"
+#include "tools/files/image_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softfocus;

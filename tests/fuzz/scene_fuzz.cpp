@@ -2,9 +2,9 @@
 
 #include <string_view>
 
-#include "scenes/draw_scene.h"
-#include "scenes/scene_error.h"
-#include "scenes/scene_file.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/load/scene_error.h"
+#include "scenes/load/scene_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softfocus;

@@ -5,8 +5,8 @@
 
 #include "dof/method.h"
 #include "raster/images/texel.h"
-#include "scenes/draw_scene.h"
-#include "scenes/load_scene.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/load/load_scene.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/filter_on_gl.h"
 

@@ -11,7 +11,7 @@
 #include "raster/numbers/lerp.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/objects.h"
-#include "tools/option_values.h"
+#include "tools/cli/option_values.h"
 
 namespace softfocus {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/driver_process.h"
-#include "tools/image_file.h"
-#include "tools/whole_file.h"
+#include "tools/files/image_file.h"
+#include "tools/files/whole_file.h"
 
 namespace softfocus {
 namespace {

@@ -3,8 +3,8 @@
 #include <map>
 #include <memory>
 
-#include "scenes/draw_scene.h"
-#include "scenes/load_scene.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/load/load_scene.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/filter_on_gl.h"
 #include "tools/gl/scene_on_gl.h"

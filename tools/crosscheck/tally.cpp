@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "dof/difference.h"
+#include "dof/measure/difference.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
 

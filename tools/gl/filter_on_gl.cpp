@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "dof/one_pass.h"
+#include "dof/one_pass/one_pass.h"
 #include "dof/weights.h"
 
 namespace softfocus {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "raster/images/image.h"
-#include "tools/bench_work.h"
+#include "tools/bench/work.h"
 #include "tools/gl/driver.h"
 
 namespace softfocus {

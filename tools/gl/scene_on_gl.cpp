@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "scenes/draw_scene.h"
-#include "scenes/surface_draws.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/surface_draws.h"
 
 namespace softfocus {
 namespace {

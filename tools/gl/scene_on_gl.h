@@ -1,14 +1,14 @@
 #pragma once
 // A scene drawn by a GL driver with the project's shaders: the same draws as
-// scenes/draw_scene.h gives the emulation.
+// scenes/draw/draw_scene.h gives the emulation.
 
 #include <array>
 #include <map>
 #include <vector>
 
 #include "scenes/scene.h"
-#include "scenes/surface_stages.h"
-#include "scenes/view.h"
+#include "scenes/draw/surface_stages.h"
+#include "scenes/draw/view.h"
 #include "tools/gl/objects.h"
 
 namespace softfocus {

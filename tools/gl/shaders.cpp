@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "scenes/file_bytes.h"
-#include "scenes/scene_error.h"
+#include "scenes/load/file_bytes.h"
+#include "scenes/load/scene_error.h"
 #include "tools/gl/driver.h"
 
 namespace softfocus {

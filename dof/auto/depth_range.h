@@ -1,0 +1,21 @@
+#pragma once
+// The least and the greatest depth of a picture, of every pixel.
+
+#include <cstdint>
+
+#include "raster/images/image.h"
+#include "raster/threads/parallel.h"
+
+namespace softfocus {
+
+/// Bits of halves, compared as integers: depths of 0 and more in their order, then infinity,
+/// then NaN and what is negative.
+struct DepthRange {
+  std::uint16_t least = 0xFFFF;
+  std::uint16_t most = 0;
+};
+
+/// Of the alpha of an RGBA16F picture.
+DepthRange depth_range(const Image& picture, ThreadPool& pool);
+
+}  // namespace softfocus

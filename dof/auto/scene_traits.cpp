@@ -1,0 +1,323 @@
+#include "dof/auto/scene_traits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "dof/auto/depth_range.h"
+#include "raster/images/texel.h"
+#include "raster/numbers/half.h"
+
+namespace softfocus {
+namespace {
+
+constexpr int kPointsAcross = 40;
+constexpr std::array kRingsPx{1, 2, 4, 8, 16, 32, 64};
+// sqrt(1/2) D, rounded: taps on the diagonals.
+constexpr std::array kDiagonalsPx{1, 1, 3, 6, 11, 23, 45};
+constexpr float kLargestRadiusPx = 1024.0f;
+constexpr float kHalfAPixel = 0.5f;
+constexpr float kSquareRootOfPi = 1.7724539f;
+constexpr float kGhostsSeenPx = 3.0f;  // ghosts so far apart are seen in full
+
+using Colour = std::array<float, 3>;
+
+/// The radii that circles are cut to, and last no cut; padded, so that one operation on
+/// all of them is a vector's.
+constexpr std::size_t kCuts = kFilterRadiiPx.size() + 1;
+constexpr std::size_t kUncut = kCuts - 1;
+using ByCut = std::array<float, 8>;
+static_assert(kCuts <= std::tuple_size_v<ByCut>);
+
+struct Point {
+  Colour colour;
+  float radius_px;  // signed
+};
+
+struct Tap {
+  Colour colour;
+  std::size_t ring;
+  float weight;  // W without a cut
+  float reach_px;
+  float near_edge;  // |C_q - C_p| across an edge whose nearer side is blurred before the focus
+  float far_edge;   // across any other edge
+};
+
+float signed_radius(const PixelCoc& coc, float depth_m) {
+  const float radius = coc_radius_px(coc, depth_m);
+  if (!(radius < kLargestRadiusPx)) return kLargestRadiusPx;  // NaN, too
+  return radius < -kLargestRadiusPx ? -kLargestRadiusPx : radius;
+}
+
+float seen(std::uint16_t half) {
+  const float value = half_to_float(half);
+  return value > 0.0f ? std::sqrt(value < 1.0f ? value : 1.0f) : 0.0f;  // NaN is black
+}
+
+float difference(const Colour& a, const Colour& b) {
+  return std::max({std::fabs(a[0] - b[0]), std::fabs(a[1] - b[1]), std::fabs(a[2] - b[2])});
+}
+
+// d^(3/4)
+float felt(float difference) {
+  const float root = std::sqrt(difference);
+  return root * std::sqrt(root);
+}
+
+// The finaliser of MurmurHash3 (Appleby), of a point's place on the grid.
+std::uint32_t hash_of(int column, int row) {
+  std::uint32_t hash = static_cast<std::uint32_t>(column) * 0x9E3779B9u ^
+                       static_cast<std::uint32_t>(row) * 0x85EBCA77u;
+  hash ^= hash >> 16;
+  hash *= 0x85EBCA6Bu;
+  hash ^= hash >> 13;
+  hash *= 0xC2B2AE35u;
+  return hash ^ hash >> 16;
+}
+
+// What of a ring lies within a reach, 0 to 1.
+float within(float reach_px, float distance_px) {
+  const float part = reach_px - 0.75f * distance_px + 0.5f;
+  return part > 0.0f && reach_px >= kHalfAPixel ? (part < 1.0f ? part : 1.0f) : 0.0f;
+}
+
+float ring_area(float distance_px) { return 0.75f * distance_px * distance_px; }
+
+/// By ring: its area as far as a cut lets it in. within() grows with the reach, so that W of a
+/// cut reach is the lesser of the reach's and of this.
+using CutAreas = std::array<ByCut, kRingsPx.size()>;
+
+CutAreas cut_areas() {
+  CutAreas areas{};
+  for (std::size_t ring = 0; ring < kRingsPx.size(); ++ring) {
+    const auto distance_px = static_cast<float>(kRingsPx[ring]);
+    for (std::size_t cut = 0; cut < kCuts; ++cut) {
+      const float part = cut == kUncut ? 1.0f : within(kFilterRadiiPx[cut], distance_px);
+      areas[ring][cut] = part * ring_area(distance_px);
+    }
+  }
+  return areas;
+}
+
+struct Sight {
+  const Image& picture;
+  const PixelCoc& coc;
+  std::size_t rings;  // that any circle of the picture reaches
+  CutAreas cut_areas;
+};
+
+const std::uint16_t* texel_at(const Sight& sight, int x, int y) {
+  x = std::clamp(x, 0, sight.picture.width - 1);
+  y = std::clamp(y, 0, sight.picture.height - 1);
+  return row<std::uint16_t>(sight.picture, y).data() + 4 * x;
+}
+
+struct Taps {
+  std::array<Tap, 4 * kRingsPx.size()> all;
+  std::size_t count = 0;
+};
+
+// Appends the tap if it can matter to anything.
+void add_tap(const Sight& sight, const Point& p, const std::uint16_t* texel, std::size_t ring,
+             Taps& taps) {
+  const auto distance_px = static_cast<float>(kRingsPx[ring]);
+  const float radius_px = signed_radius(sight.coc, half_to_float(texel[3]));
+  const float here = std::fabs(p.radius_px), there = std::fabs(radius_px);
+  const bool edge = std::fabs(radius_px - p.radius_px) > 1.0f + 0.25f * distance_px;
+  const bool before = radius_px < p.radius_px;
+  const float reach_px = edge && before               ? there
+                         : edge && p.radius_px < 0.0f ? here
+                                                      : std::min(here, there);
+  const float part = within(reach_px, distance_px);
+  if (part == 0.0f) return;
+  Tap& tap = taps.all[taps.count++];
+  tap.colour = {seen(texel[0]), seen(texel[1]), seen(texel[2])};
+  tap.ring = ring;
+  tap.weight = part * ring_area(distance_px);
+  tap.reach_px = reach_px;
+  const bool near = edge && (before ? radius_px : p.radius_px) < -kHalfAPixel;
+  const float step = edge ? difference(tap.colour, p.colour) : 0.0f;
+  tap.near_edge = near ? step : 0.0f;
+  tap.far_edge = near ? 0.0f : step;
+}
+
+/// The texels of a point and of its taps, ring by ring. Fetched one point ahead: they lie
+/// far apart, and most of the time goes into waiting for them.
+struct Texels {
+  const std::uint16_t* centre;
+  std::array<const std::uint16_t*, 4 * kRingsPx.size()> around;
+};
+
+Texels texels_around(const Sight& sight, int x, int y, std::uint32_t hash) {
+  Texels texels{texel_at(sight, x, y), {}};
+  __builtin_prefetch(texels.centre);
+  for (std::size_t ring = 0; ring < sight.rings; ++ring) {
+    const bool axes = (hash >> ring & 1u) != 0;
+    const int dx = axes ? kRingsPx[ring] : kDiagonalsPx[ring];
+    const int dy = axes ? 0 : kDiagonalsPx[ring];
+    const std::array taps{texel_at(sight, x + dx, y + dy), texel_at(sight, x - dy, y + dx),
+                          texel_at(sight, x - dx, y - dy), texel_at(sight, x + dy, y - dx)};
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      __builtin_prefetch(taps[i]);
+      texels.around[4 * ring + i] = taps[i];
+    }
+  }
+  return texels;
+}
+
+/// What a lens makes of a point, for each cut.
+struct LensSums {
+  ByCut red{}, green{}, blue{}, weights{}, near_edges{}, far_edges{};
+};
+
+LensSums lens_sums(const Sight& sight, const Point& p, std::span<const Tap> taps) {
+  LensSums sums;
+  sums.red.fill(p.colour[0]);
+  sums.green.fill(p.colour[1]);
+  sums.blue.fill(p.colour[2]);
+  sums.weights.fill(1.0f);
+  for (const Tap& tap : taps) {
+    const ByCut& area = sight.cut_areas[tap.ring];
+    for (std::size_t cut = 0; cut < area.size(); ++cut) {
+      const float weight = tap.weight < area[cut] ? tap.weight : area[cut];
+      sums.red[cut] += weight * tap.colour[0];
+      sums.green[cut] += weight * tap.colour[1];
+      sums.blue[cut] += weight * tap.colour[2];
+      sums.weights[cut] += weight;
+      sums.near_edges[cut] += weight * tap.near_edge;
+      sums.far_edges[cut] += weight * tap.far_edge;
+    }
+  }
+  return sums;
+}
+
+Colour mean_of(const LensSums& sums, std::size_t cut) {
+  const float weight = sums.weights[cut];
+  return {sums.red[cut] / weight, sums.green[cut] / weight, sums.blue[cut] / weight};
+}
+
+// Sums of what SceneTraits has means of.
+struct Sums {
+  double blurred_share = 0.0, blur = 0.0;
+  std::array<double, kFilterRadiiPx.size()> lost{}, blurred{}, near_edges{}, far_edges{};
+  std::array<double, kSampleCounts.size()> ghosts{};
+
+  void add(const Sums& other) {
+    blurred_share += other.blurred_share;
+    blur += other.blur;
+    for (std::size_t i = 0; i < lost.size(); ++i) {
+      lost[i] += other.lost[i];
+      blurred[i] += other.blurred[i];
+      near_edges[i] += other.near_edges[i];
+      far_edges[i] += other.far_edges[i];
+    }
+    for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i] += other.ghosts[i];
+  }
+};
+
+void add_ghosts(const Point& p, std::span<const Tap> taps, const Colour& mean, Sums& sums) {
+  float largest_px = std::fabs(p.radius_px);
+  float squares = difference(p.colour, mean) * difference(p.colour, mean);
+  float weights = 1.0f;
+  for (const Tap& tap : taps) {
+    const float off = difference(tap.colour, mean);
+    squares += tap.weight * off * off;
+    weights += tap.weight;
+    largest_px = std::max(largest_px, tap.reach_px);
+  }
+  const float spread = std::sqrt(squares / weights);
+  for (std::size_t i = 0; i < kSampleCounts.size(); ++i) {
+    const float root = std::sqrt(static_cast<float>(kSampleCounts[i]));
+    const float apart_px = largest_px * kSquareRootOfPi / root;
+    sums.ghosts[i] += static_cast<double>(spread / root * std::min(apart_px / kGhostsSeenPx, 1.0f));
+  }
+}
+
+void add_point(const Sight& sight, const Texels& texels, Sums& sums) {
+  const std::uint16_t* texel = texels.centre;
+  const Point p{{seen(texel[0]), seen(texel[1]), seen(texel[2])},
+                signed_radius(sight.coc, half_to_float(texel[3]))};
+  if (std::fabs(p.radius_px) >= kHalfAPixel) sums.blurred_share += 1.0;
+  Taps found;
+  for (std::size_t i = 0; i < 4 * sight.rings; ++i) {
+    add_tap(sight, p, texels.around[i], i / 4, found);
+  }
+  if (found.count == 0) return;  // nothing comes here: every sum would grow by 0
+  const std::span taps{found.all.data(), found.count};
+  const LensSums lens = lens_sums(sight, p, taps);
+  const Colour mean = mean_of(lens, kUncut);
+  sums.blur += static_cast<double>(felt(difference(mean, p.colour)));
+  for (std::size_t i = 0; i < kFilterRadiiPx.size(); ++i) {
+    const Colour cut = mean_of(lens, i);
+    sums.lost[i] += static_cast<double>(felt(difference(cut, mean)));
+    sums.blurred[i] += static_cast<double>(felt(difference(cut, p.colour)));
+    sums.near_edges[i] += static_cast<double>(felt(lens.near_edges[i] / lens.weights[i]));
+    sums.far_edges[i] += static_cast<double>(felt(lens.far_edges[i] / lens.weights[i]));
+  }
+  add_ghosts(p, taps, mean, sums);
+}
+
+// Of the point that stands for a cell of the grid: where in the cell, the hash's upper bytes
+// tell in 256ths, and how its taps lie, the lowest bits.
+Texels texels_of_point(const Sight& sight, int column, int row, int columns, int rows) {
+  const std::uint32_t hash = hash_of(column, row);
+  const int right = static_cast<int>(hash >> 24), down = static_cast<int>(hash >> 16 & 0xFFu);
+  return texels_around(sight, (column * 256 + right) * sight.picture.width / (columns * 256),
+                       (row * 256 + down) * sight.picture.height / (rows * 256), hash);
+}
+
+// Rings of which something lies within a circle.
+std::size_t rings_within(float radius_px) {
+  std::size_t rings = 0;
+  while (rings < kRingsPx.size() && within(radius_px, static_cast<float>(kRingsPx[rings])) > 0.0f) {
+    ++rings;
+  }
+  return rings;
+}
+
+}  // namespace
+
+float largest_px(const SceneTraits& traits) {
+  return std::max(std::fabs(traits.nearest_px), std::fabs(traits.farthest_px));
+}
+
+SceneTraits scene_traits(const Image& pinhole, const PixelCoc& coc, ThreadPool& pool) {
+  SceneTraits traits{.width = pinhole.width, .height = pinhole.height};
+  // The radius grows with depth, so its ends are those of depth.
+  const DepthRange depths = depth_range(pinhole, pool);
+  traits.nearest_px = signed_radius(coc, half_to_float(depths.least));
+  traits.farthest_px = signed_radius(coc, half_to_float(depths.most));
+  if (largest_px(traits) < kHalfAPixel) return traits;
+
+  const int columns = std::min(kPointsAcross, pinhole.width);
+  const int rows = std::min(kPointsAcross, pinhole.height);
+  const Sight sight{pinhole, coc, rings_within(largest_px(traits)), cut_areas()};
+  std::vector<Sums> of_rows(static_cast<std::size_t>(rows));
+  pool.for_each(rows, [&](int j) {
+    Sums& sums = of_rows[static_cast<std::size_t>(j)];
+    Texels texels = texels_of_point(sight, 0, j, columns, rows);
+    for (int i = 0; i < columns; ++i) {
+      const Texels next = texels_of_point(sight, std::min(i + 1, columns - 1), j, columns, rows);
+      add_point(sight, texels, sums);
+      texels = next;
+    }
+  });
+  Sums sums;
+  for (const Sums& of_row : of_rows) sums.add(of_row);
+  const auto mean = [points = static_cast<double>(columns) * rows](double sum) {
+    return static_cast<float>(sum / points);
+  };
+  traits.blurred_share = mean(sums.blurred_share);
+  traits.blur = mean(sums.blur);
+  for (std::size_t i = 0; i < kFilterRadiiPx.size(); ++i) {
+    traits.by_radius[i] = {mean(sums.lost[i]), mean(sums.blurred[i]), mean(sums.near_edges[i]),
+                           mean(sums.far_edges[i])};
+  }
+  for (std::size_t i = 0; i < kSampleCounts.size(); ++i) traits.ghosts[i] = mean(sums.ghosts[i]);
+  return traits;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,162 @@
+#include "dof/measure/regions.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "raster/images/texel.h"
+
+namespace softfocus {
+namespace {
+
+using Floats = std::vector<float>;
+
+struct Size {
+  int width;
+  int height;
+};
+
+std::size_t index_of(const Size& size, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
+         static_cast<std::size_t>(x);
+}
+
+Floats signed_radii(const Image& scene, const PixelCoc& coc) {
+  Floats radii;
+  radii.reserve(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height));
+  for (int y = 0; y < scene.height; ++y) {
+    const auto texels = row<std::uint16_t>(scene, y);
+    for (std::size_t i = 3; i < texels.size(); i += 4) {
+      const float depth = half_to_float(texels[i]);
+      assert(is_depth(depth));
+      // The formula would give infinity over infinity.
+      radii.push_back(std::isinf(depth) ? coc.radius_at_infinity_px : coc_radius_px(coc, depth));
+    }
+  }
+  return radii;
+}
+
+/// For the pixels beside an edge in depth, how far its blur reaches; 0 for all others.
+Floats edge_reaches(const Floats& radii, const Size& size) {
+  Floats reaches(radii.size(), 0.0f);
+  const auto look = [&](std::size_t a, std::size_t b) {
+    if (!(std::fabs(radii[a] - radii[b]) > kEdgeStepPx)) return;
+    const float reach = std::max({std::fabs(radii[a]), std::fabs(radii[b]), 1.0f});
+    reaches[a] = std::max(reaches[a], reach);
+    reaches[b] = std::max(reaches[b], reach);
+  };
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const std::size_t here = index_of(size, x, y);
+      if (x + 1 < size.width) look(here, here + 1);
+      if (y + 1 < size.height) look(here, index_of(size, x, y + 1));
+    }
+  }
+  return reaches;
+}
+
+/// The discs of all reaches, drawn as spans: each adds 1 where it begins and takes it
+/// away behind its end, so that a running sum tells the pixels that any disc covers.
+class Band {
+ public:
+  explicit Band(const Size& size)
+      : size_{size}, steps_(index_of({size.width + 1, size.height}, 0, size.height), 0) {}
+
+  void add_disc(int x, int y, float radius) {
+    if (full_) return;
+    // More than the diagonal covers no more; as an integer it could not be held.
+    const double r =
+        std::min(static_cast<double>(radius), static_cast<double>(size_.width) + size_.height);
+    const double farthest_x = std::max(x, size_.width - 1 - x);
+    const double farthest_y = std::max(y, size_.height - 1 - y);
+    full_ = r * r >= farthest_x * farthest_x + farthest_y * farthest_y;
+    const int whole = static_cast<int>(r);
+    for (int row = std::max(0, y - whole); row <= std::min(size_.height - 1, y + whole); ++row) {
+      const double dy = row - y;
+      const int half = static_cast<int>(std::sqrt(r * r - dy * dy));
+      ++steps_[index_of(wide(), std::max(0, x - half), row)];
+      --steps_[index_of(wide(), std::min(size_.width - 1, x + half) + 1, row)];
+    }
+  }
+
+  /// Calls `mark(x, y)` for each covered pixel.
+  template <class Mark>
+  void for_each(const Mark& mark) const {
+    for (int y = 0; y < size_.height; ++y) {
+      int discs = 0;
+      for (int x = 0; x < size_.width; ++x) {
+        discs += steps_[index_of(wide(), x, y)];
+        if (full_ || discs > 0) mark(x, y);
+      }
+    }
+  }
+
+ private:
+  Size wide() const { return {size_.width + 1, size_.height}; }
+
+  Size size_;
+  std::vector<std::int32_t> steps_;
+  bool full_ = false;  ///< one disc covers everything, and no other needs to be drawn
+};
+
+Region region_of(float radius) {
+  if (std::fabs(radius) <= kFocusRadiusPx) return Region::focus;
+  return radius < 0.0f ? Region::near_field : Region::far_field;
+}
+
+}  // namespace
+
+std::string_view region_name(Region region) {
+  switch (region) {
+    case Region::silhouette: return "silhouette";
+    case Region::near_field: return "near";
+    case Region::focus: return "focus";
+    case Region::far_field: return "far";
+  }
+  return "";
+}
+
+Image label_regions(const Image& scene, const PixelCoc& coc) {
+  assert(scene.format == Format::rgba16f);
+  const Size size{scene.width, scene.height};
+  Image labels = make_image(Format::r8, scene.width, scene.height);
+  const auto label = [&](int x, int y, Region region) {
+    row<std::uint8_t>(labels, y)[static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(region);
+  };
+  const Floats radii = signed_radii(scene, coc);
+  const Floats reaches = edge_reaches(radii, size);
+  Band band{size};
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const std::size_t here = index_of(size, x, y);
+      label(x, y, region_of(radii[here]));
+      if (reaches[here] > 0.0f) band.add_disc(x, y, reaches[here]);
+    }
+  }
+  band.for_each([&](int x, int y) { label(x, y, Region::silhouette); });
+  return labels;
+}
+
+std::array<RegionMean, kRegions> means_by_region(const PixelMap& map, const Image& labels) {
+  assert(labels.format == Format::r8);
+  assert(labels.width == map.width && labels.height == map.height);
+  std::array<RegionMean, kRegions> regions{};
+  for (int y = 0; y < map.height; ++y) {
+    const auto values = row(map, y);
+    const auto of_pixels = row<std::uint8_t>(labels, y);
+    for (std::size_t x = 0; x < values.size(); ++x) {
+      RegionMean& region = regions[of_pixels[x]];
+      ++region.pixels;
+      region.mean += values[x];
+    }
+  }
+  for (RegionMean& region : regions) {
+    region.mean = region.pixels == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                     : region.mean / static_cast<double>(region.pixels);
+  }
+  return regions;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,54 @@
+#pragma once
+// Where in a picture depth of field fails in which way: a label for each pixel, from its
+// depth and the lens. A mean over the whole picture hides every failure.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "dof/lens.h"
+#include "dof/measure/pixel_map.h"
+#include "raster/images/image.h"
+
+namespace softfocus {
+
+enum class Region : std::uint8_t {
+  /// Within reach of the blur of an edge in depth: leaks, halos, hard edges.
+  silhouette,
+  near_field,  ///< nearer than focus and blurred
+  focus,       ///< in focus: must stay as it is
+  far_field,   ///< farther than focus and blurred
+};
+inline constexpr std::size_t kRegions = 4;
+
+inline constexpr std::array<Region, kRegions> kAllRegions{Region::silhouette, Region::near_field,
+                                                          Region::focus, Region::far_field};
+
+/// "silhouette", "near", "focus" or "far".
+std::string_view region_name(Region region);
+
+/// Radius in pixels up to which a pixel is in focus: a disc of it covers the pixel and
+/// no neighbour's centre, and the filters leave it as it is.
+inline constexpr float kFocusRadiusPx = 1.0f;
+
+/// Two neighbours whose signed radii differ by more are two sides of an edge in depth. No
+/// slope that a lens sees does that; two surfaces whose blur is alike are no trouble.
+inline constexpr float kEdgeStepPx = 1.0f;
+
+/// Whether a depth, in metres, can be told a region: above 0, infinity too.
+inline bool is_depth(float depth_m) { return depth_m > 0.0f; }
+
+/// A label, of Region, for each pixel of an RGBA16F picture with depths in alpha: an image
+/// of r8. Every pixel nearer to an edge in depth than the larger radius on its two sides,
+/// at least 1, is of its silhouette band, measured from the centres of the pixels beside the
+/// edge. The rest is in focus, near or far by its own radius. Needs is_depth() everywhere.
+Image label_regions(const Image& scene, const PixelCoc& coc);
+
+/// For each region the mean of a map and the pixels that it was taken over.
+struct RegionMean {
+  std::uint64_t pixels = 0;
+  double mean = 0.0;  ///< NaN where there are no pixels
+};
+std::array<RegionMean, kRegions> means_by_region(const PixelMap& map, const Image& labels);
+
+}  // namespace softfocus

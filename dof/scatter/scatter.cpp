@@ -1,0 +1,276 @@
+#include "dof/scatter/scatter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "dof/picture_planes.h"
+#include "dof/scatter/scatter_discs.h"
+#include "raster/threads/scratch_shelf.h"
+
+#define SOFTFOCUS_KERNELS "dof/scatter/scatter_kernels.inl"
+#include "raster/lanes/for_each_isa.inl"
+
+namespace softfocus {
+namespace {
+
+// Light is counted in units of 2^-34: the largest half over a disc's whole weight is then
+// below 2^51, and sums of what can meet in a pixel are below 2^55.
+constexpr float kUnitsOfLight = 0x1p34f;
+
+constexpr int kTaskRows = 8;
+
+// Slabs of depth on either side of the one in focus, from the radius at which each begins.
+constexpr std::array kSlabBegins{0.5f,  1.5f,  3.0f,   6.0f,   12.0f, 24.0f,
+                                 48.0f, 96.0f, 192.0f, 384.0f, 768.0f};
+constexpr int kSlabs = 2 * static_cast<int>(kSlabBegins.size()) + 1;
+
+// The nearest first. The three layers have numbers that are not neighbours'.
+int slab_of(SlabRule rule, float radius_px) {
+  if (rule == SlabRule::one) return 0;
+  if (rule == SlabRule::layers) return radius_px < -0.5f ? 0 : radius_px > 0.5f ? 4 : 2;
+  const float magnitude = std::fabs(radius_px);
+  int steps = 0;
+  for (const float begin : kSlabBegins) steps += magnitude > begin ? 1 : 0;
+  const int focus = static_cast<int>(kSlabBegins.size());
+  return radius_px < 0.0f ? focus - steps : focus + steps;
+}
+
+int slab_count(SlabRule rule) {
+  return rule == SlabRule::one ? 1 : rule == SlabRule::layers ? 5 : kSlabs;
+}
+
+// Red, green, blue and weight.
+using Light = std::array<std::uint64_t, 4>;
+
+// What every pixel gives, and over which disc.
+struct Sources {
+  int width, height;
+  ScatterDiscs discs;
+  std::vector<float> light;         // four a pixel, in units
+  std::vector<std::uint16_t> disc;  // of discs
+  std::vector<std::uint8_t> slab;
+  std::vector<int> reach;              // of rows
+  std::vector<std::uint32_t> in_slab;  // of rows: which slabs, a bit each
+
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+};
+
+Sources make_sources(const DofInput& input, SlabRule rule, ThreadPool& pool) {
+  const Planes planes = split_picture(input, pool);
+  const std::vector<float> largest = largest_of_rows(planes, 3, pool);
+  Sources sources{planes.width,
+                  planes.height,
+                  make_discs(*std::max_element(largest.begin(), largest.end())),
+                  {},
+                  {},
+                  {},
+                  {},
+                  {}};
+  const std::size_t pixels = sources.at(0, sources.height);
+  sources.light.resize(4 * pixels);
+  sources.disc.resize(pixels);
+  sources.slab.resize(pixels);
+  sources.reach.resize(largest.size());
+  sources.in_slab.resize(largest.size());
+  pool.for_each(sources.height, [&](int y) {
+    const float* from = plane_row(planes, 0, y);
+    std::uint32_t in_slab = 0;
+    for (int x = 0; x < sources.width; ++x) {
+      const float radius = from[3 * planes.plane + x];
+      const int disc = disc_of(radius);
+      const int slab = slab_of(rule, radius);
+      const float weight = sources.discs.weights[static_cast<std::size_t>(disc)] * kUnitsOfLight;
+      const std::size_t at = sources.at(x, y);
+      float* light = &sources.light[4 * at];
+      for (int i = 0; i < 3; ++i) light[i] = from[i * planes.plane + x] * weight;
+      light[3] = weight;
+      sources.disc[at] = static_cast<std::uint16_t>(disc);
+      sources.slab[at] = static_cast<std::uint8_t>(slab);
+      in_slab |= 1u << slab;
+    }
+    const auto row = static_cast<std::size_t>(y);
+    sources.reach[row] = sources.discs.reaches[static_cast<std::size_t>(disc_of(largest[row]))];
+    sources.in_slab[row] = in_slab;
+  });
+  return sources;
+}
+
+// Light in slabs, the nearest first, as one colour.
+struct Over {
+  double transmitted = 1.0;
+  double previous = 0.0;  // a' of the slab before
+  double r = 0.0, g = 0.0, b = 0.0, opacity = 0.0;
+};
+
+void add_slab(Over& over, const Light& light) {
+  if (light[3] == 0) {
+    over.previous = 0.0;
+    return;
+  }
+  const auto number = [](std::uint64_t units) {
+    return static_cast<double>(static_cast<std::int64_t>(units));
+  };
+  const double weight = number(light[3]);
+  const double opacity = std::min(weight * 0x1p-34, 1.0);
+  const double room = 1.0 - over.previous;
+  const double alone = opacity < room ? opacity / room : 1.0;
+  const double share = over.transmitted * alone;
+  const double scale = share / weight;
+  over.r += number(light[0]) * scale;
+  over.g += number(light[1]) * scale;
+  over.b += number(light[2]) * scale;
+  over.opacity += share;
+  over.transmitted *= 1.0 - alone;
+  over.previous = alone;
+}
+
+struct Colour {
+  float r, g, b;
+};
+Colour resolve(const Over& over) {
+  return {static_cast<float>(over.r / over.opacity), static_cast<float>(over.g / over.opacity),
+          static_cast<float>(over.b / over.opacity)};
+}
+
+struct RowBuffers {
+  // Slab by slab, with a margin on either side; no four numbers across two cache lines.
+  std::vector<std::uint64_t, RowAllocator<std::uint64_t>> differences;
+  std::vector<float> colour;
+};
+
+void scatter_spans(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  const Sources sources = make_sources(input, rule, pool);
+  const int width = sources.width, height = sources.height;
+  const int margin = sources.discs.reach + 3;
+  const std::ptrdiff_t slab_stride = 4 * (static_cast<std::ptrdiff_t>(width) + 2 * margin);
+  const std::ptrdiff_t padded = (width + 15) / 16 * 16;
+  const auto discs = static_cast<std::size_t>(sources.discs.count);
+  ScratchShelf<RowBuffers> shelf;
+  pool.for_each((height + kTaskRows - 1) / kTaskRows, [&](int task) {
+    RowBuffers buffers = shelf.take();
+    buffers.differences.resize(static_cast<std::size_t>(slab_stride) *
+                               static_cast<std::size_t>(slab_count(rule)));
+    buffers.colour.resize(static_cast<std::size_t>(3 * padded));
+    std::uint64_t* differences = buffers.differences.data();
+    float* colour = buffers.colour.data();
+    const int end = std::min((task + 1) * kTaskRows, height);
+    for (int y = task * kTaskRows; y < end; ++y) {
+      std::uint32_t in_slab = 0;
+      for (int from = std::max(y - sources.discs.reach, 0);
+           from <= std::min(y + sources.discs.reach, height - 1); ++from) {
+        const int dy = std::abs(from - y);
+        if (sources.reach[static_cast<std::size_t>(from)] < dy) continue;
+        in_slab |= sources.in_slab[static_cast<std::size_t>(from)];
+        const std::size_t at = sources.at(0, from);
+        SOFTFOCUS_KERNEL(pool.isa(), scatter_row)
+        (&sources.light[4 * at], &sources.disc[at], &sources.slab[at], width,
+         &sources.discs.spans[static_cast<std::size_t>(dy) * discs], differences + 4 * margin,
+         slab_stride);
+      }
+      std::array<int, kSlabs> used;
+      std::array<Light, kSlabs> sums{};
+      int count = 0;
+      for (int slab = 0; slab < kSlabs; ++slab) {
+        if ((in_slab >> slab & 1u) != 0) used[static_cast<std::size_t>(count++)] = slab;
+      }
+      for (int x = -margin; x < width; ++x) {
+        Over over;
+        int before = 0;
+        for (int i = 0; i < count; ++i) {
+          const int slab = used[static_cast<std::size_t>(i)];
+          const std::uint64_t* change = differences + slab * slab_stride + 4 * (x + margin);
+          Light& sum = sums[static_cast<std::size_t>(i)];
+          for (std::size_t j = 0; j < 4; ++j) sum[j] += change[j];
+          if (x < 0) continue;
+          if (slab != before + 1) over.previous = 0.0;
+          before = slab;
+          add_slab(over, sum);
+        }
+        if (x < 0) continue;
+        const Colour out = resolve(over);
+        colour[x] = out.r;
+        colour[padded + x] = out.g;
+        colour[2 * padded + x] = out.b;
+      }
+      for (int i = 0; i < count; ++i) {
+        std::fill_n(differences + used[static_cast<std::size_t>(i)] * slab_stride, slab_stride,
+                    std::uint64_t{0});
+      }
+      store_row(input, result, y, colour, colour + padded, colour + 2 * padded, pool.isa());
+    }
+    shelf.put_back(std::move(buffers));
+  });
+}
+
+std::uint64_t units(double value) {
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(value)));
+}
+
+void scatter_stamps(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  const Sources sources = make_sources(input, rule, pool);
+  const int width = sources.width, height = sources.height;
+  const int slabs = slab_count(rule);
+  pool.for_each(height, [&](int y) {
+    std::vector<Light> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(slabs));
+    for (int from_y = 0; from_y < height; ++from_y) {
+      const int dy = std::abs(from_y - y);
+      if (dy > sources.discs.reach) continue;
+      for (int from_x = 0; from_x < width; ++from_x) {
+        const std::size_t at = sources.at(from_x, from_y);
+        const DiscSpan span =
+            sources.discs
+                .spans[static_cast<std::size_t>(dy * sources.discs.count) + sources.disc[at]];
+        const int reach = span.whole + 1;
+        for (int x = std::max(from_x - reach, 0); x <= std::min(from_x + reach, width - 1); ++x) {
+          Light& sum = sums[static_cast<std::size_t>(sources.slab[at] * width + x)];
+          for (std::size_t i = 0; i < 4; ++i) {
+            const double light = sources.light[4 * at + i];
+            const std::uint64_t all = units(light), end = units(light * (0.125 * span.eighths));
+            const bool inside = std::abs(x - from_x) < reach;
+            sum[i] += inside ? all : reach == 0 ? end + end - all : end;
+          }
+        }
+      }
+    }
+    std::vector<float> colour(3 * static_cast<std::size_t>(width));
+    for (int x = 0; x < width; ++x) {
+      Over over;
+      for (int slab = 0; slab < slabs; ++slab) {
+        add_slab(over, sums[static_cast<std::size_t>(slab * width + x)]);
+      }
+      const Colour out = resolve(over);
+      const auto at = static_cast<std::size_t>(x), step = static_cast<std::size_t>(width);
+      colour[at] = out.r;
+      colour[at + step] = out.g;
+      colour[at + 2 * step] = out.b;
+    }
+    store_row(input, result, y, colour.data(), colour.data() + width, colour.data() + 2 * width,
+              Isa::scalar);
+  });
+}
+
+}  // namespace
+
+void scatter_in_slabs(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  (pool.isa() == Isa::scalar ? scatter_stamps : scatter_spans)(input, result, rule, pool);
+}
+void scatter_in_slabs_plain(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+  scatter_stamps(input, result, rule, pool);
+}
+
+void scatter_unsorted(const DofInput& input, Image& result, ThreadPool& pool) {
+  scatter_in_slabs(input, result, SlabRule::one, pool);
+}
+void scatter_sorted(const DofInput& input, Image& result, ThreadPool& pool) {
+  scatter_in_slabs(input, result, SlabRule::doubling, pool);
+}
+
+}  // namespace softfocus

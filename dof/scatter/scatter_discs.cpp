@@ -1,0 +1,50 @@
+#include "dof/scatter/scatter_discs.h"
+
+#include <cmath>
+
+namespace softfocus {
+namespace {
+
+// Half the width of a disc's row of pixels: its area there, halved, by the midpoint rule.
+double mean_half_width(double radius, int dy) {
+  constexpr int kSteps = 16;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double y = dy - 0.5 + (i + 0.5) / kSteps;
+    const double square = radius * radius - y * y;
+    if (square > 0.0) sum += std::sqrt(square);
+  }
+  return sum / kSteps;
+}
+
+}  // namespace
+
+ScatterDiscs make_discs(float largest_px) {
+  ScatterDiscs discs;
+  discs.count = disc_of(largest_px) + 1;
+  discs.reach = static_cast<int>(std::ceil(0.25 * (discs.count - 1) + 0.5)) - 1;
+  if (discs.reach < 0) discs.reach = 0;
+  const auto count = static_cast<std::size_t>(discs.count);
+  discs.spans.assign(count * static_cast<std::size_t>(discs.reach + 1), DiscSpan{-2, 0});
+  discs.reaches.assign(count, 0);
+  discs.weights.assign(count, 1.0f);
+  for (std::size_t disc = 0; disc < count; ++disc) {
+    discs.spans[disc] = {0, 0};
+    if (disc <= 2) continue;
+    const double radius = 0.25 * static_cast<double>(disc);
+    std::int64_t eighths = 0;
+    for (int dy = 0; dy <= discs.reach; ++dy) {
+      const int half_width = static_cast<int>(8.0 * mean_half_width(radius, dy) + 0.5);
+      if (half_width == 0) break;
+      discs.spans[static_cast<std::size_t>(dy) * count + disc] = {
+          static_cast<std::int16_t>((half_width + 4) / 8 - 1),
+          static_cast<std::int16_t>((half_width + 4) % 8)};
+      discs.reaches[disc] = dy;
+      eighths += (dy == 0 ? 2 : 4) * half_width;
+    }
+    discs.weights[disc] = static_cast<float>(8.0 / static_cast<double>(eighths));
+  }
+  return discs;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,22 @@
+#pragma once
+// What lanes.inl needs, compiled for every CPU.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#include "raster/numbers/fused.h"
+#include "raster/numbers/half.h"
+#include "raster/lanes/isa.h"
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+// Vectors travel in registers only where a function is inlined. Builds in which speed is no
+// matter may define it as `inline`.
+#ifndef SOFTFOCUS_INLINE
+#define SOFTFOCUS_INLINE [[gnu::always_inline]] inline
+#endif

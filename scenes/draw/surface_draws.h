@@ -1,0 +1,24 @@
+#pragma once
+// A frame's draws before anything is drawn: what the emulation and a GL driver both get.
+
+#include <vector>
+
+#include "raster/pipeline/state.h"
+#include "scenes/scene.h"
+#include "scenes/draw/surface_stages.h"
+#include "scenes/draw/view.h"
+
+namespace softfocus {
+
+/// One object. The pointers are into the scene.
+struct SurfaceDraw {
+  DrawState state;
+  SurfaceVertexInput input;
+  const Texture* texture;  ///< none if the variant is not textured
+  SurfaceVariant variant;  ///< what the material has, and nothing more
+};
+
+/// One for each of the scene's objects, in the order of drawing.
+std::vector<SurfaceDraw> surface_draws(const Scene& scene, const View& view, double frame);
+
+}  // namespace softfocus

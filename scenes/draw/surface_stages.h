@@ -1,0 +1,123 @@
+#pragma once
+// The vertex and the fragment stage of a lit, perhaps textured surface. A material
+// picks its variant at compile time, and what it lacks is neither computed nor
+// interpolated.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <span>
+
+#include "raster/images/decoded_texture.h"
+#include "raster/images/sampler.h"
+#include "raster/numbers/vector_math.h"
+#include "raster/pipeline/stages.h"
+#include "scenes/draw/lighting.h"
+#include "scenes/scene.h"
+
+namespace softfocus {
+
+/// A depth as alpha holds it: cut to the largest half, because an infinite depth has no
+/// circle of confusion.
+inline float alpha_depth(float depth_m) { return depth_m < 65504.0f ? depth_m : 65504.0f; }
+
+struct SurfaceVariant {
+  bool textured = false;
+  bool specular = false;
+  bool two_sided = false;
+};
+
+/// Where each varying lies: depth, base colour, then what the variant has.
+template <SurfaceVariant variant>
+struct SurfaceLayout {
+  static constexpr std::size_t kDepth = 0;
+  static constexpr std::size_t kFront = 1;
+  static constexpr std::size_t kSideSize = variant.specular ? 6 : 3;
+  static constexpr std::size_t kBack = kFront + kSideSize;
+  static constexpr std::size_t kTexture = kBack + (variant.two_sided ? kSideSize : 0);
+  static constexpr std::size_t kCount = kTexture + (variant.textured ? 2 : 0);
+};
+
+/// What the vertex stage reads; matrices are rounded to binary32 once a draw.
+struct SurfaceVertexInput {
+  const Mesh* mesh;
+  const Material* material;
+  std::span<const Light> lights;
+  glm::vec3 ambient_light;
+  glm::mat4 to_clip;
+  glm::mat4 to_world;
+  glm::mat3 normal_to_world;  ///< inverse transpose
+  glm::vec3 eye;
+};
+
+template <SurfaceVariant variant>
+struct SurfaceVertexStage {
+  using Layout = SurfaceLayout<variant>;
+  SurfaceVertexInput input;
+
+  VertexOutput<Layout::kCount> operator()(std::uint32_t index) const {
+    const glm::vec3 position = input.mesh->positions[index];
+    VertexOutput<Layout::kCount> output{transform_point(input.to_clip, position), {}};
+    output.varyings[Layout::kDepth] = output.position.w;
+
+    const Material& material = *input.material;
+    const glm::vec4 world4 = transform_point(input.to_world, position);
+    const glm::vec3 world{world4.x, world4.y, world4.z};
+    const glm::vec3 normal =
+        normalize(transform_direction(input.normal_to_world, input.mesh->normals[index]));
+    const glm::vec3 towards_eye = normalize(input.eye - world);
+    const auto light_side = [&](glm::vec3 side_normal, std::size_t at) {
+      const LitColour lit = material.lit ? light_point(material, input.ambient_light, input.lights,
+                                                       world, side_normal, towards_eye)
+                                         : LitColour{material.diffuse, glm::vec3{0.0f}};
+      for (std::size_t i = 0; i < 3; ++i) {
+        output.varyings[at + i] = lit.base[static_cast<int>(i)];
+        if constexpr (variant.specular) {
+          output.varyings[at + 3 + i] = lit.specular[static_cast<int>(i)];
+        }
+      }
+    };
+    light_side(normal, Layout::kFront);
+    if constexpr (variant.two_sided) light_side(-normal, Layout::kBack);
+    if constexpr (variant.textured) {
+      output.varyings[Layout::kTexture] = input.mesh->uvs[index].x;
+      output.varyings[Layout::kTexture + 1] = input.mesh->uvs[index].y;
+    }
+    return output;
+  }
+};
+
+template <SurfaceVariant variant>
+struct SurfaceFragmentStage {
+  using Layout = SurfaceLayout<variant>;
+  static constexpr bool kDiscards = false;
+  static constexpr bool kNeedsDerivatives = variant.textured;
+  static constexpr std::array<Interpolation, Layout::kCount> kInterpolation{};  // perspective
+
+  const Texture* texture;
+  Sampler sampler;
+  Profile profile;
+  const DecodedTexture* decoded = nullptr;  ///< of `texture`, for the form in lanes
+
+  FragmentOutput<1> operator()(const Fragment<Layout::kCount>& in) const {
+    const std::size_t side = variant.two_sided && !in.front_facing ? Layout::kBack : Layout::kFront;
+    glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
+    if constexpr (variant.textured) {
+      constexpr std::size_t u = Layout::kTexture;
+      constexpr std::size_t v = Layout::kTexture + 1;
+      const float lod =
+          level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
+      const glm::vec4 texel =
+          sample(*texture, sampler, {in.varyings[u], in.varyings[v]}, lod, profile);
+      colour *= glm::vec3{texel.x, texel.y, texel.z};
+    }
+    if constexpr (variant.specular) {
+      colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
+    }
+    return {{glm::vec4{colour, alpha_depth(in.varyings[Layout::kDepth])}}, false};
+  }
+};
+
+}  // namespace softfocus

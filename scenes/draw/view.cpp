@@ -1,0 +1,86 @@
+#include "scenes/draw/view.h"
+
+#include "raster/numbers/exact_math.h"
+#include "raster/numbers/vector_math.h"
+
+namespace softfocus {
+namespace {
+
+// `v` turned about a unit axis (Rodrigues' formula).
+glm::dvec3 turn_about(glm::dvec3 v, glm::dvec3 axis, double degrees) {
+  const double cosine = exact_math::cos_degrees(degrees);
+  const double sine = exact_math::sin_degrees(degrees);
+  return v * cosine + cross(axis, v) * sine + axis * (dot(axis, v) * (1.0 - cosine));
+}
+
+// A turn in the plane of the two axes, from the first towards the second.
+glm::dmat4 turn(int first, int second, double degrees) {
+  const double cosine = exact_math::cos_degrees(degrees);
+  const double sine = exact_math::sin_degrees(degrees);
+  glm::dmat4 matrix{1.0};
+  matrix[first][first] = cosine;
+  matrix[first][second] = sine;
+  matrix[second][first] = -sine;
+  matrix[second][second] = cosine;
+  return matrix;
+}
+
+glm::dmat4 look_at(glm::dvec3 eye, glm::dvec3 target, glm::dvec3 up) {
+  const glm::dvec3 forward = normalize(target - eye);
+  const glm::dvec3 right = normalize(cross(forward, up));
+  const glm::dvec3 above = cross(right, forward);
+  glm::dmat4 view{1.0};
+  for (int i = 0; i < 3; ++i) {
+    view[i][0] = right[i];
+    view[i][1] = above[i];
+    view[i][2] = -forward[i];
+  }
+  view[3][0] = -dot(right, eye);
+  view[3][1] = -dot(above, eye);
+  view[3][2] = dot(forward, eye);
+  return view;
+}
+
+glm::dmat4 perspective(double fov_y_degrees, double aspect, double near_m, double far_m) {
+  const double tangent = exact_math::tan_degrees(fov_y_degrees / 2.0);
+  glm::dmat4 projection{0.0};
+  projection[0][0] = 1.0 / (aspect * tangent);
+  projection[1][1] = -1.0 / tangent;
+  projection[2][2] = -(far_m + near_m) / (far_m - near_m);
+  projection[2][3] = -1.0;
+  projection[3][2] = -2.0 * far_m * near_m / (far_m - near_m);
+  return projection;
+}
+
+}  // namespace
+
+View camera_view(const Camera& camera, double frame, int width, int height) {
+  const glm::dvec3 arm = turn_about(camera.position - camera.target, normalize(camera.up),
+                                    camera.orbit_degrees_per_frame * frame);
+  View view{};
+  view.eye = camera.target + arm;
+  view.view = look_at(view.eye, camera.target, camera.up);
+  view.projection =
+      perspective(camera.fov_y_degrees, static_cast<double>(width) / static_cast<double>(height),
+                  camera.near_m, camera.far_m);
+  return view;
+}
+
+glm::dmat4 object_matrix(const Object& object, double frame) {
+  const glm::dvec3 degrees = object.rotation_degrees + object.spin_degrees_per_frame * frame;
+  const double phase = frame / object.sway_period_frames + object.sway_phase;
+  const glm::dvec3 position =
+      object.position + object.sway * exact_math::sin_degrees(360.0 * phase);
+
+  glm::dmat4 scale{1.0};
+  glm::dmat4 move{1.0};
+  for (int i = 0; i < 3; ++i) {
+    scale[i][i] = object.scale[i];
+    move[3][i] = position[i];
+  }
+  const glm::dmat4 turned =
+      multiply(multiply(turn(0, 1, degrees.z), turn(2, 0, degrees.y)), turn(1, 2, degrees.x));
+  return multiply(move, multiply(turned, scale));
+}
+
+}  // namespace softfocus

@@ -1,0 +1,110 @@
+#include "scenes/lens_views/accumulation.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+#include <vector>
+
+#include "raster/threads/scratch_shelf.h"
+#include "scenes/lens_views/lens_view.h"
+#include "scenes/lens_views/take_samples.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::size_t kTexelHalves = 4;
+constexpr std::size_t kTileHalves = std::size_t{kTileSize} * kTileSize * kTexelHalves;
+
+// A group of samples of one tile, each a row after the other.
+struct TileSamples {
+  std::vector<std::uint16_t> halves = std::vector<std::uint16_t>(kViewGroup * kTileHalves);
+  TileMemory memory;
+};
+
+std::uint16_t* texels_of(TileSamples& samples, std::size_t i) {
+  return samples.halves.data() + i * kTileHalves;
+}
+
+static_assert(kSumTile % kTileSize == 0);
+
+void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const Rectangle& tile,
+              SampleSums& sums, Isa isa) {
+  const int width = tile.x_end - tile.x_begin;
+  std::array<const std::uint16_t*, kSampleGroup> rows{};
+  for (std::size_t i = 0; i < count; ++i) rows[i] = texels_of(samples, first + i);
+  for (int y = tile.y_begin; y < tile.y_end; ++y) {
+    add_rows({rows.data(), count}, tile.x_begin, y, width, sums, isa);
+    for (std::size_t i = 0; i < count; ++i) {
+      rows[i] += kTexelHalves * static_cast<std::size_t>(width);
+    }
+  }
+}
+
+}  // namespace
+
+SampledPicture accumulation(const SceneMethodInput& input, ThreadPool& pool) {
+  AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
+  const auto add_samples = [&](int begin, int end, SampleSums& sums) {
+    add_views(buffer, input, begin, end, sums, pool);
+  };
+  return take_samples(input, add_samples, kViewGroup, pool);
+}
+
+AccumulationBuffer make_accumulation_buffer(const SceneMethodInput& input, ThreadPool& pool) {
+  const int width = input.pinhole.width, height = input.pinhole.height;
+  const Sampling& sampling = input.sampling;
+  return {lens_points(sampling.aperture, sampling.samples),
+          pixel_offsets(sampling.jitter, sampling.samples),
+          input.prepared != nullptr ? std::move(*input.prepared)
+                                    : prepare_scene(input.scene, input.profile, pool),
+          make_image(Format::rgba16f, width, height),
+          make_image(Format::r32f, width, height),
+          {},
+          {}};
+}
+
+void add_views(AccumulationBuffer& buffer, const SceneMethodInput& input, int begin, int end,
+               SampleSums& sums, ThreadPool& pool) {
+  const auto count = static_cast<std::size_t>(end - begin);
+  assert(begin % kSampleGroup == 0 && end - begin <= kViewGroup);
+  assert(static_cast<std::size_t>(end) <= buffer.points.size());
+  for (std::size_t i = buffer.passes.size(); i < count; ++i) {
+    RenderPass& pass = buffer.passes.emplace_back();
+    pass.profile = buffer.prepared.pass.profile;
+    pass.isa = buffer.prepared.pass.isa;
+  }
+  if (buffer.views.size() < count) buffer.views.resize(count);
+  const std::span passes = std::span{buffer.passes}.first(count);
+  const std::span views = std::span{buffer.views}.first(count);
+  pool.for_each(static_cast<int>(count), [&](int view_number) {
+    const auto i = static_cast<std::size_t>(view_number);
+    passes[i].targets.colour[0] = &buffer.picture;  // the buffer may have moved
+    passes[i].targets.depth = &buffer.depth;
+    const std::size_t sample = static_cast<std::size_t>(begin) + i;
+    const View view =
+        lens_view(input.view, buffer.points[sample] * input.aperture_radius_m, input.focus_m,
+                  buffer.offsets[sample], buffer.picture.width, buffer.picture.height);
+    record_scene(buffer.prepared, view, input.frame, passes[i]);
+  });
+  sort_into_tiles(passes, views, pool);
+  ScratchShelf<TileSamples> shelf;
+  pool.for_each(tile_count(views[0]), [&](int tile) {
+    TileSamples samples = shelf.take();
+    const Rectangle area = tile_area(views[0], tile);
+    for (std::size_t i = 0; i < count; ++i) {
+      draw_tile_aside(passes[i], views[i], tile, samples.memory,
+                      reinterpret_cast<std::byte*>(texels_of(samples, i)));
+    }
+    // The sums come from memory for the first, and are at hand for the second.
+    for (std::size_t first = 0; first < count; first += kSampleGroup) {
+      add_tile(samples, first, std::min<std::size_t>(count - first, kSampleGroup), area, sums,
+               pool.isa());
+    }
+    shelf.put_back(std::move(samples));
+  });
+  for (RenderPass& pass : passes) pass.draws.clear();
+  sums.count += end - begin;
+}
+
+}  // namespace softfocus

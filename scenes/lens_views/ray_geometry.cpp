@@ -1,0 +1,139 @@
+#include "scenes/lens_views/ray_geometry.h"
+
+#include <array>
+
+#include "raster/images/level_of_detail.h"
+#include "raster/images/sampler.h"
+#include "raster/numbers/vector_math.h"
+#include "scenes/draw/lighting.h"
+
+namespace softfocus {
+namespace {
+
+RayMesh ray_mesh(const SurfaceDraw& draw, const glm::dmat4& world_to_eye, const Object& object,
+                 double frame) {
+  RayMesh mesh{draw, {}, {}, {}, {}};
+  const SurfaceVertexInput& input = draw.input;
+  const Material& material = *input.material;
+  const glm::mat4 to_eye{multiply(world_to_eye, object_matrix(object, frame))};
+  for (std::size_t i = 0; i < input.mesh->positions.size(); ++i) {
+    const glm::vec3 position = input.mesh->positions[i];
+    const glm::vec3 world{transform_point(input.to_world, position)};
+    const glm::vec3 normal =
+        normalize(transform_direction(input.normal_to_world, input.mesh->normals[i]));
+    mesh.positions.emplace_back(transform_point(to_eye, position));
+    mesh.world.push_back(world);
+    mesh.normals.push_back(normal);
+    const glm::vec3 anywhere{0.0f, 0.0f, 1.0f};
+    for (int side = 0; side < 2; ++side) {
+      mesh.base[side].push_back(material.lit
+                                    ? light_point(material, input.ambient_light, input.lights,
+                                                  world, side == 0 ? normal : -normal, anywhere)
+                                          .base
+                                    : material.diffuse);
+    }
+  }
+  return mesh;
+}
+
+using Corners = std::array<std::uint32_t, 3>;
+
+Corners corners_of(const RayMesh& mesh, std::uint32_t triangle) {
+  const auto& indices = mesh.draw.input.mesh->indices;
+  const std::size_t at = std::size_t{3} * triangle;
+  return {indices[at], indices[at + 1], indices[at + 2]};
+}
+
+/// The rasterizer's sum (interpolate.h).
+template <class Value>
+Value blend(const std::array<Value, 3>& values, float weight_1, float weight_2) {
+  return (values[0] + (values[1] - values[0]) * weight_1) + (values[2] - values[0]) * weight_2;
+}
+
+/// Weights of the second and third vertex where a ray meets the triangle's plane, inside
+/// it or not (Moeller and Trumbore 1997).
+glm::dvec2 weights_on_plane(const std::array<glm::dvec3, 3>& v, const LensRay& ray) {
+  const glm::dvec3 along_1 = v[1] - v[0];
+  const glm::dvec3 along_2 = v[2] - v[0];
+  const glm::dvec3 to_origin = ray.origin - v[0];
+  const glm::dvec3 p = cross(ray.direction, along_2);
+  const glm::dvec3 q = cross(to_origin, along_1);
+  const double scale = 1.0 / dot(along_1, p);
+  return {dot(to_origin, p) * scale, dot(ray.direction, q) * scale};
+}
+
+glm::vec3 texel_at(const RayMesh& mesh, const Corners& corners, const RayHit& hit,
+                   const BlockRays& block, const Profile& profile) {
+  const auto& all = mesh.draw.input.mesh->uvs;
+  const std::array<glm::vec2, 3> uvs{all[corners[0]], all[corners[1]], all[corners[2]]};
+  std::array<glm::dvec3, 3> positions;
+  for (std::size_t i = 0; i < 3; ++i) positions[i] = glm::dvec3{mesh.positions[corners[i]]};
+  const auto uv_on_plane = [&](const LensRay& ray) {
+    const glm::dvec2 weights = weights_on_plane(positions, ray);
+    return blend(uvs, static_cast<float>(weights.x), static_cast<float>(weights.y));
+  };
+  const glm::vec2 corner = uv_on_plane(block.corner);
+  const Texture& texture = *mesh.draw.texture;
+  const float lod = level_of_detail(texture, uv_on_plane(block.right) - corner,
+                                    uv_on_plane(block.below) - corner, profile);
+  const glm::vec2 uv = blend(uvs, hit.weight_1, hit.weight_2);
+  return glm::vec3{sample(texture, mesh.draw.input.material->sampler, uv, lod, profile)};
+}
+
+}  // namespace
+
+std::vector<RayMesh> ray_meshes(const Scene& scene, const View& view, double frame) {
+  std::vector<RayMesh> meshes;
+  const std::vector<SurfaceDraw> draws = surface_draws(scene, view, frame);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    meshes.push_back(ray_mesh(draws[i], view.view, scene.objects[i], frame));
+  }
+  return meshes;
+}
+
+RayCamera ray_camera(const View& view, double focus_m, int width_px, int height_px) {
+  const double width = width_px, height = height_px;
+  return {2.0 / (width * view.projection[0][0]), 2.0 / (height * view.projection[1][1]),
+          width / 2.0, height / 2.0, focus_m};
+}
+
+LensRay lens_ray(const RayCamera& camera, glm::dvec2 lens_point_m, double x_px, double y_px) {
+  const double x = (x_px - camera.centre_x) * camera.pixel_x;
+  const double y = (y_px - camera.centre_y) * camera.pixel_y;
+  return {{lens_point_m.x, lens_point_m.y, 0.0},
+          {x - lens_point_m.x / camera.focus_m, y - lens_point_m.y / camera.focus_m, -1.0}};
+}
+
+bool meets_front(const RayMesh& mesh, std::uint32_t triangle, const LensRay& ray) {
+  const Corners corners = corners_of(mesh, triangle);
+  const glm::dvec3 v0{mesh.positions[corners[0]]};
+  const glm::dvec3 v1{mesh.positions[corners[1]]};
+  const glm::dvec3 v2{mesh.positions[corners[2]]};
+  const bool counter_clockwise = dot(cross(v1 - v0, v2 - v0), ray.origin - v0) > 0.0;
+  return counter_clockwise == (mesh.draw.state.front_face == FrontFace::counter_clockwise);
+}
+
+glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, glm::vec3 eye, const LensRay& ray,
+                    const BlockRays& block, const Profile& profile) {
+  const Corners corners = corners_of(mesh, hit.triangle);
+  const bool back = mesh.draw.variant.two_sided && !meets_front(mesh, hit.triangle, ray);
+  const auto& base = mesh.base[back ? 1 : 0];
+  glm::vec3 colour = blend<glm::vec3>({base[corners[0]], base[corners[1]], base[corners[2]]},
+                                      hit.weight_1, hit.weight_2);
+  if (mesh.draw.variant.textured) colour *= texel_at(mesh, corners, hit, block, profile);
+  if (mesh.draw.variant.specular) {
+    std::array<glm::vec3, 3> specular;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t vertex = corners[i];
+      const glm::vec3 normal = back ? -mesh.normals[vertex] : mesh.normals[vertex];
+      const SurfaceVertexInput& input = mesh.draw.input;
+      specular[i] = light_point(*input.material, input.ambient_light, input.lights,
+                                mesh.world[vertex], normal, normalize(eye - mesh.world[vertex]))
+                        .specular;
+    }
+    colour += blend(specular, hit.weight_1, hit.weight_2);
+  }
+  return colour;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,191 @@
+#include "scenes/lens_views/ray_traced.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "raster/numbers/vector_math.h"
+#include "scenes/lens_views/lens_view.h"
+#include "scenes/lens_views/ray_geometry.h"
+#include "scenes/lens_views/take_samples.h"
+
+namespace softfocus {
+namespace {
+
+template <auto release>
+struct Release {
+  template <class Handle>
+  void operator()(Handle* handle) const {
+    release(handle);
+  }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>>;
+using Tree = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>>;
+using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release<rtcReleaseGeometry>>;
+
+void check(const Device& device) {
+  const RTCError error = rtcGetDeviceError(device.get());
+  if (error == RTC_ERROR_NONE) return;
+  throw std::runtime_error("ray-traced: Embree failed with error " + std::to_string(error) +
+                           (error == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
+}
+
+/// Lets rays through the backs of surfaces that are drawn from the front only.
+void skip_backs(const RTCFilterFunctionNArguments* arguments) {
+  if (arguments->N != 1 || arguments->valid[0] == 0) return;
+  const auto& mesh = *static_cast<const RayMesh*>(arguments->geometryUserPtr);
+  RTCRayN* const ray = arguments->ray;
+  const LensRay lens_ray{
+      {RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0)},
+      {RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)}};
+  if (!meets_front(mesh, RTCHitN_primID(arguments->hit, 1, 0), lens_ray)) arguments->valid[0] = 0;
+}
+
+struct TracedScene {
+  std::vector<RayMesh> meshes;  // which the tree refers to
+  Device device;
+  Tree tree;
+};
+
+void add_mesh(TracedScene& traced, RayMesh& mesh) {
+  const auto& indices = mesh.draw.input.mesh->indices;
+  const Geometry geometry{rtcNewGeometry(traced.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE)};
+  // Embree reads 16 bytes of the last vertex.
+  const std::size_t vertices = mesh.positions.size();
+  mesh.positions.emplace_back(0.0f);
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             mesh.positions.data(), 0, sizeof(glm::vec3), vertices);
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             indices.data(), 0, 3 * sizeof(std::uint32_t), indices.size() / 3);
+  rtcSetGeometryUserData(geometry.get(), &mesh);
+  if (mesh.draw.state.cull == Cull::back) {
+    rtcSetGeometryIntersectFilterFunction(geometry.get(), skip_backs);
+  }
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(traced.tree.get(), geometry.get());
+}
+
+TracedScene traced_scene(const SceneMethodInput& input) {
+  TracedScene traced;
+  traced.meshes = ray_meshes(input.scene, input.view, input.frame);
+  // No threads of its own: rays are traced on the pool's.
+  traced.device.reset(rtcNewDevice("threads=1"));
+  check(traced.device);
+  traced.tree.reset(rtcNewScene(traced.device.get()));
+  rtcSetSceneFlags(traced.tree.get(), RTC_SCENE_FLAG_ROBUST);  // no ray between two triangles
+  rtcSetSceneBuildQuality(traced.tree.get(), RTC_BUILD_QUALITY_HIGH);
+  for (RayMesh& mesh : traced.meshes) add_mesh(traced, mesh);
+  rtcCommitScene(traced.tree.get());
+  check(traced.device);
+  return traced;
+}
+
+RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const Camera& camera) {
+  RTCRayHit hit{};
+  hit.ray.org_x = static_cast<float>(lens_ray.origin.x);
+  hit.ray.org_y = static_cast<float>(lens_ray.origin.y);
+  hit.ray.org_z = static_cast<float>(lens_ray.origin.z);
+  hit.ray.dir_x = static_cast<float>(lens_ray.direction.x);
+  hit.ray.dir_y = static_cast<float>(lens_ray.direction.y);
+  hit.ray.dir_z = static_cast<float>(lens_ray.direction.z);
+  hit.ray.tnear = static_cast<float>(camera.near_m);
+  hit.ray.tfar = static_cast<float>(camera.far_m);
+  hit.ray.mask = std::numeric_limits<unsigned>::max();
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(traced.tree.get(), &hit);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(traced.tree.get(), &context, &hit);
+#endif
+  return hit;
+}
+
+/// Of each pixel another block of the sequence's points: an exclusive or leads every
+/// aligned block of 2^k points to another. The finaliser of MurmurHash3 (Appleby).
+std::uint32_t block_of_pixel(int x, int y) {
+  std::uint32_t hash =
+      static_cast<std::uint32_t>(x) * 0x9E3779B9u ^ static_cast<std::uint32_t>(y) * 0x85EBCA77u;
+  hash ^= hash >> 16;
+  hash *= 0x85EBCA6Bu;
+  hash ^= hash >> 13;
+  hash *= 0xC2B2AE35u;
+  hash ^= hash >> 16;
+  return hash % kMostSamples;
+}
+
+/// Everything that a ray needs to know.
+struct Tracer {
+  const SceneMethodInput& input;
+  TracedScene traced;
+  RayCamera camera;
+  std::vector<glm::dvec2> points;   // of the lens, in metres
+  std::vector<glm::dvec2> offsets;  // in the pixel
+  std::vector<glm::vec3> eyes;      // the lens's points in the world
+};
+
+glm::vec3 trace(const Tracer& tracer, int x, int y, std::uint32_t sample) {
+  const SceneMethodInput& input = tracer.input;
+  const glm::dvec2 point = tracer.points[sample];
+  const glm::dvec2 offset = tracer.offsets[sample] + 0.5;
+  const auto ray_through = [&](int pixel_x, int pixel_y) {
+    return lens_ray(tracer.camera, point, pixel_x + offset.x, pixel_y + offset.y);
+  };
+  const LensRay ray = ray_through(x, y);
+  const RTCRayHit hit = intersect(tracer.traced, ray, input.scene.camera);
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return input.scene.background;
+  const int left = x & ~1, top = y & ~1;
+  const BlockRays block{ray_through(left, top), ray_through(left + 1, top),
+                        ray_through(left, top + 1)};
+  return shade_hit(tracer.traced.meshes[hit.hit.geomID], {hit.hit.primID, hit.hit.u, hit.hit.v},
+                   tracer.eyes[sample], ray, block, input.profile);
+}
+
+}  // namespace
+
+std::string_view ray_traced_missing() { return {}; }
+
+SampledPicture ray_traced(const SceneMethodInput& input, ThreadPool& pool) {
+  const int width = input.pinhole.width;
+  Tracer tracer{input,
+                traced_scene(input),
+                ray_camera(input.view, input.focus_m, width, input.pinhole.height),
+                lens_points(input.sampling.aperture, kMostSamples),
+                pixel_offsets(input.sampling.jitter, kMostSamples),
+                {}};
+  for (glm::dvec2& point : tracer.points) {
+    point *= input.aperture_radius_m;
+    tracer.eyes.emplace_back(
+        lens_view(input.view, point, input.focus_m, glm::dvec2{0.0}, width, input.pinhole.height)
+            .eye);
+  }
+  const auto add_samples = [&](int begin, int end, SampleSums& sums) {
+    pool.for_each(sums.height, [&](int y) {
+      for (int x = 0; x < width; ++x) {
+        const std::uint32_t block = block_of_pixel(x, y);
+        glm::vec3 sum{0.0f};
+        for (int i = begin; i < end; ++i) {
+          sum += trace(tracer, x, y, static_cast<std::uint32_t>(i) ^ block);
+        }
+        double* total = sums_at(sums, x, y);
+        for (int channel = 0; channel < 3; ++channel) {
+          total[channel] += static_cast<double>(sum[channel]);
+        }
+      }
+    });
+    sums.count += end - begin;
+  };
+  return take_samples(input, add_samples, kSampleGroup, pool);
+}
+
+}  // namespace softfocus

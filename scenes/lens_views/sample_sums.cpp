@@ -1,0 +1,153 @@
+#include "scenes/lens_views/sample_sums.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "raster/images/texel.h"
+
+#define SOFTFOCUS_KERNELS "scenes/lens_views/sums_kernels.inl"
+#include "raster/lanes/for_each_isa.inl"
+
+namespace softfocus {
+namespace {
+
+constexpr int kChannels = 4;  // of a pixel, alpha too
+
+std::size_t place_of(const SampleSums& sums, int x, int y) {
+  const int tile = y / kSumTile * sums.tiles_x + x / kSumTile;
+  const int pixel = y % kSumTile * kSumTile + x % kSumTile;
+  return (static_cast<std::size_t>(tile) * kSumTile * kSumTile + static_cast<std::size_t>(pixel)) *
+         kChannels;
+}
+
+}  // namespace
+
+SampleSums make_sample_sums(int width, int height) {
+  SampleSums sums{width, height, 0, (width + kSumTile - 1) / kSumTile, {}};
+  const int tiles_y = (height + kSumTile - 1) / kSumTile;
+  sums.totals.resize(place_of(sums, 0, tiles_y * kSumTile));
+  clear_sums(sums);
+  return sums;
+}
+
+void clear_sums(SampleSums& sums) {
+  sums.count = 0;
+  // -0: what it is added to stays as it is, even -0.
+  std::fill(sums.totals.begin(), sums.totals.end(), -0.0);
+}
+
+double* sums_at(SampleSums& sums, int x, int y) {
+  return sums.totals.data() + place_of(sums, x, y);
+}
+const double* sums_at(const SampleSums& sums, int x, int y) {
+  return sums.totals.data() + place_of(sums, x, y);
+}
+
+void add_row_plain(std::span<const std::uint16_t* const> rows, int halves, double* totals) {
+  for (int i = 0; i < halves; ++i) {
+    float sum = half_to_float(rows[0][i]);
+    for (const std::uint16_t* row_of_next : rows.subspan(1)) sum += half_to_float(row_of_next[i]);
+    totals[i] += static_cast<double>(sum);
+  }
+}
+
+void add_rows(std::span<const std::uint16_t* const> rows, int x, int y, int width, SampleSums& sums,
+              Isa isa) {
+  assert(!rows.empty() && rows.size() <= kSampleGroup);
+  assert(x / kSumTile == (x + width - 1) / kSumTile);
+  double* totals = sums_at(sums, x, y);
+  const int halves = kChannels * width;
+  int done = 0;
+  if (isa != Isa::scalar) {
+    done =
+        SOFTFOCUS_KERNEL(isa, add_row)(rows.data(), static_cast<int>(rows.size()), halves, totals);
+  }
+  std::array<const std::uint16_t*, kSampleGroup> rest{};
+  for (std::size_t i = 0; i < rows.size(); ++i) rest[i] = rows[i] + done;
+  add_row_plain({rest.data(), rows.size()}, halves - done, totals + done);
+}
+
+void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool& pool) {
+  pool.for_each(sums.height, [&](int y) {
+    for (int x = 0; x < sums.width; x += kSumTile) {
+      std::array<const std::uint16_t*, kSampleGroup> rows{};
+      for (std::size_t i = 0; i < pictures.size(); ++i) {
+        assert(pictures[i].width == sums.width && pictures[i].height == sums.height);
+        rows[i] = row<std::uint16_t>(pictures[i], y).data() + kChannels * x;
+      }
+      add_rows({rows.data(), pictures.size()}, x, y, std::min(kSumTile, sums.width - x), sums,
+               pool.isa());
+    }
+  });
+  sums.count += static_cast<int>(pictures.size());
+}
+
+Image mean_picture(const SampleSums& sums, const Image& depth, const Profile& profile,
+                   ThreadPool& pool) {
+  Image picture = make_image(Format::rgba16f, sums.width, sums.height);
+  store_mean(sums, depth, profile, picture, pool);
+  return picture;
+}
+
+void store_mean(const SampleSums& sums, const Image& depth, const Profile& profile, Image& picture,
+                ThreadPool& pool) {
+  assert(sums.count > 0);
+  assert(picture.width == sums.width && picture.height == sums.height);
+  pool.for_each(sums.height, [&](int y) {
+    const auto from = row<std::uint16_t>(depth, y);
+    const auto to = row<std::uint16_t>(picture, y);
+    for (int tile_x = 0; tile_x < sums.width; tile_x += kSumTile) {
+      const int end = std::min(tile_x + kSumTile, sums.width);
+      int x = tile_x;
+      if (pool.isa() != Isa::scalar) {
+        const auto first = static_cast<std::size_t>(kChannels * x);
+        x += SOFTFOCUS_KERNEL(pool.isa(), store_means)(sums_at(sums, x, y), sums.count,
+                                                       profile.half_store, &from[first],
+                                                       kChannels * (end - x), &to[first]) /
+             kChannels;
+      }
+      for (; x < end; ++x) {
+        const auto texel = static_cast<std::size_t>(kChannels * x);
+        const double* totals = sums_at(sums, x, y);
+        for (std::size_t c = 0; c < 3; ++c) {
+          to[texel + c] =
+              float_to_half(static_cast<float>(totals[c] / sums.count), profile.half_store);
+        }
+        to[texel + 3] = from[texel + 3];
+      }
+    }
+  });
+}
+
+SampleSums later_samples(const SampleSums& first, const SampleSums& all) {
+  assert(first.count < all.count && first.totals.size() == all.totals.size());
+  SampleSums later = all;
+  later.count -= first.count;
+  for (std::size_t i = 0; i < later.totals.size(); ++i) later.totals[i] -= first.totals[i];
+  return later;
+}
+
+double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool) {
+  assert(first_half.count > 0 && 2 * first_half.count == all.count);
+  // A row's own sum, then the rows' in order: the same for any number of threads.
+  std::vector<double> squares(static_cast<std::size_t>(all.height));
+  pool.for_each(all.height, [&](int y) {
+    double sum = 0.0;
+    for (int x = 0; x < all.width; ++x) {
+      const double* half = sums_at(first_half, x, y);
+      const double* whole = sums_at(all, x, y);
+      for (int c = 0; c < 3; ++c) {
+        const double difference = (2.0 * half[c] - whole[c]) / first_half.count;
+        sum += difference * difference;
+      }
+    }
+    squares[static_cast<std::size_t>(y)] = sum;
+  });
+  double total = 0.0;
+  for (const double of_row : squares) total += of_row;
+  return std::sqrt(total / (3.0 * all.width * all.height));
+}
+
+}  // namespace softfocus

@@ -1,0 +1,33 @@
+#pragma once
+// From a name or a file to a scene.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "scenes/load/scene_error.h"
+
+namespace softfocus {
+
+/// Where scenes are looked for, in this order: the directories given by the user,
+/// the source tree that the program was built from, the installed share directory.
+std::vector<std::filesystem::path> scene_search_path(
+    const std::vector<std::filesystem::path>& from_user);
+
+/// One built-in or found scene, for the list.
+struct SceneListing {
+  std::string name;   ///< as `render` takes it: the file's stem
+  std::string title;  ///< the file's `title`
+  std::filesystem::path file;
+};
+
+/// Every .toml file on the path, by name; the first of a name wins.
+std::vector<SceneListing> list_scenes(const std::vector<std::filesystem::path>& search_path);
+
+/// `scene` is a .toml file, an .obj model (any string that ends so is a path), or
+/// the name of a scene on the path. Throws SceneError.
+Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path);
+
+}  // namespace softfocus

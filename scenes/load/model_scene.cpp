@@ -1,0 +1,164 @@
+#include "scenes/load/model_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "raster/numbers/exact_math.h"
+#include "raster/numbers/vector_math.h"
+
+namespace softfocus {
+namespace {
+
+// The axes of the camera, and the box along them that holds the model.
+struct SeenBox {
+  glm::dvec3 axes[3];  // right, up, towards the camera
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
+glm::dvec3 along_axes(const SeenBox& box, glm::dvec3 p) {
+  return {dot(p, box.axes[0]), dot(p, box.axes[1]), dot(p, box.axes[2])};
+}
+
+template <class Visit>
+void for_each_position(const Scene& scene, Visit visit) {
+  for (const Mesh& mesh : scene.meshes) {
+    for (const glm::vec3& position : mesh.positions) visit(glm::dvec3{position});
+  }
+}
+
+SeenBox seen_box(const Scene& scene, glm::dvec3 towards) {
+  SeenBox box;
+  box.axes[2] = towards;
+  box.axes[0] = normalize(cross(scene.camera.up, towards));
+  box.axes[1] = cross(box.axes[2], box.axes[0]);
+  for_each_position(scene, [&](glm::dvec3 p) {
+    const glm::dvec3 seen = along_axes(box, p);
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::min(box.low[axis], seen[axis]);
+      box.high[axis] = std::max(box.high[axis], seen[axis]);
+    }
+  });
+  return box;
+}
+
+// Moeller and Trumbore 1997: how many `direction`s the triangle lies ahead, or infinity.
+double ray_to_triangle(glm::dvec3 eye, glm::dvec3 direction, glm::dvec3 a, glm::dvec3 b,
+                       glm::dvec3 c) {
+  constexpr double kMiss = std::numeric_limits<double>::infinity();
+  const glm::dvec3 edge1 = b - a;
+  const glm::dvec3 edge2 = c - a;
+  const glm::dvec3 p = cross(direction, edge2);
+  const double determinant = dot(edge1, p);
+  if (determinant == 0.0) return kMiss;
+  const glm::dvec3 from_a = eye - a;
+  const double u = dot(from_a, p) / determinant;
+  const glm::dvec3 q = cross(from_a, edge1);
+  const double v = dot(direction, q) / determinant;
+  const double distance = dot(edge2, q) / determinant;
+  const bool hit = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0;
+  return hit ? distance : kMiss;
+}
+
+double first_hit(const Scene& scene, glm::dvec3 eye, glm::dvec3 direction) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Mesh& mesh : scene.meshes) {
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const auto corner = [&](std::size_t k) {
+        return glm::dvec3{mesh.positions[mesh.indices[i + k]]};
+      };
+      nearest = std::min(nearest, ray_to_triangle(eye, direction, corner(0), corner(1), corner(2)));
+    }
+  }
+  return nearest;
+}
+
+constexpr glm::dvec3 kViewedFrom{0.6, 0.42, 1.0};
+constexpr double kFilled = 0.9;  // of half the picture
+
+// Stands where every point of the model lies inside the picture: with c its place
+// along the camera's axes from the middle, |c.x| and |c.y| <= (d - c.z) * tangent.
+void fit_camera(Scene& scene) {
+  Camera& camera = scene.camera;
+  const glm::dvec3 towards = normalize(kViewedFrom);
+  const SeenBox box = seen_box(scene, towards);
+  const glm::dvec3 middle = (box.low + box.high) * 0.5;
+  const double tangent = kFilled * exact_math::tan_degrees(camera.fov_y_degrees / 2.0);
+  double distance = 0.0;
+  for_each_position(scene, [&](glm::dvec3 p) {
+    const glm::dvec3 c = along_axes(box, p) - middle;
+    distance = std::max(distance, c.z + std::max(std::fabs(c.x), std::fabs(c.y)) / tangent);
+  });
+  // A flat model seen on edge has no width.
+  distance = std::max(distance, (box.high.z - middle.z) * 1.5);
+  camera.target = (box.axes[0] * middle.x + box.axes[1] * middle.y) + box.axes[2] * middle.z;
+  camera.position = camera.target + towards * distance;
+  // Room to move the camera: half the way before the model, ten times the way behind.
+  camera.near_m = (distance - (box.high.z - middle.z)) * 0.5;
+  camera.far_m = distance * 10.0;
+}
+
+void fit_lens(Scene& scene) {
+  const Camera& camera = scene.camera;
+  const glm::dvec3 way = camera.target - camera.position;
+  const double to_middle = std::sqrt(dot(way, way));
+  const glm::dvec3 forwards = normalize(way);
+  const double hit = first_hit(scene, camera.position, forwards);
+  const double focus = std::isfinite(hit) ? hit : to_middle;
+
+  // r = (A/2) |1/z_f - 1/z| pixels; a flat model seen square on gets the lens of one
+  // that is a tenth of its distance deep.
+  double largest = 0.1 / focus;
+  for_each_position(scene, [&](glm::dvec3 p) {
+    const double z = dot(p - camera.position, forwards);
+    largest = std::max(largest, std::fabs(1.0 / focus - 1.0 / z));
+  });
+  const double pixels = 1024.0 / (2.0 * exact_math::tan_degrees(camera.fov_y_degrees / 2.0));
+  const double aperture_m = 2.0 * kModelCocPx / (largest * pixels);
+  ThinLens& lens = scene.lens.lens;
+  lens.focus_m = focus;
+  lens.focal_length_mm = focus * 1000.0 / 20.0;
+  lens.f_number = lens.focal_length_mm / (aperture_m * 1000.0);
+}
+
+}  // namespace
+
+void add_model(Scene& scene, ObjModel model, const Object& placement,
+               std::optional<std::uint32_t> material) {
+  const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
+  const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
+  for (ObjModel::Part& part : model.parts) {
+    Object object = placement;
+    object.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+    object.material = material.value_or(first_material + part.material);
+    scene.meshes.push_back(std::move(part.mesh));
+    scene.objects.push_back(object);
+  }
+  if (!material) {
+    for (Texture& texture : model.textures) scene.textures.push_back(std::move(texture));
+    for (Material& own : model.materials) {
+      if (own.texture) *own.texture += first_texture;
+      scene.materials.push_back(std::move(own));
+    }
+  }
+  scene.warnings.insert(scene.warnings.end(), model.warnings.begin(), model.warnings.end());
+}
+
+Scene make_model_scene(ObjModel model, const std::string& name) {
+  Scene scene;
+  scene.name = name;
+  scene.title = name;
+  scene.background = {0.14f, 0.15f, 0.17f};
+  scene.ambient_light = {0.17f, 0.175f, 0.19f};
+  scene.lights = {
+      {LightKind::directional, {-0.5f, 0.9f, 0.8f}, {1.05f, 1.0f, 0.92f}},
+      {LightKind::directional, {1.0f, 0.25f, 0.35f}, {0.25f, 0.28f, 0.34f}},
+  };
+  add_model(scene, std::move(model), Object{}, std::nullopt);
+  fit_camera(scene);
+  fit_lens(scene);
+  return scene;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,32 @@
+#pragma once
+// A model in a scene, and a model that is given as the scene itself.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "scenes/load/obj_model.h"
+#include "scenes/scene.h"
+
+namespace softfocus {
+
+/// Puts each part of the model where `placement` says, with its own materials or all
+/// of `material`. The model's warnings become the scene's.
+void add_model(Scene& scene, ObjModel model, const Object& placement,
+               std::optional<std::uint32_t> material);
+
+/// A scene for a model that comes without one, whatever its unit of length:
+///   camera  three-quarter view from the front, a little from above, the model within
+///           90 % of a square picture; 40 degrees
+///   focus   where the middle of the picture first meets the model, or the middle of
+///           the model's depth where it meets none
+///   lens    focal length 1/20 of the focus distance (50 mm at 1 m), and the f-number
+///           that gives the point of the model farthest out of focus a circle of
+///           kModelCocPx, whatever the model's size
+///   light   a key from the upper left, a weak fill from the right, neutral grey behind
+Scene make_model_scene(ObjModel model, const std::string& name);
+
+/// Radius in pixels of a picture of 1024 rows.
+inline constexpr double kModelCocPx = 12.0;
+
+}  // namespace softfocus

@@ -1,0 +1,122 @@
+#include "scenes/load/mtl_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "scenes/load/file_bytes.h"
+#include "scenes/load/texture_file.h"
+
+#define TINYOBJLOADER_IMPLEMENTATION
+#include <tiny_obj_loader.h>
+
+namespace softfocus {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = std::size_t{1} << 24;
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return std::filesystem::exists(file, unknown);
+}
+
+// 0 to 1 and a little over; NaN and what is below give 0.
+glm::vec3 reflectance(const float (&value)[3]) {
+  const auto limited = [](float x) { return x > 0.0f ? std::min(x, 10.0f) : 0.0f; };
+  return {limited(value[0]), limited(value[1]), limited(value[2])};
+}
+
+// As it is written, with forward slashes, and by its last part: libraries carry the
+// paths of the machine they were made on.
+std::filesystem::path find_texture(const std::filesystem::path& library, std::string written) {
+  std::replace(written.begin(), written.end(), '\\', '/');
+  const std::filesystem::path as_written = library.parent_path() / written;
+  const std::filesystem::path beside =
+      library.parent_path() / std::filesystem::path(written).filename();
+  return is_there(as_written) ? as_written : is_there(beside) ? beside : std::filesystem::path{};
+}
+
+bool is_picture(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& letter : extension) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  constexpr std::array<std::string_view, 3> kKnown = {".png", ".jpg", ".jpeg"};
+  return std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
+}
+
+// The index of the texture that a material names, loaded once.
+std::optional<std::uint32_t> texture_index(const std::filesystem::path& library,
+                                           const tinyobj::material_t& from,
+                                           MtlMaterials& materials) {
+  const auto warn = [&](const std::string& reason) {
+    materials.warnings.push_back(library.string() + ": material " + from.name + ": texture " +
+                                 from.diffuse_texname + " " + reason);
+  };
+  const std::filesystem::path file = find_texture(library, from.diffuse_texname);
+  if (file.empty()) {
+    warn("is missing");
+    return std::nullopt;
+  }
+  if (!is_picture(file)) {
+    warn("is neither PNG nor JPEG, and left out");
+    return std::nullopt;
+  }
+  const auto [entry, is_new] = materials.texture_of_file.emplace(
+      file.lexically_normal().string(), static_cast<std::uint32_t>(materials.textures.size()));
+  if (is_new) materials.textures.push_back(load_texture(file));
+  return entry->second;
+}
+
+Material make_material(const std::filesystem::path& library, const tinyobj::material_t& from,
+                       MtlMaterials& materials) {
+  constexpr glm::vec3 kBlack{0.0f};
+  constexpr glm::vec3 kWhite{1.0f};
+  Material material;
+  material.name = from.name;
+  material.two_sided = true;
+  material.diffuse = reflectance(from.diffuse);
+  if (!from.diffuse_texname.empty()) {
+    material.texture = texture_index(library, from, materials);
+    if (from.diffuse_texopt.clamp) {
+      material.sampler.wrap_u = material.sampler.wrap_v = Wrap::clamp_to_edge;
+    }
+    if (material.texture && material.diffuse == kBlack) material.diffuse = kWhite;
+    if (!material.texture) material.diffuse = neutral_grey().diffuse;
+  }
+  material.ambient = reflectance(from.ambient);
+  if (material.ambient == kBlack || material.ambient == kWhite) {
+    material.ambient = material.diffuse;
+  }
+  material.specular = reflectance(from.specular);
+  const float shininess = from.shininess >= 1.0f ? std::min(from.shininess, 1024.0f) : 1.0f;
+  material.shininess = static_cast<int>(shininess + 0.5f);
+  return material;
+}
+
+}  // namespace
+
+Material neutral_grey() {
+  Material grey;
+  grey.name = "neutral grey";
+  grey.ambient = grey.diffuse = glm::vec3{0.5f};
+  grey.specular = glm::vec3{0.08f};
+  grey.two_sided = true;
+  return grey;
+}
+
+void load_mtl(const std::filesystem::path& library, MtlMaterials& materials) {
+  std::istringstream text(read_file_bytes(library, kMaxFileBytes));
+  std::map<std::string, int> index_of_name;
+  std::vector<tinyobj::material_t> read;
+  std::string warning;
+  std::string error;
+  tinyobj::LoadMtl(&index_of_name, &read, &text, &warning, &error);
+  for (const tinyobj::material_t& from : read) {
+    if (from.name.empty() || materials.by_name.contains(from.name)) continue;
+    materials.by_name.emplace(from.name, make_material(library, from, materials));
+  }
+}
+
+}  // namespace softfocus

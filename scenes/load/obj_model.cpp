@@ -1,0 +1,279 @@
+#include "scenes/load/obj_model.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+
+#include "raster/numbers/vector_math.h"
+#include "scenes/load/file_bytes.h"
+#include "scenes/load/mtl_file.h"
+#include "scenes/load/obj_text.h"
+#include "scenes/make/polygon.h"
+#include "scenes/make/random_bits.h"
+#include "scenes/load/scene_error.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = std::size_t{1} << 29;
+
+// Three corners whose normals index all_normals below.
+struct Triangle {
+  std::array<ObjCorner, 3> corners;
+  std::uint32_t face = 0;
+  glm::dvec3 area_normal{0.0};  // its length is twice the area
+};
+
+// Numbers things in the order in which they come. Nothing ever goes through the hash
+// map in its own order, which differs between libraries.
+class FirstComeNumbers {
+ public:
+  using Key = std::array<std::uint32_t, 3>;
+  /// The key's number, and whether it is new.
+  std::pair<std::uint32_t, bool> number(const Key& key) {
+    const auto [entry, is_new] = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size()));
+    return {entry->second, is_new};
+  }
+
+ private:
+  struct Mix {
+    std::size_t operator()(const Key& key) const {
+      const std::uint64_t low = static_cast<std::uint64_t>(key[0]) << 32 | key[1];
+      return static_cast<std::size_t>(mix_bits(mix_bits(low) + key[2]));
+    }
+  };
+  std::unordered_map<Key, std::uint32_t, Mix> numbers_;
+};
+
+FirstComeNumbers::Key bits_of(glm::vec3 p) {
+  // 0 + -0 is 0: the two are one place.
+  return {std::bit_cast<std::uint32_t>(p.x + 0.0f), std::bit_cast<std::uint32_t>(p.y + 0.0f),
+          std::bit_cast<std::uint32_t>(p.z + 0.0f)};
+}
+
+FirstComeNumbers::Key key_of(const ObjCorner& corner) {
+  return {static_cast<std::uint32_t>(corner.position), static_cast<std::uint32_t>(corner.uv),
+          static_cast<std::uint32_t>(corner.normal)};
+}
+
+// A normal of length 0 counts as none.
+bool has_normal(const ObjText& obj, const ObjCorner& corner) {
+  return corner.normal >= 0 &&
+         obj.normals[static_cast<std::size_t>(corner.normal)] != glm::vec3{0.0f};
+}
+
+// Whether the normals given for a triangle point to its other side.
+bool is_wound_against_normals(const ObjText& obj, const Triangle& triangle) {
+  double agreement = 0.0;
+  for (const ObjCorner& corner : triangle.corners) {
+    if (!has_normal(obj, corner)) return false;
+    const glm::dvec3 given{obj.normals[static_cast<std::size_t>(corner.normal)]};
+    agreement += dot(triangle.area_normal, normalize(given));
+  }
+  return agreement < 0.0;
+}
+
+// Those with an area.
+std::vector<Triangle> make_triangles(const ObjText& obj) {
+  const auto place = [&](const ObjCorner& corner) {
+    return glm::dvec3{obj.positions[static_cast<std::size_t>(corner.position)]};
+  };
+  std::vector<Triangle> triangles;
+  std::vector<glm::dvec3> outline;
+  for (std::size_t f = 0; f < obj.faces.size(); ++f) {
+    const ObjFace& face = obj.faces[f];
+    const ObjCorner* corners = &obj.corners[face.first_corner];
+    outline.clear();
+    for (std::uint32_t i = 0; i < face.corner_count; ++i) outline.push_back(place(corners[i]));
+    for (const auto& [a, b, c] : triangulate_polygon(outline)) {
+      Triangle triangle{{corners[a], corners[b], corners[c]}, static_cast<std::uint32_t>(f)};
+      triangle.area_normal = cross(outline[b] - outline[a], outline[c] - outline[a]);
+      if (triangle.area_normal == glm::dvec3{0.0}) continue;
+      if (is_wound_against_normals(obj, triangle)) {
+        std::swap(triangle.corners[1], triangle.corners[2]);
+        triangle.area_normal = -triangle.area_normal;
+      }
+      triangles.push_back(triangle);
+    }
+  }
+  return triangles;
+}
+
+// Gives every corner a normal: the one given, the mean over the triangles that meet at
+// its place in its smoothing group (weighted by area), or its triangle's own. Returns
+// the normals that the corners then refer to.
+std::vector<glm::vec3> complete_normals(const ObjText& obj, std::vector<Triangle>& triangles) {
+  std::vector<glm::vec3> all_normals;
+  for (const glm::vec3& normal : obj.normals) {
+    all_normals.emplace_back(normalize(glm::dvec3{normal}));
+  }
+  // A file without smoothing groups means a smooth surface more often than a flat one.
+  const auto group_of = [&](const Triangle& triangle) {
+    return obj.has_smoothing_groups ? obj.faces[triangle.face].smoothing_group : 1;
+  };
+
+  FirstComeNumbers places;
+  std::vector<std::uint32_t> place_of;
+  for (const glm::vec3& position : obj.positions) {
+    place_of.push_back(places.number(bits_of(position)).first);
+  }
+  FirstComeNumbers sums;
+  std::vector<glm::dvec3> sum_of;
+  const auto sum_number = [&](const Triangle& triangle, const ObjCorner& corner) {
+    const std::uint32_t place = place_of[static_cast<std::size_t>(corner.position)];
+    const auto [number, is_new] = sums.number({place, group_of(triangle), 0});
+    if (is_new) sum_of.emplace_back(0.0);
+    return number;
+  };
+  for (const Triangle& triangle : triangles) {
+    if (group_of(triangle) == 0) continue;
+    for (const ObjCorner& corner : triangle.corners) {
+      sum_of[sum_number(triangle, corner)] += triangle.area_normal;
+    }
+  }
+
+  const auto first_sum = static_cast<std::uint32_t>(all_normals.size());
+  for (const glm::dvec3& sum : sum_of) all_normals.emplace_back(normalize(sum));
+  for (Triangle& triangle : triangles) {
+    std::optional<std::uint32_t> own;
+    for (ObjCorner& corner : triangle.corners) {
+      if (has_normal(obj, corner)) continue;
+      std::uint32_t normal = 0;
+      if (group_of(triangle) != 0) normal = first_sum + sum_number(triangle, corner);
+      // Flat, or a sum in which opposite sides cancel.
+      if (group_of(triangle) == 0 || all_normals[normal] == glm::vec3{0.0f}) {
+        if (!own) {
+          own = static_cast<std::uint32_t>(all_normals.size());
+          all_normals.emplace_back(normalize(triangle.area_normal));
+        }
+        normal = *own;
+      }
+      corner.normal = static_cast<std::int32_t>(normal);
+    }
+  }
+  return all_normals;
+}
+
+// A part that is being filled: corners that are equal share a vertex.
+struct GrowingPart {
+  ObjModel::Part part;
+  FirstComeNumbers vertices;
+  bool has_uvs = false;
+};
+
+void append_corner(GrowingPart& growing, const ObjText& obj,
+                   const std::vector<glm::vec3>& all_normals, const ObjCorner& corner) {
+  Mesh& mesh = growing.part.mesh;
+  const auto [vertex, is_new] = growing.vertices.number(key_of(corner));
+  mesh.indices.push_back(vertex);
+  if (!is_new) return;
+  mesh.positions.push_back(obj.positions[static_cast<std::size_t>(corner.position)]);
+  mesh.normals.push_back(all_normals[static_cast<std::size_t>(corner.normal)]);
+  glm::vec2 uv{0.0f};
+  if (corner.uv >= 0) {
+    uv = obj.uvs[static_cast<std::size_t>(corner.uv)];
+    uv.y = 1.0f - uv.y;
+    growing.has_uvs = true;
+  }
+  mesh.uvs.push_back(uv);
+}
+
+void load_libraries(const ObjText& obj, const std::filesystem::path& file,
+                    MtlMaterials& materials) {
+  const auto try_library = [&](const std::filesystem::path& library) {
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(library, unknown)) return false;
+    load_mtl(library, materials);
+    return true;
+  };
+  for (const std::string& written : obj.libraries) {
+    // One name, in which there may be blanks, or several names.
+    if (try_library(file.parent_path() / written)) continue;
+    std::size_t start = 0;
+    while (start < written.size()) {
+      const std::size_t end = std::min(written.find_first_of(" \t", start), written.size());
+      const std::string name = written.substr(start, end - start);
+      if (!name.empty() && !try_library(file.parent_path() / name)) {
+        materials.warnings.push_back(file.string() + ": material library " + name +
+                                     " is missing; neutral grey stands in");
+      }
+      start = end + 1;
+    }
+  }
+}
+
+// The materials by the numbers that the faces have, neutral grey for none at the end.
+std::vector<Material> list_materials(const ObjText& obj, const std::filesystem::path& file,
+                                     MtlMaterials& from) {
+  std::vector<Material> materials;
+  for (const std::string& name : obj.material_names) {
+    const auto found = from.by_name.find(name);
+    if (found == from.by_name.end()) {
+      from.warnings.push_back(file.string() + ": material " + name +
+                              " is not defined; neutral grey stands in");
+    }
+    materials.push_back(found != from.by_name.end() ? found->second : neutral_grey());
+  }
+  materials.push_back(neutral_grey());
+  return materials;
+}
+
+void check_size(const std::vector<Triangle>& triangles, const ObjText& obj,
+                const std::filesystem::path& file) {
+  constexpr float kSmallest = 1e-9f;  // lengths are squared in binary32
+  for (const Triangle& triangle : triangles) {
+    const auto place = [&](const ObjCorner& corner) {
+      return obj.positions[static_cast<std::size_t>(corner.position)];
+    };
+    for (const ObjCorner& corner : triangle.corners) {
+      const glm::vec3 extent = place(corner) - place(triangles[0].corners[0]);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (std::fabs(extent[axis]) >= kSmallest) return;
+      }
+    }
+  }
+  throw SceneError(file.string() +
+                   ": no face has an area; a model at least 1e-9 across would be right");
+}
+
+}  // namespace
+
+ObjModel load_obj_model(const std::filesystem::path& file) {
+  const ObjText obj = parse_obj_text(read_file_bytes(file, kMaxFileBytes), file.string());
+  std::vector<Triangle> triangles = make_triangles(obj);
+  check_size(triangles, obj, file);
+  const std::vector<glm::vec3> all_normals = complete_normals(obj, triangles);
+
+  MtlMaterials library;
+  load_libraries(obj, file, library);
+  ObjModel model;
+  model.materials = list_materials(obj, file, library);
+  model.textures = std::move(library.textures);
+  for (const std::string& warning : library.warnings) {
+    model.warnings.push_back(printable(warning));
+  }
+
+  const std::size_t without_material = obj.material_names.size();
+  std::vector<GrowingPart> growing;
+  std::vector<std::optional<std::size_t>> part_of(model.materials.size());
+  for (const Triangle& triangle : triangles) {
+    const std::int32_t named = obj.faces[triangle.face].material;
+    const std::size_t material = named >= 0 ? static_cast<std::size_t>(named) : without_material;
+    if (!part_of[material]) {
+      part_of[material] = growing.size();
+      growing.emplace_back().part.material = static_cast<std::uint32_t>(material);
+    }
+    for (const ObjCorner& corner : triangle.corners) {
+      append_corner(growing[*part_of[material]], obj, all_normals, corner);
+    }
+  }
+  for (GrowingPart& part : growing) {
+    if (!part.has_uvs) part.part.mesh.uvs.clear();
+    model.parts.push_back(std::move(part.part));
+  }
+  return model;
+}
+
+}  // namespace softfocus

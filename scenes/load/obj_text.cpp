@@ -1,0 +1,196 @@
+#include "scenes/load/obj_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "scenes/load/decimal.h"
+#include "scenes/load/scene_error.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+
+// The line that is being read.
+struct Place {
+  const std::string& file;
+  std::size_t line = 0;
+};
+
+[[noreturn]] void fail(const Place& place, const std::string& reason) {
+  throw SceneError(place.file + ":" + std::to_string(place.line) + ": " + reason);
+}
+
+// Takes the next word off the line; empty at its end.
+std::string_view next_word(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+// The numbers of a v, vt or vn line: at least `least`, further ones up to `most` where
+// they are there.
+void read_numbers(const Place& place, std::string_view line, int least, int most, float* numbers) {
+  for (int i = 0; i < most; ++i) {
+    const std::string_view word = next_word(line);
+    if (word.empty() && i >= least) return;
+    const auto number = decimal_to_float(word);
+    if (!number) {
+      fail(place, word.empty() ? "has " + std::to_string(i) + " numbers; " + std::to_string(least) +
+                                     " would be right"
+                               : "\"" + std::string(word.substr(0, 40)) + "\" is no number");
+    }
+    if (!(std::fabs(*number) <= kLargestCoordinate)) {
+      fail(place, std::string(word.substr(0, 40)) +
+                      " is out of range; a number from -1e9 to 1e9 would be right");
+    }
+    numbers[i] = *number;
+  }
+}
+
+// One index of a corner such as 7/-1/3; `count` is how many there are so far, from
+// which a negative one counts back.
+std::int32_t read_index(const Place& place, std::string_view text, std::size_t count,
+                        const char* what) {
+  std::int32_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (end != text.data() + text.size() || error != std::errc{} || index == 0) {
+    fail(place, "\"" + std::string(text.substr(0, 40)) + "\" is no index of a " + what +
+                    "; a whole number from 1, or from -1 backwards, would be right");
+  }
+  if (index > 0) return index - 1;
+  const std::int64_t from_end = static_cast<std::int64_t>(count) + index;
+  if (from_end < 0) {
+    fail(place, std::to_string(index) + " goes back before the first " + what + "; there are " +
+                    std::to_string(count) + " so far");
+  }
+  return static_cast<std::int32_t>(from_end);
+}
+
+ObjCorner read_corner(const Place& place, std::string_view word, const ObjText& obj) {
+  ObjCorner corner;
+  const std::size_t first = word.find('/');
+  corner.position = read_index(place, word.substr(0, first), obj.positions.size(), "position");
+  if (first == std::string_view::npos) return corner;
+  const std::size_t second = word.find('/', first + 1);
+  const std::string_view uv = word.substr(first + 1, second - first - 1);
+  if (!uv.empty()) corner.uv = read_index(place, uv, obj.uvs.size(), "texture coordinate");
+  if (second == std::string_view::npos) return corner;
+  const std::string_view normal = word.substr(second + 1);
+  if (!normal.empty()) corner.normal = read_index(place, normal, obj.normals.size(), "normal");
+  return corner;
+}
+
+void check_index(const Place& place, std::int32_t index, std::size_t count, const char* what) {
+  if (index < 0 || static_cast<std::size_t>(index) < count) return;
+  fail(place, "the face refers to " + std::string(what) + " " + std::to_string(index + 1) +
+                  "; the file has " + std::to_string(count));
+}
+
+// What usemtl and s have set for the faces that follow.
+struct FaceState {
+  std::int32_t material = -1;
+  std::uint32_t smoothing_group = 0;
+};
+
+// Takes the next line off the text, with the lines that continue it.
+std::string_view next_line(std::string_view& text, std::string& joined, std::size_t& line_count) {
+  joined.clear();
+  for (;;) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view line = text.substr(0, end);
+    const std::size_t ending = text.substr(end).starts_with("\r\n") ? 2 : 1;
+    text.remove_prefix(std::min(end + ending, text.size()));
+    ++line_count;
+    const bool continues = line.ends_with('\\');
+    if (continues) line.remove_suffix(1);
+    if (!continues && joined.empty()) return line;
+    joined.append(line).append(" ");
+    if (!continues || text.empty()) return joined;
+  }
+}
+
+}  // namespace
+
+ObjText parse_obj_text(std::string_view text, const std::string& file) {
+  Place place{file};
+  if (text.find('\0') != std::string_view::npos) {
+    throw SceneError(file + ": is binary; an OBJ model is text");
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  ObjText obj;
+  FaceState state;
+  std::vector<std::size_t> face_lines;
+  std::string joined;
+  std::size_t lines_read = 0;
+  while (!text.empty()) {
+    place.line = lines_read + 1;
+    std::string_view line = next_line(text, joined, lines_read);
+    const std::string_view keyword = next_word(line);
+    if (keyword == "v") {
+      float p[3];
+      read_numbers(place, line, 3, 3, p);
+      obj.positions.emplace_back(p[0], p[1], p[2]);
+    } else if (keyword == "vt") {
+      float uv[2] = {0.0f, 0.0f};
+      read_numbers(place, line, 1, 2, uv);
+      obj.uvs.emplace_back(uv[0], uv[1]);
+    } else if (keyword == "vn") {
+      float n[3];
+      read_numbers(place, line, 3, 3, n);
+      obj.normals.emplace_back(n[0], n[1], n[2]);
+    } else if (keyword == "f") {
+      ObjFace face{static_cast<std::uint32_t>(obj.corners.size()), 0, state.material,
+                   state.smoothing_group};
+      for (auto word = next_word(line); !word.empty() && word[0] != '#'; word = next_word(line)) {
+        if (face.corner_count++ == kMaxFaceCorners) {
+          fail(place, "the face has more than " + std::to_string(kMaxFaceCorners) +
+                          " corners; smaller faces would do");
+        }
+        obj.corners.push_back(read_corner(place, word, obj));
+      }
+      if (face.corner_count < 3) {
+        fail(place, "the face has " + std::to_string(face.corner_count) +
+                        " corners; 3 or more would be right");
+      }
+      obj.faces.push_back(face);
+      face_lines.push_back(place.line);
+    } else if (keyword == "usemtl") {
+      const std::string name{trimmed(line)};
+      const auto found = std::find(obj.material_names.begin(), obj.material_names.end(), name);
+      state.material = static_cast<std::int32_t>(found - obj.material_names.begin());
+      if (found == obj.material_names.end()) obj.material_names.push_back(name);
+    } else if (keyword == "mtllib") {
+      obj.libraries.emplace_back(trimmed(line));
+    } else if (keyword == "s") {
+      const std::string_view group = next_word(line);
+      state.smoothing_group = 0;  // for `off` too
+      std::from_chars(group.data(), group.data() + group.size(), state.smoothing_group);
+      obj.has_smoothing_groups = true;
+    }
+  }
+
+  // At the end only: files exist in which faces come before their vertices.
+  for (std::size_t i = 0; i < obj.faces.size(); ++i) {
+    place.line = face_lines[i];
+    for (std::uint32_t k = 0; k < obj.faces[i].corner_count; ++k) {
+      const ObjCorner& corner = obj.corners[obj.faces[i].first_corner + k];
+      check_index(place, corner.position, obj.positions.size(), "position");
+      check_index(place, corner.uv, obj.uvs.size(), "texture coordinate");
+      check_index(place, corner.normal, obj.normals.size(), "normal");
+    }
+  }
+  if (obj.faces.empty()) {
+    throw SceneError(file + ": has no face; an OBJ model with `v` and `f` lines would be right");
+  }
+  return obj;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,131 @@
+#include "scenes/load/scene_file.h"
+
+#include <array>
+#include <cmath>
+
+#include "dof/method.h"
+#include "raster/numbers/vector_math.h"
+#include "scenes/load/file_bytes.h"
+#include "scenes/load/scene_error.h"
+#include "scenes/load/scene_objects.h"
+#include "scenes/load/scene_surfaces.h"
+#include "scenes/load/toml_reading.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = std::size_t{1} << 24;
+constexpr double kBrightest = 1000.0;
+
+toml::table parse_toml(std::string_view text, const std::filesystem::path& file) {
+  try {
+    return toml::parse(text, file.string());
+  } catch (const toml::parse_error& error) {
+    throw SceneError(file.string() + ":" + std::to_string(error.source().begin.line) +
+                     ": is no TOML: " + std::string(error.description()) +
+                     "; see https://toml.io and docs/scene-format.md");
+  }
+}
+
+Camera read_camera(Section section) {
+  Camera camera;
+  camera.position = read_vector(section, "position", camera.position, kAnyPlace);
+  camera.target = read_vector(section, "target", camera.target, kAnyPlace);
+  camera.up = read_vector(section, "up", camera.up, kAnyPlace);
+  camera.fov_y_degrees = read_number(section, "fov_degrees", camera.fov_y_degrees, {1.0, 170.0});
+  camera.near_m = read_number(section, "near_m", camera.near_m, kAnySize);
+  camera.far_m = read_number(section, "far_m", camera.far_m, kAnySize);
+  camera.orbit_degrees_per_frame = read_number(section, "orbit_degrees_per_frame",
+                                               camera.orbit_degrees_per_frame, {-360.0, 360.0});
+  if (camera.near_m >= camera.far_m) {
+    fail_at(section, "far_m", "must be larger than near_m");
+  }
+  const glm::dvec3 forwards = camera.target - camera.position;
+  if (forwards == glm::dvec3{0.0}) {
+    fail_at(section, "target", "is the camera's position; another point would be right");
+  }
+  // Shorter than this, the sideways axis would be rounding noise.
+  const glm::dvec3 sideways = cross(normalize(forwards), normalize(camera.up));
+  if (dot(sideways, sideways) < 1e-12) {
+    fail_at(section, "up",
+            "points along the view (or nowhere); a direction across it would be right");
+  }
+  finish_section(section);
+  return camera;
+}
+
+SceneLens read_lens(Section section) {
+  SceneLens lens;
+  constexpr Range kPositive{1e-6, 1e9};
+  lens.lens.focal_length_mm =
+      read_number(section, "focal_length_mm", lens.lens.focal_length_mm, kPositive);
+  lens.lens.f_number = read_number(section, "f_number", lens.lens.f_number, kPositive);
+  lens.lens.focus_m = read_number(section, "focus_m", lens.lens.focus_m, kAnySize);
+  lens.coc_scale = read_number(section, "coc_scale", lens.coc_scale, {0.0, 1000.0});
+  lens.max_coc_px_at_1024 =
+      read_number(section, "max_coc_px", lens.max_coc_px_at_1024, {0.0, kLargestMaxCoc});
+  if (const char* error = lens_error(lens.lens)) fail_at(section, "focus_m", error);
+  finish_section(section);
+  return lens;
+}
+
+Light read_light(Section& section) {
+  static constexpr std::array<std::string_view, 2> kKinds = {"directional", "point"};
+  Light light;
+  if (!has_key(section, "kind")) {
+    fail_at(section, "kind", "is missing; \"directional\" or \"point\" would be right");
+  }
+  light.kind = static_cast<LightKind>(read_choice(section, "kind", 0, kKinds));
+  const std::string_view place = light.kind == LightKind::point ? "position" : "direction";
+  if (!has_key(section, place)) {
+    fail_at(section, place, "is missing; an array of three numbers would be right");
+  }
+  light.position_or_direction = glm::vec3{read_vector(section, place, glm::dvec3{0.0}, kAnyPlace)};
+  // Its length is squared in binary32, where less would vanish.
+  if (light.kind == LightKind::directional &&
+      dot(light.position_or_direction, light.position_or_direction) < 1e-12f) {
+    fail_at(section, place, "points nowhere; a vector towards the light would be right");
+  }
+  light.colour = read_colour(section, "colour", light.colour, kBrightest);
+  finish_section(section);
+  return light;
+}
+
+}  // namespace
+
+Scene read_scene_text(std::string_view text, const std::filesystem::path& file) {
+  const toml::table table = parse_toml(text, file);
+  Section top{&table, file.string(), "", {}};
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.title = read_text(top, "title", scene.name);
+  scene.background = read_colour(top, "background", scene.background, kBrightest);
+  scene.ambient_light = read_colour(top, "ambient_light", scene.ambient_light, kBrightest);
+  scene.camera = read_camera(read_section(top, "camera"));
+  scene.lens = read_lens(read_section(top, "lens"));
+
+  constexpr std::size_t kMaxLights = 64;
+  std::vector<Section> lights = read_sections(top, "light");
+  if (lights.size() > kMaxLights) {
+    fail_at(top, "light",
+            "has " + std::to_string(lights.size()) + " lights; up to " +
+                std::to_string(kMaxLights) + " would do");
+  }
+  for (Section& light : lights) scene.lights.push_back(read_light(light));
+
+  const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene);
+  read_objects(top, file.parent_path(), surfaces, scene);
+  finish_section(top);
+  return scene;
+}
+
+Scene read_scene_file(const std::filesystem::path& file) {
+  return read_scene_text(read_file_bytes(file, kMaxFileBytes), file);
+}
+
+std::string read_scene_title(const std::filesystem::path& file) {
+  const toml::table table = parse_toml(read_file_bytes(file, kMaxFileBytes), file);
+  return table["title"].value_or(std::string{});
+}
+
+}  // namespace softfocus

@@ -1,0 +1,129 @@
+#include "scenes/load/scene_surfaces.h"
+
+#include <array>
+#include <bit>
+
+#include "scenes/make/procedural_texture.h"
+#include "scenes/load/texture_file.h"
+
+namespace softfocus {
+namespace {
+
+// More than any scene needs, less than would fill the memory.
+constexpr std::size_t kMaxTextures = 64;
+constexpr int kMaxProceduralSize = 2048;
+
+constexpr std::array<std::string_view, 3> kFilters = {"nearest", "bilinear", "trilinear"};
+constexpr std::array<std::string_view, 3> kWraps = {"repeat", "mirrored_repeat", "clamp_to_edge"};
+
+Texture read_procedural_texture(Section& section) {
+  std::vector<std::string_view> names;
+  for (const TexturePattern& pattern : texture_patterns()) names.push_back(pattern.name);
+  const TexturePattern& pattern = texture_patterns()[read_choice(section, "kind", 0, names)];
+
+  TextureRecipe recipe;
+  recipe.size = read_whole_number(section, "size", recipe.size, 1, kMaxProceduralSize);
+  if (!std::has_single_bit(static_cast<unsigned>(recipe.size))) {
+    fail_at(section, "size",
+            std::to_string(recipe.size) + " is no power of two; " +
+                std::to_string(std::bit_floor(static_cast<unsigned>(recipe.size))) + " or " +
+                std::to_string(std::bit_ceil(static_cast<unsigned>(recipe.size))) +
+                " would be right");
+  }
+  recipe.cells = read_whole_number(section, "cells", recipe.cells, 1, 256);
+  recipe.seed = static_cast<std::uint64_t>(read_whole_number(section, "seed", 1, 0, 1 << 30));
+
+  const auto rows = read_rows(section, "colours", 3, {0.0, 1.0});
+  if (rows.size() != pattern.colour_count) {
+    fail_at(section, "colours",
+            std::to_string(rows.size()) + " are given; the pattern \"" + std::string(pattern.name) +
+                "\" needs " + std::to_string(pattern.colour_count) + " (" +
+                std::string(pattern.colours) + "), each [red, green, blue] from 0 to 1");
+  }
+  for (const auto& row : rows) recipe.colours.emplace_back(glm::dvec3{row[0], row[1], row[2]});
+  return make_procedural_texture(pattern, recipe);
+}
+
+Texture read_texture(Section& section, const std::filesystem::path& directory) {
+  const bool has_kind = has_key(section, "kind");
+  const bool has_file = has_key(section, "file");
+  if (has_kind == has_file) {
+    fail_at(section, has_kind ? "file" : "",
+            "a texture has either a `kind` (made by formula) or a `file` (PNG or JPEG)");
+  }
+  if (has_kind) return read_procedural_texture(section);
+  return load_texture(directory / read_text(section, "file", ""));
+}
+
+Material read_material(Section& section, const std::string& name, const NamedSurfaces& surfaces) {
+  // Light that is reflected more than once over is no material's, but a scene's author
+  // may want it.
+  constexpr double kLargest = 10.0;
+  Material material;
+  material.name = name;
+  material.diffuse = read_colour(section, "diffuse", material.diffuse, kLargest);
+  material.ambient = read_colour(section, "ambient", material.diffuse, kLargest);
+  material.specular = read_colour(section, "specular", material.specular, kLargest);
+  material.shininess = read_whole_number(section, "shininess", material.shininess, 1, 1024);
+  material.two_sided = read_flag(section, "two_sided", material.two_sided);
+  material.lit = read_flag(section, "lit", material.lit);
+  if (has_key(section, "texture")) {
+    const std::string texture = read_text(section, "texture", "");
+    const auto found = surfaces.textures.find(texture);
+    if (found == surfaces.textures.end()) {
+      fail_at(section, "texture",
+              "there is no texture \"" + texture + "\"; a table [texture." + texture +
+                  "] would be right");
+    }
+    material.texture = found->second.index;
+    material.sampler = found->second.sampler;
+  }
+  return material;
+}
+
+}  // namespace
+
+NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory, Scene& scene) {
+  NamedSurfaces surfaces;
+  auto textures = read_named_sections(top, "texture");
+  if (textures.size() > kMaxTextures) {
+    fail_at(top, "texture",
+            "has " + std::to_string(textures.size()) + " textures; up to " +
+                std::to_string(kMaxTextures) + " would do");
+  }
+  for (auto& [name, section] : textures) {
+    Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
+    sampler.filter = static_cast<Filter>(
+        read_choice(section, "filter", static_cast<std::size_t>(sampler.filter), kFilters));
+    sampler.wrap_u = sampler.wrap_v = static_cast<Wrap>(
+        read_choice(section, "wrap", static_cast<std::size_t>(sampler.wrap_u), kWraps));
+    Texture texture = read_texture(section, directory);
+    finish_section(section);
+    surfaces.textures[name] = {static_cast<std::uint32_t>(scene.textures.size()), sampler};
+    scene.textures.push_back(std::move(texture));
+  }
+  for (auto& [name, section] : read_named_sections(top, "material")) {
+    Material material = read_material(section, name, surfaces);
+    finish_section(section);
+    surfaces.materials[name] = static_cast<std::uint32_t>(scene.materials.size());
+    scene.materials.push_back(std::move(material));
+  }
+  return surfaces;
+}
+
+std::uint32_t material_named(const Section& section, std::string_view key, const std::string& name,
+                             const NamedSurfaces& surfaces) {
+  const auto found = surfaces.materials.find(name);
+  if (found == surfaces.materials.end()) {
+    fail_at(
+        section, key,
+        "there is no material \"" + name + "\"; a table [material." + name + "] would be right");
+  }
+  return found->second;
+}
+
+glm::vec3 read_colour(Section& section, std::string_view key, glm::vec3 fallback, double largest) {
+  return glm::vec3{read_vector(section, key, glm::dvec3{fallback}, {0.0, largest})};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,84 @@
+#include "dof/diffusion.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "dof/picture_planes.h"
+#include "raster/images/texel.h"
+#include "tests/support/test_images.h"
+
+using namespace softfocus;
+
+namespace {
+
+// Relaxation until nothing moves: nothing shared with the elimination.
+void relax(std::vector<double>& line, const std::vector<double>& flow) {
+  const std::vector<double> source = line;
+  for (int sweep = 0; sweep < 4000; ++sweep) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const double left = i > 0 ? std::min(flow[i - 1], flow[i]) : 0.0;
+      const double right = i + 1 < line.size() ? std::min(flow[i], flow[i + 1]) : 0.0;
+      line[i] = (source[i] + (i > 0 ? left * line[i - 1] : 0.0) +
+                 (i + 1 < line.size() ? right * line[i + 1] : 0.0)) /
+                (1.0 + left + right);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("diffusion solves its equations, along rows and then along columns") {
+  ThreadPool pool(2);
+  constexpr int kWidth = 23, kHeight = 19;
+  const Image scene = random_scene_image(kWidth, kHeight, 1);
+  const DofInput input{scene, {.coc = {9.0f, 2.0f}, .max_coc_px = 7.0f}, {}};
+  std::vector<double> value, flow;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const SplitTexel texel = split_texel(input, x, y);
+      value.push_back(texel.g);
+      const double r = std::fabs(texel.radius_px);
+      flow.push_back(r > 0.5 ? r * r / 8.0 : 0.0);
+    }
+  }
+  const auto relax_along = [&](std::size_t first, std::size_t step, std::size_t count) {
+    std::vector<double> line, flows;
+    for (std::size_t i = 0; i < count; ++i) {
+      line.push_back(value[first + i * step]);
+      flows.push_back(flow[first + i * step]);
+    }
+    relax(line, flows);
+    for (std::size_t i = 0; i < count; ++i) value[first + i * step] = line[i];
+  };
+  for (std::size_t y = 0; y < kHeight; ++y) relax_along(y * kWidth, 1, kWidth);
+  for (std::size_t x = 0; x < kWidth; ++x) relax_along(x, kWidth, kHeight);
+
+  Image result = make_image(Format::rgba16f, kWidth, kHeight);
+  diffusion(input, result, pool);
+  double worst = 0.0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const double expected = value[static_cast<std::size_t>(y * kWidth + x)];
+      worst = std::max(worst, std::fabs(load_texel(result, x, y).y - expected));
+    }
+  }
+  CHECK(worst < 0x1p-11);
+}
+
+TEST_CASE("diffusion keeps the sum of all light, whatever the depths") {
+  ThreadPool pool(2);
+  const Image scene = random_scene_image(120, 90, 2);
+  Image result = make_image(Format::rgba16f, 120, 90);
+  diffusion({scene, {.coc = {30.0f, 2.0f}, .max_coc_px = 20.0f}, {}}, result, pool);
+  double before = 0.0, after = 0.0;
+  for (int y = 0; y < 90; ++y) {
+    for (int x = 0; x < 120; ++x) {
+      before += load_texel(scene, x, y).x;
+      after += load_texel(result, x, y).x;
+    }
+  }
+  CHECK(after / before == doctest::Approx(1.0).epsilon(1e-4));
+}

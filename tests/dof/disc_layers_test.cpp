@@ -1,0 +1,168 @@
+#include "dof/disc_layers/disc_layers.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "raster/images/texel.h"
+#include "tests/support/test_images.h"
+
+using namespace softfocus;
+
+namespace {
+
+DofSettings settings(float radius_at_infinity, float max_coc) {
+  return {.coc = {radius_at_infinity, 2.0f}, .max_coc_px = max_coc};
+}
+
+Image blurred(const Image& scene, const DofSettings& of, ThreadPool& pool) {
+  Image result = random_scene_image(scene.width, scene.height, 99);
+  disc_layers({scene, of, {}}, result, pool);
+  return result;
+}
+
+// 4 (z - 2) / z = 2 at 4 m; black left of the middle, white right of it.
+Image edge_image(float left_depth_m, float right_depth_m) {
+  Image image = make_image(Format::rgba16f, 128, 96);
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const float light = x < 64 ? 0.0f : 1.0f;
+      store_texel(image, x, y, {light, light, light, x < 64 ? left_depth_m : right_depth_m}, {});
+    }
+  }
+  return image;
+}
+
+// How much of a disc about 0 lies left of x.
+double disc_left_of(double x, double radius) {
+  const double t = std::fmin(std::fmax(x / radius, -1.0), 1.0);
+  return 0.5 + (t * std::sqrt(1.0 - t * t) + std::asin(t)) / 3.14159265358979;
+}
+
+}  // namespace
+
+TEST_CASE("disc-layers is what its oracle says, at any size and radius") {
+  struct Size {
+    int width, height;
+  };
+  for (const Size size : {Size{1, 1}, {2, 3}, {17, 15}, {70, 45}, {129, 31}, {203, 101}}) {
+    const Image scene = random_scene_image(size.width, size.height, 7);
+    for (const float max_coc : {0.0f, 0.7f, 6.9f, 7.25f, 8.0f, 11.0f, 40.0f}) {
+      const DofSettings of = settings(40.0f, max_coc);
+      ThreadPool plain(2, Isa::scalar);
+      Image expected = make_image(scene.format, size.width, size.height);
+      disc_layers_plain({scene, of, {}}, expected, plain);
+      for (const Isa isa : available_isas()) {
+        ThreadPool pool(2, isa);
+        INFO(std::string{isa_name(isa)}, ", ", size.width, "x", size.height, ", ", max_coc);
+        CHECK(equal(blurred(scene, of, pool), expected));
+      }
+    }
+  }
+}
+
+TEST_CASE("disc-layers is what its oracle says where hardly anything is blurred") {
+  // 40 (z - 2) / z: near the focus but for one pixel, whose circle has 6 to 37 pixels.
+  const DofSettings of = settings(40.0f, 40.0f);
+  const int width = 330, height = 70;
+  ThreadPool plain(2, Isa::scalar), pool(2);
+  for (const float depth_m : {1.05f, 1.7f, 30.0f}) {
+    for (const int x : {61, 126, 131, 190}) {
+      Image scene = random_scene_image(width, height, 7);
+      for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u) {
+          glm::vec4 texel = load_texel<Format::rgba16f>(scene, u, v);
+          texel.w = u == x && v == x / 4 ? depth_m : 2.0f;
+          store_texel(scene, u, v, texel, {});
+        }
+      }
+      Image expected = make_image(scene.format, width, height);
+      disc_layers_plain({scene, of, {}}, expected, plain);
+      INFO(x, ", ", depth_m);
+      CHECK(equal(blurred(scene, of, pool), expected));
+    }
+  }
+}
+
+TEST_CASE("a rung's disc has the second moment of its circle") {
+  // Of level 0, where pixels have no size of their own.
+  const std::vector<LevelRungs> ladder = make_ladder(7.0f);
+  REQUIRE(ladder.size() == 2);
+  REQUIRE(ladder[0].rungs.size() == static_cast<std::size_t>(kFineRungs));
+  for (std::size_t i = 1; i < ladder[0].rungs.size(); ++i) {
+    const Rung& rung = ladder[0].rungs[i];
+    double area = 0.0, across = 0.0, down = 0.0;
+    for (int dx = 1 - static_cast<int>(rung.spans.size()); dx < static_cast<int>(rung.spans.size());
+         ++dx) {
+      const LadderSpan& span = rung.spans[static_cast<std::size_t>(std::abs(dx))];
+      for (int dy = -span.whole - 1; dy <= span.whole + 1; ++dy) {
+        const double weight =
+            static_cast<double>(std::abs(dy) > span.whole ? span.end : span.centre);
+        area += weight;
+        across += weight * dx * dx;
+        down += weight * dy * dy;
+      }
+    }
+    const double square = static_cast<double>(rung.square);
+    INFO("radius ", std::sqrt(square));
+    CHECK(static_cast<double>(rung.area) == doctest::Approx(area).epsilon(1e-6));
+    CHECK((across + down) / area == doctest::Approx(square / 2.0).epsilon(1e-3));
+    CHECK(across / down == doctest::Approx(1.0).epsilon(0.1));
+  }
+}
+
+TEST_CASE("a pixel between two rungs counts to both, and the mean of the squares is its own") {
+  const std::vector<LevelRungs> ladder = make_ladder(100.0f);
+  for (const double radius : {0.3, 1.1, 1.3, 5.0, 7.5}) {
+    const float square = static_cast<float>(radius * radius);
+    double shares = 0.0, mean = 0.0;
+    for (std::size_t i = 0; i <= ladder[0].rungs.size(); ++i) {
+      const auto share_from = [&](std::size_t rung) {
+        const RungStep step = rung < ladder[0].rungs.size()    ? ladder[0].rungs[rung].step
+                              : rung == ladder[0].rungs.size() ? ladder[0].beyond
+                                                               : RungStep{1e9f, 1.0f};
+        return std::fmin(std::fmax((square - step.begin) * step.slope, 0.0f), 1.0f);
+      };
+      const float of =
+          i < ladder[0].rungs.size() ? ladder[0].rungs[i].square : ladder[1].rungs[0].square;
+      const double share = static_cast<double>(share_from(i) - share_from(i + 1));
+      shares += share;
+      mean += share * static_cast<double>(of);
+    }
+    CHECK(shares == doctest::Approx(1.0));
+    CHECK(mean == doctest::Approx(radius * radius).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("a foreground's edge before a blurred background is as soft as its own circle") {
+  ThreadPool pool(2);
+  // Black at 1.5 m before white at 8 m: radii -6.67 and 15 for 20 at infinity.
+  const Image result = blurred(edge_image(1.5f, 8.0f), settings(20.0f, 16.0f), pool);
+  double largest = 0.0;
+  for (int x = 40; x < 88; ++x) {
+    const double expected = 1.0 - disc_left_of(63.5 - x, 20.0 / 3.0);
+    const double got = static_cast<double>(load_texel(result, x, 48).y);
+    largest = std::fmax(largest, std::fabs(got - expected));
+  }
+  CHECK(largest < 0.05);
+}
+
+TEST_CASE("a surface that runs through all layers is nowhere seen through") {
+  ThreadPool pool(2);
+  // White, from 1 m to 8 m, with a black wall far behind in the upper half.
+  Image scene = make_image(Format::rgba16f, 256, 96);
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      const float light = y < 40 ? 0.0f : 1.0f;
+      const float depth_m = y < 40 ? 60.0f : 1.0f + 7.0f * static_cast<float>(x) / 256.0f;
+      store_texel(scene, x, y, {light, light, light, depth_m}, {});
+    }
+  }
+  const Image result = blurred(scene, settings(20.0f, 32.0f), pool);
+  float least = 1.0f;
+  for (int x = 0; x < 256; ++x) least = std::fmin(least, load_texel(result, x, 90).y);
+  CHECK(least > 0.998f);
+}

@@ -1,0 +1,340 @@
+// What holds for every method that works from one picture, with the few numbers in which
+// they differ in one table.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+#include "dof/method.h"
+#include "raster/images/texel.h"
+#include "tests/support/test_images.h"
+
+using namespace softfocus;
+
+namespace {
+
+struct Claims {
+  const char* name;
+  /// Largest difference of a constant picture, in half-ULPs.
+  int constant_ulp;
+  /// Light of an isolated point, out / in - 1, at radius 8.
+  double energy_error;
+  /// sqrt(2 E[d^2]) of a point's image, which for a disc is its radius, against the circle
+  /// of confusion: relative error at radius 8.
+  double radius_error;
+  /// Largest difference between the mirror's filtered image and the filtered mirror image.
+  double mirror_error;
+  /// Width of the light that stands for a point: a method at half resolution sees none
+  /// of a pixel.
+  int point_size = 1;
+  /// What is sharp takes no light of a blurred background.
+  bool keeps_background_out = true;
+  /// A blurred foreground's light falls on what is sharp beside it.
+  bool spreads_foreground = true;
+};
+
+constexpr std::array kClaims{
+    Claims{"scatter", 1, 0.002, 0.01, 0.0, 1, false, true},
+    Claims{"scatter-sorted", 1, 0.002, 0.01, 0.0},
+    Claims{"layers", 1, 0.002, 0.01, 0.0},
+    Claims{"diffusion", 1, 0.002, 0.01, 0.002, 1, true, false},
+    Claims{"ring-bucket", 1, 0.1, 0.1, 0.01, 9},
+    Claims{"circular-1", 1, 0.03, 0.05, 0.002, 1, true, false},
+    Claims{"circular-2", 1, 0.03, 0.05, 0.002, 1, true, false},
+    Claims{"disc-layers", 1, 0.002, 0.02, 0.002},
+    Claims{"post-process", 1, 0.01, 0.05, 2.0},
+};
+
+Image filtered(const char* name, const Image& scene, const DofSettings& settings,
+               ThreadPool& pool) {
+  const Method* method = find_method(name);
+  REQUIRE_MESSAGE(method != nullptr, name);
+  // What was there before must not show.
+  Image result = random_scene_image(scene.width, scene.height, 99);
+  method->apply({scene, settings, {}}, result, pool);
+  return result;
+}
+
+DofSettings settings(float radius_at_infinity, float max_coc) {
+  return {.coc = {radius_at_infinity, 2.0f}, .max_coc_px = max_coc};
+}
+
+// Of one colour over random depths.
+Image constant_image(int width, int height, std::uint64_t seed) {
+  Image image = random_scene_image(width, height, seed);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      store_texel(image, x, y, {0.5f, 0.25f, 3.0f, load_texel(image, x, y).w}, {});
+    }
+  }
+  return image;
+}
+
+Image mirrored(const Image& image, bool across) {
+  Image result = make_image(image.format, image.width, image.height);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const glm::vec4 texel = across ? load_texel(image, image.width - 1 - x, y)
+                                     : load_texel(image, x, image.height - 1 - y);
+      store_texel(result, x, y, texel, {});
+    }
+  }
+  return result;
+}
+
+double largest_difference(const Image& a, const Image& b) {
+  double largest = 0.0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      const glm::vec4 p = load_texel(a, x, y), q = load_texel(b, x, y);
+      for (int i = 0; i < 3; ++i) {
+        largest = std::max(largest, static_cast<double>(std::fabs(p[i] - q[i])));
+      }
+    }
+  }
+  return largest;
+}
+
+// Bright pixels in the middle of a black picture, all of it at one depth.
+Image point_image(int size, float depth_m, float light, int point_size) {
+  Image image = make_image(Format::rgba16f, size, size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const int apart = std::max(std::abs(x - size / 2), std::abs(y - size / 2));
+      const float value = apart <= point_size / 2 ? light : 0.0f;
+      store_texel(image, x, y, {value, value, value, depth_m}, {});
+    }
+  }
+  return image;
+}
+
+struct Moments {
+  double light = 0.0;
+  double square = 0.0;  ///< mean squared distance from the middle
+};
+Moments moments(const Image& image) {
+  Moments sum;
+  const int middle = image.width / 2;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double light = load_texel(image, x, y).y;
+      sum.light += light;
+      sum.square += light * ((x - middle) * (x - middle) + (y - middle) * (y - middle));
+    }
+  }
+  sum.square /= sum.light;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("every method leaves a constant colour constant, borders included") {
+  ThreadPool pool(2);
+  for (const Claims& claims : kClaims) {
+    for (const float max_coc : {1.5f, 6.0f, 40.0f}) {
+      const Image scene = constant_image(70, 45, 1);
+      const Image result = filtered(claims.name, scene, settings(20.0f, max_coc), pool);
+      INFO(std::string{claims.name}, ", max_coc ", max_coc);
+      CHECK(compare_images(result, scene).max_ulp <= claims.constant_ulp);
+    }
+  }
+}
+
+TEST_CASE("every method passes a picture in focus through unchanged") {
+  ThreadPool pool(2);
+  Image scene = random_scene_image(66, 50, 2);
+  set_depth(scene, [](int, int) { return 2.0f; });
+  const Image any_depth = random_scene_image(66, 50, 3);
+  for (const Claims& claims : kClaims) {
+    INFO(std::string{claims.name});
+    CHECK(equal(filtered(claims.name, scene, settings(30.0f, 16.0f), pool), scene));
+    CHECK(equal(filtered(claims.name, any_depth, settings(30.0f, 0.0f), pool), any_depth));
+    CHECK(equal(filtered(claims.name, any_depth, settings(0.0f, 16.0f), pool), any_depth));
+  }
+}
+
+TEST_CASE("every method keeps depth in alpha, bit for bit") {
+  ThreadPool pool(2);
+  const Image scene = random_scene_image(50, 41, 4);
+  for (const Claims& claims : kClaims) {
+    INFO(std::string{claims.name});
+    const Image result = filtered(claims.name, scene, settings(20.0f, 9.0f), pool);
+    int wrong = 0;
+    for (int y = 0; y < 41; ++y) {
+      for (std::size_t i = 3; i < 200; i += 4) {
+        wrong += row<std::uint16_t>(result, y)[i] != row<std::uint16_t>(scene, y)[i];
+      }
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("every method keeps an isolated point's light, and spreads it as far as the lens") {
+  ThreadPool pool(2);
+  for (const Claims& claims : kClaims) {
+    // Behind the focus and before it: 16 (z - 2) / z is 8, and -8.
+    for (const float depth_m : {4.0f, 4.0f / 3.0f}) {
+      const Image scene = point_image(129, depth_m, 1000.0f, claims.point_size);
+      const Moments before = moments(scene);
+      const Moments got = moments(filtered(claims.name, scene, settings(16.0f, 16.0f), pool));
+      INFO(std::string{claims.name}, " at ", depth_m, " m");
+      const double radius = std::sqrt(2.0 * (got.square - before.square));
+      CHECK(std::fabs(got.light / before.light - 1.0) <= claims.energy_error);
+      CHECK(std::fabs(radius / 8.0 - 1.0) <= claims.radius_error);
+    }
+  }
+}
+
+TEST_CASE("a sharp object takes no light of the background, by every method that says so") {
+  ThreadPool pool(2);
+  Image scene = make_image(Format::rgba16f, 64, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const float light = x < 32 ? 0.0f : 10.0f;
+      store_texel(scene, x, y, {light, light, light, x < 32 ? 2.0f : 50.0f}, {});
+    }
+  }
+  for (const Claims& claims : kClaims) {
+    const Image result = filtered(claims.name, scene, settings(12.0f, 16.0f), pool);
+    INFO(std::string{claims.name});
+    CHECK((load_texel(result, 31, 30).x == 0.0f) == claims.keeps_background_out);
+  }
+}
+
+TEST_CASE("a blurred foreground falls on what is sharp, by every method that says so") {
+  ThreadPool pool(2);
+  Image scene = make_image(Format::rgba16f, 96, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      const float light = x < 48 ? 10.0f : 0.0f;
+      store_texel(scene, x, y, {light, light, light, x < 48 ? 1.0f : 2.0f}, {});
+    }
+  }
+  for (const Claims& claims : kClaims) {
+    const Image result = filtered(claims.name, scene, settings(10.0f, 16.0f), pool);
+    INFO(std::string{claims.name});
+    CHECK((load_texel(result, 50, 32).x > 0.5f) == claims.spreads_foreground);
+    CHECK(load_texel(result, 70, 32).x < 1.0f);
+  }
+}
+
+TEST_CASE("every method gives the mirror image of the mirror image") {
+  ThreadPool pool(2);
+  const Image scene = random_scene_image(64, 48, 5);
+  for (const Claims& claims : kClaims) {
+    for (const bool across : {true, false}) {
+      INFO(std::string{claims.name}, across ? ", left and right" : ", top and bottom");
+      const Image result = filtered(claims.name, scene, settings(14.0f, 11.0f), pool);
+      const Image other =
+          filtered(claims.name, mirrored(scene, across), settings(14.0f, 11.0f), pool);
+      CHECK(largest_difference(mirrored(other, across), result) <= claims.mirror_error);
+    }
+  }
+}
+
+TEST_CASE("every method gives the same bits for any number of threads") {
+  const Image scene = random_scene_image(203, 101, 6);
+  for (const Claims& claims : kClaims) {
+    ThreadPool one(1);
+    const Image expected = filtered(claims.name, scene, settings(14.0f, 12.0f), one);
+    for (const int threads : {2, 3, 8}) {
+      ThreadPool pool(threads);
+      INFO(std::string{claims.name}, " on ", threads, " threads");
+      CHECK(equal(filtered(claims.name, scene, settings(14.0f, 12.0f), pool), expected));
+    }
+  }
+}
+
+TEST_CASE("every method gives the same bits on every vector unit, at any size") {
+  struct Size {
+    int width, height;
+  };
+  for (const Claims& claims : kClaims) {
+    for (const Size size :
+         {Size{1, 1}, {1, 40}, {40, 1}, {2, 3}, {16, 16}, {17, 15}, {33, 70}, {129, 31}}) {
+      const Image scene = random_scene_image(size.width, size.height, 7);
+      for (const float max_coc : {0.0f, 0.7f, 7.25f, 1024.0f}) {
+        ThreadPool plain(2, Isa::scalar);
+        const Image expected = filtered(claims.name, scene, settings(40.0f, max_coc), plain);
+        for (const Isa isa : available_isas()) {
+          ThreadPool pool(2, isa);
+          INFO(std::string{claims.name}, " on ", std::string{isa_name(isa)}, ", ", size.width, "x",
+               size.height, ", max_coc ", max_coc);
+          CHECK(equal(filtered(claims.name, scene, settings(40.0f, max_coc), pool), expected));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("every method bears the largest circles on a small picture") {
+  ThreadPool pool(2);
+  for (const Claims& claims : kClaims) {
+    const Image scene = random_scene_image(19, 7, 8);
+    const Image result = filtered(claims.name, scene, settings(1e6f, kLargestMaxCoc), pool);
+    INFO(std::string{claims.name});
+    for (int x = 0; x < 19; ++x) {
+      CHECK(load_texel(result, x, 3).x >= 0.0f);
+      CHECK(load_texel(result, x, 3).x <= 1.001f);
+    }
+  }
+}
+
+TEST_CASE("no method lets an infinite or NaN colour out of its place") {
+  ThreadPool pool(2);
+  for (const Claims& claims : kClaims) {
+    Image scene = random_scene_image(48, 48, 9);
+    set_depth(scene, [](int x, int y) { return x == 20 && y == 20 ? 2.0f : 6.0f; });
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    store_texel(scene, 20, 20, {nan, nan, nan, 6.0f}, {});
+    store_texel(scene, 9, 9, {nan, nan, nan, 2.0f}, {});
+    INFO(std::string{claims.name});
+    int wrong = 0;
+    const Image result = filtered(claims.name, scene, settings(12.0f, 12.0f), pool);
+    for (int y = 0; y < 48; ++y) {
+      for (int x = 0; x < 48; ++x) wrong += !(load_texel(result, x, y).x <= 1.001f);
+    }
+    CHECK(wrong == 0);
+    // An infinite one is as bright as a half can be, and nothing is NaN.
+    const float infinite = std::numeric_limits<float>::infinity();
+    store_texel(scene, 20, 20, {infinite, -infinite, infinite, 6.0f}, {});
+    const Image bright = filtered(claims.name, scene, settings(12.0f, 12.0f), pool);
+    for (int y = 0; y < 48; ++y) {
+      for (int x = 0; x < 48; ++x) {
+        const glm::vec4 texel = load_texel(bright, x, y);
+        wrong += !(std::fabs(texel.x) <= 65504.0f) || !(std::fabs(texel.y) <= 65504.0f);
+      }
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("every method takes zero, infinite, negative and NaN depths") {
+  const float depths[] = {0.0f, std::numeric_limits<float>::infinity(),
+                          std::numeric_limits<float>::quiet_NaN(), 3.0f, -1.0f};
+  for (const Claims& claims : kClaims) {
+    Image scene = random_scene_image(40, 32, 10);
+    set_depth(scene, [&](int x, int y) { return depths[(x + y) % 5]; });
+    ThreadPool plain(1, Isa::scalar);
+    const Image expected = filtered(claims.name, scene, settings(10.0f, 6.0f), plain);
+    for (const Isa isa : available_isas()) {
+      ThreadPool pool(2, isa);
+      INFO(std::string{claims.name}, " on ", std::string{isa_name(isa)});
+      const Image result = filtered(claims.name, scene, settings(10.0f, 6.0f), pool);
+      CHECK(equal(result, expected));
+      int wrong = 0;
+      for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 40; ++x) {
+          const float value = load_texel(result, x, y).x;
+          wrong += !(value >= 0.0f && value <= 1.001f);
+        }
+      }
+      CHECK(wrong == 0);
+    }
+  }
+}

@@ -1,0 +1,65 @@
+#include "scenes/load/jpeg_check.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using namespace softfocus;
+
+namespace {
+
+std::string segment(unsigned char marker, const std::string& body) {
+  const std::size_t length = body.size() + 2;
+  return std::string{'\xFF', static_cast<char>(marker), static_cast<char>(length >> 8),
+                     static_cast<char>(length & 0xFF)} +
+         body;
+}
+
+// One table whose 16 counts are as given, with its values.
+std::string huffman_table(std::size_t codes) {
+  std::string body(1, '\0');
+  std::size_t left = codes;
+  for (int i = 0; i < 16; ++i) {
+    const std::size_t here = left < 255 ? left : 255;
+    body += static_cast<char>(here);
+    left -= here;
+  }
+  return body + std::string(codes, '\x7F');
+}
+
+const std::string kStart = "\xFF\xD8";
+const std::string kFrame = segment(0xC0, std::string(15, '\1'));
+
+}  // namespace
+
+TEST_CASE("a Huffman table of 256 codes is full and one of 257 overfull") {
+  CHECK_FALSE(has_overfull_huffman_table(kStart + segment(0xC4, huffman_table(256)) + kFrame));
+  CHECK(has_overfull_huffman_table(kStart + segment(0xC4, huffman_table(257)) + kFrame));
+}
+
+TEST_CASE("an overfull Huffman table is found as the second of a segment and behind a frame") {
+  const std::string two = segment(0xC4, huffman_table(12) + huffman_table(300));
+  CHECK(has_overfull_huffman_table(kStart + two + kFrame));
+  CHECK(has_overfull_huffman_table(kStart + kFrame + "scan data" + two));
+  CHECK(has_overfull_huffman_table(kStart + "junk" + two + kFrame));
+}
+
+TEST_CASE("what looks like a Huffman table inside a thumbnail is none") {
+  const std::string inside = segment(0xE1, segment(0xC4, huffman_table(300)));
+  CHECK_FALSE(has_overfull_huffman_table(kStart + inside + kFrame));
+}
+
+TEST_CASE("a Huffman table that ends with the file is read as stb_image reads it") {
+  const std::string whole = kStart + segment(0xC4, huffman_table(300));
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    // The counts add up to more than 256 once the second of them is there.
+    CHECK(has_overfull_huffman_table(whole.substr(0, length)) == (length >= 9));
+  }
+}
+
+TEST_CASE("a JPEG without its end marker is cut") {
+  CHECK(is_cut_jpeg(kStart + kFrame));
+  CHECK(is_cut_jpeg(kStart + kFrame + "\xFF\xDA scan"));
+  CHECK_FALSE(is_cut_jpeg(kStart + kFrame + "\xFF\xDA scan\xFF\xD9"));
+  CHECK_FALSE(is_cut_jpeg("\x89PNG"));
+}

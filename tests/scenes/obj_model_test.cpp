@@ -1,0 +1,412 @@
+#include "scenes/load/obj_model.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "scenes/load/mtl_file.h"
+#include "scenes/load/obj_text.h"
+#include "tests/support/mesh_checks.h"
+#include "tests/support/scene_test_files.h"
+
+using namespace softfocus;
+using namespace softfocus::test;
+
+namespace {
+
+constexpr std::string_view kCube =
+    "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
+    "f 1 2 3 4\nf 6 5 8 7\nf 2 6 7 3\nf 5 1 4 8\nf 4 3 7 8\nf 5 6 2 1\n";
+
+ObjText parse(std::string_view text) { return parse_obj_text(text, "a.obj"); }
+
+std::string complaint(std::string_view text) {
+  return scene_error_of([&] { parse(text); });
+}
+
+// The model of a text, and of a library if one is given.
+ObjModel load(std::string_view obj, std::string_view mtl = "") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("a.obj"), obj);
+  if (!mtl.empty()) write_file(directory.file("a.mtl"), mtl);
+  write_file(directory.file("wood.png"), png_bytes(4, 4));
+  return load_obj_model(directory.file("a.obj"));
+}
+
+constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+std::string triangle_with(std::string_view lines) {
+  return std::string(kTriangle) + std::string(lines);
+}
+
+}  // namespace
+
+// --- the text -------------------------------------------------------------------------
+
+TEST_CASE("numbers are the floats nearest to their decimals") {
+  const ObjText obj = parse("v 0.1 -1e-3 +2.5\nv 16777217 1e-50 3.4028e-39\nv 0 1 0\nf 1 2 3\n");
+  CHECK(obj.positions[0] == glm::vec3{0.1f, -1e-3f, 2.5f});
+  CHECK(obj.positions[1] == glm::vec3{16777216.0f, 0.0f, 3.4028e-39f});
+}
+
+TEST_CASE("corners may have texture coordinates and normals, or leave them out") {
+  const ObjText obj = parse(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5\nvn 0 0 1\n"
+      "f 1/1/1 2/2/1 3//1\nf 1/1 2/2 3\n");
+  CHECK(obj.uvs[1] == glm::vec2{0.5f, 0.0f});
+  CHECK(obj.corners[1].uv == 1);
+  CHECK(obj.corners[2].uv == -1);
+  CHECK(obj.corners[2].normal == 0);
+  CHECK(obj.corners[4].normal == -1);
+}
+
+TEST_CASE("negative indices count back from the last vertex so far") {
+  const ObjText obj = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -1 1 2\n");
+  CHECK(obj.corners[0].position == 0);
+  CHECK(obj.corners[2].position == 2);
+  CHECK(obj.corners[3].position == 3);
+}
+
+TEST_CASE("a face may come before its vertices") {
+  CHECK(parse("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").faces.size() == 1);
+}
+
+TEST_CASE("lines may end as on Windows or an old Mac, and go on after a backslash") {
+  const std::string text = triangle_with("f 1 \\\n2 3\n");
+  std::string windows;
+  std::string mac;
+  for (const char c : text) {
+    windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    mac += c == '\n' ? '\r' : c;
+  }
+  for (const std::string& each : {text, windows, mac}) {
+    CHECK(parse(each).positions.size() == 3);
+    CHECK(parse(each).faces[0].corner_count == 3);
+  }
+}
+
+TEST_CASE("a byte order mark is no part of the first line") {
+  CHECK(parse("\xEF\xBB\xBF" + triangle_with("f 1 2 3\n")).positions.size() == 3);
+}
+
+TEST_CASE("comments, groups and what else there may be are passed over") {
+  CHECK(parse(triangle_with("# a comment\no thing\ng group\nl 1 2\np 1\nvp 0.1\nfoo bar\n"
+                            "f 1 2 3 # done\n"))
+            .faces.size() == 1);
+}
+
+TEST_CASE("a complaint about the text names the file, the line and what would be right") {
+  CHECK(complaint(triangle_with("f 1 2 4\n")) ==
+        "a.obj:4: the face refers to position 4; the file has 3");
+  CHECK(complaint(triangle_with("f 1/1 2 3\n")) ==
+        "a.obj:4: the face refers to texture coordinate 1; the file has 0");
+  CHECK(complaint(triangle_with("f 1//9 2 3\n")) ==
+        "a.obj:4: the face refers to normal 9; the file has 0");
+  CHECK(complaint(triangle_with("f 1 2 0\n")) ==
+        "a.obj:4: \"0\" is no index of a position; a whole number from 1, or from -1 "
+        "backwards, would be right");
+  CHECK(complaint(triangle_with("f 1 2 -4\n")) ==
+        "a.obj:4: -4 goes back before the first position; there are 3 so far");
+  CHECK(complaint(triangle_with("f 1 2 99999999999\n")) ==
+        "a.obj:4: \"99999999999\" is no index of a position; a whole number from 1, or "
+        "from -1 backwards, would be right");
+  CHECK(contains(complaint(triangle_with("f 1 2 x\n")), "a.obj:4: \"x\" is no index"));
+  CHECK(contains(complaint(triangle_with("f 1 2 3.5\n")), "a.obj:4: \"3.5\" is no index"));
+  CHECK(complaint(triangle_with("f 1 2\n")) ==
+        "a.obj:4: the face has 2 corners; 3 or more would be right");
+  CHECK(complaint("v 0 0 0\nv 1 nan 0\n") ==
+        "a.obj:2: nan is out of range; a number from -1e9 to 1e9 would be right");
+  CHECK(contains(complaint("v 0 0 inf\n"), "a.obj:1: inf is out of range"));
+  CHECK(contains(complaint("v 0 0 1e39\n"), "a.obj:1: 1e39 is out of range"));
+  CHECK(contains(complaint("v 0 0 2e9\n"), "a.obj:1: 2e9 is out of range"));
+  CHECK(complaint("v 0 0\n") == "a.obj:1: has 2 numbers; 3 would be right");
+  CHECK(complaint("v 0 zero 0\n") == "a.obj:1: \"zero\" is no number");
+  CHECK(complaint("vt\n") == "a.obj:1: has 0 numbers; 1 would be right");
+}
+
+TEST_CASE("a complaint counts the lines that a backslash joins") {
+  CHECK(contains(complaint(triangle_with("f 1 \\\n2 \\\n3\nf 1 2 9\n")), "a.obj:7:"));
+}
+
+TEST_CASE("a face of very many corners is refused") {
+  std::string face = "f";
+  for (int i = 0; i < 1025; ++i) face += " 1";
+  CHECK(complaint(triangle_with(face)) ==
+        "a.obj:4: the face has more than 1024 corners; smaller faces would do");
+}
+
+TEST_CASE("what is no model is said to be none") {
+  CHECK(complaint("") == "a.obj: has no face; an OBJ model with `v` and `f` lines would be right");
+  CHECK(contains(complaint("<html>not found</html>"), "has no face"));
+  CHECK(contains(complaint(kTriangle), "has no face"));
+  CHECK(complaint(std::string("v 0 0 0\n\0\1\2", 11)) == "a.obj: is binary; an OBJ model is text");
+}
+
+TEST_CASE("a missing model and a directory are named") {
+  CHECK(scene_error_of([] { load_obj_model("/nowhere/a.obj"); }) ==
+        "/nowhere/a.obj: no such file; check the path");
+  CHECK(scene_error_of([] { load_obj_model("/tmp"); }) ==
+        "/tmp: is a directory; give a file in it");
+}
+
+TEST_CASE("damaged text gives a complaint or a model, and nothing else") {
+  const std::string whole =
+      std::string(kCube) + "vt 0.5 0.5\nvn 0 0 1\ns 1\nusemtl a\nf 1/1/1 2/1/1 3/1/1\n";
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const char damage : {'-', '9', ' ', '/', '\n', 'e'}) {
+      std::string text = whole;
+      text[i] = damage;
+      const TemporaryDirectory directory;
+      write_file(directory.file("a.obj"), text);
+      const std::string message = scene_error_of([&] {
+        const ObjModel model = load_obj_model(directory.file("a.obj"));
+        for (const auto& part : model.parts) {
+          for (const std::uint32_t index : part.mesh.indices) {
+            CHECK_UNARY(index < part.mesh.positions.size());
+          }
+        }
+      });
+      CHECK_UNARY(message.find('\n') == std::string::npos);
+    }
+  }
+}
+
+// --- the mesh -------------------------------------------------------------------------
+
+TEST_CASE("a cube of quadrilaterals is a closed mesh of twelve triangles") {
+  const ObjModel model = load(kCube);
+  REQUIRE(model.parts.size() == 1);
+  const Mesh& mesh = model.parts[0].mesh;
+  CHECK(mesh.indices.size() == 36);
+  CHECK(is_closed(weld(mesh)));
+  CHECK(volume(mesh) == doctest::Approx(8.0));
+}
+
+TEST_CASE("corners that are equal share a vertex") {
+  CHECK(load(kCube).parts[0].mesh.positions.size() == 8);
+}
+
+TEST_CASE("without normals and smoothing groups, a model is smooth") {
+  const Mesh mesh = load(kCube).parts[0].mesh;
+  CHECK(normal_length_error(mesh) < 2e-7);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    // A corner of the cube leans to all three sides, if not to each alike: two of its
+    // faces may give it two triangles.
+    for (int axis = 0; axis < 3; ++axis)
+      CHECK(mesh.normals[i][axis] * mesh.positions[i][axis] > 0.3f);
+  }
+}
+
+TEST_CASE("made normals are weighted by area") {
+  // A large triangle in z = 0 and one a hundredth its size upright, joined at an edge.
+  const Mesh mesh =
+      load("v 0 0 0\nv 1 0 0\nv 0 10 0\nv 0 0 -0.1\nf 1 2 3\nf 2 1 4\n").parts[0].mesh;
+  CHECK(mesh.normals[0].z > 0.99f);
+}
+
+TEST_CASE("places that are equal are smooth across two vertices") {
+  // The fold's two faces name the common edge by vertices of their own.
+  const Mesh mesh = load("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 4 5 6\n")
+                        .parts[0]
+                        .mesh;
+  CHECK(mesh.normals[0].x == doctest::Approx(mesh.normals[0].z));
+}
+
+TEST_CASE("smoothing group 0 is flat") {
+  const Mesh mesh = load("s off\n" + std::string(kCube)).parts[0].mesh;
+  CHECK(mesh.positions.size() > 8);
+  CHECK(normal_agreement(mesh) == doctest::Approx(1.0));
+}
+
+TEST_CASE("a smoothing group is smooth in itself and creased to the next") {
+  const Mesh mesh = load(
+                        "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\nv 0 -1 0\n"
+                        "s 1\nf 1 3 2\ns 2\nf 1 2 4\n")
+                        .parts[0]
+                        .mesh;
+  CHECK(normal_agreement(mesh) == doctest::Approx(1.0));
+}
+
+TEST_CASE("given normals are kept, at unit length") {
+  const Mesh mesh = load(triangle_with("vn 0 0 2\nf 1//1 2//1 3//1\n")).parts[0].mesh;
+  CHECK(mesh.normals[0] == glm::vec3{0.0f, 0.0f, 1.0f});
+}
+
+TEST_CASE("a face that is wound against its normals is turned round") {
+  const Mesh mesh = load(triangle_with("vn 0 0 -1\nf 1//1 2//1 3//1\n")).parts[0].mesh;
+  CHECK(mesh.normals[0].z == -1.0f);
+  CHECK(area_normal(triangles_of(mesh)[0]).z < 0.0);
+}
+
+TEST_CASE("a normal of length 0 is made anew") {
+  const Mesh mesh = load(triangle_with("vn 0 0 0\nf 1//1 2//1 3//1\n")).parts[0].mesh;
+  CHECK(mesh.normals[0] == glm::vec3{0.0f, 0.0f, 1.0f});
+}
+
+TEST_CASE("two sides that cancel each have a normal of their own") {
+  const Mesh mesh = load(triangle_with("f 1 2 3\nf 3 2 1\n")).parts[0].mesh;
+  CHECK(normal_length_error(mesh) < 1e-6);
+  CHECK(normal_agreement(mesh) == doctest::Approx(1.0));
+}
+
+TEST_CASE("texture coordinates count downwards, and only where there are any") {
+  CHECK(load(kCube).parts[0].mesh.uvs.empty());
+  const Mesh mesh = load(triangle_with("vt 0.25 0.75\nf 1/1 2/1 3/1\n")).parts[0].mesh;
+  REQUIRE(mesh.uvs.size() == 1 * 3);
+  CHECK(mesh.uvs[0] == glm::vec2{0.25f, 0.25f});
+}
+
+TEST_CASE("triangles without area are left out, and a model of nothing else is refused") {
+  CHECK(load(triangle_with("f 1 2 3\nf 1 1 2\n")).parts[0].mesh.indices.size() == 3);
+  CHECK(contains(scene_error_of([] { load(triangle_with("f 1 1 2\n")); }), "no face has an area"));
+  CHECK(contains(scene_error_of([] { load("v 0 0 0\nv 1e-12 0 0\nv 0 1e-12 0\nf 1 2 3\n"); }),
+                 "no face has an area"));
+}
+
+// --- the materials --------------------------------------------------------------------
+
+TEST_CASE("a model without a library is neutral grey, with no complaint") {
+  const ObjModel model = load(kCube);
+  CHECK(model.materials[model.parts[0].material].diffuse == glm::vec3{0.5f});
+  CHECK(model.warnings.empty());
+}
+
+TEST_CASE("a model is split by material, in the order of first use") {
+  const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl blue\nf 1 2 3\nusemtl red\n"
+                                            "f 2 3 1\nusemtl blue\nf 3 1 2\n"),
+                              "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+  REQUIRE(model.parts.size() == 2);
+  CHECK(model.materials[model.parts[0].material].name == "blue");
+  CHECK(model.materials[model.parts[0].material].diffuse == glm::vec3{0.0f, 0.0f, 1.0f});
+  CHECK(model.parts[0].mesh.indices.size() == 6);
+  CHECK(model.materials[model.parts[1].material].name == "red");
+  CHECK(model.parts[1].mesh.indices.size() == 3);
+}
+
+TEST_CASE("Ka, Kd, Ks and Ns are read, Ns as a whole number") {
+  const ObjModel model =
+      load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+           "newmtl a\nKa 0.1 0.2 0.3\nKd 0.4 0.5 0.6\nKs 0.7 0.8 0.9\nNs 96.6\nd 0.5\nillum 2\n");
+  const Material& material = model.materials[model.parts[0].material];
+  CHECK(material.ambient == glm::vec3{0.1f, 0.2f, 0.3f});
+  CHECK(material.diffuse == glm::vec3{0.4f, 0.5f, 0.6f});
+  CHECK(material.specular == glm::vec3{0.7f, 0.8f, 0.9f});
+  CHECK(material.shininess == 97);
+  CHECK(material.two_sided);
+}
+
+TEST_CASE("Ns is kept from 1 to 1024") {
+  for (const auto& [written, kept] : {std::pair{"-5", 1}, {"0", 1}, {"1e9", 1024}, {"nan", 1}}) {
+    const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                std::string("newmtl a\nKd 1 1 1\nNs ") + written + "\n");
+    CHECK(model.materials[0].shininess == kept);
+  }
+}
+
+TEST_CASE("a Ka that is black or white means nothing") {
+  for (const char* ka : {"", "Ka 0 0 0\n", "Ka 1 1 1\n"}) {
+    const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                std::string("newmtl a\nKd 0.4 0.5 0.6\n") + ka);
+    CHECK(model.materials[0].ambient == glm::vec3{0.4f, 0.5f, 0.6f});
+  }
+}
+
+TEST_CASE("a texture is loaded once, however many materials have it") {
+  const ObjModel model =
+      load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"),
+           "newmtl a\nKd 1 1 1\nmap_Kd wood.png\nnewmtl b\nKd 1 1 1\nmap_Kd ./wood.png\n");
+  CHECK(model.textures.size() == 1);
+  CHECK(model.materials[0].texture == 0u);
+  CHECK(model.materials[1].texture == 0u);
+}
+
+TEST_CASE("a texture is found by its last part, and a black Kd does not hide it") {
+  const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                              "newmtl a\nKd 0 0 0\nmap_Kd C:\\Users\\me\\wood.png\n");
+  CHECK(model.textures.size() == 1);
+  CHECK(model.materials[0].diffuse == glm::vec3{1.0f});
+  CHECK(model.warnings.empty());
+}
+
+TEST_CASE("a clamped texture is clamped") {
+  const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                              "newmtl a\nKd 1 1 1\nmap_Kd -clamp on wood.png\n");
+  CHECK(model.materials[0].sampler.wrap_u == Wrap::clamp_to_edge);
+}
+
+TEST_CASE("a missing library, material or texture is a warning, and grey stands in") {
+  const ObjModel without_library = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"));
+  REQUIRE(without_library.warnings.size() == 2);
+  CHECK(contains(without_library.warnings[0], "material library a.mtl is missing"));
+  CHECK(contains(without_library.warnings[1], "material a is not defined"));
+  CHECK(without_library.materials[without_library.parts[0].material].diffuse == glm::vec3{0.5f});
+
+  const ObjModel without_texture = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                        "newmtl a\nKd 1 0 0\nmap_Kd stone.png\n");
+  REQUIRE(without_texture.warnings.size() == 1);
+  CHECK(contains(without_texture.warnings[0], "a.mtl: material a: texture stone.png is missing"));
+  CHECK_FALSE(without_texture.materials[0].texture);
+  CHECK(without_texture.materials[0].diffuse == glm::vec3{0.5f});
+}
+
+TEST_CASE("a texture in another format is left out with a warning") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("a.obj"), triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"));
+  write_file(directory.file("a.mtl"), "newmtl a\nKd 1 0 0\nmap_Kd old.tga\n");
+  write_file(directory.file("old.tga"), "anything");
+  const ObjModel model = load_obj_model(directory.file("a.obj"));
+  REQUIRE(model.warnings.size() == 1);
+  CHECK(contains(model.warnings[0], "neither PNG nor JPEG"));
+}
+
+TEST_CASE("a texture that is there and damaged is an error") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("a.obj"), triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"));
+  write_file(directory.file("a.mtl"), "newmtl a\nKd 1 0 0\nmap_Kd wood.png\n");
+  write_file(directory.file("wood.png"), png_bytes(32, 32).substr(0, 60));
+  CHECK(contains(scene_error_of([&] { load_obj_model(directory.file("a.obj")); }), "wood.png: "));
+}
+
+TEST_CASE("a library's name may have blanks, and there may be several libraries") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("my colours.mtl"), "newmtl a\nKd 1 0 0\n");
+  write_file(directory.file("b.mtl"), "newmtl b\nKd 0 1 0\n");
+  write_file(directory.file("a.obj"),
+             triangle_with("mtllib my colours.mtl\nmtllib b.mtl none.mtl\nusemtl a\nf 1 2 3\n"
+                           "usemtl b\nf 1 2 3\n"));
+  const ObjModel model = load_obj_model(directory.file("a.obj"));
+  CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
+  CHECK(model.materials[1].diffuse == glm::vec3{0.0f, 1.0f, 0.0f});
+  REQUIRE(model.warnings.size() == 1);
+  CHECK(contains(model.warnings[0], "none.mtl"));
+}
+
+TEST_CASE("a model of 100,000 triangles keeps its triangles and shares its vertices") {
+  // A wavy sheet, quadrilaterals with texture coordinates and no normals.
+  constexpr int kSide = 224;
+  std::string text;
+  for (int y = 0; y <= kSide; ++y) {
+    for (int x = 0; x <= kSide; ++x) {
+      text += "v " + std::to_string(x) + " " + std::to_string((x * 7 + y * 3) % 5) + ".25 " +
+              std::to_string(y) + "\nvt " + std::to_string(x) + " 0.5\n";
+    }
+  }
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      text += "f";
+      for (const int corner : {y * (kSide + 1) + x, (y + 1) * (kSide + 1) + x,
+                               (y + 1) * (kSide + 1) + x + 1, y * (kSide + 1) + x + 1}) {
+        text += " " + std::to_string(corner + 1) + "/" + std::to_string(corner + 1);
+      }
+      text += "\n";
+    }
+  }
+  const TemporaryDirectory directory;
+  write_file(directory.file("a.obj"), text);
+  const ObjModel model = load_obj_model(directory.file("a.obj"));
+  CHECK(model.parts[0].mesh.indices.size() == 3 * 2 * kSide * kSide);
+  CHECK(model.parts[0].mesh.positions.size() == (kSide + 1) * (kSide + 1));
+}

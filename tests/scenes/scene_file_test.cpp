@@ -1,0 +1,392 @@
+#include "scenes/load/scene_file.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "tests/support/scene_test_files.h"
+
+using namespace softfocus;
+using namespace softfocus::test;
+
+namespace {
+
+Scene read(std::string_view text) { return read_scene_text(text, "a.toml"); }
+
+std::string complaint(std::string_view text) {
+  return scene_error_of([&] { read(text); });
+}
+
+constexpr std::string_view kMaterial = "[material.m]\n";  // line 1 of what follows it
+
+std::string object(std::string_view keys) {
+  return std::string(kMaterial) + "[[object]]\nmaterial = \"m\"\n" + std::string(keys);
+}
+
+std::string scatter_of(std::string_view keys) {
+  return std::string(kMaterial) + "[[scatter]]\nshape = \"sphere\"\nmaterials = [\"m\"]\n" +
+         std::string(keys);
+}
+
+}  // namespace
+
+TEST_CASE("an empty file is a scene with the defaults of scene.h") {
+  const Scene scene = read("");
+  CHECK(scene.name == "a");
+  CHECK(scene.title == "a");
+  CHECK(scene.camera.fov_y_degrees == Camera{}.fov_y_degrees);
+  CHECK(scene.camera.position == Camera{}.position);
+  CHECK(scene.lens.lens.f_number == ThinLens{}.f_number);
+  CHECK(scene.objects.empty());
+}
+
+TEST_CASE("top, camera and lens are read") {
+  const Scene scene = read(R"(
+title = "A title"
+background = [0.1, 0.2, 0.3]
+ambient_light = [1, 2, 3]
+[camera]
+position = [1, 2, 3]
+target = [4, 5, 6]
+up = [0, 0, 1]
+fov_degrees = 50
+near_m = 0.5
+far_m = 50
+orbit_degrees_per_frame = -2.5
+[lens]
+focal_length_mm = 85
+f_number = 1.4
+focus_m = 1.25
+coc_scale = 2
+max_coc_px = 12
+)");
+  CHECK(scene.title == "A title");
+  CHECK(scene.background == glm::vec3{0.1f, 0.2f, 0.3f});
+  CHECK(scene.ambient_light == glm::vec3{1.0f, 2.0f, 3.0f});
+  CHECK(scene.camera.position == glm::dvec3{1, 2, 3});
+  CHECK(scene.camera.target == glm::dvec3{4, 5, 6});
+  CHECK(scene.camera.up == glm::dvec3{0, 0, 1});
+  CHECK(scene.camera.fov_y_degrees == 50);
+  CHECK(scene.camera.near_m == 0.5);
+  CHECK(scene.camera.far_m == 50);
+  CHECK(scene.camera.orbit_degrees_per_frame == -2.5);
+  CHECK(scene.lens.lens.focal_length_mm == 85);
+  CHECK(scene.lens.lens.f_number == 1.4);
+  CHECK(scene.lens.lens.focus_m == 1.25);
+  CHECK(scene.lens.coc_scale == 2);
+  CHECK(scene.lens.max_coc_px_at_1024 == 12);
+}
+
+TEST_CASE("lights are read, of both kinds") {
+  const Scene scene = read(
+      "[[light]]\nkind = \"directional\"\ndirection = [1, 2, 3]\n"
+      "[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\ncolour = [7, 8, 9]\n");
+  REQUIRE(scene.lights.size() == 2);
+  CHECK(scene.lights[0].kind == LightKind::directional);
+  CHECK(scene.lights[0].position_or_direction == glm::vec3{1, 2, 3});
+  CHECK(scene.lights[0].colour == glm::vec3{1.0f});
+  CHECK(scene.lights[1].kind == LightKind::point);
+  CHECK(scene.lights[1].position_or_direction == glm::vec3{4, 5, 6});
+  CHECK(scene.lights[1].colour == glm::vec3{7, 8, 9});
+}
+
+TEST_CASE("a material has what its table says, and ambient like diffuse if it says nothing") {
+  const Scene scene = read(R"(
+[texture.t]
+kind = "checker"
+size = 16
+cells = 2
+colours = [[1, 0, 0], [0, 0, 1]]
+filter = "nearest"
+wrap = "mirrored_repeat"
+[material.a]
+diffuse = [0.1, 0.2, 0.3]
+[material.b]
+ambient = [0.4, 0.5, 0.6]
+specular = [0.7, 0.8, 0.9]
+shininess = 100
+texture = "t"
+two_sided = true
+lit = false
+)");
+  REQUIRE(scene.materials.size() == 2);
+  CHECK(scene.materials[0].ambient == glm::vec3{0.1f, 0.2f, 0.3f});
+  CHECK_FALSE(scene.materials[0].texture);
+  CHECK_FALSE(scene.materials[0].two_sided);
+  CHECK(scene.materials[0].lit);
+  const Material& b = scene.materials[1];
+  CHECK(b.ambient == glm::vec3{0.4f, 0.5f, 0.6f});
+  CHECK(b.specular == glm::vec3{0.7f, 0.8f, 0.9f});
+  CHECK(b.shininess == 100);
+  CHECK(b.texture == 0u);
+  CHECK(b.sampler.filter == Filter::nearest);
+  CHECK(b.sampler.wrap_v == Wrap::mirrored_repeat);
+  CHECK(b.two_sided);
+  CHECK_FALSE(b.lit);
+  CHECK(scene.textures[0].levels.size() == 5);
+}
+
+TEST_CASE("every shape can be asked for, with nothing but its name") {
+  for (const char* shape : {"sphere", "torus", "cone", "cube", "plane", "teapot"}) {
+    CAPTURE(shape);
+    const Scene scene = read(object("shape = \"" + std::string(shape) + "\"\n"));
+    REQUIRE(scene.meshes.size() == 1);
+    CHECK(scene.meshes[0].indices.size() > 100);
+    CHECK(scene.objects[0].scale == glm::dvec3{1.0});
+  }
+}
+
+TEST_CASE("an object stands and moves as its table says") {
+  const Scene scene = read(object(R"(
+shape = "cube"
+size = 2
+cells = 3
+position = [1, 2, 3]
+rotation_degrees = [4, 5, 6]
+scale = [7, 8, 9]
+spin_degrees_per_frame = [1, 0, -1]
+sway = [0, 0, 0.5]
+sway_period_frames = 90
+sway_phase = 0.25
+)"));
+  const Object& o = scene.objects[0];
+  CHECK(o.position == glm::dvec3{1, 2, 3});
+  CHECK(o.rotation_degrees == glm::dvec3{4, 5, 6});
+  CHECK(o.scale == glm::dvec3{7, 8, 9});
+  CHECK(o.spin_degrees_per_frame == glm::dvec3{1, 0, -1});
+  CHECK(o.sway == glm::dvec3{0, 0, 0.5});
+  CHECK(o.sway_period_frames == 90);
+  CHECK(o.sway_phase == 0.25);
+  CHECK(scene.meshes[0].indices.size() == 3 * 12 * 9);
+  CHECK(read(object("shape = \"cube\"\nscale = 2\n")).objects[0].scale == glm::dvec3{2.0});
+}
+
+TEST_CASE("an object may be inside out, and its texture repeat") {
+  const Scene scene =
+      read(object("shape = \"plane\"\ninside_out = true\ntexture_repeat = [3, 4]\n"));
+  CHECK(scene.meshes[0].normals[0] == glm::vec3{0, -1, 0});
+  float largest = 0.0f;
+  for (const glm::vec2& uv : scene.meshes[0].uvs) largest = std::max(largest, uv.y);
+  CHECK(largest == 4.0f);
+}
+
+TEST_CASE("a scatter gives as many objects as it says, of one mesh and the materials named") {
+  const Scene scene = read(
+      "[material.a]\n[material.b]\n[[scatter]]\nshape = \"sphere\"\nradius = 0.5\n"
+      "materials = [\"a\", \"b\"]\ncount = 40\nregion_min = [-9, 0, -9]\n"
+      "region_max = [9, 0, 9]\nscale_range = [0.5, 1]\non_ground = true\nturned = true\n");
+  CHECK(scene.meshes.size() == 1);
+  REQUIRE(scene.objects.size() == 40);
+  int of_a = 0;
+  for (const Object& o : scene.objects) {
+    if (o.material == 0) ++of_a;
+    CHECK(o.position.y == doctest::Approx(o.scale.x * 0.5));
+    CHECK(o.scale.x >= 0.49999);
+    CHECK(o.scale.x <= 1.00001);
+    CHECK(o.rotation_degrees != glm::dvec3{0.0});
+  }
+  CHECK(of_a > 5);
+  CHECK(of_a < 35);
+}
+
+TEST_CASE("scatters keep clear of what they avoid and of one another") {
+  const std::string both =
+      scatter_of("count = 1\nregion_min = [0, 0, 0]\nregion_max = [0, 0, 0]\n") +
+      "[[scatter]]\nshape = \"sphere\"\nmaterials = [\"m\"]\n";
+  CHECK(contains(complaint(both + "region_min = [0.5, 0, 0]\nregion_max = [0.6, 0, 0]\n"),
+                 "a.toml:8: scatter.count: there is no room"));
+  CHECK(read(both + "region_min = [2.5, 0, 0]\nregion_max = [2.6, 0, 0]\n").objects.size() == 2);
+  CHECK(contains(complaint(scatter_of("region_min = [0, 0, 0]\nregion_max = [1, 1, 1]\n"
+                                      "avoid = [[0, 0, 0, 5]]\n")),
+                 "scatter.count: there is no room"));
+}
+
+TEST_CASE("a texture and a model may come from files beside the scene") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("wood.png"), png_bytes(8, 8));
+  write_file(directory.file("thing.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n");
+  write_file(directory.file("s.toml"),
+             "[texture.wood]\nfile = \"wood.png\"\n[material.m]\ntexture = \"wood\"\n"
+             "[[object]]\nshape = \"model\"\nfile = \"thing.obj\"\nscale = 3\n"
+             "[[object]]\nshape = \"model\"\nfile = \"thing.obj\"\nmaterial = \"m\"\n");
+  const Scene scene = read_scene_file(directory.file("s.toml"));
+  CHECK(scene.name == "s");
+  REQUIRE(scene.objects.size() == 2);
+  CHECK(scene.textures[0].levels[0].format == Format::srgb8);
+  CHECK(scene.objects[0].scale == glm::dvec3{3.0});
+  CHECK(scene.materials[scene.objects[0].material].name == "neutral grey");
+  CHECK(scene.materials[scene.objects[1].material].name == "m");
+  CHECK(scene.warnings.size() == 2);
+}
+
+TEST_CASE("what is no TOML is a complaint with the line") {
+  CHECK(contains(complaint("title = \"x\"\nbackground = [0, 0\n[camera]\n"),
+                 "a.toml:3: is no TOML: "));
+  CHECK(contains(complaint("title = \"x\"\ntitle = \"y\"\n"), "a.toml:2: is no TOML: "));
+}
+
+TEST_CASE("every unknown key is an error that names the line and the keys there are") {
+  CHECK(complaint("title = \"x\"\ntitel = \"y\"\n") ==
+        "a.toml:2: titel: there is no such key; here are title, background, ambient_light, "
+        "camera, lens, light, texture, material, object and scatter");
+  CHECK(contains(complaint("mm = 1\nzz = 2\naa = 3\n"), "a.toml:1: mm: there is no such key"));
+  CHECK(complaint("[lens]\nfocus_m = 2\nfocus = 3\n") ==
+        "a.toml:3: lens.focus: there is no such key; here are focal_length_mm, f_number, "
+        "focus_m, coc_scale and max_coc_px");
+  for (const std::string& text :
+       {std::string("[camera]\nxyz = 1\n"), std::string("[material.m]\nxyz = 1\n"),
+        std::string("[texture.t]\nkind = \"dots\"\nxyz = 1\ncolours = [[0, 0, 0], [1, 1, 1]]\n"),
+        std::string("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nxyz = 1\n"),
+        object("shape = \"cube\"\nxyz = 1\n"), scatter_of("xyz = 1\n"),
+        object("shape = \"sphere\"\nheight = 1\n")}) {
+    CHECK(contains(complaint(text), ": there is no such key; here are "));
+  }
+}
+
+TEST_CASE("a value of the wrong type is an error") {
+  CHECK(complaint("title = 3\n") ==
+        "a.toml:1: title: is a number; a text in quotes would be right");
+  CHECK(complaint("camera = 3\n") ==
+        "a.toml:1: camera: is a number; a table [camera] would be right");
+  CHECK(complaint("light = 3\n") ==
+        "a.toml:1: light: is a number; tables [[light]] would be right");
+  CHECK(complaint("[camera]\n\nfov_degrees = \"wide\"\n") ==
+        "a.toml:3: camera.fov_degrees: is a text; a number from 1 to 170 would be right");
+  CHECK(complaint("[material.m]\nlit = 1\n") ==
+        "a.toml:2: material.m.lit: is a number; true or false would be right");
+  CHECK(complaint("[material.m]\nshininess = 2.5\n") ==
+        "a.toml:2: material.m.shininess: has a fraction; a whole number from 1 to 1024 would be "
+        "right");
+  CHECK(complaint("background = [0, 1]\n") ==
+        "a.toml:1: background: has 2 values; an array of 3 numbers from 0 to 1000 would be right");
+  CHECK(
+      contains(complaint("background = [0, 1, true]\n"), "a.toml:1: background: is true or false"));
+  CHECK(contains(complaint("background = 0.5\n"), "a.toml:1: background: is a number; an array"));
+  CHECK(contains(complaint("material = 1\n"), "a.toml:1: material: is a number"));
+  CHECK(contains(complaint("[material]\nm = 1\n"), "a.toml:2: material.m: is a number"));
+}
+
+TEST_CASE("a value out of its range is an error, NaN and infinity too") {
+  CHECK(complaint("[camera]\nfov_degrees = 180\n") ==
+        "a.toml:2: camera.fov_degrees: 180 is out of range; a number from 1 to 170 would be right");
+  for (const char* value : {"nan", "-nan", "inf", "-inf", "1e300", "-1", "0"}) {
+    CHECK(contains(complaint(std::string("[camera]\nnear_m = ") + value + "\n"),
+                   "a.toml:2: camera.near_m: "));
+    CHECK(contains(complaint(std::string("[lens]\nf_number = ") + value + "\n"),
+                   "a.toml:2: lens.f_number: "));
+  }
+  CHECK(contains(complaint("background = [0, nan, 0]\n"), "out of range"));
+  CHECK(contains(complaint("background = [0, -1, 0]\n"), "out of range"));
+}
+
+TEST_CASE("values that do not go together are errors") {
+  CHECK(complaint("[camera]\nnear_m = 5\nfar_m = 5\n") ==
+        "a.toml:3: camera.far_m: must be larger than near_m");
+  CHECK(contains(complaint("[camera]\nposition = [1, 1, 1]\ntarget = [1, 1, 1]\n"),
+                 "a.toml:3: camera.target: is the camera's position"));
+  CHECK(
+      contains(complaint("[camera]\nposition = [0, 5, 0]\n"), "camera.up: points along the view"));
+  CHECK(contains(complaint("[camera]\nup = [0, 0, 0]\n"), "a.toml:2: camera.up: "));
+  CHECK(contains(complaint("[lens]\nfocal_length_mm = 900\nfocus_m = 0.5\n"),
+                 "a.toml:3: lens.focus_m: the focal length must be shorter"));
+  CHECK(contains(complaint(object("shape = \"torus\"\ntube_radius = 1\n")),
+                 "a.toml:5: object.tube_radius: must be smaller than ring_radius"));
+  CHECK(contains(complaint(scatter_of("region_min = [2, 0, 0]\n")),
+                 "a.toml:5: scatter.region_min: must not exceed"));
+  CHECK(contains(complaint(scatter_of("scale_range = [2, 1]\n")),
+                 "a.toml:5: scatter.scale_range: must have the smaller number first"));
+}
+
+TEST_CASE("a light needs its kind, and a place or a direction") {
+  CHECK(contains(complaint("[[light]]\ncolour = [1, 1, 1]\n"), "a.toml:1: light.kind: is missing"));
+  CHECK(complaint("[[light]]\nkind = \"spot\"\n") ==
+        "a.toml:2: light.kind: there is no \"spot\"; there are directional and point");
+  CHECK(contains(complaint("[[light]]\nkind = \"point\"\n"), "light.position: is missing"));
+  CHECK(contains(complaint("[[light]]\nkind = \"directional\"\ndirection = [0, 0, 0]\n"),
+                 "a.toml:3: light.direction: points nowhere"));
+  CHECK(contains(complaint("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n"
+                           "direction = [0, 1, 0]\n"),
+                 "light.direction: there is no such key"));
+}
+
+TEST_CASE("a name that refers to nothing is an error") {
+  CHECK(complaint("[[object]]\nshape = \"cube\"\nmaterial = \"gold\"\n") ==
+        "a.toml:3: object.material: there is no material \"gold\"; a table [material.gold] would "
+        "be right");
+  CHECK(complaint("[material.m]\ntexture = \"wood\"\n") ==
+        "a.toml:2: material.m.texture: there is no texture \"wood\"; a table [texture.wood] would "
+        "be right");
+  CHECK(contains(complaint("[[object]]\nshape = \"cube\"\n"),
+                 "a.toml:1: object.material: is missing"));
+  CHECK(contains(complaint("[[scatter]]\nshape = \"cube\"\n"),
+                 "a.toml:1: scatter.materials: is missing"));
+}
+
+TEST_CASE("a shape that is missing or unknown is an error that names those there are") {
+  CHECK(complaint(object("")) ==
+        "a.toml:2: object.shape: is missing; there are sphere, torus, cone, cube, plane, teapot "
+        "and model");
+  CHECK(complaint(object("shape = \"ball\"\n")) ==
+        "a.toml:4: object.shape: there is no \"ball\"; there are sphere, torus, cone, cube, plane, "
+        "teapot and model");
+  CHECK(contains(complaint("[material.m]\n[[scatter]]\nshape = \"model\"\n"),
+                 "scatter.shape: a model cannot be used here"));
+  CHECK(contains(complaint(object("shape = \"model\"\n")), "object.file: is missing"));
+}
+
+TEST_CASE("a texture is made by formula or read from a file") {
+  CHECK(contains(complaint("[texture.t]\n"), "a.toml:1: texture.t: a texture has either"));
+  CHECK(contains(complaint("[texture.t]\nkind = \"dots\"\nfile = \"x.png\"\n"),
+                 "texture.t.file: a texture has either"));
+  CHECK(contains(complaint("[texture.t]\nfile = \"none.png\"\n"), "none.png: no such file"));
+  CHECK(contains(
+      complaint("[texture.t]\nfile = \"none.png\"\nfilter = \"cubic\"\n"),
+      "texture.t.filter: there is no \"cubic\"; there are nearest, bilinear and trilinear"));
+  CHECK(contains(complaint("[texture.t]\nkind = \"plaid\"\n"),
+                 "texture.t.kind: there is no \"plaid\"; there are checker, stripes"));
+  CHECK(complaint("[texture.t]\nkind = \"dots\"\nsize = 100\n") ==
+        "a.toml:3: texture.t.size: 100 is no power of two; 64 or 128 would be right");
+  CHECK(complaint("[texture.t]\nkind = \"dots\"\nsize = 16\ncolours = [[0, 0, 0]]\n") ==
+        "a.toml:4: texture.t.colours: 1 are given; the pattern \"dots\" needs 2 (ground, dot), "
+        "each [red, green, blue] from 0 to 1");
+}
+
+TEST_CASE("absurd sizes are errors before any memory is taken for them") {
+  for (const std::string& text :
+       {object("shape = \"sphere\"\nsegments = 1000000000\n"),
+        object("shape = \"sphere\"\nrings = 99999999999999\n"),
+        object("shape = \"teapot\"\ndivisions = 100000\n"),
+        object("shape = \"cube\"\ncells = 100000\n"),
+        object("shape = \"plane\"\ncells_x = 100000\n"), object("shape = \"cone\"\nsegments = 2\n"),
+        scatter_of("count = 1000000000\n"), scatter_of("count = 0\n"),
+        object("shape = \"cube\"\nscale = 0\n"), object("shape = \"cube\"\nscale = [1, 0, 1]\n"),
+        object("shape = \"cube\"\nposition = [1e30, 0, 0]\n"),
+        object("shape = \"cube\"\nsway_period_frames = 0\n"),
+        std::string("[texture.t]\nkind = \"dots\"\nsize = 1048576\n")}) {
+    CHECK(contains(complaint(text), "is out of range; "));
+  }
+  std::string many;
+  for (int i = 0; i < 65; ++i) many += "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n";
+  CHECK(contains(complaint(many), "light: has 65 lights; up to 64 would do"));
+}
+
+TEST_CASE("a name with a line end or a terminal sequence in it cannot spoil the complaint") {
+  CHECK(contains(complaint("\"a\\nb\\u001b[31m\" = 1\n"),
+                 "a.toml:1: a?b?[31m: there is no such key"));
+}
+
+TEST_CASE("a bracket at a line's end is no TOML, and no end of the program") {
+  CHECK(contains(complaint("[\n"), "a.toml:1: is no TOML: "));
+}
+
+TEST_CASE("damaged text gives a complaint of one line or a scene, and nothing else") {
+  const std::string whole = scatter_of(
+      "count = 3\nregion_max = [5, 5, 5]\n[camera]\nfov_degrees = 40\n[lens]\nfocus_m = 1.5\n");
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const char damage : {'-', '9', ' ', '"', ']', '.', '\n'}) {
+      std::string text = whole;
+      text[i] = damage;
+      CHECK_UNARY(complaint(text).find('\n') == std::string::npos);
+    }
+  }
+}

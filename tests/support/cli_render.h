@@ -1,0 +1,53 @@
+#pragma once
+// Renders small pictures through the program, for the tests of its command line.
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_program.h"
+#include "tools/files/image_file.h"
+
+namespace softfocus {
+
+using Words = std::vector<std::string>;
+
+// So small a picture has a --max-coc of 0.5 by itself: a test of blur gives one.
+inline constexpr int kWidth = 48;
+inline constexpr int kHeight = 32;
+inline constexpr const char* kSize = "48x32";
+
+inline const std::string kCube = "[material.m]\n[[object]]\nshape = \"cube\"\nmaterial = \"m\"\n";
+
+inline Words render(const std::string& scene, const std::string& output, const Words& more = {}) {
+  Words words{"render", scene, "--size", kSize, "-o", output};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// The bytes of a picture that was rendered without complaint.
+inline std::string rendered(const std::string& scene, const Words& more,
+                            const char* name = "a.npy") {
+  const TemporaryDirectory directory;
+  const ProgramRun run = run_program(render(scene, directory.file(name), more));
+  CHECK(run.status == 0);
+  CHECK(run.err == "");
+  CHECK(directory.listing() == Words{name});
+  return read_file(directory.file(name));
+}
+
+inline Picture rendered_picture(const std::string& scene, const Words& more) {
+  const std::string bytes = rendered(scene, more);
+  return decode_npy(std::as_bytes(std::span{bytes}));
+}
+
+/// What --json says.
+inline nlohmann::json rendered_json(const std::string& scene, Words more) {
+  const TemporaryDirectory directory;
+  more.emplace_back("--json");
+  const ProgramRun run = run_program(render(scene, directory.file("a.npy"), more));
+  CHECK(run.status == 0);
+  return nlohmann::json::parse(run.out);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,78 @@
+#include "tools/chart/record.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/support/chart_points.h"
+#include "tests/support/run_program.h"
+
+using namespace softfocus;
+
+namespace {
+
+ChartPoint bare(const ChartPoint& of) {
+  ChartPoint point{.entry = of.entry};
+  point.picture_hash = of.picture_hash;
+  return point;
+}
+
+}  // namespace
+
+TEST_CASE("chart record: a point comes back as it was, with what is no number") {
+  const TemporaryDirectory directory;
+  ChartPoint point = test::chart_point("two-pass", 2, {1.5}, 0.0625);
+  point.errors.psnr_db = std::numeric_limits<double>::infinity();
+  save_point(point, "key", directory.file("a.json"));
+  ChartPoint kept = bare(point);
+  REQUIRE(load_point(kept, "key", directory.file("a.json")));
+  CHECK(std::isinf(kept.errors.psnr_db));
+  CHECK(kept.errors.ssim == 0.875);
+  CHECK(kept.errors.flip == 0.0625);
+  CHECK(std::isnan(kept.errors.flip_by_region[1]));
+  CHECK(kept.errors.flip_by_region[3] == 0.25);
+  CHECK(kept.worst.x == 3);
+  CHECK(kept.worst.side == 16);
+  CHECK(kept.pictures.picture == "AAAA");
+  CHECK(kept.pictures.worst_error == "EEEE");
+  CHECK(kept.times.frame_ms.empty());
+}
+
+TEST_CASE("chart record: another key, another picture or a damaged file is not taken") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("a.json");
+  const ChartPoint point = test::chart_point("two-pass", 2, {1.5}, 0.0625);
+  save_point(point, "key", file);
+  ChartPoint kept = bare(point);
+  CHECK_FALSE(load_point(kept, "another", file));
+  ++kept.picture_hash;
+  CHECK_FALSE(load_point(kept, "key", file));
+  --kept.picture_hash;
+  const std::string bytes = read_file(file);
+  for (const std::string& damaged :
+       {bytes.substr(0, bytes.size() / 2), std::string{"[]"}, std::string{},
+        R"({"key":"key","picture_hash":"0000000000000123","errors":{}})" + std::string{}}) {
+    write_file(file, damaged);
+    CHECK_FALSE(load_point(kept, "key", file));
+    CHECK(kept.pictures.picture.empty());
+  }
+  CHECK_FALSE(load_point(kept, "key", directory.file("not-there.json")));
+}
+
+TEST_CASE("chart record: times come back to the points whose pictures are the same") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("times.json");
+  const auto points = test::chart_panel("figures").points;
+  save_times(points, "key", file);
+  std::vector<ChartPoint> kept;
+  for (const ChartPoint& point : points) kept.push_back(bare(point));
+  load_times(kept, "another", file);
+  CHECK(kept[0].times.frame_ms.empty());
+  kept[1].picture_hash = 7;
+  load_times(kept, "key", file);
+  CHECK(kept[0].times.frame_ms == points[0].times.frame_ms);
+  CHECK(kept[0].times.filter_ms == points[0].times.filter_ms);
+  CHECK(kept[1].times.frame_ms.empty());
+  CHECK(kept[3].times.frame_ms == std::vector<double>{700});
+  CHECK(kept[3].times.filter_ms.empty());
+}

@@ -1,0 +1,89 @@
+// The gate of "the same bits everywhere": one table of hashes, tools/golden/table.inc,
+// which must hold for every machine, compiler, optimisation level and thread count. When
+// one changes, find the operation that changed before touching the table; print the new
+// one with
+//     softfocus selftest --print
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "tools/golden/hashes.h"
+
+using namespace softfocus;
+
+namespace {
+
+// Making a scene's textures takes longer than drawing it small: each is made once.
+const std::vector<GoldenScene>& scenes() {
+  static const std::vector<GoldenScene> kScenes = [] {
+    ThreadPool pool(1);
+    return load_golden_scenes(pool);
+  }();
+  return kScenes;
+}
+
+std::vector<NamedHash> frames(std::string_view profile, int threads) {
+  ThreadPool pool(threads);
+  const Profile named = find_profile(profile).value();
+  return frame_hashes(scenes(), {&named, 1}, pool);
+}
+
+std::vector<NamedHash> three_hashes() { return {{"a", 1}, {"b", 2}, {"c", 3}}; }
+
+}  // namespace
+
+TEST_CASE("every golden hash is the table's") {
+  std::vector<NamedHash> computed = number_hashes();
+  ThreadPool pool(1);
+  for (const auto& more : {sampler_hashes(profiles()), frame_hashes(scenes(), profiles(), pool)}) {
+    computed.insert(computed.end(), more.begin(), more.end());
+  }
+  CHECK(describe_failures(check_hashes(expected_hashes(), computed)) == "");
+}
+
+TEST_CASE("a frame's golden hash does not depend on the number of threads") {
+  const std::vector<NamedHash> expected = frames("ieee", 1);
+  for (const int threads : {2, 3, 8}) {
+    CHECK(describe_failures(check_hashes(expected, frames("ieee", threads))) == "");
+  }
+}
+
+TEST_CASE("a golden hash tells one profile's frame from another's") {
+  const std::vector<NamedHash> ieee = frames("ieee", 2);
+  const std::vector<NamedHash> llvmpipe = frames("llvmpipe", 2);
+  REQUIRE(ieee.size() == llvmpipe.size());
+  for (std::size_t i = 0; i < ieee.size(); ++i) {
+    CAPTURE(llvmpipe[i].name);
+    CHECK(ieee[i].hash != llvmpipe[i].hash);
+  }
+}
+
+TEST_CASE("no two golden hashes have one name") {
+  std::vector<std::string> names;
+  for (const NamedHash& entry : expected_hashes()) names.push_back(entry.name);
+  std::sort(names.begin(), names.end());
+  CHECK(std::adjacent_find(names.begin(), names.end()) == names.end());
+}
+
+TEST_CASE("golden hashes that are as expected have nothing to be described") {
+  CHECK(describe_failures(check_hashes(three_hashes(), three_hashes())) == "");
+}
+
+TEST_CASE("the first wrong golden hash is named, with what was expected and computed") {
+  std::vector<NamedHash> computed = three_hashes();
+  computed[1].hash ^= 1;
+  computed[2].hash ^= 1;
+  CHECK(describe_failures(check_hashes(three_hashes(), computed)) ==
+        "2 of 3 hashes differ; the first is 'b': expected 0x0000000000000002, computed "
+        "0x0000000000000003");
+}
+
+TEST_CASE("a golden hash that the table lacks, and one that was not computed, do not pass") {
+  const std::vector<NamedHash> all = three_hashes();
+  const std::span<const NamedHash> two{all.data(), 2};
+  CHECK(describe_failures(check_hashes(two, all)) ==
+        "1 of 3 hashes differ; the first is 'c': expected nothing, computed 0x0000000000000003");
+  CHECK(describe_failures(check_hashes(all, two)) ==
+        "1 of 3 hashes differ; the first is 'c': expected 0x0000000000000003, computed nothing");
+}

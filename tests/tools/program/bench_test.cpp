@@ -1,0 +1,229 @@
+// bench from end to end. What a time is no test can say; that it is there, these do.
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "raster/lanes/isa.h"
+#include "tests/support/cli_refused.h"
+#include "tests/support/gl_drivers.h"
+#include "tools/gl/driver.h"
+
+using namespace softfocus;
+
+namespace {
+
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+const Words kSpheres{"--triangles", "1500", "--size", "64x64"};
+const Words kScene{"figures", "--size", "64x64"};
+const Words kPicture{"--image", "64x64"};
+
+// Ten runs at a small size, as JSON.
+json benched(const Words& subject, const Words& more = {}) {
+  Words words{"bench", "--runs", "10", "--json"};
+  words.insert(words.end(), subject.begin(), subject.end());
+  words.insert(words.end(), more.begin(), more.end());
+  const ProgramRun run = run_program(words);
+  CHECK(run.status == 0);
+  CHECK(run.err == "");
+  return json::parse(run.out);
+}
+
+std::string profile_of(const std::string& driver) {
+  return std::string{find_driver(driver)->profile};
+}
+
+void check_stages(const json& stages, const Words& names) {
+  Words found;
+  for (const json& stage : stages) {
+    found.push_back(stage.at("name"));
+    CHECK(stage.at("min_ms") > 0.0);
+    CHECK(stage.at("min_ms") <= stage.at("median_ms"));
+    CHECK(stage.at("median_ms") <= stage.at("max_ms"));
+  }
+  CHECK(found == names);
+}
+
+const Words kAllStages{"raster", "dof", "frame"};
+
+void check_versus(const std::string& driver) {
+  if (!has_driver(driver)) return;
+  for (const char* method : {"two-pass", "one-pass", "pinhole"}) {
+    CAPTURE(method);
+    const json result = benched(kScene, {"--vs", driver, "--profile", profile_of(driver),
+                                         "--method", method, "--max-coc", "4"});
+    CHECK(result["peer"]["driver"] == driver);
+    CHECK(result["peer"]["renderer"].get<std::string>().starts_with(
+        std::string{find_driver(driver)->gallium_driver}));
+    check_stages(result["stages"], kAllStages);
+    check_stages(result["peer"]["stages"], kAllStages);
+    for (const std::string& stage : kAllStages) {
+      CHECK(result["ratio_min"][stage] > 0.0);
+      CHECK(result["ratio_min"][stage] <= result["ratio"][stage]);
+      CHECK(result["ratio"][stage] <= result["ratio_max"][stage]);
+    }
+    CHECK(result["equal"] == true);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("bench: --json tells what was measured and three stages") {
+  const json result = benched(kSpheres, {"--max-coc", "3", "--threads", "2", "--isa", "scalar"});
+  CHECK(result["scene"] == "spheres");
+  CHECK(result["triangles"] == 1500);
+  CHECK(result["size"] == "64x64");
+  CHECK(result["method"] == "two-pass");
+  CHECK(result["max_coc"] == 3.0);
+  CHECK(result["profile"] == "ieee");
+  CHECK(result["threads"] == 2);
+  CHECK(result["isa"] == "scalar");
+  CHECK(result["runs"] == 10);
+  CHECK(result["softfocus"].is_string());
+  CHECK(result["compiler"].is_string());
+  CHECK(result.contains("cpu"));
+  check_stages(result["stages"], kAllStages);
+}
+
+TEST_CASE("bench: without --vs there is no peer, no ratio and nothing to be equal to") {
+  const json result = benched(kScene);
+  for (const char* key : {"peer", "ratio", "ratio_min", "ratio_max", "equal"}) {
+    CAPTURE(key);
+    CHECK(result.at(key).is_null());
+  }
+}
+
+TEST_CASE("bench: a scene is measured at its own filter size, or as --max-coc says") {
+  CHECK(benched(kScene)["scene"] == "figures");
+  CHECK(benched(kScene)["max_coc"] == 1.0);  // 16 at 1024 rows
+  CHECK(benched(kScene, {"--max-coc", "5.5"})["max_coc"] == 5.5);
+}
+
+TEST_CASE("bench: a scene's file, another frame and another lens can be measured") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("mine.toml"),
+             "[material.m]\n[[object]]\nshape = \"cube\"\ncells = 1\nmaterial = \"m\"\n");
+  const json result = benched({directory.file("mine.toml"), "--size", "64x64"},
+                              {"--frame", "7", "--focus", "1.5", "--f-number", "2",
+                               "--focal-length", "35", "--coc-scale", "0"});
+  CHECK(result["scene"] == "mine");
+  CHECK(result["triangles"] == 12);
+  CHECK(benched({"mine", "--size", "64x64"}, {"--scene-path", directory.path()})["triangles"] ==
+        12);
+}
+
+TEST_CASE("bench: of a picture only the filter is timed, and there are no triangles") {
+  const json result = benched(kPicture);
+  CHECK(result["scene"] == "picture");
+  CHECK(result["size"] == "64x64");
+  CHECK(result["triangles"].is_null());
+  check_stages(result["stages"], {"dof"});
+}
+
+TEST_CASE("bench: the text is a heading and a line for each stage") {
+  const ProgramRun run =
+      run_program({"bench", "figures", "--size", "64x64", "--runs", "10", "--threads", "1"});
+  CHECK(run.status == 0);
+  CHECK(run.err == "");
+  CHECK(run.out.starts_with("figures, "));
+  for (const char* part : {" triangles, 64x64, two-pass, max-coc 1\n", "profile ieee, 1 thread, ",
+                           ", 10 runs, ", "\nraster  ", "\ndof     ", "\nframe   "}) {
+    CAPTURE(part);
+    CHECK(contains(run.out, part));
+  }
+  CHECK_FALSE(contains(run.out, "against"));
+  CHECK_FALSE(contains(run.out, " \n"));
+}
+
+TEST_CASE("bench: --vs llvmpipe times both, whose pictures are equal in its profile") {
+  check_versus("llvmpipe");
+}
+TEST_CASE("bench: --vs softpipe times both, whose pictures are equal in its profile") {
+  check_versus("softpipe");
+}
+
+TEST_CASE("bench: --vs of a picture compares the filter alone") {
+  if (!has_driver("llvmpipe")) return;
+  for (const char* method : {"two-pass", "one-pass", "pinhole"}) {
+    CAPTURE(method);
+    const json result = benched(kPicture, {"--vs", "llvmpipe", "--profile", profile_of("llvmpipe"),
+                                           "--method", method, "--threads", "1", "--max-coc", "6"});
+    CHECK(result["ratio"]["raster"].is_null());
+    CHECK(result["ratio"]["frame"].is_null());
+    CHECK(result["ratio"]["dof"] > 0.0);
+    check_stages(result["peer"]["stages"], {"dof"});
+    CHECK(result["equal"] == true);
+  }
+}
+
+TEST_CASE("bench: pictures that differ are said to") {
+  if (!has_driver("llvmpipe")) return;
+  CHECK(benched(kSpheres, {"--vs", "llvmpipe", "--profile", "ieee"})["equal"] == false);
+}
+
+TEST_CASE("bench: the text of a comparison names the driver and says whether the bits agree") {
+  if (!has_driver("llvmpipe")) return;
+  const ProgramRun run = run_program({"bench", "figures", "--size", "64x64", "--runs", "10", "--vs",
+                                      "llvmpipe", "--profile", profile_of("llvmpipe")});
+  CHECK(run.status == 0);
+  CHECK(contains(run.out, "\nagainst llvmpipe ("));
+  CHECK(contains(run.out, ": the pictures are equal to the bit\n"));
+  CHECK(contains(run.out, "llvmpipe / ours"));
+}
+
+TEST_CASE("bench: a driver that is not there is told in one line, with status 1") {
+  if (!has_driver("llvmpipe")) return;
+  const EnvironmentVariable none{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json"};
+  const ProgramRun run = run_program({"bench", "--image", "64x64", "--vs", "llvmpipe"});
+  CHECK(run.status == 1);
+  CHECK(run.out == "");
+  CHECK(is_one_line(run.err));
+  CHECK(contains(run.err, "driver llvmpipe: "));
+}
+
+TEST_CASE("bench: exactly one thing to measure must be given, and all three are named") {
+  const TemporaryDirectory directory;
+  const Words choices{"SCENE", "--triangles N", "--image WxH"};
+  check_refused(directory, {"bench"}, 2, choices);
+  check_refused(directory, {"bench", "figures", "--triangles", "64000"}, 2, choices);
+  check_refused(directory, {"bench", "figures", "--image", "64x64"}, 2, choices);
+  check_refused(directory, {"bench", "--triangles", "64000", "--image", "64x64"}, 2, choices);
+}
+
+TEST_CASE("bench: bad options are refused with what would be right") {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const Words& more, const Words& named, int status = 2) {
+    Words words{"bench"};
+    words.insert(words.end(), more.begin(), more.end());
+    check_refused(directory, words, status, named);
+  };
+  refused({"--triangles", "1499"}, {"--triangles '1499'", "1500 to 8000000"});
+  refused({"--triangles", "many"}, {"--triangles 'many'"});
+  refused({"--triangles", "8000001"}, {"--triangles"});
+  refused({"--image", "0x64"}, {"--image '0x64'"});
+  refused({"--image", "64x64", "--size", "64x64"}, {"--image and --size"});
+  refused({"figures", "--isa", "abacus"}, {"--isa 'abacus'", "scalar, baseline"});
+  refused({"figures", "--runs", "9"}, {"--runs '9'", "10 to 1000"});
+  refused({"figures", "--threads", "0"}, {"--threads '0'"});
+  refused({"figures", "--method", "three-pass"}, {"--method", "two-pass"});
+  refused({"figures", "--max-coc", "2000"}, {"--max-coc"});
+  refused({"figures", "--vs", "voodoo"}, {"--vs 'voodoo'", "llvmpipe, llvmpipe-sse41, softpipe"});
+  refused({"figures", "--focal-length", "3000"}, {"--focal-length 3000 mm"});
+  refused({"figures", "cube-room"}, {"unexpected argument 'cube-room'"});
+  refused({"no-such-scene"}, {"no-such-scene"}, 1);
+}
+
+TEST_CASE("bench: the help names every option") {
+  const ProgramRun run = run_program({"bench", "--help"});
+  CHECK(run.status == 0);
+  for (const char* option :
+       {"SCENE", "--triangles N", "--image WxH", "--size WxH", "--frame N", "--scene-path DIR",
+        "--method NAME", "--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
+        "--max-coc PIXELS", "--profile NAME", "--threads N", "--isa NAME", "--runs N",
+        "--vs DRIVER", "--json"}) {
+    CAPTURE(option);
+    CHECK(contains(run.out, std::string{"  "} + option));
+  }
+}

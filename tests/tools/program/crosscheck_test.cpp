@@ -1,0 +1,271 @@
+// The emulation against real drivers, and the comparison against deliberate errors.
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/support/gl_drivers.h"
+#include "tools/gl/driver.h"
+#include "tools/files/profile_file.h"
+
+using namespace softfocus;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+ProgramRun crosscheck(const std::string& driver, const std::string& cases, const Words& more = {}) {
+  Words words{"crosscheck", "--driver", driver, "--case", cases};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_program(words);
+}
+
+nlohmann::json quick_results(const std::string& driver) {
+  const ProgramRun run = run_program({"crosscheck", "--driver", driver, "--quick", "--json"});
+  CHECK(run.status == 0);
+  CHECK(run.err == "");
+  return nlohmann::json::parse(run.out);
+}
+
+void check_all_equal(const std::string& driver) {
+  if (!has_driver(driver)) return;
+  std::set<std::string> stages;
+  for (const auto& entry : quick_results(driver)) {
+    CAPTURE(entry.dump());
+    CHECK(entry["driver"] == driver);
+    CHECK(entry["profile"] == find_driver(driver)->profile);
+    CHECK(entry["differing"] == 0);
+    CHECK(entry["max_ulp"] == 0);
+    CHECK(entry["values"] > 0);
+    CHECK_FALSE(entry.contains("error"));
+    stages.insert(entry["stage"]);
+  }
+  const std::set<std::string> all{
+      "store", "bilinear-rgba16f", "bilinear-rgba8", "mipmap", "coverage", "depth", "attributes",
+      "scene", "two-pass",         "one-pass",       "frame"};
+  CHECK(stages == all);
+}
+
+// llvmpipe-sse41's profile but for one key: that driver is the same on every x86 CPU.
+std::string altered_profile(const TemporaryDirectory& directory, const std::string& key,
+                            const std::string& value) {
+  Profile profile = find_profile("llvmpipe-sse41").value();
+  profile.name = "altered";
+  std::string text = profile_text(profile, "");
+  const std::size_t begin = text.find('\n' + key + " = ") + 1;
+  REQUIRE(begin != 0);
+  const std::size_t end = text.find('\n', begin);
+  const std::string line = key + " = " + value;
+  REQUIRE(!text.substr(begin, end - begin).starts_with(line));
+  text.replace(begin, end - begin, line);
+  const std::string name = directory.file("altered.toml");
+  write_file(name, text);
+  return name;
+}
+
+void check_profile_caught(const std::string& cases, const std::string& key,
+                          const std::string& value) {
+  CAPTURE(cases + ": " + key + " = " + value);
+  const TemporaryDirectory directory;
+  const ProgramRun run = crosscheck(
+      "llvmpipe-sse41", cases, {"--profile", altered_profile(directory, key, value), "--json"});
+  CHECK(run.status == 1);
+  CHECK(run.err == "");
+  std::uint64_t differing = 0;
+  for (const auto& entry : nlohmann::json::parse(run.out)) {
+    differing += entry["differing"].get<std::uint64_t>();
+    CHECK(entry["profile"] == "altered");
+  }
+  CHECK(differing > 0);
+}
+
+// The project's shaders in a folder, one of them altered.
+void write_shaders(const TemporaryDirectory& directory, const std::string& shader,
+                   const std::string& from, const std::string& to) {
+  CHECK(run_program({"shaders", "-o", directory.path()}).status == 0);
+  std::string text = read_file(directory.file(shader));
+  const std::size_t at = text.find(from);
+  REQUIRE(at != text.npos);
+  text.replace(at, from.size(), to);
+  write_file(directory.file(shader), text);
+}
+
+void check_shader_caught(const std::string& cases, const std::string& shader,
+                         const std::string& from, const std::string& to) {
+  CAPTURE(cases + ": " + to);
+  const TemporaryDirectory directory;
+  write_shaders(directory, shader, from, to);
+  const ProgramRun run = crosscheck("llvmpipe", cases, {"--shaders", directory.path()});
+  CHECK(run.status == 1);
+  CHECK(run.err == "");
+}
+
+}  // namespace
+
+TEST_CASE("crosscheck: llvmpipe and its profile give the same bits") {
+  check_all_equal("llvmpipe");
+}
+TEST_CASE("crosscheck: llvmpipe held to SSE4.1 and its profile give the same bits") {
+  check_all_equal("llvmpipe-sse41");
+}
+TEST_CASE("crosscheck: softpipe and its profile give the same bits") {
+  check_all_equal("softpipe");
+}
+
+TEST_CASE("crosscheck: another rounding, contraction or rule in a profile is caught") {
+  if (!has_driver("llvmpipe-sse41")) return;
+  check_profile_caught("store/rgba16f-around-every-half", "half_store", "\"nearest-even\"");
+  check_profile_caught("store/rgba8-around-every-byte", "unorm_store", "\"half-up\"");
+  check_profile_caught("bilinear-rgba16f/37x19-clamp", "lerp", "\"fused\"");
+  check_profile_caught("bilinear-rgba8/37x19-clamp", "texture_unit", "\"softpipe\"");
+  check_profile_caught("mipmap/generate-rgba16f-100x37", "lerp", "\"fused\"");
+  check_profile_caught("mipmap/trilinear-rgba16f-clamp", "lerp", "\"fused\"");
+  check_profile_caught("coverage/centre-aligned-20000", "fill_rule", "\"lower-left\"");
+  check_profile_caught("coverage/inside-20000", "subpixel_bits", "7");
+  check_profile_caught("coverage/across-edges-4000", "guard_band", "2");
+  check_profile_caught("depth/inside", "interpolation", "\"fused\"");
+  check_profile_caught("attributes/inside", "interpolation", "\"fused\"");
+  check_profile_caught("attributes/inside-odd-size", "viewport", "\"fused\"");
+  check_profile_caught("attributes/across-edges", "clipping", "\"plain\"");
+  check_profile_caught("scene/figures-128x96-frame7", "half_store", "\"nearest-even\"");
+  check_profile_caught("two-pass/random-64x64-radius4", "half_store", "\"nearest-even\"");
+  check_profile_caught("one-pass/random-64x64-radius4", "half_store", "\"nearest-even\"");
+  check_profile_caught("frame/figures-128x96-frame7-two-pass", "half_store", "\"nearest-even\"");
+}
+
+TEST_CASE("crosscheck: another order of operations in a shader is caught") {
+  if (!has_driver("llvmpipe")) return;
+  // 1/512 texel: one step of an 8-bit weight for every other sample.
+  check_shader_caught("bilinear-rgba8/64x32-repeat", "sample.frag", "at.xy",
+                      "at.xy + vec2(1.0 / 32768.0, 0.0)");
+  check_shader_caught("two-pass/lens-leak-0.3", "weights.glsl", "gather.colour / gather.weight",
+                      "gather.colour * (1.0 / gather.weight)");
+  check_shader_caught("two-pass/random-64x64-radius4", "two_pass.frag", "here - d * direction",
+                      "here + d * direction");
+  check_shader_caught("one-pass/random-64x64-radius4", "one_pass.frag", "int i = 0; i < taps; ++i",
+                      "int i = taps - 1; i >= 0; --i");
+  check_shader_caught("scene/figures-128x96-frame7", "lighting.glsl",
+                      "(a.x * b.x + a.y * b.y) + a.z * b.z", "a.x * b.x + (a.y * b.y + a.z * b.z)");
+  check_shader_caught("frame/figures-128x96-frame7-two-pass", "weights.glsl",
+                      "depth_m - focus_m) / depth_m", "depth_m - focus_m) * (1.0 / depth_m)");
+}
+
+TEST_CASE("crosscheck: a difference is told with its pixel, both values and a picture") {
+  if (!has_driver("llvmpipe-sse41")) return;
+  const TemporaryDirectory directory;
+  const TemporaryDirectory pictures;
+  const ProgramRun run = crosscheck("llvmpipe-sse41", "two-pass/lens-*",
+                                    {"--quick", "--diff", pictures.path(), "--profile",
+                                     altered_profile(directory, "half_store", "\"nearest-even\"")});
+  CHECK(run.status == 1);
+  CHECK(contains(run.out, "first at pixel "));
+  CHECK(contains(run.out, "driver "));
+  CHECK(contains(run.out, ", emulation "));
+  CHECK(contains(run.out, "0 of 2 cases equal"));
+  CHECK(pictures.listing() == Words{"llvmpipe-sse41.two-pass.lens-fractional-radius.png",
+                                    "llvmpipe-sse41.two-pass.lens-leak-0.3.png"});
+  CHECK(read_file(pictures.file(pictures.listing().front())).starts_with("\x89PNG"));
+}
+
+TEST_CASE("crosscheck: a shader that the driver refuses fails its cases, and the rest still runs") {
+  if (!has_driver("llvmpipe")) return;
+  const TemporaryDirectory directory;
+  write_shaders(directory, "two_pass.frag", "void main()", "void main(");
+  const ProgramRun run = crosscheck("llvmpipe", "*/one-pixel", {"--shaders", directory.path()});
+  CHECK(run.status == 2);
+  CHECK(contains(run.out, "two-pass/one-pixel"));
+  CHECK(contains(run.out, "failed: two_pass.frag: 0:1"));  // the line in the file
+  CHECK(contains(run.out, "one-pass/one-pixel"));
+  CHECK(contains(run.out, "1 failed"));
+}
+
+TEST_CASE("crosscheck: a driver that is not there is told in one line, and the others run") {
+  if (!has_driver("llvmpipe")) return;
+  const ProgramRun run = run_program({"crosscheck", "--driver", "gpu", "--profile", "llvmpipe",
+                                      "--driver", "llvmpipe", "--case", "store/rgba8-random"});
+  if (run.err.empty()) {
+    MESSAGE("a GPU is here: nothing was missing");
+    return;
+  }
+  CHECK(run.status == 2);
+  CHECK(is_one_line(run.err));
+  CHECK(contains(run.err, "driver gpu: "));
+  CHECK(contains(run.out, "1 of 2 cases equal, 1 not run"));
+}
+
+TEST_CASE("crosscheck: without an EGL driver that is said in one line") {
+  if (!has_driver("llvmpipe")) return;
+  const EnvironmentVariable none{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json"};
+  const ProgramRun run = crosscheck("llvmpipe", "store/*");
+  CHECK(run.status == 2);
+  CHECK(is_one_line(run.err));
+  CHECK(contains(run.err, "driver llvmpipe: "));
+  const ProgramRun probe = run_program({"probe"});
+  CHECK(probe.status == 1);
+  CHECK(is_one_line(probe.err));
+}
+
+TEST_CASE("crosscheck: bad options are refused with what would be right") {
+  const auto refused = [](const Words& more, std::string_view part) {
+    Words words{"crosscheck"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun run = run_program(words);
+    CAPTURE(run.err);
+    CHECK(run.status == 2);
+    CHECK(run.out == "");
+    CHECK(is_one_line(run.err));
+    CHECK(contains(run.err, part));
+  };
+  refused({"--driver", "voodoo"}, "there are llvmpipe, llvmpipe-sse41, softpipe, gpu");
+  refused({"--driver", "gpu"}, "softfocus probe --driver gpu makes one");
+  refused({"--profile", "voodoo"}, "there are ieee, ");
+  refused({"--profile", "./none.toml"}, "./none.toml: no such file");
+  refused({"--diff", "/nonexistent"}, "there is no such folder");
+  refused({"--shaders", "/nonexistent"}, "there is no such folder");
+  const TemporaryDirectory empty;
+  refused({"--shaders", empty.path()}, "has none of the shaders that softfocus shaders lists");
+  write_file(empty.file("twopass.frag"), "void main() {}");
+  refused({"--shaders", empty.path()}, "twopass.frag: stands in for none of the shaders");
+  refused({"--driver", "llvmpipe", "--driver", "gpu"}, "--driver gpu needs --profile");
+  const TemporaryDirectory unwritable;  // for root too: the name is taken by a folder
+  std::filesystem::create_directory(unwritable.file("picture.png"));
+  refused({"--diff", unwritable.path()}, "--diff: ");
+  refused({"--fast"}, "unknown option '--fast'");
+}
+
+TEST_CASE("crosscheck: a pattern that matches no case is refused") {
+  if (!has_driver("llvmpipe")) return;
+  const ProgramRun run = crosscheck("llvmpipe", "store");
+  CHECK(run.status == 2);
+  CHECK(is_one_line(run.err));
+  CHECK(contains(run.err, "--case 'store' matches no case"));
+}
+
+TEST_CASE("crosscheck: a driver for which nothing was to be compared does not count as equal") {
+  if (!has_driver("softpipe")) return;
+  const ProgramRun run = crosscheck("softpipe", "coverage/inside-1000000", {"--json"});
+  CHECK(run.status == 2);
+  CHECK(is_one_line(run.err));
+  const auto entries = nlohmann::json::parse(run.out);
+  REQUIRE(entries.size() == 1);
+  CHECK(entries[0]["differing"].is_null());
+  CHECK(entries[0].contains("error"));
+}
+
+TEST_CASE("crosscheck: a shader that includes itself is told, and the rest still runs") {
+  if (!has_driver("llvmpipe")) return;
+  const TemporaryDirectory directory;
+  write_file(directory.file("two_pass.frag"), "#include \"two_pass.frag\"\n");
+  const ProgramRun run = crosscheck("llvmpipe", "*/one-pixel", {"--shaders", directory.path()});
+  CHECK(run.status == 2);
+  CHECK(contains(run.out, "two_pass.frag: includes itself"));
+  CHECK(contains(run.out, "one-pass/one-pixel"));
+}
+
+TEST_CASE("crosscheck: what the user's environment says to Mesa does not change a driver") {
+  if (!has_driver("llvmpipe")) return;
+  const EnvironmentVariable performance{"GALLIVM_PERF", "no_aos_sampling,no_quad_lod"};
+  const EnvironmentVariable version{"MESA_GL_VERSION_OVERRIDE", "2.1"};
+  CHECK(crosscheck("llvmpipe", "bilinear-rgba8/64x32-repeat").status == 0);
+}

@@ -1,0 +1,91 @@
+#include "tests/support/cli_render.h"
+
+using namespace softfocus;
+
+TEST_CASE("help names every option of every subcommand, with units") {
+  const auto names_all = [](const char* command, const Words& options) {
+    const ProgramRun run = run_program({command, "--help"});
+    CHECK(run.status == 0);
+    CHECK(run.err == "");
+    for (const std::string& option : options) {
+      CAPTURE(option);
+      CHECK(contains(run.out, "  " + option));
+    }
+  };
+  names_all("render", {"SCENE",
+                       "-o,--output FILE",
+                       "--format png|pfm|npy",
+                       "--size WxH",
+                       "--show image|pinhole|coc|depth",
+                       "--frame N",
+                       "--scene-path DIR",
+                       "--method NAME",
+                       "--focus METRES",
+                       "--focal-length MM",
+                       "--f-number N",
+                       "--coc-scale S",
+                       "--autofocus [X,Y]",
+                       "--max-coc PIXELS",
+                       "--leak A",
+                       "--samples N",
+                       "--jitter",
+                       "--until ERROR",
+                       "--aperture-blades N",
+                       "--profile NAME",
+                       "--threads N",
+                       "--isa NAME",
+                       "--report FILE",
+                       "--json",
+                       "-v,--verbose"});
+  names_all("lens",
+            {"--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
+             "--fov DEGREES", "--height PIXELS", "--max-coc-film MM", "--at METRES ...", "--json"});
+  names_all("compare", {"A", "B", "--diff OUT", "--diff-ulps OUT", "--hdr", "--pixels-per-degree N",
+                        "--regions", "--depth FILE", "--focus METRES", "--focal-length MM",
+                        "--f-number N", "--coc-scale S", "--fov DEGREES", "--point PIXELS",
+                        "--flicker FRAME ...", "--against FRAME ...", "--json"});
+  names_all("selftest", {"--threads N", "--isa NAME", "--json", "--print"});
+  names_all("scenes", {"--scene-path DIR"});
+  names_all("methods", {});
+  names_all("profiles", {});
+}
+
+TEST_CASE("the program tells its version") {
+  CHECK(run_program({"--version"}).out.starts_with("softfocus 0."));
+}
+
+TEST_CASE("without a subcommand there is the help, as wrong usage") {
+  const ProgramRun run = run_program({});
+  CHECK(run.status == 2);
+  CHECK(run.out == "");
+  for (const char* command : {"render", "scenes", "methods", "profiles", "lens", "compare", "bench",
+                              "chart", "selftest"}) {
+    CHECK(contains(run.err, std::string{"\n  "} + command));
+  }
+}
+
+TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
+  const auto lists = [](const char* command, const Words& names) {
+    const ProgramRun run = run_program({command});
+    CHECK(run.status == 0);
+    for (const std::string& name : names) {
+      CAPTURE(name);
+      CHECK(contains("\n" + run.out, "\n" + name + " "));
+    }
+    CHECK(std::count(run.out.begin(), run.out.end(), '\n') ==
+          static_cast<std::ptrdiff_t>(names.size()));
+  };
+  lists("scenes", {"cube-room", "dunes", "figures", "lattice", "sphere-world"});
+  lists("methods",
+        {"pinhole", "two-pass", "two-pass-single", "one-pass", "scatter", "scatter-sorted",
+         "layers", "diffusion", "ring-bucket", "circular-1", "circular-2", "post-process",
+         "disc-layers", "accumulation", "ray-traced", "auto"});
+  lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
+}
+
+TEST_CASE("scenes lists those of --scene-path with their titles") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("mine.toml"), "title = \"My own\"\n" + kCube);
+  CHECK(contains(run_program({"scenes", "--scene-path", directory.path()}).out,
+                 "mine          My own\n"));
+}

@@ -1,0 +1,46 @@
+// --isa, on every vector unit that this CPU has.
+
+#include "raster/lanes/isa.h"
+
+#include "dof/method.h"
+#include "tests/support/cli_refused.h"
+#include "tests/support/cli_render.h"
+
+using namespace softfocus;
+
+TEST_CASE("selftest passes on every vector unit of this CPU") {
+  for (const Isa isa : available_isas()) {
+    CAPTURE(isa_name(isa));
+    const ProgramRun run = run_program({"selftest", "--isa", std::string{isa_name(isa)}});
+    CHECK(run.status == 0);
+    CHECK(run.out.starts_with("pass: "));
+  }
+}
+
+TEST_CASE("render: the bytes are the same on every vector unit, by every method") {
+  for (const Method& entry : methods()) {
+    const std::string method{entry.name};
+    const auto on = [&](Isa isa) {
+      return rendered("sphere-world",
+                      {"--method", method, "--max-coc", "6", "--isa", std::string{isa_name(isa)}});
+    };
+    const std::string scalar = on(Isa::scalar);
+    for (const Isa isa : available_isas()) {
+      CAPTURE(isa_name(isa));
+      CHECK_UNARY(on(isa) == scalar);
+    }
+  }
+}
+
+TEST_CASE("render: the report names the vector unit, the widest unless another is asked for") {
+  CHECK(rendered_json("figures", {})["isa"] == isa_name(widest_isa()));
+  CHECK(rendered_json("figures", {"--isa", "scalar"})["isa"] == "scalar");
+}
+
+TEST_CASE("render and selftest refuse a vector unit that this CPU has not, and list those it has") {
+  const TemporaryDirectory directory;
+  check_refused(directory, {"selftest", "--isa", "abacus"}, 2,
+                {"--isa 'abacus'", "this CPU has scalar, baseline"});
+  check_refused(directory, render("figures", directory.file("a.png"), {"--isa", "abacus"}), 2,
+                {"--isa 'abacus'", "this CPU has scalar, baseline"});
+}

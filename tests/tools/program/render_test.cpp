@@ -1,0 +1,215 @@
+#include <map>
+
+#include "dof/method.h"
+#include "raster/images/texel.h"
+#include "tests/support/cli_render.h"
+
+using namespace softfocus;
+
+namespace {
+
+/// A square of 2 m, 4 m in front of the camera, before a far background.
+constexpr std::string_view kSquareObj = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+
+}  // namespace
+
+TEST_CASE("render: a picture is 1024 x 1024 if no size is given") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("a.npy");
+  CHECK(run_program({"render", "figures", "-o", file}).status == 0);
+  const std::string bytes = read_file(file);
+  CHECK(contains(bytes.substr(0, 128), "'shape': (1024, 1024, 4)"));
+  CHECK(bytes.size() == 128 + 1024 * 1024 * 8);
+}
+
+TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads, by every method") {
+  for (const Method& entry : methods()) {
+    const std::string method{entry.name};
+    const auto with_threads = [&](const std::string& threads) {
+      return rendered("figures", {"--method", method, "--max-coc", "6", "--threads", threads});
+    };
+    const std::string one = with_threads("1");
+    for (const std::string threads : {"2", "3", "8"}) CHECK(with_threads(threads) == one);
+  }
+}
+
+TEST_CASE("render: the built-in scenes give different pictures, each with something in it") {
+  std::vector<std::string> pictures;
+  for (const std::string scene : {"figures", "cube-room", "sphere-world"}) {
+    pictures.push_back(rendered(scene, {}, "a.png"));
+    CHECK(pictures.back().size() > 500);  // a picture of one colour takes less
+  }
+  CHECK(pictures[0] != pictures[1]);
+  CHECK(pictures[1] != pictures[2]);
+}
+
+TEST_CASE("render: a scene's file can be given instead of its name") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("mine.toml");
+  write_file(directory.file("square.obj"), kSquareObj);
+  write_file(name, "title = \"Mine\"\n[[object]]\nshape = \"model\"\nfile = \"square.obj\"\n");
+  CHECK(rendered_json(name, {})["title"] == "Mine");
+  CHECK(rendered_json(name, {})["triangles"] == 2);
+}
+
+TEST_CASE("render: an OBJ model can be given as a scene") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("square.obj"), kSquareObj);
+  const auto json = rendered_json(directory.file("square.obj"), {});
+  CHECK(json["scene"] == "square");
+  CHECK(json["triangles"] == 2);
+}
+
+TEST_CASE("render: --scene-path is looked through first, in the order given") {
+  const TemporaryDirectory first, second;
+  write_file(first.file("figures.toml"), "title = \"First\"\n" + kCube);
+  write_file(second.file("figures.toml"), "title = \"Second\"\n" + kCube);
+  write_file(second.file("other.toml"), "title = \"Other\"\n" + kCube);
+  const Words path{"--scene-path", first.path(), "--scene-path", second.path()};
+  CHECK(rendered_json("figures", path)["title"] == "First");
+  CHECK(rendered_json("other", path)["title"] == "Other");
+  CHECK(rendered_json("figures", {})["title"] == "Figures");
+}
+
+TEST_CASE("render: the methods give different pictures, and two-pass is the usual one") {
+  const auto by_method = [](const std::string& method) {
+    return rendered("figures", {"--max-coc", "6", "--method", method});
+  };
+  CHECK(by_method("pinhole") != by_method("two-pass"));
+  CHECK(by_method("two-pass") != by_method("one-pass"));
+  CHECK(by_method("one-pass") != by_method("pinhole"));
+  CHECK(rendered("figures", {"--max-coc", "6"}) == by_method("two-pass"));
+}
+
+TEST_CASE("render: the pinhole method gives the picture before any filter") {
+  const std::string before = rendered("figures", {"--show", "pinhole"});
+  CHECK(rendered("figures", {"--method", "pinhole"}) == before);
+}
+
+TEST_CASE("render: circles of no size blur nothing") {
+  const std::string before = rendered("figures", {"--show", "pinhole"});
+  for (const std::string method : {"two-pass", "one-pass"}) {
+    CHECK(rendered("figures", {"--coc-scale", "0", "--max-coc", "6", "--method", method}) ==
+          before);
+    CHECK(rendered("figures", {"--max-coc", "0", "--method", method}) == before);
+  }
+}
+
+TEST_CASE("render: the pinhole method minds no lens") {
+  CHECK(rendered("figures", {"--method", "pinhole", "--focal-length", "3000"}) ==
+        rendered("figures", {"--method", "pinhole"}));
+}
+
+TEST_CASE("render: every lens and filter option is used as given") {
+  const auto json =
+      rendered_json("figures", {"--focus", "1.25", "--focal-length", "40", "--f-number", "4",
+                                "--coc-scale", "1.5", "--max-coc", "12", "--leak", "0.5"});
+  const auto& lens = json["lens"];
+  CHECK(lens["focus_m"] == 1.25);
+  CHECK(lens["focal_length_mm"] == 40.0);
+  CHECK(lens["f_number"] == 4.0);
+  CHECK(lens["aperture_mm"] == 10.0);
+  CHECK(lens["coc_scale"] == 1.5);
+  CHECK(lens["max_coc_px"] == 12.0);
+  CHECK(lens["leak"] == 0.5);
+}
+
+TEST_CASE("render: every lens and filter option changes the picture") {
+  using Options = std::map<std::string, std::string>;
+  const auto rendered_with = [](const Options& options) {
+    Words words;
+    for (const auto& [name, value] : options) words.push_back(name + "=" + value);
+    return rendered("figures", words);
+  };
+  // Larger circles than so small a picture has by itself, and some past the limit.
+  const Options usual{{"--coc-scale", "2"}, {"--max-coc", "4"}};
+  const std::string before = rendered_with(usual);
+  const Options other{{"--focus", "0.9"},     {"--focal-length", "60"}, {"--f-number", "4"},
+                      {"--coc-scale", "3"},   {"--max-coc", "2"},       {"--leak", "0"},
+                      {"--autofocus", "0,0"}, {"--profile", "d3d11"}};
+  for (const auto& option : other) {
+    CAPTURE(option.first);
+    Options changed = usual;
+    changed[option.first] = option.second;
+    CHECK(rendered_with(changed) != before);
+  }
+}
+
+TEST_CASE("render: the filter size follows the picture's height if it is not given") {
+  const TemporaryDirectory directory;
+  const auto max_coc = [&](const char* size) {
+    const ProgramRun run =
+        run_program({"render", "figures", "--size", size, "-o", directory.file("a.png"), "--json"});
+    return nlohmann::json::parse(run.out)["lens"]["max_coc_px"].get<double>();
+  };
+  CHECK(max_coc("48x32") == 16.0 * 32 / 1024);
+  CHECK(max_coc("32x64") == 16.0 * 64 / 1024);
+}
+
+TEST_CASE("render: a filter size of 128 and more is taken") {
+  CHECK_FALSE(rendered("figures", {"--max-coc", "128"}).empty());
+  CHECK_FALSE(rendered("figures", {"--max-coc", "1024"}).empty());
+}
+
+TEST_CASE("render: --autofocus focuses on the depth at the pixel") {
+  const Image before = rendered_picture("figures", {"--show", "pinhole"}).image;
+  const double depth = static_cast<double>(load_texel(before, 30, 12).w);
+  const auto lens = rendered_json("figures", {"--autofocus", "30,12"})["lens"];
+  CHECK(lens["focus_m"] == depth);
+  CHECK(lens["autofocus_pixel"] == nlohmann::json{30, 12});
+}
+
+TEST_CASE("render: --autofocus gives the picture that --focus at the found distance gives") {
+  const auto found = rendered_json("figures", {"--autofocus", "30,12"})["lens"]["focus_m"];
+  CHECK(rendered("figures", {"--focus", found.dump()}) ==
+        rendered("figures", {"--autofocus", "30,12"}));
+}
+
+TEST_CASE("render: --autofocus without a pixel takes the centre, wherever it stands") {
+  const std::string centre = rendered("figures", {"--autofocus", "24,16"});
+  CHECK(rendered("figures", {"--autofocus"}) == centre);
+  CHECK(rendered("figures", {"--autofocus=24,16"}) == centre);
+  CHECK(rendered("figures", {"--autofocus", "centre"}) == centre);
+  CHECK(rendered("figures", {"--autofocus", "--threads", "1"}) == centre);
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("a.npy");
+  CHECK(run_program({"render", "--autofocus", "figures", "--size", kSize, "-o", file}).status == 0);
+  CHECK(read_file(file) == centre);
+}
+
+TEST_CASE("render: --frame moves what is animated, by fractions too") {
+  const std::string start = rendered("cube-room", {});
+  CHECK(rendered("cube-room", {"--frame", "0"}) == start);
+  CHECK(rendered("cube-room", {"--frame", "10"}) != start);
+  CHECK(rendered("cube-room", {"--frame", "10"}) != rendered("cube-room", {"--frame", "10.5"}));
+}
+
+TEST_CASE("render: every profile is taken") {
+  for (const std::string profile : {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"}) {
+    CHECK(rendered_json("figures", {"--profile", profile})["profile"] == profile);
+  }
+}
+
+TEST_CASE("render: --show coc is grey, and black where the focus was found") {
+  const Image map = rendered_picture("figures", {"--show", "coc", "--autofocus", "30,12"}).image;
+  CHECK(load_texel(map, 30, 12).x == 0.0f);
+  bool all_grey = true, some_light = false;
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const glm::vec4 texel = load_texel(map, x, y);
+      all_grey = all_grey && texel.x == texel.y && texel.y == texel.z;
+      some_light = some_light || texel.x > 0.5f;
+    }
+  }
+  CHECK(all_grey);
+  CHECK(some_light);
+}
+
+TEST_CASE("render: --show depth is lighter where it is farther") {
+  const Image map = rendered_picture("figures", {"--show", "depth"}).image;
+  const Image before = rendered_picture("figures", {"--show", "pinhole"}).image;
+  const glm::vec4 near = load_texel(map, 24, 16), far = load_texel(map, 0, 0);
+  REQUIRE(load_texel(before, 24, 16).w < load_texel(before, 0, 0).w);
+  CHECK(near.x < far.x);
+  CHECK(far.x == 1.0f);
+}

@@ -1,0 +1,48 @@
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_program.h"
+
+using namespace softfocus;
+
+TEST_CASE("selftest passes and says how many hashes there were") {
+  const ProgramRun run = run_program({"selftest"});
+  CHECK(run.status == 0);
+  CHECK(run.out.starts_with("pass: "));
+  CHECK(contains(run.out, " hashes are as expected\n"));
+  CHECK(run.err == "");
+}
+
+TEST_CASE("selftest --print prints the table's source, the same on 1 thread and on 8") {
+  const ProgramRun one = run_program({"selftest", "--print", "--threads", "1"});
+  CHECK(one.status == 0);
+  CHECK(one.out == read_file(SOFTFOCUS_TEST_DATA "/../../tools/golden/table.inc"));
+  CHECK(run_program({"selftest", "--print", "--threads", "8"}).out == one.out);
+}
+
+TEST_CASE("selftest --json lists what was expected, what was computed and whether it passes") {
+  const ProgramRun run = run_program({"selftest", "--json"});
+  CHECK(run.status == 0);
+  const auto list = nlohmann::json::parse(run.out);
+  CHECK(list.size() > 100);
+  for (const auto& entry : list) {
+    CAPTURE(entry.dump());
+    CHECK(entry.at("name").is_string());
+    CHECK(entry.at("expected").get<std::string>().size() == 18);
+    CHECK(entry.at("computed") == entry.at("expected"));
+    CHECK(entry.at("pass") == true);
+  }
+}
+
+TEST_CASE("selftest refuses two kinds of output and threads that cannot be") {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--json", "--print"}, {"--threads", "0"}, {"more"}}) {
+    std::vector<std::string> arguments{"selftest"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramRun run = run_program(arguments);
+    CHECK(run.status == 2);
+    CHECK(is_one_line(run.err));
+    CHECK(run.out == "");
+  }
+}

@@ -1,0 +1,81 @@
+#include "tools/bench/options.h"
+
+#include "scenes/make/sphere_field.h"
+#include "tools/cli/arithmetic_option.h"
+#include "tools/cli/driver_option.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/memory_check.h"
+#include "tools/cli/method_options.h"
+#include "tools/cli/profile_option.h"
+
+namespace softfocus {
+namespace {
+
+constexpr int kLeastRuns = 10;
+constexpr int kMostRuns = 1000;
+
+/// A drawn and a filtered picture, one between (8 bytes a pixel each) and depth (4), for
+/// each of the two contenders; two pictures read back and compared.
+constexpr std::uint64_t kBytesPerPixel = 72;
+
+void add_subject_options(CLI::App& parser, BenchOptions& options) {
+  add_optional_argument(parser, "SCENE", "A scene or a file, as render takes it", options.scene);
+  const std::string numbers =
+      std::to_string(kLeastFieldTriangles) + " to " + std::to_string(kMostFieldTriangles);
+  add_value(parser, "--triangles", "N",
+            "Instead of SCENE: 250 spheres of N triangles in all, " + numbers,
+            [&options, numbers](const std::string& text) {
+              options.triangles = parse_whole("--triangles", text, kLeastFieldTriangles,
+                                              kMostFieldTriangles, "a number from " + numbers);
+            });
+  add_value(parser, "--image", "WxH",
+            "Instead of SCENE: a picture of that size that nothing draws, for the filter alone",
+            [&options](const std::string& text) { options.image = parse_size("--image", text); });
+  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
+            [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_frame(parser, options.frame);
+  add_scene_path(parser, options.scene_path);
+}
+
+}  // namespace
+
+void add_bench_options(CLI::App& parser, BenchOptions& options) {
+  add_subject_options(parser, options);
+  add_method_option(parser, options.method);
+  add_arithmetic_option(parser, options.arithmetic);
+  add_lens_options(parser, options.lens,
+                   {.focus = "the scene's",
+                    .focal_length = "the scene's",
+                    .f_number = "the scene's",
+                    .coc_scale = "the scene's"});
+  add_max_coc_option(parser, options.max_coc_px);
+  add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
+                     [&options](const Profile& profile) { options.profile = profile; });
+  add_pool_options(parser, options.pool, "the picture is the same");
+  add_value(parser, "--runs", "N", "Times that each is run and timed, 10 to 1000 (default: 15)",
+            [&options](const std::string& text) {
+              options.runs =
+                  parse_whole("--runs", text, kLeastRuns, kMostRuns, "a number from 10 to 1000");
+            });
+  add_value(parser, "--vs", "DRIVER", "Time this GL driver too, in turn: " + names_of(drivers()),
+            [&options](const std::string& text) { options.versus = &parse_driver("--vs", text); });
+  add_flag(parser, "--json", "Print JSON", options.json);
+}
+
+void complete(BenchOptions& options, const CLI::App& parser) {
+  const int given =
+      (options.scene.empty() ? 0 : 1) + (options.triangles ? 1 : 0) + (options.image ? 1 : 0);
+  if (given != 1) {
+    throw UsageError(std::string{given == 0 ? "nothing to measure is given"
+                                            : "more than one thing to measure is given"} +
+                     "; give a SCENE (softfocus scenes), --triangles N or --image WxH");
+  }
+  if (options.image && is_given(parser, "--size")) {
+    throw UsageError("--image and --size exclude each other: --image has the size");
+  }
+  if (options.image) options.size = *options.image;
+  check_arithmetic(options.arithmetic, options.method->name, options.versus != nullptr);
+  check_memory(options.image ? "--image" : "--size", options.size, kBytesPerPixel);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,44 @@
+#pragma once
+// Everything that `bench` is told.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dof/fixed_pictures/arithmetic.h"
+#include "dof/method.h"
+#include "raster/numbers/profile.h"
+#include "tools/gl/driver.h"
+#include "tools/cli/lens_options.h"
+#include "tools/cli/option_values.h"
+#include "tools/cli/parser.h"
+#include "tools/cli/pool_options.h"
+
+namespace softfocus {
+
+/// Exactly one of scene, triangles and image is given.
+struct BenchOptions {
+  std::string scene;                 ///< as `render` takes it
+  std::optional<int> triangles;      ///< of a sphere field
+  std::optional<PictureSize> image;  ///< nothing is drawn: a picture of that size is filtered
+  std::vector<std::filesystem::path> scene_path;
+  PictureSize size;
+  double frame = 0.0;
+  const Method* method = find_method("two-pass");
+  Arithmetic arithmetic = Arithmetic::floats;
+  LensOptions lens;
+  std::optional<float> max_coc_px;
+  Profile profile = profiles().front();
+  PoolOptions pool;
+  int runs = 15;
+  const Driver* versus = nullptr;
+  bool json = false;
+};
+
+void add_bench_options(CLI::App& parser, BenchOptions& options);
+
+/// Throws UsageError for options that are missing or exclude each other; settles the size.
+void complete(BenchOptions& options, const CLI::App& parser);
+
+}  // namespace softfocus

@@ -1,0 +1,143 @@
+#include "tools/bench/report.h"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/machine.h"
+#include "tools/bench/timing.h"
+
+namespace softfocus {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Two decimals, or three where there is one digit before them.
+std::string ms_text(double ms) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), ms < 10.0 ? "%.3f" : "%.2f", ms);
+  return text.data();
+}
+
+std::string ratio_text(double ratio) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f", ratio);
+  return text.data();
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
+}
+
+std::string times_text(const StageSamples& stage) {
+  const Spread ms = spread_of(stage.ms);
+  return ms_text(ms.median) + " [" + ms_text(ms.min) + ", " + ms_text(ms.max) + "]";
+}
+
+Spread ratio_of(const BenchRecord& record, std::size_t stage) {
+  return spread_of(pair_ratios(record.samples.ours[stage].ms, record.samples.peers[stage].ms));
+}
+
+std::string heading(const BenchRecord& record) {
+  const BenchWork& work = record.work;
+  const PoolOptions& pool = record.options.pool;
+  std::string text = work.name + ", ";
+  if (work.scene) text += std::to_string(triangle_count(*work.scene)) + " triangles, ";
+  text += size_text(work.size) + ", " + std::string{work.method->name} +
+          (record.options.arithmetic == Arithmetic::floats
+               ? ""
+               : " " + std::string{arithmetic_name(record.options.arithmetic)}) +
+          ", max-coc " + short_number(static_cast<double>(work.settings.max_coc_px)) + "\n";
+  text += "profile " + work.profile.name + ", " + std::to_string(pool.threads) +
+          (pool.threads == 1 ? " thread, " : " threads, ") + std::string{isa_name(pool.isa)} +
+          ", " + std::to_string(record.options.runs) + " runs, " +
+          cpu_name().value_or("a CPU without a name") + "\n";
+  if (record.peer) {
+    text += "against " + record.peer->renderer + ": the pictures " +
+            (record.peer->equal ? "are equal to the bit" : "differ") + "\n";
+  }
+  return text;
+}
+
+ordered_json stages_json(const std::vector<StageSamples>& stages) {
+  auto list = ordered_json::array();
+  for (const StageSamples& stage : stages) {
+    const Spread ms = spread_of(stage.ms);
+    list.push_back(
+        {{"name", stage.name}, {"median_ms", ms.median}, {"min_ms", ms.min}, {"max_ms", ms.max}});
+  }
+  return list;
+}
+
+// One number for each stage, null for one that was not measured.
+ordered_json ratio_json(const BenchRecord& record, double Spread::*value) {
+  ordered_json json{{"raster", nullptr}, {"dof", nullptr}, {"frame", nullptr}};
+  for (std::size_t i = 0; i < record.samples.ours.size(); ++i) {
+    json[record.samples.ours[i].name] = ratio_of(record, i).*value;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string bench_text(const BenchRecord& record) {
+  constexpr std::size_t kStageWidth = 8, kTimesWidth = 30;
+  std::string text = heading(record) + "\n" + padded("stage", kStageWidth);
+  if (!record.peer) {
+    text += "ms [min, max]\n";
+    for (const StageSamples& ours : record.samples.ours) {
+      text += padded(ours.name, kStageWidth) + times_text(ours) + "\n";
+    }
+    return text;
+  }
+  const std::string& driver = record.peer->driver;
+  text += padded("ours, ms [min, max]", kTimesWidth) +
+          padded(driver + ", ms [min, max]", kTimesWidth) + driver + " / ours [min, max]\n";
+  for (std::size_t i = 0; i < record.samples.ours.size(); ++i) {
+    const StageSamples& ours = record.samples.ours[i];
+    const Spread ratio = ratio_of(record, i);
+    text += padded(ours.name, kStageWidth) + padded(times_text(ours), kTimesWidth) +
+            padded(times_text(record.samples.peers[i]), kTimesWidth) + ratio_text(ratio.median) +
+            " [" + ratio_text(ratio.min) + ", " + ratio_text(ratio.max) + "]\n";
+  }
+  return text;
+}
+
+std::string bench_json(const BenchRecord& record) {
+  const BenchWork& work = record.work;
+  const PoolOptions& pool = record.options.pool;
+  ordered_json json{{"softfocus", SOFTFOCUS_VERSION},
+                    {"scene", work.name},
+                    {"triangles", nullptr},
+                    {"size", size_text(work.size)},
+                    {"method", work.method->name},
+                    {"arithmetic", arithmetic_name(record.options.arithmetic)},
+                    {"max_coc", work.settings.max_coc_px},
+                    {"profile", work.profile.name},
+                    {"threads", pool.threads},
+                    {"isa", isa_name(pool.isa)},
+                    {"runs", record.options.runs},
+                    {"cpu", nullptr},
+                    {"compiler", compiler_name()},
+                    {"stages", stages_json(record.samples.ours)},
+                    {"peer", nullptr},
+                    {"ratio", nullptr},
+                    {"ratio_min", nullptr},
+                    {"ratio_max", nullptr},
+                    {"equal", nullptr}};
+  if (work.scene) json["triangles"] = triangle_count(*work.scene);
+  if (const auto cpu = cpu_name()) json["cpu"] = *cpu;
+  if (record.peer) {
+    json["peer"] = {{"driver", record.peer->driver},
+                    {"renderer", record.peer->renderer},
+                    {"stages", stages_json(record.samples.peers)}};
+    json["ratio"] = ratio_json(record, &Spread::median);
+    json["ratio_min"] = ratio_json(record, &Spread::min);
+    json["ratio_max"] = ratio_json(record, &Spread::max);
+    json["equal"] = record.peer->equal;
+  }
+  // Neither a driver's words nor a file's name need be UTF-8, but JSON must be.
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace softfocus

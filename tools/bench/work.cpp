@@ -1,0 +1,73 @@
+#include "tools/bench/work.h"
+
+#include "scenes/load/load_scene.h"
+#include "scenes/make/sphere_field.h"
+#include "tools/cli/arithmetic_option.h"
+#include "tools/bench/picture.h"
+#include "tools/cli/method_options.h"
+#include "tools/cli/scene_warnings.h"
+
+namespace softfocus {
+namespace {
+
+struct FilmedFrom {
+  SceneLens lens;
+  double fov_y_degrees;
+};
+
+// Of --image: the circles grow with the filter, so that the picture is as blurred to one
+// size of filter as to another.
+FilmedFrom picture_lens(std::optional<float> max_coc_px, int height_px) {
+  FilmedFrom made{{.lens = {.focus_m = kBenchPictureFocusM}}, Camera{}.fov_y_degrees};
+  const PixelCoc plain = pixel_coc(made.lens.lens, made.fov_y_degrees, height_px, 1.0);
+  made.lens.coc_scale = kBenchPictureHorizon *
+                        static_cast<double>(used_max_coc_px(max_coc_px, made.lens, height_px)) /
+                        static_cast<double>(plain.radius_at_infinity_px);
+  return made;
+}
+
+DofSettings chosen_settings(const BenchOptions& options, const FilmedFrom& from,
+                            const std::string& name) {
+  DofSettings settings;
+  settings.max_coc_px = used_max_coc_px(options.max_coc_px, from.lens, options.size.height);
+  if (options.method->name == "pinhole") return settings;  // minds no lens
+  const ThinLens lens = overruled(from.lens.lens, options.lens);
+  check_lens(lens, options.lens, name);
+  settings.coc = checked_pixel_coc(lens, from.fov_y_degrees, options.size.height,
+                                   options.lens.coc_scale.value_or(from.lens.coc_scale));
+  check_arithmetic(options.arithmetic, settings);
+  return settings;
+}
+
+Scene chosen_scene(const BenchOptions& options) {
+  if (options.triangles) {
+    return sphere_field(*options.triangles,
+                        static_cast<double>(options.size.width) / options.size.height);
+  }
+  return load_scene(options.scene, scene_search_path(options.scene_path));
+}
+
+}  // namespace
+
+BenchWork make_work(const BenchOptions& options) {
+  const auto [width, height] = options.size;
+  BenchWork work;
+  work.frame = options.frame;
+  work.size = options.size;
+  work.method = options.method;
+  work.profile = options.profile;
+  if (options.image) {
+    work.name = "picture";
+    work.settings = chosen_settings(options, picture_lens(options.max_coc_px, height), work.name);
+    work.picture = bench_picture(width, height);
+    return work;
+  }
+  const Scene& scene = work.scene.emplace(chosen_scene(options));
+  print_scene_warnings(scene.warnings, false);
+  work.name = scene.name;
+  work.settings = chosen_settings(options, {scene.lens, scene.camera.fov_y_degrees}, work.name);
+  work.view = camera_view(scene.camera, work.frame, width, height);
+  return work;
+}
+
+}  // namespace softfocus

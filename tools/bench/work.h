@@ -1,0 +1,31 @@
+#pragma once
+// What a bench has both contenders do: a frame, with all that it takes made beforehand.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "dof/method.h"
+#include "scenes/scene.h"
+#include "scenes/draw/view.h"
+#include "tools/bench/options.h"
+
+namespace softfocus {
+
+struct BenchWork {
+  std::string name;            ///< of the scene; "spheres" and "picture" for those made here
+  std::optional<Scene> scene;  ///< none: `picture` is filtered
+  Image picture;
+  View view{};
+  double frame = 0.0;
+  PictureSize size;
+  const Method* method = nullptr;
+  DofSettings settings;
+  Profile profile;
+};
+
+/// Loads or makes what is to be measured. Throws UsageError for a lens that cannot be,
+/// SceneError for a scene.
+BenchWork make_work(const BenchOptions& options);
+
+}  // namespace softfocus

@@ -1,0 +1,64 @@
+#include "tools/chart/key.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "raster/numbers/hash.h"
+#include "scenes/load/file_bytes.h"
+#include "scenes/load/load_scene.h"
+#include "tools/golden/hash_text.h"
+#include "tools/cli/machine.h"
+
+namespace softfocus {
+namespace {
+
+/// As many as show every edge from several sides, and take no time.
+constexpr int kProbeSamples = 8;
+
+constexpr std::size_t kLargestSceneFile = std::size_t{1} << 30;
+
+std::uint64_t hash_bytes(const std::string& bytes) {
+  Hash hash;
+  for (const char byte : bytes) add_to_hash(hash, static_cast<std::uint8_t>(byte));
+  return hash.value;
+}
+
+/// Every bit of a double, readable.
+std::string exact(double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text.data();
+}
+
+}  // namespace
+
+std::string truth_key(const ChartScene& scene, const std::string& file_bytes, int samples,
+                      ThreadPool& pool) {
+  const Image probe = accumulation(accumulation_input(scene, kProbeSamples), pool).picture;
+  const ThinLens& lens = scene.lens;
+  return "softfocus " SOFTFOCUS_VERSION "; scene " + scene.scene.name + "; file " +
+         hash_text(hash_bytes(file_bytes)) + "; size " +
+         size_text({scene.pinhole.width, scene.pinhole.height}) + "; frame " + exact(scene.frame) +
+         "; focus " + exact(lens.focus_m) + " m; focal length " + exact(lens.focal_length_mm) +
+         " mm; f/" + exact(lens.f_number) + "; aperture " + exact(scene.aperture_m) +
+         " m; samples " + std::to_string(samples) + "; pinhole " +
+         hash_text(hash_image(scene.pinhole)) + "; first samples " + hash_text(hash_image(probe));
+}
+
+std::string machine_key(const PoolOptions& pool) {
+  return cpu_name().value_or("a CPU without a name") + "; " + compiler_name() + "; threads " +
+         std::to_string(pool.threads) + "; " + std::string{isa_name(pool.isa)};
+}
+
+std::string scene_file_bytes(const std::string& scene,
+                             const std::vector<std::filesystem::path>& from_user) {
+  const auto listings = list_scenes(scene_search_path(from_user));
+  const auto found = std::find_if(listings.begin(), listings.end(),
+                                  [&](const SceneListing& of) { return of.name == scene; });
+  const std::filesystem::path file =
+      found == listings.end() ? std::filesystem::path{scene} : found->file;
+  return read_file_bytes(file, kLargestSceneFile);
+}
+
+}  // namespace softfocus

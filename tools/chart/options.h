@@ -1,0 +1,40 @@
+#pragma once
+// Everything that `chart` is told.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/cli/option_values.h"
+#include "tools/cli/parser.h"
+#include "tools/cli/pool_options.h"
+
+namespace softfocus {
+
+struct ChartOptions {
+  std::filesystem::path directory;
+  std::vector<std::string> scenes;   ///< as `render` takes them; none given: all that are found
+  std::vector<std::string> methods;  ///< none given: all
+  std::vector<std::filesystem::path> scene_path;
+  std::optional<PictureSize> given_size;
+  std::optional<int> given_samples;
+  std::optional<int> given_rounds;
+  double frame = 0.0;
+  bool quick = false;
+  bool again = false;
+  PoolOptions pool;
+
+  // Settled by complete().
+  PictureSize size;
+  int truth_samples = 0;  ///< a multiple of kTruthSampleStep
+  int rounds = 0;
+};
+
+void add_chart_options(CLI::App& parser, ChartOptions& options);
+
+/// Settles what was not given. Throws UsageError for a size that memory is too small for, and
+/// where no scene is found.
+void complete(ChartOptions& options);
+
+}  // namespace softfocus

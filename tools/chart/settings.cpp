@@ -1,0 +1,125 @@
+#include "tools/chart/settings.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/option_values.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::string_view kAccumulation = "accumulation", kAuto = "auto", kTwoPass = "two-pass";
+
+/// Every radius is taken with every profile. Radii are --max-coc for a picture 1024 rows high,
+/// scaled with the height as those of scenes are.
+struct SettingsOfMethod {
+  std::string_view method;
+  std::vector<double> radii_at_1024;
+  std::vector<double> quick_radii;
+  std::vector<std::string_view> profiles{"ieee"};
+  std::vector<int> samples{};
+  std::vector<int> quick_samples{};
+  std::vector<double> max_errors{};
+  std::vector<double> quick_max_errors{};
+};
+
+const std::vector<SettingsOfMethod>& table() {
+  static const std::vector<SettingsOfMethod> kTable{
+      {"pinhole", {}, {}},
+      {kTwoPass, {4, 8, 16, 32, 64}, {4, 16, 64}, {"ieee", "d3d11"}},
+      {"one-pass", {4, 8, 16, 32, 64}, {4, 16, 64}},
+      {kAccumulation, {}, {}, {}, {8, 16, 32, 64}, {8, 32}},
+      {kAuto, {}, {}, {}, {}, {}, {0.05, 0.02, 0.01}, {0.05, 0.02}},
+      // Of every other method.
+      {"", {16, 32, 64}, {16, 64}},
+  };
+  return kTable;
+}
+
+const SettingsOfMethod& settings_of(std::string_view method) {
+  const auto found = std::find_if(table().begin(), table().end(),
+                                  [&](const SettingsOfMethod& of) { return of.method == method; });
+  return found == table().end() ? table().back() : *found;
+}
+
+}  // namespace
+
+std::vector<std::string> chart_methods() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.emplace_back(method.name);
+  names.emplace_back(kAccumulation);
+  names.emplace_back(kAuto);
+  return names;
+}
+
+std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, bool quick) {
+  const SettingsOfMethod& of = settings_of(method);
+  std::vector<ChartEntry> entries;
+  const Method* const filter = find_method(method);
+  for (const int samples : quick ? of.quick_samples : of.samples) {
+    entries.push_back({.method = method, .samples = samples});
+  }
+  for (const double error : quick ? of.quick_max_errors : of.max_errors) {
+    entries.push_back({.method = method, .max_error = error});
+  }
+  const std::vector<double>& radii = quick ? of.quick_radii : of.radii_at_1024;
+  for (const std::string_view profile : of.profiles) {
+    const ChartEntry plain{.method = method, .filter = filter, .profile = std::string{profile}};
+    if (radii.empty()) entries.push_back(plain);
+    for (const double radius : radii) {
+      entries.push_back(plain);
+      const double scaled = std::min(radius * height_px / 1024.0, double{kLargestMaxCoc});
+      entries.back().max_coc_px = static_cast<float>(scaled);
+    }
+  }
+  if (method == kTwoPass) {
+    for (const double radius : radii) {
+      const auto scaled = static_cast<float>(radius * height_px / 1024.0);
+      ChartEntry entry{.method = method, .filter = filter, .max_coc_px = scaled};
+      entry.arithmetic = Arithmetic::fixed_8;
+      if (scaled <= kLargestFixedRadiusPx) entries.push_back(std::move(entry));
+    }
+  }
+  return entries;
+}
+
+nlohmann::ordered_json settings_json(const ChartEntry& entry) {
+  if (entry.max_error) return {{"max_error", *entry.max_error}, {"chosen", entry.chosen}};
+  if (entry.filter == nullptr) return {{"samples", entry.samples}};
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  if (entry.max_coc_px) json["max_coc_px"] = *entry.max_coc_px;
+  json["profile"] = entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    json["arithmetic"] = arithmetic_name(entry.arithmetic);
+  }
+  return json;
+}
+
+std::string settings_text(const ChartEntry& entry) {
+  if (entry.max_error) {
+    return "max-error " + short_number(*entry.max_error) +
+           (entry.chosen.empty() ? "" : ": " + entry.chosen);
+  }
+  if (entry.filter == nullptr) return std::to_string(entry.samples) + " samples";
+  std::string text;
+  if (entry.max_coc_px) text = "max-coc " + short_number(double{*entry.max_coc_px});
+  if (entry.profile != "ieee") text += (text.empty() ? "" : ", ") + entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    text += ", " + std::string{arithmetic_name(entry.arithmetic)};
+  }
+  return text;
+}
+
+std::string entry_id(const ChartEntry& entry) {
+  std::string id = entry.method;
+  if (entry.max_error) return id + "-e" + short_number(*entry.max_error);
+  if (entry.filter == nullptr) return id + "-s" + std::to_string(entry.samples);
+  if (entry.max_coc_px) id += "-r" + short_number(double{*entry.max_coc_px});
+  if (entry.profile != "ieee") id += "-" + entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    id += "-" + std::string{arithmetic_name(entry.arithmetic)};
+  }
+  return id;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,72 @@
+#include "tools/chart/truth.h"
+
+#include <algorithm>
+#include <cassert>
+#include <nlohmann/json.hpp>
+
+#include "tools/chart/key.h"
+#include "tools/chart/record.h"
+#include "tools/cli/errors.h"
+#include "tools/golden/hash_text.h"
+#include "tools/files/image_file.h"
+#include "tools/files/whole_file.h"
+
+namespace softfocus {
+namespace {
+
+std::filesystem::path with_ending(const std::filesystem::path& file, const char* ending) {
+  return file.string() + ending;
+}
+
+}  // namespace
+
+ChartTruth make_truth(const ChartScene& scene, int samples,
+                      const std::function<void(int)>& on_samples, ThreadPool& pool) {
+  // Or the half would lie inside of a group, and the bits would not be accumulation()'s.
+  assert(samples % kTruthSampleStep == 0);
+  const SceneMethodInput input = accumulation_input(scene, samples);
+  AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
+  SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
+  const auto add_until = [&](int last) {
+    while (sums.count < last) {
+      add_views(buffer, input, sums.count, std::min(sums.count + kViewGroup, last), sums, pool);
+      on_samples(sums.count);
+    }
+  };
+  add_until(samples / 2);
+  const SampleSums first = sums;
+  add_until(samples);
+  const auto mean = [&](const SampleSums& of) {
+    return mean_picture(of, input.pinhole, input.profile, pool);
+  };
+  const MeasuredPictures halves =
+      measure_pictures(mean(first), mean(later_samples(first, sums)), &scene.labels, {}, pool);
+  return {mean(sums), chart_errors(halves)};
+}
+
+void save_truth(const ChartTruth& truth, const std::string& key,
+                const std::filesystem::path& file) {
+  WholeFile picture{with_ending(file, ".npy")};
+  picture.write(encode_npy(truth.picture));
+  picture.commit();
+  write_json(with_ending(file, ".json"), {{"key", key},
+                                          {"picture_hash", hash_text(hash_image(truth.picture))},
+                                          {"noise_floor", errors_json(truth.noise_floor)}});
+}
+
+std::optional<ChartTruth> load_truth(const std::string& key, const std::filesystem::path& file) {
+  const auto json = read_json(with_ending(file, ".json"));
+  if (!json || json->value("key", "") != key) return std::nullopt;
+  try {
+    ChartTruth truth{read_image_file(with_ending(file, ".npy")).image,
+                     errors_of(json->at("noise_floor"))};
+    const auto picture_hash = json->at("picture_hash").get<std::string>();
+    if (hash_text(hash_image(truth.picture)) != picture_hash) return std::nullopt;
+    return truth;
+  } catch (const FileError&) {
+  } catch (const nlohmann::json::exception&) {
+  }
+  return std::nullopt;  // damaged: it is made again
+}
+
+}  // namespace softfocus

@@ -1,0 +1,34 @@
+#pragma once
+// The ground truth that `chart` holds contenders against, with what it is itself uncertain by.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "tools/chart/point.h"
+#include "tools/chart/scene.h"
+
+namespace softfocus {
+
+struct ChartTruth {
+  Image picture;  ///< accumulation() of all samples, to the bit
+  /// The first half of the samples against the second. The picture is the mean of both, and so
+  /// nearer to what is right than this says: its mean square error is a fourth of theirs.
+  ChartErrors noise_floor;
+};
+
+/// The truth's samples are a multiple of this: two halves of whole groups.
+inline constexpr int kTruthSampleStep = 2 * kSampleGroup;
+
+/// `on_samples` is told how many are in, now and then.
+ChartTruth make_truth(const ChartScene& scene, int samples,
+                      const std::function<void(int)>& on_samples, ThreadPool& pool);
+
+/// Keeps it as FILE.npy and FILE.json.
+void save_truth(const ChartTruth& truth, const std::string& key, const std::filesystem::path& file);
+
+/// What was kept, if it was under that key and is whole.
+std::optional<ChartTruth> load_truth(const std::string& key, const std::filesystem::path& file);
+
+}  // namespace softfocus

@@ -1,0 +1,31 @@
+#pragma once
+// The table of subcommands. Adding one touches its own file, this list and
+// command_line.cpp.
+
+#include <functional>
+
+#include "tools/cli/parser.h"
+
+namespace softfocus {
+
+/// A subcommand as it stands in the parser, and the work behind it, which returns
+/// the exit status.
+struct Command {
+  CLI::App* parser;
+  std::function<int()> work;
+};
+
+Command add_render_command(CLI::App& program);
+Command add_scenes_command(CLI::App& program);
+Command add_methods_command(CLI::App& program);
+Command add_profiles_command(CLI::App& program);
+Command add_lens_command(CLI::App& program);
+Command add_compare_command(CLI::App& program);
+Command add_crosscheck_command(CLI::App& program);
+Command add_probe_command(CLI::App& program);
+Command add_shaders_command(CLI::App& program);
+Command add_bench_command(CLI::App& program);
+Command add_chart_command(CLI::App& program);
+Command add_selftest_command(CLI::App& program);
+
+}  // namespace softfocus

@@ -1,0 +1,45 @@
+#pragma once
+// The lens on the command line, as `render` and `lens` share it.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dof/lens.h"
+#include "tools/cli/parser.h"
+
+namespace softfocus {
+
+/// The lens values that were given.
+struct LensOptions {
+  std::optional<double> focal_length_mm;
+  std::optional<double> f_number;
+  std::optional<double> focus_m;
+  std::optional<double> coc_scale;
+};
+
+/// Adds --focus, --focal-length, --f-number and --coc-scale. A value that no lens can
+/// have is refused as it is read. `defaults` fills the help's "(default: ...)", with
+/// one entry for each in that order.
+struct LensDefaults {
+  std::string focus, focal_length, f_number, coc_scale;
+};
+void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults& defaults);
+
+/// The same with a plain lens's values as defaults, and --fov: where no scene has a lens.
+void add_own_lens_options(CLI::App& parser, LensOptions& options,
+                          std::function<void(double degrees)> on_fov);
+
+/// `lens` with what was given put in.
+ThinLens overruled(ThinLens lens, const LensOptions& options);
+
+/// Throws UsageError if `lens` cannot be, naming the options that made it so or, if
+/// none was given, `otherwise`.
+void check_lens(const ThinLens& lens, const LensOptions& options, std::string_view otherwise);
+
+/// pixel_coc(), whose circles single precision must be able to hold: UsageError.
+PixelCoc checked_pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px,
+                           double coc_scale);
+
+}  // namespace softfocus

@@ -1,0 +1,87 @@
+// softfocus scenes | methods | profiles: what there is, a line each.
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "dof/method.h"
+#include "raster/numbers/profile.h"
+#include "scenes/lens_views/scene_method.h"
+#include "scenes/load/load_scene.h"
+#include "tools/cli/command_line.h"
+#include "tools/cli/commands.h"
+#include "tools/cli/method_options.h"
+#include "tools/cli/option_values.h"
+
+namespace softfocus {
+namespace {
+
+using Row = std::vector<std::string>;
+
+/// Columns two blanks apart, the last one ragged.
+void print_aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) {
+      std::cout << row[i] << std::string(widths[i] - row[i].size() + 2, ' ');
+    }
+    std::cout << row.back() << '\n';
+  }
+}
+
+}  // namespace
+
+Command add_scenes_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "scenes", "List the scenes: name, title");
+  const auto path = std::make_shared<std::vector<std::filesystem::path>>();
+  add_scene_path(*parser, *path);
+  return {parser, [path] {
+            std::vector<Row> rows;
+            for (const SceneListing& scene : list_scenes(scene_search_path(*path))) {
+              rows.push_back({scene.name, scene.title});
+            }
+            print_aligned(rows);
+            return kDone;
+          }};
+}
+
+Command add_methods_command(CLI::App& program) {
+  CLI::App* parser =
+      add_command(program, "methods", "List the depth-of-field methods: name, needs, summary");
+  return {parser, [] {
+            std::vector<Row> rows;
+            for (const Method& method : methods()) {
+              rows.push_back({std::string{method.name}, std::string{method.needs},
+                              std::string{method.summary}});
+            }
+            for (const SceneMethod& method : scene_methods()) {
+              const char* lack = method.missing.empty() ? "" : " (not in this build)";
+              rows.push_back({std::string{method.name}, std::string{method.needs},
+                              std::string{method.summary} + lack});
+            }
+            rows.push_back({std::string{kAutoMethod}, "the scene",
+                            "the cheapest of these that the scene needs for an error"});
+            print_aligned(rows);
+            return kDone;
+          }};
+}
+
+Command add_profiles_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "profiles", "List the GPUs to agree with: name, summary");
+  return {parser, [] {
+            std::vector<Row> rows;
+            for (const Profile& profile : profiles()) {
+              rows.push_back({std::string{profile.name}, std::string{profile.summary}});
+            }
+            print_aligned(rows);
+            return kDone;
+          }};
+}
+
+}  // namespace softfocus

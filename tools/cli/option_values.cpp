@@ -1,0 +1,106 @@
+#include "tools/cli/option_values.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "raster/images/image.h"
+#include "tools/cli/errors.h"
+
+namespace softfocus {
+namespace {
+
+[[noreturn]] void refuse(std::string_view option, std::string_view text, std::string_view wanted) {
+  throw UsageError(std::string{option} + " '" + std::string{text} + "': give " +
+                   std::string{wanted});
+}
+
+std::optional<int> whole(std::string_view text) {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories) {
+  add_repeatable_value(
+      parser, "--scene-path", "DIR", "Directory to look for scenes in first; may be repeated",
+      [&directories](const std::string& name) {
+        std::error_code unreadable;
+        if (!std::filesystem::is_directory(name, unreadable)) {
+          throw UsageError("--scene-path '" + name + "': give a directory that exists");
+        }
+        directories.emplace_back(name);
+      });
+}
+
+void add_frame(CLI::App& parser, double& frame) {
+  add_value(parser, "--frame", "N", "Frame of the animation, from 0 (default: 0)",
+            [&frame](const std::string& text) {
+              frame = parse_number("--frame", text, 0.0, 1e9, "a frame from 0 to 1000000000");
+            });
+}
+
+double parse_number(std::string_view option, const std::string& text, double least, double most,
+                    std::string_view wanted) {
+  // strtod alone would take "inf", "nan", hexadecimal and leading blanks. It follows
+  // the C library's locale, which this program leaves at "C".
+  const bool decimal = !text.empty() && text.find_first_not_of("0123456789+-.eE") == text.npos;
+  char* end = nullptr;
+  const double value = decimal ? std::strtod(text.c_str(), &end) : 0.0;
+  const bool whole_text = decimal && end == text.c_str() + text.size();
+  if (!whole_text || !std::isfinite(value) || value < least || value > most) {
+    refuse(option, text, wanted);
+  }
+  return value;
+}
+
+int parse_whole(std::string_view option, const std::string& text, int least, int most,
+                std::string_view wanted) {
+  const auto value = whole(text);
+  if (!value || *value < least || *value > most) refuse(option, text, wanted);
+  return *value;
+}
+
+PictureSize parse_size(std::string_view option, const std::string& text) {
+  const auto cross = text.find('x');
+  const auto side = [&](std::string_view part) {
+    const auto value = whole(part);
+    if (!value || *value < 1 || *value > kMaxImageSize) {
+      refuse(option, text,
+             "WIDTHxHEIGHT in pixels, each 1 to " + std::to_string(kMaxImageSize) +
+                 ", such as 1024x768");
+    }
+    return *value;
+  };
+  const std::string_view all = text;
+  if (cross == text.npos) return {side(""), 0};
+  return {side(all.substr(0, cross)), side(all.substr(cross + 1))};
+}
+
+std::string size_text(PictureSize size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+Pixel parse_pixel(std::string_view option, const std::string& text) {
+  const std::string_view all = text;
+  const auto comma = all.find(',');
+  const auto x = whole(all.substr(0, comma));
+  const auto y = comma == all.npos ? std::nullopt : whole(all.substr(comma + 1));
+  if (!x || !y) refuse(option, text, "a pixel as X,Y, such as 512,384, or centre");
+  return {*x, *y};
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+}  // namespace softfocus

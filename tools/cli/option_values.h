@@ -1,0 +1,60 @@
+#pragma once
+// From an option's text to its value, with one kind of message: the option, what was
+// given, and what would be right.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/cli/parser.h"
+
+namespace softfocus {
+
+struct PictureSize {
+  int width = 1024;
+  int height = 1024;
+};
+
+/// Counted from the left and from the top.
+struct Pixel {
+  int x = 0;
+  int y = 0;
+};
+
+/// Adds --scene-path, which may be repeated: directories that must exist.
+void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories);
+
+/// Adds --frame, a time of the animation.
+void add_frame(CLI::App& parser, double& frame);
+
+/// A finite decimal number from `least` to `most`; `wanted` ends the message "give ...".
+double parse_number(std::string_view option, const std::string& text, double least, double most,
+                    std::string_view wanted);
+
+/// A whole number likewise.
+int parse_whole(std::string_view option, const std::string& text, int least, int most,
+                std::string_view wanted);
+
+/// WIDTHxHEIGHT, each 1 to kMaxImageSize.
+PictureSize parse_size(std::string_view option, const std::string& text);
+
+/// "1024x768".
+std::string size_text(PictureSize size);
+
+/// X,Y.
+Pixel parse_pixel(std::string_view option, const std::string& text);
+
+/// `value` as short as it can be told from its neighbours by eye: at most 6 digits.
+std::string short_number(double value);
+
+/// "a, b, c" of things that have a name.
+template <class Range>
+std::string names_of(const Range& things) {
+  std::string list;
+  for (const auto& thing : things) list += (list.empty() ? "" : ", ") + std::string{thing.name};
+  return list;
+}
+
+}  // namespace softfocus

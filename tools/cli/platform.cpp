@@ -1,0 +1,128 @@
+#include "tools/cli/platform.h"
+
+#ifdef _WIN32
+// As few macros as may be: there are some called min, near and far.
+#define WIN32_LEAN_AND_MEAN
+#ifndef NOMINMAX  // libstdc++ has it too
+#define NOMINMAX
+#endif
+#include <fcntl.h>
+#include <io.h>
+#include <process.h>
+#include <sys/stat.h>
+#include <windows.h>
+#else
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#endif
+
+#include <algorithm>
+#include <cstdio>
+
+namespace softfocus {
+namespace {
+
+#ifdef _WIN32
+constexpr const char* kDropped = " >NUL 2>NUL";
+std::FILE* open_pipe(const char* command) { return ::_popen(command, "wb"); }
+int close_pipe(std::FILE* pipe) { return ::_pclose(pipe); }
+#else
+constexpr const char* kDropped = " >/dev/null 2>&1";
+std::FILE* open_pipe(const char* command) { return ::popen(command, "w"); }
+int close_pipe(std::FILE* pipe) { return ::pclose(pipe); }
+#endif
+
+// Linux writes at most 2^31 - 4096 bytes a call, Windows counts them in 32 bits.
+constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
+
+}  // namespace
+
+bool run_with_input(const std::string& program, std::string_view input, Said said) {
+  const std::string command = program + (said == Said::dropped ? kDropped : "");
+  std::FILE* const pipe = open_pipe(command.c_str());
+  if (pipe == nullptr) return false;
+  const bool all = std::fwrite(input.data(), 1, input.size(), pipe) == input.size();
+  return close_pipe(pipe) == 0 && all;
+}
+
+#ifdef _WIN32
+
+void prepare_process() { ::_setmode(kStandardOutput, _O_BINARY); }
+
+int process_number() { return ::_getpid(); }
+
+std::optional<std::uint64_t> memory_bytes() {
+  MEMORYSTATUSEX status{};
+  status.dwLength = sizeof status;
+  if (!::GlobalMemoryStatusEx(&status)) return std::nullopt;
+  return status.ullTotalPhys;
+}
+
+bool is_terminal(int descriptor) { return ::_isatty(descriptor) != 0; }
+
+int open_existing(const std::filesystem::path& file) {
+  return ::_wopen(file.c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
+}
+
+int create_file(const std::filesystem::path& file) {
+  return ::_wopen(file.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
+                  _S_IREAD | _S_IWRITE);
+}
+
+bool may_write(const std::filesystem::path& file) {
+  constexpr int kForWriting = 2;
+  return ::_waccess(file.c_str(), kForWriting) == 0;
+}
+
+std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes) {
+  const auto size = static_cast<unsigned>(std::min(bytes.size(), kLargestWrite));
+  return ::_write(descriptor, bytes.data(), size);
+}
+
+bool close_file(int descriptor) { return ::_close(descriptor) == 0; }
+
+#else
+
+void prepare_process() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  // A stream that was closed would lend its number to the first file that is opened, and
+  // what is printed would go there. One that cannot be written to fails when it is.
+  for (const int stream : {0, kStandardOutput, kStandardError}) {
+    if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
+  }
+}
+
+int process_number() { return ::getpid(); }
+
+std::optional<std::uint64_t> memory_bytes() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  const long page_bytes = ::sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || page_bytes <= 0) return std::nullopt;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
+}
+
+bool is_terminal(int descriptor) { return ::isatty(descriptor) != 0; }
+
+int open_existing(const std::filesystem::path& file) {
+  return ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+}
+
+int create_file(const std::filesystem::path& file) {
+  return ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+bool may_write(const std::filesystem::path& file) { return ::access(file.c_str(), W_OK) == 0; }
+
+std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes) {
+  return ::write(descriptor, bytes.data(), std::min(bytes.size(), kLargestWrite));
+}
+
+bool close_file(int descriptor) { return ::close(descriptor) == 0; }
+
+#endif
+
+}  // namespace softfocus

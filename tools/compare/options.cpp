@@ -1,0 +1,112 @@
+#include "tools/compare/options.h"
+
+#include "tools/cli/errors.h"
+#include "tools/files/image_file.h"
+#include "tools/cli/option_values.h"
+
+namespace softfocus {
+namespace {
+
+void add_map(CLI::App& parser, const std::string& name, const std::string& help,
+             std::optional<std::string>& file) {
+  add_value(parser, name, "OUT", help, [name, &file](const std::string& text) {
+    if (!format_by_extension(text)) {
+      throw UsageError(name + " '" + text + "': the name must end in .png, .pfm or .npy");
+    }
+    file = text;
+  });
+}
+
+void add_frames(CLI::App& parser, const std::string& name, const std::string& help,
+                std::vector<std::string>& files) {
+  add_value_list(parser, name, "FRAME", help,
+                 [&files](const std::vector<std::string>& names) { files = names; });
+}
+
+/// The first of the options for --regions that was given, or none.
+std::string for_regions(const CompareOptions& options) {
+  if (options.depth_file) return "--depth";
+  if (options.fov_y_degrees) return "--fov";
+  if (options.lens.focus_m) return "--focus";
+  if (options.lens.focal_length_mm) return "--focal-length";
+  if (options.lens.f_number) return "--f-number";
+  if (options.lens.coc_scale) return "--coc-scale";
+  return "";
+}
+
+void check_sequences(const CompareOptions& options) {
+  if (options.frames.empty())
+    throw UsageError("--against needs --flicker with the frames to judge");
+  if (options.truth.empty()) {
+    throw UsageError("--flicker needs --against with the same frames of the ground truth");
+  }
+  if (!options.first.empty() || options.regions || options.point_radius_px ||
+      options.flip_map_file || options.ulp_map_file || options.measures.hdr_flip) {
+    throw UsageError(
+        "--flicker compares two sequences; leave out A, B, --diff, --diff-ulps, --regions, "
+        "--hdr and --point");
+  }
+  if (options.frames.size() != options.truth.size()) {
+    throw UsageError("--flicker has " + std::to_string(options.frames.size()) +
+                     " frames and --against " + std::to_string(options.truth.size()) +
+                     "; give as many");
+  }
+  if (options.frames.size() < 2) throw UsageError("--flicker needs two frames or more");
+}
+
+}  // namespace
+
+void add_compare_options(CLI::App& parser, CompareOptions& options) {
+  // check_compare_options() asks for them: with --flicker there are none.
+  add_optional_argument(parser, "A", "A picture: .npy, .pfm or .png", options.first);
+  add_optional_argument(parser, "B", "What it should be: a picture of the same size",
+                        options.second);
+  add_map(parser, "--diff",
+          "Write a map of FLIP, what a viewer sees of the differences: black 0 over purple, red "
+          "and orange to pale yellow 1",
+          options.flip_map_file);
+  add_map(parser, "--diff-ulps",
+          "Write a map of differing bits: black equal, blue 1 half-ULP to red 2^15",
+          options.ulp_map_file);
+  add_flag(parser, "--hdr", "HDR-FLIP too: the largest over all exposures of B",
+           options.measures.hdr_flip);
+  add_value(parser, "--pixels-per-degree", "N",
+            "Of the viewer's sight, for FLIP (default: 67.0206, a 4K screen as wide as it is far)",
+            [&options](const std::string& text) {
+              options.measures.pixels_per_degree = parse_number(
+                  "--pixels-per-degree", text, 1.0, 500.0, "pixels per degree from 1 to 500");
+            });
+  add_flag(parser, "--regions",
+           "Measure by region too: silhouette band, near field, focus, far field, by the "
+           "depth in B's alpha and the lens",
+           options.regions);
+  add_value(parser, "--depth", "FILE",
+            "Picture whose alpha is the depth for --regions (default: B, or A if B has none)",
+            [&options](const std::string& text) { options.depth_file = text; });
+  add_own_lens_options(parser, options.lens,
+                       [&options](double degrees) { options.fov_y_degrees = degrees; });
+  add_value(parser, "--point", "PIXELS",
+            "The pictures are of one bright point on black: compare light and shape with the disc "
+            "of this radius",
+            [&options](const std::string& text) {
+              options.point_radius_px = parse_number("--point", text, 0.1, 16384.0,
+                                                     "a radius in pixels from 0.1 to 16384");
+            });
+  add_frames(parser, "--flicker", "Frames of a sequence, in order, instead of A and B",
+             options.frames);
+  add_frames(parser, "--against", "The same frames of the ground truth, for --flicker",
+             options.truth);
+  add_flag(parser, "--json", "Print JSON", options.json);
+}
+
+void check_compare_options(const CompareOptions& options) {
+  const std::string lens_option = for_regions(options);
+  if (!options.regions && !lens_option.empty()) {
+    throw UsageError(lens_option + " is for --regions; give that too");
+  }
+  if (!options.frames.empty() || !options.truth.empty()) return check_sequences(options);
+  if (options.first.empty()) throw UsageError("A is missing; --help says what to give");
+  if (options.second.empty()) throw UsageError("B is missing; --help says what to give");
+}
+
+}  // namespace softfocus

@@ -1,0 +1,39 @@
+#pragma once
+// What `compare` is asked: two pictures and what to say of them, or two sequences.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dof/measure/measures.h"
+#include "tools/cli/lens_options.h"
+#include "tools/cli/parser.h"
+
+namespace softfocus {
+
+struct CompareOptions {
+  std::string first;   ///< what is judged
+  std::string second;  ///< the reference: its depths make regions, its light exposures
+  std::optional<std::string> flip_map_file;
+  std::optional<std::string> ulp_map_file;
+  MeasureSettings measures;
+
+  bool regions = false;
+  std::optional<std::string> depth_file;  ///< instead of the pictures' alpha
+  LensOptions lens;
+  std::optional<double> fov_y_degrees;
+
+  std::optional<double> point_radius_px;  ///< both are images of a point with this disc
+
+  std::vector<std::string> frames;  ///< --flicker
+  std::vector<std::string> truth;   ///< --against
+
+  bool json = false;
+};
+
+void add_compare_options(CLI::App& parser, CompareOptions& options);
+
+/// Throws UsageError where options need or exclude each other.
+void check_compare_options(const CompareOptions& options);
+
+}  // namespace softfocus

@@ -1,0 +1,185 @@
+#include "tools/compare/report.h"
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "tools/cli/option_values.h"
+
+namespace softfocus {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string bucket_name(std::size_t bucket) {
+  if (bucket < 2) return std::to_string(bucket);
+  return std::to_string(1 << (bucket - 1)) + " to " + std::to_string((1 << bucket) - 1);
+}
+
+/// A number, or a dash for what does not exist.
+std::string number_or_dash(double value) { return std::isnan(value) ? "-" : short_number(value); }
+
+/// JSON has neither NaN nor infinity.
+ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+void print_line(const std::string& name, const std::string& value) {
+  std::cout << name << std::string(20 - name.size(), ' ') << value << '\n';
+}
+
+void print_whole(const Measures& whole) {
+  print_line("PSNR of colour", short_number(whole.psnr_db) + " dB");
+  print_line("PSNR, tone-mapped", short_number(whole.toned_psnr_db) + " dB");
+  print_line("MSE of colour", short_number(whole.mse));
+  print_line("MSE, tone-mapped", short_number(whole.toned_mse));
+  print_line("SSIM", short_number(whole.ssim));
+  print_line("FLIP", short_number(whole.flip));
+  if (whole.hdr_flip) print_line("HDR-FLIP", short_number(*whole.hdr_flip));
+}
+
+void print_histogram(const Difference& difference) {
+  print_line("half-ULPs", "values");
+  for (std::size_t bucket = 0; bucket < difference.ulp_histogram.size(); ++bucket) {
+    if (difference.ulp_histogram[bucket] == 0) continue;
+    print_line("  " + bucket_name(bucket), std::to_string(difference.ulp_histogram[bucket]));
+  }
+}
+
+void print_regions(const MeasuredPictures& measured) {
+  const auto print_row = [](const std::string& name, const std::vector<std::string>& cells) {
+    std::cout << std::left << std::setw(12) << name << std::right;
+    for (const std::string& cell : cells) std::cout << std::setw(13) << cell;
+    std::cout << '\n';
+  };
+  std::vector<std::string> titles{"pixels",   "MSE",  "PSNR dB", "toned MSE",
+                                  "toned dB", "SSIM", "FLIP"};
+  if (measured.whole.hdr_flip) titles.emplace_back("HDR-FLIP");
+  print_row("region", titles);
+  for (const Region region : kAllRegions) {
+    const Measures& m = measured.by_region[static_cast<std::size_t>(region)];
+    std::vector<std::string> cells{std::to_string(m.pixels)};
+    for (const double value : {m.mse, m.psnr_db, m.toned_mse, m.toned_psnr_db, m.ssim, m.flip}) {
+      cells.push_back(number_or_dash(value));
+    }
+    if (m.hdr_flip) cells.push_back(number_or_dash(*m.hdr_flip));
+    print_row(std::string{region_name(region)}, cells);
+  }
+}
+
+double energy_ratio(const PointFindings& point) { return point.a.energy / point.b.energy; }
+
+void print_point(const PointFindings& point) {
+  const auto pair = [](double a, double b) {
+    const std::string first = number_or_dash(a);
+    return first + std::string(first.size() < 12 ? 12 - first.size() : 1, ' ') + number_or_dash(b);
+  };
+  print_line("energy of A over B", number_or_dash(energy_ratio(point)));
+  print_line("of the point", "A           B");
+  print_line("  energy", pair(point.a.energy, point.b.energy));
+  print_line("  eigenvalue ratio", pair(point.a.eigenvalue_ratio, point.b.eigenvalue_ratio));
+  print_line("  radius, px", pair(point.a.radius_px, point.b.radius_px));
+  print_line("  from the disc", pair(point.a_deviation, point.b_deviation));
+}
+
+void add_measures(ordered_json& json, const Measures& m) {
+  json["mse"] = number_or_null(m.mse);
+  json["tone_mapped_mse"] = number_or_null(m.toned_mse);
+  json["tone_mapped_psnr_db"] = number_or_null(m.toned_psnr_db);
+  json["ssim"] = number_or_null(m.ssim);
+  json["flip"] = number_or_null(m.flip);
+  if (m.hdr_flip) json["hdr_flip"] = number_or_null(*m.hdr_flip);
+}
+
+ordered_json regions_json(const MeasuredPictures& measured) {
+  ordered_json list = ordered_json::array();
+  for (const Region region : kAllRegions) {
+    const Measures& m = measured.by_region[static_cast<std::size_t>(region)];
+    ordered_json entry{{"region", region_name(region)},
+                       {"pixels", m.pixels},
+                       {"psnr_db", number_or_null(m.psnr_db)}};
+    add_measures(entry, m);
+    list.push_back(entry);
+  }
+  return list;
+}
+
+ordered_json point_json(const PointFindings& point) {
+  const auto of = [](const PointShape& shape, double deviation) {
+    return ordered_json{{"energy", number_or_null(shape.energy)},
+                        {"x", shape.centre_x_px},
+                        {"y", shape.centre_y_px},
+                        {"eigenvalue_ratio", number_or_null(shape.eigenvalue_ratio)},
+                        {"radius_px", number_or_null(shape.radius_px)},
+                        {"disc_deviation", number_or_null(deviation)}};
+  };
+  return {{"disc_radius_px", point.disc_radius_px},
+          {"energy_ratio", number_or_null(energy_ratio(point))},
+          {"a", of(point.a, point.a_deviation)},
+          {"b", of(point.b, point.b_deviation)}};
+}
+
+}  // namespace
+
+void print_compare_text(const CompareFindings& findings) {
+  const Difference& d = findings.difference;
+  print_line("differing values", std::to_string(d.differing) + " of " + std::to_string(d.values));
+  if (d.differing != 0) {
+    print_line("largest difference", std::to_string(d.max_ulp) + " half-ULPs");
+    print_line("first difference", "pixel " + std::to_string(d.first_x) + ',' +
+                                       std::to_string(d.first_y) + " channel " + findings.channel +
+                                       ": " + short_number(static_cast<double>(findings.first_a)) +
+                                       " and " +
+                                       short_number(static_cast<double>(findings.first_b)));
+    print_whole(findings.measured->whole);
+    print_histogram(d);
+  }
+  if (findings.regions) print_regions(*findings.measured);
+  if (findings.point) print_point(*findings.point);
+}
+
+void print_compare_json(const CompareFindings& findings) {
+  const Difference& d = findings.difference;
+  ordered_json json{{"equal", d.differing == 0},
+                    {"values", d.values},
+                    {"differing", d.differing},
+                    {"max_half_ulps", d.max_ulp},
+                    {"psnr_db", number_or_null(d.psnr_db)},
+                    {"first", nullptr},
+                    {"histogram", ordered_json::array()}};
+  if (d.differing != 0) {
+    json["first"] = {{"x", d.first_x},
+                     {"y", d.first_y},
+                     {"channel", std::string(1, findings.channel)},
+                     {"a", findings.first_a},
+                     {"b", findings.first_b}};
+  }
+  for (std::size_t bucket = 0; bucket < d.ulp_histogram.size(); ++bucket) {
+    if (d.ulp_histogram[bucket] == 0) continue;
+    json["histogram"].push_back(
+        {{"half_ulps", bucket_name(bucket)}, {"values", d.ulp_histogram[bucket]}});
+  }
+  add_measures(json, findings.measured->whole);
+  if (findings.regions) json["regions"] = regions_json(*findings.measured);
+  if (findings.point) json["point"] = point_json(*findings.point);
+  std::cout << json.dump(2) << '\n';
+}
+
+double mean_flicker(const std::vector<double>& steps) {
+  return std::accumulate(steps.begin(), steps.end(), 0.0) / static_cast<double>(steps.size());
+}
+
+void print_flicker_text(const std::vector<double>& steps) {
+  print_line("flicker", short_number(mean_flicker(steps)) + " a step, over " +
+                            std::to_string(steps.size() + 1) + " frames");
+}
+
+void print_flicker_json(const std::vector<double>& steps) {
+  const ordered_json json{
+      {"frames", steps.size() + 1}, {"flicker", mean_flicker(steps)}, {"steps", steps}};
+  std::cout << json.dump(2) << '\n';
+}
+
+}  // namespace softfocus

@@ -1,0 +1,268 @@
+// softfocus crosscheck: the same work on GL drivers and on the emulation, and what of it
+// differs.
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "raster/threads/parallel.h"
+#include "scenes/load/scene_error.h"
+#include "tools/cli/command_line.h"
+#include "tools/cli/commands.h"
+#include "tools/crosscheck/run_cases.h"
+#include "tools/cli/driver_option.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
+#include "tools/cli/profile_option.h"
+#include "tools/files/whole_file.h"
+
+namespace softfocus {
+namespace {
+
+using nlohmann::ordered_json;
+
+// As for compare.
+constexpr int kEqual = 0;
+constexpr int kDifferent = 1;
+constexpr int kIncomplete = 2;
+
+struct CrosscheckOptions {
+  std::vector<const Driver*> drivers;
+  std::optional<Profile> profile;
+  std::string cases = "*";
+  std::filesystem::path pictures;
+  Shaders shaders;
+  bool quick = false;
+  bool json = false;
+};
+
+/// What a driver is to do.
+struct DriverWork {
+  const Driver* driver;
+  Profile profile;
+  int cases;
+};
+
+Profile profile_for(const Driver& driver, const CrosscheckOptions& options) {
+  if (options.profile) return *options.profile;
+  if (driver.profile.empty()) {
+    throw UsageError("--driver " + std::string(driver.name) +
+                     " needs --profile: softfocus probe --driver " + std::string(driver.name) +
+                     " makes one");
+  }
+  return find_profile(driver.profile).value();
+}
+
+// Without --driver: those whose profile is known. All that can be wrong with the options
+// is found here, before a driver has worked for minutes.
+std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
+  std::vector<const Driver*> chosen = options.drivers;
+  if (chosen.empty()) {
+    for (const Driver& driver : drivers()) {
+      if (!driver.profile.empty()) chosen.push_back(&driver);
+    }
+  }
+  std::vector<DriverWork> work;
+  for (const Driver* driver : chosen) work.push_back({driver, profile_for(*driver, options), 0});
+  if (matching_cases(options.cases, false, false) == 0) {
+    throw UsageError("--case '" + options.cases +
+                     "' matches no case; names look like coverage/slivers-20000, and "
+                     "--case 'coverage/*' takes a whole stage");
+  }
+  for (DriverWork& one : work) {
+    one.cases = matching_cases(options.cases, options.quick, one.driver->slow);
+  }
+  return work;
+}
+
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+bool was_compared(const CaseResult& result) { return result.values != 0; }
+
+void print_result(const CaseResult& result) {
+  std::cout << "  " << padded(result.stage + '/' + result.name, 52);
+  if (was_compared(result)) {
+    std::cout << padded(std::to_string(result.differing) + " of " + std::to_string(result.values),
+                        24);
+  }
+  if (!result.error.empty()) {
+    std::cout << "failed: " << printable(result.error) << '\n';
+  } else if (result.differing == 0) {
+    std::cout << "equal\n";
+  } else {
+    std::cout << "largest " << result.max_ulp << " ULP\n";
+  }
+  if (!result.first) return;
+  const FirstDifference& first = *result.first;
+  std::cout << "    first at pixel " << first.x << ',' << first.y << " channel " << first.channel
+            << (first.where.empty() ? "" : ", " + first.where) << ": driver " << first.driver
+            << ", emulation " << first.emulated << '\n';
+  if (!result.picture.empty()) std::cout << "    " << printable(result.picture) << '\n';
+}
+
+ordered_json json_of(const DriverWork& work, const CaseResult& result) {
+  ordered_json entry{{"driver", work.driver->name}, {"profile", work.profile.name},
+                     {"stage", result.stage},       {"case", result.name},
+                     {"values", result.values},     {"differing", nullptr},
+                     {"max_ulp", nullptr}};
+  // What was not compared is not equal.
+  if (was_compared(result)) {
+    entry["differing"] = result.differing;
+    entry["max_ulp"] = result.max_ulp;
+  }
+  if (!result.picture.empty()) entry["picture"] = result.picture;
+  if (!result.error.empty()) entry["error"] = result.error;
+  if (result.first) {
+    const FirstDifference& first = *result.first;
+    entry["first"] = {
+        {"x", first.x},         {"y", first.y},           {"channel", first.channel},
+        {"where", first.where}, {"driver", first.driver}, {"emulated", first.emulated}};
+  }
+  return entry;
+}
+
+// For a driver that could not be used, or not to its end.
+ordered_json json_of(const DriverWork& work, const std::string& error) {
+  return {{"driver", work.driver->name},
+          {"profile", work.profile.name},
+          {"stage", nullptr},
+          {"case", nullptr},
+          {"values", 0},
+          {"differing", nullptr},
+          {"max_ulp", nullptr},
+          {"error", error}};
+}
+
+struct Count {
+  int planned = 0;
+  int run = 0;
+  int equal = 0;
+  int different = 0;
+  int failed = 0;
+};
+
+void add(Count& count, const CaseResult& result) {
+  ++count.run;
+  count.different += result.differing != 0 ? 1 : 0;
+  count.failed += !result.error.empty() ? 1 : 0;
+  count.equal += result.differing == 0 && result.error.empty() ? 1 : 0;
+}
+
+void print_summary(const Count& count, const CrosscheckOptions& options) {
+  std::cout << count.equal << " of " << count.planned << " cases equal";
+  if (count.failed != 0) std::cout << ", " << count.failed << " failed";
+  if (count.run != count.planned) std::cout << ", " << count.planned - count.run << " not run";
+  if (count.different != 0 && options.pictures.empty()) {
+    std::cout << "; --diff DIR shows where";
+  }
+  std::cout << '\n';
+}
+
+int crosscheck(const CrosscheckOptions& options) {
+  ordered_json entries = ordered_json::array();
+  Count count;
+  bool complete = true;
+  for (const DriverWork& work : planned_work(options)) {
+    count.planned += work.cases;
+    std::string error;
+    if (work.cases == 0) {
+      error = "no case of --case '" + options.cases + "' is for this driver" +
+              (options.quick ? " and --quick" : "");
+    } else {
+      if (!options.json) {
+        std::cout << work.driver->name << " against profile " << printable(work.profile.name)
+                  << '\n';
+      }
+      const DriverRun run = run_cases({*work.driver, work.profile, options.shaders, options.cases,
+                                       options.quick, options.pictures, hardware_threads()},
+                                      [&](const CaseResult& result) {
+                                        add(count, result);
+                                        if (options.json) {
+                                          entries.push_back(json_of(work, result));
+                                        } else {
+                                          print_result(result);
+                                          std::cout.flush();
+                                        }
+                                      });
+      if (!options.json && !run.renderer.empty()) {
+        std::cout << "  (" << printable(run.renderer) << ")\n";
+      }
+      error = run.error;
+    }
+    if (error.empty()) continue;
+    complete = false;
+    entries.push_back(json_of(work, error));
+    std::cout.flush();
+    std::cerr << "softfocus: driver " << work.driver->name << ": " << printable(error) << '\n';
+  }
+  if (options.json) {
+    // A file's name need not be UTF-8, but JSON must be.
+    std::cout << entries.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  } else {
+    print_summary(count, options);
+  }
+  if (count.different != 0) return kDifferent;
+  return complete && count.failed == 0 ? kEqual : kIncomplete;
+}
+
+// A folder that pictures can be written into.
+std::filesystem::path checked_folder(const std::string& text) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(text, unknown)) {
+    throw UsageError("--diff '" + text + "': there is no such folder");
+  }
+  const std::filesystem::path folder{text};
+  try {
+    check_writable(folder / "picture.png");
+  } catch (const FileError& error) {
+    throw UsageError(std::string("--diff: ") + error.what());
+  }
+  return folder;
+}
+
+Shaders checked_shaders(const std::string& text) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(text, unknown)) {
+    throw UsageError("--shaders '" + text + "': there is no such folder");
+  }
+  try {
+    return read_shaders(text);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(std::string("--shaders: ") + error.what());
+  }
+}
+
+}  // namespace
+
+Command add_crosscheck_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "crosscheck",
+                                 "Compare the emulation with GL drivers, value by "
+                                 "value; status 0 equal, 1 different, 2 error");
+  const auto options = std::make_shared<CrosscheckOptions>();
+  add_driver_option(*parser, "Driver to compare with, may be repeated (default: Mesa's three)",
+                    [options](const Driver& driver) {
+                      auto& chosen = options->drivers;
+                      if (std::find(chosen.begin(), chosen.end(), &driver) == chosen.end()) {
+                        chosen.push_back(&driver);
+                      }
+                    });
+  add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
+                     [options](const Profile& profile) { options->profile = profile; });
+  add_value(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
+            [options](const std::string& text) { options->cases = text; });
+  add_value(*parser, "--shaders", "DIR",
+            "Shaders there take the place of those of the same name (see softfocus shaders)",
+            [options](const std::string& text) { options->shaders = checked_shaders(text); });
+  add_value(*parser, "--diff", "DIR", "Write a picture there for each case that differs",
+            [options](const std::string& text) { options->pictures = checked_folder(text); });
+  add_flag(*parser, "--quick", "A representative part, under a minute", options->quick);
+  add_flag(*parser, "--json", "Print JSON", options->json);
+  return {parser, [options] { return crosscheck(*options); }};
+}
+
+}  // namespace softfocus

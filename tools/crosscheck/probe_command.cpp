@@ -1,0 +1,63 @@
+// softfocus probe: a driver's profile, by experiment.
+
+#include <iostream>
+#include <memory>
+
+#include "tools/cli/command_line.h"
+#include "tools/cli/commands.h"
+#include "tools/crosscheck/probe.h"
+#include "tools/cli/driver_option.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
+#include "tools/files/profile_file.h"
+#include "tools/files/whole_file.h"
+
+namespace softfocus {
+namespace {
+
+struct ProbeOptions {
+  const Driver* driver = nullptr;
+  std::string output;
+};
+
+int probe(const ProbeOptions& options) {
+  const Driver& driver = options.driver != nullptr ? *options.driver : drivers().front();
+  if (!options.output.empty()) check_writable(options.output);
+  Probe probed;
+  try {
+    probed = probe_driver(driver);
+  } catch (const DriverError& error) {
+    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
+  }
+  std::string heading = "Probed by softfocus " SOFTFOCUS_VERSION " on " + probed.renderer +
+                        "\nFor --profile FILE. What the answers rest on:\n";
+  for (const ProbeFinding& finding : probed.findings) {
+    heading += "- " + finding.question + ": " + finding.answer + " (" + finding.evidence + ")\n";
+  }
+  const std::string text = profile_text(probed.profile, heading);
+  if (options.output.empty()) {
+    std::cout << text;
+  } else {
+    WholeFile file{options.output};
+    file.write(text);
+    file.commit();
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command add_probe_command(CLI::App& program) {
+  CLI::App* parser = add_command(
+      program, "probe", "Find out by experiment what a GL driver computes, and print its profile");
+  const auto options = std::make_shared<ProbeOptions>();
+  add_driver_option(*parser, "Driver to ask (default: llvmpipe)", [options](const Driver& driver) {
+    if (options->driver != nullptr) throw UsageError("--driver is given twice; give it once");
+    options->driver = &driver;
+  });
+  add_value(*parser, "-o,--output", "FILE", "Write the profile there (default: print it)",
+            [options](const std::string& text) { options->output = text; });
+  return {parser, [options] { return probe(*options); }};
+}
+
+}  // namespace softfocus

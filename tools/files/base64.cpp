@@ -1,0 +1,24 @@
+#include "tools/files/base64.h"
+
+#include <cstdint>
+
+namespace softfocus {
+
+std::string base64(std::span<const std::byte> bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t there = bytes.size() - i < 3 ? bytes.size() - i : 3;
+    std::uint32_t bits = 0;  // three bytes, the missing ones 0
+    for (std::size_t k = 0; k < 3; ++k) {
+      bits = bits << 8 | (k < there ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      text += digit <= there ? kDigits[bits >> (18 - 6 * digit) & 63u] : '=';
+    }
+  }
+  return text;
+}
+
+}  // namespace softfocus

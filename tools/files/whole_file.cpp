@@ -1,0 +1,145 @@
+#include "tools/files/whole_file.h"
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
+
+namespace softfocus {
+namespace {
+
+const char* remedy(int error) {
+  switch (error) {
+    case ENOENT:
+    case ENOTDIR: return "; its directory must exist";
+    case EISDIR: return "; give the name of a file";
+    case EACCES:
+    case EPERM:
+    case EROFS: return "; give a place that can be written to";
+#ifdef EDQUOT  // not on Windows
+    case EDQUOT:
+#endif
+    case ENOSPC: return "; free some space or write elsewhere";
+    case EFBIG: return "; allow larger files or make a smaller picture";
+    default: return "";
+  }
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, int error) {
+  throw FileError("cannot write '" + file.string() +
+                  "': " + std::generic_category().message(error) + remedy(error));
+}
+
+/// What `file` leads to, links followed; of type not_found if there is nothing yet.
+std::filesystem::file_status status_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::none) {
+    refuse(file, error.default_error_condition().value());
+  }
+  return status;
+}
+
+/// The end of a chain of links, which need not exist.
+std::filesystem::path links_followed(std::filesystem::path file) {
+  std::error_code no_link;
+  // The chain ends: status_of() has refused a circle (ELOOP).
+  for (;;) {
+    const auto next = std::filesystem::read_symlink(file, no_link);
+    if (no_link) return file;
+    file = file.parent_path() / next;
+  }
+}
+
+void write_all(int descriptor, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const std::ptrdiff_t written = write_some(descriptor, bytes);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw std::system_error(errno, std::generic_category());
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace
+
+WholeFile::WholeFile(const std::filesystem::path& target) : shown_(target), target_(target) {
+  const auto status = status_of(target);
+  const bool is_there = std::filesystem::exists(status);
+  if (is_there && !std::filesystem::is_regular_file(status)) {
+    descriptor_ = open_existing(target);
+    if (descriptor_ < 0) fail(errno);
+    return;
+  }
+  if (!target.has_filename()) fail(EISDIR);
+  // A rename would replace even a file that is protected against writing.
+  if (is_there && !may_write(target)) fail(errno);
+  target_ = links_followed(target);
+  for (int attempt = 0; descriptor_ < 0; ++attempt) {
+    temporary_ = target_.parent_path() /
+                 (".softfocus-" + std::to_string(process_number()) + "-" + std::to_string(attempt));
+    descriptor_ = create_file(temporary_);
+    if (descriptor_ < 0 && errno != EEXIST) {
+      const int error = errno;
+      temporary_.clear();
+      fail(error);
+    }
+  }
+  // Best effort: some file systems know no permissions.
+  std::error_code ignored;
+  if (is_there) std::filesystem::permissions(temporary_, status.permissions(), ignored);
+}
+
+WholeFile::~WholeFile() {
+  if (descriptor_ >= 0) close_file(descriptor_);
+  std::error_code ignored;
+  if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
+}
+
+void WholeFile::fail(int error) const { refuse(shown_, error); }
+
+void WholeFile::write(std::span<const std::byte> bytes) {
+  try {
+    write_all(descriptor_, bytes);
+  } catch (const std::system_error& error) {
+    fail(error.code().value());
+  }
+}
+
+void WholeFile::write(std::string_view text) {
+  write(std::as_bytes(std::span{text.data(), text.size()}));
+}
+
+void WholeFile::commit() {
+  // Some file systems report a full disk only here.
+  if (!close_file(std::exchange(descriptor_, -1))) fail(errno);
+  if (temporary_.empty()) return;
+  std::error_code error;
+  std::filesystem::rename(temporary_, target_, error);
+  if (error) fail(error.default_error_condition().value());
+  temporary_.clear();
+}
+
+void check_writable(const std::filesystem::path& target) {
+  const auto status = status_of(target);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) {
+    const WholeFile probe{target};
+  } else if (std::filesystem::is_directory(status)) {
+    refuse(target, EISDIR);
+  } else if (!may_write(target)) {
+    // Not opened: the reader at a pipe's other end would see it close.
+    refuse(target, errno);
+  }
+}
+
+void write_to_standard_output(std::span<const std::byte> bytes) {
+  try {
+    write_all(kStandardOutput, bytes);
+  } catch (const std::system_error& error) {
+    refuse("standard output", error.code().value());
+  }
+}
+
+}  // namespace softfocus

@@ -1,0 +1,90 @@
+#include <array>
+#include <string_view>
+
+#include "dof/fixed_pictures/arithmetic.h"
+#include "dof/method.h"
+#include "scenes/lens_views/accumulation.h"
+#include "scenes/lens_views/sample_sums.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/load/load_scene.h"
+#include "tools/golden/hashes.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::array<std::string_view, 3> kScenes{"figures", "cube-room", "sphere-world"};
+
+struct FrameSize {
+  int width, height;
+};
+// Whole tiles, and parts of tiles.
+constexpr std::array kSizes{FrameSize{128, 128}, FrameSize{97, 61}};
+
+// What moves has moved by then.
+constexpr double kFrame = 7.0;
+
+// Circles as of a picture of 512 rows: as of these few, nearly all would lie in a pixel.
+constexpr double kRows = 512.0;
+
+DofSettings settings_for(const Scene& scene, int height) {
+  DofSettings settings;
+  settings.coc = pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, height,
+                           scene.lens.coc_scale * kRows / height);
+  settings.max_coc_px = static_cast<float>(scene.lens.max_coc_px_at_1024 * kRows / 1024.0);
+  return settings;
+}
+
+}  // namespace
+
+std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
+  std::vector<GoldenScene> scenes(kScenes.size());
+  pool.for_each(static_cast<int>(scenes.size()), [&](int i) {
+    const std::string_view name = kScenes[static_cast<std::size_t>(i)];
+    scenes[static_cast<std::size_t>(i)] = {std::string{name},
+                                           load_scene(name, scene_search_path({}))};
+  });
+  return scenes;
+}
+
+std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
+                                    std::span<const Profile> profiles, ThreadPool& pool) {
+  // A whole group of sums and a part of one.
+  const Sampling sampling{.samples = kSampleGroup + 3, .jitter = true, .aperture = {7}};
+  std::vector<NamedHash> hashes;
+  for (const auto& [name, scene] : scenes) {
+    for (const auto [width, height] : kSizes) {
+      const DofSettings settings = settings_for(scene, height);
+      const View view = camera_view(scene.camera, kFrame, width, height);
+      for (const Profile& profile : profiles) {
+        const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
+        const std::string where =
+            ' ' + profile.name + ' ' + std::to_string(width) + 'x' + std::to_string(height);
+        for (const Method& method : methods()) {
+          hashes.push_back({name + ' ' + std::string{method.name} + where,
+                            hash_image(apply(method, {picture, settings, profile}, pool))});
+        }
+        for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
+          Image filtered = make_image(picture.format, width, height);
+          two_pass_in(arithmetic, {picture, settings, profile}, filtered, pool);
+          hashes.push_back({name + " two-pass-" + std::string{arithmetic_name(arithmetic)} + where,
+                            hash_image(filtered)});
+        }
+        const SceneMethodInput from_lens{
+            scene,
+            view,
+            kFrame,
+            picture,
+            scene.lens.lens.focus_m,
+            aperture_radius_m(scene.lens.lens, scene.lens.coc_scale * kRows / height),
+            sampling,
+            profile,
+            {}};
+        hashes.push_back(
+            {name + " accumulation" + where, hash_image(accumulation(from_lens, pool).picture)});
+      }
+    }
+  }
+  return hashes;
+}
+
+}  // namespace softfocus

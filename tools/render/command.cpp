@@ -1,0 +1,241 @@
+// softfocus render: the way of a frame from a scene's file to a picture's.
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+#include "dof/auto/choose.h"
+#include "dof/views.h"
+#include "raster/images/texel.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/load/load_scene.h"
+#include "tools/cli/arithmetic_option.h"
+#include "tools/cli/command_line.h"
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/gl/frame_on_gl.h"
+#include "tools/cli/method_options.h"
+#include "tools/render/performance_report.h"
+#include "tools/cli/progress.h"
+#include "tools/render/options.h"
+#include "tools/cli/scene_warnings.h"
+#include "tools/files/whole_file.h"
+
+namespace softfocus {
+namespace {
+
+/// Does a stage's work, with its name on the terminal and its time noted.
+template <class Work>
+auto timed(Progress& progress, const char* stage, double& ms, Work work) {
+  using Clock = std::chrono::steady_clock;
+  progress.show(stage);
+  struct Stopwatch {
+    double& ms;
+    Clock::time_point start = Clock::now();
+    ~Stopwatch() { ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+  } const stopwatch{ms};
+  return work();
+}
+
+bool needs_lens(const RenderOptions& options) {
+  return options.show == Show::coc || has_depth_of_field(options);
+}
+
+/// The lens as far as it is known before anything is drawn.
+UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene) {
+  UsedLens used;
+  used.lens = overruled(of_scene.lens, options.lens);
+  used.coc_scale = options.lens.coc_scale.value_or(of_scene.coc_scale);
+  used.settings.max_coc_px = used_max_coc_px(options.max_coc_px, of_scene, options.size.height);
+  used.settings.leak = options.leak;
+  if (options.autofocus) {
+    used.autofocus_pixel =
+        options.autofocus_pixel.value_or(Pixel{options.size.width / 2, options.size.height / 2});
+  } else {
+    check_lens(used.lens, options.lens, options.scene);
+  }
+  return used;
+}
+
+/// Focuses on the drawn picture if that is asked for, and computes the frame's constants.
+void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
+              double fov_y_degrees) {
+  if (used.autofocus_pixel) {
+    const auto [x, y] = *used.autofocus_pixel;
+    used.lens.focus_m = load_texel<Format::rgba16f>(scene, x, y).w;
+    check_lens(used.lens, options.lens,
+               "--autofocus " + std::to_string(x) + "," + std::to_string(y));
+  }
+  used.settings.coc =
+      checked_pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
+  if (options.show == Show::image) check_arithmetic(options.arithmetic, used.settings);
+}
+
+/// The method that draws the scene itself, from many points of the lens.
+Image sampled_picture(const Scene& scene, const View& view, const Image& pinhole,
+                      PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
+                      Progress& progress, ThreadPool& pool) {
+  const UsedLens& used = *record.lens;
+  const Sampling& sampling = record.used.sampling;
+  const auto tell = [&](int samples) {
+    progress.show("sampling the lens, " + std::to_string(samples) + " of " +
+                  (sampling.until ? "at most " : "") + std::to_string(sampling.samples));
+  };
+  SampledPicture sampled = record.used.method.of_scene->render(
+      {scene, view, options.frame, pinhole, used.lens.focus_m,
+       aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell, prepared},
+      pool);
+  record.sampled = {sampled.samples, sampled.half_set_rms};
+  return std::move(sampled.picture);
+}
+
+/// What --until asked for and the samples did not give, as a line, or nothing.
+std::string until_warning(const RenderRecord& record) {
+  const Sampling& sampling = record.used.sampling;
+  if (!record.sampled || !sampling.until) return {};
+  const auto reached = record.sampled->half_set_rms;
+  if (reached && *reached <= *sampling.until) return {};
+  const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
+                                    : "half-sets are compared from 16 samples on";
+  return "--until " + short_number(*sampling.until) + ": not reached with " +
+         std::to_string(record.sampled->samples) + " samples: " + found;
+}
+
+/// What auto was to keep to and foresees that it will not, as a line, or nothing.
+std::string goal_warning(const RenderOptions& options, const RenderRecord& record) {
+  if (!record.used.choice || record.used.choice->meets_goal) return {};
+  const Choice& choice = *record.used.choice;
+  return "--max-error " + short_number(options.goal.max_error) +
+         ": no method is foreseen to keep to it; " + setting_text(choice) +
+         " comes nearest, with a foreseen error of " + short_number(choice.predicted_error);
+}
+
+/// Lets auto choose, by the drawn picture.
+void choose_method(RenderRecord& record, const Image& drawn, const RenderOptions& options,
+                   ThreadPool& pool) {
+  DofSettings& settings = record.lens->settings;
+  const SceneTraits traits = scene_traits(drawn, settings.coc, pool);
+  const Choice choice = choose(traits, options.goal, {options.max_coc_px, record.triangles});
+  UsedMethod& used = record.used;
+  used.method = {find_method(choice.method), find_scene_method(choice.method)};
+  if (used.method.of_scene != nullptr) used.sampling.samples = choice.samples;
+  if (used.method.filter != nullptr) settings.max_coc_px = choice.radius_px;
+  used.choice = choice;
+}
+
+Image shown_picture(Image scene, const RenderOptions& options, const Method* filter,
+                    const Camera& camera, const DofSettings& settings, FrameOnGl* on_gl,
+                    ThreadPool& pool) {
+  switch (options.show) {
+    case Show::image:
+      if (options.arithmetic != Arithmetic::floats) {
+        Image result = make_image(scene.format, scene.width, scene.height);
+        two_pass_in(options.arithmetic, {scene, settings, options.profile}, result, pool);
+        return result;
+      }
+      return on_gl != nullptr ? on_gl->filter(*filter, settings, scene)
+                              : apply(*filter, {scene, settings, options.profile}, pool);
+    case Show::pinhole: return scene;
+    case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
+    case Show::depth:
+      return show_depth(scene, static_cast<float>(camera.near_m), static_cast<float>(camera.far_m));
+  }
+  return scene;
+}
+
+int render(const RenderOptions& options) {
+  const bool to_standard_output = options.output == "-";
+  if (!to_standard_output) check_writable(options.output);
+  if (options.report) check_writable(*options.report);
+
+  RenderRecord record;
+  StageTimes& ms = record.ms;
+  Progress progress;
+  ThreadPool pool{options.pool.threads, options.pool.isa};
+
+  const Scene scene = timed(progress, "loading", ms.load, [&] {
+    return load_scene(options.scene, scene_search_path(options.scene_path));
+  });
+  progress.clear();
+  print_scene_warnings(scene.warnings, options.verbose);
+  record.scene_name = scene.name;
+  record.scene_title = scene.title;
+  record.triangles = triangle_count(scene);
+  if (needs_lens(options)) record.lens = chosen_lens(options, scene.lens);
+
+  const int width = options.size.width, height = options.size.height;
+  std::optional<FrameOnGl> on_gl;
+  if (options.gl != nullptr) record.gl_renderer = on_gl.emplace(*options.gl).renderer();
+  const View view = camera_view(scene.camera, options.frame, width, height);
+  std::optional<PreparedScene> prepared;
+  Image drawn = timed(progress, "drawing", ms.draw, [&] {
+    if (on_gl) return on_gl->draw(scene, view, options.frame, width, height);
+    prepared = prepare_scene(scene, options.profile, pool);
+    Image picture = make_image(Format::rgba16f, width, height);
+    draw_scene(*prepared, view, options.frame, picture, pool);
+    return picture;
+  });
+
+  DofSettings settings;
+  if (record.lens) {
+    timed(progress, "focusing", ms.focus,
+          [&] { set_lens(*record.lens, drawn, options, scene.camera.fov_y_degrees); });
+    settings = record.lens->settings;
+  }
+  record.used = {options.method, options.sampling, {}};
+  if (options.show == Show::image && options.method.is_auto()) {
+    timed(progress, "choosing", ms.choose, [&] { choose_method(record, drawn, options, pool); });
+    settings = record.lens->settings;
+  }
+  const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
+  if (!from_lens) prepared.reset();
+  const Image picture = timed(progress, from_lens ? "sampling" : "filtering", ms.filter, [&] {
+    if (from_lens) {
+      return sampled_picture(scene, view, drawn, prepared ? &*prepared : nullptr, options, record,
+                             progress, pool);
+    }
+    if (record.used.choice && is_sharp(*record.used.choice)) return std::move(drawn);
+    return shown_picture(std::move(drawn), options, record.used.method.filter, scene.camera,
+                         settings, on_gl ? &*on_gl : nullptr, pool);
+  });
+
+  progress.clear();
+  for (const std::string& warning : {until_warning(record), goal_warning(options, record)}) {
+    if (!warning.empty()) std::cerr << "softfocus: warning: " << warning << '\n';
+  }
+
+  const Bytes bytes =
+      timed(progress, "encoding", ms.encode, [&] { return encode(picture, options.format); });
+  // The files get their names together, when nothing can fail but the naming.
+  std::optional<WholeFile> picture_file, report_file;
+  timed(progress, "writing", ms.write, [&] {
+    if (to_standard_output) {
+      write_to_standard_output(bytes);
+    } else {
+      picture_file.emplace(options.output).write(bytes);
+    }
+  });
+  const std::string report = text_report(options, record);
+  if (options.report) report_file.emplace(*options.report).write(report);
+  if (picture_file) picture_file->commit();
+  if (report_file) report_file->commit();
+  progress.clear();
+
+  if (options.json) std::cout << json_report(options, record);
+  if (options.verbose) std::cerr << report;
+  return kDone;
+}
+
+}  // namespace
+
+Command add_render_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "render", "Render a scene to a picture");
+  const auto options = std::make_shared<RenderOptions>();
+  add_render_options(*parser, *options);
+  return {parser, [parser, options] {
+            complete(*options, *parser);
+            return render(*options);
+          }};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,201 @@
+#include "tools/render/options.h"
+
+#include <array>
+#include <cstdint>
+
+#include "raster/images/image.h"
+#include "tools/cli/arithmetic_option.h"
+#include "tools/cli/auto_options.h"
+#include "tools/cli/driver_option.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/memory_check.h"
+#include "tools/cli/method_options.h"
+#include "tools/cli/platform.h"
+#include "tools/cli/profile_option.h"
+#include "tools/cli/sampling_options.h"
+
+namespace softfocus {
+namespace {
+
+struct ShowChoice {
+  std::string_view name;
+  Show show;
+};
+constexpr std::array kShowChoices{ShowChoice{"image", Show::image},
+                                  ShowChoice{"pinhole", Show::pinhole},
+                                  ShowChoice{"coc", Show::coc}, ShowChoice{"depth", Show::depth}};
+
+template <class Range>
+[[noreturn]] void refuse_name(std::string_view option, const std::string& text,
+                              const Range& choices) {
+  throw UsageError(std::string{option} + " '" + text + "': there are " + names_of(choices));
+}
+
+void add_picture_options(CLI::App& parser, RenderOptions& options) {
+  add_value(parser, "-o,--output", "FILE",
+            "The picture: .png, .pfm or .npy; - for standard output (required)",
+            [&options](const std::string& text) { options.output = text; });
+  add_value(parser, "--format", "png|pfm|npy",
+            "Format of FILE, whatever its name (default: by the name, png for -)",
+            [&options](const std::string& text) {
+              const auto format = format_by_name(text);
+              if (!format) throw UsageError("--format '" + text + "': there are png, pfm, npy");
+              options.format = *format;
+            });
+  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
+            [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_value(parser, "--show", "image|pinhole|coc|depth",
+            "The picture with depth of field, without, or a grey map (default: image)",
+            [&options](const std::string& text) {
+              for (const ShowChoice& choice : kShowChoices) {
+                if (choice.name == text) {
+                  options.show = choice.show;
+                  return;
+                }
+              }
+              refuse_name("--show", text, kShowChoices);
+            });
+}
+
+void add_scene_options(CLI::App& parser, RenderOptions& options) {
+  add_frame(parser, options.frame);
+  add_scene_path(parser, options.scene_path);
+}
+
+void add_method_options(CLI::App& parser, RenderOptions& options) {
+  add_method_option(parser, options.method);
+  add_arithmetic_option(parser, options.arithmetic);
+  add_lens_options(parser, options.lens,
+                   {.focus = "the scene's",
+                    .focal_length = "the scene's",
+                    .f_number = "the scene's",
+                    .coc_scale = "the scene's"});
+  add_value(parser, "--autofocus", "[X,Y]",
+            "Focus on what is at this pixel, from the top left (default: the centre)",
+            [&options](const std::string& text) {
+              options.autofocus = true;
+              if (text != "centre") options.autofocus_pixel = parse_pixel("--autofocus", text);
+            });
+  add_max_coc_option(parser, options.max_coc_px);
+  add_value(parser, "--leak", "A",
+            "How readily a background gives its colour to what is before it (default: " +
+                short_number(options.leak) + ")",
+            [&options](const std::string& text) {
+              options.leak = static_cast<float>(
+                  parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
+            });
+  add_sampling_options(parser, options.sampling);
+  add_auto_options(parser, options.goal);
+}
+
+void add_run_options(CLI::App& parser, RenderOptions& options) {
+  add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
+                     [&options](const Profile& profile) { options.profile = profile; });
+  add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
+            [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
+  add_pool_options(parser, options.pool, "the picture is the same");
+  add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
+            [&options](const std::string& text) { options.report = text; });
+  add_flag(parser, "--json", "Print the report as JSON on standard output", options.json);
+  add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);
+}
+
+/// Whether two names lead to one file, there already or not.
+bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error_a, error_b;
+  const auto place_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a), error_a);
+  const auto place_b = std::filesystem::weakly_canonical(std::filesystem::absolute(b), error_b);
+  return a == b || (!error_a && !error_b && place_a == place_b);
+}
+
+/// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
+/// depth (4) and the largest encoding (12).
+constexpr std::uint64_t kBytesPerPixel = 40;
+
+/// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and
+/// its depth.
+constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
+
+}  // namespace
+
+void add_render_options(CLI::App& parser, RenderOptions& options) {
+  add_argument(parser, "SCENE", "Name of a scene (softfocus scenes), a .toml or an .obj file",
+               options.scene);
+  add_picture_options(parser, options);
+  add_scene_options(parser, options);
+  add_method_options(parser, options);
+  add_run_options(parser, options);
+}
+
+void complete(RenderOptions& options, const CLI::App& parser) {
+  if (options.output.empty()) {
+    throw UsageError("-o is missing: give a .png, .pfm or .npy file, or - for standard output");
+  }
+  const bool to_standard_output = options.output == "-";
+  if (!is_given(parser, "--format") && !to_standard_output) {
+    const auto format = format_by_extension(options.output);
+    if (!format) {
+      throw UsageError("-o '" + options.output +
+                       "': the name must end in .png, .pfm or .npy, or --format say which");
+    }
+    options.format = *format;
+  }
+  if (to_standard_output && options.json) {
+    throw UsageError("--json and -o - would both write to standard output; give -o a file");
+  }
+  if (to_standard_output && is_terminal(kStandardOutput)) {
+    throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
+  }
+  if (options.gl != nullptr && is_given(parser, "--profile")) {
+    throw UsageError("--gl and --profile exclude each other: a driver is what it is");
+  }
+  if (options.report && options.report->empty()) {
+    throw UsageError("--report '': give the name of a file");
+  }
+  if (options.report && is_one_place(*options.report, options.output)) {
+    throw UsageError("--report and -o name the same file; give two");
+  }
+  if (options.autofocus && options.lens.focus_m) {
+    throw UsageError("--focus and --autofocus exclude each other; give one");
+  }
+  if (options.autofocus_pixel) {
+    const auto [x, y] = *options.autofocus_pixel;
+    const auto [width, height] = options.size;
+    if (x < 0 || x >= width || y < 0 || y >= height) {
+      throw UsageError("--autofocus " + std::to_string(x) + "," + std::to_string(y) +
+                       ": the pixel must lie in the picture, 0,0 to " + std::to_string(width - 1) +
+                       "," + std::to_string(height - 1));
+    }
+  }
+  check_auto_options(parser, options.method);
+  check_arithmetic(options.arithmetic, options.method.name(), options.gl != nullptr);
+  const bool samples = options.method.of_scene != nullptr;
+  if (samples) {
+    complete_sampling(options.sampling, parser);
+  } else if (!options.method.is_auto()) {
+    refuse_sampling_options(parser, options.method.name());
+  }
+  if (samples && options.gl != nullptr) {
+    throw UsageError("--gl and --method " + std::string{options.method.name()} +
+                     " exclude each other: it draws in the emulation; give one");
+  }
+  const bool may_sample = samples || options.method.is_auto();
+  check_memory("--size", options.size, kBytesPerPixel + (may_sample ? kSamplingBytesPerPixel : 0));
+}
+
+std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {
+  std::vector<std::string> joined;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    joined.push_back(std::move(arguments[i]));
+    if (joined.back() != "--autofocus") continue;
+    const bool has_next = i + 1 < arguments.size();
+    const std::string next = has_next ? arguments[i + 1] : "";
+    // No scene is named with these characters alone; a mistyped pixel is.
+    const bool is_pixel = next.find_first_of("0123456789") != next.npos &&
+                          next.find_first_not_of("0123456789+-.,;x: ") == next.npos;
+    joined.back() += "=" + (is_pixel || next == "centre" ? arguments[++i] : "centre");
+  }
+  return joined;
+}
+
+}  // namespace softfocus

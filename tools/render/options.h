@@ -1,0 +1,61 @@
+#pragma once
+// Everything that `render` is told.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dof/auto/choose.h"
+#include "dof/fixed_pictures/arithmetic.h"
+#include "dof/method.h"
+#include "raster/numbers/profile.h"
+#include "tools/gl/driver.h"
+#include "tools/files/image_file.h"
+#include "tools/cli/lens_options.h"
+#include "tools/cli/method_options.h"
+#include "tools/cli/option_values.h"
+#include "tools/cli/parser.h"
+#include "tools/cli/pool_options.h"
+
+namespace softfocus {
+
+/// Which picture is wanted: with depth of field, without, or a map of what it works from.
+enum class Show { image, pinhole, coc, depth };
+
+struct RenderOptions {
+  std::string scene;
+  std::string output;  ///< "-" for standard output
+  FileFormat format = FileFormat::png;
+  std::vector<std::filesystem::path> scene_path;
+  PictureSize size;
+  double frame = 0.0;
+  Profile profile = profiles().front();
+  const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
+  PoolOptions pool;
+  MethodChoice method{.filter = find_method("two-pass")};
+  Arithmetic arithmetic = Arithmetic::floats;
+  Sampling sampling;  ///< of a method that draws the scene
+  Goal goal;          ///< of auto
+  LensOptions lens;
+  bool autofocus = false;
+  std::optional<Pixel> autofocus_pixel;  ///< the picture's centre if none
+  std::optional<float> max_coc_px;
+  float leak = DofSettings{}.leak;
+  Show show = Show::image;
+  std::optional<std::filesystem::path> report;
+  bool json = false;
+  bool verbose = false;
+};
+
+void add_render_options(CLI::App& parser, RenderOptions& options);
+
+/// What each option alone cannot know: throws UsageError for options that are missing,
+/// exclude each other or do not fit together, and settles the format.
+void complete(RenderOptions& options, const CLI::App& parser);
+
+/// --autofocus may stand without a value, and CLI11 would take the next argument for
+/// it, a scene perhaps. So what follows is joined to it with "=": the pixel, or "centre".
+std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments);
+
+}  // namespace softfocus

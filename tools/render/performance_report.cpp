@@ -1,0 +1,219 @@
+#include "tools/render/performance_report.h"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace softfocus {
+namespace {
+
+struct NamedTime {
+  const char* name;
+  double StageTimes::*ms;
+};
+constexpr std::array kStages{
+    NamedTime{"load", &StageTimes::load},     NamedTime{"draw", &StageTimes::draw},
+    NamedTime{"focus", &StageTimes::focus},   NamedTime{"choose", &StageTimes::choose},
+    NamedTime{"filter", &StageTimes::filter}, NamedTime{"encode", &StageTimes::encode},
+    NamedTime{"write", &StageTimes::write}};
+
+double cost_ms(const StageTimes& ms) { return ms.focus + ms.choose + ms.filter; }
+
+double frames_per_second(double ms) { return ms > 0.0 ? 1000.0 / ms : 0.0; }
+
+std::string line(const char* name, const std::string& value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%-24s", name);
+  return text + value + "\n";
+}
+
+std::string time_line(const char* name, double ms, bool with_rate) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%12.2f", ms);
+  std::string value = text;
+  std::snprintf(text, sizeof text, "%20.2f", frames_per_second(ms));
+  if (with_rate) value += text;
+  return line(name, value);
+}
+
+std::string lens_lines(const UsedLens& used) {
+  std::string focus = short_number(used.lens.focus_m) + " m";
+  if (used.autofocus_pixel) {
+    focus += ", found at pixel " + std::to_string(used.autofocus_pixel->x) + "," +
+             std::to_string(used.autofocus_pixel->y);
+  }
+  return line("Focus distance", focus) +
+         line("Focal length", short_number(used.lens.focal_length_mm) + " mm") +
+         line("F-number", short_number(used.lens.f_number)) +
+         line("Aperture", short_number(aperture_mm(used.lens)) + " mm") +
+         line("CoC scale", short_number(used.coc_scale));
+}
+
+std::string filter_lines(const UsedLens& used) {
+  return line("Filter size",
+              short_number(used.settings.max_coc_px) + " pixels (largest CoC radius)") +
+         line("Leak", short_number(used.settings.leak));
+}
+
+std::string choice_lines(const Choice& choice) {
+  return line("Chosen", setting_text(choice)) + line("Because", choice.reason) +
+         line("Predicted error", short_number(choice.predicted_error) + " (mean FLIP)") +
+         line("Predicted time",
+              short_number(choice.predicted_ms) + " ms (two cores of the reference machine)");
+}
+
+std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
+  const int blades = sampling.aperture.blades;
+  std::string text = line("Samples", std::to_string(used.samples)) +
+                     line("Pixel jitter", sampling.jitter ? "yes" : "no") +
+                     line("Blades", blades == 0 ? "round" : std::to_string(blades));
+  if (used.half_set_rms) {
+    text += line("Half-sets differ by", short_number(*used.half_set_rms) + " (RMS, linear)");
+  }
+  return text;
+}
+
+nlohmann::ordered_json traits_json(const SceneTraits& traits) {
+  nlohmann::ordered_json json{{"nearest_px", traits.nearest_px},
+                              {"farthest_px", traits.farthest_px},
+                              {"blurred_share", traits.blurred_share},
+                              {"blur", traits.blur},
+                              {"ghosts", traits.ghosts}};
+  for (const RadiusTraits& of : traits.by_radius) {
+    json["blurred"].push_back(of.blurred);
+    json["lost"].push_back(of.lost);
+    json["near_edges"].push_back(of.near_edges);
+    json["far_edges"].push_back(of.far_edges);
+  }
+  return json;
+}
+
+nlohmann::ordered_json choice_json(const Choice& choice, const Goal& goal) {
+  nlohmann::ordered_json json{{"method", choice.method}};
+  if (choice.radius_px > 0.0f) json["max_coc_px"] = choice.radius_px;
+  if (choice.samples > 0) json["samples"] = choice.samples;
+  if (goal.max_time_ms) {
+    json["max_time_ms"] = *goal.max_time_ms;
+  } else {
+    json["max_error"] = goal.max_error;
+  }
+  json["meets_goal"] = choice.meets_goal;
+  json["predicted_error"] = choice.predicted_error;
+  json["predicted_ms"] = choice.predicted_ms;
+  json["reason"] = choice.reason;
+  json["traits"] = traits_json(choice.traits);
+  return json;
+}
+
+}  // namespace
+
+std::string_view name_of(Show show) {
+  switch (show) {
+    case Show::image: return "image";
+    case Show::pinhole: return "pinhole";
+    case Show::coc: return "coc";
+    case Show::depth: return "depth";
+  }
+  return "";
+}
+
+bool has_depth_of_field(const RenderOptions& options) {
+  return options.show == Show::image && options.method.name() != "pinhole";
+}
+
+std::string text_report(const RenderOptions& options, const RenderRecord& record) {
+  const StageTimes& ms = record.ms;
+  std::string text = "softfocus " SOFTFOCUS_VERSION " performance report\n\n";
+  text += line("Scene", record.scene_name + ": " + record.scene_title);
+  text += line("Frame", short_number(options.frame));
+  text += line("Resolution", std::to_string(options.size.width) + " x " +
+                                 std::to_string(options.size.height) + " pixels");
+  text += line("Triangles", std::to_string(record.triangles));
+  text += line("Method", std::string{options.method.name()});
+  if (options.arithmetic != Arithmetic::floats) {
+    text += line("Arithmetic", std::string{arithmetic_name(options.arithmetic)});
+  }
+  if (record.used.choice) text += choice_lines(*record.used.choice);
+  text += line("Picture", std::string{name_of(options.show)});
+  text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
+                                     : line("GL driver", record.gl_renderer);
+  text += line("Threads", std::to_string(options.pool.threads));
+  text += line("Vector unit", std::string{isa_name(options.pool.isa)});
+  text += "\n";
+  if (record.lens) {
+    text += lens_lines(*record.lens);
+    text += record.sampled ? sampling_lines(record.used.sampling, *record.sampled)
+                           : filter_lines(*record.lens);
+    text += "\n";
+  }
+
+  text += line("", "milliseconds   frames per second");
+  text += time_line("Without depth of field", ms.draw, true);
+  if (has_depth_of_field(options)) {
+    text += time_line("With depth of field", ms.draw + cost_ms(ms), true);
+    text += time_line("Cost of depth of field", cost_ms(ms), false);
+  }
+  text += "\n" + line("Stage", "milliseconds");
+  for (const NamedTime& stage : kStages) {
+    if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
+    text += time_line(stage.name, ms.*stage.ms, false);
+  }
+  return text;
+}
+
+std::string json_report(const RenderOptions& options, const RenderRecord& record) {
+  using nlohmann::ordered_json;
+  const StageTimes& ms = record.ms;
+  ordered_json json{
+      {"softfocus", SOFTFOCUS_VERSION},  {"scene", record.scene_name},
+      {"title", record.scene_title},     {"frame", options.frame},
+      {"width", options.size.width},     {"height", options.size.height},
+      {"triangles", record.triangles},   {"method", options.method.name()},
+      {"show", name_of(options.show)},   {"profile", options.profile.name},
+      {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
+      {"output", options.output},
+  };
+  if (options.arithmetic != Arithmetic::floats) {
+    json["arithmetic"] = arithmetic_name(options.arithmetic);
+  }
+  if (!record.gl_renderer.empty()) {
+    json["profile"] = nullptr;
+    json["gl_driver"] = record.gl_renderer;
+  }
+  if (record.lens) {
+    const UsedLens& used = *record.lens;
+    json["lens"] = {{"focus_m", used.lens.focus_m},
+                    {"focal_length_mm", used.lens.focal_length_mm},
+                    {"f_number", used.lens.f_number},
+                    {"aperture_mm", aperture_mm(used.lens)},
+                    {"coc_scale", used.coc_scale},
+                    {"radius_at_infinity_px", used.settings.coc.radius_at_infinity_px},
+                    {"max_coc_px", used.settings.max_coc_px},
+                    {"leak", used.settings.leak}};
+    if (used.autofocus_pixel) {
+      json["lens"]["autofocus_pixel"] = {used.autofocus_pixel->x, used.autofocus_pixel->y};
+    }
+  }
+  if (record.used.choice) json["choice"] = choice_json(*record.used.choice, options.goal);
+  if (record.sampled) {
+    json["sampling"] = {{"samples", record.sampled->samples},
+                        {"jitter", record.used.sampling.jitter},
+                        {"aperture_blades", record.used.sampling.aperture.blades}};
+    if (record.sampled->half_set_rms)
+      json["sampling"]["half_set_rms"] = *record.sampled->half_set_rms;
+  }
+  json["without_depth_of_field"] = {{"ms", ms.draw}, {"fps", frames_per_second(ms.draw)}};
+  if (has_depth_of_field(options)) {
+    const double with = ms.draw + cost_ms(ms);
+    json["with_depth_of_field"] = {{"ms", with}, {"fps", frames_per_second(with)}};
+    json["cost_of_depth_of_field_ms"] = cost_ms(ms);
+  }
+  for (const NamedTime& stage : kStages) {
+    if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
+    json["stages_ms"][stage.name] = ms.*stage.ms;
+  }
+  // A file's name need not be UTF-8, but JSON must be.
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace softfocus
