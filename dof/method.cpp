@@ -5,7 +5,7 @@
 #include "dof/circular_separable/circular_separable.h"
 #include "dof/diffusion.h"
 #include "dof/disc_layers/disc_layers.h"
-#include "dof/layers.h"
+#include "dof/scatter/layers.h"
 #include "dof/one_pass/one_pass.h"
 #include "dof/pinhole.h"
 #include "dof/post_process/post_process.h"

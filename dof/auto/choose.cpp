@@ -11,7 +11,7 @@
 namespace softfocus {
 namespace {
 
-constexpr float kHalfAPixel = 0.5f;
+constexpr float kSharpBelow = 0.5f;
 
 /// Times that differ by no more than this factor count as equal: they are foreseen no better.
 constexpr double kAsFast = 1.05;
@@ -127,7 +127,7 @@ Choice choose(const SceneTraits& traits, const Goal& goal, const ChoiceLimits& l
     Choice choice = foreseen(candidate, traits, limits);
     if (is_open(candidate, choice, traits, limits)) choices.push_back(std::move(choice));
   }
-  if (largest_px(traits) < kHalfAPixel) {
+  if (largest_px(traits) < kSharpBelow) {
     Choice sharp = choices.front();
     sharp.predicted_error = 0.0;
     sharp.reason = "no circle reaches half a pixel: the largest radius is " +

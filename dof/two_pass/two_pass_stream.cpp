@@ -10,14 +10,14 @@ namespace softfocus {
 namespace {
 
 // Columns of a strip: its lines stay in a core's cache while a group of rows is filtered.
-constexpr int kColumns = 128;
+constexpr int kStripColumns = 128;
 
 // Nodes that a strip has room for besides those in reach: the more, the less often they
 // are moved.
 int slack(int reach) { return std::max(reach, kMostLanes); }
 
 StripShape strip_shape(int width, int reach, int x_begin) {
-  return {width, x_begin, std::min(kColumns, width - x_begin), reach};
+  return {width, x_begin, std::min(kStripColumns, width - x_begin), reach};
 }
 
 int group_rows(const TwoPassStream& stream) { return lanes_of(stream.filter.isa); }
@@ -66,7 +66,7 @@ TwoPassStream begin_two_pass_stream(int width, const DofSettings& settings, cons
       width, tap_count(settings.max_coc_px),      {settings, profile.half_store, isa},
       {},    static_cast<std::size_t>(width) * 4, {},
       {}};
-  for (int x = 0; x < width; x += kColumns) {
+  for (int x = 0; x < width; x += kStripColumns) {
     begin_strip(stream.strips.emplace_back(), stream.filter, strip_shape(width, stream.reach, x),
                 slack(stream.reach));
   }
@@ -81,7 +81,7 @@ std::size_t two_pass_stream_bytes(int width, const DofSettings& settings, Isa is
   const StripFilter filter{settings, {}, isa};
   const int reach = tap_count(settings.max_coc_px);
   std::size_t bytes = sizeof(TwoPassStream);
-  for (int x = 0; x < width; x += kColumns) {
+  for (int x = 0; x < width; x += kStripColumns) {
     bytes += sizeof(Strip) + strip_bytes(filter, strip_shape(width, reach, x), slack(reach));
   }
   const auto groups = 2 * static_cast<std::size_t>(lanes_of(isa));

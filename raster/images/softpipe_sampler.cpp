@@ -49,8 +49,6 @@ Place place_in_cache(const Image& image, int x, int y, const Taps& u, const Taps
   return {x, y};
 }
 
-bool is_power_of_two(int size) { return std::has_single_bit(static_cast<unsigned>(size)); }
-
 }  // namespace
 
 std::int32_t softpipe_floor(float value) {
@@ -116,7 +114,8 @@ glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::v
 
   // A fast path of its own: the weight is taken from softpipe_floor, and level 0 is mixed
   // with weight 0.
-  const bool is_fast = is_power_of_two(base.width) && is_power_of_two(base.height) &&
+  const bool is_fast = std::has_single_bit(static_cast<unsigned>(base.width)) &&
+                       std::has_single_bit(static_cast<unsigned>(base.height)) &&
                        sampler.wrap_u == Wrap::repeat && sampler.wrap_v == Wrap::repeat;
   const auto taps = [&](float coordinate, int size, Wrap wrap) {
     Taps result = softpipe_taps(coordinate, size, wrap);

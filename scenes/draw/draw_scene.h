@@ -10,7 +10,7 @@
 #include "raster/threads/parallel.h"
 #include "raster/pipeline/render_pass.h"
 #include "scenes/scene.h"
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 
 namespace softfocus {
 

@@ -6,7 +6,7 @@
 #include "raster/pipeline/state.h"
 #include "scenes/scene.h"
 #include "scenes/draw/surface_stages.h"
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 
 namespace softfocus {
 

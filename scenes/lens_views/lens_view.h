@@ -3,7 +3,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 
 namespace softfocus {
 

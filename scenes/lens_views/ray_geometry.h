@@ -10,7 +10,7 @@
 #include "raster/numbers/profile.h"
 #include "scenes/scene.h"
 #include "scenes/draw/surface_draws.h"
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 
 namespace softfocus {
 

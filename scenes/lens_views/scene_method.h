@@ -15,7 +15,7 @@
 #include "scenes/lens_views/lens_points.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/scene.h"
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 
 namespace softfocus {
 

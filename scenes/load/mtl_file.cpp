@@ -14,7 +14,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{1} << 24;
+constexpr std::size_t kMaxMtlBytes = std::size_t{1} << 24;
 
 bool is_there(const std::filesystem::path& file) {
   std::error_code unknown;
@@ -107,7 +107,7 @@ Material neutral_grey() {
 }
 
 void load_mtl(const std::filesystem::path& library, MtlMaterials& materials) {
-  std::istringstream text(read_file_bytes(library, kMaxFileBytes));
+  std::istringstream text(read_file_bytes(library, kMaxMtlBytes));
   std::map<std::string, int> index_of_name;
   std::vector<tinyobj::material_t> read;
   std::string warning;

@@ -17,7 +17,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{1} << 29;
+constexpr std::size_t kMaxObjBytes = std::size_t{1} << 29;
 
 // Three corners whose normals index all_normals below.
 struct Triangle {
@@ -241,7 +241,7 @@ void check_size(const std::vector<Triangle>& triangles, const ObjText& obj,
 }  // namespace
 
 ObjModel load_obj_model(const std::filesystem::path& file) {
-  const ObjText obj = parse_obj_text(read_file_bytes(file, kMaxFileBytes), file.string());
+  const ObjText obj = parse_obj_text(read_file_bytes(file, kMaxObjBytes), file.string());
   std::vector<Triangle> triangles = make_triangles(obj);
   check_size(triangles, obj, file);
   const std::vector<glm::vec3> all_normals = complete_normals(obj, triangles);

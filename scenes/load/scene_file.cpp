@@ -14,7 +14,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{1} << 24;
+constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 24;
 constexpr double kBrightest = 1000.0;
 
 toml::table parse_toml(std::string_view text, const std::filesystem::path& file) {
@@ -120,11 +120,11 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file) 
 }
 
 Scene read_scene_file(const std::filesystem::path& file) {
-  return read_scene_text(read_file_bytes(file, kMaxFileBytes), file);
+  return read_scene_text(read_file_bytes(file, kMaxSceneBytes), file);
 }
 
 std::string read_scene_title(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(read_file_bytes(file, kMaxFileBytes), file);
+  const toml::table table = parse_toml(read_file_bytes(file, kMaxSceneBytes), file);
   return table["title"].value_or(std::string{});
 }
 

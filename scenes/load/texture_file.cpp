@@ -21,7 +21,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{1} << 28;
+constexpr std::size_t kMaxTextureBytes = std::size_t{1} << 28;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
   throw SceneError(file.string() + ": " + reason);
@@ -35,7 +35,7 @@ std::string stb_reason() {
 }  // namespace
 
 Texture load_texture(const std::filesystem::path& file) {
-  const std::string bytes = read_file_bytes(file, kMaxFileBytes);
+  const std::string bytes = read_file_bytes(file, kMaxTextureBytes);
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dof/layers.h"
+#include "dof/scatter/layers.h"
 #include "dof/scatter/scatter.h"
 #include "dof/scatter/scatter_discs.h"
 #include "raster/images/texel.h"

@@ -8,9 +8,9 @@
 #include "tools/bench/options.h"
 #include "tools/bench/report.h"
 #include "tools/bench/work.h"
-#include "tools/cli/command_line.h"
+#include "tools/command_line.h"
 #include "tools/cli/commands.h"
-#include "tools/gl/repeated_on_gl.h"
+#include "tools/bench/repeated_on_gl.h"
 #include "tools/bench/paired_runs.h"
 #include "tools/cli/progress.h"
 

@@ -1,12 +1,12 @@
 #include "tools/bench/options.h"
 
 #include "scenes/make/sphere_field.h"
-#include "tools/cli/arithmetic_option.h"
-#include "tools/cli/driver_option.h"
+#include "tools/options/arithmetic_option.h"
+#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/memory_check.h"
-#include "tools/cli/method_options.h"
-#include "tools/cli/profile_option.h"
+#include "tools/options/memory_check.h"
+#include "tools/options/method_options.h"
+#include "tools/options/profile_option.h"
 
 namespace softfocus {
 namespace {

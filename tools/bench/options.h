@@ -10,10 +10,10 @@
 #include "dof/method.h"
 #include "raster/numbers/profile.h"
 #include "tools/gl/driver.h"
-#include "tools/cli/lens_options.h"
+#include "tools/options/lens_options.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/cli/pool_options.h"
+#include "tools/options/pool_options.h"
 
 namespace softfocus {
 

@@ -2,10 +2,10 @@
 
 #include "scenes/load/load_scene.h"
 #include "scenes/make/sphere_field.h"
-#include "tools/cli/arithmetic_option.h"
+#include "tools/options/arithmetic_option.h"
 #include "tools/bench/picture.h"
-#include "tools/cli/method_options.h"
-#include "tools/cli/scene_warnings.h"
+#include "tools/options/method_options.h"
+#include "tools/options/scene_warnings.h"
 
 namespace softfocus {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "dof/method.h"
 #include "scenes/scene.h"
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/bench/options.h"
 
 namespace softfocus {

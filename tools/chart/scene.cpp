@@ -7,8 +7,8 @@
 #include "dof/measure/regions.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/lens_options.h"
-#include "tools/cli/scene_warnings.h"
+#include "tools/options/lens_options.h"
+#include "tools/options/scene_warnings.h"
 
 namespace softfocus {
 namespace {

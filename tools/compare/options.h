@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dof/measure/measures.h"
-#include "tools/cli/lens_options.h"
+#include "tools/options/lens_options.h"
 #include "tools/cli/parser.h"
 
 namespace softfocus {

@@ -9,13 +9,13 @@
 
 #include "raster/threads/parallel.h"
 #include "scenes/load/scene_error.h"
-#include "tools/cli/command_line.h"
+#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/crosscheck/run_cases.h"
-#include "tools/cli/driver_option.h"
+#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/cli/profile_option.h"
+#include "tools/options/profile_option.h"
 #include "tools/files/whole_file.h"
 
 namespace softfocus {

@@ -14,7 +14,7 @@ namespace softfocus {
 namespace {
 
 // What the picture holds that is filtered.
-enum class Picture {
+enum class TestPicture {
   figures,  ///< a drawn scene
   cube_room,
   sphere_world,
@@ -29,10 +29,10 @@ Image drawn(const char* name, int width, int height, const Bench& bench) {
                     bench.profile, bench.pool);
 }
 
-Image make_picture(Picture kind, int width, int height, unsigned seed, const Bench& bench) {
-  if (kind == Picture::figures) return drawn("figures", width, height, bench);
-  if (kind == Picture::cube_room) return drawn("cube-room", width, height, bench);
-  if (kind == Picture::sphere_world) return drawn("sphere-world", width, height, bench);
+Image make_picture(TestPicture kind, int width, int height, unsigned seed, const Bench& bench) {
+  if (kind == TestPicture::figures) return drawn("figures", width, height, bench);
+  if (kind == TestPicture::cube_room) return drawn("cube-room", width, height, bench);
+  if (kind == TestPicture::sphere_world) return drawn("sphere-world", width, height, bench);
   static constexpr std::array<float, 6> kDepths{0.5f, 1.0f, 1.9f, 2.0f, 4.0f, 50.0f};
   static constexpr std::array<std::uint16_t, 12> kSpecialColours{0x0000, 0x8000, 0x0001, 0x03FF,
                                                                  0x83FF, 0x0400, 0x3C00, 0x3555,
@@ -46,16 +46,16 @@ Image make_picture(Picture kind, int width, int height, unsigned seed, const Ben
     for (int x = 0; x < width; ++x) {
       std::uint16_t* texel = &values[static_cast<std::size_t>(4 * x)];
       for (int i = 0; i < 3; ++i) {
-        texel[i] = kind == Picture::special && random.below(8) == 0
+        texel[i] = kind == TestPicture::special && random.below(8) == 0
                        ? kSpecialColours[static_cast<std::size_t>(random.below(12))]
                        : float_to_half(random.between(0.0f, 3.0f), HalfRounding::nearest_even);
       }
       float depth = random.between(0.3f, 20.0f);
-      if (kind == Picture::steps) {
+      if (kind == TestPicture::steps) {
         depth = kDepths[static_cast<std::size_t>((x / 7 * 31 + y / 5 * 17) % 6)];
       }
       texel[3] = float_to_half(depth, HalfRounding::nearest_even);
-      if (kind == Picture::special && random.below(4) == 0) {
+      if (kind == TestPicture::special && random.below(4) == 0) {
         texel[3] = kSpecialDepths[static_cast<std::size_t>(random.below(8))];
       }
     }
@@ -64,7 +64,7 @@ Image make_picture(Picture kind, int width, int height, unsigned seed, const Ben
 }
 
 struct FilterCase {
-  Picture picture;
+  TestPicture picture;
   int width;
   int height;
   DofSettings settings;
@@ -101,34 +101,34 @@ void add_filter_cases(std::vector<Case>& cases) {
       const std::string name = "radius" + std::to_string(radius);
       const bool heavy = rings && radius == 64;
       add("random-64x64-" + name, !heavy, radius <= (rings ? 4 : 16),
-          {Picture::random, 64, 64, lens});
-      add("steps-160x120-" + name, false, radius <= 4, {Picture::steps, 160, 120, lens});
+          {TestPicture::random, 64, 64, lens});
+      add("steps-160x120-" + name, false, radius <= 4, {TestPicture::steps, 160, 120, lens});
       if (heavy) continue;
-      add("figures-512x512-" + name, false, false, {Picture::figures, 512, 512, lens});
-      add("figures-1024x1024-" + name, false, false, {Picture::figures, 1024, 1024, lens});
+      add("figures-512x512-" + name, false, false, {TestPicture::figures, 512, 512, lens});
+      add("figures-1024x1024-" + name, false, false, {TestPicture::figures, 1024, 1024, lens});
     }
-    add("special-values", true, true, {Picture::special, 64, 64, focused(6.0f, 2.0f, 4.0f)});
+    add("special-values", true, true, {TestPicture::special, 64, 64, focused(6.0f, 2.0f, 4.0f)});
     add("special-values-radius16", false, !rings,
-        {Picture::special, 64, 64, focused(24.0f, 2.0f, 16.0f)});
+        {TestPicture::special, 64, 64, focused(24.0f, 2.0f, 16.0f)});
     add("cube-room-512x512-radius16", false, false,
-        {Picture::cube_room, 512, 512, focused(24.0f, 2.0f, 16.0f)});
+        {TestPicture::cube_room, 512, 512, focused(24.0f, 2.0f, 16.0f)});
     add("sphere-world-512x512-radius16", false, false,
-        {Picture::sphere_world, 512, 512, focused(24.0f, 2.0f, 16.0f)});
-    add("special-values-odd", false, true, {Picture::special, 33, 51, focused(6.0f, 2.0f, 4.0f)});
-    add("odd-333x517", false, false, {Picture::steps, 333, 517, focused(12.0f, 2.0f, 8.0f)});
-    add("wide-1024x512", false, false, {Picture::figures, 1024, 512, focused(12.0f, 2.0f, 8.0f)});
-    add("one-pixel", true, true, {Picture::random, 1, 1, focused(12.0f, 2.0f, 8.0f)});
-    add("one-column", true, true, {Picture::random, 1, 300, focused(12.0f, 2.0f, 8.0f)});
+        {TestPicture::sphere_world, 512, 512, focused(24.0f, 2.0f, 16.0f)});
+    add("special-values-odd", false, true, {TestPicture::special, 33, 51, focused(6.0f, 2.0f, 4.0f)});
+    add("odd-333x517", false, false, {TestPicture::steps, 333, 517, focused(12.0f, 2.0f, 8.0f)});
+    add("wide-1024x512", false, false, {TestPicture::figures, 1024, 512, focused(12.0f, 2.0f, 8.0f)});
+    add("one-pixel", true, true, {TestPicture::random, 1, 1, focused(12.0f, 2.0f, 8.0f)});
+    add("one-column", true, true, {TestPicture::random, 1, 300, focused(12.0f, 2.0f, 8.0f)});
     add("lens-nothing-in-focus", false, true,
-        {Picture::random, 48, 48, focused(4000.0f, 1000.0f, 8.0f)});
-    add("lens-all-sharp", false, true, {Picture::random, 48, 48, focused(1e-6f, 2.0f, 8.0f)});
+        {TestPicture::random, 48, 48, focused(4000.0f, 1000.0f, 8.0f)});
+    add("lens-all-sharp", false, true, {TestPicture::random, 48, 48, focused(1e-6f, 2.0f, 8.0f)});
     add("lens-half-pixel-radius", false, true,
-        {Picture::random, 48, 48, focused(3.0f, 2.0f, 0.5f)});
-    add("lens-fractional-radius", true, true, {Picture::random, 48, 48, focused(9.0f, 2.0f, 6.7f)});
-    add("lens-no-filter", false, true, {Picture::random, 48, 48, focused(3.0f, 2.0f, 0.0f)});
-    add("lens-no-leak", false, true, {Picture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.0f)});
-    add("lens-leak-0.3", true, true, {Picture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.3f)});
-    add("lens-huge-leak", false, true, {Picture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 1e30f)});
+        {TestPicture::random, 48, 48, focused(3.0f, 2.0f, 0.5f)});
+    add("lens-fractional-radius", true, true, {TestPicture::random, 48, 48, focused(9.0f, 2.0f, 6.7f)});
+    add("lens-no-filter", false, true, {TestPicture::random, 48, 48, focused(3.0f, 2.0f, 0.0f)});
+    add("lens-no-leak", false, true, {TestPicture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.0f)});
+    add("lens-leak-0.3", true, true, {TestPicture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.3f)});
+    add("lens-huge-leak", false, true, {TestPicture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 1e30f)});
   }
 }
 

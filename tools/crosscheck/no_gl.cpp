@@ -3,7 +3,7 @@
 #include "tools/crosscheck/probe.h"
 #include "tools/crosscheck/run_cases.h"
 #include "tools/gl/frame_on_gl.h"
-#include "tools/gl/repeated_on_gl.h"
+#include "tools/bench/repeated_on_gl.h"
 
 namespace softfocus {
 namespace {

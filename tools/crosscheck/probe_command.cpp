@@ -3,10 +3,10 @@
 #include <iostream>
 #include <memory>
 
-#include "tools/cli/command_line.h"
+#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/crosscheck/probe.h"
-#include "tools/cli/driver_option.h"
+#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/profile_file.h"

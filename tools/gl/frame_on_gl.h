@@ -6,7 +6,7 @@
 
 #include "dof/method.h"
 #include "scenes/scene.h"
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/gl/driver.h"
 
 namespace softfocus {

@@ -8,7 +8,7 @@
 
 #include "scenes/scene.h"
 #include "scenes/draw/surface_stages.h"
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/gl/objects.h"
 
 namespace softfocus {

@@ -5,12 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/cli/command_line.h"
+#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/golden/hashes.h"
 #include "tools/golden/hash_text.h"
-#include "tools/cli/pool_options.h"
+#include "tools/options/pool_options.h"
 
 namespace softfocus {
 namespace {

@@ -5,20 +5,20 @@
 #include <memory>
 
 #include "dof/auto/choose.h"
-#include "dof/views.h"
+#include "dof/show.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
-#include "tools/cli/arithmetic_option.h"
-#include "tools/cli/command_line.h"
+#include "tools/options/arithmetic_option.h"
+#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/gl/frame_on_gl.h"
-#include "tools/cli/method_options.h"
+#include "tools/options/method_options.h"
 #include "tools/render/performance_report.h"
 #include "tools/cli/progress.h"
 #include "tools/render/options.h"
-#include "tools/cli/scene_warnings.h"
+#include "tools/options/scene_warnings.h"
 #include "tools/files/whole_file.h"
 
 namespace softfocus {

@@ -4,15 +4,15 @@
 #include <cstdint>
 
 #include "raster/images/image.h"
-#include "tools/cli/arithmetic_option.h"
-#include "tools/cli/auto_options.h"
-#include "tools/cli/driver_option.h"
+#include "tools/options/arithmetic_option.h"
+#include "tools/options/auto_options.h"
+#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/memory_check.h"
-#include "tools/cli/method_options.h"
+#include "tools/options/memory_check.h"
+#include "tools/options/method_options.h"
 #include "tools/cli/platform.h"
-#include "tools/cli/profile_option.h"
-#include "tools/cli/sampling_options.h"
+#include "tools/options/profile_option.h"
+#include "tools/options/sampling_options.h"
 
 namespace softfocus {
 namespace {

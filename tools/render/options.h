@@ -12,11 +12,11 @@
 #include "raster/numbers/profile.h"
 #include "tools/gl/driver.h"
 #include "tools/files/image_file.h"
-#include "tools/cli/lens_options.h"
-#include "tools/cli/method_options.h"
+#include "tools/options/lens_options.h"
+#include "tools/options/method_options.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/cli/pool_options.h"
+#include "tools/options/pool_options.h"
 
 namespace softfocus {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "dof/views.h"
+#include "dof/show.h"
 #include "raster/images/texel.h"
 #include "tests/support/test_images.h"
 

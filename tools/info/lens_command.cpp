@@ -9,10 +9,10 @@
 
 #include "dof/lens.h"
 #include "raster/images/image.h"
-#include "tools/cli/command_line.h"
+#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/lens_options.h"
+#include "tools/options/lens_options.h"
 #include "tools/cli/option_values.h"
 
 namespace softfocus {

@@ -1,4 +1,4 @@
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 
 #include <doctest/doctest.h>
 

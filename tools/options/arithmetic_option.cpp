@@ -1,4 +1,4 @@
-#include "tools/cli/arithmetic_option.h"
+#include "tools/options/arithmetic_option.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "tools/cli/driver_option.h"
+#include "tools/options/driver_option.h"
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"

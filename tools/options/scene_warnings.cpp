@@ -1,4 +1,4 @@
-#include "tools/cli/scene_warnings.h"
+#include "tools/options/scene_warnings.h"
 
 #include <algorithm>
 #include <iostream>

@@ -1,4 +1,4 @@
-#include "tools/cli/auto_options.h"
+#include "tools/options/auto_options.h"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "tools/cli/lens_options.h"
+#include "tools/options/lens_options.h"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "tools/cli/method_options.h"
+#include "tools/options/method_options.h"
 
 #include <cmath>
 

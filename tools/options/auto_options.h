@@ -2,7 +2,7 @@
 // --max-error and --max-time: what `--method auto` is to keep to.
 
 #include "dof/auto/choose.h"
-#include "tools/cli/method_options.h"
+#include "tools/options/method_options.h"
 #include "tools/cli/parser.h"
 
 namespace softfocus {

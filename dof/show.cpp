@@ -1,4 +1,4 @@
-#include "dof/views.h"
+#include "dof/show.h"
 
 #include <algorithm>
 #include <cmath>

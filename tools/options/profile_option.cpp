@@ -1,4 +1,4 @@
-#include "tools/cli/profile_option.h"
+#include "tools/options/profile_option.h"
 
 #include "scenes/load/scene_error.h"
 #include "tools/cli/errors.h"

@@ -1,4 +1,4 @@
-#include "tools/gl/repeated_on_gl.h"
+#include "tools/bench/repeated_on_gl.h"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "scenes/draw/view.h"
+#include "scenes/draw/frame_matrices.h"
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"

@@ -1,4 +1,4 @@
-#include "dof/layers.h"
+#include "dof/scatter/layers.h"
 
 #include "dof/scatter/scatter.h"
 

@@ -1,4 +1,4 @@
-#include "tools/cli/memory_check.h"
+#include "tools/options/memory_check.h"
 
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"

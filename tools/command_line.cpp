@@ -1,4 +1,4 @@
-#include "tools/cli/command_line.h"
+#include "tools/command_line.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

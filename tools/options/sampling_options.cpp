@@ -1,4 +1,4 @@
-#include "tools/cli/sampling_options.h"
+#include "tools/options/sampling_options.h"
 
 #include <array>
 

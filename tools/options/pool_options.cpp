@@ -1,4 +1,4 @@
-#include "tools/cli/pool_options.h"
+#include "tools/options/pool_options.h"
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
