@@ -8,7 +8,6 @@
 #include "tools/bench/options.h"
 #include "tools/bench/report.h"
 #include "tools/bench/work.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/bench/repeated_on_gl.h"
 #include "tools/bench/paired_runs.h"

@@ -15,7 +15,6 @@
 #include "tools/chart/report.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/work.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/chart/gnuplot.h"

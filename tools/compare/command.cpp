@@ -5,7 +5,6 @@
 #include "dof/measure/flicker.h"
 #include "dof/measure/heat_map.h"
 #include "raster/numbers/half.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/compare/options.h"
 #include "tools/compare/report.h"

@@ -9,7 +9,6 @@
 
 #include "raster/threads/parallel.h"
 #include "scenes/load/scene_error.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/crosscheck/run_cases.h"
 #include "tools/options/driver_option.h"

@@ -3,7 +3,6 @@
 #include <iostream>
 #include <memory>
 
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/crosscheck/probe.h"
 #include "tools/options/driver_option.h"

@@ -5,7 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/golden/hashes.h"

@@ -9,7 +9,6 @@
 
 #include "dof/lens.h"
 #include "raster/images/image.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/options/lens_options.h"

@@ -10,7 +10,6 @@
 #include "raster/numbers/profile.h"
 #include "scenes/lens_views/scene_method.h"
 #include "scenes/load/load_scene.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/options/method_options.h"
 #include "tools/cli/option_values.h"

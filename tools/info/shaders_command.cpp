@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "scenes/load/file_bytes.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/gl/shaders.h"

@@ -10,7 +10,6 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
 #include "tools/options/arithmetic_option.h"
-#include "tools/command_line.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/gl/frame_on_gl.h"

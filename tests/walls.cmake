@@ -1,0 +1,49 @@
+# The walls of the house: an include points at its own entry of this list or at one above
+# it. The longest entry that a path begins with counts.
+#
+#   cmake -D ROOT=FOLDER -P walls.cmake
+set(order
+  raster/numbers raster/lanes raster/threads raster/images raster/pipeline raster/passes raster/raster.h
+  dof/fixed dof dof/two_pass dof/one_pass dof/disc_layers dof/scatter dof/ring_bucket
+  dof/circular_separable dof/post_process dof/fixed_pictures dof/method.cpp dof/measure dof/auto
+  scenes/scene.h scenes/make scenes/load scenes/draw scenes/lens_views
+  tools/cli tools/files tools/gl tools/options tools/info tools/render tools/compare tools/bench
+  tools/golden tools/chart tools/crosscheck tools/boards tools)
+
+# place_of(PATH VARIABLE): the number of its entry, or -1.
+function(place_of path variable)
+  set(best -1)
+  set(best_length 0)
+  set(place 0)
+  foreach(entry IN LISTS order)
+    string(LENGTH ${entry} length)
+    string(FIND "${path}/" "${entry}/" found)
+    if(found EQUAL 0 AND length GREATER best_length)
+      set(best ${place})
+      set(best_length ${length})
+    endif()
+    math(EXPR place "${place} + 1")
+  endforeach()
+  set(${variable} ${best} PARENT_SCOPE)
+endfunction()
+
+set(wrong 0)
+foreach(room raster dof scenes tools)
+  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${room}/*.h ${ROOT}/${room}/*.cpp
+       ${ROOT}/${room}/*.inl)
+  foreach(file IN LISTS files)
+    place_of(${file} from)
+    file(STRINGS ${ROOT}/${file} includes REGEX "^ *#include \"")
+    foreach(line IN LISTS includes)
+      string(REGEX REPLACE "^ *#include \"([^\"]*)\".*" "\\1" path "${line}")
+      place_of("${path}" to)
+      if(to EQUAL -1 OR from EQUAL -1 OR to GREATER from)
+        message("${file} includes ${path}, which is not below it")
+        math(EXPR wrong "${wrong} + 1")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
+if(wrong)
+  message(FATAL_ERROR "${wrong} includes point up; docs/code-guide.md has the order of the rooms")
+endif()
