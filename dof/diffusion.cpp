@@ -51,7 +51,7 @@ void diffuse_line(float* first, std::ptrdiff_t step, std::ptrdiff_t plane, int c
   }
 }
 
-void store_planes(const DofInput& input, Image& result, const Planes& planes, ThreadPool& pool) {
+void store_planes(const DofInput& input, const ImageView& result, const Planes& planes, ThreadPool& pool) {
   pool.for_each(planes.height, [&](int y) {
     store_row(input, result, y, plane_row(planes, 0, y), plane_row(planes, 1, y),
               plane_row(planes, 2, y), pool.isa());
@@ -60,7 +60,7 @@ void store_planes(const DofInput& input, Image& result, const Planes& planes, Th
 
 }  // namespace
 
-void diffusion_plain(const DofInput& input, Image& result, ThreadPool& pool) {
+void diffusion_plain(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   Planes planes = split_picture(input, pool);
   pool.for_each(planes.height, [&](int y) {
     diffuse_line(plane_row(planes, 0, y), 1, planes.plane, planes.width);
@@ -71,7 +71,7 @@ void diffusion_plain(const DofInput& input, Image& result, ThreadPool& pool) {
   store_planes(input, result, planes, pool);
 }
 
-void diffusion(const DofInput& input, Image& result, ThreadPool& pool) {
+void diffusion(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) return diffusion_plain(input, result, pool);
   Planes planes = split_picture(input, pool);
   const int lanes = lanes_of(pool.isa());

@@ -21,13 +21,13 @@
 // blurred foreground ends hard where it lies before something sharp (min takes the sharp
 // one's b), and blurred things on either side of a sharp line do not meet.
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void diffusion(const DofInput& input, Image& result, ThreadPool& pool);
+void diffusion(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The oracle of diffusion, line by line; equal to the bit.
-void diffusion_plain(const DofInput& input, Image& result, ThreadPool& pool);
+void diffusion_plain(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

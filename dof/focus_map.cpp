@@ -42,7 +42,7 @@ struct DepthRanges {
 };
 
 void map_band(const DofInput& input, Isa isa, int band, float* bounds, int cells) {
-  const Image& scene = input.scene;
+  const ConstImageView& scene = input.scene;
   DepthRanges ranges(isa, cells);
   const int end = std::min((band + 1) * kCellHeight, scene.height);
   for (int y = band * kCellHeight; y < end; ++y) {
@@ -56,8 +56,8 @@ void map_band(const DofInput& input, Isa isa, int band, float* bounds, int cells
   }
 }
 
-void pass_band(const DofInput& input, Image& result, Isa isa, int band, const float* bounds,
-               int cells) {
+void pass_band(const DofInput& input, const ImageView& result, Isa isa, int band,
+               const float* bounds, int cells) {
   const int end = std::min((band + 1) * kCellHeight, result.height);
   for (int y = band * kCellHeight; y < end; ++y) {
     const std::uint16_t* from = row<std::uint16_t>(input.scene, y).data();
@@ -76,13 +76,18 @@ void pass_band(const DofInput& input, Image& result, Isa isa, int band, const fl
 
 }  // namespace
 
-bool write_past_caches(const Image& result) {
+bool write_past_caches(const ConstImageView& result) {
   constexpr std::size_t kCached = std::size_t{16} << 20;
-  return result.bytes.size() > kCached;
+  // Such stores take whole lines of a cache.
+  const bool aligned =
+      reinterpret_cast<std::uintptr_t>(result.texels) % 64 == 0 && result.stride_bytes % 64 == 0;
+  const std::size_t row_bytes =
+      static_cast<std::size_t>(result.width) * bytes_per_texel(result.format);
+  return aligned && row_bytes * static_cast<std::size_t>(result.height) > kCached;
 }
 
-FocusMap pass_in_focus(const DofInput& input, Image& result, ThreadPool& pool) {
-  const Image& scene = input.scene;
+FocusMap pass_in_focus(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  const ConstImageView& scene = input.scene;
   FocusMap map;
   map.columns = (scene.width + kCellWidth - 1) / kCellWidth;
   map.rows = (scene.height + kCellHeight - 1) / kCellHeight;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
@@ -25,11 +25,11 @@ inline float largest_px(const FocusMap& map, int column, int row) {
 /// Whether a result is better written past the caches: one that is larger than they are
 /// would leave them before anything reads it, and each line of it would first be read
 /// from memory to be overwritten.
-bool write_past_caches(const Image& result);
+bool write_past_caches(const ConstImageView& result);
 
 /// Makes the map, and gives the cells of `result` that lie in focus, with no radius
 /// above 1, what they are if no neighbour reaches them: a gather of one pixel is
 /// (c * 1) / 1. Needs a unit with kernels.
-FocusMap pass_in_focus(const DofInput& input, Image& result, ThreadPool& pool);
+FocusMap pass_in_focus(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

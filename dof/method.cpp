@@ -1,4 +1,4 @@
-#include "dof/method.h"
+#include "dof/dof.h"
 
 #include <array>
 

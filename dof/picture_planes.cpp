@@ -43,7 +43,7 @@ SplitTexel split_texel(const DofInput& input, int x, int y) {
 }
 
 Planes split_picture(const DofInput& input, ThreadPool& pool) {
-  const Image& scene = input.scene;
+  const ConstImageView& scene = input.scene;
   Planes planes = make_planes(4, scene.width, scene.height);
   pool.for_each(scene.height, [&](int y) {
     float* to = plane_row(planes, 0, y);
@@ -64,7 +64,7 @@ Planes split_picture(const DofInput& input, ThreadPool& pool) {
   return planes;
 }
 
-void store_span(const DofInput& input, Image& result, int x, int y, int count, const float* r,
+void store_span(const DofInput& input, const ImageView& result, int x, int y, int count, const float* r,
                 const float* g, const float* b, Isa isa) {
   if (isa != Isa::scalar) {
     SOFTFOCUS_KERNEL(isa, merge_row)
@@ -80,7 +80,7 @@ void store_span(const DofInput& input, Image& result, int x, int y, int count, c
   }
 }
 
-void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
+void store_row(const DofInput& input, const ImageView& result, int y, const float* r, const float* g,
                const float* b, Isa isa) {
   store_span(input, result, 0, y, result.width, r, g, b, isa);
 }

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
@@ -48,11 +48,11 @@ Planes split_picture(const DofInput& input, ThreadPool& pool);
 
 /// Stores row `y` of colours, cut to what a half holds, with the scene's depth in alpha.
 /// There is room for whole vectors in each.
-void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
+void store_row(const DofInput& input, const ImageView& result, int y, const float* r, const float* g,
                const float* b, Isa isa);
 
 /// The same of `count` pixels from `x` on; the colours are theirs alone.
-void store_span(const DofInput& input, Image& result, int x, int y, int count, const float* r,
+void store_span(const DofInput& input, const ImageView& result, int x, int y, int count, const float* r,
                 const float* g, const float* b, Isa isa);
 
 /// The largest magnitude in each row of a plane.

@@ -4,7 +4,7 @@
 
 namespace softfocus {
 
-void pinhole(const DofInput& input, Image& result, ThreadPool& pool) {
+void pinhole(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   constexpr int kRows = 64;
   pool.for_each((result.height + kRows - 1) / kRows, [&](int block) {
     const int end = std::min((block + 1) * kRows, result.height);

@@ -8,7 +8,7 @@
 namespace softfocus {
 
 float largest_filter_radius(const DofInput& input, ThreadPool& pool) {
-  const Image& scene = input.scene;
+  const ConstImageView& scene = input.scene;
   std::vector<float> of_row(static_cast<std::size_t>(scene.height), 0.0f);
   pool.for_each(scene.height, [&](int y) {
     float largest = 0.0f;

@@ -26,7 +26,7 @@
 #include <glm/vec3.hpp>
 
 #include "dof/lens.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 

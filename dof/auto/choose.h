@@ -23,7 +23,7 @@ struct ChoiceLimits {
   std::size_t triangles = 0;           ///< of the scene: what drawing it again takes
 };
 
-/// A method of dof/method.h with a radius, or of scenes/lens_views/scene_method.h with a number of
+/// A method of dof/dof.h with a radius, or of scenes/lens_views/scene_method.h with a number of
 /// samples.
 struct Choice {
   std::string_view method;

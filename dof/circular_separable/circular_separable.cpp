@@ -53,7 +53,7 @@ struct RowScratch {
   std::vector<const float*> taps;
 };
 
-void circular(const DofInput& input, Image& result, int components, ThreadPool& pool) {
+void circular(const DofInput& input, const ImageView& result, int components, ThreadPool& pool) {
   const Planes scene = split_picture(input, pool);
   const std::vector<float> of_rows = largest_of_rows(scene, 3, pool);
   const float largest = *std::max_element(of_rows.begin(), of_rows.end());
@@ -127,10 +127,10 @@ void circular(const DofInput& input, Image& result, int components, ThreadPool& 
 
 }  // namespace
 
-void circular_one(const DofInput& input, Image& result, ThreadPool& pool) {
+void circular_one(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   circular(input, result, 1, pool);
 }
-void circular_two(const DofInput& input, Image& result, ThreadPool& pool) {
+void circular_two(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   circular(input, result, 2, pool);
 }
 

@@ -30,11 +30,11 @@
 // end at their outlines; one component is lumpy, with a dark rim; where the kernel is
 // negative, very bright neighbours leave dark rings, cut at 0.
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void circular_one(const DofInput& input, Image& result, ThreadPool& pool);
-void circular_two(const DofInput& input, Image& result, ThreadPool& pool);
+void circular_one(const DofInput& input, const ImageView& result, ThreadPool& pool);
+void circular_two(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

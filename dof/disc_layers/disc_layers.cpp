@@ -209,7 +209,7 @@ std::vector<LevelRungs> disc_ladder_of(const DofInput& input) {
   return make_ladder(input.settings.max_coc_px);
 }
 
-void disc_layers(const DofInput& input, Image& result, ThreadPool& pool) {
+void disc_layers(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) return disc_layers_plain(input, result, pool);
   const std::vector<LevelRungs> ladder = disc_ladder_of(input);
   DiscLevels made = make_disc_levels(input, ladder, pool);

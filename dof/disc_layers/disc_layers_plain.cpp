@@ -182,7 +182,7 @@ struct Layers {
 
 }  // namespace
 
-void disc_layers_plain(const DofInput& input, Image& result, ThreadPool& pool) {
+void disc_layers_plain(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   Layers layers;
   layers.ladder = disc_ladder_of(input);
   layers.levels.push_back(picture_level(input));

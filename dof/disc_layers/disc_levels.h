@@ -8,7 +8,7 @@
 
 #include "dof/disc_layers/disc_ladder.h"
 #include "dof/disc_layers/disc_tile.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 

@@ -26,7 +26,7 @@ struct Band {
 };
 
 Band fill_band(const DofInput& input, int y_begin, int y_end, int margin) {
-  const Image& scene = input.scene;
+  const ConstImageView& scene = input.scene;
   Band band{margin, y_begin, scene.width + 2 * margin, {}};
   const int rows = y_end - y_begin + 2 * margin;
   band.texels.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(band.stride));
@@ -43,8 +43,8 @@ Band fill_band(const DofInput& input, int y_begin, int y_end, int margin) {
   return band;
 }
 
-void one_pass_bands(const DofInput& input, Image& result, ThreadPool& pool) {
-  const Image& scene = input.scene;
+void one_pass_bands(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  const ConstImageView& scene = input.scene;
   const float radius = largest_filter_radius(input, pool);
   const std::vector<RingTap> taps = ring_taps(radius);
 
@@ -93,7 +93,7 @@ std::vector<RingTap> ring_taps(float radius_px) {
   return taps;
 }
 
-void one_pass(const DofInput& input, Image& result, ThreadPool& pool) {
+void one_pass(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) {
     one_pass_bands(input, result, pool);
   } else {
@@ -101,8 +101,8 @@ void one_pass(const DofInput& input, Image& result, ThreadPool& pool) {
   }
 }
 
-void one_pass_plain(const DofInput& input, Image& result, ThreadPool& pool) {
-  const Image& scene = input.scene;
+void one_pass_plain(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  const ConstImageView& scene = input.scene;
   const auto fetch = [&](int x, int y) {
     return load_texel<Format::rgba16f>(scene, std::clamp(x, 0, scene.width - 1),
                                        std::clamp(y, 0, scene.height - 1));

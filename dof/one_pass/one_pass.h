@@ -15,7 +15,7 @@
 
 #include <vector>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
@@ -29,9 +29,9 @@ struct RingTap {
 /// The samples nearer than `radius_px`, in the order in which they are added.
 std::vector<RingTap> ring_taps(float radius_px);
 
-void one_pass(const DofInput& input, Image& result, ThreadPool& pool);
+void one_pass(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The oracle of one_pass: as a fragment shader would be written.
-void one_pass_plain(const DofInput& input, Image& result, ThreadPool& pool);
+void one_pass_plain(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

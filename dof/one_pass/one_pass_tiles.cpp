@@ -108,8 +108,8 @@ struct TileFilter {
   int halo;  ///< pixels to the left of a tile, whole vectors
 };
 
-void filter_tile(const TileFilter& filter, const TileTask& task, Image& result, Memory& memory) {
-  const Image& scene = filter.input.scene;
+void filter_tile(const TileFilter& filter, const TileTask& task, const ImageView& result, Memory& memory) {
+  const ConstImageView& scene = filter.input.scene;
   const DofSettings& settings = filter.input.settings;
   const int x_begin = task.cells.front().column * kCellWidth / kTileWidth * kTileWidth;
   const int y_begin = task.cells.front().row * kCellHeight / kTileHeight * kTileHeight;
@@ -144,7 +144,7 @@ void filter_tile(const TileFilter& filter, const TileTask& task, Image& result, 
 
 }  // namespace
 
-void one_pass_tiles(const DofInput& input, Image& result, ThreadPool& pool) {
+void one_pass_tiles(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   const FocusMap map = pass_in_focus(input, result, pool);
   const int farthest = tap_count(*std::max_element(map.largest_px.begin(), map.largest_px.end()));
   const std::vector<TileTask> tasks = plan_tiles(map, farthest);

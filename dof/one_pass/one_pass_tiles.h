@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
@@ -38,6 +38,6 @@ struct TileRows {
 };
 
 /// As one_pass().
-void one_pass_tiles(const DofInput& input, Image& result, ThreadPool& pool);
+void one_pass_tiles(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -136,7 +136,7 @@ void pad_row(const Planes& full, int y, float* to, std::ptrdiff_t plane) {
   }
 }
 
-void blend(const DofInput& input, Image& result, const Planes& full, const Planes& medium,
+void blend(const DofInput& input, const ImageView& result, const Planes& full, const Planes& medium,
            const Planes& large, double largest_square, ThreadPool& pool) {
   PostProcessRow pattern{};
   const std::array squares{0.25, 4.0 * kSmallVariance, 4.0 * kMediumVariance, largest_square};
@@ -180,7 +180,7 @@ void blend(const DofInput& input, Image& result, const Planes& full, const Plane
 
 }  // namespace
 
-void post_process(const DofInput& input, Image& result, ThreadPool& pool) {
+void post_process(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   const Planes full = split_picture(input, pool);
   Planes quarter = make_quarter(full, pool);
   const double max_coc = static_cast<double>(input.settings.max_coc_px);

@@ -24,10 +24,10 @@
 // fog around near things; a point is a peak on a mound, and small is a pinwheel, not
 // symmetric; a near thing one pixel wide swells to four.
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void post_process(const DofInput& input, Image& result, ThreadPool& pool);
+void post_process(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -277,7 +277,7 @@ void enlarge_row(const Planes& half, int plane, int y, int half_width, int width
 
 }  // namespace
 
-void ring_bucket(const DofInput& input, Image& result, ThreadPool& pool) {
+void ring_bucket(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   const Planes full = split_picture(input, pool);
   const std::vector<float> of_rows = largest_of_rows(full, 3, pool);
   const float farthest =

@@ -33,10 +33,10 @@
 // median takes isolated lights away; half resolution takes what is one pixel wide for
 // two; the background behind a near thing is guessed.
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void ring_bucket(const DofInput& input, Image& result, ThreadPool& pool);
+void ring_bucket(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

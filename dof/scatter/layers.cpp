@@ -4,7 +4,7 @@
 
 namespace softfocus {
 
-void layers(const DofInput& input, Image& result, ThreadPool& pool) {
+void layers(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   scatter_in_slabs(input, result, SlabRule::layers, pool);
 }
 

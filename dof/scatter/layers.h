@@ -16,10 +16,10 @@
 // far one's edge; where a surface passes from one layer to the next, a little of what lies
 // behind shows through the seam.
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void layers(const DofInput& input, Image& result, ThreadPool& pool);
+void layers(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

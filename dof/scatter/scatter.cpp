@@ -146,7 +146,7 @@ struct RowBuffers {
   std::vector<float> colour;
 };
 
-void scatter_spans(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+void scatter_spans(const DofInput& input, const ImageView& result, SlabRule rule, ThreadPool& pool) {
   const Sources sources = make_sources(input, rule, pool);
   const int width = sources.width, height = sources.height;
   const int margin = sources.discs.reach + 3;
@@ -214,7 +214,7 @@ std::uint64_t units(double value) {
   return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(value)));
 }
 
-void scatter_stamps(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+void scatter_stamps(const DofInput& input, const ImageView& result, SlabRule rule, ThreadPool& pool) {
   const Sources sources = make_sources(input, rule, pool);
   const int width = sources.width, height = sources.height;
   const int slabs = slab_count(rule);
@@ -259,17 +259,17 @@ void scatter_stamps(const DofInput& input, Image& result, SlabRule rule, ThreadP
 
 }  // namespace
 
-void scatter_in_slabs(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+void scatter_in_slabs(const DofInput& input, const ImageView& result, SlabRule rule, ThreadPool& pool) {
   (pool.isa() == Isa::scalar ? scatter_stamps : scatter_spans)(input, result, rule, pool);
 }
-void scatter_in_slabs_plain(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+void scatter_in_slabs_plain(const DofInput& input, const ImageView& result, SlabRule rule, ThreadPool& pool) {
   scatter_stamps(input, result, rule, pool);
 }
 
-void scatter_unsorted(const DofInput& input, Image& result, ThreadPool& pool) {
+void scatter_unsorted(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   scatter_in_slabs(input, result, SlabRule::one, pool);
 }
-void scatter_sorted(const DofInput& input, Image& result, ThreadPool& pool) {
+void scatter_sorted(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   scatter_in_slabs(input, result, SlabRule::doubling, pool);
 }
 

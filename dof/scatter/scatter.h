@@ -32,19 +32,19 @@
 // light of it to be seen through the blurred edge: the nearest visible neighbours fill in),
 // and two surfaces in neighbouring slabs count as one.
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void scatter_unsorted(const DofInput& input, Image& result, ThreadPool& pool);
-void scatter_sorted(const DofInput& input, Image& result, ThreadPool& pool);
+void scatter_unsorted(const DofInput& input, const ImageView& result, ThreadPool& pool);
+void scatter_sorted(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// How depth is cut: not at all, into near, focus and far (layers.h), or into the slabs
 /// above.
 enum class SlabRule { one, layers, doubling };
-void scatter_in_slabs(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool);
+void scatter_in_slabs(const DofInput& input, const ImageView& result, SlabRule rule, ThreadPool& pool);
 
 /// Its oracle, which stamps each disc pixel by pixel; equal to the bit.
-void scatter_in_slabs_plain(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool);
+void scatter_in_slabs_plain(const DofInput& input, const ImageView& result, SlabRule rule, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -58,8 +58,8 @@ void filter_line(const Line& line, float leak, const Store& store) {
 }
 
 template <Format between_format>
-void two_pass_lines(const DofInput& input, Image& result, ThreadPool& pool) {
-  const Image& scene = input.scene;
+void two_pass_lines(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  const ConstImageView& scene = input.scene;
   const DofSettings& settings = input.settings;
   const int taps = tap_count(largest_filter_radius(input, pool));
 
@@ -89,7 +89,7 @@ void two_pass_lines(const DofInput& input, Image& result, ThreadPool& pool) {
 
 }  // namespace
 
-void two_pass(const DofInput& input, Image& result, ThreadPool& pool) {
+void two_pass(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) {
     two_pass_lines<Format::rgba16f>(input, result, pool);
   } else {
@@ -97,7 +97,7 @@ void two_pass(const DofInput& input, Image& result, ThreadPool& pool) {
   }
 }
 
-void two_pass_single(const DofInput& input, Image& result, ThreadPool& pool) {
+void two_pass_single(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) {
     two_pass_lines<Format::rgba32f>(input, result, pool);
   } else {

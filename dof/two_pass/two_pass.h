@@ -11,22 +11,22 @@
 // is not separable), so strong blur is boxy; circles larger than max_coc are cut; what
 // a foreground hides is not there to be blurred (no partial occlusion).
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
 /// The filter, line by line: every quantity of a pixel is computed once a pass. Cost
 /// grows with the largest radius that is in the picture, up to max_coc.
-void two_pass(const DofInput& input, Image& result, ThreadPool& pool);
+void two_pass(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The same with RGBA32F between the passes: what storage as halves costs.
-void two_pass_single(const DofInput& input, Image& result, ThreadPool& pool);
+void two_pass_single(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The same filter as a fragment shader would be written, every tap from the texture:
 /// the oracle of two_pass, equal to the bit.
-void two_pass_plain(const DofInput& input, Image& result, ThreadPool& pool);
+void two_pass_plain(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// That of two_pass_single.
-void two_pass_single_plain(const DofInput& input, Image& result, ThreadPool& pool);
+void two_pass_single_plain(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

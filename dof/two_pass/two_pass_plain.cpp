@@ -8,7 +8,7 @@ namespace softfocus {
 namespace {
 
 template <Format from, Format to>
-void filter_along(const DofInput& input, const Image& source, Image& target, int step_x, int step_y,
+void filter_along(const DofInput& input, const ConstImageView& source, const ImageView& target, int step_x, int step_y,
                   ThreadPool& pool) {
   const auto fetch = [&](int x, int y) {
     return load_texel<from>(source, std::clamp(x, 0, source.width - 1),
@@ -32,7 +32,7 @@ void filter_along(const DofInput& input, const Image& source, Image& target, int
 }
 
 template <Format between_format>
-void two_passes(const DofInput& input, Image& result, ThreadPool& pool) {
+void two_passes(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   Image between = make_image(between_format, input.scene.width, input.scene.height);
   filter_along<Format::rgba16f, between_format>(input, input.scene, between, 1, 0, pool);
   filter_along<between_format, Format::rgba16f>(input, between, result, 0, 1, pool);
@@ -40,11 +40,11 @@ void two_passes(const DofInput& input, Image& result, ThreadPool& pool) {
 
 }  // namespace
 
-void two_pass_plain(const DofInput& input, Image& result, ThreadPool& pool) {
+void two_pass_plain(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   two_passes<Format::rgba16f>(input, result, pool);
 }
 
-void two_pass_single_plain(const DofInput& input, Image& result, ThreadPool& pool) {
+void two_pass_single_plain(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   two_passes<Format::rgba32f>(input, result, pool);
 }
 

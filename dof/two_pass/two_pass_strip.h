@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dof/two_pass/gather_nodes.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/images/image.h"
 
 namespace softfocus {

@@ -14,7 +14,7 @@ constexpr int kBatch = 64;
 using RowPointers = std::array<const std::uint16_t*, 2 * kMostLanes>;
 
 // Rows y and following, to `end` - 1 and that one again.
-RowPointers row_pointers(const Image& image, int y, int end) {
+RowPointers row_pointers(const ConstImageView& image, int y, int end) {
   RowPointers rows{};
   for (int& i = y; const std::uint16_t*& pointer : rows) {
     pointer = row<std::uint16_t>(image, std::min(i++, end - 1)).data();
@@ -22,8 +22,8 @@ RowPointers row_pointers(const Image& image, int y, int end) {
   return rows;
 }
 
-void filter_task(const StripTask& task, const StripFilter& filter, const Image& scene,
-                 Image& result, Strip& strip) {
+void filter_task(const StripTask& task, const StripFilter& filter, const ConstImageView& scene,
+                 const ImageView& result, Strip& strip) {
   const int lanes = lanes_of(filter.isa);
   begin_strip(strip, filter, {scene.width, task.x_begin, task.x_end - task.x_begin, task.reach},
               kBatch);
@@ -56,7 +56,7 @@ void filter_task(const StripTask& task, const StripFilter& filter, const Image& 
 
 }  // namespace
 
-void two_pass_strips(const DofInput& input, Between between, Image& result, ThreadPool& pool) {
+void two_pass_strips(const DofInput& input, Between between, const ImageView& result, ThreadPool& pool) {
   const FocusMap map = pass_in_focus(input, result, pool);
   const std::vector<StripTask> tasks = plan_strips(map, input.scene.width, input.scene.height);
   const StripFilter filter{input.settings, input.profile.half_store, pool.isa(), between,

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dof/focus_map.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "dof/two_pass/two_pass_strip.h"
 
 namespace softfocus {
@@ -21,6 +21,6 @@ struct StripTask {
 std::vector<StripTask> plan_strips(const FocusMap& map, int width, int height);
 
 /// As two_pass() or two_pass_single().
-void two_pass_strips(const DofInput& input, Between between, Image& result, ThreadPool& pool);
+void two_pass_strips(const DofInput& input, Between between, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -1,6 +1,6 @@
 #pragma once
 // The table of methods that draw the scene themselves, from many points of the lens: the
-// ground truth that the filters of dof/method.h are held against. A method is one entry:
+// ground truth that the filters of dof/dof.h are held against. A method is one entry:
 // adding one touches its own file, the table and a test.
 
 #include <functional>

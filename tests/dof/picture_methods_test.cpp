@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/images/texel.h"
 #include "tests/support/test_images.h"
 

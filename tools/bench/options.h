@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dof/fixed_pictures/arithmetic.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/numbers/profile.h"
 #include "tools/gl/driver.h"
 #include "tools/options/lens_options.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "scenes/scene.h"
 #include "scenes/draw/frame_matrices.h"
 #include "tools/bench/options.h"

@@ -2,7 +2,7 @@
 #include <string_view>
 
 #include "dof/fixed_pictures/arithmetic.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/draw/draw_scene.h"

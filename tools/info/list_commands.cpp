@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/numbers/profile.h"
 #include "scenes/lens_views/scene_method.h"
 #include "scenes/load/load_scene.h"

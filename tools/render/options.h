@@ -8,7 +8,7 @@
 
 #include "dof/auto/choose.h"
 #include "dof/fixed_pictures/arithmetic.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/numbers/profile.h"
 #include "tools/gl/driver.h"
 #include "tools/files/image_file.h"

@@ -1,6 +1,10 @@
 #pragma once
-// The table of depth-of-field methods. A method is one entry: adding one touches its
-// own file, the table and a test.
+// Depth of field on a picture with depth: what a program that embeds it includes.
+//
+//   ThreadPool pool(hardware_threads());
+//   DofSettings settings;
+//   settings.coc = pixel_coc({.focal_length_mm = 85, .f_number = 2, .focus_m = 1.2}, 30.0, height, 1.0);
+//   find_method("two-pass")->apply({scene, settings, Profile{}}, result, pool);
 
 #include <span>
 #include <string_view>
@@ -28,20 +32,21 @@ inline constexpr float kLargestMaxCoc = 1024.0f;
 /// A picture and how to blur it.
 struct DofInput {
   /// RGBA16F: linear colour, and in alpha the depth in metres along the axis.
-  const Image& scene;
+  ConstImageView scene;
   DofSettings settings;
   Profile profile;
 };
 
+/// A depth-of-field method. Each is one entry of the table in method.cpp.
 struct Method {
   std::string_view name;
   std::string_view summary;
   /// What the method works from, for the list of methods.
   std::string_view needs;
   /// Writes every pixel of `result`, depth in alpha. It has the scene's size and format,
-  /// and is another image; one that is used again from frame to frame spares the cost
-  /// of fresh memory.
-  void (*apply)(const DofInput& input, Image& result, ThreadPool& pool);
+  /// and shares no memory with it; one that is used again from frame to frame spares the
+  /// cost of fresh memory.
+  void (*apply)(const DofInput& input, const ImageView& result, ThreadPool& pool);
 };
 
 /// The same into a new image.
