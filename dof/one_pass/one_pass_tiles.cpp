@@ -7,6 +7,7 @@
 #include "dof/one_pass/one_pass.h"
 #include "raster/threads/scratch_shelf.h"
 #include "dof/weights.h"
+#include "raster/images/image.h"
 
 #define SOFTFOCUS_KERNELS "dof/one_pass/one_pass_kernels.inl"
 #include "raster/lanes/for_each_isa.inl"

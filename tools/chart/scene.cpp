@@ -91,7 +91,7 @@ PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
 }
 
 void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
-  filter.apply({drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
+  apply(filter, {drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
 }
 
 // What belongs to a lens is made once, as it would be for many frames.
