@@ -20,7 +20,7 @@ Profile d3d11() {
           .bilinear_filter = BilinearFilter::integers};
 }
 
-// Mesa's software rasterizers were measured; docs/exactness.md has every operation.
+// Mesa's software rasterizers were measured; docs/specification.md has every operation.
 Profile llvmpipe() {
   return {.name = "llvmpipe",
           .summary = "Mesa 22.3 llvmpipe on a CPU with fused multiply-add",
