@@ -8,15 +8,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "dof/two_pass/gather_nodes.h"
 #include "dof/dof.h"
+#include "dof/two_pass/gather_nodes.h"
 #include "raster/images/image.h"
+#include "raster/lanes/isa.h"
 
 namespace softfocus {
-
-/// Numbers that a vector unit's vectors hold. Needs one with kernels.
-int lanes_of(Isa isa);
-inline constexpr int kMostLanes = 16;
 
 /// How the colours between the passes are stored.
 enum class Between : std::uint8_t { half, single };

@@ -2,11 +2,11 @@
 
 #include <optional>
 
+#include "raster/numbers/random_bits.h"
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
-#include "scenes/make/random_bits.h"
-#include "scenes/make/balls.h"
 #include "scenes/load/scene_shapes.h"
+#include "scenes/make/balls.h"
 
 namespace softfocus {
 namespace {

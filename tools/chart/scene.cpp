@@ -47,8 +47,7 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
   const double coc_scale = chart.scene.lens.coc_scale;
   chart.coc = checked_pixel_coc(chart.lens, chart.scene.camera.fov_y_degrees, height, coc_scale);
   chart.aperture_m = aperture_radius_m(chart.lens, coc_scale);
-  chart.pinhole =
-      draw_scene(chart.scene, chart.view, chart.frame, width, height, profiles().front(), pool);
+  chart.pinhole = draw_scene(chart.scene, chart.view, chart.frame, width, height, Profile{}, pool);
   chart.labels = label_regions(chart.pinhole, chart.coc);
   return chart;
 }
@@ -61,7 +60,7 @@ SceneMethodInput accumulation_input(const ChartScene& scene, int samples) {
           .focus_m = scene.lens.focus_m,
           .aperture_radius_m = scene.aperture_m,
           .sampling = {.samples = samples},
-          .profile = profiles().front(),
+          .profile = Profile{},
           .progress = {}};
 }
 
@@ -159,7 +158,7 @@ void ChartRunner::carry_out(const Choice& choice) {
 }
 
 RunTime ChartRunner::choose(double max_error) {
-  PreparedScene& prepared = prepared_for(views_.profile.name);
+  PreparedScene& prepared = prepared_for("ieee");
   const auto chosen = [&] {
     return softfocus::choose(scene_traits(drawn_, scene_.coc, pool_), {max_error},
                              {{}, triangle_count(scene_.scene)});

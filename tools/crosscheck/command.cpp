@@ -10,12 +10,12 @@
 #include "raster/threads/parallel.h"
 #include "scenes/load/scene_error.h"
 #include "tools/cli/commands.h"
-#include "tools/crosscheck/run_cases.h"
-#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/options/profile_option.h"
+#include "tools/crosscheck/run_cases.h"
 #include "tools/files/whole_file.h"
+#include "tools/options/driver_option.h"
+#include "tools/options/profile_option.h"
 
 namespace softfocus {
 namespace {
@@ -29,7 +29,7 @@ constexpr int kIncomplete = 2;
 
 struct CrosscheckOptions {
   std::vector<const Driver*> drivers;
-  std::optional<Profile> profile;
+  std::optional<ChosenProfile> profile;
   std::string cases = "*";
   std::filesystem::path pictures;
   Shaders shaders;
@@ -40,18 +40,18 @@ struct CrosscheckOptions {
 /// What a driver is to do.
 struct DriverWork {
   const Driver* driver;
-  Profile profile;
+  ChosenProfile profile;
   int cases;
 };
 
-Profile profile_for(const Driver& driver, const CrosscheckOptions& options) {
+ChosenProfile profile_for(const Driver& driver, const CrosscheckOptions& options) {
   if (options.profile) return *options.profile;
   if (driver.profile.empty()) {
     throw UsageError("--driver " + std::string(driver.name) +
                      " needs --profile: softfocus probe --driver " + std::string(driver.name) +
                      " makes one");
   }
-  return find_profile(driver.profile).value();
+  return {std::string(driver.profile), "", find_profile(driver.profile).value()};
 }
 
 // Without --driver: those whose profile is known. All that can be wrong with the options
@@ -177,17 +177,18 @@ int crosscheck(const CrosscheckOptions& options) {
         std::cout << work.driver->name << " against profile " << printable(work.profile.name)
                   << '\n';
       }
-      const DriverRun run = run_cases({*work.driver, work.profile, options.shaders, options.cases,
-                                       options.quick, options.pictures, hardware_threads()},
-                                      [&](const CaseResult& result) {
-                                        add(count, result);
-                                        if (options.json) {
-                                          entries.push_back(json_of(work, result));
-                                        } else {
-                                          print_result(result);
-                                          std::cout.flush();
-                                        }
-                                      });
+      const DriverRun run =
+          run_cases({*work.driver, work.profile.profile, options.shaders, options.cases,
+                     options.quick, options.pictures, hardware_threads()},
+                    [&](const CaseResult& result) {
+                      add(count, result);
+                      if (options.json) {
+                        entries.push_back(json_of(work, result));
+                      } else {
+                        print_result(result);
+                        std::cout.flush();
+                      }
+                    });
       if (!options.json && !run.renderer.empty()) {
         std::cout << "  (" << printable(run.renderer) << ")\n";
       }
@@ -251,7 +252,7 @@ Command add_crosscheck_command(CLI::App& program) {
                       }
                     });
   add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
-                     [options](const Profile& profile) { options->profile = profile; });
+                     [options](const ChosenProfile& chosen) { options->profile = chosen; });
   add_value(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
             [options](const std::string& text) { options->cases = text; });
   add_value(*parser, "--shaders", "DIR",

@@ -11,8 +11,8 @@
 #include "scenes/lens_views/scene_method.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
-#include "tools/options/method_options.h"
 #include "tools/cli/option_values.h"
+#include "tools/options/method_options.h"
 
 namespace softfocus {
 namespace {
@@ -75,7 +75,7 @@ Command add_profiles_command(CLI::App& program) {
   CLI::App* parser = add_command(program, "profiles", "List the GPUs to agree with: name, summary");
   return {parser, [] {
             std::vector<Row> rows;
-            for (const Profile& profile : profiles()) {
+            for (const NamedProfile& profile : profiles()) {
               rows.push_back({std::string{profile.name}, std::string{profile.summary}});
             }
             print_aligned(rows);

@@ -4,13 +4,13 @@
 #include <cstdint>
 
 #include "raster/images/image.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
 #include "tools/options/arithmetic_option.h"
 #include "tools/options/auto_options.h"
 #include "tools/options/driver_option.h"
-#include "tools/cli/errors.h"
 #include "tools/options/memory_check.h"
 #include "tools/options/method_options.h"
-#include "tools/cli/platform.h"
 #include "tools/options/profile_option.h"
 #include "tools/options/sampling_options.h"
 
@@ -90,7 +90,10 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
   add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
-                     [&options](const Profile& profile) { options.profile = profile; });
+                     [&options](const ChosenProfile& chosen) {
+                       options.profile = chosen.profile;
+                       options.profile_name = chosen.name;
+                     });
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
   add_pool_options(parser, options.pool, "the picture is the same");

@@ -135,7 +135,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   }
   if (record.used.choice) text += choice_lines(*record.used.choice);
   text += line("Picture", std::string{name_of(options.show)});
-  text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
+  text += record.gl_renderer.empty() ? line("Profile", options.profile_name)
                                      : line("GL driver", record.gl_renderer);
   text += line("Threads", std::to_string(options.pool.threads));
   text += line("Vector unit", std::string{isa_name(options.pool.isa)});
@@ -169,7 +169,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"title", record.scene_title},     {"frame", options.frame},
       {"width", options.size.width},     {"height", options.size.height},
       {"triangles", record.triangles},   {"method", options.method.name()},
-      {"show", name_of(options.show)},   {"profile", options.profile.name},
+      {"show", name_of(options.show)},   {"profile", options.profile_name},
       {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
       {"output", options.output},
   };

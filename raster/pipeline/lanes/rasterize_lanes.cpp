@@ -1,5 +1,37 @@
 // Coverage and depth of triangles in a tile, block by block.
 
+#ifndef SOFTFOCUS_ISA
+
+#include "raster/pipeline/lanes/rasterize_lanes.h"
+
+#include <algorithm>
+#include <array>
+
+#include "raster/images/texel.h"
+
+#define SOFTFOCUS_KERNELS "raster/pipeline/lanes/rasterize_lanes.cpp"
+#include "raster/lanes/for_each_isa.inl"
+
+namespace softfocus {
+
+void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
+                     const DepthState& state, const Profile& profile, VisibilityTile& tile) {
+  SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, state, profile, tile);
+}
+
+void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile) {
+  Image row = make_image(Format::rgba16f, kBlockSize, 1);
+  clear_image(row, 0, 0, kBlockSize, 1, value, profile);
+  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, row.bytes.data());
+}
+
+}  // namespace softfocus
+
+#else  // once a vector unit
+
+#include "raster/pipeline/lanes/block_lanes.inl"
+#include "raster/pipeline/lanes/edge_lanes.inl"
+
 namespace {
 
 SOFTFOCUS_INLINE Mask passes(Compare test, Floats incoming, Floats stored) {
@@ -16,12 +48,12 @@ SOFTFOCUS_INLINE Mask passes(Compare test, Floats incoming, Floats stored) {
   return Mask{};
 }
 
-// As stored_depth() has it for planes and barycentric weights.
+// clamped_depth() of draw.h, for planes_from_origin and barycentric weights.
 SOFTFOCUS_INLINE Floats clamped_depth(Floats depth) {
   return select(depth <= 1.0f, select(depth < 0.0f, splat(0.0f), depth), splat(1.0f));
 }
 
-/// What a triangle asks of depth in a tile. `test` is one for all of its pixels.
+/// A triangle's depths in a tile, and their test.
 template <Compare test, bool kPlanes>
 struct DepthWriter {
   const DepthState& state;
@@ -31,7 +63,7 @@ struct DepthWriter {
   Floats z0, z1, z2;
   Floats inverse_area;
 
-  // Tests the covered lanes of a part of a block whose lane 0 is pixel (x, y).
+  // Tests the covered lanes of a part of a block. Lane 0 is pixel (x, y).
   SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
     Floats depth;
     if constexpr (kPlanes) {
@@ -63,7 +95,7 @@ SOFTFOCUS_INLINE BlockRange blocks_of(const LaneTriangle& t, const VisibilityTil
           std::min<int>(t.bounds[2], tile.area.x_end), std::min<int>(t.bounds[3], tile.area.y_end)};
 }
 
-// Of the part of a block that begins with pixel (x, y).
+// Where the part of a block that begins with pixel (x, y) is kept.
 SOFTFOCUS_INLINE std::size_t place_in_tile(const VisibilityTile& tile, int x, int y) {
   return place_of_pixel(x - tile.area.x_begin, y - tile.area.y_begin);
 }
@@ -74,8 +106,8 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   const BlockRange range = blocks_of(t, tile);
   const int dx = range.x_begin - t.x_origin;
   const int dy = range.y_begin - t.y_origin;
-  // Edge functions over a part of a block, less the threshold: of the row's first one, and
-  // the steps to the next part and row.
+  // Edge functions less their thresholds, over the first part of a block in a row; and steps to
+  // the next part and row.
   std::array<Ints, 3> row, per_part, per_row;
 #pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
@@ -134,14 +166,14 @@ SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile
   }
 }
 
-// Far larger than pictures are.
+// Exact for any triangle: these are far larger than pictures.
 template <class Writer>
 void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& writer) {
   const BlockRange range = blocks_of(t, tile);
   const auto& edges = t.large->exact.edges;
   for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
     for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
-      // Where an edge function is largest in the block.
+      // An edge function is largest in one corner of the block.
       bool outside = false;
       for (std::size_t i = 0; i < 3; ++i) {
         const int corner_x = edges[i].per_x > 0 ? x + kBlockSize - 1 : x;
@@ -171,7 +203,7 @@ void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& w
 template <Compare test, bool kPlanes>
 void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
                    const Profile& profile, VisibilityTile& tile) {
-  // A triangle was written long ago, by another thread perhaps.
+  // Triangles were written long ago, perhaps by another thread.
   constexpr std::size_t kAhead = 6;
   for (std::size_t i = 0; i < std::min(kAhead, bins.size()); ++i) {
     __builtin_prefetch(&chunk.triangles[bins[i].triangle]);
@@ -234,7 +266,7 @@ void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DepthSta
 
 namespace {
 
-// place_of_pixel() backwards.
+// The inverse of place_of_pixel().
 SOFTFOCUS_INLINE int tile_x(std::uint32_t place) {
   return static_cast<int>(place / kBlockPixels % kTileBlocks * kBlockSize + (place >> 1 & 2) +
                           (place & 1));
@@ -246,7 +278,7 @@ SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
 
 }  // namespace
 
-// `texels` are a block's row of one, four halves each.
+// `texels`: a row of a block, four halves a texel.
 void set_unseen(const VisibilityTile& tile, const std::byte* texels) {
   constexpr std::size_t kTexelBytes = 8;
   const int width = tile.area.x_end - tile.area.x_begin;
@@ -273,3 +305,5 @@ void set_unseen(const VisibilityTile& tile, const std::byte* texels) {
     }
   }
 }
+
+#endif

@@ -37,7 +37,7 @@ constexpr int bilinear_unorm8(int c00, int c10, int c01, int c11, int weight_u, 
 constexpr bool is_finite_half(uint16_t half) { return (half & 0x7C00) != 0x7C00; }
 
 /// A half in 2^-24, exact: at most 2047 2^29 < 2^40 in magnitude. Both zeros are 0.
-constexpr int64_t half_to_fixed(uint16_t half) {
+constexpr int64_t half_to_integer(uint16_t half) {
   const int exponent = half >> 10 & 31;
   const int64_t mantissa = half & 1023;
   const int64_t magnitude = exponent == 0 ? mantissa : (mantissa + 1024) << (exponent - 1);
@@ -47,8 +47,8 @@ constexpr int64_t half_to_fixed(uint16_t half) {
 /// The mean of four halves in 2^-40, exact: at most 2047 2^45 < 2^56 in magnitude.
 constexpr int64_t bilinear_sum_half(uint16_t c00, uint16_t c10, uint16_t c01, uint16_t c11,
                                     int weight_u, int weight_v) {
-  const int64_t upper = half_to_fixed(c00) * (256 - weight_u) + half_to_fixed(c10) * weight_u;
-  const int64_t lower = half_to_fixed(c01) * (256 - weight_u) + half_to_fixed(c11) * weight_u;
+  const int64_t upper = half_to_integer(c00) * (256 - weight_u) + half_to_integer(c10) * weight_u;
+  const int64_t lower = half_to_integer(c01) * (256 - weight_u) + half_to_integer(c11) * weight_u;
   return upper * (256 - weight_v) + lower * weight_v;
 }
 
@@ -81,7 +81,7 @@ constexpr uint32_t mix_sums_half(int64_t fine, int64_t coarse, int weight) {
 }
 
 /// The two texels that a coordinate lies between, along one axis, and the second's weight.
-struct FixedTaps {
+struct IntegerTaps {
   int first, second, weight;
 };
 
@@ -93,14 +93,14 @@ constexpr int32_t from_centre(int32_t coordinate_256) {
 
 /// Taps of a position from centre to centre, the edge repeated outwards: left of the first
 /// texel's centre both are the first texel. Needs size >= 1.
-constexpr FixedTaps clamped_taps(int32_t position_256, int size) {
+constexpr IntegerTaps clamped_taps(int32_t position_256, int size) {
   const int index = position_256 >> 8;
   const int first = index < 0 ? 0 : index < size ? index : size - 1;
   return {first, index >= 0 && index < size - 1 ? index + 1 : first, position_256 & 255};
 }
 
 /// The same, the texture repeated; `size` a power of two.
-constexpr FixedTaps repeated_taps(int32_t position_256, int size) {
+constexpr IntegerTaps repeated_taps(int32_t position_256, int size) {
   const int index = position_256 >> 8;
   return {index & (size - 1), (index + 1) & (size - 1), position_256 & 255};
 }
@@ -109,8 +109,8 @@ constexpr FixedTaps repeated_taps(int32_t position_256, int size) {
 /// apart, at a coordinate in texels of 24.8 bits; the edges are repeated outwards.
 constexpr void fetch_unorm8(const uint8_t* texels, int stride_bytes, int width, int height,
                             int channels, int32_t u_256, int32_t v_256, uint8_t* result) {
-  const FixedTaps u = clamped_taps(from_centre(u_256), width);
-  const FixedTaps v = clamped_taps(from_centre(v_256), height);
+  const IntegerTaps u = clamped_taps(from_centre(u_256), width);
+  const IntegerTaps v = clamped_taps(from_centre(v_256), height);
   const uint8_t* upper = texels + static_cast<int64_t>(v.first) * stride_bytes;
   const uint8_t* lower = texels + static_cast<int64_t>(v.second) * stride_bytes;
   for (int i = 0; i < channels; ++i) {
@@ -124,8 +124,8 @@ constexpr void fetch_unorm8(const uint8_t* texels, int stride_bytes, int width, 
 /// Gives the bits of binary32 numbers.
 constexpr void fetch_half(const uint16_t* texels, int stride, int width, int height, int channels,
                           int32_t u_256, int32_t v_256, uint32_t* result) {
-  const FixedTaps u = clamped_taps(from_centre(u_256), width);
-  const FixedTaps v = clamped_taps(from_centre(v_256), height);
+  const IntegerTaps u = clamped_taps(from_centre(u_256), width);
+  const IntegerTaps v = clamped_taps(from_centre(v_256), height);
   const uint16_t* upper = texels + static_cast<int64_t>(v.first) * stride;
   const uint16_t* lower = texels + static_cast<int64_t>(v.second) * stride;
   for (int i = 0; i < channels; ++i) {

@@ -1,4 +1,29 @@
-// Triangle set-up, as setup.cpp and edge_functions.cpp do it, for kLanes triangles at once.
+// Triangle set-up for as many triangles at once as a vector has lanes. The scalar form is
+// setup.cpp and edge_functions.cpp.
+
+#ifndef SOFTFOCUS_ISA
+
+#include "raster/pipeline/lanes/assemble_lanes.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "raster/numbers/fixed_point.h"
+#include "raster/pipeline/clip.h"
+
+#define SOFTFOCUS_KERNELS "raster/pipeline/lanes/assemble_lanes.cpp"
+#include "raster/lanes/for_each_isa.inl"
+
+namespace softfocus {
+
+void assemble_lanes(Isa isa, const AssembleJob& job, LaneChunk& chunk) {
+  SOFTFOCUS_KERNEL(isa, assemble)(job, chunk);
+}
+
+}  // namespace softfocus
+
+#else  // once a vector unit
 
 namespace {
 
@@ -16,7 +41,7 @@ SOFTFOCUS_INLINE IntCorners gather_corners(const std::int32_t* column, const Int
           gather(column, rows[2], mask)};
 }
 
-// As is_culled_unsnapped().
+// is_culled_unsnapped().
 SOFTFOCUS_INLINE Mask culled_unsnapped(const AssembleJob& job, const Corners& x, const Corners& y) {
   const Floats area = (x[0] - x[2]) * (y[1] - y[2]) - (y[0] - y[2]) * (x[1] - x[2]);
   const Mask front = job.front_face == FrontFace::clockwise ? area > 0.0f : area < 0.0f;
@@ -29,7 +54,7 @@ SOFTFOCUS_INLINE void swap_where(Mask mask, Floats& a, Floats& b) {
   b = select(mask, was_a, b);
 }
 
-// The plane of the depths, as PlanesFromOrigin.
+// The plane of the depths, as PlanesFromOrigin makes it.
 SOFTFOCUS_INLINE Corners depth_plane(Corners x, Corners y, Corners depth, Mask clockwise,
                                      std::size_t provoking) {
   const std::size_t other = provoking == 0 ? 2 : 0;
@@ -63,8 +88,8 @@ SOFTFOCUS_INLINE Mask covers(const EdgeLanes& edges, int x, int y) {
   return all_inside >= 0;
 }
 
-// Triangles between the pixels' centres: half of those as small as a pixel. Only bounds of
-// at most 2x2 pixels are looked into.
+// Triangles between the pixels' centres, as are half of all that are as small as a pixel.
+// Looks only at bounds of at most 2x2 pixels.
 SOFTFOCUS_INLINE Mask covers_nothing(const EdgeLanes& edges, Ints width, Ints height) {
   const Mask in_second_column = width > 1;
   const Mask in_second_row = height > 1;
@@ -74,7 +99,7 @@ SOFTFOCUS_INLINE Mask covers_nothing(const EdgeLanes& edges, Ints width, Ints he
   return (width <= 2) & (height <= 2) & ~covers_any;
 }
 
-// The columns of kLanes triangles, to be read one triangle at a time.
+// kLanes triangles, to be read one at a time.
 struct TriangleColumns {
   alignas(64) std::array<std::array<std::int32_t, kLanes>, 3> edge, per_x, per_y, threshold, index;
   alignas(64) std::array<std::array<std::int32_t, kLanes>, 4> bounds;
@@ -101,7 +126,7 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
     t.thresholds[i] = static_cast<std::int8_t>(columns.threshold[i][lane]);
     const auto vertex = static_cast<std::size_t>(columns.index[i][lane]);
     t.vertices[i] = job.vertices.rows + vertex * job.vertices.stride;
-    // Chunks have vertices in common.
+    // Chunks share vertices, and threads take chunks.
     std::atomic_ref{job.vertices.used[vertex]}.store(1, std::memory_order_relaxed);
   }
 #pragma GCC unroll 4
@@ -118,6 +143,7 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
 
 }  // namespace
 
+/// assemble_lanes() on a unit.
 void assemble(const AssembleJob& job, LaneChunk& chunk) {
   constexpr std::int32_t kClipBits = (1 << 6) - 1;
   const VertexStore& vertices = job.vertices;
@@ -156,7 +182,7 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
     const Mask small = (x_max - x_min <= kSmallExtent) & (y_max - y_min <= kSmallExtent);
     slow |= kept & ~small;
     kept &= small;
-    // In the other lanes what follows would overflow.
+    // The other lanes would overflow below.
     for (std::size_t i = 0; i < 3; ++i) {
       x[i] = select(kept, x[i], Ints{});
       y[i] = select(kept, y[i], Ints{});
@@ -227,8 +253,10 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
       if ((kept_bits >> lane & 1u) != 0) {
         copy_triangle(columns, lane, job, next_triangle(chunk));
       } else {
-        job.add_slowly(job.context, chunk, begin + lane);
+        job.add_slowly(job, chunk, begin + lane);
       }
     }
   }
 }
+
+#endif

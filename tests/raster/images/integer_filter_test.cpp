@@ -1,7 +1,7 @@
-// The plain texture unit's filter in integers, end to end, against the header that stands
+// The standard texture unit's filter in integers, end to end, against the header that stands
 // alone.
 
-#include "raster/images/fixed_filter.h"
+#include "raster/images/integer_filter.h"
 
 #include <doctest/doctest.h>
 
@@ -36,7 +36,7 @@ Texture random_texture(Format format, test::Random& random) {
     Image& level = texture.levels.back();
     for (int y = 0; y < level.height; ++y) {
       for (Number& number : row<Number>(level, y)) {
-        number = static_cast<Number>(random.bits());
+        number = static_cast<Number>(random.next());
         if (format == Format::rgba16f && !is_finite_half(static_cast<std::uint16_t>(number))) {
           number = static_cast<Number>(0x7BFF);
         }
@@ -60,7 +60,7 @@ Place any_place(test::Random& random) {
 }
 
 template <class Number>
-std::array<Number, 4> corners(const Image& level, const FixedTaps& u, const FixedTaps& v,
+std::array<Number, 4> corners(const Image& level, const IntegerTaps& u, const IntegerTaps& v,
                               int channel) {
   const auto at = [&](int x, int y) {
     return row<Number>(level,
@@ -74,8 +74,8 @@ std::array<Number, 4> corners(const Image& level, const FixedTaps& u, const Fixe
 template <class Number>
 std::int64_t sum_at(const Texture& texture, int index, Place place, int channel) {
   const Image& level = texture.levels[static_cast<std::size_t>(index)];
-  const FixedTaps u = clamped_taps(from_centre(place.u_256 >> index), level.width);
-  const FixedTaps v = clamped_taps(from_centre(place.v_256 >> index), level.height);
+  const IntegerTaps u = clamped_taps(from_centre(place.u_256 >> index), level.width);
+  const IntegerTaps v = clamped_taps(from_centre(place.v_256 >> index), level.height);
   const auto c = corners<Number>(level, u, v, channel);
   if constexpr (sizeof(Number) == 1) {
     return bilinear_sum_unorm8(c[0], c[1], c[2], c[3], u.weight, v.weight);
@@ -214,7 +214,7 @@ TEST_CASE("a channel with an infinite or NaN texel is filtered in floats, the ot
       const auto halves = row<std::uint16_t>(level, y);
       for (std::size_t i = 0; i < halves.size(); i += 4) {
         constexpr std::array<std::uint16_t, 4> kOdd{0x7C00, 0xFC00, 0x7E00, 0x3C00};
-        if (random.whole(0, 2) == 0) halves[i] = kOdd[random.bits() % kOdd.size()];
+        if (random.whole(0, 2) == 0) halves[i] = kOdd[random.next() % kOdd.size()];
       }
     }
   }
@@ -239,7 +239,7 @@ TEST_CASE("a channel with an infinite or NaN texel is filtered in floats, the ot
 TEST_CASE("texels of sRGB and of 32 bits are filtered in floats, whatever the profile says") {
   for (const Format format : {Format::srgb8, Format::r32f, Format::rgba32f}) {
     const Texture texture = test::random_texture(format, kWidth, kHeight, 66);
-    CHECK(!has_fixed_filter(format, kIntegers));
+    CHECK(!has_integer_filter(format, kIntegers));
     const glm::vec2 uv{0.37f, 0.61f};
     CHECK(same_bits(sample(texture, kEdge, uv, 0.0f, kIntegers),
                     sample(texture, kEdge, uv, 0.0f, filtering(BilinearFilter::floats))));

@@ -1,23 +1,23 @@
 #pragma once
-// The plain texture unit's filter in integers, of linear bytes and of halves: 8-bit weights,
-// no rounding but the last. fixed_bilinear.h has the sums.
+// The standard texture unit's filter in integers, of linear bytes and of halves: 8-bit weights,
+// no rounding but the last. integer_bilinear.h has the sums.
 
 #include <glm/vec4.hpp>
 
-#include "raster/images/fixed_bilinear.h"
 #include "raster/images/image.h"
+#include "raster/images/integer_bilinear.h"
 #include "raster/numbers/profile.h"
 
 namespace softfocus {
 
 /// Whether textures of this format are filtered so. sRGB bytes are not, for they are decoded
 /// before they are filtered, nor are texels of 32 bits.
-bool has_fixed_filter(Format format, const Profile& profile);
+bool has_integer_filter(Format format, const Profile& profile);
 
 /// Where a bilinear fetch reads; `level` of r8, rgba8 or rgba16f.
-struct FixedFetch {
+struct IntegerFetch {
   const Image* level;
-  FixedTaps u, v;
+  IntegerTaps u, v;
 };
 
 /// fine + next_weight / 256 (coarse - fine), next_weight 0 to 256; with 0 `coarse` is not read.
@@ -27,7 +27,7 @@ struct FixedFetch {
 /// a nearest fetch gives. Halves: the sum in 2^-48 is exact and rounded once to binary32.
 /// A channel in which one of the four texels is infinite or NaN, or of the eight where
 /// next_weight is above 0, whatever it weighs, is filtered in floats, with the profile's lerp.
-glm::vec4 filter_fixed(const FixedFetch& fine, const FixedFetch& coarse, int next_weight,
-                       const Profile& profile);
+glm::vec4 filter_in_integers(const IntegerFetch& fine, const IntegerFetch& coarse, int next_weight,
+                             const Profile& profile);
 
 }  // namespace softfocus

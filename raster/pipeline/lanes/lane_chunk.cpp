@@ -1,4 +1,4 @@
-#include "raster/pipeline/lanes/lane_draw.h"
+#include "raster/pipeline/lanes/lane_chunk.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -111,7 +111,7 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
     all = {std::min(all.x_begin, tiles.x_begin), std::min(all.y_begin, tiles.y_begin),
            std::max(all.x_end, tiles.x_end), std::max(all.y_end, tiles.y_end)};
   }
-  // A counting sort: stable, so that a tile's triangles stay in order.
+  // A counting sort, which keeps a tile's triangles in order.
   const int columns = all.x_end - all.x_begin;
   const auto place = [&](int x, int y) {
     return static_cast<std::size_t>((y - all.y_begin) * columns + (x - all.x_begin));
@@ -139,39 +139,6 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
       chunk.bins[next[place(x, y)]++] = {static_cast<std::uint32_t>(y * tiles_x + x), i};
     });
   }
-}
-
-void forget_seen(VisibilityTile& tile) {
-  tile.ids.fill(0);
-  tile.triangles.clear();
-  tile.runs.clear();
-}
-
-void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
-                std::optional<float> clear_depth) {
-  tile.area = area;
-  forget_seen(tile);
-  if (clear_depth) {
-    tile.depth.fill(*clear_depth);
-    return;
-  }
-  for (int y = 0; y < area.y_end - area.y_begin; ++y) {
-    const float* from = row<float>(depth, area.y_begin + y).data() + area.x_begin;
-    for (int x = 0; x < area.x_end - area.x_begin; ++x) tile.depth[place_of_pixel(x, y)] = from[x];
-  }
-}
-
-void end_tile(const VisibilityTile& tile, Image& depth) {
-  const Rectangle& area = tile.area;
-  for (int y = 0; y < area.y_end - area.y_begin; ++y) {
-    float* to = row<float>(depth, area.y_begin + y).data() + area.x_begin;
-    for (int x = 0; x < area.x_end - area.x_begin; ++x) to[x] = tile.depth[place_of_pixel(x, y)];
-  }
-}
-
-void shade_tile(const VisibilityTile& tile) {
-  for (const VisibleRun& run : tile.runs)
-    run.draw->lane_steps->shade_seen(run.draw->lane_draw.get(), tile, run);
 }
 
 }  // namespace softfocus

@@ -32,4 +32,15 @@ constexpr double next_between(RandomSequence& sequence, double low, double high)
   return low + (high - low) * unit_interval(next_bits(sequence));
 }
 
+/// A hash of a place on a grid, such as a pixel: the finaliser of MurmurHash3 (Appleby).
+constexpr std::uint32_t hash_of_place(int x, int y) {
+  std::uint32_t hash =
+      static_cast<std::uint32_t>(x) * 0x9E3779B9u ^ static_cast<std::uint32_t>(y) * 0x85EBCA77u;
+  hash ^= hash >> 16;
+  hash *= 0x85EBCA6Bu;
+  hash ^= hash >> 13;
+  hash *= 0xC2B2AE35u;
+  return hash ^ hash >> 16;
+}
+
 }  // namespace softfocus
