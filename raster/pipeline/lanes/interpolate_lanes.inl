@@ -6,37 +6,38 @@ namespace {
 /// The triangle that each quad shows.
 using QuadTriangles = std::array<const LaneTriangle*, kQuads>;
 
-/// The floats kFirst <= k < kEnd of the three vertices' rows, in the lanes of their quads.
-template <std::size_t kFirst, std::size_t kEnd>
+/// A varying's kind: a constant where all have the same.
+template <const auto& kinds>
+SOFTFOCUS_INLINE constexpr Interpolation kind_of(std::size_t varying) {
+  if constexpr (std::equal(kinds.begin() + 1, kinds.end(), kinds.begin())) return kinds[0];
+  return kinds[varying];
+}
+
+/// The rows of three vertices with N varyings at most, in the lanes of their quads.
+template <std::size_t N>
 struct VertexLanes {
-  std::array<std::array<Floats, kEnd - kFirst>, 3> values;
+  std::array<std::array<Floats, vertex_row_size(N)>, 3> values;
 
-  SOFTFOCUS_INLINE Floats at(std::size_t vertex, std::size_t k) const {
-    return values[vertex][k - kFirst];
-  }
-  /// `rows` are of one vertex of each quad's triangle.
-  SOFTFOCUS_INLINE void load(std::size_t vertex, const std::array<const float*, kQuads>& rows) {
-    load_all(vertex, rows, std::make_index_sequence<(kEnd + 3) / 4 - kFirst / 4>{});
-  }
-
- private:
-  template <std::size_t... four>
-  SOFTFOCUS_INLINE void load_all(std::size_t vertex, const std::array<const float*, kQuads>& rows,
-                                 std::index_sequence<four...>) {
-    (load_four<(kFirst / 4 + four) * 4>(vertex, rows), ...);
-  }
-  template <std::size_t k>
-  SOFTFOCUS_INLINE void load_four(std::size_t vertex,
-                                  const std::array<const float*, kQuads>& rows) {
-    const Floats four = load_fours(rows.data(), k);
-    put<k>(vertex, spread<0>(four));
-    put<k + 1>(vertex, spread<1>(four));
-    put<k + 2>(vertex, spread<2>(four));
-    put<k + 3>(vertex, spread<3>(four));
-  }
-  template <std::size_t k>
-  SOFTFOCUS_INLINE void put(std::size_t vertex, Floats value) {
-    if constexpr (k >= kFirst && k < kEnd) values[vertex][k - kFirst] = value;
+  SOFTFOCUS_INLINE Floats at(std::size_t vertex, std::size_t k) const { return values[vertex][k]; }
+  /// `rows` are of one vertex of each quad's triangle. Its depth is not read, nor, unless
+  /// `window`, its place.
+  template <bool window>
+  SOFTFOCUS_INLINE void load(std::size_t vertex, const std::array<const float*, kQuads>& rows,
+                             std::size_t varyings) {
+    const Floats first = load_fours(rows.data(), 0);
+    if constexpr (window) {
+      values[vertex][kVertexX] = spread<0>(first);
+      values[vertex][kVertexY] = spread<1>(first);
+    }
+    values[vertex][kVertexInverseW] = spread<3>(first);
+    for (std::size_t k = kVertexVaryings; k < kVertexVaryings + varyings; k += 4) {
+      const Floats four = load_fours(rows.data(), k);
+      Floats* to = &values[vertex][k];
+      to[0] = spread<0>(four);
+      to[1] = spread<1>(four);
+      to[2] = spread<2>(four);
+      to[3] = spread<3>(four);
+    }
   }
 };
 
@@ -49,7 +50,7 @@ struct Weights {
 template <std::size_t N>
 struct BarycentricLanes {
   using Point = Weights;
-  VertexLanes<kVertexInverseW, kVertexVaryings + N> vertices;
+  VertexLanes<N> vertices;
   std::array<Ints, 3> edge, per_x, per_y;
   Ints x_origin, y_origin;
   Floats inverse_area;
@@ -57,7 +58,7 @@ struct BarycentricLanes {
   bool any_large;
 
   /// Keeps a pointer to the triangles.
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t) {
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t, std::size_t varyings) {
     any_large = false;
 #pragma GCC unroll 3
     for (std::size_t vertex = 0; vertex < 3; ++vertex) {
@@ -66,7 +67,7 @@ struct BarycentricLanes {
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         rows[quad] = triangles[quad]->vertices[vertex];
       }
-      vertices.load(vertex, rows);
+      vertices.template load<false>(vertex, rows, varyings);
     }
     std::array<const float*, kQuads> numbers;
 #pragma GCC unroll 4
@@ -185,11 +186,12 @@ template <const auto& kinds, Contraction contraction>
 struct PlaneLanes {
   static constexpr std::size_t N = kinds.size();
   using Point = PlanePoint;
-  PlaneOfLanes inverse_w;
+  PlaneOfLanes inverse_w{};
   std::array<PlaneOfLanes, N> planes;  // a flat varying's value is at_origin
 
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
-    VertexLanes<kVertexX, kVertexVaryings + N> vertices;
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking,
+                             std::size_t varyings) {
+    VertexLanes<N> vertices;
 #pragma GCC unroll 3
     for (std::size_t vertex = 0; vertex < 3; ++vertex) {
       // A clockwise triangle's vertices 1 and `other` change places.
@@ -201,7 +203,7 @@ struct PlaneLanes {
         const LaneTriangle& t = *triangles[quad];
         rows[quad] = t.vertices[t.clockwise ? swapped : vertex];
       }
-      vertices.load(vertex, rows);
+      vertices.template load<true>(vertex, rows, varyings);
     }
     const Floats x = vertices.at(0, kVertexX);
     const Floats y = vertices.at(0, kVertexY);
@@ -220,12 +222,11 @@ struct PlaneLanes {
     const Floats w1 = vertices.at(1, kVertexInverseW);
     const Floats w2 = vertices.at(2, kVertexInverseW);
     inverse_w = slopes.plane(w0, w1, w2);
-#pragma GCC unroll 16
-    for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t i = 0; i < varyings; ++i) {
       const Floats a0 = vertices.at(0, kVertexVaryings + i);
       const Floats a1 = vertices.at(1, kVertexVaryings + i);
       const Floats a2 = vertices.at(2, kVertexVaryings + i);
-      switch (kinds[i]) {
+      switch (kind_of<kinds>(i)) {
         case Interpolation::perspective: planes[i] = slopes.plane(a0 * w0, a1 * w1, a2 * w2); break;
         case Interpolation::linear: planes[i] = slopes.plane(a0, a1, a2); break;
         case Interpolation::flat:
