@@ -10,9 +10,9 @@
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/mtl_file.h"
 #include "scenes/load/obj_text.h"
+#include "scenes/load/scene_error.h"
 #include "scenes/make/polygon.h"
 #include "scenes/make/random_bits.h"
-#include "scenes/load/scene_error.h"
 
 namespace softfocus {
 namespace {

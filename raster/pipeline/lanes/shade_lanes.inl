@@ -9,23 +9,18 @@
 // A stage that knows its varyings and inputs at run time alone has so many at most, and
 //     std::size_t varying_count() const
 //     std::size_t input_count() const
-// Quads are QuadFragments: what the stage does not ask for is not computed. The steps take
+// Quads are QuadFragments. The steps take
 // many vectors each: what one vector waits for in a long chain of operations, or in memory,
 // the CPU fills with the others, which it could not see past a whole fragment stage.
 
 namespace {
 
 /// Quads of 2x2 pixels, each of one triangle.
-template <class Stage, class Interpolator>
 struct QuadFragments {
-  const Interpolator& triangles;
-  std::size_t provoking;
+  const Floats* varyings;
   const QuadTriangles& of_quads;
-  typename Interpolator::Point here;
 
-  SOFTFOCUS_INLINE Floats varying(std::size_t i) const {
-    return triangles.value(i, kind_of<Stage::kInterpolation>(i), provoking, here);
-  }
+  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return varyings[i]; }
   // Along the quad's upper row and left column.
   SOFTFOCUS_INLINE Floats ddx(std::size_t i) const {
     const Floats values = varying(i);
@@ -279,9 +274,10 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     const Ints x = (block & 15) * kBlockSize + (quad & 1) * 2 + (lane_numbers() & 1);
     const Ints y = (block >> 4 & 15) * kBlockSize + (quad & 2) + (lane_numbers() >> 1 & 1);
 
-    const QuadFragments<Stage, Interpolator> fragments{
-        interpolator, job.provoking, of_quads,
-        interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y)};
+    std::array<Floats, (Stage::kInterpolation.size() + 3) / 4 * 4> values;
+    interpolator.values(interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y),
+                        varyings, values.data());
+    const QuadFragments fragments{values.data(), of_quads};
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
     batch.append(stage.inputs(fragments),
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
@@ -299,7 +295,7 @@ template <class Stage>
 void shade_fragments(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                      const VisibleRun& run) {
   if (job.profile->attributes == AttributeSetup::exact_barycentric) {
-    shade_seen<BarycentricLanes<Stage::kInterpolation.size()>>(stage, job, tile, run);
+    shade_seen<BarycentricLanes<Stage::kInterpolation>>(stage, job, tile, run);
   } else if (job.profile->interpolation == Contraction::fused) {
     shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, tile, run);
   } else {
