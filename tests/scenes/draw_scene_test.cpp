@@ -40,7 +40,8 @@ Scene square_scene() {
 
 Image draw_square(const Scene& scene, int size = 65) {
   ThreadPool pool(1);
-  return draw_scene(scene, camera_view(scene.camera, 0, size, size), 0, size, size, kProfile, pool);
+  return draw_scene(scene, camera_matrices(scene.camera, 0, size, size), 0, size, size, kProfile,
+                    pool);
 }
 
 glm::vec4 centre(const Image& image) {

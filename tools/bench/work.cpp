@@ -67,7 +67,7 @@ BenchWork make_work(const BenchOptions& options) {
   print_scene_warnings(scene.warnings, false);
   work.name = scene.name;
   work.settings = chosen_settings(options, {scene.lens, scene.camera.fov_y_degrees}, work.name);
-  work.view = camera_view(scene.camera, work.frame, width, height);
+  work.view = camera_matrices(scene.camera, work.frame, width, height);
   return work;
 }
 

@@ -16,7 +16,7 @@ struct BenchWork {
   std::string name;            ///< of the scene; "spheres" and "picture" for those made here
   std::optional<Scene> scene;  ///< none: `picture` is filtered
   Image picture;
-  View view{};
+  CameraMatrices view{};
   double frame = 0.0;
   PictureSize size;
   const Method* method = nullptr;

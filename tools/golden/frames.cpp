@@ -54,7 +54,7 @@ std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
   for (const auto& [name, scene] : scenes) {
     for (const auto [width, height] : kSizes) {
       const DofSettings settings = settings_for(scene, height);
-      const View view = camera_view(scene.camera, kFrame, width, height);
+      const CameraMatrices view = camera_matrices(scene.camera, kFrame, width, height);
       for (const NamedProfile& known : profiles) {
         const Profile& profile = known.profile;
         const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
@@ -70,7 +70,7 @@ std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
           hashes.push_back({name + " two-pass-" + std::string{arithmetic_name(arithmetic)} + where,
                             hash_image(filtered)});
         }
-        const SceneMethodInput from_lens{
+        const LensViewInput from_lens{
             scene,
             view,
             kFrame,

@@ -8,7 +8,7 @@
 
 #include "dof/dof.h"
 #include "raster/numbers/profile.h"
-#include "scenes/lens_views/scene_method.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/option_values.h"
@@ -59,7 +59,7 @@ Command add_methods_command(CLI::App& program) {
               rows.push_back({std::string{method.name}, std::string{method.needs},
                               std::string{method.summary}});
             }
-            for (const SceneMethod& method : scene_methods()) {
+            for (const LensViewMethod& method : lens_view_methods()) {
               const char* lack = method.missing.empty() ? "" : " (not in this build)";
               rows.push_back({std::string{method.name}, std::string{method.needs},
                               std::string{method.summary} + lack});

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dof/auto/choose.h"
+#include "dof/auto/auto_method.h"
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
 #include "raster/numbers/profile.h"
@@ -37,7 +37,7 @@ struct RenderOptions {
   MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;  ///< of a method that draws the scene
-  Goal goal;          ///< of auto
+  AutoGoal goal;      ///< of auto
   LensOptions lens;
   bool autofocus = false;
   std::optional<Pixel> autofocus_pixel;  ///< the picture's centre if none

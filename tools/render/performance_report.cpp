@@ -55,7 +55,7 @@ std::string filter_lines(const UsedLens& used) {
          line("Leak", short_number(used.settings.leak));
 }
 
-std::string choice_lines(const Choice& choice) {
+std::string choice_lines(const AutoMethod& choice) {
   return line("Chosen", setting_text(choice)) + line("Because", choice.reason) +
          line("Predicted error", short_number(choice.predicted_error) + " (mean FLIP)") +
          line("Predicted time",
@@ -88,7 +88,7 @@ nlohmann::ordered_json traits_json(const SceneTraits& traits) {
   return json;
 }
 
-nlohmann::ordered_json choice_json(const Choice& choice, const Goal& goal) {
+nlohmann::ordered_json choice_json(const AutoMethod& choice, const AutoGoal& goal) {
   nlohmann::ordered_json json{{"method", choice.method}};
   if (choice.radius_px > 0.0f) json["max_coc_px"] = choice.radius_px;
   if (choice.samples > 0) json["samples"] = choice.samples;

@@ -433,7 +433,8 @@ TEST_CASE("lanes: scenes have the scalar form's bits, drawn again with the same 
         PreparedScene prepared = prepare_scene(scene, profile, pool);
         Image picture = make_image(Format::rgba16f, target.width, target.height);
         for (const double frame : {0.0, 40.0, 0.0}) {
-          const View view = camera_view(scene.camera, frame, target.width, target.height);
+          const CameraMatrices view =
+              camera_matrices(scene.camera, frame, target.width, target.height);
           draw_scene(prepared, view, frame, picture, pool);
           const Image expected =
               draw_scene(scene, view, frame, target.width, target.height, profile, scalar);

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
-#include "scenes/lens_views/scene_method.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "scenes/draw/draw_scene.h"
 
 namespace softfocus::test {
@@ -44,18 +44,18 @@ inline Drawn sample_scene(const Scene& scene, const char* method, const Sampling
                           int width, int height, ThreadPool& pool,
                           const ThinLens& lens = kTestLens) {
   const Profile profile{};
-  const View view = camera_view(scene.camera, 0.0, width, height);
-  Drawn drawn{draw_scene(scene, view, 0.0, width, height, profile, pool), {}};
-  drawn.sampled = find_scene_method(method)->render({scene,
-                                                     view,
-                                                     0.0,
-                                                     drawn.pinhole,
-                                                     lens.focus_m,
-                                                     aperture_radius_m(lens, 1.0),
-                                                     sampling,
-                                                     profile,
-                                                     {}},
-                                                    pool);
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, width, height);
+  Drawn drawn{draw_scene(scene, camera, 0.0, width, height, profile, pool), {}};
+  drawn.sampled = find_lens_view_method(method)->render({scene,
+                                                         camera,
+                                                         0.0,
+                                                         drawn.pinhole,
+                                                         lens.focus_m,
+                                                         aperture_radius_m(lens, 1.0),
+                                                         sampling,
+                                                         profile,
+                                                         {}},
+                                                        pool);
   return drawn;
 }
 

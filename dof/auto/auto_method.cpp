@@ -1,4 +1,4 @@
-#include "dof/auto/choose.h"
+#include "dof/auto/auto_method.h"
 
 #include <algorithm>
 #include <array>
@@ -28,8 +28,9 @@ std::string percent_text(double share) {
                                         : std::to_string(std::lround(percent)) + " %";
 }
 
-Choice foreseen(const Candidate& candidate, const SceneTraits& traits, const ChoiceLimits& limits) {
-  Choice choice{.method = candidate.method, .traits = traits};
+AutoMethod foreseen(const Candidate& candidate, const SceneTraits& traits,
+                    const AutoLimits& limits) {
+  AutoMethod choice{.method = candidate.method, .traits = traits};
   if (candidate.radius >= 0) {
     // No filter does otherwise with a radius that no circle reaches.
     choice.radius_px = std::min(kFilterRadiiPx[static_cast<std::size_t>(candidate.radius)],
@@ -44,8 +45,8 @@ Choice foreseen(const Candidate& candidate, const SceneTraits& traits, const Cho
 }
 
 // Whether the candidate may be taken, and is not another one with more room.
-bool is_open(const Candidate& candidate, const Choice& choice, const SceneTraits& traits,
-             const ChoiceLimits& limits) {
+bool is_open(const Candidate& candidate, const AutoMethod& choice, const SceneTraits& traits,
+             const AutoLimits& limits) {
   if (candidate.radius < 0) return true;
   if (limits.max_radius_px && choice.radius_px > *limits.max_radius_px) return false;
   return candidate.radius == 0 ||
@@ -58,43 +59,43 @@ std::string blur_text(const SceneTraits& traits) {
          number_text(static_cast<double>(largest_px(traits))) + " pixels";
 }
 
-std::string off_by(const Choice& other) {
+std::string off_by(const AutoMethod& other) {
   return setting_text(other) + " is foreseen to be off by " + number_text(other.predicted_error);
 }
 
 // The most accurate of those that are cheaper.
-const Choice* best_below(const std::vector<Choice>& choices, double ms) {
-  const Choice* best = nullptr;
-  for (const Choice& choice : choices) {
+const AutoMethod* best_below(const std::vector<AutoMethod>& choices, double ms) {
+  const AutoMethod* best = nullptr;
+  for (const AutoMethod& choice : choices) {
     if (choice.predicted_ms >= ms) continue;
     if (best == nullptr || choice.predicted_error < best->predicted_error) best = &choice;
   }
   return best;
 }
 
-const Choice* best_within(const std::vector<Choice>& choices, double ms) {
-  const Choice* best = nullptr;
-  for (const Choice& choice : choices) {
+const AutoMethod* best_within(const std::vector<AutoMethod>& choices, double ms) {
+  const AutoMethod* best = nullptr;
+  for (const AutoMethod& choice : choices) {
     if (choice.predicted_ms > ms) continue;
     if (best == nullptr || choice.predicted_error < best->predicted_error) best = &choice;
   }
   return best;
 }
 
-Choice cheapest_within(const std::vector<Choice>& choices, double max_error) {
-  const Choice* found = nullptr;
-  const Choice* nearest = &choices.front();
-  for (const Choice& choice : choices) {
+AutoMethod cheapest_within(const std::vector<AutoMethod>& choices, double max_error) {
+  const AutoMethod* found = nullptr;
+  const AutoMethod* nearest = &choices.front();
+  for (const AutoMethod& choice : choices) {
     if (choice.predicted_error < nearest->predicted_error) nearest = &choice;
     if (choice.predicted_error > max_error) continue;
     if (found == nullptr || choice.predicted_ms < found->predicted_ms) found = &choice;
   }
-  const Choice& cheapest = found != nullptr ? *found : *nearest;
-  Choice chosen =
+  const AutoMethod& cheapest = found != nullptr ? *found : *nearest;
+  AutoMethod chosen =
       found != nullptr ? *best_within(choices, kAsFast * found->predicted_ms) : *nearest;
   chosen.meets_goal = found != nullptr;
   chosen.reason = blur_text(chosen.traits);
-  if (const Choice* cheaper = best_below(choices, cheapest.predicted_ms)) {
+  if (const AutoMethod* cheaper = best_below(choices, cheapest.predicted_ms)) {
     chosen.reason += "; of all that is cheaper, " + off_by(*cheaper);
   } else {
     chosen.reason += ", which is hardly seen; nothing is cheaper";
@@ -102,15 +103,15 @@ Choice cheapest_within(const std::vector<Choice>& choices, double max_error) {
   return chosen;
 }
 
-Choice most_accurate_within(const std::vector<Choice>& choices, double max_time_ms) {
-  const Choice* found = best_within(choices, max_time_ms);
+AutoMethod most_accurate_within(const std::vector<AutoMethod>& choices, double max_time_ms) {
+  const AutoMethod* found = best_within(choices, max_time_ms);
   if (found == nullptr) found = &choices.front();  // the pinhole's, which takes no time
-  const Choice* next = nullptr;
-  for (const Choice& choice : choices) {
+  const AutoMethod* next = nullptr;
+  for (const AutoMethod& choice : choices) {
     if (choice.predicted_ms <= max_time_ms) continue;
     if (next == nullptr || choice.predicted_ms < next->predicted_ms) next = &choice;
   }
-  Choice chosen = *found;
+  AutoMethod chosen = *found;
   chosen.reason = blur_text(chosen.traits) + "; nothing as fast is foreseen to be more accurate";
   if (next != nullptr) {
     chosen.reason +=
@@ -121,14 +122,14 @@ Choice most_accurate_within(const std::vector<Choice>& choices, double max_time_
 
 }  // namespace
 
-Choice choose(const SceneTraits& traits, const Goal& goal, const ChoiceLimits& limits) {
-  std::vector<Choice> choices;
+AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits) {
+  std::vector<AutoMethod> choices;
   for (const Candidate& candidate : candidates()) {
-    Choice choice = foreseen(candidate, traits, limits);
+    AutoMethod choice = foreseen(candidate, traits, limits);
     if (is_open(candidate, choice, traits, limits)) choices.push_back(std::move(choice));
   }
   if (largest_px(traits) < kSharpBelow) {
-    Choice sharp = choices.front();
+    AutoMethod sharp = choices.front();
     sharp.predicted_error = 0.0;
     sharp.reason = "no circle reaches half a pixel: the largest radius is " +
                    number_text(static_cast<double>(largest_px(traits)));
@@ -138,9 +139,9 @@ Choice choose(const SceneTraits& traits, const Goal& goal, const ChoiceLimits& l
                           : cheapest_within(choices, goal.max_error);
 }
 
-bool is_sharp(const Choice& choice) { return choice.method == "pinhole"; }
+bool is_sharp(const AutoMethod& choice) { return choice.method == "pinhole"; }
 
-std::string setting_text(const Choice& choice) {
+std::string setting_text(const AutoMethod& choice) {
   std::string text{choice.method};
   if (choice.samples > 0) text += ", " + std::to_string(choice.samples) + " samples";
   if (choice.radius_px > 0.0f) {

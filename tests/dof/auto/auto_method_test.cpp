@@ -1,4 +1,4 @@
-#include "dof/auto/choose.h"
+#include "dof/auto/auto_method.h"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@ using namespace softfocus;
 
 namespace {
 
-constexpr ChoiceLimits kNoLimits{};
+constexpr AutoLimits kNoLimits{};
 
 // A picture with large circles everywhere, of which a part reaches over edges.
 SceneTraits blurred_traits(float strength) {
@@ -31,8 +31,8 @@ SceneTraits blurred_traits(float strength) {
   return traits;
 }
 
-Choice within_error(const SceneTraits& traits, double error) {
-  return choose(traits, {.max_error = error}, kNoLimits);
+AutoMethod within_error(const SceneTraits& traits, double error) {
+  return auto_method(traits, {.max_error = error}, kNoLimits);
 }
 
 }  // namespace
@@ -41,24 +41,24 @@ TEST_CASE("auto: the pinhole if no circle reaches half a pixel, whatever is aske
   SceneTraits traits = blurred_traits(1.0f);  // which contradict it, and do not count
   traits.nearest_px = -0.49f;
   traits.farthest_px = 0.3f;
-  for (const Goal& goal :
-       {Goal{.max_error = 0.0}, Goal{.max_error = 1.0}, Goal{.max_time_ms = 1e9}}) {
-    const Choice choice = choose(traits, goal, kNoLimits);
+  for (const AutoGoal& goal :
+       {AutoGoal{.max_error = 0.0}, AutoGoal{.max_error = 1.0}, AutoGoal{.max_time_ms = 1e9}}) {
+    const AutoMethod choice = auto_method(traits, goal, kNoLimits);
     CHECK(choice.method == "pinhole");
     CHECK(choice.meets_goal);
     CHECK(choice.reason.find("no circle reaches half a pixel") != std::string::npos);
   }
   traits.farthest_px = 0.5f;
-  CHECK(choose(traits, {.max_error = 0.0}, kNoLimits).method != "pinhole");
+  CHECK(auto_method(traits, {.max_error = 0.0}, kNoLimits).method != "pinhole");
 }
 
 TEST_CASE(
     "auto: a smaller error is never answered with a larger foreseen one, nor with less time") {
   for (const float strength : {0.02f, 0.3f, 1.0f, 3.0f}) {
     const SceneTraits traits = blurred_traits(strength);
-    Choice last = within_error(traits, 1.0);
+    AutoMethod last = within_error(traits, 1.0);
     for (const double error : {0.3, 0.1, 0.05, 0.02, 0.01, 0.005, 0.001, 0.0001, 0.0}) {
-      const Choice choice = within_error(traits, error);
+      const AutoMethod choice = within_error(traits, error);
       CAPTURE(error);
       CHECK(choice.predicted_error <= last.predicted_error);
       CHECK(choice.predicted_ms >= last.predicted_ms);
@@ -70,10 +70,10 @@ TEST_CASE(
 
 TEST_CASE("auto: more time is never answered with a larger foreseen error, and is kept to") {
   const SceneTraits traits = blurred_traits(1.0f);
-  Choice last = choose(traits, {.max_time_ms = 0.0}, kNoLimits);
+  AutoMethod last = auto_method(traits, {.max_time_ms = 0.0}, kNoLimits);
   CHECK(last.method == "pinhole");
   for (const double ms : {1.0, 5.0, 20.0, 80.0, 500.0, 1e4, 1e9}) {
-    const Choice choice = choose(traits, {.max_time_ms = ms}, kNoLimits);
+    const AutoMethod choice = auto_method(traits, {.max_time_ms = ms}, kNoLimits);
     CAPTURE(ms);
     CHECK(choice.predicted_ms <= ms);
     CHECK(choice.predicted_error <= last.predicted_error);
@@ -85,7 +85,7 @@ TEST_CASE("auto: more time is never answered with a larger foreseen error, and i
 TEST_CASE(
     "auto: nothing cheaper by a twentieth than what is chosen is foreseen to keep to the error") {
   const SceneTraits traits = blurred_traits(1.0f);
-  const Choice choice = within_error(traits, 0.03);
+  const AutoMethod choice = within_error(traits, 0.03);
   REQUIRE(choice.meets_goal);
   for (const Candidate& candidate : candidates()) {
     if (1.05 * predicted_ms(candidate, traits, 0) >= choice.predicted_ms) continue;
@@ -114,7 +114,7 @@ TEST_CASE(
         cheapest_ms = std::min(cheapest_ms, predicted_ms(candidate, traits, 0));
       }
     }
-    const Choice choice = within_error(traits, error);
+    const AutoMethod choice = within_error(traits, error);
     CAPTURE(error);
     for (const Candidate& candidate : candidates()) {
       if (!is_open(candidate) || predicted_ms(candidate, traits, 0) > 1.05 * cheapest_ms) continue;
@@ -146,7 +146,7 @@ TEST_CASE("auto: no filter is given more room than the largest circle or --max-c
   const SceneTraits traits = blurred_traits(1.0f);
   for (const float limit : {1.0f, 2.0f, 8.0f, 12.0f, 20.0f, 64.0f}) {
     for (const double error : {0.5, 0.1, 0.05, 0.02}) {
-      const Choice choice = choose(traits, {.max_error = error}, {limit, 0});
+      const AutoMethod choice = auto_method(traits, {.max_error = error}, {limit, 0});
       CAPTURE(limit);
       CHECK(choice.radius_px <= std::min(limit, 20.0f));
     }
@@ -155,7 +155,7 @@ TEST_CASE("auto: no filter is given more room than the largest circle or --max-c
 
 TEST_CASE("auto: what cannot be reached is answered with what comes nearest") {
   const SceneTraits traits = blurred_traits(1.0f);
-  const Choice choice = within_error(traits, 0.0);
+  const AutoMethod choice = within_error(traits, 0.0);
   CHECK_FALSE(choice.meets_goal);
   for (const Candidate& candidate : candidates()) {
     CHECK(choice.predicted_error <= predicted_error(candidate, traits));

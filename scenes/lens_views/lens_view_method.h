@@ -12,10 +12,10 @@
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
-#include "scenes/lens_views/lens_points.h"
 #include "scenes/draw/draw_scene.h"
-#include "scenes/scene.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/lens_views/lens_points.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 
@@ -31,11 +31,11 @@ struct Sampling {
 /// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
 double aperture_radius_m(const ThinLens& lens, double coc_scale);
 
-struct SceneMethodInput {
+struct LensViewInput {
   const Scene& scene;
-  const View& view;  ///< the pinhole's
+  const CameraMatrices& camera;  ///< the pinhole
   double frame = 0.0;
-  /// The scene as that view shows it, RGBA16F: gives the size, and the result its alpha.
+  /// The scene as that camera sees it, RGBA16F: gives the size, and the result its alpha.
   const Image& pinhole;
   double focus_m = 1.0;
   double aperture_radius_m = 0.0;
@@ -55,7 +55,7 @@ struct SampledPicture {
   std::optional<double> half_set_rms;
 };
 
-struct SceneMethod {
+struct LensViewMethod {
   std::string_view name;
   std::string_view summary;
   std::string_view needs;
@@ -63,12 +63,12 @@ struct SceneMethod {
   std::string_view missing;
   /// The same bits for any number of threads. Throws std::runtime_error where a library
   /// that it uses fails.
-  SampledPicture (*render)(const SceneMethodInput& input, ThreadPool& pool);
+  SampledPicture (*render)(const LensViewInput& input, ThreadPool& pool);
 };
 
-std::span<const SceneMethod> scene_methods();
+std::span<const LensViewMethod> lens_view_methods();
 
 /// The method of that name, or nullptr.
-const SceneMethod* find_scene_method(std::string_view name);
+const LensViewMethod* find_lens_view_method(std::string_view name);
 
 }  // namespace softfocus

@@ -17,7 +17,7 @@ namespace softfocus {
 /// dof/lens.h, point by point. `offset_px` is where in the pixel, to the right and down
 /// from its centre, a pixel looks: the picture moves the other way. Nothing moved is the
 /// pinhole's view, bit for bit.
-View lens_view(const View& pinhole, glm::dvec2 lens_point_m, double focus_m, glm::dvec2 offset_px,
-               int width_px, int height_px);
+CameraMatrices lens_camera(const CameraMatrices& pinhole, glm::dvec2 lens_point_m, double focus_m,
+                           glm::dvec2 offset_px, int width_px, int height_px);
 
 }  // namespace softfocus

@@ -12,20 +12,20 @@
 
 namespace softfocus {
 
-struct Goal {
+struct AutoGoal {
   double max_error = 0.02;              ///< mean FLIP; not looked at if there is a time
   std::optional<double> max_time_ms{};  ///< for the method, beside drawing
 };
 
 /// What the choice is bound by.
-struct ChoiceLimits {
+struct AutoLimits {
   std::optional<float> max_radius_px;  ///< filters cut circles to no more than this
   std::size_t triangles = 0;           ///< of the scene: what drawing it again takes
 };
 
-/// A method of dof/dof.h with a radius, or of scenes/lens_views/scene_method.h with a number of
-/// samples.
-struct Choice {
+/// A method of dof/dof.h with a radius, or of scenes/lens_views/lens_view_method.h with a number
+/// of samples.
+struct AutoMethod {
   std::string_view method;
   float radius_px = 0.0f;  ///< what circles are cut to: max_coc_px of a filter
   int samples = 0;         ///< 0 of a filter
@@ -40,12 +40,12 @@ struct Choice {
 /// is 0. Of what keeps to an error, and is foreseen to take up to a twentieth longer than the
 /// cheapest, the most accurate. Among candidates that are foreseen equal, the one that stands
 /// first in the table.
-Choice choose(const SceneTraits& traits, const Goal& goal, const ChoiceLimits& limits);
+AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits);
 
 /// Whether the pinhole's picture, by which auto chose, is the one that is wanted, to the bit.
-bool is_sharp(const Choice& choice);
+bool is_sharp(const AutoMethod& choice);
 
 /// "two-pass, radius 8", "accumulation, 64 samples", "pinhole".
-std::string setting_text(const Choice& choice);
+std::string setting_text(const AutoMethod& choice);
 
 }  // namespace softfocus
