@@ -16,7 +16,7 @@ constexpr int kMostRuns = 1000;
 
 /// A drawn and a filtered picture, one between (8 bytes a pixel each) and depth (4), for
 /// each of the two contenders; two pictures read back and compared.
-constexpr std::uint64_t kBytesPerPixel = 72;
+constexpr std::uint64_t kBenchBytesPerPixel = 72;
 
 void add_subject_options(CLI::App& parser, BenchOptions& options) {
   add_optional_argument(parser, "SCENE", "A scene or a file, as render takes it", options.scene);
@@ -78,7 +78,7 @@ void complete(BenchOptions& options, const CLI::App& parser) {
   }
   if (options.image) options.size = *options.image;
   check_arithmetic(options.arithmetic, options.method->name, options.versus != nullptr);
-  check_memory(options.image ? "--image" : "--size", options.size, kBytesPerPixel);
+  check_memory(options.image ? "--image" : "--size", options.size, kBenchBytesPerPixel);
 }
 
 }  // namespace softfocus

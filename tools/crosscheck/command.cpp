@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "raster/threads/parallel.h"
@@ -13,14 +12,13 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/crosscheck/run_cases.h"
+#include "tools/files/json.h"
 #include "tools/files/whole_file.h"
 #include "tools/options/driver_option.h"
 #include "tools/options/profile_option.h"
 
 namespace softfocus {
 namespace {
-
-using nlohmann::ordered_json;
 
 // As for compare.
 constexpr int kEqual = 0;
@@ -104,11 +102,10 @@ void print_result(const CaseResult& result) {
   if (!result.picture.empty()) std::cout << "    " << printable(result.picture) << '\n';
 }
 
-ordered_json json_of(const DriverWork& work, const CaseResult& result) {
-  ordered_json entry{{"driver", work.driver->name}, {"profile", work.profile.name},
-                     {"stage", result.stage},       {"case", result.name},
-                     {"values", result.values},     {"differing", nullptr},
-                     {"max_ulp", nullptr}};
+Json json_of(const DriverWork& work, const CaseResult& result) {
+  Json entry{{"driver", work.driver->name}, {"profile", work.profile.name}, {"stage", result.stage},
+             {"case", result.name},         {"values", result.values},      {"differing", nullptr},
+             {"max_ulp", nullptr}};
   // What was not compared is not equal.
   if (was_compared(result)) {
     entry["differing"] = result.differing;
@@ -126,7 +123,7 @@ ordered_json json_of(const DriverWork& work, const CaseResult& result) {
 }
 
 // For a driver that could not be used, or not to its end.
-ordered_json json_of(const DriverWork& work, const std::string& error) {
+Json json_of(const DriverWork& work, const std::string& error) {
   return {{"driver", work.driver->name},
           {"profile", work.profile.name},
           {"stage", nullptr},
@@ -163,7 +160,7 @@ void print_summary(const Count& count, const CrosscheckOptions& options) {
 }
 
 int crosscheck(const CrosscheckOptions& options) {
-  ordered_json entries = ordered_json::array();
+  Json entries = Json::array();
   Count count;
   bool complete = true;
   for (const DriverWork& work : planned_work(options)) {
@@ -202,7 +199,7 @@ int crosscheck(const CrosscheckOptions& options) {
   }
   if (options.json) {
     // A file's name need not be UTF-8, but JSON must be.
-    std::cout << entries.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+    std::cout << json_text(entries, 2) << '\n';
   } else {
     print_summary(count, options);
   }

@@ -113,7 +113,7 @@ bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b
 
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
 /// depth (4) and the largest encoding (12).
-constexpr std::uint64_t kBytesPerPixel = 40;
+constexpr std::uint64_t kRenderBytesPerPixel = 40;
 
 /// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and
 /// its depth.
@@ -183,7 +183,8 @@ void complete(RenderOptions& options, const CLI::App& parser) {
                      " exclude each other: it draws in the emulation; give one");
   }
   const bool may_sample = samples || options.method.is_auto();
-  check_memory("--size", options.size, kBytesPerPixel + (may_sample ? kSamplingBytesPerPixel : 0));
+  check_memory("--size", options.size,
+               kRenderBytesPerPixel + (may_sample ? kSamplingBytesPerPixel : 0));
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {
