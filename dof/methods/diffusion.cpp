@@ -1,4 +1,4 @@
-#include "dof/diffusion.h"
+#include "dof/methods/diffusion.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "dof/picture_planes.h"
 #include "raster/threads/scratch_shelf.h"
 
-#define SOFTFOCUS_KERNELS "dof/diffusion_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/methods/diffusion_kernels.inl"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -51,7 +51,8 @@ void diffuse_line(float* first, std::ptrdiff_t step, std::ptrdiff_t plane, int c
   }
 }
 
-void store_planes(const DofInput& input, const ImageView& result, const Planes& planes, ThreadPool& pool) {
+void store_planes(const DofInput& input, const ImageView& result, const Planes& planes,
+                  ThreadPool& pool) {
   pool.for_each(planes.height, [&](int y) {
     store_row(input, result, y, plane_row(planes, 0, y), plane_row(planes, 1, y),
               plane_row(planes, 2, y), pool.isa());

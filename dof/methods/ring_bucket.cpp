@@ -1,4 +1,4 @@
-#include "dof/ring_bucket/ring_bucket.h"
+#include "dof/methods/ring_bucket.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <map>
 #include <vector>
 
+#include "dof/methods/ring_bucket_tile.h"
 #include "dof/picture_planes.h"
-#include "dof/ring_bucket/ring_bucket_tile.h"
 #include "raster/numbers/exact_math.h"
 
-#define SOFTFOCUS_KERNELS "dof/ring_bucket/ring_bucket_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/methods/ring_bucket_kernels.inl"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {

@@ -1,4 +1,4 @@
-#include "dof/post_process/post_process.h"
+#include "dof/methods/post_process.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "dof/methods/post_process_row.h"
 #include "dof/picture_planes.h"
-#include "dof/post_process/post_process_row.h"
 #include "raster/numbers/exact_math.h"
 
-#define SOFTFOCUS_KERNELS "dof/post_process/post_process_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/methods/post_process_kernels.inl"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {

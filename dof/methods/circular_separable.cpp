@@ -1,4 +1,4 @@
-#include "dof/circular_separable/circular_separable.h"
+#include "dof/methods/circular_separable.h"
 
 #include <algorithm>
 #include <array>
@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "dof/circular_separable/circular_kernel.h"
+#include "dof/methods/circular_kernel.h"
 #include "dof/picture_planes.h"
-#include "raster/threads/scratch_shelf.h"
 #include "raster/numbers/exact_math.h"
+#include "raster/threads/scratch_shelf.h"
 
-#define SOFTFOCUS_KERNELS "dof/circular_separable/circular_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/methods/circular_kernels.inl"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
