@@ -1,3 +1,6 @@
+#ifndef SOFTFOCUS_ISA
+// The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+
 #include "dof/methods/diffusion.h"
 
 #include <algorithm>
@@ -9,7 +12,7 @@
 #include "dof/picture_planes.h"
 #include "raster/threads/scratch_shelf.h"
 
-#define SOFTFOCUS_KERNELS "dof/methods/diffusion_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/methods/diffusion.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -23,7 +26,7 @@ float heat_flow(float radius_px) {
   return std::fabs(radius_px) > 0.5f ? radius_px * radius_px * 0.125f : 0.0f;
 }
 
-// One line of `count` pixels, `step` apart, from the first in the red plane.
+// Solves the system of a line of pixels, `step` apart, from its first in the red plane on.
 void diffuse_line(float* first, std::ptrdiff_t step, std::ptrdiff_t plane, int count) {
   std::vector<float> shares(static_cast<std::size_t>(count));
   const float* radius = first + 3 * plane;
@@ -59,9 +62,7 @@ void store_planes(const DofInput& input, const ImageView& result, const Planes& 
   });
 }
 
-}  // namespace
-
-void diffusion_plain(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+void diffusion_scalar(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   Planes planes = split_picture(input, pool);
   pool.for_each(planes.height, [&](int y) {
     diffuse_line(plane_row(planes, 0, y), 1, planes.plane, planes.width);
@@ -72,8 +73,10 @@ void diffusion_plain(const DofInput& input, const ImageView& result, ThreadPool&
   store_planes(input, result, planes, pool);
 }
 
+}  // namespace
+
 void diffusion(const DofInput& input, const ImageView& result, ThreadPool& pool) {
-  if (pool.isa() == Isa::scalar) return diffusion_plain(input, result, pool);
+  if (pool.isa() == Isa::scalar) return diffusion_scalar(input, result, pool);
   Planes planes = split_picture(input, pool);
   const int lanes = lanes_of(pool.isa());
   const int padded = (planes.width + lanes - 1) / lanes * lanes;
@@ -104,3 +107,89 @@ void diffusion(const DofInput& input, const ImageView& result, ThreadPool& pool)
 }
 
 }  // namespace softfocus
+
+#else  // kernels
+
+namespace {
+
+SOFTFOCUS_INLINE Floats heat_flow(Floats radius_px) {
+  return select(absolute(radius_px) > 0.5f, radius_px * radius_px * 0.125f, splat(0.0f));
+}
+
+/// Solves kLanes systems of `count` nodes. A node is four vectors: radius, red, green, blue.
+SOFTFOCUS_INLINE void diffuse_lines(float* nodes, int count) {
+  Floats ratio = splat(0.0f), before = splat(0.0f);
+  Floats r = splat(0.0f), g = splat(0.0f), b = splat(0.0f);
+  Floats here = heat_flow(load(nodes));
+  for (int i = 0; i < count; ++i) {
+    float* node = nodes + i * 4 * kLanes;
+    const Floats next = i + 1 < count ? heat_flow(load(node + 4 * kLanes)) : splat(0.0f);
+    const Floats after = smaller(here, next);
+    const Floats through = 1.0f + before * ratio;
+    const Floats scale = 1.0f / (through + after);
+    ratio = through * scale;
+    r = (load(node + kLanes) + before * r) * scale;
+    g = (load(node + 2 * kLanes) + before * g) * scale;
+    b = (load(node + 3 * kLanes) + before * b) * scale;
+    store(node, after * scale);
+    store(node + kLanes, r);
+    store(node + 2 * kLanes, g);
+    store(node + 3 * kLanes, b);
+    before = after;
+    here = next;
+  }
+  r = g = b = splat(0.0f);
+  for (int i = count - 1; i >= 0; --i) {
+    float* node = nodes + i * 4 * kLanes;
+    const Floats share = load(node);
+    r = load(node + kLanes) + share * r;
+    g = load(node + 2 * kLanes) + share * g;
+    b = load(node + 3 * kLanes) + share * b;
+    store(node + kLanes, r);
+    store(node + 2 * kLanes, g);
+    store(node + 3 * kLanes, b);
+  }
+}
+
+}  // namespace
+
+/// Solves kLanes rows at once; the last `padded - width` nodes of each are padding. `rows`
+/// are kLanes rows of the red plane; the first `height` are written.
+void diffuse_rows(float* const* rows, int height, std::ptrdiff_t plane, int width, int padded,
+                  float* nodes) {
+  for (int x = 0; x < padded; x += kLanes) {
+    for (int channel = 0; channel < 4; ++channel) {
+      Floats block[kLanes];
+      for (int i = 0; i < kLanes; ++i) block[i] = load(rows[i] + (channel + 3) % 4 * plane + x);
+      transpose(block);
+      for (int i = 0; i < kLanes; ++i) store(nodes + ((x + i) * 4 + channel) * kLanes, block[i]);
+    }
+  }
+  diffuse_lines(nodes, width);
+  for (int x = 0; x < padded; x += kLanes) {
+    for (int channel = 1; channel < 4; ++channel) {
+      Floats block[kLanes];
+      for (int i = 0; i < kLanes; ++i) block[i] = load(nodes + ((x + i) * 4 + channel) * kLanes);
+      transpose(block);
+      for (int i = 0; i < height; ++i) store(rows[i] + (channel - 1) * plane + x, block[i]);
+    }
+  }
+}
+
+/// Solves kLanes columns at once, from `top` in the red plane down.
+void diffuse_columns(float* top, std::ptrdiff_t stride, std::ptrdiff_t plane, int height,
+                     float* nodes) {
+  for (int y = 0; y < height; ++y) {
+    for (int channel = 0; channel < 4; ++channel) {
+      store(nodes + (y * 4 + channel) * kLanes, load(top + y * stride + (channel + 3) % 4 * plane));
+    }
+  }
+  diffuse_lines(nodes, height);
+  for (int y = 0; y < height; ++y) {
+    for (int channel = 1; channel < 4; ++channel) {
+      store(top + y * stride + (channel - 1) * plane, load(nodes + (y * 4 + channel) * kLanes));
+    }
+  }
+}
+
+#endif
