@@ -9,7 +9,6 @@
 #include "dof/methods/post_process.h"
 #include "dof/methods/ring_bucket.h"
 #include "dof/one_pass/one_pass.h"
-#include "dof/scatter/layers.h"
 #include "dof/scatter/scatter.h"
 #include "dof/two_pass/two_pass.h"
 
