@@ -28,12 +28,13 @@ void begin_picture(TwoPassStream& stream) {
   stream.rows_below = 0;
 }
 
-void give_rows(TwoPassStream& stream, ThreadPool& pool, const RowSink& sink) {
+void write_finished(TwoPassStream& stream, ThreadPool& pool, const RowSink& sink) {
   const int count = std::min(rows_done(stream.strips.front()), group_rows(stream));
   if (count <= 0) return;
   pool.for_each(static_cast<int>(stream.strips.size()), [&](int i) {
-    take_rows(stream.strips[static_cast<std::size_t>(i)], stream.filter, count,
-              stream.finished.data(), stream.row_halves);
+    write_rows(stream.strips[static_cast<std::size_t>(i)], stream.filter, count,
+               stream.finished.data(),
+               static_cast<std::ptrdiff_t>(stream.row_halves * sizeof(std::uint16_t)));
   });
   for (int i = 0; i < count; ++i) {
     sink(std::span{stream.finished}.subspan(static_cast<std::size_t>(i) * stream.row_halves,
@@ -54,7 +55,7 @@ void filter_waiting(TwoPassStream& stream, ThreadPool& pool, const RowSink& sink
     add_rows(strip, stream.filter, rows.data(), stream.rows_waiting);
   });
   stream.rows_waiting = 0;
-  give_rows(stream, pool, sink);
+  write_finished(stream, pool, sink);
 }
 
 }  // namespace
@@ -107,7 +108,7 @@ void end_rows(TwoPassStream& stream, ThreadPool& pool, const RowSink& sink) {
       add_rows_below(strip, stream.filter, Outside::repeats, count);
     });
     stream.rows_below += count;
-    give_rows(stream, pool, sink);
+    write_finished(stream, pool, sink);
   }
   begin_picture(stream);
 }
