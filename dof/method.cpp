@@ -2,14 +2,13 @@
 
 #include <array>
 
-#include "dof/circular_separable/circular_separable.h"
-#include "dof/diffusion.h"
 #include "dof/disc_layers/disc_layers.h"
-#include "dof/scatter/layers.h"
+#include "dof/methods/circular_separable.h"
+#include "dof/methods/diffusion.h"
+#include "dof/methods/pinhole.h"
+#include "dof/methods/post_process.h"
+#include "dof/methods/ring_bucket.h"
 #include "dof/one_pass/one_pass.h"
-#include "dof/pinhole.h"
-#include "dof/post_process/post_process.h"
-#include "dof/ring_bucket/ring_bucket.h"
 #include "dof/scatter/scatter.h"
 #include "dof/two_pass/two_pass.h"
 

@@ -1,4 +1,4 @@
-#include "dof/pinhole.h"
+#include "dof/methods/pinhole.h"
 
 #include <algorithm>
 

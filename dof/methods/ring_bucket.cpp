@@ -1,4 +1,7 @@
-#include "dof/ring_bucket/ring_bucket.h"
+#ifndef SOFTFOCUS_ISA
+// The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+
+#include "dof/methods/ring_bucket.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +11,39 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "dof/ring_bucket/ring_bucket_tile.h"
 #include "raster/numbers/exact_math.h"
 
-#define SOFTFOCUS_KERNELS "dof/ring_bucket/ring_bucket_kernels.inl"
+namespace softfocus {
+
+// All in half-resolution pixels.
+struct BucketTap {
+  int dx, dy;
+  float distance_px;
+};
+
+// A row of a tile and its neighbours.
+struct BucketRow {
+  // rows[dy] points at the row's first pixel, dy rows away. Planes, `plane` floats apart: red,
+  // green, blue, size, 1 / size^2, share in the near field. Every tap lies inside a row.
+  const float* const* rows;
+  std::ptrdiff_t plane;
+  int count;
+
+  const BucketTap* taps;  // from the outermost ring in
+  int rings;
+  float spacing_px;
+  float inverse_density;  // 1 / D
+  float gain;
+  bool near_field;  // whether any share is more than 0
+
+  // Planes of the background's colour, the near colour and the near opacity.
+  float* result;
+  std::ptrdiff_t result_plane;
+};
+
+}  // namespace softfocus
+
+#define SOFTFOCUS_KERNELS "dof/methods/ring_bucket.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -27,18 +59,18 @@ constexpr int kLight = 4;  // 1 / size^2
 constexpr int kShare = 5;
 constexpr int kHalfPlanes = 6;
 
-// The size of a sample that is not spread: it reaches no neighbour.
+// The size of a sample that reaches no neighbour.
 constexpr float kLeastSize = 0.5f;
 
-// The radius squared that half resolution has by itself.
+// The square of the radius by which half resolution itself blurs.
 constexpr float kHalfSquare = 4.0f;
 
-// How much of a pixel half resolution shows.
+// t(r): how much of a pixel half resolution shows.
 float half_share(float radius_px) {
   return std::clamp((radius_px * radius_px - 0.25f) * (1.0f / (kHalfSquare - 0.25f)), 0.0f, 1.0f);
 }
 
-// 2x2 pixels as one, in rows whose ends repeat for `margin` pixels and a vector.
+// A picture of half the size. The ends of its rows repeat for `margin` pixels and a vector.
 struct HalfPicture {
   int width, height, margin;
   Planes planes;
@@ -98,8 +130,8 @@ HalfPicture halve(const Planes& full, int margin, ThreadPool& pool) {
 
 struct Tiles {
   int columns, rows;
-  std::vector<float> largest;            // size inside
-  std::vector<std::uint8_t> near_field;  // whether anything inside belongs there
+  std::vector<float> largest;            // size in a tile
+  std::vector<std::uint8_t> near_field;  // whether a tile has any of it
 
   std::size_t at(int column, int row) const {
     return static_cast<std::size_t>(row * columns + column);
@@ -125,13 +157,13 @@ Tiles make_tiles(const HalfPicture& half, ThreadPool& pool) {
   return tiles;
 }
 
-// What reaches a tile: K, in quarters of a pixel, and whether any of it is near.
+// K of a tile, in quarters of a pixel, and whether anything near reaches it.
 struct Reach {
   int quarters = 0;
   bool near_field = false;
 };
 
-// `farthest` is the largest size of all.
+// `farthest` is the largest size in the picture.
 Reach reach_of_tile(const Tiles& tiles, int column, int row, float farthest) {
   const int steps = static_cast<int>(farthest) / kTileSize + 1;
   float largest = kLeastSize;
@@ -164,8 +196,8 @@ float covered(const Rings& rings, float radius) {
   return sum / std::max(radius * radius * rings.density, 1.0f);
 }
 
-// Halves go outwards, those too that a cosine's last bit has made smaller: rings are
-// symmetric.
+// Rounds halves outwards, even where a cosine's last bit has made them smaller, so that rings
+// are symmetric.
 int nearest_pixel(double offset) {
   const int distance = static_cast<int>(std::fabs(offset) + (0.5 + 1e-9));
   return offset < 0.0 ? -distance : distance;
@@ -196,7 +228,7 @@ Rings make_rings(float reach) {
   return rings;
 }
 
-// The seven planes of results, with a pixel more at either end of a row.
+// Planes as BucketRow::result, with one more pixel at either end of a row.
 Planes gather(const HalfPicture& half, const Tiles& tiles, float farthest, ThreadPool& pool) {
   Planes results = make_planes(kResults, half.width + 2 + 2 * kTileSize, half.height);
   std::vector<Reach> reaches(tiles.largest.size());
@@ -258,8 +290,9 @@ Planes gather(const HalfPicture& half, const Tiles& tiles, float farthest, Threa
   return results;
 }
 
-// A row of full resolution from rows of half: three quarters of the pixel that it lies in,
-// and one of the next one's. `blended` has room for a pixel more at either end.
+// A row of full resolution from two rows of half: three quarters of the row that it lies in
+// and a quarter of the next; along x likewise. `blended` has room for a row of half with its
+// extra pixels.
 void enlarge_row(const Planes& half, int plane, int y, int half_width, int width, float* blended,
                  float* to) {
   const int inside = y / 2;
@@ -324,3 +357,139 @@ void ring_bucket(const DofInput& input, const ImageView& result, ThreadPool& poo
 }
 
 }  // namespace softfocus
+
+#else  // kernels
+
+namespace {
+
+#include "dof/picture_lanes.inl"
+
+struct Bucket {
+  Floats weight, r, g, b, radius;
+};
+SOFTFOCUS_INLINE Bucket empty_bucket() {
+  const Floats none = splat(0.0f);
+  return {none, none, none, none, none};
+}
+
+/// The mean of a bucket's quantity; 0 if it is empty.
+SOFTFOCUS_INLINE Floats mean(Floats sum, Floats weight) {
+  return sum / larger(weight, splat(1e-20f));
+}
+
+template <bool near_field>
+SOFTFOCUS_INLINE void gather_fields(const BucketRow& row) {
+  for (int x = 0; x < row.count; x += kLanes) {
+    // Nothing that reaches a near pixel shows what lies behind it; so let all neighbours
+    // count a little.
+    Floats guess = splat(0.0f);
+    if constexpr (near_field) guess = load(row.rows[0] + 5 * row.plane + x) * 1e-3f;
+    Bucket previous = empty_bucket(), near = empty_bucket();
+    const BucketTap* tap = row.taps;
+    for (int ring = row.rings; ring >= 0; --ring) {
+      const int count = ring > 0 ? 8 * ring : 1;
+      const Floats border = splat((static_cast<float>(ring) + 0.5f) * row.spacing_px);
+      Bucket current = empty_bucket();
+      Floats hits = splat(0.0f);
+      for (int i = 0; i < count; ++i, ++tap) {
+        const float* from = row.rows[tap->dy] + tap->dx + x;
+        const Floats r = load(from), g = load(from + row.plane), b = load(from + 2 * row.plane);
+        const Floats size = load(from + 3 * row.plane);
+        const Floats reached = saturate(size - splat(tap->distance_px - 0.5f));
+        const Floats light = smaller(load(from + 4 * row.plane) * row.inverse_density, splat(1.0f));
+        Floats far_reached = reached, far_weight = reached * light;
+        if constexpr (near_field) {
+          const Floats share = load(from + 5 * row.plane);
+          const Floats near_weight = far_weight * share;
+          near.weight = near.weight + near_weight;
+          near.r = near.r + r * near_weight;
+          near.g = near.g + g * near_weight;
+          near.b = near.b + b * near_weight;
+          far_weight = (far_weight + guess * light) * (1.0f - share);
+          far_reached = reached * (1.0f - share);
+        }
+        const Mask outer = size > border;
+        const Floats to_previous = select(outer, far_weight, splat(0.0f));
+        const Floats to_current = far_weight - to_previous;
+        previous.weight = previous.weight + to_previous;
+        previous.r = previous.r + r * to_previous;
+        previous.g = previous.g + g * to_previous;
+        previous.b = previous.b + b * to_previous;
+        previous.radius = previous.radius + size * to_previous;
+        current.weight = current.weight + to_current;
+        current.r = current.r + r * to_current;
+        current.g = current.g + g * to_current;
+        current.b = current.b + b * to_current;
+        current.radius = current.radius + size * to_current;
+        hits = hits + select(outer, splat(0.0f), far_reached);
+      }
+      const Floats occlusion =
+          saturate(mean(previous.radius, previous.weight) - mean(current.radius, current.weight));
+      const Floats opacity = hits / static_cast<float>(count);
+      const Floats kept = 1.0f - opacity * occlusion;
+      previous = {previous.weight * kept + current.weight, previous.r * kept + current.r,
+                  previous.g * kept + current.g, previous.b * kept + current.b,
+                  previous.radius * kept + current.radius};
+    }
+    const Mask any_far = previous.weight > 0.0f;
+    const Mask any_near = near.weight > 0.0f;
+    float* to = row.result + x;
+    const float* own = row.rows[0] + x;
+    store(to, select(any_far, mean(previous.r, previous.weight), load(own)));
+    store(to + row.result_plane,
+          select(any_far, mean(previous.g, previous.weight), load(own + row.plane)));
+    store(to + 2 * row.result_plane,
+          select(any_far, mean(previous.b, previous.weight), load(own + 2 * row.plane)));
+    store(to + 3 * row.result_plane, select(any_near, mean(near.r, near.weight), load(own)));
+    store(to + 4 * row.result_plane,
+          select(any_near, mean(near.g, near.weight), load(own + row.plane)));
+    store(to + 5 * row.result_plane,
+          select(any_near, mean(near.b, near.weight), load(own + 2 * row.plane)));
+    store(to + 6 * row.result_plane, saturate(near.weight * row.gain));
+  }
+}
+
+}  // namespace
+
+void gather_rings(const BucketRow& row) {
+  row.near_field ? gather_fields<true>(row) : gather_fields<false>(row);
+}
+
+namespace {
+
+SOFTFOCUS_INLINE void sort(Floats& a, Floats& b) {
+  const Floats least = smaller(a, b);
+  b = larger(a, b);
+  a = least;
+}
+SOFTFOCUS_INLINE void sort(Floats& a, Floats& b, Floats& c) {
+  sort(b, c);
+  sort(a, b);
+  sort(b, c);
+}
+SOFTFOCUS_INLINE Floats middle(Floats a, Floats b, Floats c) {
+  sort(a, b, c);
+  return b;
+}
+
+}  // namespace
+
+/// Medians of 3x3 about `count` pixels of the row `here`.
+void median_row(const float* above, const float* here, const float* below, int count, float* to) {
+  for (int x = 0; x < count; x += kLanes) {
+    Floats least[3], mid[3], most[3];
+    for (int i = 0; i < 3; ++i) {
+      least[i] = load(above + x + i - 1);
+      mid[i] = load(here + x + i - 1);
+      most[i] = load(below + x + i - 1);
+      sort(least[i], mid[i], most[i]);
+    }
+    // The median of nine is the median of three: the largest of the columns' least, the middle
+    // of their middle ones and the least of their largest.
+    store(to + x,
+          middle(larger(larger(least[0], least[1]), least[2]), middle(mid[0], mid[1], mid[2]),
+                 smaller(smaller(most[0], most[1]), most[2])));
+  }
+}
+
+#endif

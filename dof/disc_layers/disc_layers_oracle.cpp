@@ -19,10 +19,6 @@ using Seen = std::array<float, 4>;   // colour, transmittance
 
 enum class Side { near, far };
 
-float share_from(RungStep step, float square) {
-  return std::max(std::min((square - step.begin) * step.slope, 1.0f), 0.0f);
-}
-
 struct Level {
   int width, height;
   std::array<std::vector<Pixel>, 2> sides;  // of level 0 both are the same
@@ -182,7 +178,7 @@ struct Layers {
 
 }  // namespace
 
-void disc_layers_plain(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+void disc_layers_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   Layers layers;
   layers.ladder = disc_ladder_of(input);
   layers.levels.push_back(picture_level(input));

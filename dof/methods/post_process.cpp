@@ -1,4 +1,7 @@
-#include "dof/post_process/post_process.h"
+#ifndef SOFTFOCUS_ISA
+// The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+
+#include "dof/methods/post_process.h"
 
 #include <algorithm>
 #include <array>
@@ -7,21 +10,42 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "dof/post_process/post_process_row.h"
 #include "raster/numbers/exact_math.h"
 
-#define SOFTFOCUS_KERNELS "dof/post_process/post_process_kernels.inl"
+namespace softfocus {
+
+// A row of full resolution to blend.
+struct PostProcessRow {
+  // Red of the two rows above, the row itself and the two below, with two more pixels at
+  // either end.
+  const float* sharp[5];
+  std::ptrdiff_t sharp_plane;
+  const float* radius;
+  // Enlarged: medium's red, green, blue and near radius, large's red, green and blue.
+  const float* blurred;
+  std::ptrdiff_t blurred_plane;
+  int count;
+  float squares[4];   // R_i^2
+  float inverses[4];  // 1 / (R_i^2 - R_(i-1)^2), from 1 on
+  float* result;
+  std::ptrdiff_t result_plane;
+};
+
+}  // namespace softfocus
+
+#define SOFTFOCUS_KERNELS "dof/methods/post_process.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {
 
 constexpr int kQuarter = 4;
-constexpr int kNear = 3;  // the plane of the near radius, after the colours
-constexpr int kWidestVector = 16;
+constexpr int kNear = 3;           // the plane of the near radius, after the colours
+constexpr int kWidestVector = 16;  // pixels
 constexpr int kTaskRows = 8;
 
-// Variances an axis, in pixels: of means of 4x4, and of what enlarging them adds.
+// Variances along an axis, in square pixels: that of a mean of 4x4 pixels, and what
+// enlarging adds.
 constexpr double kMeanVariance = 1.25;
 constexpr double kEnlargedVariance = 2.5;
 constexpr double kMediumVariance = kMeanVariance + 8.0 + kEnlargedVariance;
@@ -55,7 +79,7 @@ Planes make_quarter(const Planes& full, ThreadPool& pool) {
   return quarter;
 }
 
-// From one end to the other, of an odd number; they sum to 1.
+// An odd number of weights from end to end, which sum to 1.
 std::vector<float> gaussian_weights(double variance) {
   const int reach = static_cast<int>(std::ceil(3.0 * std::sqrt(variance)));
   std::vector<double> exact;
@@ -70,7 +94,7 @@ std::vector<float> gaussian_weights(double variance) {
   return weights;
 }
 
-// All planes under a kernel, along x and then along y. The edges repeat outwards.
+// Convolves all planes along x, then along y. The edges repeat outwards.
 Planes convolve(const Planes& source, const std::vector<float>& weights, ThreadPool& pool) {
   const int taps = static_cast<int>(weights.size()), reach = taps / 2;
   Planes across = make_planes(4, source.width, source.height);
@@ -102,8 +126,8 @@ Planes convolve(const Planes& source, const std::vector<float>& weights, ThreadP
   return result;
 }
 
-// A row of full resolution, interpolated bilinearly. `blended` has room for a pixel more
-// than `quarter` is wide at either end.
+// Interpolates a row of full resolution bilinearly. `blended` has room for a row of `quarter`
+// and one more pixel at either end.
 void enlarge_row(const Planes& quarter, int plane, int y, int width, float* blended, float* to) {
   constexpr std::array kOtherShares{0.375f, 0.125f, 0.125f, 0.375f};
   const int inside = y / kQuarter, part = y % kQuarter;
@@ -126,7 +150,7 @@ void enlarge_row(const Planes& quarter, int plane, int y, int width, float* blen
   }
 }
 
-// A row of the scene's colours with two pixels more at either end.
+// Copies a row of the scene's colours, with two more pixels at either end.
 void pad_row(const Planes& full, int y, float* to, std::ptrdiff_t plane) {
   for (int c = 0; c < 3; ++c, to += plane) {
     const float* from = plane_row(full, c, y);
@@ -200,3 +224,52 @@ void post_process(const DofInput& input, const ImageView& result, ThreadPool& po
 }
 
 }  // namespace softfocus
+
+#else  // kernels
+
+/// The weighted sum of `taps` rows.
+void weigh_rows(const float* const* rows, const float* weights, int taps, int count, float* to) {
+  for (int x = 0; x < count; x += kLanes) {
+    Floats sum = load(rows[0] + x) * weights[0];
+    for (int i = 1; i < taps; ++i) sum = sum + load(rows[i] + x) * weights[i];
+    store(to + x, sum);
+  }
+}
+
+namespace {
+
+#include "dof/picture_lanes.inl"
+
+/// The sum of a square of four pixels, four times the bilinear tap in its middle. `upper` and
+/// `lower` point at its left pixels.
+SOFTFOCUS_INLINE Floats square_sum(const float* upper, const float* lower) {
+  return (load(upper) + load(upper + 1)) + (load(lower) + load(lower + 1));
+}
+
+}  // namespace
+
+void blend_row(const PostProcessRow& row) {
+  for (int x = 0; x < row.count; x += kLanes) {
+    const Floats near = load(row.blurred + 3 * row.blurred_plane + x);
+    const Floats radius = larger(load(row.radius + x), near);
+    const Floats square = larger(radius, splat(0.0f)) * larger(radius, splat(0.0f));
+    Floats shares[4];
+    for (int i = 1; i < 4; ++i) {
+      shares[i] = saturate((square - row.squares[i - 1]) * row.inverses[i]);
+    }
+    for (int c = 0; c < 3; ++c) {
+      const float* at[5];
+      for (int i = 0; i < 5; ++i) at[i] = row.sharp[i] + c * row.sharp_plane + x;
+      const Floats own = load(at[2]);
+      const Floats taps = (square_sum(at[0], at[1]) + square_sum(at[1] - 2, at[2] - 2)) +
+                          (square_sum(at[3] - 1, at[4] - 1) + square_sum(at[2] + 1, at[3] + 1));
+      const Floats small = (own + taps) * (1.0f / 17.0f);
+      const Floats medium = load(row.blurred + c * row.blurred_plane + x);
+      const Floats large = load(row.blurred + (4 + c) * row.blurred_plane + x);
+      store(row.result + c * row.result_plane + x,
+            mix(mix(mix(own, small, shares[1]), medium, shares[2]), large, shares[3]));
+    }
+  }
+}
+
+#endif
