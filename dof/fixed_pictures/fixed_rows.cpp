@@ -28,7 +28,8 @@ void filter_rows(const RowFilter& filter, int y_begin, int y_end) {
   fixed::Settings settings = filter.settings;
   settings.height = static_cast<std::uint16_t>(last - first);
   std::vector<std::uint32_t> memory(fixed::memory_bytes(settings) / sizeof(std::uint32_t) + 1);
-  std::vector<std::byte> unwanted(filter.result.stride_bytes);
+  std::vector<std::byte> unwanted(bytes_per_texel(filter.result.format) *
+                                  static_cast<std::size_t>(filter.result.width));
   fixed::Stream stream;
   const auto begin = settings.colour == SOFTFOCUS_FIXED_RGBA16F ? softfocus_fixed_begin_half
                                                                 : softfocus_fixed_begin;
