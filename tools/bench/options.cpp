@@ -50,7 +50,10 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
                     .coc_scale = "the scene's"});
   add_max_coc_option(parser, options.max_coc_px);
   add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
-                     [&options](const Profile& profile) { options.profile = profile; });
+                     [&options](const ChosenProfile& chosen) {
+                       options.profile = chosen.profile;
+                       options.profile_name = chosen.name;
+                     });
   add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--runs", "N", "Times that each is run and timed, 10 to 1000 (default: 15)",
             [&options](const std::string& text) {

@@ -47,7 +47,7 @@ std::string heading(const BenchRecord& record) {
                ? ""
                : " " + std::string{arithmetic_name(record.options.arithmetic)}) +
           ", max-coc " + short_number(static_cast<double>(work.settings.max_coc_px)) + "\n";
-  text += "profile " + work.profile.name + ", " + std::to_string(pool.threads) +
+  text += "profile " + work.profile_name + ", " + std::to_string(pool.threads) +
           (pool.threads == 1 ? " thread, " : " threads, ") + std::string{isa_name(pool.isa)} +
           ", " + std::to_string(record.options.runs) + " runs, " +
           cpu_name().value_or("a CPU without a name") + "\n";
@@ -112,7 +112,7 @@ std::string bench_json(const BenchRecord& record) {
             {"method", work.method->name},
             {"arithmetic", arithmetic_name(record.options.arithmetic)},
             {"max_coc", work.settings.max_coc_px},
-            {"profile", work.profile.name},
+            {"profile", work.profile_name},
             {"threads", pool.threads},
             {"isa", isa_name(pool.isa)},
             {"runs", record.options.runs},

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dof/fixed_pictures/arithmetic.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
@@ -24,7 +24,7 @@ struct ChartEntry {
   std::string chosen{};               ///< by auto, once it has: "disc-layers, radius 16"
 };
 
-/// The names that --methods takes: every filter of dof/method.h, accumulation and auto.
+/// The names that --methods takes: every filter of dof/dof.h, accumulation and auto.
 std::vector<std::string> chart_methods();
 
 /// The settings of one of them for pictures of that height; `quick`: fewer. Integers have radii

@@ -24,12 +24,13 @@ ChartTruth make_truth(const ChartScene& scene, int samples,
                       const std::function<void(int)>& on_samples, ThreadPool& pool) {
   // Or the half would lie inside of a group, and the bits would not be accumulation()'s.
   assert(samples % kTruthSampleStep == 0);
-  const SceneMethodInput input = accumulation_input(scene, samples);
+  const LensViewInput input = accumulation_input(scene, samples);
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
   SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
   const auto add_until = [&](int last) {
     while (sums.count < last) {
-      add_views(buffer, input, sums.count, std::min(sums.count + kViewGroup, last), sums, pool);
+      add_lens_views(buffer, input, sums.count, std::min(sums.count + kLensViewGroup, last), sums,
+                     pool);
       on_samples(sums.count);
     }
   };

@@ -27,7 +27,7 @@ constexpr int kIncomplete = 2;
 
 struct CrosscheckOptions {
   std::vector<const Driver*> drivers;
-  std::optional<Profile> profile;
+  std::optional<ChosenProfile> profile;
   std::string cases = "*";
   std::filesystem::path pictures;
   Shaders shaders;
@@ -38,18 +38,18 @@ struct CrosscheckOptions {
 /// What a driver is to do.
 struct DriverWork {
   const Driver* driver;
-  Profile profile;
+  ChosenProfile profile;
   int cases;
 };
 
-Profile profile_for(const Driver& driver, const CrosscheckOptions& options) {
+ChosenProfile profile_for(const Driver& driver, const CrosscheckOptions& options) {
   if (options.profile) return *options.profile;
   if (driver.profile.empty()) {
     throw UsageError("--driver " + std::string(driver.name) +
                      " needs --profile: softfocus probe --driver " + std::string(driver.name) +
                      " makes one");
   }
-  return find_profile(driver.profile).value();
+  return {std::string(driver.profile), "", find_profile(driver.profile).value()};
 }
 
 // Without --driver: those whose profile is known. All that can be wrong with the options
@@ -174,17 +174,18 @@ int crosscheck(const CrosscheckOptions& options) {
         std::cout << work.driver->name << " against profile " << printable(work.profile.name)
                   << '\n';
       }
-      const DriverRun run = run_cases({*work.driver, work.profile, options.shaders, options.cases,
-                                       options.quick, options.pictures, hardware_threads()},
-                                      [&](const CaseResult& result) {
-                                        add(count, result);
-                                        if (options.json) {
-                                          entries.push_back(json_of(work, result));
-                                        } else {
-                                          print_result(result);
-                                          std::cout.flush();
-                                        }
-                                      });
+      const DriverRun run =
+          run_cases({*work.driver, work.profile.profile, options.shaders, options.cases,
+                     options.quick, options.pictures, hardware_threads()},
+                    [&](const CaseResult& result) {
+                      add(count, result);
+                      if (options.json) {
+                        entries.push_back(json_of(work, result));
+                      } else {
+                        print_result(result);
+                        std::cout.flush();
+                      }
+                    });
       if (!options.json && !run.renderer.empty()) {
         std::cout << "  (" << printable(run.renderer) << ")\n";
       }
@@ -248,7 +249,7 @@ Command add_crosscheck_command(CLI::App& program) {
                       }
                     });
   add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
-                     [options](const Profile& profile) { options->profile = profile; });
+                     [options](const ChosenProfile& chosen) { options->profile = chosen; });
   add_value(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
             [options](const std::string& text) { options->cases = text; });
   add_value(*parser, "--shaders", "DIR",

@@ -7,7 +7,7 @@
 #include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/hash.h"
-#include "scenes/make/random_bits.h"
+#include "raster/numbers/random_bits.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {
@@ -100,11 +100,12 @@ void add_samples(Hash& hash, const Texture& texture, Filter filter, const Profil
 
 }  // namespace
 
-std::vector<NamedHash> sampler_hashes(std::span<const Profile> profiles) {
+std::vector<NamedHash> sampler_hashes(std::span<const NamedProfile> profiles) {
   std::vector<NamedHash> hashes;
-  for (const Profile& profile : profiles) {
+  for (const NamedProfile& known : profiles) {
+    const Profile& profile = known.profile;
     for (const auto& [format_name, format] : kFormats) {
-      const std::string under = std::string{format_name} + ' ' + profile.name;
+      const std::string under = std::string{format_name} + ' ' + std::string{known.name};
       std::vector<Texture> textures;
       Hash mipmaps;
       for (const int width : kWidths) {

@@ -90,7 +90,10 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
   add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
-                     [&options](const Profile& profile) { options.profile = profile; });
+                     [&options](const ChosenProfile& chosen) {
+                       options.profile = chosen.profile;
+                       options.profile_name = chosen.name;
+                     });
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
   add_pool_options(parser, options.pool, "the picture is the same");

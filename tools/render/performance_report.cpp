@@ -56,7 +56,7 @@ std::string filter_lines(const UsedLens& used) {
          line("Leak", short_number(used.settings.leak));
 }
 
-std::string choice_lines(const Choice& choice) {
+std::string choice_lines(const AutoMethod& choice) {
   return line("Chosen", setting_text(choice)) + line("Because", choice.reason) +
          line("Predicted error", short_number(choice.predicted_error) + " (mean FLIP)") +
          line("Predicted time",
@@ -89,7 +89,7 @@ Json traits_json(const SceneTraits& traits) {
   return json;
 }
 
-Json choice_json(const Choice& choice, const Goal& goal) {
+Json choice_json(const AutoMethod& choice, const AutoGoal& goal) {
   Json json{{"method", choice.method}};
   if (choice.radius_px > 0.0f) json["max_coc_px"] = choice.radius_px;
   if (choice.samples > 0) json["samples"] = choice.samples;
@@ -136,7 +136,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   }
   if (record.used.choice) text += choice_lines(*record.used.choice);
   text += line("Picture", std::string{name_of(options.show)});
-  text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
+  text += record.gl_renderer.empty() ? line("Profile", options.profile_name)
                                      : line("GL driver", record.gl_renderer);
   text += line("Threads", std::to_string(options.pool.threads));
   text += line("Vector unit", std::string{isa_name(options.pool.isa)});
@@ -169,7 +169,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"title", record.scene_title},     {"frame", options.frame},
       {"width", options.size.width},     {"height", options.size.height},
       {"triangles", record.triangles},   {"method", options.method.name()},
-      {"show", name_of(options.show)},   {"profile", options.profile.name},
+      {"show", name_of(options.show)},   {"profile", options.profile_name},
       {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
       {"output", options.output},
   };
