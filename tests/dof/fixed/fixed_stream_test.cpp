@@ -1,4 +1,4 @@
-// The fixed-point filter row by row against the plain evaluation in wide integers, bit for
+// The fixed-point filter row by row against the oracle in wide integers, bit for
 // bit, and what it refuses.
 
 #include <cstring>
@@ -150,7 +150,7 @@ int begin(const Settings& settings, const std::vector<Weights>& table, std::size
 
 }  // namespace
 
-TEST_CASE("fixed point: rows of 8-bit colour have the bits of the plain evaluation") {
+TEST_CASE("fixed point: rows of 8-bit colour have the bits of the oracle") {
   Random random{1};
   for (int i = 0; i < 240; ++i) {
     const Lens lens = any_lens(random, i % 4 == 0 ? 64 : 10);
@@ -163,7 +163,7 @@ TEST_CASE("fixed point: rows of 8-bit colour have the bits of the plain evaluati
   }
 }
 
-TEST_CASE("fixed point: codes of 16 bits and of halves have the bits of the plain evaluation") {
+TEST_CASE("fixed point: codes of 16 bits and of halves have the bits of the oracle") {
   Random random{2};
   for (int i = 0; i < 10; ++i) {
     const Lens lens = any_lens(random, 12);
@@ -177,7 +177,7 @@ TEST_CASE("fixed point: codes of 16 bits and of halves have the bits of the plai
   }
 }
 
-TEST_CASE("fixed point: rows of halves have the bits of the plain evaluation") {
+TEST_CASE("fixed point: rows of halves have the bits of the oracle") {
   Random random{3};
   for (int i = 0; i < 45; ++i) {
     const Lens lens = any_lens(random, i % 4 == 0 ? 64 : 9);
