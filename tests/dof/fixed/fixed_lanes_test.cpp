@@ -1,11 +1,11 @@
-// The fixed-point filter in vector lanes and on threads against the rows, bit for bit.
+// The integer filter in lanes, on threads, against its scalar form, bit for bit.
 
 #include <array>
 #include <cstdlib>
 #include <string>
 
-#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/fixed/weights.h"
+#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/fixed_pictures/fixed_two_pass.h"
 #include "dof/focus_map.h"
 #include "tests/support/fixed_pictures.h"
@@ -80,7 +80,7 @@ bool same(const Image& a, const Image& b) {
 
 }  // namespace
 
-TEST_CASE("fixed point: every vector unit gives the bits of the rows, whatever size and lens") {
+TEST_CASE("fixed point: every vector unit gives the scalar bits, whatever size and lens") {
   ThreadPool scalar(1, Isa::scalar);
   for (const auto& random_of : {random_bytes, random_halves}) {
     for (const Isa isa : available_isas()) {
@@ -99,7 +99,7 @@ TEST_CASE("fixed point: every vector unit gives the bits of the rows, whatever s
   }
 }
 
-TEST_CASE("fixed point: lines have room for every reach, in strips that lie beside others") {
+TEST_CASE("fixed point: lines have room for every reach, also in strips beside others") {
   ThreadPool scalar(1, Isa::scalar);
   Random random{12};
   for (const auto& random_of : {random_bytes, random_halves}) {
@@ -121,7 +121,7 @@ TEST_CASE("fixed point: lines have room for every reach, in strips that lie besi
   }
 }
 
-TEST_CASE("fixed point: the largest sums are those of wide integers") {
+TEST_CASE("fixed point: the largest sums do not overflow") {
   // Every pixel reaches the one in the middle, and weighs the most that it can there.
   constexpr int kWidth = 200, kMiddle = 100;
   std::vector<Weights> table;
@@ -214,7 +214,7 @@ TEST_CASE("fixed point: the bits do not depend on the number of threads") {
   }
 }
 
-TEST_CASE("fixed point: codes of 16 bits and in alpha give the bits of the rows") {
+TEST_CASE("fixed point: codes of 16 bits and codes in alpha give the scalar bits") {
   ThreadPool scalar(1, Isa::scalar);
   Random random{10};
   for (int i = 0; i < 12; ++i) {
@@ -247,7 +247,7 @@ TEST_CASE("fixed point: codes of 16 bits and in alpha give the bits of the rows"
   }
 }
 
-TEST_CASE("fixed point: a mean of the largest halves is not past them") {
+TEST_CASE("fixed point: a mean of the largest halves is the largest half") {
   // What is rounded in taking part of a neighbour beyond makes the quotient larger by 1 / weight.
   constexpr Weights kSharp{1u << 19, 1u << 19, 32768, 0, 0};
   constexpr Weights kReceiver{2073, 1866, 32600, 15, 0};
@@ -266,7 +266,7 @@ TEST_CASE("fixed point: a mean of the largest halves is not past them") {
   }
 }
 
-TEST_CASE("fixed point: depths as halves in lanes give the bits of the rows") {
+TEST_CASE("fixed point: depths as halves give the scalar bits") {
   const Image scene = random_scene_image(100, 60, 5);
   const DofSettings settings{.coc = {12.0f, 2.0f}, .max_coc_px = 7.3f, .leak = 1.0f};
   ThreadPool scalar(1, Isa::scalar);
