@@ -33,7 +33,7 @@ struct CostModel {
 
 /// One line of the table.
 struct Candidate {
-  std::string_view method;  ///< its name in dof/dof.h or scenes/lens_views/scene_method.h
+  std::string_view method;  ///< its name in dof/dof.h or scenes/lens_views/lens_view_method.h
   int radius = -1;          ///< index into kFilterRadiiPx, what circles are cut to; -1 of no filter
   int samples = -1;         ///< index into kSampleCounts; -1 of no method that draws the scene
   ErrorModel error;

@@ -99,14 +99,6 @@ void slide(Strip& strip, int lanes) {
 
 }  // namespace
 
-int lanes_of(Isa isa) {
-  switch (isa) {
-    case Isa::avx512: return 16;
-    case Isa::avx2: return 8;
-    default: return 4;
-  }
-}
-
 std::size_t strip_bytes(const StripFilter& filter, const StripShape& shape, int batch) {
   const StripSizes sizes = strip_sizes(lanes_of(filter.isa), shape, batch);
   return sizeof(float) * (sizes.vectors + sizes.extents);

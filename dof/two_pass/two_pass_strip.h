@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "dof/dof.h"
+#include "dof/two_pass/gather_nodes.h"
 #include "raster/images/image.h"
+#include "raster/lanes/isa.h"
 
 namespace softfocus {
-
-/// Numbers that a vector unit's vectors hold. Needs one with kernels.
-int lanes_of(Isa isa);
-inline constexpr int kMostLanes = 16;
 
 /// A line of pixels for kernels. A node is one place along the line, in kLanes lines at once:
 /// 16 rows are filtered along x together, one a lane, then 16 columns along y. Neighbours

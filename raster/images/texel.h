@@ -75,7 +75,7 @@ inline glm::vec4 with_missing_channels(glm::vec4 value, Format format) {
 }
 
 /// What the profile's texture unit makes of a texel (texelFetch in GLSL). The units of
-/// drivers decode 8-bit formats in their own ways, the plain one as load_texel does.
+/// drivers decode 8-bit formats in their own ways, the standard one as load_texel does.
 glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile);
 
 /// Sets every texel to `value`.

@@ -7,10 +7,10 @@
 #include "raster/images/decoded_texture.h"
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
-#include "raster/threads/parallel.h"
 #include "raster/pipeline/render_pass.h"
-#include "scenes/scene.h"
+#include "raster/threads/parallel.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 
@@ -20,8 +20,8 @@ glm::vec4 clear_colour(const Scene& scene);
 /// Draws one frame into an RGBA16F image of any size: linear colour, and in alpha the
 /// depth in metres along the axis (the camera's far distance where nothing was drawn).
 /// The same bits for any number of threads.
-Image draw_scene(const Scene& scene, const View& view, double frame, int width, int height,
-                 const Profile& profile, ThreadPool& pool);
+Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
+                 int height, const Profile& profile, ThreadPool& pool);
 
 /// A scene made ready for many frames: textures decoded, memory that is used again.
 struct PreparedScene {
@@ -35,11 +35,12 @@ struct PreparedScene {
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);
 
 /// As above, into an RGBA16F picture.
-void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& picture,
+void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool);
 
 /// Records a frame's draws, and what is cleared before, into a pass that has its targets, and
 /// the profile and isa of prepare_scene(). Depths are not kept.
-void record_scene(const PreparedScene& prepared, const View& view, double frame, RenderPass& pass);
+void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                  RenderPass& pass);
 
 }  // namespace softfocus

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "raster/pipeline/state.h"
-#include "scenes/scene.h"
-#include "scenes/draw/surface_stages.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/surface_stages.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 
@@ -19,6 +19,7 @@ struct SurfaceDraw {
 };
 
 /// One for each of the scene's objects, in the order of drawing.
-std::vector<SurfaceDraw> surface_draws(const Scene& scene, const View& view, double frame);
+std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,
+                                       double frame);
 
 }  // namespace softfocus

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "scenes/lens_views/scene_method.h"
+#include "scenes/lens_views/lens_view_method.h"
 
 namespace softfocus {
 
@@ -18,6 +18,6 @@ std::string_view ray_traced_missing();
 ///
 /// The same bits for any number of threads, but not on every machine: Embree's
 /// intersections differ in their last bits from one vector unit to the next.
-SampledPicture ray_traced(const SceneMethodInput& input, ThreadPool& pool);
+SampledPicture ray_traced(const LensViewInput& input, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -45,7 +45,7 @@ const double* sums_at(const SampleSums& sums, int x, int y) {
   return sums.totals.data() + place_of(sums, x, y);
 }
 
-void add_row_plain(std::span<const std::uint16_t* const> rows, int halves, double* totals) {
+void add_row_scalar(std::span<const std::uint16_t* const> rows, int halves, double* totals) {
   for (int i = 0; i < halves; ++i) {
     float sum = half_to_float(rows[0][i]);
     for (const std::uint16_t* row_of_next : rows.subspan(1)) sum += half_to_float(row_of_next[i]);
@@ -66,7 +66,7 @@ void add_rows(std::span<const std::uint16_t* const> rows, int x, int y, int widt
   }
   std::array<const std::uint16_t*, kSampleGroup> rest{};
   for (std::size_t i = 0; i < rows.size(); ++i) rest[i] = rows[i] + done;
-  add_row_plain({rest.data(), rows.size()}, halves - done, totals + done);
+  add_row_scalar({rest.data(), rows.size()}, halves - done, totals + done);
 }
 
 void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool& pool) {

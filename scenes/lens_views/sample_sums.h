@@ -66,6 +66,6 @@ SampleSums later_samples(const SampleSums& first, const SampleSums& all);
 double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool);
 
 /// add_rows() of so many halves without vectors.
-void add_row_plain(std::span<const std::uint16_t* const> rows, int halves, double* totals);
+void add_row_scalar(std::span<const std::uint16_t* const> rows, int halves, double* totals);
 
 }  // namespace softfocus

@@ -1,4 +1,4 @@
-// add_row_plain() in vectors.
+// add_row_scalar() in vectors.
 
 namespace {
 

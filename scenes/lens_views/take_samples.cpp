@@ -13,7 +13,7 @@ bool is_power_of_two(int n) { return std::has_single_bit(static_cast<unsigned>(n
 
 }  // namespace
 
-SampledPicture take_samples(const SceneMethodInput& input, const AddSamples& add_samples, int step,
+SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_samples, int step,
                             ThreadPool& pool) {
   const Sampling& sampling = input.sampling;
   SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "scenes/scene.h"
 #include "scenes/load/scene_surfaces.h"
 #include "scenes/load/toml_reading.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "scenes/scene.h"
 #include "scenes/load/toml_reading.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 

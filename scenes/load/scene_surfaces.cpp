@@ -3,8 +3,8 @@
 #include <array>
 #include <bit>
 
-#include "scenes/make/procedural_texture.h"
 #include "scenes/load/texture_file.h"
+#include "scenes/make/procedural_texture.h"
 
 namespace softfocus {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "scenes/scene.h"
 #include "scenes/load/toml_reading.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 

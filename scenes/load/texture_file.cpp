@@ -72,7 +72,7 @@ Texture load_texture(const std::filesystem::path& file) {
     std::copy(from, from + to.size(), to.begin());
   }
   Texture texture = make_texture(std::move(image));
-  generate_mipmaps(texture, profiles()[0]);
+  generate_mipmaps(texture, Profile{});
   return texture;
 }
 

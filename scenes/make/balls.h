@@ -13,7 +13,7 @@ struct Ball {
   double radius = 1.0;
 };
 
-struct ScatterRule {
+struct BallRule {
   int count = 1;
   std::uint64_t seed = 1;
   glm::dvec3 region_min{-1.0};  ///< of the centres
@@ -26,12 +26,12 @@ struct ScatterRule {
 
 /// Draws radius, x, y and z, in this order, for one ball after the other, and a place
 /// anew (x, y, z) while the ball comes nearer than `gap` to one of `obstacles` or an
-/// earlier ball. Nothing where a ball finds no place in kScatterAttempts.
-std::optional<std::vector<Ball>> scatter(const ScatterRule& rule,
-                                         const std::vector<Ball>& obstacles);
+/// earlier ball. Nothing where a ball finds no place in kBallAttempts.
+std::optional<std::vector<Ball>> place_balls(const BallRule& rule,
+                                             const std::vector<Ball>& obstacles);
 
-inline constexpr int kScatterAttempts = 1000;
+inline constexpr int kBallAttempts = 1000;
 /// Each place is compared with every ball, so time grows with the square.
-inline constexpr int kMaxScatterCount = 4096;
+inline constexpr int kMostBalls = 4096;
 
 }  // namespace softfocus

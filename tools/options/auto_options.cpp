@@ -7,7 +7,7 @@
 
 namespace softfocus {
 
-void add_auto_options(CLI::App& parser, Goal& goal) {
+void add_auto_options(CLI::App& parser, AutoGoal& goal) {
   add_value(parser, "--max-error", "E",
             "Of auto: the cheapest method whose mean FLIP should be at most this (default: " +
                 short_number(goal.max_error) + ")",

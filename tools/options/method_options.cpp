@@ -22,11 +22,11 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
   add_value(parser, "--method", "NAME",
             "Depth-of-field method (default: " + std::string{method.name()} + ")",
             [&method](const std::string& text) {
-              method = {find_method(text), find_scene_method(text)};
+              method = {find_method(text), find_lens_view_method(text)};
               if (method.filter != nullptr || text == kAutoMethod) return;
               if (method.of_scene == nullptr) {
                 throw UsageError("--method '" + text + "': there are " + names_of(methods()) +
-                                 ", " + names_of(scene_methods()) + ", " +
+                                 ", " + names_of(lens_view_methods()) + ", " +
                                  std::string{kAutoMethod});
               }
               if (!method.of_scene->missing.empty()) {

@@ -5,20 +5,20 @@
 #include <string>
 
 #include "dof/dof.h"
-#include "scenes/lens_views/scene_method.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
 #include "tools/cli/parser.h"
 
 namespace softfocus {
 
-/// What chooses a method by the scene (dof/auto/choose.h).
+/// What chooses a method by the scene (dof/auto/auto_method.h).
 inline constexpr std::string_view kAutoMethod = "auto";
 
 /// A method of either table: a filter of the drawn picture or one that draws the scene. Or
 /// neither: the scene shall choose.
 struct MethodChoice {
   const Method* filter = nullptr;
-  const SceneMethod* of_scene = nullptr;
+  const LensViewMethod* of_scene = nullptr;
 
   bool is_auto() const { return filter == nullptr && of_scene == nullptr; }
   std::string_view name() const {

@@ -48,7 +48,7 @@ void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
   for (const char* option : kOptions) {
     if (!is_given(parser, option)) continue;
     throw UsageError(std::string{option} + ": the method " + std::string{method} +
-                     " does not sample the lens; give --method " + names_of(scene_methods()));
+                     " does not sample the lens; give --method " + names_of(lens_view_methods()));
   }
 }
 

@@ -2,7 +2,7 @@
 // --samples, --jitter, --until and --aperture-blades: how the methods that draw the scene
 // themselves sample the lens.
 
-#include "scenes/lens_views/scene_method.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "tools/cli/parser.h"
 
 namespace softfocus {

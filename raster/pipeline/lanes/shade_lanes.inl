@@ -6,23 +6,21 @@
 //     static constexpr std::size_t kInputs   // numbers that go from step to step
 //     template <class Quads> std::array<Floats, kInputs> inputs(const Quads&) const
 //     void shade(const FragmentBatch<kInputs>&, std::array<Floats, 4>* colours) const
-// Quads are QuadFragments: what the stage does not ask for is not computed. The steps take
+// A stage that knows its varyings and inputs at run time alone has so many at most, and
+//     std::size_t varying_count() const
+//     std::size_t input_count() const
+// Quads are QuadFragments. The steps take
 // many vectors each: what one vector waits for in a long chain of operations, or in memory,
 // the CPU fills with the others, which it could not see past a whole fragment stage.
 
 namespace {
 
 /// Quads of 2x2 pixels, each of one triangle.
-template <class Stage, class Interpolator>
 struct QuadFragments {
-  const Interpolator& triangles;
-  std::size_t provoking;
+  const Floats* varyings;
   const QuadTriangles& of_quads;
-  typename Interpolator::Point here;
 
-  SOFTFOCUS_INLINE Floats varying(std::size_t i) const {
-    return triangles.value(i, Stage::kInterpolation[i], provoking, here);
-  }
+  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return varyings[i]; }
   // Along the quad's upper row and left column.
   SOFTFOCUS_INLINE Floats ddx(std::size_t i) const {
     const Floats values = varying(i);
@@ -47,6 +45,7 @@ struct FragmentBatch {
   static constexpr int kMost = 8 * kLanes;
   alignas(64) std::array<std::array<float, kMost>, kInputs> inputs;
   alignas(64) std::array<std::int32_t, kMost> offsets;  ///< in bytes from the tile's first pixel
+  std::size_t input_count;
   int count = 0;
 
   SOFTFOCUS_INLINE int vectors() const { return (count + kLanes - 1) / kLanes; }
@@ -61,13 +60,13 @@ struct FragmentBatch {
     const auto at = static_cast<std::size_t>(count);
     const unsigned bits = lane_bits(seen);
     if (bits == kAllLaneBits) {
-#pragma GCC unroll 16
-      for (std::size_t i = 0; i < kInputs; ++i) store(&inputs[i][at], values[i]);
+      for (std::size_t i = 0; i < input_count; ++i) store(&inputs[i][at], values[i]);
       store(&offsets[at], pixel_offsets);
     } else {
       const Compression kept = compression(seen);
-#pragma GCC unroll 16
-      for (std::size_t i = 0; i < kInputs; ++i) store(&inputs[i][at], compress(values[i], kept));
+      for (std::size_t i = 0; i < input_count; ++i) {
+        store(&inputs[i][at], compress(values[i], kept));
+      }
       store(&offsets[at], compress(pixel_offsets, kept));
     }
     count += __builtin_popcount(bits);
@@ -76,8 +75,8 @@ struct FragmentBatch {
   SOFTFOCUS_INLINE void fill_up() {
     const int last = (vectors() - 1) * kLanes;
     const Mask present = first_lanes(count - last);
-    for (std::array<float, kMost>& column : inputs) {
-      float* from = &column[static_cast<std::size_t>(last)];
+    for (std::size_t i = 0; i < input_count; ++i) {
+      float* from = &inputs[i][static_cast<std::size_t>(last)];
       store(from, select(present, load(from), splat(from[0])));
     }
   }
@@ -141,8 +140,9 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
   return count;
 }
 
-SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& run,
-                                SeenQuads& seen) {
+// Not inlined: one copy for all stages.
+[[gnu::noinline]] inline void list_seen(const VisibilityTile& tile, const VisibleRun& run,
+                                        SeenQuads& seen) {
   int x_begin = tile.area.x_end, y_begin = tile.area.y_end;
   int x_end = tile.area.x_begin, y_end = tile.area.y_begin;
   for (std::int32_t id = run.first_id; id < run.end_id; ++id) {
@@ -224,6 +224,18 @@ template <class Stage>
   batch.count = 0;
 }
 
+template <class Stage>
+SOFTFOCUS_INLINE std::size_t interpolated_count(const Stage& stage) {
+  if constexpr (requires { stage.varying_count(); }) return stage.varying_count();
+  return Stage::kInterpolation.size();
+}
+
+template <class Stage>
+SOFTFOCUS_INLINE std::size_t input_count(const Stage& stage) {
+  if constexpr (requires { stage.input_count(); }) return stage.input_count();
+  return Stage::kInputs;
+}
+
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
@@ -236,8 +248,10 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   const bool in_picture = tile.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
 
+  const std::size_t varyings = interpolated_count(stage);
   FragmentBatch<Stage::kInputs> batch;
-  Interpolator interpolator{};
+  batch.input_count = input_count(stage);
+  Interpolator interpolator;
   QuadTriangles of_quads{};
   Ints loaded = splat(-1);
   for (int i = 0; i < seen.count; i += kQuads) {
@@ -251,7 +265,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         of_quads[quad] = triangles[triangle_of(entries[quad])];
       }
-      interpolator.load(of_quads, job.provoking);
+      interpolator.load(of_quads, job.provoking, varyings);
       loaded = triangle;
     }
     const Ints quad = entry >> kQuadPixels;
@@ -260,9 +274,10 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     const Ints x = (block & 15) * kBlockSize + (quad & 1) * 2 + (lane_numbers() & 1);
     const Ints y = (block >> 4 & 15) * kBlockSize + (quad & 2) + (lane_numbers() >> 1 & 1);
 
-    const QuadFragments<Stage, Interpolator> fragments{
-        interpolator, job.provoking, of_quads,
-        interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y)};
+    std::array<Floats, (Stage::kInterpolation.size() + 3) / 4 * 4> values;
+    interpolator.values(interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y),
+                        varyings, values.data());
+    const QuadFragments fragments{values.data(), of_quads};
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
     batch.append(stage.inputs(fragments),
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
@@ -280,7 +295,7 @@ template <class Stage>
 void shade_fragments(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                      const VisibleRun& run) {
   if (job.profile->attributes == AttributeSetup::exact_barycentric) {
-    shade_seen<BarycentricLanes<Stage::kInterpolation.size()>>(stage, job, tile, run);
+    shade_seen<BarycentricLanes<Stage::kInterpolation>>(stage, job, tile, run);
   } else if (job.profile->interpolation == Contraction::fused) {
     shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, tile, run);
   } else {

@@ -6,7 +6,8 @@
 //     void position(Ints index, std::array<Floats, 4>& position) const
 //     void operator()(Ints index, std::array<Floats, 4>& position,
 //                     std::array<Floats, kVaryings>& varyings) const
-// with the same bits for the position.
+// with the same bits for the position. A stage whose number of varyings is known at run time
+// alone has kVaryings at most, and std::size_t varying_count() const.
 
 namespace {
 
@@ -88,22 +89,28 @@ unsigned place_vertices(const Stage& stage, const VertexJob& job) {
   return static_cast<unsigned>(of_all) & ~kNotDrawable;
 }
 
+template <class Stage>
+SOFTFOCUS_INLINE std::size_t varying_count(const Stage& stage) {
+  if constexpr (requires { stage.varying_count(); }) return stage.varying_count();
+  return Stage::kVaryings;
+}
+
 // The rows of kLanes vertices.
 template <class Stage>
 SOFTFOCUS_INLINE void shade_rows(const Stage& stage, const VertexJob& job,
                                  const std::int32_t* numbers) {
-  constexpr std::size_t kQuantities = vertex_row_size(Stage::kVaryings);
+  const std::size_t varyings_of_stage = varying_count(stage);
   std::array<Floats, 4> position;
   std::array<Floats, Stage::kVaryings> varyings;
   stage(load(numbers), position, varyings);
   const WindowLanes window = window_lanes(position, job);
-  std::array<Floats, kQuantities> quantities{};
+  std::array<Floats, vertex_row_size(Stage::kVaryings)> quantities{};
   quantities[kVertexX] = window.x;
   quantities[kVertexY] = window.y;
   quantities[kVertexDepth] = window.depth;
   quantities[kVertexInverseW] = window.inverse_w;
-  for (std::size_t i = 0; i < Stage::kVaryings; ++i) quantities[kVertexVaryings + i] = varyings[i];
-  for (std::size_t k = 0; k < kQuantities; k += 4) {
+  for (std::size_t i = 0; i < varyings_of_stage; ++i) quantities[kVertexVaryings + i] = varyings[i];
+  for (std::size_t k = 0; k < vertex_row_size(varyings_of_stage); k += 4) {
     Floats* four = &quantities[k];
     transpose_fours(four[0], four[1], four[2], four[3]);
     // Vector i has vertex i and each fourth after it.

@@ -4,7 +4,7 @@
 
 #include "dof/measure/difference.h"
 #include "scenes/load/load_scene.h"
-#include "tests/support/ground_truth_scenes.h"
+#include "tests/support/lens_view_scenes.h"
 
 using namespace softfocus;
 using test::Drawn;
