@@ -14,6 +14,7 @@
 
 using namespace softfocus;
 using namespace softfocus::fixed;
+using softfocus::fixed::Camera;  // not a scene's
 
 namespace {
 
