@@ -1,10 +1,9 @@
-#include "scenes/load/scene_objects.h"
+#include "scenes/load/scene_sections.h"
 
 #include <optional>
 
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
-#include "scenes/load/scene_shapes.h"
 #include "scenes/make/balls.h"
 #include "scenes/make/random_bits.h"
 
