@@ -15,6 +15,9 @@ namespace softfocus {
 /// NaN and what is below 0 count as 0.
 using ToneTable = std::vector<double>;
 
+/// The light of a half, 0 to 65504, as a table's curve gets it.
+double half_light(std::uint16_t half);
+
 inline double toned(const ToneTable& table, std::uint16_t half) { return table[half]; }
 
 /// Light as it is, clamped to 1: what a PNG of this program keeps.

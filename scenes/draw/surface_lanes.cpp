@@ -177,32 +177,30 @@ struct SurfaceFragmentLanes {
     return !variant.textured ? 4 : variant.specular ? 10 : 7;
   }
 
-  template <class Quads>
-  SOFTFOCUS_INLINE std::array<Floats, kInputs> inputs(const Quads& in) const {
-    std::array<Floats, kInputs> values;
+  template <class Put>
+  SOFTFOCUS_INLINE void inputs(const QuadFragments& in, const Put& put) const {
     Vec3Lanes colour = side(in, 0);
     if (variant.textured) {
       const std::size_t u = layout.texture;
       const std::size_t v = layout.texture + 1;
-      values[kU] = in.varying(u);
-      values[kV] = in.varying(v);
-      values[kLod] = level_of_detail_lanes(*texture, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v));
+      put(kU, in.varying(u));
+      put(kV, in.varying(v));
+      put(kLod, level_of_detail_lanes(*texture, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
     }
     if (variant.specular) {
       const Vec3Lanes highlight = side(in, 3);
       if (variant.textured) {
-        values[kHighlight] = highlight.x;
-        values[kHighlight + 1] = highlight.y;
-        values[kHighlight + 2] = highlight.z;
+        put(kHighlight, highlight.x);
+        put(kHighlight + 1, highlight.y);
+        put(kHighlight + 2, highlight.z);
       } else {
         colour = colour + highlight;
       }
     }
-    values[kRed] = colour.x;
-    values[kGreen] = colour.y;
-    values[kBlue] = colour.z;
-    values[kDepth] = smaller(in.varying(SurfaceLayout::kDepth), splat(65504.0f));
-    return values;
+    put(kRed, colour.x);
+    put(kGreen, colour.y);
+    put(kBlue, colour.z);
+    put(kDepth, smaller(in.varying(SurfaceLayout::kDepth), splat(65504.0f)));
   }
 
   SOFTFOCUS_INLINE void shade(const FragmentBatch<kInputs>& batch,
@@ -228,8 +226,7 @@ struct SurfaceFragmentLanes {
   }
 
   // Three varyings of the side that is seen.
-  template <class Quads>
-  SOFTFOCUS_INLINE Vec3Lanes side(const Quads& in, std::size_t at) const {
+  SOFTFOCUS_INLINE Vec3Lanes side(const QuadFragments& in, std::size_t at) const {
     const std::size_t front = SurfaceLayout::kFront + at;
     const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
     if (!variant.two_sided) return seen;

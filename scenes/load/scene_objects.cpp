@@ -1,11 +1,10 @@
-#include "scenes/load/scene_objects.h"
+#include "scenes/load/scene_sections.h"
 
 #include <optional>
 
 #include "raster/numbers/random_bits.h"
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
-#include "scenes/load/scene_shapes.h"
 #include "scenes/make/balls.h"
 
 namespace softfocus {

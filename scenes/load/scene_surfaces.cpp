@@ -1,4 +1,4 @@
-#include "scenes/load/scene_surfaces.h"
+#include "scenes/load/scene_sections.h"
 
 #include <array>
 #include <bit>

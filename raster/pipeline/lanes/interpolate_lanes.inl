@@ -188,6 +188,7 @@ struct BarycentricLanes {
         }
       }
       transpose_fours(value[0], value[1], value[2], value[3]);
+#pragma GCC unroll 4
       for (std::size_t i = 0; i < 4; ++i) to[4 * four + i] = value[i];
     }
   }
@@ -285,6 +286,7 @@ struct PlaneLanes {
         }
       }
       transpose_fours(value[0], value[1], value[2], value[3]);
+#pragma GCC unroll 4
       for (std::size_t i = 0; i < 4; ++i) to[4 * four + i] = value[i];
     }
   }

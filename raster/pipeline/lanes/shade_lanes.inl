@@ -4,14 +4,14 @@
 // second on the pixels that are seen:
 //     static constexpr auto kInterpolation   // as the scalar stage's
 //     static constexpr std::size_t kInputs   // numbers that go from step to step
-//     template <class Quads> std::array<Floats, kInputs> inputs(const Quads&) const
+//     template <class Put> void inputs(const QuadFragments&, const Put& put) const
 //     void shade(const FragmentBatch<kInputs>&, std::array<Floats, 4>* colours) const
-// A stage that knows its varyings and inputs at run time alone has so many at most, and
+// `inputs` calls put(i, Floats) for each input. A stage that knows the number of its varyings and
+// inputs at run time alone has so many at most, and
 //     std::size_t varying_count() const
 //     std::size_t input_count() const
-// Quads are QuadFragments. The steps take
-// many vectors each: what one vector waits for in a long chain of operations, or in memory,
-// the CPU fills with the others, which it could not see past a whole fragment stage.
+// Each step takes many vectors: while one waits for a long chain of operations, or for memory,
+// the CPU works on the others, which it could not see past a whole fragment stage.
 
 namespace {
 
@@ -54,19 +54,32 @@ struct FragmentBatch {
   }
   SOFTFOCUS_INLINE bool has_room() const { return count <= kMost - kLanes; }
 
+  /// Stores whole vectors from a place on.
+  struct PutAll {
+    float* first;
+    SOFTFOCUS_INLINE void operator()(std::size_t i, Floats v) const { store(first + i * kMost, v); }
+  };
+  /// Packs the seen lanes first.
+  struct PutSeen {
+    float* first;
+    const Compression& kept;
+    SOFTFOCUS_INLINE void operator()(std::size_t i, Floats v) const {
+      store(first + i * kMost, compress(v, kept));
+    }
+  };
+
   /// Appends the pixels of the mask.
-  SOFTFOCUS_INLINE void append(const std::array<Floats, kInputs>& values, Ints pixel_offsets,
-                               Mask seen) {
+  template <class Stage>
+  SOFTFOCUS_INLINE void append(const Stage& stage, const QuadFragments& fragments,
+                               Ints pixel_offsets, Mask seen) {
     const auto at = static_cast<std::size_t>(count);
     const unsigned bits = lane_bits(seen);
     if (bits == kAllLaneBits) {
-      for (std::size_t i = 0; i < input_count; ++i) store(&inputs[i][at], values[i]);
+      stage.inputs(fragments, PutAll{&inputs[0][at]});
       store(&offsets[at], pixel_offsets);
     } else {
       const Compression kept = compression(seen);
-      for (std::size_t i = 0; i < input_count; ++i) {
-        store(&inputs[i][at], compress(values[i], kept));
-      }
+      stage.inputs(fragments, PutSeen{&inputs[0][at], kept});
       store(&offsets[at], compress(pixel_offsets, kept));
     }
     count += __builtin_popcount(bits);
@@ -279,7 +292,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
                         varyings, values.data());
     const QuadFragments fragments{values.data(), of_quads};
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
-    batch.append(stage.inputs(fragments),
+    batch.append(stage, fragments,
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
                  (entry & own_pixel) != 0);
     // The rows of the picture that the second step writes; those of a tile alone are at hand.

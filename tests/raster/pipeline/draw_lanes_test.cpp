@@ -484,10 +484,12 @@ struct MixedLanes {
   static constexpr auto kInterpolation = MixedColour::kInterpolation;
   static constexpr std::size_t kInputs = 4;
 
-  template <class Quads>
-  std::array<Floats, 4> inputs(const Quads& in) const {
-    return {in.varying(0) + in.ddx(0), in.varying(1) - in.ddy(0),
-            select(in.front_facing(), in.varying(2), -in.varying(2)), in.varying(3) + in.ddx(1)};
+  template <class Put>
+  void inputs(const QuadFragments& in, const Put& put) const {
+    put(0, in.varying(0) + in.ddx(0));
+    put(1, in.varying(1) - in.ddy(0));
+    put(2, select(in.front_facing(), in.varying(2), -in.varying(2)));
+    put(3, in.varying(3) + in.ddx(1));
   }
   void shade(const FragmentBatch<4>& batch, std::array<Floats, 4>* colours) const {
     for (int i = 0; i < batch.vectors(); ++i) {
