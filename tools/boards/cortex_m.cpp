@@ -23,7 +23,7 @@ extern uint8_t stack_top[];
 }
 
 [[noreturn]] static void stop_at_fault() {
-  softfocus::device::give_up("The processor took a fault");
+  softfocus::boards::give_up("The processor took a fault");
 }
 
 struct Vectors {
@@ -38,7 +38,7 @@ const Vectors vectors = {
      stop_at_fault, stop_at_fault, stop_at_fault}};
 }
 
-namespace softfocus::device {
+namespace softfocus::boards {
 namespace {
 
 constexpr uint32_t kCounterMask = 0xFFFFFF;
@@ -80,4 +80,4 @@ __attribute__((noinline)) void loop_of_known_length(uint32_t rounds) {
       : "cc");
 }
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards

@@ -6,7 +6,7 @@
 
 #include "tools/boards/machine.h"
 
-namespace softfocus::device {
+namespace softfocus::boards {
 namespace {
 std::vector<std::FILE*> files;
 
@@ -49,6 +49,6 @@ void give_up(const char* why) {
 }
 void leave(int status) { std::exit(status); }
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards
 
 int main() { run_filter(); }

@@ -5,9 +5,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "tools/boards/frame_settings.h"
+#include "tools/boards/frame.h"
 
-namespace softfocus::device {
+namespace softfocus::boards {
 
 /// The only one that the filter takes.
 extern const FrameFormat kFilterFormat;
@@ -25,4 +25,4 @@ bool put_row(Filter& filter, const void* colour, const void* depth, void* out);
 /// After the last row: whether there is another to come out, into `out`.
 bool next_row(Filter& filter, void* out);
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards

@@ -3,7 +3,7 @@
 // table, make_table(), begin_stream(). Three programs, so that each has the code of its
 // format alone.
 
-namespace softfocus::device {
+namespace softfocus::boards {
 
 struct Filter {
   softfocus_fixed_stream stream;
@@ -47,4 +47,4 @@ bool next_row(Filter& filter, void* out) {
   return softfocus_fixed_finish_row(&filter.stream, out) == 1;
 }
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards

@@ -1,6 +1,6 @@
 #include "tools/boards/float_filter.h"
 
-namespace softfocus::device {
+namespace softfocus::boards {
 namespace {
 
 FloatDepth describe_depth(const FloatLens& lens, int code, float max_radius_px) {
@@ -177,4 +177,4 @@ bool take_float_row(FloatFilter& filter, float* colour) {
   return true;
 }
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards

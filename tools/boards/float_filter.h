@@ -1,5 +1,5 @@
 #pragma once
-// The two-pass filter of dof/two_pass/two_pass.h in binary32, written for a device that has its
+// The two-pass filter of dof/two_pass/two_pass.h in binary32, written for a board that has its
 // floating point from a library: what belongs to a code of depth or to a pixel is computed
 // once, taps that weigh nothing are passed over by a comparison of integers, and whole taps
 // are added without a product. The same bits as two_pass_single().
@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace softfocus::device {
+namespace softfocus::boards {
 
 struct FloatLens {
   float radius_at_infinity_px;
@@ -70,4 +70,4 @@ void end_float_rows(FloatFilter& filter);
 /// The next row that can come out, `width` times three floats; false if none can.
 bool take_float_row(FloatFilter& filter, float* colour);
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards

@@ -3,7 +3,7 @@
 #include "tools/boards/filter.h"
 #include "tools/boards/float_filter.h"
 
-namespace softfocus::device {
+namespace softfocus::boards {
 
 const FrameFormat kFilterFormat = FrameFormat::rgb565;
 
@@ -76,4 +76,4 @@ bool put_row(Filter& filter, const void* from, const void* depth, void* to) {
   return true;
 }
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards

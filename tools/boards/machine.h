@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace softfocus::device {
+namespace softfocus::boards {
 
 /// What main() has for buffers: everything between the variables and the deepest stack
 /// that is allowed for.
@@ -46,7 +46,7 @@ void report(const char* name, uint64_t value);
 [[noreturn]] void give_up(const char* why);
 [[noreturn]] void leave(int status);
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards
 
 /// The program; the startup code calls it.
 void run_filter();

@@ -3,7 +3,7 @@
 // FORMAT is rgb565, rgba8 or rgba16f.
 //
 // The picture that `softfocus render --show pinhole` writes (RGBA as halves, depth in
-// metres in alpha) as the file that a device reads: frame_settings.h.
+// metres in alpha) as the file that a board reads: frame.h.
 
 #include <cstdio>
 #include <cstdlib>
@@ -11,10 +11,9 @@
 #include <iterator>
 #include <string>
 
-#include "tools/boards/frame_settings.h"
-#include "tools/boards/half_codes.h"
+#include "tools/boards/frame.h"
 
-using namespace softfocus::device;
+using namespace softfocus::boards;
 
 namespace {
 

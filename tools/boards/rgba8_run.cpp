@@ -3,7 +3,7 @@
 #include "dof/fixed/softfocus_fixed.h"
 #include "tools/boards/filter.h"
 
-namespace softfocus::device {
+namespace softfocus::boards {
 
 const FrameFormat kFilterFormat = FrameFormat::rgba8;
 
@@ -20,6 +20,6 @@ int make_table(const softfocus_fixed_lens& lens, const FrameSettings& settings,
 }
 
 }  // namespace
-}  // namespace softfocus::device
+}  // namespace softfocus::boards
 
 #include "tools/boards/fixed_run.inl"

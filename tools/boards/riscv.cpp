@@ -22,10 +22,10 @@ __asm__(
     "j stop_at_fault\n");
 
 extern "C" [[noreturn]] __attribute__((used)) void stop_at_fault() {
-  softfocus::device::give_up("The processor took a fault");
+  softfocus::boards::give_up("The processor took a fault");
 }
 
-namespace softfocus::device {
+namespace softfocus::boards {
 namespace {
 
 uint64_t retired() {
@@ -53,4 +53,4 @@ __attribute__((noinline)) void loop_of_known_length(uint32_t rounds) {
       : "+r"(rounds));
 }
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards

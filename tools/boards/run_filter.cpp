@@ -1,10 +1,10 @@
-// Filters the file "frame" into the file "filtered", row by row as a device would, and
+// Filters the file "frame" into the file "filtered", row by row as a board would, and
 // reports instructions and memory. Reading and writing is not counted.
 
 #include "tools/boards/filter.h"
 #include "tools/boards/machine.h"
 
-namespace softfocus::device {
+namespace softfocus::boards {
 namespace {
 
 constexpr uint32_t kKnownRounds = 1000000;
@@ -100,6 +100,6 @@ void filter_frame() {
 }
 
 }  // namespace
-}  // namespace softfocus::device
+}  // namespace softfocus::boards
 
-void run_filter() { softfocus::device::filter_frame(); }
+void run_filter() { softfocus::boards::filter_frame(); }

@@ -1,11 +1,41 @@
 #pragma once
-// Colours and depths as halves (IEEE 754 binary16: sign, 5 bits of exponent, 10 of
-// fraction) into the codes of a small device, in integers: every desktop makes the same
-// frame. Rounded to the nearest code, upwards from the middle.
+// A frame as a board gets it. The file begins with eight 32-bit words, little-endian. Then
+// follows each row from the top: `width` pixels of colour, and `width` codes of depth if alpha is
+// not the depth. Code 0 is at near, the largest at far, linear between. All little-endian.
 
+#include <stddef.h>
 #include <stdint.h>
 
-namespace softfocus::device {
+namespace softfocus::boards {
+
+enum class FrameFormat : uint32_t {
+  rgb565,   ///< 16 bits, red highest; depth of 8 bits
+  rgba8,    ///< depth of 16 bits
+  rgba16f,  ///< alpha is the depth in metres
+};
+
+/// Of a pixel.
+constexpr size_t colour_bytes(FrameFormat format) {
+  return format == FrameFormat::rgb565 ? 2 : format == FrameFormat::rgba8 ? 4 : 8;
+}
+constexpr size_t depth_bytes(FrameFormat format) {
+  return format == FrameFormat::rgb565 ? 1 : format == FrameFormat::rgba8 ? 2 : 0;
+}
+
+struct FrameSettings {
+  FrameFormat format;
+  uint32_t width;
+  uint32_t height;
+  uint32_t max_radius_px;
+  uint32_t radius_at_infinity_q16;  ///< 1/65536 pixel
+  uint32_t focus_um;
+  uint32_t near_um;
+  uint32_t far_um;
+};
+
+// Halves (IEEE 754 binary16: sign, 5 bits of exponent, 10 of fraction) become codes in integers,
+// so that every desktop makes the same frame. Rounded to the nearest code, upwards from the
+// middle.
 
 /// A half in 1/2^24, the smallest there is: exact. Negative values and NaN are 0,
 /// infinity is 2^40, past every other.
@@ -41,4 +71,4 @@ constexpr uint16_t depth_code_of_half(uint16_t half, uint32_t near_um, uint32_t 
   return static_cast<uint16_t>(((depth_um - near_um) * largest + range / 2) / range);
 }
 
-}  // namespace softfocus::device
+}  // namespace softfocus::boards
