@@ -19,7 +19,7 @@ inline ChartPoint chart_point(const std::string& method, std::size_t setting,
   return point;
 }
 
-/// Four points, of which two-pass at radius 8 is beaten by that at radius 4.
+/// Four points. two-pass at radius 4 beats two-pass at radius 8.
 inline ChartPanel chart_panel(const std::string& scene) {
   ChartPanel panel;
   panel.scene = scene;

@@ -1,7 +1,6 @@
 #pragma once
-// The fixed-point filter of docs/fixed-point.md evaluated plainly on whole pictures: in wide
-// integers, with a division wherever there is a quotient, and once more in binary64 with no
-// rounding between lens and result.
+// The oracle of the fixed-point filter (docs/fixed-point.md), on whole pictures: in wide integers,
+// with a division for each quotient; and in binary64, without rounding between lens and result.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +12,7 @@
 
 namespace softfocus::fixed {
 
-/// A picture of three channels; what a channel's unit is, its maker knows.
+/// A picture of three channels, in the unit that its maker chose.
 template <class Value>
 struct Picture3 {
   int width = 0, height = 0;

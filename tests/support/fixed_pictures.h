@@ -33,7 +33,7 @@ inline std::vector<Weights> table8(const Lens& lens, std::uint32_t near_um, std:
   return table;
 }
 
-/// A picture's bytes as a program for a small machine has them, without gaps.
+/// A picture's bytes as a program for a board has them, without gaps.
 struct PackedPicture {
   Settings settings;
   std::vector<std::uint8_t> colours;

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "raster/images/texel.h"
-#include "scenes/lens_views/lens_view_method.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/lens_views/lens_view_method.h"
 
 namespace softfocus::test {
 
@@ -88,10 +88,10 @@ inline Moments moments(const Image& picture) {
   return m;
 }
 
-/// A bright point's image is the aperture's shape, with the radius that the lens equation
-/// says to within 0.1 pixel: by its second moments, of which a uniform disc of radius r has
-/// r^2 / 4, a regular polygon r^2 (2 + cos(2 pi / n)) / 12, and the square that stands for the
-/// point its own. Nothing lies outside.
+/// A bright point's image has the aperture's shape, and the lens equation's radius to within 0.1
+/// pixel. The second moments tell: r^2 / 4 for a uniform disc of radius r,
+/// r^2 (2 + cos(2 pi / n)) / 12 for a regular polygon, plus that of the square that stands for the
+/// point. Nothing lies outside.
 inline void check_image_of_point(const char* method, double depth_m, int blades) {
   CAPTURE(std::string{method});
   CAPTURE(depth_m);

@@ -1,4 +1,4 @@
-// The chart's script and page: what is in them. How they look no test can say.
+// What is in the chart's script and page. No test can say how they look.
 
 #include "tools/chart/page.h"
 
@@ -9,8 +9,8 @@
 
 #include "tests/support/chart_points.h"
 #include "tests/support/run_program.h"
-#include "tools/chart/plot.h"
 #include "tools/chart/gnuplot.h"
+#include "tools/chart/plot.h"
 
 using namespace softfocus;
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
+#include "dof/fixed_pictures/arithmetic.h"
 #include "raster/numbers/profile.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"

@@ -8,7 +8,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// At least the nanosecond in which a clock counts: a ratio needs something to divide by.
+// At least 1 ns, the unit of the clock: a ratio needs something to divide by.
 double ms_since(Clock::time_point start) {
   const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
   return std::max(elapsed.count(), 1e-6);

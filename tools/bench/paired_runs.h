@@ -27,9 +27,9 @@ struct PairedSamples {
   std::vector<StageSamples> peers;
 };
 
-/// Times every stage of ours and then every stage of the peer's, in the next pair the peer
-/// first, and so on; before, the contender's first stage once without a clock. Without stages of
-/// the peer's ours are timed alone. `on_run` is told each pair's number, from 0, before it begins.
+/// Times our stages and then the peer's; in the next pair the peer's come first, and so on. A
+/// contender's first stage runs once without a clock before it counts. If the peer has no stages,
+/// ours are timed alone. Calls `on_run` with each pair's number, from 0, before the pair begins.
 PairedSamples time_in_pairs(const std::vector<TimedStage>& ours,
                             const std::vector<TimedStage>& peers, int pairs,
                             const std::function<void(int)>& on_run);

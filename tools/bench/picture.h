@@ -1,16 +1,14 @@
 #pragma once
-// A picture to filter that nothing has to draw: every circle of confusion there can be, and
-// silhouettes between them.
+// A picture to filter without drawing one: it has every circle of confusion, and silhouettes.
 
 #include "raster/images/image.h"
 
 namespace softfocus {
 
-/// The distance that the picture is made to be focused at.
+/// The focus distance that the picture is made for.
 inline constexpr double kBenchPictureFocusM = 2.0;
 
-/// The circle at infinity of the lens that it is made for, over the largest circle that the
-/// filter takes.
+/// The circle at infinity of the lens that it is made for, over the filter's largest.
 inline constexpr double kBenchPictureHorizon = 1.5;
 
 /// RGBA16F, depth in metres in alpha. A floor goes from the horizon above to half its blur

@@ -14,8 +14,8 @@ namespace softfocus {
 
 class RepeatedOnGl {
  public:
-  /// Opens the driver with so many threads, where it is one of Mesa's that has any. `work`
-  /// must outlive it. Throws DriverError; for a method that has no shader too.
+  /// Opens the driver; Mesa's get that number of threads. `work` must outlive it. Throws
+  /// DriverError, also for a method without a shader.
   RepeatedOnGl(const Driver& driver, const BenchWork& work, int threads);
   ~RepeatedOnGl();
 

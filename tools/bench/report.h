@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/work.h"
 #include "tools/bench/paired_runs.h"
+#include "tools/bench/work.h"
 
 namespace softfocus {
 

@@ -1,5 +1,5 @@
 #pragma once
-// What many times of one thing tell, and how two things compare that were timed in turn.
+// Statistics of times: of one thing timed often, and of two things timed in turn.
 
 #include <span>
 #include <vector>
@@ -13,11 +13,11 @@ struct Spread {
   double max = 0.0;
 };
 
-/// Of at least one sample. The median of an even number is the mean of the two in the middle.
+/// Needs at least one sample. The median of an even number is the mean of the two in the middle.
 Spread spread_of(std::vector<double> samples);
 
-/// peer / ours, pair by pair: how many times as fast ours was. Needs as many of one as of
-/// the other, all above 0.
+/// peer / ours, pair by pair: how many times faster ours was. Needs two lists of one length, all
+/// values above 0.
 std::vector<double> pair_ratios(std::span<const double> ours, std::span<const double> peers);
 
 }  // namespace softfocus

@@ -14,8 +14,8 @@ struct FilmedFrom {
   double fov_y_degrees;
 };
 
-// Of --image: the circles grow with the filter, so that the picture is as blurred to one
-// size of filter as to another.
+// For --image: circles grow with the filter's size, so that every size blurs the same share of
+// the picture.
 FilmedFrom picture_lens(std::optional<float> max_coc_px, int height_px) {
   FilmedFrom made{{.lens = {.focus_m = kBenchPictureFocusM}}, Camera{}.fov_y_degrees};
   const PixelCoc plain = pixel_coc(made.lens.lens, made.fov_y_degrees, height_px, 1.0);

@@ -1,5 +1,5 @@
 #pragma once
-// What a bench has both contenders do: a frame, with all that it takes made beforehand.
+// The work that `bench` times: a frame, and all that it needs, made beforehand.
 
 #include <cstddef>
 #include <optional>
@@ -25,8 +25,7 @@ struct BenchWork {
   std::string profile_name;
 };
 
-/// Loads or makes what is to be measured. Throws UsageError for a lens that cannot be,
-/// SceneError for a scene.
+/// Loads or makes the work. Throws UsageError for an impossible lens, SceneError for a scene.
 BenchWork make_work(const BenchOptions& options);
 
 }  // namespace softfocus

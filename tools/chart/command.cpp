@@ -39,7 +39,7 @@ void make_directory(const std::filesystem::path& directory) {
 
 constexpr std::size_t kLargestPlot = std::size_t{1} << 28;
 
-/// gnuplot's own file is not there under its name before it is whole.
+/// gnuplot draws into a scratch file, so that the chart's own appears whole.
 std::string plotted(const std::vector<ChartPanel>& panels, const char* terminal,
                     const std::filesystem::path& scratch) {
   run_gnuplot(plot_script(panels, terminal, scratch));

@@ -7,13 +7,13 @@
 #include "raster/numbers/hash.h"
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/load_scene.h"
-#include "tools/golden/hash_text.h"
 #include "tools/cli/machine.h"
+#include "tools/golden/hashes.h"
 
 namespace softfocus {
 namespace {
 
-/// As many as show every edge from several sides, and take no time.
+/// Enough to show every edge from several sides, and done at once.
 constexpr int kProbeSamples = 8;
 
 constexpr std::size_t kLargestSceneFile = std::size_t{1} << 30;

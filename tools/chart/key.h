@@ -1,5 +1,5 @@
 #pragma once
-// By what `chart` knows that what it kept is still right.
+// Keys that tell `chart` whether a kept result is still right.
 
 #include <filesystem>
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace softfocus {
 
-/// A line that differs whenever the truth could: of the program's version, the scene's name and
-/// file, size, frame, lens, samples, the pinhole's picture and that of the first few samples,
-/// which knows of files that a scene takes in and of changes of the program.
+/// A line that differs whenever the truth could. It names the program's version, the scene's name
+/// and file, size, frame, lens, samples and two hashes: of the pinhole's picture and of that of the
+/// first few samples. The hashes change with a scene's other files and with the program.
 std::string truth_key(const ChartScene& scene, const std::string& file_bytes, int samples,
                       ThreadPool& pool);
 
-/// What times depend on besides: processor, compiler, threads and vector unit.
+/// Times also depend on this: processor, compiler, threads and vector unit.
 std::string machine_key(const PoolOptions& pool);
 
 /// The bytes of the file that load_scene() would read first. Throws SceneError.

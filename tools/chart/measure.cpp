@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "dof/measure/heat_map.h"
+#include "tools/chart/worst_crop.h"
 #include "tools/files/base64.h"
 #include "tools/files/image_file.h"
-#include "tools/chart/worst_crop.h"
 
 namespace softfocus {
 namespace {

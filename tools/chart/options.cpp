@@ -19,7 +19,7 @@ constexpr int kMostRounds = 100;
 /// and planes of the methods, and the maps of the measures.
 constexpr std::uint64_t kChartBytesPerPixel = 320;
 
-/// The parts of "a,b,c". Throws UsageError for an empty one and for one that comes twice.
+/// The parts of "a,b,c". Throws UsageError for an empty or a repeated one.
 std::vector<std::string> parts_of(const std::string& option, const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t start = 0; start <= text.size();) {

@@ -33,8 +33,8 @@ struct ChartOptions {
 
 void add_chart_options(CLI::App& parser, ChartOptions& options);
 
-/// Settles what was not given. Throws UsageError for a size that memory is too small for, and
-/// where no scene is found.
+/// Settles what was not given. Throws UsageError if memory is too small for the size, or if no
+/// scene is found.
 void complete(ChartOptions& options);
 
 }  // namespace softfocus

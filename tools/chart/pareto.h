@@ -1,5 +1,5 @@
 #pragma once
-// Which of several contenders no other beats in both of two costs.
+// The contenders that no other beats in both of two costs.
 
 #include <span>
 #include <vector>
@@ -11,9 +11,9 @@ struct TwoCosts {
   double error = 0.0;
 };
 
-/// The indices of those for which nothing is at most as slow and at most as wrong, and less
-/// in one of the two; from the fastest on, so that errors fall. Of equal ones all. What has a
-/// NaN is never among them.
+/// The indices of the contenders on the front, from the fastest on, so that errors fall. A
+/// contender is off the front if another is better in one cost and no worse in the other. Equal
+/// ones are all on it, those with a NaN never.
 std::vector<std::size_t> pareto_front(std::span<const TwoCosts> contenders);
 
 }  // namespace softfocus

@@ -15,10 +15,10 @@ constexpr int kPanelWidth = 520, kPanelHeight = 540;  // pixels
 constexpr int kLeft = 96, kRight = 16, kTop = 44, kBottom = 58, kBetween = 34;
 constexpr int kKeyRow = 24, kKeyColumns = 5;
 
-/// FLIP of a picture that is the truth itself, which no logarithm has.
+/// Stands for FLIP 0, the truth itself, which has no logarithm.
 constexpr double kLeastFlip = 1e-5;
 
-/// Told apart by eye in neighbours and on white; past the end they come again with other shapes.
+/// Neighbours look different, also on white. After the last they repeat with other shapes.
 constexpr std::array kColours{"#000000", "#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd",
                               "#8c564b", "#e377c2", "#17becf", "#bcbd22", "#003f88", "#7f0000",
                               "#00a087", "#ffb000", "#606060", "#a8d800"};
@@ -122,7 +122,8 @@ std::string line(const ChartPoint& point) {
   return short_number(point.median_ms) + " " + short_number(shown(point.errors.flip)) + "\n";
 }
 
-/// The corners of the stair: up to each point nothing is nearer to the truth than the one before.
+/// The corners of the stair: until a point is reached, the one before it is the nearest to the
+/// truth.
 std::string front_data(const ChartPanel& panel, double right_end_ms) {
   std::vector<const ChartPoint*> front;
   for (const ChartPoint& point : panel.points) {

@@ -17,8 +17,8 @@ namespace softfocus {
 std::string plot_script(const std::vector<ChartPanel>& panels, std::string_view terminal,
                         const std::filesystem::path& file);
 
-/// How a panel's points are joined: a method with all that is alike but the radius or the
-/// number of samples. "two-pass", "two-pass, d3d11".
+/// Points of one line: they differ in radius or in the number of samples alone. "two-pass",
+/// "two-pass, d3d11".
 std::string series_name(const ChartEntry& entry);
 
 }  // namespace softfocus

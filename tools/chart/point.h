@@ -12,7 +12,7 @@
 
 namespace softfocus {
 
-/// How far a picture is from the truth. Of a region without pixels NaN.
+/// How far a picture is from the truth. NaN for a region without pixels.
 struct ChartErrors {
   double psnr_db = std::numeric_limits<double>::infinity();
   double ssim = 1.0;

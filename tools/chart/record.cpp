@@ -6,7 +6,7 @@
 #include "tools/chart/key.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
-#include "tools/golden/hash_text.h"
+#include "tools/golden/hashes.h"
 
 namespace softfocus {
 namespace {

@@ -16,8 +16,8 @@ void write_json(const std::filesystem::path& file, const Json& json);
 /// What a file holds, if it is there and is JSON.
 std::optional<Json> read_json(const std::filesystem::path& file);
 
-/// {psnr_db, ssim, flip, flip_silhouette, flip_near, flip_focus, flip_far}. What is no number
-/// is null: an infinite PSNR, a region without pixels.
+/// {psnr_db, ssim, flip, flip_silhouette, flip_near, flip_focus, flip_far}. An infinite
+/// PSNR and a region without pixels are null.
 Json errors_json(const ChartErrors& errors);
 ChartErrors errors_of(const Json& json);
 
@@ -25,14 +25,14 @@ ChartErrors errors_of(const Json& json);
 /// grow with each round.
 void save_point(const ChartPoint& point, const std::string& key, const std::filesystem::path& file);
 
-/// Fills these in, if they were kept under that key for a picture with the point's hash.
+/// Fills in what save_point() kept under that key, if the picture's hash is the point's.
 bool load_point(ChartPoint& point, const std::string& key, const std::filesystem::path& file);
 
 /// The times of all points that have some, under a key.
 void save_times(const std::vector<ChartPoint>& points, const std::string& key,
                 const std::filesystem::path& file);
 
-/// Fills in the times that were kept for the points' pictures under that key.
+/// Fills in the times kept under that key, for points whose pictures have the same hash.
 void load_times(std::vector<ChartPoint>& points, const std::string& key,
                 const std::filesystem::path& file);
 

@@ -7,13 +7,13 @@
 #include "tools/chart/pareto.h"
 #include "tools/chart/record.h"
 #include "tools/files/json.h"
-#include "tools/golden/hash_text.h"
+#include "tools/golden/hashes.h"
 
 namespace softfocus {
 namespace {
 
-/// What auto may take longer than the method that it chose, by a factor: it looks at the
-/// picture first. That, and what times of one run differ by.
+/// auto may take this many times the time of the method that it chose: it looks at the picture
+/// first, and times vary from run to run.
 constexpr double kChoosing = 1.1;
 
 Json point_json(const ChartPanel& panel, const ChartPoint& point) {

@@ -9,9 +9,9 @@
 
 namespace softfocus {
 
-/// Fills in the medians, and which points are on each scene's front of time against FLIP: of
-/// the fixed methods, and those of auto that no fixed one is as near and a tenth faster than.
-/// Needs a time for each point.
+/// Fills in the medians, and marks the points on the scene's front of time against FLIP. The front
+/// is that of the fixed methods; a point of auto is on it unless a fixed one with at most its FLIP
+/// is a tenth faster. Needs a time for each point.
 void settle_points(ChartPanel& panel);
 
 /// A list of {scene, method, settings, median_ms, psnr_db, ssim, flip, flip_silhouette,
@@ -20,8 +20,8 @@ void settle_points(ChartPanel& panel);
 /// filter's share where nothing is filtered.
 Json chart_json(const std::vector<ChartPanel>& panels);
 
-/// The same with a line a point and names on top (RFC 4180, but for the line's end, which is
-/// LF). Settings are "max_coc_px=16;profile=ieee"; null is empty.
+/// The same list as lines under a line of names (RFC 4180, but lines end in LF). Settings are
+/// "max_coc_px=16;profile=ieee"; null is empty.
 std::string chart_csv(const std::vector<ChartPanel>& panels);
 
 }  // namespace softfocus

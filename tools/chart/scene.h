@@ -6,8 +6,8 @@
 #include <string>
 
 #include "dof/auto/auto_method.h"
-#include "scenes/lens_views/accumulation.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/lens_views/accumulation.h"
 #include "tools/chart/options.h"
 #include "tools/chart/settings.h"
 
@@ -24,23 +24,23 @@ struct ChartScene {
   Image labels;             ///< label_regions() of it
 };
 
-/// Loads all scenes that are wanted, so that a wrong one is told before hours of work. Throws
-/// SceneError, and UsageError for a lens that cannot be and for two scenes of one name.
+/// Loads all scenes, so that a wrong one is reported before hours of work. Throws SceneError, and
+/// UsageError for an impossible lens or two scenes of one name.
 void check_scenes(const ChartOptions& options);
 
-/// Loads and draws it. Throws SceneError, and UsageError for a lens that cannot be.
+/// Loads and draws a scene. Throws SceneError, and UsageError for an impossible lens.
 ChartScene load_chart_scene(const std::string& name, const ChartOptions& options, ThreadPool& pool);
 
-/// For the methods that draw the scene; no jitter, for a filter looks from pixels' centres too.
+/// For the methods that draw the scene. Without jitter: filters, too, look from pixels' centres.
 LensViewInput accumulation_input(const ChartScene& scene, int samples);
 
-/// Milliseconds of one run. What auto takes to choose counts as filtering.
+/// Milliseconds of one run. auto's choosing counts as filtering.
 struct RunTime {
   double frame_ms = 0.0;
   std::optional<double> filter_ms;  ///< none if nothing was filtered
 };
 
-/// Whether the scene's lens is one that the contender's arithmetic has.
+/// Whether the contender's arithmetic can hold the scene's lens.
 bool can_run(const ChartScene& scene, const ChartEntry& entry);
 
 /// Makes contenders' pictures again and again in the same memory.

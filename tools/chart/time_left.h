@@ -1,12 +1,12 @@
 #pragma once
-// How long a work goes on, from how long its parts took so far.
+// How long work still takes, by the time of the parts that are done.
 
 #include <chrono>
 #include <string>
 
 namespace softfocus {
 
-/// Parts of a work in units that take about as long each. What needed no doing is taken out.
+/// Parts of about equal length. Those that needed no doing are taken out.
 class TimeLeft {
  public:
   explicit TimeLeft(double all_units) : all_units_(all_units) {}

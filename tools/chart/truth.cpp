@@ -9,7 +9,7 @@
 #include "tools/files/image_file.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
-#include "tools/golden/hash_text.h"
+#include "tools/golden/hashes.h"
 
 namespace softfocus {
 namespace {
@@ -22,7 +22,7 @@ std::filesystem::path with_ending(const std::filesystem::path& file, const char*
 
 ChartTruth make_truth(const ChartScene& scene, int samples,
                       const std::function<void(int)>& on_samples, ThreadPool& pool) {
-  // Or the half would lie inside of a group, and the bits would not be accumulation()'s.
+  // Half of the samples must end a group, or the bits would differ from accumulation()'s.
   assert(samples % kTruthSampleStep == 0);
   const LensViewInput input = accumulation_input(scene, samples);
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);

@@ -1,5 +1,5 @@
 #pragma once
-// The ground truth that `chart` holds contenders against, with what it is itself uncertain by.
+// The truth that `chart` compares contenders with, and how uncertain it is.
 
 #include <filesystem>
 #include <functional>
@@ -13,8 +13,8 @@ namespace softfocus {
 
 struct ChartTruth {
   Image picture;  ///< accumulation() of all samples, to the bit
-  /// The first half of the samples against the second. The picture is the mean of both, and so
-  /// nearer to what is right than this says: its mean square error is a fourth of theirs.
+  /// The first half of the samples against the second. The picture is the mean of both: its mean
+  /// square error is a fourth of their mean square difference.
   ChartErrors noise_floor;
 };
 

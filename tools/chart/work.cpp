@@ -6,19 +6,19 @@
 #include "tools/chart/measure.h"
 #include "tools/chart/record.h"
 #include "tools/chart/scene.h"
-#include "tools/chart/truth.h"
-#include "tools/golden/hash_text.h"
-#include "tools/cli/progress.h"
 #include "tools/chart/time_left.h"
+#include "tools/chart/truth.h"
+#include "tools/cli/progress.h"
+#include "tools/golden/hashes.h"
 
 namespace softfocus {
 namespace {
 
-/// What takes longer is timed less often.
+/// Slower contenders are timed less often.
 constexpr double kLongMs = 1000.0;
 constexpr std::size_t kRoundsOfLong = 3;
 
-/// In drawings of a pinhole's picture, about: what the time left is reckoned by.
+/// About how many drawings of a pinhole's picture each takes, to estimate the time left.
 constexpr double kFilterCost = 6.0, kAutoCost = 60.0, kMeasureCost = 40.0;
 
 double cost_of(const ChartEntry& entry) {

@@ -1,5 +1,5 @@
 #pragma once
-// Where in a map of errors it is worst, and parts of pictures to look at.
+// The worst place of a map of errors, and parts of pictures to look at.
 
 #include "dof/measure/pixel_map.h"
 #include "raster/images/image.h"
@@ -15,8 +15,8 @@ Crop worst_crop(const PixelMap& map, int side);
 Image cropped(const Image& picture, const Crop& crop);
 PixelMap cropped(const PixelMap& map, const Crop& crop);
 
-/// RGBA16F, smaller by a whole factor: the means of `factor` x `factor` pixels in linear light,
-/// clamped to 0..1; at the right and lower border of those that are there.
+/// RGBA16F, smaller by a whole factor: means of `factor` x `factor` pixels in linear light,
+/// clamped to 0..1. Blocks at the right and lower border may have fewer pixels.
 Image reduced(const Image& picture, int factor);
 PixelMap reduced(const PixelMap& map, int factor);
 

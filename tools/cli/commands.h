@@ -7,14 +7,12 @@
 
 namespace softfocus {
 
-/// What the program ends with. `compare` has its own meanings, as diff has:
-/// 0 equal, 1 different, 2 error.
+/// Exit statuses. `compare` and `crosscheck` have diff's: 0 equal, 1 different, 2 error.
 inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kWrongUsage = 2;
 
-/// A subcommand as it stands in the parser, and the work behind it, which returns
-/// the exit status.
+/// A subcommand: its parser, and its work, which returns the exit status.
 struct Command {
   CLI::App* parser;
   std::function<int()> work;

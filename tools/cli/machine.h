@@ -1,5 +1,5 @@
 #pragma once
-// What figures of speed depend on and do not show: the processor and the compiler.
+// The processor and the compiler, for reports of speed.
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
-// What the commands ask of the parser. CLI11's headers take longer to compile than most
-// of what is here: only parser.cpp includes them.
+// How commands describe their options. Only parser.cpp includes CLI11, whose headers take
+// seconds to compile.
 
 #include <functional>
 #include <memory>

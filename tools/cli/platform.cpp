@@ -89,8 +89,8 @@ bool close_file(int descriptor) { return ::_close(descriptor) == 0; }
 void prepare_process() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  // A stream that was closed would lend its number to the first file that is opened, and
-  // what is printed would go there. One that cannot be written to fails when it is.
+  // The first file that is opened would get the number of a closed stream, and what is printed
+  // would go there. So a closed stream is replaced by one whose writes fail.
   for (const int stream : {0, kStandardOutput, kStandardError}) {
     if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
   }

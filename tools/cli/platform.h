@@ -1,5 +1,5 @@
 #pragma once
-// What POSIX and Windows do each in a way of their own, in one place.
+// The calls that differ between POSIX and Windows.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace softfocus {
 
-/// Makes a closed pipe and a file-size limit errors of the write that meets them, not
-/// the silent end of the program, and standard output a stream of bytes.
+/// Makes a write to a closed pipe or past the file-size limit an error, where it would silently
+/// end the program, and makes standard output a stream of bytes.
 void prepare_process();
 
 /// The running program's number.
@@ -42,7 +42,7 @@ std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes);
 /// Closes a descriptor; false with errno set if what was written is lost.
 bool close_file(int descriptor);
 
-/// Whether what a program says on standard output and standard error is seen.
+/// Whether a program's output and errors are shown.
 enum class Said { shown, dropped };
 
 /// Runs a program of the system with that text as standard input and waits for its end. False if

@@ -6,11 +6,11 @@
 #include "dof/measure/heat_map.h"
 #include "raster/numbers/half.h"
 #include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
 #include "tools/compare/options.h"
 #include "tools/compare/report.h"
-#include "tools/cli/errors.h"
 #include "tools/files/image_file.h"
-#include "tools/cli/option_values.h"
 #include "tools/files/whole_file.h"
 
 namespace softfocus {
@@ -90,7 +90,7 @@ void write_map(const std::optional<std::string>& name, const Image& map) {
   file.commit();
 }
 
-/// Where one has no alpha there is nothing to compare the other's with: both are cleared.
+/// If only one has alpha, both are cleared: there is nothing to compare it with.
 Difference counted(Picture& a, Picture& b) {
   const bool with_alpha = a.has_alpha && b.has_alpha;
   if (!with_alpha) {

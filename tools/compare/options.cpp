@@ -1,8 +1,8 @@
 #include "tools/compare/options.h"
 
 #include "tools/cli/errors.h"
-#include "tools/files/image_file.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/image_file.h"
 
 namespace softfocus {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "dof/measure/measures.h"
-#include "tools/options/lens_options.h"
 #include "tools/cli/parser.h"
+#include "tools/options/lens_options.h"
 
 namespace softfocus {
 

@@ -20,7 +20,7 @@ struct PointFindings {
 
 struct CompareFindings {
   Difference difference;
-  /// The first differing value; what it means is for difference.differing > 0.
+  /// The first differing value. Valid if difference.differing > 0.
   char channel = 'R';
   float first_a = 0.0f;
   float first_b = 0.0f;

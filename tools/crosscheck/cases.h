@@ -1,6 +1,6 @@
 #pragma once
-// What is drawn twice and compared: a list of cases, each belonging to a stage of the
-// pipeline. Adding a case touches the file of its stage, adding a stage this list too.
+// The cases that are drawn twice and compared, by stage of the pipeline. A new case goes into its
+// stage's file; a new stage also into this list.
 
 #include <functional>
 #include <string>

@@ -1,5 +1,4 @@
-// softfocus crosscheck: the same work on GL drivers and on the emulation, and what of it
-// differs.
+// softfocus crosscheck: does the same work on GL drivers and on the emulation, and compares.
 
 #include <algorithm>
 #include <iostream>
@@ -51,8 +50,8 @@ ChosenProfile profile_for(const Driver& driver, const CrosscheckOptions& options
   return {std::string(driver.profile), "", find_profile(driver.profile).value()};
 }
 
-// Without --driver: those whose profile is known. All that can be wrong with the options
-// is found here, before a driver has worked for minutes.
+// Without --driver, the drivers whose profile is known. Checks the options first, before a driver
+// has worked for minutes.
 std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
   std::vector<const Driver*> chosen = options.drivers;
   if (chosen.empty()) {

@@ -114,9 +114,11 @@ void add_filter_cases(std::vector<Case>& cases) {
         {TestPicture::cube_room, 512, 512, focused(24.0f, 2.0f, 16.0f)});
     add("sphere-world-512x512-radius16", false, false,
         {TestPicture::sphere_world, 512, 512, focused(24.0f, 2.0f, 16.0f)});
-    add("special-values-odd", false, true, {TestPicture::special, 33, 51, focused(6.0f, 2.0f, 4.0f)});
+    add("special-values-odd", false, true,
+        {TestPicture::special, 33, 51, focused(6.0f, 2.0f, 4.0f)});
     add("odd-333x517", false, false, {TestPicture::steps, 333, 517, focused(12.0f, 2.0f, 8.0f)});
-    add("wide-1024x512", false, false, {TestPicture::figures, 1024, 512, focused(12.0f, 2.0f, 8.0f)});
+    add("wide-1024x512", false, false,
+        {TestPicture::figures, 1024, 512, focused(12.0f, 2.0f, 8.0f)});
     add("one-pixel", true, true, {TestPicture::random, 1, 1, focused(12.0f, 2.0f, 8.0f)});
     add("one-column", true, true, {TestPicture::random, 1, 300, focused(12.0f, 2.0f, 8.0f)});
     add("lens-nothing-in-focus", false, true,
@@ -124,11 +126,13 @@ void add_filter_cases(std::vector<Case>& cases) {
     add("lens-all-sharp", false, true, {TestPicture::random, 48, 48, focused(1e-6f, 2.0f, 8.0f)});
     add("lens-half-pixel-radius", false, true,
         {TestPicture::random, 48, 48, focused(3.0f, 2.0f, 0.5f)});
-    add("lens-fractional-radius", true, true, {TestPicture::random, 48, 48, focused(9.0f, 2.0f, 6.7f)});
+    add("lens-fractional-radius", true, true,
+        {TestPicture::random, 48, 48, focused(9.0f, 2.0f, 6.7f)});
     add("lens-no-filter", false, true, {TestPicture::random, 48, 48, focused(3.0f, 2.0f, 0.0f)});
     add("lens-no-leak", false, true, {TestPicture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.0f)});
     add("lens-leak-0.3", true, true, {TestPicture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 0.3f)});
-    add("lens-huge-leak", false, true, {TestPicture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 1e30f)});
+    add("lens-huge-leak", false, true,
+        {TestPicture::steps, 48, 48, focused(9.0f, 2.0f, 6.0f, 1e30f)});
   }
 }
 

@@ -4,12 +4,12 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
-#include "tools/crosscheck/probe.h"
-#include "tools/options/run_options.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/crosscheck/probe.h"
 #include "tools/files/profile_file.h"
 #include "tools/files/whole_file.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {

@@ -102,6 +102,16 @@ void compare_all(const CrosscheckWork& work, const SendLine& send) {
 
 }  // namespace
 
+std::vector<Case> crosscheck_cases() {
+  std::vector<Case> cases;
+  add_store_cases(cases);
+  add_texture_cases(cases);
+  add_triangle_cases(cases);
+  add_scene_cases(cases);
+  add_filter_cases(cases);
+  return cases;
+}
+
 DriverRun run_cases(const CrosscheckWork& work,
                     const std::function<void(const CaseResult&)>& report) {
   DriverRun run;

@@ -1,6 +1,6 @@
 #pragma once
-// A JSON value, and its way from and to text. nlohmann's header is parsed in json.cpp alone: it
-// takes longer to compile than what it is needed for.
+// A JSON value, and its way from and to text. Only json.cpp includes nlohmann's header, which takes
+// seconds to compile.
 
 #include <array>
 #include <concepts>

@@ -9,8 +9,8 @@
 
 #include "raster/images/image.h"
 #include "raster/numbers/half.h"
-#include "tools/files/byte_order.h"
 #include "tools/cli/errors.h"
+#include "tools/files/byte_order.h"
 #include "tools/files/image_file.h"
 
 namespace softfocus {

@@ -8,8 +8,8 @@
 #include <new>
 
 #include "raster/images/texel.h"
-#include "tools/files/byte_order.h"
 #include "tools/cli/errors.h"
+#include "tools/files/byte_order.h"
 #include "tools/files/image_file.h"
 
 namespace {

@@ -14,8 +14,8 @@ namespace softfocus {
 class GlContext {
  public:
   /// Opens the driver, setting the environment in which it is found: only the first
-  /// driver of a process counts. With `threads`, llvmpipe works on so many, else on as many
-  /// as the machine has. Throws DriverError if there is no EGL, no such driver, or if its
+  /// driver of a process counts. `threads` is for llvmpipe; without it, it takes all of the
+  /// machine's. Throws DriverError if there is no EGL, no such driver, or if its
   /// GL is older than 3.3.
   explicit GlContext(const Driver& driver, std::optional<int> threads = {});
   ~GlContext();

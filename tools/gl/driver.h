@@ -19,8 +19,8 @@ struct Driver {
   /// The profile that it is compared with unless another is given, on this CPU; empty
   /// for a GPU, whose profile has to be probed first.
   std::string_view profile;
-  /// For Mesa's software drivers: which of them, and to which CPU features it is held
-  /// (empty: those there are). GL_RENDERER begins with the driver's name.
+  /// For Mesa's software drivers: the driver's name, and the CPU features that it may use
+  /// (empty: all). GL_RENDERER begins with the driver's name.
   std::string_view gallium_driver;
   std::string_view cpu_caps;
   /// Draws so slowly that it gets small pictures only.
@@ -29,7 +29,7 @@ struct Driver {
 
 inline bool is_software(const Driver& driver) { return !driver.gallium_driver.empty(); }
 
-/// What `work` returns; a DriverError of it gets the driver's name in front.
+/// Returns work(), and puts the driver's name in front of its DriverError.
 template <class Work>
 auto naming(const Driver& driver, const Work& work) {
   try {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "dof/dof.h"
-#include "scenes/scene.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/scene.h"
 #include "tools/gl/driver.h"
 
 namespace softfocus {

@@ -6,9 +6,9 @@
 #include <map>
 #include <vector>
 
-#include "scenes/scene.h"
-#include "scenes/draw/surface_stages.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/surface_stages.h"
+#include "scenes/scene.h"
 #include "tools/gl/objects.h"
 
 namespace softfocus {

@@ -24,13 +24,13 @@ struct Shaders {
 };
 
 /// The shaders in a folder: those of the built-in ones' names, and any *.glsl that they
-/// include. Throws SceneError for a file that cannot be read, for a .vert or .frag that
-/// stands in for none, and for a folder without shaders.
+/// include. Throws SceneError if a file cannot be read, if a .vert or .frag replaces
+/// no built-in one, or if the folder has no shaders.
 Shaders read_shaders(const std::filesystem::path& folder);
 
 /// A shader's text with every line `#include "NAME"` replaced by that shader's, and #line
-/// directives, so that a compiler's complaint has the file's own line. Throws DriverError
-/// for a name that there is not, or that includes itself.
+/// directives, so that a compiler's complaint has the file's own line. Throws DriverError if there
+/// is no such name, or if a shader includes itself.
 std::string shader_source(const Shaders& shaders, std::string_view name);
 
 }  // namespace softfocus

@@ -1,8 +1,8 @@
 #include <array>
 #include <string_view>
 
-#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
+#include "dof/fixed_pictures/arithmetic.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/sample_sums.h"
@@ -20,10 +20,11 @@ struct FrameSize {
 // Whole tiles, and parts of tiles.
 constexpr std::array kSizes{FrameSize{128, 128}, FrameSize{97, 61}};
 
-// What moves has moved by then.
+// By this frame everything that moves has moved.
 constexpr double kFrame = 7.0;
 
-// Circles as of a picture of 512 rows: as of these few, nearly all would lie in a pixel.
+// Circles have the size that they have in 512 rows: in these few rows nearly all would lie in one
+// pixel.
 constexpr double kRows = 512.0;
 
 DofSettings settings_for(const Scene& scene, int height) {

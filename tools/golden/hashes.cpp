@@ -6,8 +6,6 @@
 #include <iterator>
 #include <map>
 
-#include "tools/golden/hash_text.h"
-
 namespace softfocus {
 namespace {
 
@@ -21,6 +19,12 @@ constexpr TableEntry kTable[] = {
 };
 
 }  // namespace
+
+std::string hash_text(std::uint64_t hash) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
 
 std::vector<NamedHash> golden_hashes(ThreadPool& pool) {
   std::vector<NamedHash> hashes = number_hashes();

@@ -14,6 +14,9 @@
 
 namespace softfocus {
 
+/// As it is printed and kept: 0x and 16 digits.
+std::string hash_text(std::uint64_t hash);
+
 /// What was computed, in words, and the FNV-1a hash of its bits.
 struct NamedHash {
   std::string name;

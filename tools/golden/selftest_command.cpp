@@ -7,7 +7,6 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/files/json.h"
-#include "tools/golden/hash_text.h"
 #include "tools/golden/hashes.h"
 #include "tools/options/run_options.h"
 

@@ -7,9 +7,9 @@
 #include "scenes/load/file_bytes.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/gl/shaders.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/whole_file.h"
+#include "tools/gl/shaders.h"
 
 namespace softfocus {
 namespace {

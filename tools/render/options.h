@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dof/auto/auto_method.h"
-#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
+#include "dof/fixed_pictures/arithmetic.h"
 #include "raster/numbers/profile.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"

@@ -1,4 +1,4 @@
-// chart from end to end. What a time is no test can say; that it is there, these do.
+// chart from end to end. They check that times are there, not what they are.
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
