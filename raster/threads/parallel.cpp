@@ -82,10 +82,10 @@ struct ThreadPool::State {
   }
 };
 
-ThreadPool::ThreadPool(int threads, Isa isa) : state_(std::make_unique<State>()), isa_(isa) {
+ThreadPool::ThreadPool(int threads, Isa isa) : state_(new State), isa_(isa) {
   try {
     for (int i = 1; i < threads; ++i) {
-      state_->workers.emplace_back([state = state_.get()] { state->work(); });
+      state_->workers.emplace_back([state = state_] { state->work(); });
     }
   } catch (const std::system_error&) {
     // The system gives no more threads: the pool works with those it has.
@@ -99,6 +99,7 @@ ThreadPool::~ThreadPool() {
   }
   state_->work_ready.notify_all();
   for (std::thread& worker : state_->workers) worker.join();
+  delete state_;
 }
 
 int ThreadPool::threads() const { return static_cast<int>(state_->workers.size()) + 1; }

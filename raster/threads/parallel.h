@@ -3,7 +3,6 @@
 // order on any thread. The pool carries the vector unit that kernels use. Results must
 // depend on neither.
 
-#include <memory>
 
 #include "raster/lanes/isa.h"
 
@@ -42,7 +41,7 @@ class ThreadPool {
 
   void run(int count, Iteration iteration);
 
-  std::unique_ptr<State> state_;
+  State* state_;  // owned; no <memory>, which would double what dof.h makes a compiler read
   Isa isa_;
 };
 
