@@ -1,3 +1,6 @@
+#ifndef SOFTFOCUS_ISA
+// The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+
 #include "dof/picture_planes.h"
 
 #include <algorithm>
@@ -6,7 +9,7 @@
 #include "dof/weights.h"
 #include "raster/images/texel.h"
 
-#define SOFTFOCUS_KERNELS "dof/picture_planes_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/picture_planes.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -43,7 +46,7 @@ SplitTexel split_texel(const DofInput& input, int x, int y) {
 }
 
 Planes split_picture(const DofInput& input, ThreadPool& pool) {
-  const Image& scene = input.scene;
+  const ConstImageView& scene = input.scene;
   Planes planes = make_planes(4, scene.width, scene.height);
   pool.for_each(scene.height, [&](int y) {
     float* to = plane_row(planes, 0, y);
@@ -64,8 +67,8 @@ Planes split_picture(const DofInput& input, ThreadPool& pool) {
   return planes;
 }
 
-void store_span(const DofInput& input, Image& result, int x, int y, int count, const float* r,
-                const float* g, const float* b, Isa isa) {
+void store_span(const DofInput& input, const ImageView& result, int x, int y, int count,
+                const float* r, const float* g, const float* b, Isa isa) {
   if (isa != Isa::scalar) {
     SOFTFOCUS_KERNEL(isa, merge_row)
     (row<std::uint16_t>(input.scene, y).data() + 4 * x, r, g, b, count, input.profile.half_store,
@@ -80,8 +83,8 @@ void store_span(const DofInput& input, Image& result, int x, int y, int count, c
   }
 }
 
-void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
-               const float* b, Isa isa) {
+void store_row(const DofInput& input, const ImageView& result, int y, const float* r,
+               const float* g, const float* b, Isa isa) {
   store_span(input, result, 0, y, result.width, r, g, b, isa);
 }
 
@@ -97,3 +100,53 @@ std::vector<float> largest_of_rows(const Planes& planes, int plane, ThreadPool& 
 }
 
 }  // namespace softfocus
+
+#else  // kernels
+
+namespace {
+
+#include "dof/picture_lanes.inl"
+
+template <HalfRounding rounding>
+SOFTFOCUS_INLINE void merge_rows(const std::uint16_t* scene, const float* r, const float* g,
+                                 const float* b, int width, std::uint16_t* to) {
+  for (int x = 0; x < width; x += kLanes) {
+    const HalfTexels texels{float_to_half<rounding>(clamp_to_half(load(r + x))),
+                            float_to_half<rounding>(clamp_to_half(load(g + x))),
+                            float_to_half<rounding>(clamp_to_half(load(b + x))),
+                            stored_depth(load_repeating(scene, x, width).a)};
+    if (x + kLanes <= width) {
+      store_half_texels(to + 4 * x, texels);
+    } else {
+      std::uint16_t last[4 * kLanes];
+      store_half_texels(last, texels);
+      std::memcpy(to + 4 * x, last, 4 * sizeof *last * static_cast<std::size_t>(width - x));
+    }
+  }
+}
+
+}  // namespace
+
+/// The planes of a row of RGBA16F, `plane` floats apart; `padded` pixels are written.
+void split_row(const DofSettings& settings, const std::uint16_t* from, int width, int padded,
+               float* to, std::ptrdiff_t plane) {
+  for (int x = 0; x < padded; x += kLanes) {
+    const HalfTexels texels = load_repeating(from, x, width);
+    store(to + x, finite_colour(texels.r));
+    store(to + plane + x, finite_colour(texels.g));
+    store(to + 2 * plane + x, finite_colour(texels.b));
+    store(to + 3 * plane + x, split_radius(settings, half_to_float(texels.a)));
+  }
+}
+
+/// A row of RGBA16F from its planes and the scene's depth.
+void merge_row(const std::uint16_t* scene, const float* r, const float* g, const float* b,
+               int width, HalfRounding rounding, std::uint16_t* to) {
+  if (rounding == HalfRounding::nearest_even) {
+    merge_rows<HalfRounding::nearest_even>(scene, r, g, b, width, to);
+  } else {
+    merge_rows<HalfRounding::toward_zero>(scene, r, g, b, width, to);
+  }
+}
+
+#endif

@@ -1,20 +1,19 @@
 #pragma once
-// A picture as planes of floats: the form in which methods work that filter it several
-// times over, or in more than one layer.
+// A picture as planes of floats, for methods that filter it several times or in layers.
 //
-// A colour that is NaN counts as black and an infinite one as the largest half, so that
-// neither spreads through sums that reach far.
+// A NaN colour becomes black and an infinite one the largest half, so that neither spreads
+// through sums that reach far.
 
 #include <cstddef>
 #include <memory>
 #include <vector>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-/// Planes of rows of floats. A row has room for whole vectors: what lies between the
-/// width and the stride is written and read, but means nothing.
+/// Planes of rows of floats. A row ends at a whole vector of the widest unit: methods may
+/// read and write the values between `width` and `stride`, which mean nothing.
 struct Planes {
   int width = 0;
   int height = 0;
@@ -23,7 +22,7 @@ struct Planes {
   std::unique_ptr<float[]> values;
 };
 
-/// Planes of nothing in particular.
+/// `count` planes, not initialised.
 Planes make_planes(int count, int width, int height);
 
 inline float* plane_row(Planes& planes, int plane, int y) {
@@ -33,27 +32,27 @@ inline const float* plane_row(const Planes& planes, int plane, int y) {
   return planes.values.get() + plane * planes.plane + y * planes.stride;
 }
 
-/// A pixel, its colour finite.
+/// A pixel with a finite colour.
 struct SplitTexel {
   float r, g, b;
-  /// Of the circle of confusion: negative nearer than the focus, of a magnitude up to
-  /// max_coc_px. A depth that is infinite or NaN lies beyond.
+  /// The circle of confusion: -max_coc_px to max_coc_px, negative nearer than the focus. A
+  /// depth that is infinite or NaN lies behind the focus.
   float radius_px;
 };
 SplitTexel split_texel(const DofInput& input, int x, int y);
 
-/// split_texel() of every pixel in four planes: red, green, blue, radius. What follows a
-/// row's last pixel repeats it.
+/// Four planes of all pixels' split_texel(): red, green, blue, radius. The last pixel of a
+/// row repeats up to the stride.
 Planes split_picture(const DofInput& input, ThreadPool& pool);
 
-/// Stores row `y` of colours, cut to what a half holds, with the scene's depth in alpha.
-/// There is room for whole vectors in each.
-void store_row(const DofInput& input, Image& result, int y, const float* r, const float* g,
-               const float* b, Isa isa);
+/// Stores a row: colours, cut to what a half holds, and the scene's depth in alpha. Needs
+/// whole vectors of the unit in `r`, `g` and `b`.
+void store_row(const DofInput& input, const ImageView& result, int y, const float* r,
+               const float* g, const float* b, Isa isa);
 
-/// The same of `count` pixels from `x` on; the colours are theirs alone.
-void store_span(const DofInput& input, Image& result, int x, int y, int count, const float* r,
-                const float* g, const float* b, Isa isa);
+/// Stores `count` pixels of a row from `x` on; r[0] is the colour of pixel `x`.
+void store_span(const DofInput& input, const ImageView& result, int x, int y, int count,
+                const float* r, const float* g, const float* b, Isa isa);
 
 /// The largest magnitude in each row of a plane.
 std::vector<float> largest_of_rows(const Planes& planes, int plane, ThreadPool& pool);

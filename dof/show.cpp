@@ -9,7 +9,7 @@ namespace softfocus {
 namespace {
 
 template <class Grey>
-Image grey_picture(const Image& scene, const Grey& grey_of_depth) {
+Image grey_picture(const ConstImageView& scene, const Grey& grey_of_depth) {
   Image picture = make_image(Format::rgba16f, scene.width, scene.height);
   for (int y = 0; y < scene.height; ++y) {
     for (int x = 0; x < scene.width; ++x) {
@@ -23,14 +23,14 @@ Image grey_picture(const Image& scene, const Grey& grey_of_depth) {
 
 }  // namespace
 
-Image show_coc(const Image& scene, const PixelCoc& coc, float max_coc_px) {
+Image show_coc(const ConstImageView& scene, const PixelCoc& coc, float max_coc_px) {
   return grey_picture(scene, [&](float depth) {
     const float radius = std::fabs(coc_radius_px(coc, depth));
     return max_coc_px > 0.0f ? radius / max_coc_px : 0.0f;
   });
 }
 
-Image show_depth(const Image& scene, float near_m, float far_m) {
+Image show_depth(const ConstImageView& scene, float near_m, float far_m) {
   const float at_near = 1.0f / near_m;
   const float at_far = 1.0f / far_m;
   return grey_picture(scene,

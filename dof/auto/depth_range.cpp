@@ -13,7 +13,6 @@ namespace softfocus {
 namespace {
 
 constexpr int kBandHeight = 32;
-constexpr std::size_t kMostLanes = 16;
 
 DepthRange range_of_band(const Image& picture, Isa isa, int begin, int end) {
   DepthRange range;

@@ -7,7 +7,7 @@
 // radius below 8 pixels work on the picture itself, level 0; each further doubling of the
 // radius works on pixels of twice the size.
 
-#include <cstdint>
+#include <algorithm>
 #include <vector>
 
 namespace softfocus {
@@ -15,11 +15,15 @@ namespace softfocus {
 inline constexpr int kFineRungs = 13;  ///< of level 0, with the one in focus
 inline constexpr int kLevelRungs = 4;  ///< of each other level
 
-/// How much of a pixel belongs to a rung or to larger ones:
-/// clamp((square - begin) * slope, 0, 1).
+/// Where a rung begins, in squares of radii.
 struct RungStep {
   float begin, slope;
 };
+
+/// How much of a pixel belongs to a rung or to larger ones.
+inline float share_from(RungStep step, float square) {
+  return std::max(std::min((square - step.begin) * step.slope, 1.0f), 0.0f);
+}
 
 /// A column of a disc about y: `centre` times the pixels y - whole to y + whole, and `end`
 /// times the next on either side.

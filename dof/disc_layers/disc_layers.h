@@ -32,14 +32,14 @@
 #include <vector>
 
 #include "dof/disc_layers/disc_ladder.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void disc_layers(const DofInput& input, Image& result, ThreadPool& pool);
+void disc_layers(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// Its oracle, pixel by pixel; equal to the bit.
-void disc_layers_plain(const DofInput& input, Image& result, ThreadPool& pool);
+void disc_layers_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The ladder up to the largest radius of the settings.
 std::vector<LevelRungs> disc_ladder_of(const DofInput& input);

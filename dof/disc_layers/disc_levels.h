@@ -7,13 +7,30 @@
 #include <vector>
 
 #include "dof/disc_layers/disc_ladder.h"
-#include "dof/disc_layers/disc_tile.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-/// Blocks of pixels that know which rungs are in them.
+/// Largest size of a tile in pixels.
+inline constexpr int kDiscTileWidth = 64;
+inline constexpr int kDiscTileHeight = 32;
+/// Pixels by which a level's rows go on at either end, repeating the last.
+inline constexpr int kDiscMargin = 8;
+/// Rows above and below a tile that any disc reaches, and one more.
+inline constexpr int kDiscApron = 8;
+/// A block of 8x8 pixels knows which rungs are in it.
 inline constexpr int kDiscBlock = 8;
+
+/// Channels of a pixel: red, green and blue times weight; weight, the share of the pixel that
+/// is there; the square of its radius. In level 0 the squares of radii before the focus are
+/// negative, in other levels all are positive.
+inline constexpr int kDiscWeight = 3, kDiscSquare = 4, kDiscChannels = 5;
+struct DiscRow {
+  const float* channel[kDiscChannels];
+};
+
+/// What is seen of a pixel: red, green, blue and the transmittance.
+inline constexpr int kDiscTransmitted = 3;
 
 /// Planes of a level, each row with a margin at either end and room for whole tiles.
 struct DiscPlanes {

@@ -84,7 +84,7 @@ std::vector<fixed::Weights> half_table(const fixed::Lens& lens) {
   return table;
 }
 
-BytePicture byte_picture(const Image& picture, ThreadPool& pool) {
+BytePicture byte_picture(const ConstImageView& picture, ThreadPool& pool) {
   const auto width = static_cast<std::size_t>(picture.width);
   BytePicture bytes{make_image(Format::rgba8, picture.width, picture.height),
                     std::vector<std::uint16_t>(width * static_cast<std::size_t>(picture.height))};
@@ -102,7 +102,8 @@ BytePicture byte_picture(const Image& picture, ThreadPool& pool) {
   return bytes;
 }
 
-void two_pass_bytes(const Image& scene, const FixedTable& table, Image& result, ThreadPool& pool) {
+void two_pass_bytes(const ConstImageView& scene, const FixedTable& table, const ImageView& result,
+                    ThreadPool& pool) {
   const BytePicture picture = byte_picture(scene, pool);
   Image filtered = make_image(Format::rgba8, scene.width, scene.height);
   fixed_two_pass(picture.colours, picture.depths, table, filtered, pool);
@@ -118,7 +119,8 @@ void two_pass_bytes(const Image& scene, const FixedTable& table, Image& result, 
   });
 }
 
-void two_pass_in(Arithmetic arithmetic, const DofInput& input, Image& result, ThreadPool& pool) {
+void two_pass_in(Arithmetic arithmetic, const DofInput& input, const ImageView& result,
+                 ThreadPool& pool) {
   switch (arithmetic) {
     case Arithmetic::floats: two_pass(input, result, pool); return;
     case Arithmetic::fixed:

@@ -8,7 +8,7 @@
 
 #include "dof/fixed/fixed.h"
 #include "dof/fixed_pictures/fixed_two_pass.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
@@ -41,13 +41,13 @@ struct BytePicture {
   Image colours;  ///< RGBA8, alpha 255
   std::vector<std::uint16_t> depths;
 };
-BytePicture byte_picture(const Image& picture, ThreadPool& pool);
+BytePicture byte_picture(const ConstImageView& picture, ThreadPool& pool);
 
 /// The two-pass filter of `input` in that arithmetic. Needs settings without error.
-void two_pass_in(Arithmetic arithmetic, const DofInput& input, Image& result, ThreadPool& pool);
+void two_pass_in(Arithmetic arithmetic, const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The same with Arithmetic::fixed_8 and a table from fixed_table(half_table(...)), which is made
 /// once a lens.
-void two_pass_bytes(const Image& scene, const FixedTable& table, Image& result, ThreadPool& pool);
+void two_pass_bytes(const ConstImageView& scene, const FixedTable& table, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

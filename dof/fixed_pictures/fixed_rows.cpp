@@ -9,20 +9,18 @@ namespace softfocus {
 namespace {
 
 struct RowFilter {
-  const Image& picture;
+  const ConstImageView& picture;
   const std::uint8_t* codes;
   std::size_t code_bytes;
   const fixed::Weights* table;
   fixed::Settings settings;  ///< of the whole picture
-  Image& result;
+  const ImageView& result;
 };
 
-const std::byte* bytes_of(const Image& image, int y) {
-  return image.bytes.data() + static_cast<std::size_t>(y) * image.stride_bytes;
+const std::byte* bytes_of(const ConstImageView& image, int y) {
+  return image.texels + y * image.stride_bytes;
 }
-std::byte* bytes_of(Image& image, int y) {
-  return image.bytes.data() + static_cast<std::size_t>(y) * image.stride_bytes;
-}
+std::byte* bytes_of(const ImageView& image, int y) { return image.texels + y * image.stride_bytes; }
 
 void filter_rows(const RowFilter& filter, int y_begin, int y_end) {
   const int first = std::max(y_begin - filter.settings.reach, 0);
@@ -30,7 +28,8 @@ void filter_rows(const RowFilter& filter, int y_begin, int y_end) {
   fixed::Settings settings = filter.settings;
   settings.height = static_cast<std::uint16_t>(last - first);
   std::vector<std::uint32_t> memory(fixed::memory_bytes(settings) / sizeof(std::uint32_t) + 1);
-  std::vector<std::byte> unwanted(filter.result.stride_bytes);
+  std::vector<std::byte> unwanted(bytes_per_texel(filter.result.format) *
+                                  static_cast<std::size_t>(filter.result.width));
   fixed::Stream stream;
   const auto begin = settings.colour == SOFTFOCUS_FIXED_RGBA16F ? softfocus_fixed_begin_half
                                                                 : softfocus_fixed_begin;
@@ -52,8 +51,9 @@ void filter_rows(const RowFilter& filter, int y_begin, int y_end) {
 
 }  // namespace
 
-void fixed_two_pass_rows(const Image& picture, softfocus_fixed_depth depth, const void* codes,
-                         std::span<const fixed::Weights> table, Image& result, ThreadPool& pool) {
+void fixed_two_pass_rows(const ConstImageView& picture, softfocus_fixed_depth depth,
+                         const void* codes, std::span<const fixed::Weights> table,
+                         const ImageView& result, ThreadPool& pool) {
   const bool bytes = picture.format == Format::rgba8;
   assert(bytes || picture.format == Format::rgba16f);
   int reach = 0;

@@ -136,8 +136,8 @@ void filter_in_lanes(const FixedStrip& whole, int reach, bool halves, ThreadPool
 }
 
 /// `codes` are null if they are the picture's alpha.
-void filter(const Image& picture, const void* codes, softfocus_fixed_depth depth,
-            const FixedTable& table, Image& result, ThreadPool& pool) {
+void filter(const ConstImageView& picture, const void* codes, softfocus_fixed_depth depth,
+            const FixedTable& table, const ImageView& result, ThreadPool& pool) {
   const bool halves = picture.format == Format::rgba16f;
   assert(halves || (picture.format == Format::rgba8 && codes != nullptr));
   assert(result.format == picture.format);
@@ -149,12 +149,12 @@ void filter(const Image& picture, const void* codes, softfocus_fixed_depth depth
   whole.words = table.words.data();
   whole.width = picture.width;
   whole.height = picture.height;
-  whole.picture = reinterpret_cast<const std::uint8_t*>(picture.bytes.data());
-  whole.picture_stride = static_cast<std::ptrdiff_t>(picture.stride_bytes);
+  whole.picture = reinterpret_cast<const std::uint8_t*>(picture.texels);
+  whole.picture_stride = picture.stride_bytes;
   whole.codes = codes;
   whole.code_bytes = depth == SOFTFOCUS_FIXED_DEPTH8 ? 1 : 2;
-  whole.result = reinterpret_cast<std::uint8_t*>(result.bytes.data());
-  whole.result_stride = static_cast<std::ptrdiff_t>(result.stride_bytes);
+  whole.result = reinterpret_cast<std::uint8_t*>(result.texels);
+  whole.result_stride = result.stride_bytes;
   whole.past_caches = write_past_caches(result);
   filter_in_lanes(whole, table.reach, halves, pool);
 }
@@ -177,19 +177,19 @@ FixedTable fixed_table(std::vector<fixed::Weights> weights) {
   return table;
 }
 
-void fixed_two_pass(const Image& picture, std::span<const std::uint8_t> codes,
-                    const FixedTable& table, Image& result, ThreadPool& pool) {
+void fixed_two_pass(const ConstImageView& picture, std::span<const std::uint8_t> codes,
+                    const FixedTable& table, const ImageView& result, ThreadPool& pool) {
   assert(table.weights.size() == 256);
   filter(picture, codes.data(), SOFTFOCUS_FIXED_DEPTH8, table, result, pool);
 }
 
-void fixed_two_pass(const Image& picture, std::span<const std::uint16_t> codes,
-                    const FixedTable& table, Image& result, ThreadPool& pool) {
+void fixed_two_pass(const ConstImageView& picture, std::span<const std::uint16_t> codes,
+                    const FixedTable& table, const ImageView& result, ThreadPool& pool) {
   assert(table.weights.size() == 65536);
   filter(picture, codes.data(), SOFTFOCUS_FIXED_DEPTH16, table, result, pool);
 }
 
-void fixed_two_pass(const Image& picture, const FixedTable& table, Image& result,
+void fixed_two_pass(const ConstImageView& picture, const FixedTable& table, const ImageView& result,
                     ThreadPool& pool) {
   assert(picture.format == Format::rgba16f && table.weights.size() == 65536);
   filter(picture, nullptr, SOFTFOCUS_FIXED_DEPTH_IN_ALPHA, table, result, pool);

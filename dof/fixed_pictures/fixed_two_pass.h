@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dof/fixed/fixed.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/images/image.h"
 #include "raster/threads/parallel.h"
 
@@ -31,11 +31,11 @@ FixedTable fixed_table(std::vector<fixed::Weights> weights);
 /// size and format. Codes of depth
 /// lie row by row without gaps; the table has an entry for each code of 8 or 16 bits. `scalar`
 /// runs the rows of dof/fixed.
-void fixed_two_pass(const Image& picture, std::span<const std::uint8_t> codes,
-                    const FixedTable& table, Image& result, ThreadPool& pool);
-void fixed_two_pass(const Image& picture, std::span<const std::uint16_t> codes,
-                    const FixedTable& table, Image& result, ThreadPool& pool);
+void fixed_two_pass(const ConstImageView& picture, std::span<const std::uint8_t> codes,
+                    const FixedTable& table, const ImageView& result, ThreadPool& pool);
+void fixed_two_pass(const ConstImageView& picture, std::span<const std::uint16_t> codes,
+                    const FixedTable& table, const ImageView& result, ThreadPool& pool);
 /// The same with the alpha of RGBA16F for codes.
-void fixed_two_pass(const Image& picture, const FixedTable& table, Image& result, ThreadPool& pool);
+void fixed_two_pass(const ConstImageView& picture, const FixedTable& table, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

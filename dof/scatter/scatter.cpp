@@ -1,3 +1,6 @@
+#ifndef SOFTFOCUS_ISA
+// The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+
 #include "dof/scatter/scatter.h"
 
 #include <algorithm>
@@ -10,26 +13,27 @@
 
 #include "dof/picture_planes.h"
 #include "dof/scatter/scatter_discs.h"
+#include "raster/images/image.h"
 #include "raster/threads/scratch_shelf.h"
 
-#define SOFTFOCUS_KERNELS "dof/scatter/scatter_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/scatter/scatter.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {
 
-// Light is counted in units of 2^-34: the largest half over a disc's whole weight is then
-// below 2^51, and sums of what can meet in a pixel are below 2^55.
+// Light is counted in units of 2^-34. One pixel then gives another at most 65504 * 2^34,
+// below 2^51, and the sum of all light that can meet in a pixel is below 2^55.
 constexpr float kUnitsOfLight = 0x1p34f;
 
 constexpr int kTaskRows = 8;
 
-// Slabs of depth on either side of the one in focus, from the radius at which each begins.
+// The radii at which slabs begin on either side of the one in focus.
 constexpr std::array kSlabBegins{0.5f,  1.5f,  3.0f,   6.0f,   12.0f, 24.0f,
                                  48.0f, 96.0f, 192.0f, 384.0f, 768.0f};
 constexpr int kSlabs = 2 * static_cast<int>(kSlabBegins.size()) + 1;
 
-// The nearest first. The three layers have numbers that are not neighbours'.
+// The slab's number, the nearest first. No two of the three layers have neighbouring numbers.
 int slab_of(SlabRule rule, float radius_px) {
   if (rule == SlabRule::one) return 0;
   if (rule == SlabRule::layers) return radius_px < -0.5f ? 0 : radius_px > 0.5f ? 4 : 2;
@@ -47,15 +51,15 @@ int slab_count(SlabRule rule) {
 // Red, green, blue and weight.
 using Light = std::array<std::uint64_t, 4>;
 
-// What every pixel gives, and over which disc.
+// What every pixel spreads, over which disc and in which slab.
 struct Sources {
   int width, height;
   ScatterDiscs discs;
-  std::vector<float> light;         // four a pixel, in units
-  std::vector<std::uint16_t> disc;  // of discs
+  std::vector<float> light;  // a pixel's Light, in units
+  std::vector<std::uint16_t> disc;
   std::vector<std::uint8_t> slab;
-  std::vector<int> reach;              // of rows
-  std::vector<std::uint32_t> in_slab;  // of rows: which slabs, a bit each
+  std::vector<int> reach;              // of a row: rows that its largest disc reaches
+  std::vector<std::uint32_t> in_slab;  // of a row: a bit for each slab that it has pixels in
 
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -103,7 +107,7 @@ Sources make_sources(const DofInput& input, SlabRule rule, ThreadPool& pool) {
   return sources;
 }
 
-// Light in slabs, the nearest first, as one colour.
+// The colour of slabs that are added one by one, the nearest first.
 struct Over {
   double transmitted = 1.0;
   double previous = 0.0;  // a' of the slab before
@@ -140,13 +144,66 @@ Colour resolve(const Over& over) {
           static_cast<float>(over.b / over.opacity)};
 }
 
+std::uint64_t units(double value) {
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(value)));
+}
+
+}  // namespace
+
+void scatter_in_slabs_oracle(const DofInput& input, const ImageView& result, SlabRule rule,
+                             ThreadPool& pool) {
+  const Sources sources = make_sources(input, rule, pool);
+  const int width = sources.width, height = sources.height;
+  const int slabs = slab_count(rule);
+  pool.for_each(height, [&](int y) {
+    std::vector<Light> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(slabs));
+    for (int from_y = 0; from_y < height; ++from_y) {
+      const int dy = std::abs(from_y - y);
+      if (dy > sources.discs.reach) continue;
+      for (int from_x = 0; from_x < width; ++from_x) {
+        const std::size_t at = sources.at(from_x, from_y);
+        const DiscSpan span =
+            sources.discs
+                .spans[static_cast<std::size_t>(dy * sources.discs.count) + sources.disc[at]];
+        const int reach = span.whole + 1;
+        for (int x = std::max(from_x - reach, 0); x <= std::min(from_x + reach, width - 1); ++x) {
+          Light& sum = sums[static_cast<std::size_t>(sources.slab[at] * width + x)];
+          for (std::size_t i = 0; i < 4; ++i) {
+            const double light = sources.light[4 * at + i];
+            const std::uint64_t all = units(light), end = units(light * (0.125 * span.eighths));
+            const bool inside = std::abs(x - from_x) < reach;
+            sum[i] += inside ? all : reach == 0 ? end + end - all : end;
+          }
+        }
+      }
+    }
+    std::vector<float> colour(3 * static_cast<std::size_t>(width));
+    for (int x = 0; x < width; ++x) {
+      Over over;
+      for (int slab = 0; slab < slabs; ++slab) {
+        add_slab(over, sums[static_cast<std::size_t>(slab * width + x)]);
+      }
+      const Colour out = resolve(over);
+      const auto at = static_cast<std::size_t>(x), step = static_cast<std::size_t>(width);
+      colour[at] = out.r;
+      colour[at + step] = out.g;
+      colour[at + 2 * step] = out.b;
+    }
+    store_row(input, result, y, colour.data(), colour.data() + width, colour.data() + 2 * width,
+              Isa::scalar);
+  });
+}
+
+namespace {
+
 struct RowBuffers {
   // Slab by slab, with a margin on either side; no four numbers across two cache lines.
   std::vector<std::uint64_t, RowAllocator<std::uint64_t>> differences;
   std::vector<float> colour;
 };
 
-void scatter_spans(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
+void scatter_lanes(const DofInput& input, const ImageView& result, SlabRule rule,
+                   ThreadPool& pool) {
   const Sources sources = make_sources(input, rule, pool);
   const int width = sources.width, height = sources.height;
   const int margin = sources.discs.reach + 3;
@@ -210,67 +267,68 @@ void scatter_spans(const DofInput& input, Image& result, SlabRule rule, ThreadPo
   });
 }
 
-std::uint64_t units(double value) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(value)));
+}  // namespace
+
+void scatter_in_slabs(const DofInput& input, const ImageView& result, SlabRule rule,
+                      ThreadPool& pool) {
+  (pool.isa() == Isa::scalar ? scatter_in_slabs_oracle : scatter_lanes)(input, result, rule, pool);
 }
 
-void scatter_stamps(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
-  const Sources sources = make_sources(input, rule, pool);
-  const int width = sources.width, height = sources.height;
-  const int slabs = slab_count(rule);
-  pool.for_each(height, [&](int y) {
-    std::vector<Light> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(slabs));
-    for (int from_y = 0; from_y < height; ++from_y) {
-      const int dy = std::abs(from_y - y);
-      if (dy > sources.discs.reach) continue;
-      for (int from_x = 0; from_x < width; ++from_x) {
-        const std::size_t at = sources.at(from_x, from_y);
-        const DiscSpan span =
-            sources.discs
-                .spans[static_cast<std::size_t>(dy * sources.discs.count) + sources.disc[at]];
-        const int reach = span.whole + 1;
-        for (int x = std::max(from_x - reach, 0); x <= std::min(from_x + reach, width - 1); ++x) {
-          Light& sum = sums[static_cast<std::size_t>(sources.slab[at] * width + x)];
-          for (std::size_t i = 0; i < 4; ++i) {
-            const double light = sources.light[4 * at + i];
-            const std::uint64_t all = units(light), end = units(light * (0.125 * span.eighths));
-            const bool inside = std::abs(x - from_x) < reach;
-            sum[i] += inside ? all : reach == 0 ? end + end - all : end;
-          }
-        }
-      }
-    }
-    std::vector<float> colour(3 * static_cast<std::size_t>(width));
-    for (int x = 0; x < width; ++x) {
-      Over over;
-      for (int slab = 0; slab < slabs; ++slab) {
-        add_slab(over, sums[static_cast<std::size_t>(slab * width + x)]);
-      }
-      const Colour out = resolve(over);
-      const auto at = static_cast<std::size_t>(x), step = static_cast<std::size_t>(width);
-      colour[at] = out.r;
-      colour[at + step] = out.g;
-      colour[at + 2 * step] = out.b;
-    }
-    store_row(input, result, y, colour.data(), colour.data() + width, colour.data() + 2 * width,
-              Isa::scalar);
-  });
+void scatter_unsorted(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  scatter_in_slabs(input, result, SlabRule::one, pool);
+}
+void scatter_sorted(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  scatter_in_slabs(input, result, SlabRule::doubling, pool);
+}
+void layers(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  scatter_in_slabs(input, result, SlabRule::layers, pool);
+}
+
+}  // namespace softfocus
+
+#else  // kernels
+
+namespace {
+
+using FourFloats [[gnu::vector_size(16)]] = float;
+using FourDoubles [[gnu::vector_size(32)]] = double;
+using FourSums [[gnu::vector_size(32)]] = std::uint64_t;
+
+// A number below 2^51 plus this has the rounded number in its low bits.
+inline constexpr double kRoundingPlace = 0x1.8p52;
+
+SOFTFOCUS_INLINE void add_sums(std::uint64_t* at, const FourSums& change) {
+  FourSums sums;
+  std::memcpy(&sums, at, sizeof sums);
+  sums += change;
+  std::memcpy(at, &sums, sizeof sums);
 }
 
 }  // namespace
 
-void scatter_in_slabs(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
-  (pool.isa() == Isa::scalar ? scatter_stamps : scatter_spans)(input, result, rule, pool);
-}
-void scatter_in_slabs_plain(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool) {
-  scatter_stamps(input, result, rule, pool);
+/// Adds the spans of a row of `count` pixels to a row of differences in each slab. `spans` are
+/// those of all discs at the |dy| between the two rows; `differences` points at the first
+/// pixel's place in slab 0.
+void scatter_row(const float* light, const std::uint16_t* disc, const std::uint8_t* slab, int count,
+                 const DiscSpan* spans, std::uint64_t* differences, std::ptrdiff_t slab_stride) {
+  for (int x = 0; x < count; ++x) {
+    const DiscSpan span = spans[disc[x]];
+    if (span.whole < -1) continue;
+    FourFloats values;
+    std::memcpy(&values, light + 4 * x, sizeof values);
+    const FourDoubles exact = __builtin_convertvector(values, FourDoubles);
+    const FourDoubles none = {};
+    const FourSums zero = (FourSums)(none + kRoundingPlace);
+    const FourSums all = (FourSums)(exact + kRoundingPlace) - zero;
+    const FourSums end = (FourSums)(exact * (0.125 * span.eighths) + kRoundingPlace) - zero;
+    std::uint64_t* at = differences + slab[x] * slab_stride + 4 * x;
+    std::uint64_t* left = at - 4 * (span.whole + 1);
+    std::uint64_t* right = at + 4 * (span.whole + 1);
+    add_sums(left, end);
+    add_sums(left + 4, all - end);
+    add_sums(right, end - all);
+    add_sums(right + 4, -end);
+  }
 }
 
-void scatter_unsorted(const DofInput& input, Image& result, ThreadPool& pool) {
-  scatter_in_slabs(input, result, SlabRule::one, pool);
-}
-void scatter_sorted(const DofInput& input, Image& result, ThreadPool& pool) {
-  scatter_in_slabs(input, result, SlabRule::doubling, pool);
-}
-
-}  // namespace softfocus
+#endif

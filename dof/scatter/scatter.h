@@ -1,50 +1,65 @@
 #pragma once
-// Scatter, after Potmesil and Chakravarty 1981/82: every pixel spreads its light evenly
-// over the disc of its circle of confusion, energy over area, and each place divides what
-// arrived by the weights that arrived:
+// Scatter: every pixel spreads its light evenly over the disc of its circle of confusion, and
+// each place divides the light that arrived by the weights that arrived.
 //
 //   w_P(Q) = coverage of pixel Q by P's disc / sum of that disc's coverages
 //   scatter         out(Q) = sum_P w_P(Q) c_P / sum_P w_P(Q)
-//   scatter-sorted  the same sums in slabs of depth k, which give a colour C_k and an
-//                   opacity a_k = min(1, sum w_P(Q)); from the nearest slab to the
-//                   farthest with "over":
+//                   after Potmesil and Chakravarty 1981/82
+//   scatter-sorted  the same sums in each slab of depth k. They give a colour C_k and an
+//                   opacity a_k = min(1, sum w_P(Q)), and the slabs lie over each other from
+//                   the nearest to the farthest:
 //                   a'_k = min(1, a_k / (1 - a'_(k-1)));  out = sum T_k a'_k C_k / sum T_k a'_k
-//                   with T_k the product of 1 - a' of what is nearer
+//                   T_k is the product of 1 - a' of all nearer slabs
+//   layers          the same in three layers: near, focus and far
 //
-// The slabs end at |r| = 1/2, 3/2, 3, 6, 12, ... pixels on either side of the focus: a
-// surface that runs through depth lies in neighbouring ones, so theirs are shares of one
-// whole, which add (hence a'), and only slabs that do not touch are independent of each
-// other, as "over" supposes.
+// The slabs of scatter-sorted end at |r| = 1/2, 3/2, 3, 6, 12, ... pixels on either side of
+// the focus. A surface that runs through depth lies in neighbouring slabs: their opacities are
+// shares of one whole, which add (hence a'). Only slabs that do not touch are independent, as
+// "over" supposes.
 //
-// Discs come in quarters of a pixel of radius. A row of a disc is a span as wide as the
-// disc's area in that row of pixels, in eighths of a pixel to either side, so coverage
-// falls off softly at its ends and the second moment is the disc's. Circles up to a radius
-// of 5/8 stay in their pixel.
+// layers, after Scofield 1992 and Real-Time Rendering (4th edition, 12.4), splits by depth,
+// blurs each layer by itself as premultiplied colour with its coverage as alpha, and
+// composites near over focus over far, divided by the opacity reached:
+//   near: r < -1/2;  focus: |r| <= 1/2, not blurred;  far: r > 1/2    (pixels)
+// The sources blur a layer by one radius, which would blur a floor the same all along; here
+// every pixel has its own disc. Light that a layer hides is missing from the next; the
+// division fills the gap with its blurred surroundings.
 //
-// The fast form adds a span to a row of differences in four places, and one running sum a
-// row turns them into light: 8 r + 4 additions a pixel, not pi r^2. Sums are of whole
-// numbers, units of 2^-34, so that they are exact: nothing is left behind a bright disc,
-// and order and threads make no difference. What leaves the picture is lost, and the
-// division makes up for it.
+// Discs come in quarters of a pixel of radius. In a row of pixels a disc is a span as wide as
+// its area there, in eighths of a pixel to either side: coverage falls off softly at the
+// ends, and the second moment is the disc's. Circles up to a radius of 5/8 stay in their
+// pixel.
 //
-// Known failures: unsorted, blurred things shine over sharp ones before them and the
-// reverse, by the weights alone; sorted, what a foreground hides is missing (there is no
-// light of it to be seen through the blurred edge: the nearest visible neighbours fill in),
-// and two surfaces in neighbouring slabs count as one.
+// The lanes form adds each span to a row of differences, in four places; one running sum over
+// the row turns differences into light. That takes 8 r + 4 additions a pixel, not pi r^2. The
+// sums are exact, of whole units of 2^-34: a bright disc leaves nothing behind, and neither
+// order nor threads make a difference. Light that leaves the picture is lost; the division
+// makes up for it.
+//
+// Known failures. scatter: blurred things shine over sharp ones before them and the reverse,
+// by their weights alone. scatter-sorted: light hidden by a foreground is missing behind its
+// blurred edge, where the nearest visible neighbours fill in; two surfaces in neighbouring
+// slabs count as one. layers: within a layer nothing hides anything, so a far thing shines
+// over the edge of a less far one; where a surface passes from one layer to the next, a
+// little of its background shows through the seam.
 
-#include "dof/method.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 
-void scatter_unsorted(const DofInput& input, Image& result, ThreadPool& pool);
-void scatter_sorted(const DofInput& input, Image& result, ThreadPool& pool);
+/// Three Methods' apply (dof.h).
+void scatter_unsorted(const DofInput& input, const ImageView& result, ThreadPool& pool);
+void scatter_sorted(const DofInput& input, const ImageView& result, ThreadPool& pool);
+void layers(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
-/// How depth is cut: not at all, into near, focus and far (layers.h), or into the slabs
-/// above.
+/// How depth is cut: not at all, into three layers, or into slabs.
 enum class SlabRule { one, layers, doubling };
-void scatter_in_slabs(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool);
+void scatter_in_slabs(const DofInput& input, const ImageView& result, SlabRule rule,
+                      ThreadPool& pool);
 
-/// Its oracle, which stamps each disc pixel by pixel; equal to the bit.
-void scatter_in_slabs_plain(const DofInput& input, Image& result, SlabRule rule, ThreadPool& pool);
+/// The oracle of scatter_in_slabs(), and its scalar form: stamps each disc pixel by pixel.
+/// Equal to the bit.
+void scatter_in_slabs_oracle(const DofInput& input, const ImageView& result, SlabRule rule,
+                             ThreadPool& pool);
 
 }  // namespace softfocus

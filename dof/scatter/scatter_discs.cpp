@@ -5,7 +5,7 @@
 namespace softfocus {
 namespace {
 
-// Half the width of a disc's row of pixels: its area there, halved, by the midpoint rule.
+// Half the area of a disc in a row of pixels, by the midpoint rule.
 double mean_half_width(double radius, int dy) {
   constexpr int kSteps = 16;
   double sum = 0.0;

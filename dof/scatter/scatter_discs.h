@@ -1,31 +1,31 @@
 #pragma once
-// The discs that scatter.h spreads light over, as spans.
+// The discs of scatter.h, as spans.
 
 #include <cstdint>
 #include <vector>
 
 namespace softfocus {
 
-/// One row of a disc about x: pixels x - whole to x + whole are covered fully, and the
-/// next on either side by `eighths`. With whole = -1 these two are the same pixel, x, which
-/// then is covered by 2 eighths - 8 eighths. whole = -2: the row is not reached.
+/// One row of a disc about x. Pixels x - whole to x + whole are covered fully, the next on
+/// either side by `eighths`. If whole is -1, both of these are the pixel x, covered by
+/// 2 eighths - 8 eighths. If it is -2, the disc does not reach the row.
 struct DiscSpan {
   std::int16_t whole;
   std::int16_t eighths;  ///< 0 to 7
 };
 
 struct ScatterDiscs {
-  int count;                    ///< of radii 0, 1/4, 1/2, ... pixels
-  int reach;                    ///< rows above and below the centre, of the largest
-  std::vector<DiscSpan> spans;  ///< row by row: of all discs the one at |dy|
-  std::vector<int> reaches;     ///< rows above and below, of each
-  std::vector<float> weights;   ///< 1 / sum of the coverages, of each
+  int count;                    ///< of discs; their radii are 0, 1/4, 1/2, ... pixels
+  int reach;                    ///< the largest disc's rows above and below its centre
+  std::vector<DiscSpan> spans;  ///< |dy| = 0, 1, ... : the spans of all discs at |dy|
+  std::vector<int> reaches;     ///< each disc's rows above and below its centre
+  std::vector<float> weights;   ///< each disc's 1 / sum of its coverages
 };
 
-/// Discs up to a radius.
+/// Discs up to a radius, 0 to kLargestMaxCoc.
 ScatterDiscs make_discs(float largest_px);
 
-/// The disc for a radius, which may be negative.
+/// The number of the disc for a radius, which may be negative.
 inline int disc_of(float radius_px) {
   return static_cast<int>((radius_px < 0.0f ? -radius_px : radius_px) * 4.0f + 0.5f);
 }

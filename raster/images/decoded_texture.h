@@ -46,9 +46,9 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile);
 /// sample() itself, lane by lane.
 enum class LaneArithmetic : std::uint8_t {
   by_sample,
-  plain,              ///< the plain unit with binary32 weights, nothing fused
-  plain_fixed_8,      ///< the same with weights of 8 bits
-  plain_integers,     ///< its filter in integers, of bytes
+  standard,           ///< the standard unit with binary32 weights, nothing fused
+  standard_fixed_8,   ///< the same with weights of 8 bits
+  standard_integers,  ///< its filter in integers, of bytes
   llvmpipe_fused,     ///< llvmpipe's float filter
   llvmpipe_unfused,   ///< the same, nothing fused
   llvmpipe_integers,  ///< its filter of 8-bit integers

@@ -1,7 +1,7 @@
 #include "raster/images/image.h"
 
-#include <algorithm>
 #include <cassert>
+#include <cstring>
 
 #include "raster/numbers/hash.h"
 
@@ -19,7 +19,7 @@ Image make_image(Format format, int width, int height) {
 namespace {
 
 template <class Channel>
-void add_rows_to_hash(Hash& hash, const Image& image) {
+void add_rows_to_hash(Hash& hash, const ConstImageView& image) {
   for (int y = 0; y < image.height; ++y) {
     for (const Channel value : row<Channel>(image, y)) add_to_hash(hash, value);
   }
@@ -27,7 +27,7 @@ void add_rows_to_hash(Hash& hash, const Image& image) {
 
 }  // namespace
 
-std::uint64_t hash_image(const Image& image) {
+std::uint64_t hash_image(const ConstImageView& image) {
   Hash hash;
   add_to_hash(hash, static_cast<std::uint8_t>(image.format));
   add_to_hash(hash, static_cast<std::uint32_t>(image.width));
@@ -43,10 +43,15 @@ std::uint64_t hash_image(const Image& image) {
   return hash.value;
 }
 
-bool equal(const Image& a, const Image& b) {
-  // Padding is zero in every image, so whole buffers compare.
-  return a.format == b.format && a.width == b.width && a.height == b.height &&
-         std::equal(a.bytes.begin(), a.bytes.end(), b.bytes.begin(), b.bytes.end());
+bool equal(const ConstImageView& a, const ConstImageView& b) {
+  if (a.format != b.format || a.width != b.width || a.height != b.height) return false;
+  const std::size_t used = static_cast<std::size_t>(a.width) * bytes_per_texel(a.format);
+  for (int y = 0; y < a.height; ++y) {
+    if (std::memcmp(a.texels + y * a.stride_bytes, b.texels + y * b.stride_bytes, used) != 0) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace softfocus

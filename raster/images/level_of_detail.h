@@ -11,14 +11,14 @@ namespace softfocus {
 /// The level of detail of a footprint: how many texels of level 0 one pixel spans
 /// along x and y, as differences of (u, v).
 ///
-/// The plain unit and llvmpipe: half of log2_linear of the larger squared length;
+/// The standard unit and llvmpipe: half of log2_linear of the larger squared length;
 /// a footprint of length 0 has the most negative lod.
 /// softpipe: log2_by_table of the largest of |du| * width and |dv| * height. It takes the
 /// difference along x from the lower row of the 2x2 block of pixels.
 float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y,
                       const Profile& profile);
 
-/// The plain unit's.
+/// The standard unit's.
 float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y);
 
 /// Binary logarithm with a straight line between powers of two: of x = 2^e * m, 1 <= m < 2,

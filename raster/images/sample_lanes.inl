@@ -18,7 +18,7 @@ struct SamplePoints {
 
 inline constexpr int kMostSampled = 8;  // vectors at once
 
-/// level_of_detail() of the plain unit and llvmpipe.
+/// level_of_detail() of the standard unit and llvmpipe.
 SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, Floats du_dx,
                                               Floats dv_dx, Floats du_dy, Floats dv_dy) {
   const float width = static_cast<float>(texture.source->levels.front().width);
@@ -86,13 +86,13 @@ SOFTFOCUS_INLINE Floats mix(Floats a, Floats b, Floats t) {
 
 /// Between a colour of a level and one of the next.
 ///
-/// filter_fixed()'s sum, rounded once. Whole texels make a level's colours exact multiples of
+/// filter_in_integers()'s sum, rounded once. Whole texels make a level's colours exact multiples of
 /// 2^-16 below 2^8, products and sums on the way too, for nothing needs more than 24 bits. To
 /// these a third weight of 8 bits adds 8 more. So wholes and fractions are mixed apart: exact
 /// multiples of 2^-8 below 2^8 and of 2^-24 below 1, of which only the sum is rounded.
 template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE Floats mix_levels(Floats fine, Floats coarse, Floats weight) {
-  if constexpr (arithmetic == LaneArithmetic::plain_integers) {
+  if constexpr (arithmetic == LaneArithmetic::standard_integers) {
     const Floats fine_whole = to_floats(truncate(fine)), coarse_whole = to_floats(truncate(coarse));
     return mix<arithmetic>(fine_whole, coarse_whole, weight) +
            mix<arithmetic>(fine - fine_whole, coarse - coarse_whole, weight);
@@ -206,7 +206,7 @@ SOFTFOCUS_INLINE TapLanes taps(const AxisLanes& axis) {
   } else if constexpr (is_llvmpipe(arithmetic)) {
     return llvmpipe_taps(axis);
   } else {
-    return plain_taps(axis, arithmetic != LaneArithmetic::plain);
+    return standard_taps(axis, arithmetic != LaneArithmetic::standard);
   }
 }
 
@@ -237,8 +237,8 @@ SOFTFOCUS_INLINE RgbLanes sample_nearest(const PlaceLanes& place, Ints level) {
   constexpr bool kLlvmpipe = is_llvmpipe(arithmetic);
   const AxisLanes along_u = axis_u(place, level);
   const AxisLanes along_v = axis_v(place, level);
-  const Ints x = kLlvmpipe ? llvmpipe_nearest(along_u) : plain_nearest(along_u);
-  const Ints y = kLlvmpipe ? llvmpipe_nearest(along_v) : plain_nearest(along_v);
+  const Ints x = kLlvmpipe ? llvmpipe_nearest(along_u) : standard_nearest(along_u);
+  const Ints y = kLlvmpipe ? llvmpipe_nearest(along_v) : standard_nearest(along_v);
   alignas(64) std::int32_t offsets[kLanes];
   store(offsets, row_offset(place.texture, level, along_u.size, y) + (x << 2));
   const float* texels = place.texture.texels.data();
@@ -263,7 +263,7 @@ SOFTFOCUS_INLINE LevelLanes choose_levels(Floats lod, int last, bool trilinear) 
     }
     return levels;
   } else {
-    return choose_plain_levels(lod, last, trilinear, arithmetic != LaneArithmetic::plain);
+    return choose_standard_levels(lod, last, trilinear, arithmetic != LaneArithmetic::standard);
   }
 }
 
@@ -324,7 +324,7 @@ SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, R
 /// them.
 template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE Floats to_linear(const DecodedTexture& texture, Floats value) {
-  if constexpr (arithmetic == LaneArithmetic::plain_integers) {
+  if constexpr (arithmetic == LaneArithmetic::standard_integers) {
     return value / 255.0f;
   } else if constexpr (is_llvmpipe(arithmetic)) {
     return texture.are_bytes ? value * (1.0f / 255.0f) : value;
@@ -385,11 +385,11 @@ SOFTFOCUS_INLINE void sample_lanes(const DecodedTexture& texture, const Sampler&
         sample_by_lane(texture, sampler, profile, points, i, colours[i]);
       }
       return;
-    case plain: return sample_batch<plain>(texture, sampler, profile, points, count, colours);
-    case plain_fixed_8:
-      return sample_batch<plain_fixed_8>(texture, sampler, profile, points, count, colours);
-    case plain_integers:
-      return sample_batch<plain_integers>(texture, sampler, profile, points, count, colours);
+    case standard: return sample_batch<standard>(texture, sampler, profile, points, count, colours);
+    case standard_fixed_8:
+      return sample_batch<standard_fixed_8>(texture, sampler, profile, points, count, colours);
+    case standard_integers:
+      return sample_batch<standard_integers>(texture, sampler, profile, points, count, colours);
     case llvmpipe_fused:
       return sample_batch<llvmpipe_fused>(texture, sampler, profile, points, count, colours);
     case llvmpipe_unfused:

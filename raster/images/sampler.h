@@ -36,7 +36,7 @@ struct Sampler {
 /// (1, 1) the lower right one of the last, at level of detail `lod` (0 = full size,
 /// clamped to the levels there are). Needs at least one level.
 ///
-/// What follows holds for the plain texture unit; llvmpipe_sampler.h and
+/// What follows holds for the standard texture unit; llvmpipe_sampler.h and
 /// softpipe_sampler.h have the others. An infinite or NaN coordinate reads as 0, one past
 /// 2^22 texels as 2^22 texels; a lod of NaN is 0.
 ///
@@ -46,7 +46,7 @@ struct Sampler {
 ///   row j:     c_j = lerp(texel(i, j), texel(i + 1, j), t_u)
 ///   result:    lerp(c_j, c_j+1, t_v)
 /// Texels are decoded before they are filtered.
-/// Bytes and halves that the profile filters in integers: see fixed_filter.h.
+/// Bytes and halves that the profile filters in integers: see integer_filter.h.
 glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
                  const Profile& profile);
 

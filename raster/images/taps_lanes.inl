@@ -30,8 +30,8 @@ struct LevelLanes {
   Floats next_weight;
 };
 
-SOFTFOCUS_INLINE LevelLanes choose_plain_levels(Floats lod, int last, bool trilinear,
-                                                bool fixed_8) {
+SOFTFOCUS_INLINE LevelLanes choose_standard_levels(Floats lod, int last, bool trilinear,
+                                                   bool fixed_8) {
   const Floats largest = splat(static_cast<float>(last));
   const Floats level = select(lod > 0.0f, smaller(lod, largest), splat(0.0f));
   if (!trilinear) return {truncate(level + 0.5f), splat(0.0f)};
@@ -76,7 +76,7 @@ SOFTFOCUS_INLINE Floats whole_modulo(Floats whole, Floats period, Floats inverse
 }
 
 // Two neighbouring texels, the first as a whole number up to 2^22 + 1 in magnitude.
-SOFTFOCUS_INLINE void wrap_plain(const AxisLanes& axis, Floats base, Ints& first, Ints& second) {
+SOFTFOCUS_INLINE void wrap_standard(const AxisLanes& axis, Floats base, Ints& first, Ints& second) {
   const Ints size = truncate(axis.size);
   if (axis.wrap == Wrap::clamp_to_edge) {
     const Ints index = truncate(base);
@@ -103,23 +103,23 @@ SOFTFOCUS_INLINE void wrap_plain(const AxisLanes& axis, Floats base, Ints& first
 }
 
 // A coordinate scaled to texels. Needs a finite one.
-SOFTFOCUS_INLINE Floats plain_texels(const AxisLanes& axis) {
+SOFTFOCUS_INLINE Floats standard_texels(const AxisLanes& axis) {
   return smaller(larger(axis.coordinate * axis.size, splat(-0x1p22f)), splat(0x1p22f));
 }
 
-SOFTFOCUS_INLINE TapLanes plain_taps(const AxisLanes& axis, bool fixed_8) {
-  Floats position = plain_texels(axis) - 0.5f;
+SOFTFOCUS_INLINE TapLanes standard_taps(const AxisLanes& axis, bool fixed_8) {
+  Floats position = standard_texels(axis) - 0.5f;
   if (fixed_8) position = nearest(position * 256.0f) * (1.0f / 256.0f);
   const Floats base = floor(position);
   TapLanes taps;
-  wrap_plain(axis, base, taps.first, taps.second);
+  wrap_standard(axis, base, taps.first, taps.second);
   taps.weight = position - base;
   return taps;
 }
 
-SOFTFOCUS_INLINE Ints plain_nearest(const AxisLanes& axis) {
+SOFTFOCUS_INLINE Ints standard_nearest(const AxisLanes& axis) {
   Ints first, second;
-  wrap_plain(axis, floor(plain_texels(axis)), first, second);
+  wrap_standard(axis, floor(standard_texels(axis)), first, second);
   return first;
 }
 

@@ -13,9 +13,9 @@
 
 namespace softfocus {
 
-/// The format-known forms, for inner loops. `x` counts texels in the row.
-template <Format format>
-glm::vec4 load_texel(const Image& image, int x, int y) {
+/// The format-known forms, for inner loops, of an Image or a view. `x` counts texels in the row.
+template <Format format, class AnyImage>
+glm::vec4 load_texel(const AnyImage& image, int x, int y) {
   const auto index = static_cast<std::size_t>(x) * static_cast<std::size_t>(channel_count(format));
   if constexpr (format == Format::r8) {
     return {unorm8_to_linear(row<std::uint8_t>(image, y)[index]), 0.0f, 0.0f, 1.0f};
@@ -41,8 +41,8 @@ inline float stored_float(float value, const Profile& profile) {
   return flush_denormal(value, profile.denormals);
 }
 
-template <Format format>
-void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& profile) {
+template <Format format, class AnyImage>
+void store_texel(AnyImage&& image, int x, int y, glm::vec4 value, const Profile& profile) {
   const auto index = static_cast<std::size_t>(x) * static_cast<std::size_t>(channel_count(format));
   if constexpr (format == Format::r8) {
     row<std::uint8_t>(image, y)[index] = linear_to_unorm8(value.x, profile.unorm_store);
@@ -75,7 +75,7 @@ inline glm::vec4 with_missing_channels(glm::vec4 value, Format format) {
 }
 
 /// What the profile's texture unit makes of a texel (texelFetch in GLSL). The units of
-/// drivers decode 8-bit formats in their own ways, the plain one as load_texel does.
+/// drivers decode 8-bit formats in their own ways, the standard one as load_texel does.
 glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile);
 
 /// Sets every texel to `value`.

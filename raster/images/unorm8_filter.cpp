@@ -17,7 +17,7 @@ namespace {
 std::int32_t less_half_texel(float position_256) { return from_centre(round_to_int(position_256)); }
 
 // `size` is the level's, `base_size` level 0's: the path is chosen by the latter.
-FixedTaps taps8(float coordinate, int size, int base_size, Wrap wrap) {
+IntegerTaps taps8(float coordinate, int size, int base_size, Wrap wrap) {
   const auto length = static_cast<float>(size);
   if (wrap == Wrap::repeat && !std::has_single_bit(static_cast<unsigned>(base_size))) {
     const float fraction = coordinate - std::floor(coordinate);
@@ -46,8 +46,8 @@ Texel8 lerp4(const Texel8& a, const Texel8& b, int weight) {
 }
 
 Texel8 bilinear(const Image& image, const Image& base, const Sampler& sampler, glm::vec2 uv) {
-  const FixedTaps u = taps8(uv.x, image.width, base.width, sampler.wrap_u);
-  const FixedTaps v = taps8(uv.y, image.height, base.height, sampler.wrap_v);
+  const IntegerTaps u = taps8(uv.x, image.width, base.width, sampler.wrap_u);
+  const IntegerTaps v = taps8(uv.y, image.height, base.height, sampler.wrap_v);
   const auto along_row = [&](int y) {
     return lerp4(load(image, u.first, y), load(image, u.second, y), u.weight);
   };
@@ -57,11 +57,11 @@ Texel8 bilinear(const Image& image, const Image& base, const Sampler& sampler, g
 }  // namespace
 
 bool is_filtered_in_integers(Format format, const Sampler& sampler) {
-  const auto plain_wrap = [](Wrap wrap) {
+  const auto wraps_simply = [](Wrap wrap) {
     return wrap == Wrap::repeat || wrap == Wrap::clamp_to_edge;
   };
-  return (format == Format::r8 || format == Format::rgba8) && plain_wrap(sampler.wrap_u) &&
-         plain_wrap(sampler.wrap_v);
+  return (format == Format::r8 || format == Format::rgba8) && wraps_simply(sampler.wrap_u) &&
+         wraps_simply(sampler.wrap_v);
 }
 
 glm::vec4 sample_unorm8(const Texture& texture, const Sampler& sampler, glm::vec2 uv,

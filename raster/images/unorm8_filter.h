@@ -6,8 +6,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "raster/images/fixed_bilinear.h"
 #include "raster/images/image.h"
+#include "raster/images/integer_bilinear.h"
 #include "raster/images/sampler.h"
 
 namespace softfocus {

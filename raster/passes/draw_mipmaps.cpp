@@ -62,7 +62,7 @@ void draw_mipmaps(Texture& texture, const Profile& profile) {
 }
 
 void generate_mipmaps_as(Texture& texture, const Profile& profile) {
-  if (profile.texture_unit == TextureUnit::plain) {
+  if (profile.texture_unit == TextureUnit::standard) {
     generate_mipmaps(texture, profile);
   } else {
     draw_mipmaps(texture, profile);

@@ -14,7 +14,7 @@ namespace softfocus {
 void draw_mipmaps(Texture& texture, const Profile& profile);
 
 /// The mip levels that a program gets which asks the profile's driver for them: drawn,
-/// or those of generate_mipmaps where the texture unit is the plain one.
+/// or those of generate_mipmaps where the texture unit is the standard one.
 void generate_mipmaps_as(Texture& texture, const Profile& profile);
 
 }  // namespace softfocus

@@ -20,7 +20,7 @@ inline constexpr int kPassRows = 8;
 /// rounding. The kernel is called from several threads at once, once a pixel, and
 /// must not read the target.
 template <Format format, class Kernel>
-void fullscreen_pass(Image& target, const Profile& profile, ThreadPool& pool,
+void fullscreen_pass(const ImageView& target, const Profile& profile, ThreadPool& pool,
                      const Kernel& kernel) {
   assert(target.format == format);
   pool.for_each((target.height + kPassRows - 1) / kPassRows, [&](int band) {

@@ -1,6 +1,7 @@
 #pragma once
 // The fixed-function state of a draw call, in OpenGL's terms and with its defaults.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -49,6 +50,12 @@ struct Rectangle {
   int x_end = 0;
   int y_end = 0;
 };
+
+/// The pixels of both; none if an end is not above its begin.
+constexpr Rectangle intersection(const Rectangle& a, const Rectangle& b) {
+  return {std::max(a.x_begin, b.x_begin), std::max(a.y_begin, b.y_begin),
+          std::min(a.x_end, b.x_end), std::min(a.y_end, b.y_end)};
+}
 
 /// Pixels x_begin <= x < x_end of a row; none if x_begin >= x_end.
 struct Span {

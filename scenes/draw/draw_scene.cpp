@@ -24,8 +24,8 @@ void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, Ren
     const auto number = surface.texture - prepared.scene->textures.data();
     fragment_stage.decoded = &prepared.textures[static_cast<std::size_t>(number)];
   }
-  draw_lanes(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage,
-             surface_lane_stages<variant>(pass.isa));
+  draw_in_lanes(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage,
+                surface_lane_stages<variant>(pass.isa));
 }
 
 void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <type_traits>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/ray_geometry.h"
@@ -111,18 +112,9 @@ RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const Ca
   return hit;
 }
 
-/// Of each pixel another block of the sequence's points: an exclusive or leads every
-/// aligned block of 2^k points to another. The finaliser of MurmurHash3 (Appleby).
-std::uint32_t block_of_pixel(int x, int y) {
-  std::uint32_t hash =
-      static_cast<std::uint32_t>(x) * 0x9E3779B9u ^ static_cast<std::uint32_t>(y) * 0x85EBCA77u;
-  hash ^= hash >> 16;
-  hash *= 0x85EBCA6Bu;
-  hash ^= hash >> 13;
-  hash *= 0xC2B2AE35u;
-  hash ^= hash >> 16;
-  return hash % kMostSamples;
-}
+/// The pixel's block of the sequence. An exclusive or with it maps every aligned block of 2^k
+/// points to another.
+std::uint32_t block_of_pixel(int x, int y) { return hash_of_place(x, y) % kMostSamples; }
 
 /// Everything that a ray needs to know.
 struct Tracer {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/scene_error.h"

@@ -2,10 +2,10 @@
 
 #include <optional>
 
+#include "raster/numbers/random_bits.h"
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
 #include "scenes/make/balls.h"
-#include "scenes/make/random_bits.h"
 
 namespace softfocus {
 namespace {

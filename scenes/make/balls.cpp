@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/make/random_bits.h"
 
 namespace softfocus {
 namespace {

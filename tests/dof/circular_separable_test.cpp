@@ -1,4 +1,4 @@
-#include "dof/circular_separable/circular_separable.h"
+#include "dof/methods/circular_separable.h"
 
 #include <doctest/doctest.h>
 

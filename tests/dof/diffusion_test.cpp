@@ -1,4 +1,4 @@
-#include "dof/diffusion.h"
+#include "dof/methods/diffusion.h"
 
 #include <doctest/doctest.h>
 

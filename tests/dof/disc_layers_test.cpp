@@ -54,7 +54,7 @@ TEST_CASE("disc-layers is what its oracle says, at any size and radius") {
       const DofSettings of = settings(40.0f, max_coc);
       ThreadPool plain(2, Isa::scalar);
       Image expected = make_image(scene.format, size.width, size.height);
-      disc_layers_plain({scene, of, {}}, expected, plain);
+      disc_layers_oracle({scene, of, {}}, expected, plain);
       for (const Isa isa : available_isas()) {
         ThreadPool pool(2, isa);
         INFO(std::string{isa_name(isa)}, ", ", size.width, "x", size.height, ", ", max_coc);
@@ -80,7 +80,7 @@ TEST_CASE("disc-layers is what its oracle says where hardly anything is blurred"
         }
       }
       Image expected = make_image(scene.format, width, height);
-      disc_layers_plain({scene, of, {}}, expected, plain);
+      disc_layers_oracle({scene, of, {}}, expected, plain);
       INFO(x, ", ", depth_m);
       CHECK(equal(blurred(scene, of, pool), expected));
     }

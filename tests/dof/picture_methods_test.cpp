@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/images/texel.h"
 #include "tests/support/test_images.h"
 
@@ -56,7 +56,7 @@ Image filtered(const char* name, const Image& scene, const DofSettings& settings
   REQUIRE_MESSAGE(method != nullptr, name);
   // What was there before must not show.
   Image result = random_scene_image(scene.width, scene.height, 99);
-  method->apply({scene, settings, {}}, result, pool);
+  apply(*method, {scene, settings, {}}, result, pool);
   return result;
 }
 

@@ -1,4 +1,4 @@
-#include "dof/post_process/post_process.h"
+#include "dof/methods/post_process.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "dof/ring_bucket/ring_bucket.h"
+#include "dof/methods/ring_bucket.h"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/make/random_bits.h"
 
 using namespace softfocus;
 

@@ -12,7 +12,7 @@ using namespace softfocus;
 
 namespace {
 
-const Profile kProfile = profiles()[0];
+const Profile kProfile = Profile{};
 
 // A square of 2 x 2 m in the plane z = 0, facing +z.
 Mesh square_mesh() {

@@ -24,7 +24,7 @@ Image drawn_field() {
   ThreadPool pool{2};
   const Scene scene = sphere_field(64000, 1.0);
   const CameraMatrices view = camera_matrices(scene.camera, 0.0, kSide, kSide);
-  return draw_scene(scene, view, 0.0, kSide, kSide, profiles()[0], pool);
+  return draw_scene(scene, view, 0.0, kSide, kSide, Profile{}, pool);
 }
 
 // The share of the pixels whose depth in metres is as `holds` says.

@@ -25,7 +25,7 @@ const std::vector<GoldenScene>& scenes() {
 
 std::vector<NamedHash> frames(std::string_view profile, int threads) {
   ThreadPool pool(threads);
-  const Profile named = find_profile(profile).value();
+  const NamedProfile named{profile, {}, find_profile(profile).value()};
   return frame_hashes(scenes(), {&named, 1}, pool);
 }
 

@@ -2,8 +2,8 @@
 
 #include "scenes/load/load_scene.h"
 #include "scenes/make/sphere_field.h"
-#include "tools/options/arithmetic_option.h"
 #include "tools/bench/picture.h"
+#include "tools/options/arithmetic_option.h"
 #include "tools/options/method_options.h"
 #include "tools/options/scene_warnings.h"
 
@@ -56,6 +56,7 @@ BenchWork make_work(const BenchOptions& options) {
   work.size = options.size;
   work.method = options.method;
   work.profile = options.profile;
+  work.profile_name = options.profile_name;
   if (options.image) {
     work.name = "picture";
     work.settings = chosen_settings(options, picture_lens(options.max_coc_px, height), work.name);

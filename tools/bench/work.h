@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "dof/method.h"
-#include "scenes/scene.h"
+#include "dof/dof.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/scene.h"
 #include "tools/bench/options.h"
 
 namespace softfocus {
@@ -22,6 +22,7 @@ struct BenchWork {
   const Method* method = nullptr;
   DofSettings settings;
   Profile profile;
+  std::string profile_name;
 };
 
 /// Loads or makes what is to be measured. Throws UsageError for a lens that cannot be,

@@ -47,8 +47,7 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
   const double coc_scale = chart.scene.lens.coc_scale;
   chart.coc = checked_pixel_coc(chart.lens, chart.scene.camera.fov_y_degrees, height, coc_scale);
   chart.aperture_m = aperture_radius_m(chart.lens, coc_scale);
-  chart.pinhole =
-      draw_scene(chart.scene, chart.view, chart.frame, width, height, profiles().front(), pool);
+  chart.pinhole = draw_scene(chart.scene, chart.view, chart.frame, width, height, Profile{}, pool);
   chart.labels = label_regions(chart.pinhole, chart.coc);
   return chart;
 }
@@ -61,7 +60,7 @@ LensViewInput accumulation_input(const ChartScene& scene, int samples) {
           .focus_m = scene.lens.focus_m,
           .aperture_radius_m = scene.aperture_m,
           .sampling = {.samples = samples},
-          .profile = profiles().front(),
+          .profile = Profile{},
           .progress = {}};
 }
 
@@ -91,7 +90,7 @@ PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
 }
 
 void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
-  filter.apply({drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
+  apply(filter, {drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
 }
 
 // What belongs to a lens is made once, as it would be for many frames.
@@ -159,7 +158,7 @@ void ChartRunner::carry_out(const AutoMethod& choice) {
 }
 
 RunTime ChartRunner::choose(double max_error) {
-  PreparedScene& prepared = prepared_for(views_.profile.name);
+  PreparedScene& prepared = prepared_for("ieee");
   const auto chosen = [&] {
     return auto_method(scene_traits(drawn_, scene_.coc, pool_), {max_error},
                        {{}, triangle_count(scene_.scene)});

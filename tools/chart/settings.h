@@ -1,14 +1,14 @@
 #pragma once
 // What `chart` measures: for each method a list of settings.
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "dof/fixed_pictures/arithmetic.h"
-#include "dof/method.h"
+#include "dof/dof.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 
@@ -24,7 +24,7 @@ struct ChartEntry {
   std::string chosen{};               ///< by auto, once it has: "disc-layers, radius 16"
 };
 
-/// The names that --methods takes: every filter of dof/method.h, accumulation and auto.
+/// The names that --methods takes: every filter of dof/dof.h, accumulation and auto.
 std::vector<std::string> chart_methods();
 
 /// The settings of one of them for pictures of that height; `quick`: fewer. Integers have radii
@@ -34,7 +34,7 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
 
 /// {"max_coc_px": 16, "profile": "ieee"}, {"max_coc_px": 16, "profile": "ieee", "arithmetic":
 /// "fixed-8"}, {"samples": 32} or {"max_error": 0.02, "chosen": "disc-layers, radius 16"}.
-nlohmann::ordered_json settings_json(const ChartEntry& entry);
+Json settings_json(const ChartEntry& entry);
 
 /// "max-coc 16, d3d11", "32 samples", "max-error 0.02: disc-layers, radius 16"; the profile ieee
 /// and no settings at all are not told.

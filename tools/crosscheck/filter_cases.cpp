@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "tools/gl/objects.h"
 
 namespace softfocus {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "scenes/scene.h"
 #include "scenes/draw/frame_matrices.h"
 #include "tools/gl/driver.h"

@@ -6,13 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/numbers/profile.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
-#include "tools/options/method_options.h"
 #include "tools/cli/option_values.h"
+#include "tools/options/method_options.h"
 
 namespace softfocus {
 namespace {
@@ -75,7 +75,7 @@ Command add_profiles_command(CLI::App& program) {
   CLI::App* parser = add_command(program, "profiles", "List the GPUs to agree with: name, summary");
   return {parser, [] {
             std::vector<Row> rows;
-            for (const Profile& profile : profiles()) {
+            for (const NamedProfile& profile : profiles()) {
               rows.push_back({std::string{profile.name}, std::string{profile.summary}});
             }
             print_aligned(rows);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
 #include "tools/cli/parser.h"

@@ -3,13 +3,12 @@
 #include "scenes/load/scene_error.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/files/profile_file.h"
 
 namespace softfocus {
 namespace {
 
-Profile profile_of(const std::string& text) {
-  if (const auto known = find_profile(text)) return *known;
+ChosenProfile profile_of(const std::string& text) {
+  if (const auto known = find_profile(text)) return {text, "", *known};
   if (text.find_first_of("/\\.") == std::string::npos) {
     throw UsageError("--profile '" + text + "': there are " + names_of(profiles()) +
                      "; or give a profile's file, such as ./mine.toml");
@@ -24,7 +23,7 @@ Profile profile_of(const std::string& text) {
 }  // namespace
 
 void add_profile_option(CLI::App& parser, const std::string& help,
-                        std::function<void(const Profile&)> take) {
+                        std::function<void(const ChosenProfile&)> take) {
   add_value(parser, "--profile", "NAME|FILE", help,
             [take = std::move(take)](const std::string& text) { take(profile_of(text)); });
 }

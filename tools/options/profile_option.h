@@ -4,14 +4,14 @@
 #include <functional>
 #include <string>
 
-#include "raster/numbers/profile.h"
 #include "tools/cli/parser.h"
+#include "tools/files/profile_file.h"
 
 namespace softfocus {
 
 /// Adds --profile: the name of a known profile, or a profile's file (a name with a
 /// slash or a dot in it).
 void add_profile_option(CLI::App& parser, const std::string& help,
-                        std::function<void(const Profile&)> take);
+                        std::function<void(const ChosenProfile&)> take);
 
 }  // namespace softfocus

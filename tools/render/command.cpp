@@ -9,16 +9,16 @@
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
-#include "tools/options/arithmetic_option.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/gl/frame_on_gl.h"
-#include "tools/options/method_options.h"
-#include "tools/render/performance_report.h"
 #include "tools/cli/progress.h"
-#include "tools/render/options.h"
-#include "tools/options/scene_warnings.h"
 #include "tools/files/whole_file.h"
+#include "tools/gl/frame_on_gl.h"
+#include "tools/options/arithmetic_option.h"
+#include "tools/options/method_options.h"
+#include "tools/options/scene_warnings.h"
+#include "tools/render/options.h"
+#include "tools/render/performance_report.h"
 
 namespace softfocus {
 namespace {
@@ -26,12 +26,14 @@ namespace {
 /// Does a stage's work, with its name on the terminal and its time noted.
 template <class Work>
 auto timed(Progress& progress, const char* stage, double& ms, Work work) {
-  using Clock = std::chrono::steady_clock;
   progress.show(stage);
   struct Stopwatch {
     double& ms;
-    Clock::time_point start = Clock::now();
-    ~Stopwatch() { ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Stopwatch() {
+      const auto end = std::chrono::steady_clock::now();
+      ms = std::chrono::duration<double, std::milli>(end - start).count();
+    }
   } const stopwatch{ms};
   return work();
 }

@@ -8,14 +8,14 @@
 
 #include "dof/auto/auto_method.h"
 #include "dof/fixed_pictures/arithmetic.h"
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/numbers/profile.h"
-#include "tools/gl/driver.h"
-#include "tools/files/image_file.h"
-#include "tools/options/lens_options.h"
-#include "tools/options/method_options.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
+#include "tools/files/image_file.h"
+#include "tools/gl/driver.h"
+#include "tools/options/lens_options.h"
+#include "tools/options/method_options.h"
 #include "tools/options/pool_options.h"
 
 namespace softfocus {
@@ -30,7 +30,8 @@ struct RenderOptions {
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
   double frame = 0.0;
-  Profile profile = profiles().front();
+  Profile profile;
+  std::string profile_name = "ieee";
   const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};

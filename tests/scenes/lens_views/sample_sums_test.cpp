@@ -25,7 +25,7 @@ Image random_picture(int width, int height, test::Random& random) {
   Image picture = make_image(Format::rgba16f, width, height);
   for (int y = 0; y < height; ++y) {
     for (std::uint16_t& half : row<std::uint16_t>(picture, y)) {
-      half = static_cast<std::uint16_t>(random.bits());
+      half = static_cast<std::uint16_t>(random.next());
     }
   }
   return picture;

@@ -2,7 +2,7 @@
 
 #include "raster/lanes/isa.h"
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 

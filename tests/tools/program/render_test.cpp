@@ -1,6 +1,6 @@
 #include <map>
 
-#include "dof/method.h"
+#include "dof/dof.h"
 #include "raster/images/texel.h"
 #include "tests/support/cli_render.h"
 

@@ -1,0 +1,70 @@
+#pragma once
+// Depth of field on a picture with depth: what a program that embeds it includes.
+// docs/embedding.md has an example.
+//
+// The bits of a result depend on the input alone: not on threads, vector unit, compiler,
+// or the flags and the floating-point mode of the program around it.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "dof/lens.h"
+#include "dof/pack.h"
+#include "dof/shaders.h"
+#include "raster/images/image_view.h"
+#include "raster/numbers/profile.h"
+#include "raster/threads/parallel.h"
+
+namespace softfocus {
+
+struct Image;
+
+inline constexpr float kLargestMaxCoc = 1024.0f;
+
+/// What every method is told about the lens and the filter.
+struct DofSettings {
+  PixelCoc coc;
+  /// Largest circle of confusion, a radius in pixels, 0 to kLargestMaxCoc: larger
+  /// ones are cut to it.
+  float max_coc_px = 16.0f;
+  /// How readily a background gives its colour to what lies before it: the factor
+  /// of the leakage weight, per pixel of the receiver's radius. 0 or more.
+  float leak = 1.0f;
+};
+
+/// A picture and how to blur it.
+struct DofInput {
+  /// RGBA16F: linear colour, and in alpha the depth in metres along the axis. pack() makes
+  /// such a picture of other formats.
+  ConstImageView scene;
+  DofSettings settings;
+  Profile profile;
+};
+
+/// A depth-of-field method: an entry of the table in method.cpp.
+struct Method {
+  std::string_view name;
+  std::string_view summary;
+  /// What the method works from, for the list of methods.
+  std::string_view needs;
+  void (*filter)(const DofInput& input, const ImageView& result, ThreadPool& pool);
+};
+
+std::span<const Method> methods();
+
+/// The method of that name, or nullptr.
+const Method* find_method(std::string_view name);
+
+/// What is wrong with an input and a place for its result, as a sentence, or nullptr.
+const char* input_error(const DofInput& input, const ConstImageView& result);
+
+/// Writes every pixel of `result`, depth in alpha. It has the scene's size and format and
+/// shares no memory with it. Needs an input without input_error(). Throws std::bad_alloc
+/// if there is no memory for what the method keeps meanwhile.
+void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool);
+
+/// The same into a new image (raster/images/image.h).
+Image apply(const Method& method, const DofInput& input, ThreadPool& pool);
+
+}  // namespace softfocus
