@@ -25,11 +25,11 @@ inline constexpr float kLargestMaxCoc = 1024.0f;
 /// What every method is told about the lens and the filter.
 struct DofSettings {
   PixelCoc coc;
-  /// Largest circle of confusion, a radius in pixels, 0 to kLargestMaxCoc: larger
-  /// ones are cut to it.
+  /// The largest circle of confusion, a radius in pixels, 0 to kLargestMaxCoc. Larger circles
+  /// are cut to it.
   float max_coc_px = 16.0f;
-  /// How readily a background gives its colour to what lies before it: the factor
-  /// of the leakage weight, per pixel of the receiver's radius. 0 or more.
+  /// How readily a background gives its colour to what lies before it, 0 or more: the factor
+  /// of the leakage weight (dof/weights.h), per pixel of the receiver's radius.
   float leak = 1.0f;
 };
 
@@ -39,14 +39,14 @@ struct DofInput {
   /// such a picture of other formats.
   ConstImageView scene;
   DofSettings settings;
-  Profile profile;
+  Profile profile;  ///< the rounding of the result's halves
 };
 
 /// A depth-of-field method: an entry of the table in method.cpp.
 struct Method {
   std::string_view name;
   std::string_view summary;
-  /// What the method works from, for the list of methods.
+  /// The inputs that the method reads, for the list of methods.
   std::string_view needs;
   void (*filter)(const DofInput& input, const ImageView& result, ThreadPool& pool);
 };

@@ -1,82 +1,82 @@
 #pragma once
-// The thin lens in numbers: the six equations of the thesis, and the one form that
-// the methods use, a signed radius in pixels.
+// The thin lens: the six equations of the thesis, and the circle of confusion in the form
+// that the methods use, a signed radius in pixels.
 //
 //            object z             lens    image v
 //   axis  -----|---------|---------()-------|---
 //                        z_f focus          v0 = image of the focus plane
 //
-// Distances along the axis are metres in front of the lens; focal length, aperture
-// and everything on the film are millimetres.
+// Distances along the axis are metres in front of the lens. Focal length, aperture and
+// everything on the film are millimetres.
 //
-// Two conventions for "how large is the film" differ by z_f / (z_f - f), 5.3 % for a
-// 50 mm lens focused at 1 m. This program fixes the camera's field of view and puts
-// the film where the lens is focused: its height is 2 v0 tan(fov/2). Then focusing
-// does not zoom, and the film's circle of confusion, scaled to pixels, is exactly
-// the footprint that rays through the aperture leave on a pinhole image.
+// Two conventions for the size of the film differ by z_f / (z_f - f), 5.3 % for a 50 mm lens
+// focused at 1 m. This program fixes the camera's field of view and puts the film where the
+// lens is focused: the film's height is 2 v0 tan(fov/2). Then focusing does not zoom, and the
+// film's circle of confusion, scaled to pixels, is exactly the footprint that rays through
+// the aperture leave on a pinhole image.
 
 namespace softfocus {
 
-/// A lens set to a focus distance. `focus_m` is the plane in focus.
+/// A lens focused on the plane at `focus_m`.
 struct ThinLens {
   double focal_length_mm = 50.0;
   double f_number = 2.0;
   double focus_m = 2.0;
 };
 
-/// What is wrong with a lens, as a sentence, or nullptr. A usable lens has finite,
-/// positive values, and is focused farther than its focal length.
+/// The reason why a lens is unusable, as a sentence, or nullptr. A usable lens has finite,
+/// positive values and is focused farther away than its focal length. All other functions
+/// need a usable lens.
 const char* lens_error(const ThinLens& lens);
 
 /// Aperture diameter A = f / N in millimetres (eq. 3).
 double aperture_mm(const ThinLens& lens);
 
-/// Where the image of an object at `distance_m` lies behind the lens, in
-/// millimetres: v = f z / (z - f), from the lens law 1/f = 1/z + 1/v (eq. 1).
-/// Negative (a virtual image) for an object nearer than the focal length.
+/// The distance in millimetres behind the lens of the image of an object at `distance_m`:
+/// v = f z / (z - f), from the lens law 1/f = 1/z + 1/v (eq. 1). Negative (a virtual image)
+/// for an object nearer than the focal length.
 double image_distance_mm(const ThinLens& lens, double distance_m);
 
 /// Diameter in millimetres of the circle of confusion on the film (eq. 2):
 /// c = A |v - v0| / v = A f |z - z_f| / (z (z_f - f)).
 double coc_on_film_mm(const ThinLens& lens, double distance_m);
 
-/// Focused here, everything from half the distance to infinity has a circle of at
-/// most `largest_coc_mm`: H = f^2 / (N c) + f in metres (eq. 4, with the + f that
-/// makes it exact).
+/// The hyperfocal distance in metres: H = f^2 / (N c) + f (eq. 4, and the + f that makes it
+/// exact). With the focus at H, everything from H/2 to infinity has a circle of at most
+/// `largest_coc_mm`.
 double hyperfocal_m(const ThinLens& lens, double largest_coc_mm);
 
-/// The distances between which the circle on film stays within `largest_coc_mm`.
-/// `far_m` is infinite from the hyperfocal distance on. Focused at H/n these are
-/// H/(n+1) and H/(n-1) (eq. 5 and 6, exact but for the + f in H).
+/// The distances between which the circle on film stays within `largest_coc_mm`. With the
+/// focus at the hyperfocal distance H or farther, `far_m` is infinite. With the focus at H/n
+/// they are H/(n+1) and H/(n-1) (eq. 5 and 6, exact but for the + f in H).
 struct SharpRange {
   double near_m;
   double far_m;
 };
 SharpRange sharp_range(const ThinLens& lens, double largest_coc_mm);
 
-/// The circle of confusion as a signed radius in pixels, negative nearer than focus:
+/// The circle of confusion as a signed radius in pixels, negative nearer than the focus:
 ///
 ///   r = (A/2) (z - z_f) / (z z_f) * height / (2 tan(fov/2)) * coc_scale
 ///     = radius_at_infinity_px * (z - z_f) / z
 ///
-/// so one constant a frame and three operations a pixel. `radius_at_infinity_px` is
-/// the circle of the horizon.
+/// One constant a frame, three operations a pixel.
 struct PixelCoc {
-  float radius_at_infinity_px = 0.0f;
-  float focus_m = 1.0f;
+  float radius_at_infinity_px = 0.0f;  ///< of the horizon's circle, 0 or more
+  float focus_m = 1.0f;                ///< more than 0
 };
 
-/// `height_px` is the picture's height, `fov_y_degrees` its vertical field of view,
-/// `coc_scale` the user's exaggeration (1 = the lens itself).
+/// `height_px` is the picture's height, `fov_y_degrees` its vertical field of view, between 0
+/// and 180, `coc_scale` the user's exaggeration, 0 or more (1: the lens as it is).
 PixelCoc pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px, double coc_scale);
 
-/// Signed radius in pixels at a depth in metres, in binary32 and this order:
-/// (radius_at_infinity * (depth - focus)) / depth. Depth 0 gives -infinity.
+/// The signed radius in pixels at a depth in metres, in binary32 and this order of operations.
+/// Depth 0 gives -infinity.
 inline float coc_radius_px(const PixelCoc& coc, float depth_m) {
   return coc.radius_at_infinity_px * (depth_m - coc.focus_m) / depth_m;
 }
 
-/// Height in millimetres of the film that sees `fov_y_degrees`: 2 v0 tan(fov/2).
+/// The height in millimetres of the film that sees `fov_y_degrees`: 2 v0 tan(fov/2).
 double film_height_mm(const ThinLens& lens, double fov_y_degrees);
 
 }  // namespace softfocus

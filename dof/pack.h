@@ -43,6 +43,10 @@ struct ColourTarget {
   void* blue;
   std::ptrdiff_t pixel_bytes;
   std::ptrdiff_t row_bytes;
+
+  operator ColourSource() const {  // NOLINT(google-explicit-constructor)
+    return {type, red, green, blue, pixel_bytes, row_bytes};
+  }
 };
 
 /// Pixels of `channels` values each, 3 or more, that begin with red, green and blue.

@@ -10,7 +10,7 @@ namespace {
 constexpr RungStep kAlways{-1.0f, 1.0f};
 constexpr RungStep kNever{3e38f, 1.0f};
 
-// A disc's part in a column of pixels, and in the column's middle pixel: areas.
+// The areas of a disc in a column of pixels and in the column's middle pixel.
 struct ColumnArea {
   double all, middle;
 };
@@ -28,8 +28,8 @@ ColumnArea column_area(double radius, int dx) {
   return area;
 }
 
-// All pixels of a column but its ends weigh as the middle one, which makes rows and columns
-// alike: what a column's ends are to it, the outermost columns are to a row.
+// In a column all pixels but the ends weigh the same, as the middle one does. Then rows are
+// like columns: the outermost columns are a row's ends.
 std::vector<LadderSpan> disc_spans(double radius) {
   std::vector<LadderSpan> spans;
   for (int dx = 0;; ++dx) {
@@ -43,7 +43,7 @@ std::vector<LadderSpan> disc_spans(double radius) {
   }
 }
 
-// Of rows and columns the mean.
+// The mean of the variances along x and y.
 double variance(const std::vector<LadderSpan>& spans) {
   double area = 0.0, moment = 0.0;
   for (std::size_t row = 0; row < spans.size(); ++row) {
@@ -68,15 +68,15 @@ std::vector<LadderSpan> spans_of_variance(double wanted) {
   return disc_spans(0.5 * (low + high));
 }
 
-// A disc's second moment along an axis is a quarter of the radius squared. Of it, in
-// squared pixels of a level, (1 - 4^-level) / 3 comes with the pixels' size: a twelfth by
-// averaging 2x2 pixels level by level, a quarter on the way back by weights of 3/4 and 1/4.
+// A disc's second moment along an axis is a quarter of its radius squared. In square pixels of
+// a level, (1 - 4^-level) / 3 of it come with the size of the pixels: a twelfth by averaging
+// 2x2 pixels level by level, a quarter by enlarging with weights of 3/4 and 1/4.
 std::vector<LadderSpan> spans_of(double square, int level) {
   const double pixel = std::ldexp(1.0, -2 * level);
   return spans_of_variance(0.25 * square * pixel - (1.0 - pixel) / 3.0);
 }
 
-// In the order of operations of the kernels.
+// The disc's sum over 1 everywhere, in the kernels' order of operations.
 float area_of(const std::vector<LadderSpan>& spans) {
   float area = 0.0f;
   for (std::size_t dx = 0; dx < spans.size(); ++dx) {

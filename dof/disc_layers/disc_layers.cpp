@@ -57,7 +57,7 @@ namespace {
 struct Workspace {
   DiscTile tile;
   DiscScratch scratch;
-  float picture[kDiscTileRows][4][kDiscTileRow];  // of level 0: colours and signed squares
+  float picture[kDiscTileRows][4][kDiscTileRow];  // level 0: colours and signed squares
   float ones[kDiscTileRow];
   float enlarged[4][kDiscTileRow];
 };
@@ -73,7 +73,7 @@ struct Rectangle {
   int x, y, width, height;
 };
 
-// The farthest that discs of some rungs reach.
+// The reach of the largest of some rungs' discs.
 int reach_of(const LevelRungs& level, std::uint32_t rungs) {
   std::size_t reach = 1;
   for (std::size_t i = 0; i < level.rungs.size(); ++i) {
@@ -82,7 +82,7 @@ int reach_of(const LevelRungs& level, std::uint32_t rungs) {
   return static_cast<int>(reach) - 1;
 }
 
-// The tile's part of the picture, for discs of any reach.
+// Splits a tile's part of the picture, with `apron` more rows above and below.
 void split_tile(const Frame& frame, const Rectangle& at, int apron, Workspace& work) {
   const int last = frame.levels[0].height - 1;
   for (int y = -apron; y < at.height + apron; ++y) {
@@ -122,7 +122,7 @@ void blur_rung(const Frame& frame, std::size_t level, DiscSide side, std::size_t
   SOFTFOCUS_KERNEL(frame.isa, add_disc_sums)(work.scratch, at.width, at.height, work.tile);
 }
 
-// Where a tile lies in the next level, and the pixels around it that enlarging takes.
+// A tile's place in the next level, with the pixels around it that enlarging needs.
 Rectangle in_next_level(const Rectangle& at) {
   return {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2};
 }
@@ -134,7 +134,7 @@ bool any_seen(const Frame& frame, std::size_t level, int side, const Rectangle& 
   return any_seen(frame, level + 1, side, in_next_level(at));
 }
 
-// A row of what is seen of the next level, in pixels of a tile's.
+// Enlarges a row of what is seen of the next level to a tile's pixels.
 void enlarge(const Frame& frame, const DiscLevel& from, int side, const Rectangle& at, int row,
              float* const (&to)[kDiscTransmitted + 1]) {
   const int y = at.y + row;
@@ -223,8 +223,8 @@ void keep_tile(DiscLevel& level, int side, const Rectangle& at, const DiscTile& 
 void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
   DiscLevel& level = frame.levels[number];
   for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
-    // Tiles that nobody asks for are left out: a tile of the smaller level asks for half its
-    // size, and two pixels, if there is anything in them.
+    // Leaves out tiles that the level before does not read: its tiles read half their size and
+    // two pixels more, if there is anything in them.
     constexpr int kAcross = kDiscTileWidth / 2 + 2, kDown = kDiscTileHeight / 2 + 2;
     const Rectangle around{at.x - kAcross, at.y - kDown, at.width + 2 * kAcross,
                            at.height + 2 * kDown};
@@ -284,20 +284,20 @@ SOFTFOCUS_INLINE Floats share_from(RungStep step, Floats square) {
   return saturate((square - step.begin) * step.slope);
 }
 
-// The lanes from `from` on of two vectors by turns.
+// Lanes from `from` on, of `a` and `b` by turns.
 template <std::size_t from, std::size_t... lane>
 SOFTFOCUS_INLINE Floats by_turns(Floats a, Floats b, std::index_sequence<lane...>) {
   return __builtin_shufflevector(a, b, (from + lane / 2 + (lane & 1) * kLanes)...);
 }
 
-// Vectors that are worked on together, so that what is the same for all is fetched once:
-// a row of a tile is one or several times as many, with its margins and without.
+// Vectors that are worked on together, so that spans are fetched once for all of them. They
+// divide a row of a tile with its margins, and one without.
 using ColumnVectors = std::make_index_sequence<5>;
 using TileVectors = std::make_index_sequence<4>;
 static_assert(kDiscTileRow % (5 * 16) == 0 && kDiscTileWidth % (4 * 16) == 0);
 
-// Sums of columns of a disc: at columns[dx] what is dx pixels from the middle. `at` is in
-// the row of the middle.
+// Sums of a disc's columns; columns[dx] is for the columns dx pixels from the middle. `at`
+// points into the middle row.
 template <std::size_t... i>
 SOFTFOCUS_INLINE void sum_columns(const float* at, const LadderSpan* spans, int reach,
                                   float* columns, std::index_sequence<i...>) {
@@ -319,7 +319,7 @@ SOFTFOCUS_INLINE void sum_columns(const float* at, const LadderSpan* spans, int 
   }
 }
 
-// Discs from the sums of their columns.
+// Adds the columns of discs.
 template <std::size_t... i>
 SOFTFOCUS_INLINE void add_columns(const float* columns, int reach, float* to,
                                   std::index_sequence<i...>) {
@@ -331,8 +331,8 @@ SOFTFOCUS_INLINE void add_columns(const float* columns, int reach, float* to,
   ((store(to + i * kLanes, sum[i])), ...);
 }
 
-// Discs' sums of a channel that fills the rows from `reach + 1` above the tile on. The next
-// row's columns come first: what has just been stored is slow to load at another alignment.
+// Discs' sums of a channel; `rows` begin reach + 1 rows above the tile. A row's columns are
+// summed one row ahead: values just stored are slow to load at another alignment.
 SOFTFOCUS_INLINE void sum_discs(const DiscBlur& in, const float (*rows)[kDiscTileRow],
                                 DiscScratch& scratch, float (*to)[kDiscTileWidth]) {
   for (int y = 0; y <= in.height; ++y) {
@@ -377,8 +377,7 @@ SOFTFOCUS_INLINE void store_tile(const DiscTile& tile, const std::uint16_t* scen
 
 }  // namespace
 
-/// Sums over the rung's discs in scratch.sums: of its colours and of its share, and of
-/// what is seen where nothing nearer is.
+/// Sums over the rung's discs: of its colours, of its share and of `seen`, into scratch.sums.
 void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch) {
   const int rows = in.height + 2 * (in.reach + 1);
   Mask all_ones = splat(-1), all_equal = splat(-1);
@@ -425,7 +424,7 @@ void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch) {
   }
 }
 
-/// Puts a rung behind what is seen of nearer ones.
+/// Adds a rung behind what is seen of nearer ones.
 void add_disc_sums(const DiscScratch& in, int width, int height, DiscTile& tile) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; x += kLanes) {
@@ -443,8 +442,8 @@ void add_disc_sums(const DiscScratch& in, int width, int height, DiscTile& tile)
   }
 }
 
-/// A row of `count` pixels, an even number, from rows of pixels of twice the size: three
-/// quarters of `inside`, in which it lies, and one of `other`; across the same.
+/// Enlarges to a row of `count` pixels, an even number, from rows of pixels of twice the size:
+/// three quarters of the row `inside` which it lies, a quarter of the `other`; along x likewise.
 void enlarge_disc_row(const float* inside, const float* other, int count, float* to) {
   using Lanes = std::make_index_sequence<SOFTFOCUS_LANES>;
   for (int x = 0; x < count / 2; x += kLanes) {
@@ -457,7 +456,7 @@ void enlarge_disc_row(const float* inside, const float* other, int count, float*
   }
 }
 
-/// Puts a row behind what is seen of another; both have colour and transmittance.
+/// Adds a row of colour and transmittance behind a row of the tile.
 void add_behind(const float (*from)[kDiscTileRow], int width, int y, DiscTile& tile) {
   for (int x = 0; x < width; x += kLanes) {
     const Floats open = load(tile.channel[kDiscTransmitted][y] + x);
@@ -469,8 +468,8 @@ void add_behind(const float (*from)[kDiscTileRow], int width, int y, DiscTile& t
   }
 }
 
-/// Divides by the opacity reached, and puts the tile's pixels into the picture, with the
-/// scene's depth. Rows are `scene_row` and `row` halves apart.
+/// Divides by the opacity reached, and stores the tile with the scene's depth. Rows are
+/// `scene_row` and `row` halves apart.
 void store_disc_tile(const DiscTile& tile, const std::uint16_t* scene, std::ptrdiff_t scene_row,
                      int width, int height, HalfRounding rounding, std::uint16_t* to,
                      std::ptrdiff_t row) {

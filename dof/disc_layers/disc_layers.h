@@ -1,33 +1,33 @@
 #pragma once
-// Discs by layers, for a picture with depth: everything of the same circle of confusion is
-// blurred together, by an even disc, and the nearer layer is laid over the farther.
+// Disc-layers: everything with the same circle of confusion is blurred together, by an even
+// disc, and the nearer layer is laid over the farther.
 //
-// Layers are radii, the rungs of disc_ladder.h, before the focus and behind it. A pixel
-// counts to the two rungs next to its radius, in shares m. With B_k the sum over the disc of
-// rung k, from the nearest layer to the farthest:
+// Layers are radii before the focus and behind it, the rungs of disc_ladder.h. A pixel counts
+// to the two rungs next to its radius, in shares m. B_k is the sum over the disc of rung k.
+// From the nearest layer to the farthest:
 //
 //   a_k = B_k(m_k) / B_k(m_k and the shares of all farther)       opacity
-//   out = sum T_k a_k B_k(m_k c) / B_k(m_k),  T_k = product of 1 - a of what is nearer
+//   out = sum T_k a_k B_k(m_k c) / B_k(m_k),  T_k = product of 1 - a of all nearer
 //       = sum T_k B_k(m_k c) / B_k(m_k and farther)
 //
-// and what is left open, T at the end, is divided away. The denominator leaves out what is
-// hidden by something nearer: of a layer behind, the discs' visible parts stand for the
-// whole. So a surface that runs through layers is never seen through, as its shares add to
-// one in whatever order, and what lies behind the soft edge of something near goes on behind
-// it, by its nearest parts. Beyond the picture its edges repeat.
+// and `out` is divided by the opacity reached, 1 - T at the end. The denominator leaves out
+// everything that is hidden by something nearer, so in a layer behind, the visible parts of a
+// disc stand for the whole. A surface that runs through layers is nowhere seen through, since
+// its shares add to one in any order. A background goes on behind the soft edge of a near
+// thing, by its nearest visible parts. The picture's edges repeat outwards.
 //
 // Circles of 8 pixels and more are blurred at half resolution, of 16 and more at a quarter,
-// and so on: a level for each doubling. On the way down shares and the colours they weigh are
-// averaged, on the way up what is seen of a level and all larger ones, colour and
-// transmittance: one picture of what is before the smaller near layers, one of what is
-// behind the smaller far ones.
+// and so on: a level for each doubling. The way down averages shares, and colours weighed by
+// them. The way up enlarges colour and transmittance of all that is seen of a level and of
+// larger ones: one picture goes before the smaller near layers, one behind the smaller far
+// ones.
 //
-// Cost: some ten operations a pixel and rung for the small ones, a quarter of it with each
-// level; tiles leave out the rungs of which they have nothing near.
+// Cost: about ten operations a pixel and rung, a quarter of that at each further level. Tiles
+// leave out rungs that have nothing near them.
 //
-// Known failures: what is hidden is not known, only continued, so texture behind a soft edge
-// is smeared; nothing is found behind more than a circle's radius from its last visible part.
-// Circles of which a pixel is a mixture are two discs, not one between them.
+// Known failures: hidden things are not known, only continued, so texture behind a soft edge
+// is smeared, and a surface goes on no farther than a circle's radius behind it; a circle
+// between two rungs is two discs, not one of the radius between.
 
 #include <vector>
 
@@ -36,9 +36,10 @@
 
 namespace softfocus {
 
+/// A Method's apply (dof.h).
 void disc_layers(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
-/// Its oracle, pixel by pixel; equal to the bit.
+/// The oracle of disc_layers(), and its scalar form: pixel by pixel. Equal to the bit.
 void disc_layers_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The ladder up to the largest radius of the settings.

@@ -1,4 +1,4 @@
-// disc_layers.h pixel by pixel: the oracle.
+// The oracle of disc-layers: the equations of disc_layers.h, pixel by pixel.
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ enum class Side { near, far };
 
 struct Level {
   int width, height;
-  std::array<std::vector<Pixel>, 2> sides;  // of level 0 both are the same
+  std::array<std::vector<Pixel>, 2> sides;  // before and behind the focus; equal in level 0
   std::array<std::vector<Seen>, 2> seen;
 
   std::size_t at(int x, int y) const {
@@ -78,7 +78,7 @@ Level halve(const Level& from, bool whole, RungStep beyond, float least) {
   return level;
 }
 
-// Sum over a disc about a pixel of what value_at says of pixels.
+// The sum of value_at(pixel) over a disc.
 template <class ValueAt>
 float disc_sum(const std::vector<LadderSpan>& spans, int x, int y, const ValueAt& value_at) {
   const auto column = [&](int dx) {
@@ -95,7 +95,7 @@ float disc_sum(const std::vector<LadderSpan>& spans, int x, int y, const ValueAt
   return sum;
 }
 
-// Of a pixel of a level: what of it belongs to a rung, and what to it and all behind it.
+// The shares of a pixel that belong to a rung, and to the rung and all behind it.
 struct Shares {
   float own, seen;
 };
@@ -141,7 +141,7 @@ struct Layers {
     seen[3] = std::max(seen[3] - own * scale, 0.0f);
   }
 
-  // What is seen of one side of a level, at a pixel of the level before.
+  // What is seen of one side of a level at a pixel of the level before.
   Seen enlarged(std::size_t number, std::size_t side, int x, int y) const {
     const Level& level = levels[number];
     const std::vector<Seen>& seen = level.seen[side];

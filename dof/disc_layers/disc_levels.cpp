@@ -46,14 +46,14 @@ DiscLevel make_level(int width, int height) {
   return level;
 }
 
-// What a task works with. Rows have room for whole vectors.
+// A task's memory. Rows have room for whole vectors.
 struct RowScratch {
-  std::vector<float> split[2];          // channels of level 0, but its weights
-  std::vector<std::uint32_t> marks[2];  // of sides: rungs of pixels in a row of blocks
+  std::vector<float> split[2];          // two rows of level 0: colours and signed squares
+  std::vector<std::uint32_t> marks[2];  // of either side, by x: the rungs in a row of blocks
   std::vector<std::uint32_t> next_marks[2];
 };
 
-// Into the level's row of blocks from marks of its pixels, which are cleared.
+// Moves the marks of a row of blocks into the level.
 void keep_marks(DiscLevel& level, int side, int y, std::vector<std::uint32_t>& marks) {
   std::uint32_t* blocks =
       &level.rungs[side][static_cast<std::size_t>(y / kDiscBlock * level.block_columns)];
@@ -79,7 +79,7 @@ std::ptrdiff_t row_stride(const DiscLevel& level) {
   return stride % 256 == 0 ? stride + 16 : stride;
 }
 
-// Whether a row, which may lie below the last, has anything on a side.
+// Whether a row has anything on a side. Rows below the last repeat it.
 bool row_filled(const DiscLevel& level, int side, int y) {
   return level.filled[side][static_cast<std::size_t>(std::min(y, level.height - 1))] != 0;
 }
@@ -118,15 +118,15 @@ struct Halving {
   const DofInput& input;
   DiscLevel& from;
   DiscLevel& to;
-  bool whole;  // from the picture itself
+  bool whole;  // whether `from` is the picture itself
   RungStep beyond;
   float least_square;
   int first_rung;  // of `to`
   const float* ones;
 };
 
-// Two rows of the picture as rows of level 0. Says on which sides they have anything for
-// the next level; only then colours are there.
+// Makes two rows of level 0 from the picture. `larger` becomes true for a side that has
+// anything for the next level; if neither has, colours are left out.
 void split_two_rows(const Halving& halving, int y, RowScratch& scratch, DiscRow* rows, bool* larger,
                     Isa isa) {
   const int width = halving.from.width, padded = padded_width(halving.from);
@@ -149,7 +149,7 @@ void split_two_rows(const Halving& halving, int y, RowScratch& scratch, DiscRow*
   }
 }
 
-// A row of a side of the next level.
+// Makes a row of a side of the next level.
 void halve_rows(const Halving& halving, const DiscRow* rows, int side, int y, RowScratch& scratch,
                 Isa isa) {
   DiscLevel& to = halving.to;
@@ -237,7 +237,7 @@ DiscLevels make_disc_levels(const DofInput& input, const std::vector<LevelRungs>
   DiscLevels result;
   std::vector<DiscLevel>& levels = result.levels;
   levels.push_back(make_level(input.scene.width, input.scene.height));
-  // One level at least: halving marks the rungs of level 0.
+  // At least one halving: it marks the rungs of level 0.
   while (levels.size() < std::max(ladder.size(), std::size_t{2})) {
     levels.push_back(make_level((levels.back().width + 1) / 2, (levels.back().height + 1) / 2));
   }
@@ -295,7 +295,7 @@ SOFTFOCUS_INLINE Floats add_pairs(Floats a, Floats b) {
 
 }  // namespace
 
-/// Signed squares of the radii of `count` pixels of a row from `x` on; the picture's edges
+/// The signed squares of the radii of `count` pixels of a row from `x` on. The picture's edges
 /// repeat outwards.
 void split_disc_squares(const DofSettings& settings, const std::uint16_t* from, int x, int width,
                         int count, float* to) {
@@ -306,7 +306,7 @@ void split_disc_squares(const DofSettings& settings, const std::uint16_t* from, 
   }
 }
 
-/// Of the same their colours, `channel` floats apart.
+/// The colours of those pixels, `channel` floats apart.
 void split_disc_colours(const std::uint16_t* from, int x, int width, int count, float* to,
                         std::ptrdiff_t channel) {
   for (int i = 0; i < count; i += kLanes) {
@@ -341,13 +341,11 @@ void halve_disc_rows(const DiscHalving& in) {
   }
 }
 
-/// Which rungs there are in a row, a bit each: `near` of negative squares, `far` of others,
-/// pixel by pixel added to what was there. Bit 0 is for rung `first_rung` and smaller ones.
-/// Returns those of the row, together.
+/// Adds each pixel's rungs, a bit each, to its marks: to `near` if its square is negative, else
+/// to `far`. Bit 0 stands for rung `first_rung` and smaller ones. Returns all rungs of the row.
 MarkedRungs mark_rungs(const float* square, const float* weight, int count, int first_rung,
                        std::uint32_t* near, std::uint32_t* far) {
-  // A float's upper bits count half octaves from 2^-127: 254 is 1 to 3/2, 255 to 2. There the
-  // first rung after the focus is.
+  // A float's upper bits count half octaves from 2^-127: 254 is 1 to 3/2, where rung 1 begins.
   const Ints offset = splat(253 + first_rung);
   Bits all_near = splat(0u), all_far = splat(0u);
   for (int x = 0; x < count; x += kLanes) {

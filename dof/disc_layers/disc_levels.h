@@ -1,5 +1,5 @@
 #pragma once
-// The picture of disc_layers.h at each level: pixels of 1, 2, 4, ... across.
+// The picture of disc_layers.h at each level, in pixels 1, 2, 4, ... across.
 
 #include <cstddef>
 #include <cstdint>
@@ -32,10 +32,10 @@ struct DiscRow {
 /// What is seen of a pixel: red, green, blue and the transmittance.
 inline constexpr int kDiscTransmitted = 3;
 
-/// Planes of a level, each row with a margin at either end and room for whole tiles.
+/// Planes of a level. A row has a margin at either end, and then room for a whole tile.
 struct DiscPlanes {
   std::ptrdiff_t stride, plane;
-  float* values;  ///< of the levels' memory
+  float* values;  ///< in DiscLevels::memory
 };
 inline float* plane_row(const DiscPlanes& planes, int plane, int y) {
   return planes.values + plane * planes.plane + y * planes.stride;
@@ -44,31 +44,31 @@ inline float* plane_row(const DiscPlanes& planes, int plane, int y) {
 struct DiscLevel {
   int width, height;
   int block_columns, block_rows;
-  std::vector<std::uint32_t> rungs[2];  ///< of blocks: the level's, a bit each, on either side
-  /// The channels of DiscRow, before and behind the focus. Level 0 has none: it is the
-  /// picture itself.
+  /// Arrays of two: before the focus, and behind it.
+  std::vector<std::uint32_t> rungs[2];  ///< of a block: a bit for each of the level's rungs
+  /// The channels of DiscRow. Level 0 has none: it is the picture itself.
   DiscPlanes sides[2];
-  std::vector<std::uint8_t> filled[2];  ///< of rows: others are not in `sides`, they are `zeros`
+  std::vector<std::uint8_t> filled[2];  ///< of a row: whether `sides` has it; if not, it is `zeros`
   std::vector<float> zeros;
-  /// What is seen of this level and of larger ones, colour and transmittance.
+  /// What is seen of this level and of larger ones: colour and transmittance.
   DiscPlanes seen[2];
 };
 
-/// The row of one side at pixel x, which may lie kDiscMargin outside; rows outside repeat.
-/// Not of level 0.
+/// A row of one side, from pixel x on. x may lie kDiscMargin outside; rows outside repeat the
+/// picture's first and last. Needs a level other than 0.
 DiscRow disc_row(const DiscLevel& level, int side, int x, int y);
 
-/// Levels for the rungs of a ladder; what is seen of them is left to be filled. One piece of
-/// memory, so that it is not given back to the system after each frame.
+/// Their memory is one piece, so that the allocator keeps it from frame to frame.
 struct DiscLevels {
   std::vector<DiscLevel> levels;
   std::unique_ptr<float[]> memory;
 };
+/// Levels for the rungs of a ladder. `seen` is left to be filled.
 DiscLevels make_disc_levels(const DofInput& input, const std::vector<LevelRungs>& ladder,
                             ThreadPool& pool);
 
-/// `count` pixels of a row of the picture from `x` on, as rows of level 0: colours and
-/// signed squares, `channel` floats apart. Its edges repeat outwards.
+/// `count` pixels of a row of the picture from `x` on as level 0: red, green, blue and signed
+/// square, `channel` floats apart. The picture's edges repeat outwards.
 void split_disc_row(const DofInput& input, int x, int y, int count, float* to,
                     std::ptrdiff_t channel, Isa isa);
 

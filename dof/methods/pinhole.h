@@ -1,11 +1,11 @@
 #pragma once
-// No depth of field at all: the camera model that every other method is measured by.
+// A pinhole camera: no depth of field.
 
 #include "dof/dof.h"
 
 namespace softfocus {
 
-/// The picture as it was drawn.
+/// A Method's apply (dof.h): copies the picture.
 void pinhole(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "dof/dof.h"
-#include "dof/two_pass/gather_nodes.h"
 #include "raster/images/image.h"
 #include "raster/lanes/isa.h"
 

@@ -26,7 +26,7 @@ const std::vector<Gaussian> kOne = {{.862325, 1.624835, {.767583, -1.862321}}};
 const std::vector<Gaussian> kTwo = {{.886528, 5.268909, {.411259, .548794}},
                                     {1.960518, 1.558213, {.513282, -4.56111}}};
 
-// The docstring's equations in binary64, with the library's exponential.
+// The header's equations in binary64, with the library's exponential.
 double oracle(const DofInput& input, int x, int y, const std::vector<Gaussian>& gaussians,
               double edge) {
   const int width = input.scene.width, height = input.scene.height;
@@ -74,7 +74,7 @@ double oracle(const DofInput& input, int x, int y, const std::vector<Gaussian>& 
 
 }  // namespace
 
-TEST_CASE("circular separable blur is its equations") {
+TEST_CASE("circular separable blur is what its equations say") {
   ThreadPool pool(2);
   const Image scene = random_scene_image(33, 29, 1);
   const DofInput input{scene, {.coc = {13.0f, 2.0f}, .max_coc_px = 9.0f}, {}};
@@ -107,7 +107,7 @@ TEST_CASE("circular separable discs have their edge at the circle of confusion")
       }
       Image result = make_image(Format::rgba16f, 97, 97);
       filter({scene, {.coc = {2.0f * radius, 2.0f}, .max_coc_px = 40.0f}, {}}, result, pool);
-      // Where the light along an axis falls through half of a disc's.
+      // The place along an axis where the light falls to half of an even disc's.
       const double half = 500.0 / (3.14159265 * radius * radius);
       int x = 48;
       while (load_texel(result, x + 1, 48).x > half) ++x;

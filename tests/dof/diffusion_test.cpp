@@ -14,7 +14,7 @@ using namespace softfocus;
 
 namespace {
 
-// Relaxation until nothing moves: nothing shared with the elimination.
+// Relaxes until nothing moves, which shares nothing with the elimination.
 void relax(std::vector<double>& line, const std::vector<double>& flow) {
   const std::vector<double> source = line;
   for (int sweep = 0; sweep < 4000; ++sweep) {

@@ -36,7 +36,7 @@ Image edge_image(float left_depth_m, float right_depth_m) {
   return image;
 }
 
-// How much of a disc about 0 lies left of x.
+// The share of a disc about 0 that lies left of x.
 double disc_left_of(double x, double radius) {
   const double t = std::fmin(std::fmax(x / radius, -1.0), 1.0);
   return 0.5 + (t * std::sqrt(1.0 - t * t) + std::asin(t)) / 3.14159265358979;
@@ -44,7 +44,7 @@ double disc_left_of(double x, double radius) {
 
 }  // namespace
 
-TEST_CASE("disc-layers is what its oracle says, at any size and radius") {
+TEST_CASE("disc-layers gives its oracle's bits, at any size and radius") {
   struct Size {
     int width, height;
   };
@@ -52,9 +52,9 @@ TEST_CASE("disc-layers is what its oracle says, at any size and radius") {
     const Image scene = random_scene_image(size.width, size.height, 7);
     for (const float max_coc : {0.0f, 0.7f, 6.9f, 7.25f, 8.0f, 11.0f, 40.0f}) {
       const DofSettings of = settings(40.0f, max_coc);
-      ThreadPool plain(2, Isa::scalar);
+      ThreadPool scalar(2, Isa::scalar);
       Image expected = make_image(scene.format, size.width, size.height);
-      disc_layers_oracle({scene, of, {}}, expected, plain);
+      disc_layers_oracle({scene, of, {}}, expected, scalar);
       for (const Isa isa : available_isas()) {
         ThreadPool pool(2, isa);
         INFO(std::string{isa_name(isa)}, ", ", size.width, "x", size.height, ", ", max_coc);
@@ -64,11 +64,11 @@ TEST_CASE("disc-layers is what its oracle says, at any size and radius") {
   }
 }
 
-TEST_CASE("disc-layers is what its oracle says where hardly anything is blurred") {
-  // 40 (z - 2) / z: near the focus but for one pixel, whose circle has 6 to 37 pixels.
+TEST_CASE("disc-layers gives its oracle's bits if hardly anything is blurred") {
+  // All in focus but one pixel, whose radius, 40 (z - 2) / z, is 7 to 37 pixels.
   const DofSettings of = settings(40.0f, 40.0f);
   const int width = 330, height = 70;
-  ThreadPool plain(2, Isa::scalar), pool(2);
+  ThreadPool scalar(2, Isa::scalar), pool(2);
   for (const float depth_m : {1.05f, 1.7f, 30.0f}) {
     for (const int x : {61, 126, 131, 190}) {
       Image scene = random_scene_image(width, height, 7);
@@ -80,7 +80,7 @@ TEST_CASE("disc-layers is what its oracle says where hardly anything is blurred"
         }
       }
       Image expected = make_image(scene.format, width, height);
-      disc_layers_oracle({scene, of, {}}, expected, plain);
+      disc_layers_oracle({scene, of, {}}, expected, scalar);
       INFO(x, ", ", depth_m);
       CHECK(equal(blurred(scene, of, pool), expected));
     }
@@ -88,7 +88,7 @@ TEST_CASE("disc-layers is what its oracle says where hardly anything is blurred"
 }
 
 TEST_CASE("a rung's disc has the second moment of its circle") {
-  // Of level 0, where pixels have no size of their own.
+  // In level 0, where the size of pixels adds nothing.
   const std::vector<LevelRungs> ladder = make_ladder(7.0f);
   REQUIRE(ladder.size() == 2);
   REQUIRE(ladder[0].rungs.size() == static_cast<std::size_t>(kFineRungs));
@@ -120,15 +120,15 @@ TEST_CASE("a pixel between two rungs counts to both, and the mean of the squares
     const float square = static_cast<float>(radius * radius);
     double shares = 0.0, mean = 0.0;
     for (std::size_t i = 0; i <= ladder[0].rungs.size(); ++i) {
-      const auto share_from = [&](std::size_t rung) {
+      const auto share_from_rung = [&](std::size_t rung) {
         const RungStep step = rung < ladder[0].rungs.size()    ? ladder[0].rungs[rung].step
                               : rung == ladder[0].rungs.size() ? ladder[0].beyond
                                                                : RungStep{1e9f, 1.0f};
-        return std::fmin(std::fmax((square - step.begin) * step.slope, 0.0f), 1.0f);
+        return share_from(step, square);
       };
       const float of =
           i < ladder[0].rungs.size() ? ladder[0].rungs[i].square : ladder[1].rungs[0].square;
-      const double share = static_cast<double>(share_from(i) - share_from(i + 1));
+      const double share = static_cast<double>(share_from_rung(i) - share_from_rung(i + 1));
       shares += share;
       mean += share * static_cast<double>(of);
     }

@@ -11,7 +11,7 @@ using namespace softfocus;
 
 namespace {
 
-using Filter = void (*)(const DofInput&, Image&, ThreadPool&);
+using Filter = void (*)(const DofInput&, const ImageView&, ThreadPool&);
 
 Image filtered(Filter filter, const Image& scene, const DofSettings& settings, ThreadPool& pool) {
   Image result = make_image(Format::rgba16f, scene.width, scene.height);
@@ -21,17 +21,17 @@ Image filtered(Filter filter, const Image& scene, const DofSettings& settings, T
 
 }  // namespace
 
-TEST_CASE("scatter by spans gives the bits of scatter by stamps") {
+TEST_CASE("scatter gives its oracle's bits") {
   ThreadPool pool(3);
   for (const SlabRule rule : {SlabRule::one, SlabRule::layers, SlabRule::doubling}) {
     for (const int size : {1, 2, 37, 64}) {
       const Image scene = random_scene_image(size, 66 - size, 1);
       for (const float max_coc : {0.0f, 0.7f, 2.0f, 9.4f, 100.0f}) {
         const DofSettings settings{.coc = {30.0f, 2.0f}, .max_coc_px = max_coc};
-        Image fast = make_image(Format::rgba16f, scene.width, scene.height), plain = fast;
-        scatter_in_slabs({scene, settings, {}}, fast, rule, pool);
-        scatter_in_slabs_oracle({scene, settings, {}}, plain, rule, pool);
-        CHECK(equal(fast, plain));
+        Image result = make_image(Format::rgba16f, scene.width, scene.height), expected = result;
+        scatter_in_slabs({scene, settings, {}}, result, rule, pool);
+        scatter_in_slabs_oracle({scene, settings, {}}, expected, rule, pool);
+        CHECK(equal(result, expected));
       }
     }
   }
@@ -63,8 +63,7 @@ TEST_CASE("a scattered disc has a disc's area and second moment") {
   }
 }
 
-TEST_CASE(
-    "sorted scatter and layers let no light of the background over a near sharp object's inside") {
+TEST_CASE("sorted scatter and layers keep a background's light off a sharp object before it") {
   ThreadPool pool(2);
   // The left half in focus and black, the right half far and bright.
   Image scene = random_scene_image(64, 64, 3);
@@ -79,13 +78,13 @@ TEST_CASE(
   for (int x = 0; x < 32; ++x) CHECK(load_texel(sorted, x, 30).x == 0.0f);
   const Image layered = filtered(layers, scene, settings, pool);
   for (int x = 0; x < 32; ++x) CHECK(load_texel(layered, x, 30).x == 0.0f);
-  // Which the unsorted one does.
+  // Unsorted scatter does not.
   const Image unsorted = filtered(scatter_unsorted, scene, settings, pool);
   CHECK(load_texel(unsorted, 31, 30).x > 1.0f);
 }
 
 TEST_CASE(
-    "sorted scatter and layers put a blurred foreground over a sharp background, half at its "
+    "sorted scatter and layers put a blurred foreground over a sharp background, by half at its "
     "edge") {
   ThreadPool pool(2);
   Image scene = random_scene_image(96, 64, 4);

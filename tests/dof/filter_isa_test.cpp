@@ -1,4 +1,4 @@
-// The filters' vector kernels against their oracles, bit for bit, on every vector
+// The filters in lanes against their oracles, bit for bit, on every vector
 // unit that this CPU has.
 
 #include <doctest/doctest.h>
@@ -120,7 +120,7 @@ TEST_CASE("the filters' kernels give the oracles' bits at every leak and roundin
   }
 }
 
-TEST_CASE("the filters' kernels give the oracles' bits of any colours") {
+TEST_CASE("the filters' kernels give the oracles' bits for any colours") {
   constexpr std::array<std::uint16_t, 12> kColours{0x0000, 0x8000, 0x0001, 0x83FF, 0x0400, 0xBC00,
                                                    0x7BFF, 0xFBFF, 0x7C00, 0xFC00, 0x7E01, 0xFD55};
   for (const FilterPair& filter : kFilters) {
@@ -145,7 +145,7 @@ TEST_CASE("the filters' kernels give the oracles' bits of any colours") {
   }
 }
 
-TEST_CASE("the filters' kernels give the oracles' bits of any depths") {
+TEST_CASE("the filters' kernels give the oracles' bits for any depths") {
   constexpr std::array<std::uint16_t, 10> kDepths{0x0000, 0x8000, 0x0001, 0x03FF, 0x4000,
                                                   0xC000, 0x7BFF, 0x7C00, 0xFC00, 0x7E01};
   for (const FilterPair& filter : kFilters) {
@@ -211,7 +211,7 @@ TEST_CASE("the filters' kernels give the same bits for any number of threads") {
   }
 }
 
-TEST_CASE("the filters' kernels give the oracles' bits of a picture larger than caches") {
+TEST_CASE("the filters' kernels give the oracles' bits for a picture larger than caches") {
   // Written past them in whole vectors, and at the right edge not in whole ones.
   Image scene = random_scene_image(4099, 517, 13);
   set_depth(scene, [](int x, int y) { return x / 50 % 3 == 0 && y / 40 % 2 == 0 ? 8.0f : 2.0f; });

@@ -334,7 +334,7 @@ TEST_CASE("each texel of the disc is a ring's sample exactly once, nearest rings
   }
 }
 
-TEST_CASE("the taps reach just short of the radius, where the overlap ends") {
+TEST_CASE("the taps end just short of the radius, where the overlap ends") {
   CHECK(tap_count(0.0f) == 0);
   CHECK(tap_count(1.0f) == 0);
   CHECK(tap_count(1.5f) == 1);

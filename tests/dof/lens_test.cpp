@@ -85,9 +85,8 @@ TEST_CASE("the radius in pixels is negative before the focus, zero on it and pos
 }
 
 TEST_CASE("the radius in pixels is the footprint of rays through the aperture on a pinhole image") {
-  // Brute force: an object on the axis; a ray from it through the aperture's rim goes
-  // on, as all rays through the lens, so that it meets the focus plane where the
-  // pinhole image of that plane's point lies.
+  // Brute force: a ray from an object on the axis through the aperture's rim. The lens sends
+  // it to where a pinhole images the point at which the ray's line meets the focus plane.
   const double fov = 40.0;
   const int height = 1024;
   const double pixels_per_tangent = height / (2.0 * exact_math::tan_degrees(fov / 2.0));
@@ -114,7 +113,7 @@ TEST_CASE("the film's circle, scaled to pixels, is the radius in pixels: the con
 }
 
 TEST_CASE("with the film at the focal length the two conventions would differ by 5.3 percent") {
-  // What docs/lens.md warns of, at f = 50 mm and z_f = 1 m.
+  // See docs/lens.md: f = 50 mm and z_f = 1 m.
   const double at_focal_length = 2.0 * 50.0 * exact_math::tan_degrees(20.0);
   CHECK(film_height_mm(kPortrait, 40.0) / at_focal_length == doctest::Approx(1.0526).epsilon(1e-4));
 }
@@ -130,7 +129,7 @@ TEST_CASE("the radius grows with the picture, so a scene looks the same at every
   CHECK(coc_radius_px(pixel_coc(kPortrait, 40.0, 1024, 1.0), 3.0f) == 4.0f * small);
 }
 
-TEST_CASE("a lens that cannot be is refused with the reason") {
+TEST_CASE("an unusable lens is refused with the reason") {
   CHECK(lens_error(kPortrait) == nullptr);
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();

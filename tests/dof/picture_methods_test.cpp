@@ -1,5 +1,5 @@
-// What holds for every method that works from one picture, with the few numbers in which
-// they differ in one table.
+// Claims about every method that works from one picture. The numbers by which methods differ
+// are in one table.
 
 #include <doctest/doctest.h>
 
@@ -22,19 +22,19 @@ struct Claims {
   const char* name;
   /// Largest difference of a constant picture, in half-ULPs.
   int constant_ulp;
-  /// Light of an isolated point, out / in - 1, at radius 8.
+  /// Relative error of an isolated point's light at radius 8.
   double energy_error;
-  /// sqrt(2 E[d^2]) of a point's image, which for a disc is its radius, against the circle
-  /// of confusion: relative error at radius 8.
+  /// Relative error of the radius of a point's image at radius 8. The image's radius is
+  /// sqrt(2 E[d^2]), that of a disc with its second moment.
   double radius_error;
-  /// Largest difference between the mirror's filtered image and the filtered mirror image.
+  /// Largest difference between the filtered mirror image and the mirrored filtered image.
   double mirror_error;
-  /// Width of the light that stands for a point: a method at half resolution sees none
-  /// of a pixel.
+  /// Width in pixels of the light that stands for a point: a method at half resolution does
+  /// not see one pixel.
   int point_size = 1;
-  /// What is sharp takes no light of a blurred background.
+  /// Whether a blurred background sheds no light on a sharp object.
   bool keeps_background_out = true;
-  /// A blurred foreground's light falls on what is sharp beside it.
+  /// Whether a blurred foreground sheds light on a sharp background.
   bool spreads_foreground = true;
 };
 
@@ -54,7 +54,7 @@ Image filtered(const char* name, const Image& scene, const DofSettings& settings
                ThreadPool& pool) {
   const Method* method = find_method(name);
   REQUIRE_MESSAGE(method != nullptr, name);
-  // What was there before must not show.
+  // Its old contents must not show.
   Image result = random_scene_image(scene.width, scene.height, 99);
   apply(*method, {scene, settings, {}}, result, pool);
   return result;
@@ -64,7 +64,7 @@ DofSettings settings(float radius_at_infinity, float max_coc) {
   return {.coc = {radius_at_infinity, 2.0f}, .max_coc_px = max_coc};
 }
 
-// Of one colour over random depths.
+// One colour over random depths.
 Image constant_image(int width, int height, std::uint64_t seed) {
   Image image = random_scene_image(width, height, seed);
   for (int y = 0; y < height; ++y) {
@@ -100,7 +100,7 @@ double largest_difference(const Image& a, const Image& b) {
   return largest;
 }
 
-// Bright pixels in the middle of a black picture, all of it at one depth.
+// Bright pixels in the middle of a black picture of one depth.
 Image point_image(int size, float depth_m, float light, int point_size) {
   Image image = make_image(Format::rgba16f, size, size);
   for (int y = 0; y < size; ++y) {
@@ -190,7 +190,7 @@ TEST_CASE("every method keeps an isolated point's light, and spreads it as far a
   }
 }
 
-TEST_CASE("a sharp object takes no light of the background, by every method that says so") {
+TEST_CASE("a background sheds no light on a sharp object, by every method that says so") {
   ThreadPool pool(2);
   Image scene = make_image(Format::rgba16f, 64, 64);
   for (int y = 0; y < 64; ++y) {
@@ -206,7 +206,7 @@ TEST_CASE("a sharp object takes no light of the background, by every method that
   }
 }
 
-TEST_CASE("a blurred foreground falls on what is sharp, by every method that says so") {
+TEST_CASE("a blurred foreground sheds light on a sharp background, by every method that says so") {
   ThreadPool pool(2);
   Image scene = make_image(Format::rgba16f, 96, 64);
   for (int y = 0; y < 64; ++y) {
@@ -223,7 +223,7 @@ TEST_CASE("a blurred foreground falls on what is sharp, by every method that say
   }
 }
 
-TEST_CASE("every method gives the mirror image of the mirror image") {
+TEST_CASE("every method gives a mirrored picture's result mirrored") {
   ThreadPool pool(2);
   const Image scene = random_scene_image(64, 48, 5);
   for (const Claims& claims : kClaims) {
@@ -259,8 +259,8 @@ TEST_CASE("every method gives the same bits on every vector unit, at any size") 
          {Size{1, 1}, {1, 40}, {40, 1}, {2, 3}, {16, 16}, {17, 15}, {33, 70}, {129, 31}}) {
       const Image scene = random_scene_image(size.width, size.height, 7);
       for (const float max_coc : {0.0f, 0.7f, 7.25f, 1024.0f}) {
-        ThreadPool plain(2, Isa::scalar);
-        const Image expected = filtered(claims.name, scene, settings(40.0f, max_coc), plain);
+        ThreadPool scalar(2, Isa::scalar);
+        const Image expected = filtered(claims.name, scene, settings(40.0f, max_coc), scalar);
         for (const Isa isa : available_isas()) {
           ThreadPool pool(2, isa);
           INFO(std::string{claims.name}, " on ", std::string{isa_name(isa)}, ", ", size.width, "x",
@@ -272,7 +272,7 @@ TEST_CASE("every method gives the same bits on every vector unit, at any size") 
   }
 }
 
-TEST_CASE("every method bears the largest circles on a small picture") {
+TEST_CASE("every method stays within range for the largest circles on a small picture") {
   ThreadPool pool(2);
   for (const Claims& claims : kClaims) {
     const Image scene = random_scene_image(19, 7, 8);
@@ -285,7 +285,7 @@ TEST_CASE("every method bears the largest circles on a small picture") {
   }
 }
 
-TEST_CASE("no method lets an infinite or NaN colour out of its place") {
+TEST_CASE("no method spreads a NaN, and an infinite colour counts as the largest half") {
   ThreadPool pool(2);
   for (const Claims& claims : kClaims) {
     Image scene = random_scene_image(48, 48, 9);
@@ -300,7 +300,6 @@ TEST_CASE("no method lets an infinite or NaN colour out of its place") {
       for (int x = 0; x < 48; ++x) wrong += !(load_texel(result, x, y).x <= 1.001f);
     }
     CHECK(wrong == 0);
-    // An infinite one is as bright as a half can be, and nothing is NaN.
     const float infinite = std::numeric_limits<float>::infinity();
     store_texel(scene, 20, 20, {infinite, -infinite, infinite, 6.0f}, {});
     const Image bright = filtered(claims.name, scene, settings(12.0f, 12.0f), pool);
@@ -314,14 +313,14 @@ TEST_CASE("no method lets an infinite or NaN colour out of its place") {
   }
 }
 
-TEST_CASE("every method takes zero, infinite, negative and NaN depths") {
+TEST_CASE("every method stays within range for zero, infinite, negative and NaN depths") {
   const float depths[] = {0.0f, std::numeric_limits<float>::infinity(),
                           std::numeric_limits<float>::quiet_NaN(), 3.0f, -1.0f};
   for (const Claims& claims : kClaims) {
     Image scene = random_scene_image(40, 32, 10);
     set_depth(scene, [&](int x, int y) { return depths[(x + y) % 5]; });
-    ThreadPool plain(1, Isa::scalar);
-    const Image expected = filtered(claims.name, scene, settings(10.0f, 6.0f), plain);
+    ThreadPool scalar(1, Isa::scalar);
+    const Image expected = filtered(claims.name, scene, settings(10.0f, 6.0f), scalar);
     for (const Isa isa : available_isas()) {
       ThreadPool pool(2, isa);
       INFO(std::string{claims.name}, " on ", std::string{isa_name(isa)});

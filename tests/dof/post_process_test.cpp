@@ -46,7 +46,7 @@ Quarter convolved(const Quarter& source, const std::vector<double>& weights) {
   return result;
 }
 
-// Bilinearly, at the centre of a pixel of full size.
+// Interpolated bilinearly at the centre of a pixel of full size.
 double enlarged(const Quarter& quarter, int px, int py) {
   const double x = (px + 0.5) / 4.0 - 0.5, y = (py + 0.5) / 4.0 - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
@@ -56,7 +56,7 @@ double enlarged(const Quarter& quarter, int px, int py) {
 
 }  // namespace
 
-TEST_CASE("post-process is its equations") {
+TEST_CASE("post-process is what its equations say") {
   ThreadPool pool(2);
   constexpr int kWidth = 45, kHeight = 38;
   const Image scene = random_scene_image(kWidth, kHeight, 1);

@@ -20,14 +20,14 @@ double mix(double a, double b, double share) { return a + share * (b - a); }
 double away_from_zero(double v) { return std::copysign(std::floor(std::fabs(v) + 0.500001), v); }
 double half_share(double r) { return sat((r * r - 0.25) / 3.75); }
 
-// The docstring's steps for the green of a picture that is a single tile, pixel by pixel.
+// The header's steps, pixel by pixel, for the green of a picture of a single tile.
 struct Oracle {
   DofInput input;
   int width, height;  // of half resolution
 
   struct Half {
     double colour, share;
-    float size;  // compared with the rings' borders, as the program does
+    float size;  // binary32, since it is compared with the rings' borders
   };
   Half half(int hx, int hy) const {
     hx = std::clamp(hx, 0, width - 1);
@@ -148,7 +148,7 @@ double enlarged(const Field& field, int width, int height, int x, int y) {
 
 }  // namespace
 
-TEST_CASE("ring-bucket is its steps") {
+TEST_CASE("ring-bucket is what its steps say") {
   ThreadPool pool(2);
   for (const float max_coc : {3.0f, 9.0f, 16.0f}) {
     constexpr int kWidth = 31, kHeight = 28;

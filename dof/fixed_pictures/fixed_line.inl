@@ -1,7 +1,6 @@
-// A pass of the fixed-point filter along lines (dof/fixed_pictures/fixed_line.h), of either kind of colours.
+// A pass of the integer filter along lines (fixed_line.h), for colours of either format.
 
 #include "dof/fixed_pictures/fixed_colours.inl"
-#include "dof/fixed_pictures/fixed_half_colours.inl"
 
 template <class Sum>
 SOFTFOCUS_INLINE FixedSums<Sum> plus(const FixedSums<Sum>& a, const FixedSums<Sum>& b) {
@@ -60,25 +59,25 @@ SOFTFOCUS_INLINE void add_to(std::uint32_t* slot, const FixedSums<Sum>& sums) {
   store_fixed(slot, plus(load_fixed<Sum>(slot), sums));
 }
 template <class Sum>
-SOFTFOCUS_INLINE void take_from(std::uint32_t* slot, const FixedSums<Sum>& sums) {
+SOFTFOCUS_INLINE void subtract_from(std::uint32_t* slot, const FixedSums<Sum>& sums) {
   store_fixed(slot, minus(load_fixed<Sum>(slot), sums));
 }
 
-/// The differences of a node's pixels of one key that are still to be put down: those of the
-/// next node's that have it too go to the same places.
+/// Differences of a node's pixels of one key, not yet put down: if pixels of the next node have
+/// that key too, their differences go to the same places and are added first.
 template <class Colours>
 struct PendingNode {
   int key = 0;  ///< reach << 1 | beyond; 0 if there is none
   FixedSums<typename Colours::Sum> inner{}, outer{};
 };
 
-/// `node` is that after the pending one.
+/// Puts the pending differences down; `node` is the node after theirs.
 template <class Colours>
 SOFTFOCUS_INLINE void put_down(const FixedLine& line, int node, PendingNode<Colours>& pending) {
   if (pending.key == 0) return;
   const int reach = pending.key >> 1, side = pending.key & 1;
   add_to(sums_at<Colours>(line, node - reach, side), pending.inner);
-  take_from(sums_at<Colours>(line, node + reach, side), pending.outer);
+  subtract_from(sums_at<Colours>(line, node + reach, side), pending.outer);
   pending.key = 0;
 }
 
@@ -86,8 +85,10 @@ SOFTFOCUS_INLINE void touch(FixedLine& line, int last, int side) {
   if (last > line.touched[side]) line.touched[side] = last;
 }
 
-/// A pixel adds `edge` at its reach and `whole` up to there: a difference of edge (outer)
-/// at -reach, whole - edge (inner) one further, the same two back at reach and one past it.
+/// A pixel adds `edge` at its reach and `whole` at lesser distances. As differences along the
+/// line, with outer = edge and inner = whole - edge:
+///   node - reach  + outer      node - reach + 1  + inner
+///   node + reach  - inner      node + reach + 1  - outer
 template <class Colours>
 SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours>& pending) {
   const int at = node_at(line, node);
@@ -104,7 +105,7 @@ SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours
   auto outer = Colours::weighed(load(line.edges + at), colour);
   auto inner = Colours::weighed(inner_word, colour);
   if (!alike) {
-    // Pixels of one key go the way of a node that is alike, those of others are put down.
+    // Pixels of one key are chosen for the way below; the others are put down here.
     std::int32_t keys[kLanes];
     store(keys, key);
     const unsigned like_pending = equal_lane_bits(key, splat(pending.key)) & left;
@@ -117,8 +118,8 @@ SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours
       const auto some_outer = masked(outer, same), some_inner = masked(inner, same);
       add_to(sums_at<Colours>(line, node - reach, side), some_outer);
       add_to(sums_at<Colours>(line, node - reach + 1, side), some_inner);
-      take_from(sums_at<Colours>(line, node + reach, side), some_inner);
-      take_from(sums_at<Colours>(line, node + reach + 1, side), some_outer);
+      subtract_from(sums_at<Colours>(line, node + reach, side), some_inner);
+      subtract_from(sums_at<Colours>(line, node + reach + 1, side), some_outer);
       touch(line, node + reach, side);
     }
     const Mask same = key == chosen;
@@ -130,11 +131,11 @@ SOFTFOCUS_INLINE void spread_node(FixedLine& line, int node, PendingNode<Colours
   std::uint32_t* const after = sums_at<Colours>(line, node + reach, side);
   if (pending.key == chosen) {
     add_to(before, plus(outer, pending.inner));
-    take_from(after, plus(inner, pending.outer));
+    subtract_from(after, plus(inner, pending.outer));
   } else {
     put_down(line, node, pending);
     add_to(before, outer);
-    take_from(after, inner);
+    subtract_from(after, inner);
   }
   pending = {chosen, inner, outer};
   touch(line, node + reach, side);
@@ -146,11 +147,11 @@ SOFTFOCUS_INLINE void run_over(std::uint32_t* slot, FixedSums<Sum>& running) {
   store_fixed(slot, FixedSums<Sum>{});
 }
 
-/// What differs for a node with pixels that are nearly sharp. One that reaches nothing is not
-/// among the sums yet. Of one that does not take all from beyond the focus, the sums beyond
-/// are cut, but for its own share.
+/// Corrects the sums of a node with nearly sharp pixels. A pixel that reaches nothing is not
+/// among the sums yet: it is added. A pixel with a leakage below 1 takes less from beyond the
+/// focus, except of itself.
 template <class Colours>
-SOFTFOCUS_INLINE void take_nearly_sharp(const FixedLine& line, int node, Ints edge,
+SOFTFOCUS_INLINE void nearly_sharp_sums(const FixedLine& line, int node, Ints edge,
                                         FixedSums<typename Colours::Sum>& near_side,
                                         FixedSums<typename Colours::Sum>& beyond_side) {
   const Ints inner = load(line.inners + node_at(line, node));
@@ -176,7 +177,7 @@ SOFTFOCUS_INLINE void receive(const FixedLine& line, int node,
                               std::uint32_t* out) {
   const Ints edge = load(line.edges + node_at(line, node));
   if (sign_bits(edge) != 0) {
-    take_nearly_sharp<Colours>(line, node, edge, near_side, beyond_side);
+    nearly_sharp_sums<Colours>(line, node, edge, near_side, beyond_side);
   }
   if (any_beyond) near_side = plus(near_side, beyond_side);
   Colours::template store_quotients<last>(out, near_side);
@@ -191,9 +192,9 @@ SOFTFOCUS_INLINE void begin_line(FixedLine& line) {
   line.touched[0] = line.touched[1] = INT32_MIN;
 }
 
-/// Takes kLanes nodes from `node`, which lie in the line, and stores what comes out at the
-/// kLanes nodes from `node` - reach; only from node `wanted` on is it computed. `last`: this
-/// is the second pass.
+/// Adds the kLanes nodes from `node` on, whose pixels already lie in the line, and stores the
+/// filtered colours of the kLanes nodes from `node` - reach on. Nodes before `wanted` are left
+/// out. `last`: this is the second pass.
 template <class Colours, bool last>
 void filter_nodes(FixedLine& line, int node, int wanted, std::uint32_t* out) {
   using Sums = FixedSums<typename Colours::Sum>;
