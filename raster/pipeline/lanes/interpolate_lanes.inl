@@ -1,12 +1,12 @@
-// Varyings at the pixels of kQuads quads, each of a triangle of its own: interpolate.h and
-// planes.h, lane by lane.
+// Varyings at the pixels of kQuads quads. Each quad shows a triangle of its own. The scalar form
+// is interpolate.h and planes.h.
 
 namespace {
 
 /// The triangle that each quad shows.
 using QuadTriangles = std::array<const LaneTriangle*, kQuads>;
 
-/// The floats kFirst <= k < kEnd of the three vertices' rows, in the lanes of their quads.
+/// The floats kFirst <= k < kEnd of three vertices' rows, each in the lanes of its quad.
 template <std::size_t kFirst, std::size_t kEnd>
 struct VertexLanes {
   std::array<std::array<Floats, kEnd - kFirst>, 3> values;
@@ -14,7 +14,7 @@ struct VertexLanes {
   SOFTFOCUS_INLINE Floats at(std::size_t vertex, std::size_t k) const {
     return values[vertex][k - kFirst];
   }
-  /// `rows` are of one vertex of each quad's triangle.
+  /// `rows`: those of one vertex, for each quad's triangle.
   SOFTFOCUS_INLINE void load(std::size_t vertex, const std::array<const float*, kQuads>& rows) {
     load_all(vertex, rows, std::make_index_sequence<(kEnd + 3) / 4 - kFirst / 4>{});
   }
@@ -45,7 +45,7 @@ struct Weights {
   Floats linear1, linear2, perspective1, perspective2;
 };
 
-/// As BarycentricInterpolator.
+/// BarycentricInterpolator in lanes.
 template <std::size_t N>
 struct BarycentricLanes {
   using Point = Weights;
@@ -105,7 +105,7 @@ struct BarycentricLanes {
     return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
   }
 
-  // Edge functions that 32 bits do not hold, and with them those of the other quads.
+  // Edge functions of all quads, if 32 bits do not hold those of one.
   struct WideEdge {
     WideLanes at_origin, per_x, per_y;
   };
@@ -170,17 +170,17 @@ struct BarycentricLanes {
   }
 };
 
-/// The window position of a pixel and 1 / (1 / w) there.
+/// A pixel, and w there as 1 / (1 / w).
 struct PlanePoint {
   Floats x, y, w;
 };
 
-/// As Plane.
+/// Plane in lanes.
 struct PlaneOfLanes {
   Floats at_origin, per_x, per_y;
 };
 
-/// As PlaneInterpolator with PlanesFromOrigin, for varyings of these kinds.
+/// PlaneInterpolator with PlanesFromOrigin in lanes, for varyings of these kinds.
 template <const auto& kinds, Contraction contraction>
 struct PlaneLanes {
   static constexpr std::size_t N = kinds.size();
@@ -229,7 +229,7 @@ struct PlaneLanes {
         case Interpolation::perspective: planes[i] = slopes.plane(a0 * w0, a1 * w1, a2 * w2); break;
         case Interpolation::linear: planes[i] = slopes.plane(a0, a1, a2); break;
         case Interpolation::flat:
-          // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
+          // The provoking vertex, 0 or 2, is not swapped.
           planes[i].at_origin = provoking == 0 ? a0 : a2;
           break;
       }
