@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -82,14 +83,16 @@ struct ThreadPool::State {
   }
 };
 
-ThreadPool::ThreadPool(int threads, Isa isa) : state_(new State), isa_(isa) {
+ThreadPool::ThreadPool(int threads, Isa isa) : isa_(isa) {
+  auto state = std::make_unique<State>();
   try {
     for (int i = 1; i < threads; ++i) {
-      state_->workers.emplace_back([state = state_] { state->work(); });
+      state->workers.emplace_back([shared = state.get()] { shared->work(); });
     }
   } catch (const std::system_error&) {
     // The system gives no more threads: the pool works with those it has.
   }
+  state_ = state.release();
 }
 
 ThreadPool::~ThreadPool() {

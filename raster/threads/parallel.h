@@ -3,7 +3,6 @@
 // order on any thread. The pool carries the vector unit that kernels use. Results must
 // depend on neither.
 
-
 #include "raster/lanes/isa.h"
 
 namespace softfocus {
@@ -41,7 +40,7 @@ class ThreadPool {
 
   void run(int count, Iteration iteration);
 
-  State* state_;  // owned; no <memory>, which would double what dof.h makes a compiler read
+  State* state_;  // owned; <memory> is more to parse than all of this header
   Isa isa_;
 };
 
