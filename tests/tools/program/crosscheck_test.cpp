@@ -6,8 +6,8 @@
 #include <set>
 
 #include "tests/support/gl_drivers.h"
-#include "tools/gl/driver.h"
 #include "tools/files/profile_file.h"
+#include "tools/gl/driver.h"
 
 using namespace softfocus;
 
@@ -185,7 +185,7 @@ TEST_CASE("crosscheck: a driver that is not there is told in one line, and the o
   const ProgramRun run = run_program({"crosscheck", "--driver", "gpu", "--profile", "llvmpipe",
                                       "--driver", "llvmpipe", "--case", "store/rgba8-random"});
   if (run.err.empty()) {
-    MESSAGE("a GPU is here: nothing was missing");
+    skip("", "a GPU is here: nothing was missing");
     return;
   }
   CHECK(run.status == 2);
