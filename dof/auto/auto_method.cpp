@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kSharpBelow = 0.5f;
 
-/// Times that differ by no more than this factor count as equal: they are foreseen no better.
+/// Times within this factor count as equal: the prediction is no better.
 constexpr double kAsFast = 1.05;
 
 std::string number_text(double value) {

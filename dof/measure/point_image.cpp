@@ -44,7 +44,7 @@ PointShape point_shape(const Image& image) {
   shape.centre_x_px /= shape.energy;
   shape.centre_y_px /= shape.energy;
 
-  // A second round, for the difference of large sums would lose what is asked for.
+  // A second round: the difference of large sums would lose the digits.
   double xx = 0.0, xy = 0.0, yy = 0.0;
   for_each_luminance(image, [&](int x, int y, double light) {
     const double dx = x + 0.5 - shape.centre_x_px;

@@ -14,7 +14,7 @@
 
 namespace softfocus {
 
-/// What a picture holds where nothing was drawn: the background, at the far distance.
+/// The background at the far distance: a picture's colour where nothing is drawn.
 glm::vec4 clear_colour(const Scene& scene);
 
 /// Draws one frame into an RGBA16F image of any size: linear colour, and in alpha the
@@ -23,23 +23,23 @@ glm::vec4 clear_colour(const Scene& scene);
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
                  int height, const Profile& profile, ThreadPool& pool);
 
-/// A scene made ready for many frames: textures decoded, memory that is used again.
+/// A scene made ready for many frames: decoded textures, and memory to use again.
 struct PreparedScene {
   const Scene* scene;
-  std::vector<DecodedTexture> textures;  ///< of the scene, if draws are to be in lanes
+  std::vector<DecodedTexture> textures;  ///< decoded, for drawing in lanes
   RenderPass pass;
   Image depth;
 };
 
-/// The scene must outlive what is prepared; `pool` is that of the frames.
+/// The scene must outlive the result. `pool` is the one that will draw.
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);
 
 /// As above, into an RGBA16F picture.
 void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool);
 
-/// Records a frame's draws, and what is cleared before, into a pass that has its targets, and
-/// the profile and isa of prepare_scene(). Depths are not kept.
+/// Records the clearing and the draws of a frame into a pass, which has its targets, and the
+/// profile and isa of prepare_scene(). Depths are not kept.
 void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                   RenderPass& pass);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A frame's draws before anything is drawn: what the emulation and a GL driver both get.
+// A frame's list of draws, for the emulation and for a GL driver.
 
 #include <vector>
 
@@ -15,7 +15,7 @@ struct SurfaceDraw {
   DrawState state;
   SurfaceVertexInput input;
   const Texture* texture;  ///< none if the variant is not textured
-  SurfaceVariant variant;  ///< what the material has, and nothing more
+  SurfaceVariant variant;  ///< the features of the material
 };
 
 /// One for each of the scene's objects, in the order of drawing.

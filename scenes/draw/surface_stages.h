@@ -1,7 +1,6 @@
 #pragma once
-// The vertex and the fragment stage of a lit, perhaps textured surface. A material
-// picks its variant at compile time, and what it lacks is neither computed nor
-// interpolated.
+// The vertex and the fragment stage of a lit, perhaps textured surface. They are compiled for
+// each variant of material: a feature that it lacks is neither computed nor interpolated.
 
 #include <array>
 #include <cstddef>

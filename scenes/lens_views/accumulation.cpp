@@ -96,7 +96,7 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
       draw_tile_aside(passes[i], tile_lists[i], tile, samples.memory,
                       reinterpret_cast<std::byte*>(texels_of(samples, i)));
     }
-    // The sums come from memory for the first, and are at hand for the second.
+    // The first group fetches the sums from memory; the second finds them in the cache.
     for (std::size_t first = 0; first < count; first += kSampleGroup) {
       add_tile(samples, first, std::min<std::size_t>(count - first, kSampleGroup), area, sums,
                pool.isa());

@@ -1,5 +1,5 @@
 #pragma once
-// The picture as one point of the lens sees it.
+// The camera at a point of the lens.
 
 #include <glm/vec2.hpp>
 

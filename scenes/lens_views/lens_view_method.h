@@ -1,7 +1,7 @@
 #pragma once
-// The table of methods that draw the scene themselves, from many points of the lens: the
-// ground truth that the filters of dof/dof.h are held against. A method is one entry:
-// adding one touches its own file, the table and a test.
+// The table of methods that draw lens views: pictures of the scene from many points of the
+// lens. Their mean, over enough points, is the ground truth for the filters of dof/dof.h. A
+// method is one entry: adding one touches its own file, the table and a test.
 
 #include <functional>
 #include <optional>
@@ -22,7 +22,7 @@ namespace softfocus {
 /// How the lens is sampled.
 struct Sampling {
   int samples = 256;    ///< 1 to kMostSamples; with `until`, the most
-  bool jitter = false;  ///< looks from all over the pixel and not from its centre alone
+  bool jitter = false;  ///< looks through all of the pixel, not through its centre alone
   /// Stops when half_set_rms() is at most this, which is tried at 16, 32, 64, ... samples.
   std::optional<double> until = {};
   ApertureShape aperture = {};
@@ -43,15 +43,15 @@ struct LensViewInput {
   Profile profile;
   /// Told how many samples are in, now and then, on the calling thread. May be empty.
   std::function<void(int samples)> progress;
-  /// What the pinhole's picture was drawn from, to be taken over, or null: then the scene is
-  /// prepared anew where that is needed.
+  /// The prepared scene of the pinhole's picture, to be moved from. Null: the scene is prepared
+  /// anew if the method needs it.
   PreparedScene* prepared = nullptr;
 };
 
 struct SampledPicture {
   Image picture;    ///< RGBA16F: linear colour, in alpha the pinhole's depth
   int samples = 0;  ///< that it is the mean of
-  /// Of `until`: how far the half-sets lay apart in the end; none if there were too few.
+  /// With `until`, half_set_rms() at the end; none if there were too few samples.
   std::optional<double> half_set_rms;
 };
 
@@ -59,10 +59,9 @@ struct LensViewMethod {
   std::string_view name;
   std::string_view summary;
   std::string_view needs;
-  /// What this build lacks for it and how to get it, as a sentence's end; empty: nothing.
+  /// If this build lacks something: what, and how to get it. Else empty.
   std::string_view missing;
-  /// The same bits for any number of threads. Throws std::runtime_error where a library
-  /// that it uses fails.
+  /// The same bits for any number of threads. Throws std::runtime_error if a library fails.
   SampledPicture (*render)(const LensViewInput& input, ThreadPool& pool);
 };
 

@@ -112,8 +112,8 @@ RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const Ca
   return hit;
 }
 
-/// Of each pixel another block of the sequence's points: an exclusive or leads every
-/// aligned block of 2^k points to another.
+/// The pixel's block of the sequence. An exclusive or with it maps every aligned block of 2^k
+/// points to another.
 std::uint32_t block_of_pixel(int x, int y) { return hash_of_place(x, y) % kMostSamples; }
 
 /// Everything that a ray needs to know.

@@ -36,7 +36,7 @@ SampleSums make_sample_sums(int width, int height) {
 
 void clear_sums(SampleSums& sums) {
   sums.count = 0;
-  // -0: what it is added to stays as it is, even -0.
+  // -0 leaves every number as it is, even -0.
   std::fill(sums.totals.begin(), sums.totals.end(), -0.0);
 }
 
@@ -133,7 +133,7 @@ SampleSums later_samples(const SampleSums& first, const SampleSums& all) {
 
 double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool) {
   assert(first_half.count > 0 && 2 * first_half.count == all.count);
-  // A row's own sum, then the rows' in order: the same for any number of threads.
+  // Rows first, then their sums in order: the same bits for any number of threads.
   std::vector<double> squares(static_cast<std::size_t>(all.height));
   pool.for_each(all.height, [&](int y) {
     double sum = 0.0;

@@ -8,7 +8,7 @@
 
 namespace softfocus {
 
-/// Adds the samples `begin` to `end` - 1, as many as a step has, to the sums and their count.
+/// Adds the samples `begin` to `end` - 1, a step at most, to the sums, and counts them.
 using AddSamples = std::function<void(int begin, int end, SampleSums& sums)>;
 
 /// In steps of kSampleGroup, and from 16 samples on of `step`: kSampleGroup or twice that.

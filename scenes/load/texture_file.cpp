@@ -9,7 +9,7 @@
 #include "scenes/load/jpeg_check.h"
 #include "scenes/load/scene_error.h"
 
-// Its vector code gives other bits than its plain code for JPEG.
+// Its vector code gives other bits for JPEG than its scalar code.
 #define STBI_NO_SIMD
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG

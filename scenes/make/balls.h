@@ -1,5 +1,5 @@
 #pragma once
-// Many balls at random places, none touching another: the same ones on every machine.
+// Balls at random places, none touching another: the same ones on every machine.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -24,9 +24,9 @@ struct BallRule {
   bool on_ground = false;  ///< the balls lie on y = region_min.y
 };
 
-/// Draws radius, x, y and z, in this order, for one ball after the other, and a place
-/// anew (x, y, z) while the ball comes nearer than `gap` to one of `obstacles` or an
-/// earlier ball. Nothing where a ball finds no place in kBallAttempts.
+/// Draws radius, x, y and z of each ball, in this order. Draws x, y and z again while the ball
+/// is nearer than `gap` to an obstacle or an earlier ball. Empty if a ball finds no place in
+/// kBallAttempts.
 std::optional<std::vector<Ball>> place_balls(const BallRule& rule,
                                              const std::vector<Ball>& obstacles);
 
