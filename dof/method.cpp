@@ -90,8 +90,7 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
   return nullptr;
 }
 
-void apply(const Method& method, const DofInput& input, const ImageView& result,
-           ThreadPool& pool) {
+void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool) {
   assert(input_error(input, result) == nullptr);
   method.filter(input, result, pool);
 }

@@ -42,7 +42,8 @@ std::array<std::uint16_t, 256> halves_of_bytes(ChannelType type) {
   std::array<std::uint16_t, 256> halves{};
   for (int byte = 0; byte < 256; ++byte) {
     const auto code = static_cast<std::uint8_t>(byte);
-    const float linear = type == ChannelType::srgb8 ? srgb8_to_linear(code) : unorm8_to_linear(code);
+    const float linear =
+        type == ChannelType::srgb8 ? srgb8_to_linear(code) : unorm8_to_linear(code);
     halves[code] = float_to_half(linear, HalfRounding::nearest_even);
   }
   return halves;

@@ -15,8 +15,6 @@
 namespace softfocus {
 namespace {
 
-constexpr int kWidestVector = 16;
-
 float finite_colour(float value) {
   const float cut = clamp_to_half(value);
   return cut == cut ? cut : 0.0f;
@@ -24,13 +22,17 @@ float finite_colour(float value) {
 
 }  // namespace
 
+std::ptrdiff_t plane_stride(int width) {
+  const std::ptrdiff_t stride = (width + kWidestVector - 1) / kWidestVector * kWidestVector;
+  // Rows a multiple of 1 KiB apart would meet in a few sets of a cache.
+  return stride % 256 == 0 ? stride + kWidestVector : stride;
+}
+
 Planes make_planes(int count, int width, int height) {
   Planes planes;
   planes.width = width;
   planes.height = height;
-  planes.stride = (width + kWidestVector - 1) / kWidestVector * kWidestVector;
-  // Rows a multiple of 1 KiB apart would meet in a few sets of a cache.
-  if (planes.stride % 256 == 0) planes.stride += kWidestVector;
+  planes.stride = plane_stride(width);
   planes.plane = planes.stride * height;
   planes.values =
       std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(count * planes.plane));

@@ -12,15 +12,21 @@
 
 namespace softfocus {
 
+/// Pixels of the widest vector unit.
+inline constexpr int kWidestVector = 16;
+
 /// Planes of rows of floats. A row ends at a whole vector of the widest unit: methods may
 /// read and write the values between `width` and `stride`, which mean nothing.
 struct Planes {
   int width = 0;
   int height = 0;
-  std::ptrdiff_t stride = 0;  ///< floats from row to row, a multiple of 16
+  std::ptrdiff_t stride = 0;  ///< floats from row to row
   std::ptrdiff_t plane = 0;   ///< floats from plane to plane
   std::unique_ptr<float[]> values;
 };
+
+/// Floats from row to row for rows of `width`: a multiple of kWidestVector.
+std::ptrdiff_t plane_stride(int width);
 
 /// `count` planes, not initialised.
 Planes make_planes(int count, int width, int height);

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "dof/picture_planes.h"
 #include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
@@ -73,11 +74,7 @@ void repeat_ends(const DiscLevel& level, float* row, std::ptrdiff_t stride) {
 
 int padded_width(const DiscLevel& level) { return level.width + 2 * kDiscMargin + kDiscTileWidth; }
 
-std::ptrdiff_t row_stride(const DiscLevel& level) {
-  const std::ptrdiff_t stride = (padded_width(level) + 15) / 16 * 16;
-  // Rows a multiple of 1 KiB apart would meet in a few sets of a cache.
-  return stride % 256 == 0 ? stride + 16 : stride;
-}
+std::ptrdiff_t row_stride(const DiscLevel& level) { return plane_stride(padded_width(level)); }
 
 // Whether a row has anything on a side. Rows below the last repeat it.
 bool row_filled(const DiscLevel& level, int side, int y) {

@@ -47,7 +47,6 @@ constexpr float kCircularCut[] = {1.2f / 1.085f, 1.2f / 1.11f};
 namespace softfocus {
 namespace {
 
-constexpr int kWidestVector = 16;  // pixels
 constexpr int kTaskRows = 8;
 
 struct ComplexGaussian {

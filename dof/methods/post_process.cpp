@@ -41,7 +41,6 @@ namespace {
 
 constexpr int kQuarter = 4;
 constexpr int kNear = 3;           // the plane of the near radius, after the colours
-constexpr int kWidestVector = 16;  // pixels
 constexpr int kTaskRows = 8;
 
 // Variances along an axis, in square pixels: that of a mean of 4x4 pixels, and what

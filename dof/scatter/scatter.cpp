@@ -51,11 +51,11 @@ int slab_count(SlabRule rule) {
 // Red, green, blue and weight.
 using Light = std::array<std::uint64_t, 4>;
 
-// What every pixel spreads, over which disc and in which slab.
+// The light that every pixel spreads, its disc and its slab.
 struct Sources {
   int width, height;
   ScatterDiscs discs;
-  std::vector<float> light;  // a pixel's Light, in units
+  std::vector<float> light;  // of a pixel: four numbers, as in Light
   std::vector<std::uint16_t> disc;
   std::vector<std::uint8_t> slab;
   std::vector<int> reach;              // of a row: rows that its largest disc reaches
@@ -208,7 +208,7 @@ void scatter_lanes(const DofInput& input, const ImageView& result, SlabRule rule
   const int width = sources.width, height = sources.height;
   const int margin = sources.discs.reach + 3;
   const std::ptrdiff_t slab_stride = 4 * (static_cast<std::ptrdiff_t>(width) + 2 * margin);
-  const std::ptrdiff_t padded = (width + 15) / 16 * 16;
+  const std::ptrdiff_t padded = plane_stride(width);
   const auto discs = static_cast<std::size_t>(sources.discs.count);
   ScratchShelf<RowBuffers> shelf;
   pool.for_each((height + kTaskRows - 1) / kTaskRows, [&](int task) {

@@ -1,16 +1,16 @@
 #pragma once
-// Bilinear filtering of bytes and of halves in integers, for the emulation and for use by
-// itself: this header needs nothing but <stdint.h>, and no memory.
+// Bilinear filtering of bytes and of halves in integers. Stands alone: it needs only
+// <stdint.h>, and no memory.
 //
-// A coordinate is in texels, 24.8 fixed point: 256 is a texel's width, and texel i's centre
-// lies at 256 i + 128 (D3D11.3 7.18.8). The weight of the second of two texels has 8 bits,
-// 0 to 255 of 256.
+// Coordinates are in texels, 24.8 fixed point: a texel is 256 wide, and texel i's centre lies
+// at 256 i + 128 (D3D11.3 7.18.8). Weights of the second of two texels have 8 bits, 0 to 255
+// of 256.
 //
-// Bytes have two roundings. lerp_unorm8() rounds to 8 bits after each row and between rows, as
-// llvmpipe does. bilinear_unorm8() keeps products of 8 + 8 + 8 bits and rounds once: with it
-// the result never moves against the weights either (D3D11.3 7.18.16.3). Both stay between the
-// least and the greatest texel, and give four equal texels unchanged. So do halves, whose
-// sums are exact and rounded once, to binary32.
+// Bytes can be rounded in two ways. lerp_unorm8() rounds to 8 bits after each row and between
+// rows, as llvmpipe does. bilinear_unorm8() keeps 8 + 8 + 8 bits and rounds once, so that the
+// result also moves the way the weights do (D3D11.3 7.18.16.3). Sums of halves are exact and
+// rounded once, to binary32. In all three the result lies between the least and the greatest
+// texel, and four equal texels come out unchanged.
 
 #include <stdint.h>
 
@@ -28,15 +28,15 @@ constexpr int bilinear_sum_unorm8(int c00, int c10, int c01, int c11, int weight
   return upper * (256 - weight_v) + lower * weight_v;
 }
 
-/// The same, rounded once to nearest, ties up.
+/// That mean, rounded once to nearest, ties up.
 constexpr int bilinear_unorm8(int c00, int c10, int c01, int c11, int weight_u, int weight_v) {
   return (bilinear_sum_unorm8(c00, c10, c01, c11, weight_u, weight_v) + (1 << 15)) >> 16;
 }
 
-/// Whether a half is neither infinite nor NaN, as all that follow need it.
+/// Whether a half is neither infinite nor NaN. The functions below need finite halves.
 constexpr bool is_finite_half(uint16_t half) { return (half & 0x7C00) != 0x7C00; }
 
-/// A half in 2^-24, exact: at most 2047 2^29 < 2^40 in magnitude. Both zeros are 0.
+/// A half as a count of 2^-24, exact: at most 2047 2^29 < 2^40 in magnitude. Both zeros are 0.
 constexpr int64_t half_to_integer(uint16_t half) {
   const int exponent = half >> 10 & 31;
   const int64_t mantissa = half & 1023;
@@ -70,8 +70,8 @@ constexpr uint32_t round_to_binary32(bool is_negative, uint64_t magnitude) {
 }
 
 /// fine + weight / 256 (coarse - fine) of two sums in 2^-40, weight 0 to 256: the bits of a
-/// binary32, rounded once. With weight 0 it rounds a single sum. In sign and magnitude, for
-/// the sum in 2^-48 has a magnitude of up to 2047 2^53 < 2^64.
+/// binary32, rounded once. With weight 0 it rounds a single sum. Computed in sign and magnitude,
+/// as the magnitude in 2^-48 needs 64 bits: it is up to 2047 2^53.
 constexpr uint32_t mix_sums_half(int64_t fine, int64_t coarse, int weight) {
   const auto magnitude = [](int64_t sum) { return static_cast<uint64_t>(sum < 0 ? -sum : sum); };
   const uint64_t a = magnitude(fine) * static_cast<uint64_t>(256 - weight);
@@ -85,21 +85,21 @@ struct IntegerTaps {
   int first, second, weight;
 };
 
-/// A coordinate less half a texel: from centre to centre.
+/// A coordinate less half a texel, which puts texel i's centre at 256 i.
 constexpr int32_t from_centre(int32_t coordinate_256) {
-  // Wraps round at the least integer, which is what processors give for what no integer holds.
+  // Wraps round at the least integer, which x86 gives for floats that no integer holds.
   return static_cast<int32_t>(static_cast<uint32_t>(coordinate_256) - 128u);
 }
 
-/// Taps of a position from centre to centre, the edge repeated outwards: left of the first
-/// texel's centre both are the first texel. Needs size >= 1.
+/// Taps of a from_centre() position, edges repeated outwards: left of the first texel's centre
+/// both are the first texel. Needs size >= 1.
 constexpr IntegerTaps clamped_taps(int32_t position_256, int size) {
   const int index = position_256 >> 8;
   const int first = index < 0 ? 0 : index < size ? index : size - 1;
   return {first, index >= 0 && index < size - 1 ? index + 1 : first, position_256 & 255};
 }
 
-/// The same, the texture repeated; `size` a power of two.
+/// Taps in a repeating texture; `size` a power of two.
 constexpr IntegerTaps repeated_taps(int32_t position_256, int size) {
   const int index = position_256 >> 8;
   return {index & (size - 1), (index + 1) & (size - 1), position_256 & 255};
@@ -120,8 +120,8 @@ constexpr void fetch_unorm8(const uint8_t* texels, int stride_bytes, int width, 
   }
 }
 
-/// The same of `channels` halves a texel, all of them finite; rows lie `stride` halves apart.
-/// Gives the bits of binary32 numbers.
+/// A bilinear fetch of `channels` halves a texel, all finite, from rows that are `stride` halves
+/// apart. Gives the bits of binary32 numbers.
 constexpr void fetch_half(const uint16_t* texels, int stride, int width, int height, int channels,
                           int32_t u_256, int32_t v_256, uint32_t* result) {
   const IntegerTaps u = clamped_taps(from_centre(u_256), width);

@@ -17,7 +17,7 @@ namespace {
 // Past this, floats have no fraction left and the texel index would not fit.
 constexpr float kLargestCoordinate = 0x1p22f;
 
-// A texel index that may lie outside, brought inside. `size` >= 1.
+// Brings a texel index inside. `size` >= 1.
 int wrap_index(int index, int size, Wrap wrap) {
   if (wrap == Wrap::clamp_to_edge) return std::clamp(index, 0, size - 1);
   if (wrap == Wrap::repeat) {
@@ -36,7 +36,7 @@ float to_texels(float coordinate, int size) {
   return std::clamp(coordinate * static_cast<float>(size), -kLargestCoordinate, kLargestCoordinate);
 }
 
-// The nearest multiple of 1/256 in 256ths; below 2^31, as what to_texels() gives is below 2^22.
+// In 256ths, rounded to nearest. to_texels() keeps it below 2^31.
 std::int32_t to_256ths(float value) {
   return static_cast<std::int32_t>(std::nearbyint(value * 256.0f));
 }

@@ -1,7 +1,6 @@
 #pragma once
 // The fixed-function state of a draw call, in OpenGL's terms and with its defaults.
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -19,7 +18,7 @@ enum class Compare : std::uint8_t {
   always,
 };
 
-/// False for every comparison with NaN but not_equal and always.
+/// With NaN, only not_equal and always are true.
 template <class Value>
 constexpr bool compare(Compare function, Value incoming, Value stored) {
   switch (function) {
@@ -53,8 +52,11 @@ struct Rectangle {
 
 /// The pixels of both; none if an end is not above its begin.
 constexpr Rectangle intersection(const Rectangle& a, const Rectangle& b) {
-  return {std::max(a.x_begin, b.x_begin), std::max(a.y_begin, b.y_begin),
-          std::min(a.x_end, b.x_end), std::min(a.y_end, b.y_end)};
+  // Not std::max: <algorithm> doubles what there is to parse here.
+  const auto later = [](int x, int y) { return x > y ? x : y; };
+  const auto earlier = [](int x, int y) { return x < y ? x : y; };
+  return {later(a.x_begin, b.x_begin), later(a.y_begin, b.y_begin), earlier(a.x_end, b.x_end),
+          earlier(a.y_end, b.y_end)};
 }
 
 /// Pixels x_begin <= x < x_end of a row; none if x_begin >= x_end.

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -82,14 +83,16 @@ struct ThreadPool::State {
   }
 };
 
-ThreadPool::ThreadPool(int threads, Isa isa) : state_(std::make_unique<State>()), isa_(isa) {
+ThreadPool::ThreadPool(int threads, Isa isa) : isa_(isa) {
+  auto state = std::make_unique<State>();
   try {
     for (int i = 1; i < threads; ++i) {
-      state_->workers.emplace_back([state = state_.get()] { state->work(); });
+      state->workers.emplace_back([shared = state.get()] { shared->work(); });
     }
   } catch (const std::system_error&) {
     // The system gives no more threads: the pool works with those it has.
   }
+  state_ = state.release();
 }
 
 ThreadPool::~ThreadPool() {
@@ -99,6 +102,7 @@ ThreadPool::~ThreadPool() {
   }
   state_->work_ready.notify_all();
   for (std::thread& worker : state_->workers) worker.join();
+  delete state_;
 }
 
 int ThreadPool::threads() const { return static_cast<int>(state_->workers.size()) + 1; }

@@ -3,8 +3,6 @@
 // order on any thread. The pool carries the vector unit that kernels use. Results must
 // depend on neither.
 
-#include <memory>
-
 #include "raster/lanes/isa.h"
 
 namespace softfocus {
@@ -42,7 +40,7 @@ class ThreadPool {
 
   void run(int count, Iteration iteration);
 
-  std::unique_ptr<State> state_;
+  State* state_;  // owned; <memory> is more to parse than all of this header
   Isa isa_;
 };
 

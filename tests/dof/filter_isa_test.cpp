@@ -194,7 +194,8 @@ TEST_CASE("the filters' kernels give the oracles' bits where part of a picture i
   }
 }
 
-TEST_CASE("the filters' kernels give the same bits for any number of threads") {
+TEST_CASE("the filters' kernels give the same bits for any number of threads" *
+          doctest::test_suite("threads")) {
   const Image scene = random_scene_image(203, 141, 12);
   for (const FilterPair& filter : kFilters) {
     for (const Isa isa : available_isas()) {

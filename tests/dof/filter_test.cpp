@@ -171,7 +171,8 @@ TEST_CASE("the filters equal their oracles to the bit") {
   }
 }
 
-TEST_CASE("the filters give the same bits for any number of threads") {
+TEST_CASE("the filters give the same bits for any number of threads" *
+          doctest::test_suite("threads")) {
   const Image scene = random_scene_image(203, 101, 4);
   for (const Filter filter : {two_pass, one_pass}) {
     ThreadPool one(1);

@@ -237,7 +237,8 @@ TEST_CASE("every method gives a mirrored picture's result mirrored") {
   }
 }
 
-TEST_CASE("every method gives the same bits for any number of threads") {
+TEST_CASE("every method gives the same bits for any number of threads" *
+          doctest::test_suite("threads")) {
   const Image scene = random_scene_image(203, 101, 6);
   for (const Claims& claims : kClaims) {
     ThreadPool one(1);

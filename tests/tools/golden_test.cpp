@@ -42,7 +42,8 @@ TEST_CASE("every golden hash is the table's") {
   CHECK(describe_failures(check_hashes(expected_hashes(), computed)) == "");
 }
 
-TEST_CASE("a frame's golden hash does not depend on the number of threads") {
+TEST_CASE("a frame's golden hash does not depend on the number of threads" *
+          doctest::test_suite("threads")) {
   const std::vector<NamedHash> expected = frames("ieee", 1);
   for (const int threads : {2, 3, 8}) {
     CHECK(describe_failures(check_hashes(expected, frames("ieee", threads))) == "");

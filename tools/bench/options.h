@@ -13,7 +13,7 @@
 #include "tools/cli/parser.h"
 #include "tools/gl/driver.h"
 #include "tools/options/lens_options.h"
-#include "tools/options/pool_options.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 

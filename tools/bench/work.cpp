@@ -3,9 +3,8 @@
 #include "scenes/load/load_scene.h"
 #include "scenes/make/sphere_field.h"
 #include "tools/bench/picture.h"
-#include "tools/options/arithmetic_option.h"
 #include "tools/options/method_options.h"
-#include "tools/options/scene_warnings.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {

@@ -7,7 +7,7 @@
 #include "tools/chart/settings.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/errors.h"
-#include "tools/options/memory_check.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {

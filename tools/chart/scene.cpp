@@ -8,7 +8,7 @@
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
 #include "tools/options/lens_options.h"
-#include "tools/options/scene_warnings.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {

@@ -14,8 +14,7 @@
 #include "tools/crosscheck/run_cases.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
-#include "tools/options/driver_option.h"
-#include "tools/options/profile_option.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {

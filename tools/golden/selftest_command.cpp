@@ -9,7 +9,7 @@
 #include "tools/files/json.h"
 #include "tools/golden/hash_text.h"
 #include "tools/golden/hashes.h"
-#include "tools/options/pool_options.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {

@@ -14,9 +14,8 @@
 #include "tools/cli/progress.h"
 #include "tools/files/whole_file.h"
 #include "tools/gl/frame_on_gl.h"
-#include "tools/options/arithmetic_option.h"
 #include "tools/options/method_options.h"
-#include "tools/options/scene_warnings.h"
+#include "tools/options/run_options.h"
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 

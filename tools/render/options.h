@@ -16,7 +16,7 @@
 #include "tools/gl/driver.h"
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
-#include "tools/options/pool_options.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 

@@ -95,7 +95,8 @@ Target make_target(bool with_depth) {
 }
 
 bool open_gl() {
-  const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+  const EGLDisplay display =
+      eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   if (!eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) return false;
   const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
   return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
@@ -123,7 +124,7 @@ int main(int argc, char** argv) {
 #ifdef WITH_DEPTH_OF_FIELD
   const GLuint filter = link_program(std::string(softfocus::shader_text("fullscreen.vert")),
                                      std::string(softfocus::shader_text("two_pass.frag")));
-  const softfocus::PixelCoc coc = softfocus::pixel_coc({85.0, 1.4, 4.0}, 30.0, kHeight, 1.0);
+  const softfocus::PixelCoc coc = softfocus::pixel_coc({85.0, 1.4, 4.0}, 30.0, kHeight, 2.0);
   glUseProgram(filter);
   glUniform1f(glGetUniformLocation(filter, "radius_at_infinity_px"), coc.radius_at_infinity_px);
   glUniform1f(glGetUniformLocation(filter, "focus_m"), coc.focus_m);

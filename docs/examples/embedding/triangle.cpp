@@ -14,8 +14,7 @@ struct Corners {
 };
 
 struct Light {
-  static constexpr std::array kInterpolation{Interpolation::perspective,
-                                             Interpolation::perspective,
+  static constexpr std::array kInterpolation{Interpolation::perspective, Interpolation::perspective,
                                              Interpolation::perspective};
   static constexpr bool kNeedsDerivatives = false;
   static constexpr bool kDiscards = false;
@@ -27,7 +26,8 @@ struct Light {
 
 int main() {
   Image picture = make_image(Format::rgba16f, 256, 256);
-  RenderPass pass{.targets = {.colour = {&picture}}, .profile = {}, .clear_colour = glm::vec4{0.0f}};
+  RenderPass pass{
+      .targets = {.colour = {&picture}}, .profile = {}, .clear_colour = glm::vec4{0.0f}};
   DrawState state;
   state.cull = Cull::none;
   state.depth.reset();

@@ -1,5 +1,5 @@
-// Varyings at the pixels of kQuads quads, each of a triangle of its own: interpolate.h and
-// planes.h, lane by lane.
+// Varyings at the pixels of kQuads quads. Each quad shows a triangle of its own. The scalar form
+// is interpolate.h and planes.h.
 
 namespace {
 
@@ -118,7 +118,7 @@ struct BarycentricLanes {
     return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
   }
 
-  // Edge functions that 32 bits do not hold, and with them those of the other quads.
+  // Edge functions of all quads, if 32 bits do not hold those of one.
   struct WideEdge {
     WideLanes at_origin, per_x, per_y;
   };
@@ -194,17 +194,17 @@ struct BarycentricLanes {
   }
 };
 
-/// The window position of a pixel and 1 / (1 / w) there.
+/// A pixel, and w there as 1 / (1 / w).
 struct PlanePoint {
   Floats x, y, w;
 };
 
-/// As Plane.
+/// Plane in lanes.
 struct PlaneOfLanes {
   Floats at_origin, per_x, per_y;
 };
 
-/// As PlaneInterpolator with PlanesFromOrigin, for varyings of these kinds.
+/// PlaneInterpolator with PlanesFromOrigin in lanes, for varyings of these kinds.
 template <const auto& kinds, Contraction contraction>
 struct PlaneLanes {
   using Point = PlanePoint;

@@ -1,7 +1,7 @@
-// The fragment stage over what is seen of a draw in a tile.
+// The fragment stage, over the pixels of a tile that show a draw.
 //
-// A fragment stage in lanes works in two steps, the first on the quads of a triangle, the
-// second on the pixels that are seen:
+// A fragment stage in lanes has two steps, the first on quads, the second on the pixels that are
+// seen:
 //     static constexpr auto kInterpolation   // as the scalar stage's
 //     static constexpr std::size_t kInputs   // numbers that go from step to step
 //     template <class Put> void inputs(const QuadFragments&, const Put& put) const
@@ -95,13 +95,13 @@ struct FragmentBatch {
   }
 };
 
-// A quad that shows a triangle of a run: the triangle's id less the run's first, above the
-// quad's number, above a bit for each pixel that shows it.
+// A quad that shows a triangle of a run, in 32 bits. From the top: the triangle's id less the
+// run's first; the quad's number; a bit for each pixel that shows the triangle.
 inline constexpr int kQuadBits = 10;
 static_assert(kTilePixels / kQuadPixels == 1 << kQuadBits);
 static_assert(kMostVisible >> (32 - kQuadBits - kQuadPixels) == 0);
 
-// Vertices are asked for so many vectors before they are read: a few hundred cycles.
+// Vertices are prefetched this many vectors ahead: a few hundred cycles.
 inline constexpr int kQuadsAhead = 3;
 
 struct SeenQuads {
@@ -113,7 +113,7 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   return entry >> (kQuadBits + kQuadPixels);
 }
 
-// Of kQuads entries, each in the lanes of its quad.
+// The triangles of kQuads entries, each in the lanes of its quad.
 SOFTFOCUS_INLINE Ints triangles_of(const std::uint32_t* entries) {
   return as_ints(as_bits(repeat_by_four(as_ints(load(entries)))) >> (kQuadBits + kQuadPixels));
 }
@@ -124,7 +124,7 @@ SOFTFOCUS_INLINE std::uint32_t quad_entry(const VisibleRun& run, std::int32_t id
   return (triangle << kQuadBits | static_cast<unsigned>(quad)) << kQuadPixels | pixels;
 }
 
-// Of the lanes that begin with a quad. Returns how many quads are listed then.
+// Lists the quads of the vector that begins with `quad`. Returns the new count.
 SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& run, int quad,
                                 Mask in_area, std::uint32_t* entries, int count) {
   const std::int32_t* first_id = &tile.ids[static_cast<std::size_t>(quad * kQuadPixels)];
@@ -136,7 +136,7 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
           quad_entry(run, ids[0], quad, 0xFu) + as_bits(lane_numbers() << kQuadPixels));
     return count + kQuads;
   }
-  // The triangle that each quad's first pixel shows, and then the others.
+  // First the triangle that each quad's first pixel shows, then the others.
   const unsigned as_first = lane_bits(ids == spread<0>(ids)) & seen;
   for (int i = 0; i < kQuads; ++i) {
     const unsigned pixels = as_first >> (i * kQuadPixels) & 0xFu;
@@ -183,7 +183,7 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
     }
   }
   seen.count = count;
-  // Quads of which nothing is seen fill up the last vector and those that are fetched ahead.
+  // Quads without a pixel fill up the last vector and those that are prefetched.
   if (seen.count == 0) return;
   const auto end = static_cast<std::size_t>(seen.count);
   for (std::size_t i = 0; i < (kQuadsAhead + 1) * kQuads; ++i) {
@@ -191,7 +191,7 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
   }
 }
 
-// Asks for the vertices of quads to come, which were written long ago.
+// Prefetches the vertices of quads to come, which were written long ago.
 SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
                                      const std::uint32_t* entries) {
   for (int quad = 0; quad < kQuads; ++quad) {
@@ -213,7 +213,7 @@ SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
           float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
 }
 
-// The second step. Its own function, which all interpolators share.
+// The second step. Not inlined: all interpolators share it.
 template <class Stage>
 [[gnu::noinline]] void shade_batch(const Stage& stage, const FragmentJob& job,
                                    const VisibilityTile& tile,
@@ -295,7 +295,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     batch.append(stage, fragments,
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
                  (entry & own_pixel) != 0);
-    // The rows of the picture that the second step writes; those of a tile alone are at hand.
+    // The second step writes there. A tile apart from the picture is in the cache anyway.
     for (int lane = 0; in_picture && lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
       __builtin_prefetch(first + offsets[lane], 1);
     }

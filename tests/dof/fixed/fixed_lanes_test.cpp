@@ -196,7 +196,8 @@ TEST_CASE("fixed point: pictures that are written past the caches are whole") {
   }
 }
 
-TEST_CASE("fixed point: the bits do not depend on the number of threads") {
+TEST_CASE("fixed point: the bits do not depend on the number of threads" *
+          doctest::test_suite("threads")) {
   Random random{9};
   const Lens lens{200u << 16, 1000000, 64u << 16, 65536};
   const auto table = table8(lens, 300000, 5000000);

@@ -10,7 +10,8 @@
 using namespace softfocus;
 using test::profile_named;
 
-TEST_CASE("a pass calls its kernel once a pixel, for any number of threads and rows") {
+TEST_CASE("a pass calls its kernel once a pixel, for any number of threads and rows" *
+          doctest::test_suite("threads")) {
   for (const int threads : {1, 2, 3, 8}) {
     ThreadPool pool{threads};
     for (const int height : {1, 7, 8, 9, 33}) {
@@ -65,7 +66,8 @@ TEST_CASE("a pass leaves the padding at zero") {
   CHECK(dirty == 0);
 }
 
-TEST_CASE("a pass gives the same image for 1, 2, 3 and 8 threads") {
+TEST_CASE("a pass gives the same image for 1, 2, 3 and 8 threads" *
+          doctest::test_suite("threads")) {
   Image first = make_image(Format::rgba16f, 61, 67);
   for (const int threads : {1, 2, 3, 8}) {
     ThreadPool pool{threads};

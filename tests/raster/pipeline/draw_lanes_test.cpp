@@ -274,7 +274,7 @@ TEST_CASE("lanes: pictures of every width to 70 pixels") {
   }
 }
 
-TEST_CASE("lanes: threads change nothing") {
+TEST_CASE("lanes: threads change nothing" * doctest::test_suite("threads")) {
   test::Random random{508};
   const Target target{300, 200};
   const Vertices vertices = random_triangles(random, target, 5000, 15.0);

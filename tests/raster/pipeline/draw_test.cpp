@@ -134,7 +134,8 @@ struct BusyScene {
 }  // namespace
 
 TEST_CASE(
-    "blended triangles merge in the order of submission, across chunks, draws, tiles and threads") {
+    "blended triangles merge in the order of submission, across chunks, draws, tiles and threads" *
+    doctest::test_suite("threads")) {
   // Two draws of 3,000 translucent triangles, each over four tiles at least, against the
   // same sums taken one by one.
   test::Random random{91};
@@ -180,7 +181,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a busy scene gives the same image for 1, 2, 3 and 8 threads, in every profile") {
+TEST_CASE("a busy scene gives the same image for 1, 2, 3 and 8 threads, in every profile" *
+          doctest::test_suite("threads")) {
   const BusyScene scene{92};
   for (const NamedProfile& known : profiles()) {
     const Profile& profile = known.profile;
@@ -191,7 +193,8 @@ TEST_CASE("a busy scene gives the same image for 1, 2, 3 and 8 threads, in every
   }
 }
 
-TEST_CASE("a busy scene gives the same bits in every build, with 3 threads") {
+TEST_CASE("a busy scene gives the same bits in every build, with 3 threads" *
+          doctest::test_suite("threads")) {
   struct Golden {
     std::string_view profile;
     Format format;
@@ -209,7 +212,8 @@ TEST_CASE("a busy scene gives the same bits in every build, with 3 threads") {
   }
 }
 
-TEST_CASE("one pass may be used for one frame after another, on the same threads") {
+TEST_CASE("one pass may be used for one frame after another, on the same threads" *
+          doctest::test_suite("threads")) {
   const std::vector<VertexOutput<0>> vertices = test::covering_quad(70, 70);
   const auto indices = test::indices_up_to(vertices.size());
   Image target = make_image(Format::r32f, 70, 70);
@@ -234,7 +238,8 @@ TEST_CASE("a pass without draws, and a draw without triangles, leave the targets
   CHECK(all_zero(target));
 }
 
-TEST_CASE("the vertex stage runs once a vertex, however often indices name it, on any thread") {
+TEST_CASE("the vertex stage runs once a vertex, however often indices name it, on any thread" *
+          doctest::test_suite("threads")) {
   std::vector<VertexOutput<0>> vertices(5'000, VertexOutput<0>{{0.0f, 0.0f, 0.0f, 1.0f}, {}});
   std::vector<std::atomic<int>> calls(vertices.size());
   const std::vector<std::uint32_t> indices(300, 7u);
@@ -247,7 +252,8 @@ TEST_CASE("the vertex stage runs once a vertex, however often indices name it, o
   CHECK(std::all_of(calls.begin(), calls.end(), [](const auto& count) { return count == 1; }));
 }
 
-TEST_CASE("the fragment stage runs once for each pixel that passes the early test, on any thread") {
+TEST_CASE("the fragment stage runs once for each pixel that passes the early test, on any thread" *
+          doctest::test_suite("threads")) {
   Image target = make_image(Format::r8, 100, 100);
   Image depth = make_image(Format::r32f, 100, 100);
   for (int y = 0; y < 100; ++y) {
@@ -409,7 +415,8 @@ TEST_CASE("positions at random over the whole range of floats draw without harm"
   }
 }
 
-TEST_CASE("an exception in a fragment stage on any thread reaches the caller of finish") {
+TEST_CASE("an exception in a fragment stage on any thread reaches the caller of finish" *
+          doctest::test_suite("threads")) {
   struct Thrower {
     int unused = 0;
   };

@@ -9,7 +9,8 @@
 
 using namespace softfocus;
 
-TEST_CASE("a thread pool runs every iteration once, for any number of threads and iterations") {
+TEST_CASE("a thread pool runs every iteration once, for any number of threads and iterations" *
+          doctest::test_suite("threads")) {
   for (const int threads : {1, 2, 3, 8}) {
     ThreadPool pool{threads};
     CHECK(pool.threads() == threads);
@@ -23,7 +24,7 @@ TEST_CASE("a thread pool runs every iteration once, for any number of threads an
   }
 }
 
-TEST_CASE("a thread pool runs nothing for a count of 0 or less") {
+TEST_CASE("a thread pool runs nothing for a count of 0 or less" * doctest::test_suite("threads")) {
   for (const int threads : {1, 4}) {
     ThreadPool pool{threads};
     for (const int count : {0, -1, -1000}) {
@@ -32,7 +33,8 @@ TEST_CASE("a thread pool runs nothing for a count of 0 or less") {
   }
 }
 
-TEST_CASE("a thread pool can be used again and again, and what it wrote can be read") {
+TEST_CASE("a thread pool can be used again and again, and what it wrote can be read" *
+          doctest::test_suite("threads")) {
   ThreadPool pool{3};
   std::vector<int> values(50);  // plain ints: the end of a loop orders their writes
   for (int round = 0; round < 2'000; ++round) {
@@ -43,7 +45,8 @@ TEST_CASE("a thread pool can be used again and again, and what it wrote can be r
   CHECK(wrong == 0);
 }
 
-TEST_CASE("a thread pool rethrows a body's exception where the loop was called") {
+TEST_CASE("a thread pool rethrows a body's exception where the loop was called" *
+          doctest::test_suite("threads")) {
   for (const int threads : {1, 2, 8}) {
     ThreadPool pool{threads};
     CHECK_THROWS_WITH_AS(pool.for_each(100,
@@ -54,7 +57,7 @@ TEST_CASE("a thread pool rethrows a body's exception where the loop was called")
   }
 }
 
-TEST_CASE("of many exceptions a thread pool rethrows one") {
+TEST_CASE("of many exceptions a thread pool rethrows one" * doctest::test_suite("threads")) {
   ThreadPool pool{4};
   for (int round = 0; round < 100; ++round) {
     CHECK_THROWS_AS(pool.for_each(100, [](int) { throw std::runtime_error("each"); }),
@@ -62,7 +65,8 @@ TEST_CASE("of many exceptions a thread pool rethrows one") {
   }
 }
 
-TEST_CASE("after an exception a thread pool leaves out what has not begun") {
+TEST_CASE("after an exception a thread pool leaves out what has not begun" *
+          doctest::test_suite("threads")) {
   ThreadPool pool{2};
   std::atomic<int> runs{0};
   CHECK_THROWS(pool.for_each(1'000'000, [&](int) {
@@ -72,7 +76,7 @@ TEST_CASE("after an exception a thread pool leaves out what has not begun") {
   CHECK(runs <= 2);
 }
 
-TEST_CASE("after an exception a thread pool works as before") {
+TEST_CASE("after an exception a thread pool works as before" * doctest::test_suite("threads")) {
   ThreadPool pool{4};
   CHECK_THROWS(pool.for_each(100, [](int) { throw 1; }));
   std::atomic<int> runs{0};
@@ -80,7 +84,8 @@ TEST_CASE("after an exception a thread pool works as before") {
   CHECK(runs == 1'000);
 }
 
-TEST_CASE("a thread pool of n runs iterations on n threads when they wait for each other") {
+TEST_CASE("a thread pool of n runs iterations on n threads when they wait for each other" *
+          doctest::test_suite("threads")) {
   ThreadPool pool{4};
   std::atomic<int> arrived{0};
   pool.for_each(4, [&](int) {
@@ -90,7 +95,8 @@ TEST_CASE("a thread pool of n runs iterations on n threads when they wait for ea
   CHECK(arrived == 4);
 }
 
-TEST_CASE("a thread pool of one thread runs everything on the caller's") {
+TEST_CASE("a thread pool of one thread runs everything on the caller's" *
+          doctest::test_suite("threads")) {
   ThreadPool pool{1};
   const auto caller = std::this_thread::get_id();
   bool elsewhere = false;
@@ -98,7 +104,8 @@ TEST_CASE("a thread pool of one thread runs everything on the caller's") {
   CHECK_FALSE(elsewhere);
 }
 
-TEST_CASE("a thread pool that was never used, or used once, ends cleanly") {
+TEST_CASE("a thread pool that was never used, or used once, ends cleanly" *
+          doctest::test_suite("threads")) {
   for (int i = 0; i < 200; ++i) {
     ThreadPool idle{4};
     ThreadPool once{3};
@@ -107,4 +114,6 @@ TEST_CASE("a thread pool that was never used, or used once, ends cleanly") {
   CHECK(true);
 }
 
-TEST_CASE("the machine has at least one thread") { CHECK(hardware_threads() >= 1); }
+TEST_CASE("the machine has at least one thread" * doctest::test_suite("threads")) {
+  CHECK(hardware_threads() >= 1);
+}

@@ -46,7 +46,8 @@ TEST_CASE("accumulation: what lies in the plane of focus is as sharp as the pinh
   CHECK(equal(drawn.sampled.picture, drawn.pinhole));
 }
 
-TEST_CASE("accumulation: the same bits for any number of threads and on every vector unit") {
+TEST_CASE("accumulation: the same bits for any number of threads and on every vector unit" *
+          doctest::test_suite("threads")) {
   const Scene scene = built_in("figures");
   const Sampling sampling{.samples = 50, .jitter = true, .until = 1e-6, .aperture = {7}};
   ThreadPool one{1};

@@ -184,7 +184,7 @@ TEST_CASE("crosscheck: a driver that is not there is told in one line, and the o
   const ProgramRun run = run_program({"crosscheck", "--driver", "gpu", "--profile", "llvmpipe",
                                       "--driver", "llvmpipe", "--case", "store/rgba8-random"});
   if (run.err.empty()) {
-    MESSAGE("a GPU is here: nothing was missing");
+    skip("", "a GPU is here: nothing was missing");
     return;
   }
   CHECK(run.status == 2);
