@@ -208,7 +208,7 @@ struct PlaneOfLanes {
 template <const auto& kinds, Contraction contraction>
 struct PlaneLanes {
   using Point = PlanePoint;
-  PlaneOfLanes inverse_w{};
+  PlaneOfLanes inverse_w;
   std::array<PlaneOfLanes, (kinds.size() + 3) / 4> fours;  // a flat varying's value is at_origin
 
   SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking,

@@ -264,7 +264,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   const std::size_t varyings = interpolated_count(stage);
   FragmentBatch<Stage::kInputs> batch;
   batch.input_count = input_count(stage);
-  Interpolator interpolator;
+  Interpolator interpolator{};
   QuadTriangles of_quads{};
   Ints loaded = splat(-1);
   for (int i = 0; i < seen.count; i += kQuads) {
