@@ -129,7 +129,7 @@ TEST_CASE("every method filters pictures in a caller's memory, and touches no by
         INFO(std::string{method.name}, " on ", std::string{isa_name(isa)});
         check_views(scene_image(size.width, size.height),
                     [&](const ConstImageView& from, const ImageView& to) {
-                      method.apply({from, kSettings, {}}, to, pool);
+                      apply(method, {from, kSettings, {}}, to, pool);
                     });
       }
     }
