@@ -1,23 +1,26 @@
 #pragma once
 // Depth of field on a picture with depth: what a program that embeds it includes.
+// docs/embedding.md has an example.
 //
-//   ThreadPool pool(hardware_threads());
-//   const ThinLens lens{.focal_length_mm = 85, .f_number = 2, .focus_m = 1.2};
-//   DofSettings settings;
-//   settings.coc = pixel_coc(lens, 30.0, scene.height, 1.0);
-//   find_method("two-pass")->apply({scene, settings, Profile{}}, result, pool);
-//
-// The bits of a result depend on the input alone, not on threads, vector unit or memory.
+// The bits of a result depend on the input alone: not on threads, vector unit, compiler,
+// or the flags and the floating-point mode of the program around it.
 
+#include <cstdint>
 #include <span>
 #include <string_view>
 
 #include "dof/lens.h"
-#include "raster/images/image.h"
+#include "dof/pack.h"
+#include "dof/shaders.h"
+#include "raster/images/image_view.h"
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
+
+struct Image;
+
+inline constexpr float kLargestMaxCoc = 1024.0f;
 
 /// What every method is told about the lens and the filter.
 struct DofSettings {
@@ -30,36 +33,38 @@ struct DofSettings {
   float leak = 1.0f;
 };
 
-inline constexpr float kLargestMaxCoc = 1024.0f;
-
 /// A picture and how to blur it.
 struct DofInput {
-  /// RGBA16F, 1 to kMaxImageSize pixels wide and high. Red, green and blue: linear colour, of
-  /// any value. Alpha: the depth in metres along the axis; infinity and NaN count as far away.
+  /// RGBA16F: linear colour, and in alpha the depth in metres along the axis. pack() makes
+  /// such a picture of other formats.
   ConstImageView scene;
   DofSettings settings;
   Profile profile;  ///< the rounding of the result's halves
 };
 
-/// A depth-of-field method. Each is one entry of the table in method.cpp.
+/// A depth-of-field method: an entry of the table in method.cpp.
 struct Method {
   std::string_view name;
   std::string_view summary;
   /// The inputs that the method reads, for the list of methods.
   std::string_view needs;
-  /// Writes every pixel of `result`: colour, and the scene's depth in alpha. Needs a result of
-  /// the scene's size and format that shares no memory with it. Reports no errors; throws
-  /// std::bad_alloc if there is no memory for what it needs in between.
-  void (*apply)(const DofInput& input, const ImageView& result, ThreadPool& pool);
+  void (*filter)(const DofInput& input, const ImageView& result, ThreadPool& pool);
 };
 
-/// Applies a method and returns its result as a new image.
-Image apply(const Method& method, const DofInput& input, ThreadPool& pool);
-
-/// All methods, in the order of the table.
 std::span<const Method> methods();
 
 /// The method of that name, or nullptr.
 const Method* find_method(std::string_view name);
+
+/// What is wrong with an input and a place for its result, as a sentence, or nullptr.
+const char* input_error(const DofInput& input, const ConstImageView& result);
+
+/// Writes every pixel of `result`, depth in alpha. It has the scene's size and format and
+/// shares no memory with it. Needs an input without input_error(). Throws std::bad_alloc
+/// if there is no memory for what the method keeps meanwhile.
+void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool);
+
+/// The same into a new image (raster/images/image.h).
+Image apply(const Method& method, const DofInput& input, ThreadPool& pool);
 
 }  // namespace softfocus

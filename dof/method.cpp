@@ -1,6 +1,10 @@
 #include "dof/dof.h"
 
 #include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
 
 #include "dof/disc_layers/disc_layers.h"
 #include "dof/methods/circular_separable.h"
@@ -11,6 +15,7 @@
 #include "dof/one_pass/one_pass.h"
 #include "dof/scatter/scatter.h"
 #include "dof/two_pass/two_pass.h"
+#include "raster/images/image.h"
 
 namespace softfocus {
 namespace {
@@ -46,12 +51,6 @@ constexpr std::array kMethods{
 
 }  // namespace
 
-Image apply(const Method& method, const DofInput& input, ThreadPool& pool) {
-  Image result = make_image(input.scene.format, input.scene.width, input.scene.height);
-  method.apply(input, result, pool);
-  return result;
-}
-
 std::span<const Method> methods() { return kMethods; }
 
 const Method* find_method(std::string_view name) {
@@ -59,6 +58,47 @@ const Method* find_method(std::string_view name) {
     if (method.name == name) return &method;
   }
   return nullptr;
+}
+
+const char* input_error(const DofInput& input, const ConstImageView& result) {
+  const ConstImageView& scene = input.scene;
+  const DofSettings& settings = input.settings;
+  if (scene.format != Format::rgba16f) return "the scene is not RGBA16F";
+  if (scene.width < 1 || scene.width > kMaxImageSize || scene.height < 1 ||
+      scene.height > kMaxImageSize) {
+    return "the scene's width and height are not from 1 to 16384";
+  }
+  if (scene.texels == nullptr || result.texels == nullptr) return "there is no memory";
+  if (result.format != scene.format || result.width != scene.width ||
+      result.height != scene.height) {
+    return "the result has not the scene's size and format";
+  }
+  const auto row_bytes = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(scene.width) *
+                                                     bytes_per_texel(scene.format));
+  if (std::abs(scene.stride_bytes) < row_bytes || std::abs(result.stride_bytes) < row_bytes) {
+    return "a stride is shorter than a row";
+  }
+  if (!(settings.max_coc_px >= 0.0f && settings.max_coc_px <= kLargestMaxCoc)) {
+    return "max_coc_px is not from 0 to 1024";
+  }
+  if (!(settings.leak >= 0.0f && settings.leak <= std::numeric_limits<float>::max())) {
+    return "leak is not 0 or more";
+  }
+  if (!std::isfinite(settings.coc.radius_at_infinity_px) || !(settings.coc.focus_m > 0.0f)) {
+    return "the circle of confusion has no finite radius or no focus above 0";
+  }
+  return nullptr;
+}
+
+void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  assert(input_error(input, result) == nullptr);
+  method.filter(input, result, pool);
+}
+
+Image apply(const Method& method, const DofInput& input, ThreadPool& pool) {
+  Image result = make_image(input.scene.format, input.scene.width, input.scene.height);
+  apply(method, input, result, pool);
+  return result;
 }
 
 }  // namespace softfocus

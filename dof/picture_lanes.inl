@@ -1,6 +1,5 @@
 // What the kernels of several methods share.
 
-#include "dof/repeating_texels.inl"
 #include "dof/weights.inl"
 
 SOFTFOCUS_INLINE Floats saturate(Floats v) { return larger(smaller(v, splat(1.0f)), splat(0.0f)); }

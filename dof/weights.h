@@ -1,8 +1,8 @@
 #pragma once
-// The weights that the two-pass and the one-pass filter share: equations 10 to 14 of
-// the thesis, after Zhou, Chen and Pullen 2007. A pixel C gathers from its neighbours
-// P; d is their distance in pixels, r the radius of a circle of confusion, z depth,
-// z_f the focus distance:
+// The weights that the two-pass and the one-pass filter share: equations 10 to 14 of the
+// thesis, after Zhou, Chen and Pullen 2007. weights.inl has them in lanes, weights.glsl for
+// drivers. A pixel C gathers from its neighbours P; d is their distance in pixels, r the
+// radius of a circle of confusion, z depth, z_f the focus distance:
 //
 //   overlap    O(P) = clamp(r_P - d, 0, 1)         does P's circle reach C?      (10)
 //   intensity  I(P) = 1 / max(r_P, 1)^2            light spread over the circle  (11)
@@ -10,27 +10,26 @@
 //   W(C) = I(C)        W(P) = (O(P) * I(P)) * L(P)                         (13), (14)
 //   result = sum(W * colour) / sum(W)
 //
-// What the source leaves open, and what is done here:
-// - (11) is only proportional to 1/r^2. A circle of radius 1 still weighs 1: O spreads
-//   nothing of a circle below that radius, so its light stays in one pixel.
-// - The largest radius cuts r, not O: a circle that would be larger keeps its soft
-//   edge, O falls from 1 to 0 between max_coc - 1 and max_coc, and no tap lies at
-//   or past max_coc.
-// - The leak factor counts per pixel of the receiver's radius. 1, the default, lets a
-//   background in fully once the receiver is a pixel soft; of all factors tried it is
-//   the nearest to the lens (docs/depth-of-field.md has the figures).
-// - A neighbour whose weight is 0 is left out, not added as 0 * colour: an infinite or
-//   NaN pixel then harms what its own circle covers and nothing else.
+// The source leaves four things open. Here:
+// - (11) is only proportional to 1/r^2. A circle of radius 1 still weighs 1, since O keeps
+//   the light of smaller circles in one pixel.
+// - max_coc cuts r, not O. A larger circle keeps its soft edge: O falls from 1 to 0 between
+//   max_coc - 1 and max_coc, and taps at max_coc or past it weigh 0.
+// - The leak factor counts per pixel of the receiver's radius. At 1, the default, a receiver
+//   that is a pixel soft takes all of a background; no other factor tried comes nearer to the
+//   lens (docs/depth-of-field.md has the figures).
+// - A neighbour of weight 0 is left out, not added as 0 * colour: an infinite or NaN pixel
+//   then harms only what its own circle covers.
 
 #include <cmath>
 #include <glm/vec3.hpp>
 
-#include "dof/lens.h"
 #include "dof/dof.h"
+#include "dof/lens.h"
 
 namespace softfocus {
 
-/// What a neighbour brings along, computed once a pixel.
+/// What a neighbour contributes, computed once a pixel.
 struct FilterTexel {
   glm::vec3 colour;
   float radius_px;    ///< 0 to max_coc_px
@@ -38,8 +37,8 @@ struct FilterTexel {
   bool beyond_focus;  ///< z_P > z_f
 };
 
-/// The radius that the filters use: |r|, cut to the largest. A NaN depth counts as
-/// blurred to the largest.
+/// The radius that the filters use: |r|, cut to the largest. A NaN depth is blurred to the
+/// largest.
 inline float filter_radius(const DofSettings& settings, float depth_m) {
   const float radius = std::fabs(coc_radius_px(settings.coc, depth_m));
   return radius < settings.max_coc_px ? radius : settings.max_coc_px;
@@ -55,13 +54,13 @@ inline float overlap(float radius_px, float distance_px) {
   return reach > 0.0f ? (reach < 1.0f ? reach : 1.0f) : 0.0f;
 }
 
-/// What a receiver of that radius takes from beyond the focus plane.
+/// The share that a receiver of that radius takes from beyond the focus plane.
 inline float leakage(float receiver_radius_px, float leak) {
   const float share = leak * receiver_radius_px;
   return share < 1.0f ? share : 1.0f;
 }
 
-/// Brings the quotient into what a half holds; NaN stays NaN, in its own place.
+/// Cuts a quotient to the range of halves. NaN stays NaN.
 inline float clamp_to_half(float value) {
   const float below = value > 65504.0f ? 65504.0f : value;
   return below < -65504.0f ? -65504.0f : below;
@@ -99,12 +98,9 @@ inline glm::vec3 resolve(const Gather& gather) {
           clamp_to_half(gather.colour.z / gather.weight)};
 }
 
-/// Taps at integer distances that can weigh anything for a radius: distances d < radius.
+/// Taps to each side that may weigh something: integer distances 1 <= d < radius.
 inline int tap_count(float radius_px) {
   return radius_px > 0.0f ? static_cast<int>(std::ceil(radius_px)) - 1 : 0;
 }
-
-/// The largest filter radius in a picture: taps farther than it all weigh 0.
-float largest_filter_radius(const DofInput& input, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -1,4 +1,16 @@
-// The formulas of weights.h in vectors, in its order of operations.
+// Pixels and the formulas of weights.h in lanes, in its order of operations. For kernels
+// (raster/lanes/for_each_isa.inl).
+
+/// Pixels x to x + kLanes - 1 of a row. Past its ends the row repeats its outermost pixels.
+SOFTFOCUS_INLINE HalfTexels load_repeating(const std::uint16_t* row, int x, int width) {
+  if (x >= 0 && x + kLanes <= width) return load_half_texels(row + 4 * x);
+  std::uint16_t texels[4 * kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const int inside = x + i < 0 ? 0 : x + i < width ? x + i : width - 1;
+    std::memcpy(texels + 4 * i, row + 4 * inside, 4 * sizeof *texels);
+  }
+  return load_half_texels(texels);
+}
 
 SOFTFOCUS_INLINE Floats filter_radius(const DofSettings& settings, Floats depth_m) {
   const Floats radius =
@@ -23,13 +35,13 @@ SOFTFOCUS_INLINE Floats clamp_to_half(Floats value) {
   return larger(splat(-65504.0f), smaller(splat(65504.0f), value));
 }
 
-/// A pixel's radius and in its sign bit whether it lies beyond the focus.
+/// A pixel's radius; the sign bit is set if it lies beyond the focus.
 SOFTFOCUS_INLINE Floats signed_radius(const DofSettings& settings, Floats depth_m) {
   const Bits beyond = as_bits(depth_m > settings.coc.focus_m) & 0x80000000u;
   return as_floats(as_bits(filter_radius(settings, depth_m)) | beyond);
 }
 
-/// What store_texel makes of a depth that load_texel read.
+/// The half that store_texel writes for a depth that load_texel read: there is one NaN.
 SOFTFOCUS_INLINE Bits stored_depth(Bits half) {
   return select((half & 0x7FFFu) > kHalfInfinity, splat(std::uint32_t{kHalfNan}), half);
 }
@@ -39,13 +51,12 @@ struct Sums {
   Floats weight, r, g, b;
 };
 
-/// What a receiver begins with: its intensity, and that times its colour, in vectors
-/// `stride` apart.
+/// The receiver's own share (13): intensity, and intensity * colour, in vectors `stride` apart.
 SOFTFOCUS_INLINE Sums load_sums(const float* whole, std::ptrdiff_t stride) {
   return {load(whole), load(whole + stride), load(whole + 2 * stride), load(whole + 3 * stride)};
 }
 
-/// Adds neighbours of overlap 1 and leakage 1: the same of theirs.
+/// Adds neighbours of overlap 1 and leakage 1, in the form that load_sums() reads.
 SOFTFOCUS_INLINE void add_whole(Sums& sums, const float* whole, std::ptrdiff_t stride) {
   sums.weight = sums.weight + load(whole);
   sums.r = sums.r + load(whole + stride);
@@ -53,9 +64,8 @@ SOFTFOCUS_INLINE void add_whole(Sums& sums, const float* whole, std::ptrdiff_t s
   sums.b = sums.b + load(whole + 3 * stride);
 }
 
-/// Adds neighbours of any weight. The colour sums change only where the weight is
-/// positive, since 0 * colour may be NaN or -0; the sum of weights is positive, and
-/// adding 0 changes nothing.
+/// Adds neighbours of any weight (14). Colour sums change only where the weight is positive:
+/// 0 * colour may be NaN or -0. The sum of weights is positive, so adding 0 changes nothing.
 template <bool leaking>
 SOFTFOCUS_INLINE void add_part(Sums& sums, Floats signed_radius_px, Floats light,
                                const float* colour, std::ptrdiff_t stride, Floats distance_px,

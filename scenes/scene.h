@@ -1,5 +1,5 @@
 #pragma once
-// What there is to draw: plain data, filled by the loaders and read by draw_scene.
+// A scene as data, filled by the loaders and read by draw_scene.
 // World units are metres, y points up, the coordinate system is right-handed.
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Camera {
   double orbit_degrees_per_frame = 0.0;
 };
 
-/// What the scene wants from the lens; every value can be overruled from outside.
+/// The lens that the scene suggests; the command line can overrule every value.
 struct SceneLens {
   ThinLens lens;
   double coc_scale = 1.0;
@@ -93,7 +93,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
-  /// What was missing and made do without, a line each: a model's texture, say.
+  /// What was missing, a line each: a model's texture, say.
   std::vector<std::string> warnings;
 };
 

@@ -1,5 +1,72 @@
-#include "tools/command_line.h"
+// The program: the list of its commands, and what becomes of an error.
+
+#include <iostream>
+#include <new>
+
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
+#include "tools/render/options.h"
+
+namespace softfocus {
+namespace {
+
+/// One line whatever the message holds: a file's name may contain a newline.
+int report(std::string message, int status) {
+  for (char& c : message) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7F) c = '?';
+  }
+  std::cerr << "softfocus: " << message << '\n';
+  return status;
+}
+
+/// A status, unless standard output could not take all that was written.
+int finish(int status, int failed) {
+  std::cout.flush();
+  if (!std::cout) return report("standard output: not everything could be written", failed);
+  return status;
+}
+
+int run_command(const Command& command) {
+  // Where things are compared, 1 means "different": any error there is a 2.
+  const std::string name = name_of(*command.parser);
+  const int failed = name == "compare" || name == "crosscheck" ? kWrongUsage : kFailed;
+  try {
+    return finish(command.work(), failed);
+  } catch (const UsageError& error) {
+    return report(error.what(), kWrongUsage);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory; a smaller picture needs less", failed);
+  } catch (const std::exception& error) {
+    return report(error.what(), failed);
+  }
+}
+
+int run(std::vector<std::string> arguments) {
+  const auto program =
+      make_program("softfocus", SOFTFOCUS_VERSION, "Renders scenes with depth of field.");
+  const std::vector<Command> commands{
+      add_render_command(*program),     add_scenes_command(*program),
+      add_methods_command(*program),    add_profiles_command(*program),
+      add_lens_command(*program),       add_compare_command(*program),
+      add_crosscheck_command(*program), add_probe_command(*program),
+      add_shaders_command(*program),    add_bench_command(*program),
+      add_chart_command(*program),      add_selftest_command(*program)};
+  try {
+    const Parsed parsed = parse(*program, with_autofocus_joined(std::move(arguments)));
+    if (parsed.answered) return finish(kDone, kFailed);
+    for (const Command& command : commands) {
+      if (command.parser == parsed.command) return run_command(command);
+    }
+  } catch (const UsageError& error) {
+    return report(error.what(), kWrongUsage);
+  }
+  return kWrongUsage;
+}
+
+}  // namespace
+}  // namespace softfocus
 
 int main(int argc, char** argv) {
   softfocus::prepare_process();

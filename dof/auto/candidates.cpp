@@ -6,7 +6,7 @@
 namespace softfocus {
 namespace {
 
-// Drawing a picture again and adding it to the others' sum.
+// To draw a lens view and add it to the sum.
 constexpr double kDrawnPixelNs = 5.0, kDrawnTriangleNs = 25.0;
 
 constexpr CostModel kNothing{};

@@ -1,8 +1,7 @@
 #pragma once
-// What auto chooses from: methods at their settings, each with what it is foreseen to
-// take and how far off it is foreseen to be. A new method is a line for each of its radii,
-// with the coefficients that tools/calibrate-auto finds; docs/auto.md tells how they came
-// about.
+// The table of auto: methods at their settings, with models of their error and time. A new
+// method is a line for each of its radii, with the coefficients that tools/calibrate-auto
+// finds; docs/auto.md explains them.
 
 #include <cstddef>
 #include <span>
@@ -12,11 +11,11 @@
 
 namespace softfocus {
 
-/// Mean FLIP against the ground truth, as a sum of a scene's traits times these. Fitted so
-/// that what a picture is really off by is seldom more.
+/// Mean FLIP against the ground truth: the sum of these times the scene's traits. Fitted so that
+/// the true error is seldom larger.
 struct ErrorModel {
-  float always = 0.0f;      ///< what even a good picture is off by
-  float fine = 0.0f;        ///< of blurred by the least radius: what small circles touch
+  float always = 0.0f;      ///< the error of a good picture
+  float fine = 0.0f;        ///< of `blurred` for the least radius
   float blurred = 0.0f;     ///< of blurred; of the pinhole of blur
   float lost = 0.0f;        ///< of lost
   float near_edges = 0.0f;  ///< of near_edges
@@ -33,21 +32,21 @@ struct CostModel {
 
 /// One line of the table.
 struct Candidate {
-  std::string_view method;  ///< its name in dof/dof.h or scenes/lens_views/scene_method.h
-  int radius = -1;          ///< index into kFilterRadiiPx, what circles are cut to; -1 of no filter
-  int samples = -1;         ///< index into kSampleCounts; -1 of no method that draws the scene
+  std::string_view method;  ///< its name in dof/dof.h or scenes/lens_views/lens_view_method.h
+  int radius = -1;          ///< index into kFilterRadiiPx; -1: no filter
+  int samples = -1;         ///< index into kSampleCounts; -1: no lens views
   ErrorModel error;
   CostModel cost;
 };
 
-/// From what is cheap to what is not.
+/// From cheap to dear.
 std::span<const Candidate> candidates();
 
-/// Foreseen mean FLIP of a picture in which a circle reaches half a pixel.
+/// The predicted mean FLIP of a picture in which a circle reaches half a pixel.
 double predicted_error(const Candidate& candidate, const SceneTraits& traits);
 
-/// Foreseen milliseconds for the method, the pinhole's picture being there; `triangles` is
-/// the scene's number of them.
+/// The predicted milliseconds of the method, without the pinhole's picture. `triangles` are
+/// those of the scene.
 double predicted_ms(const Candidate& candidate, const SceneTraits& traits, std::size_t triangles);
 
 }  // namespace softfocus

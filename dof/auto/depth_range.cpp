@@ -1,17 +1,18 @@
+#ifndef SOFTFOCUS_ISA
+
 #include "dof/auto/depth_range.h"
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#define SOFTFOCUS_KERNELS "dof/auto/depth_range_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/auto/depth_range.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {
 
 constexpr int kBandHeight = 32;
-constexpr std::size_t kMostLanes = 16;
 
 DepthRange range_of_band(const Image& picture, Isa isa, int begin, int end) {
   DepthRange range;
@@ -56,3 +57,22 @@ DepthRange depth_range(const Image& picture, ThreadPool& pool) {
 }
 
 }  // namespace softfocus
+
+#else  // the kernels, once a vector unit
+
+/// Takes a row's whole vectors into a range: kLanes least depths, then kLanes greatest, as the
+/// bits of halves. Returns how many pixels it has taken.
+int widen_range(const std::uint16_t* row, int width, std::uint32_t* range) {
+  Bits least = load(range), most = load(range + kLanes);
+  int x = 0;
+  for (; x + kLanes <= width; x += kLanes) {
+    const Bits depth = load_half_texels(row + 4 * x).a;
+    least = select(depth < least, depth, least);
+    most = select(depth > most, depth, most);
+  }
+  store(range, least);
+  store(range + kLanes, most);
+  return x;
+}
+
+#endif

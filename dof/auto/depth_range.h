@@ -8,8 +8,8 @@
 
 namespace softfocus {
 
-/// Bits of halves, compared as integers: depths of 0 and more in their order, then infinity,
-/// then NaN and what is negative.
+/// Bits of halves, compared as integers: depths from 0 on in order, then infinity, then NaN and
+/// negative numbers.
 struct DepthRange {
   std::uint16_t least = 0xFFFF;
   std::uint16_t most = 0;

@@ -10,6 +10,7 @@
 #include "dof/auto/depth_range.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
+#include "raster/numbers/random_bits.h"
 
 namespace softfocus {
 namespace {
@@ -65,17 +66,6 @@ float difference(const Colour& a, const Colour& b) {
 float felt(float difference) {
   const float root = std::sqrt(difference);
   return root * std::sqrt(root);
-}
-
-// The finaliser of MurmurHash3 (Appleby), of a point's place on the grid.
-std::uint32_t hash_of(int column, int row) {
-  std::uint32_t hash = static_cast<std::uint32_t>(column) * 0x9E3779B9u ^
-                       static_cast<std::uint32_t>(row) * 0x85EBCA77u;
-  hash ^= hash >> 16;
-  hash *= 0x85EBCA6Bu;
-  hash ^= hash >> 13;
-  hash *= 0xC2B2AE35u;
-  return hash ^ hash >> 16;
 }
 
 // What of a ring lies within a reach, 0 to 1.
@@ -263,7 +253,7 @@ void add_point(const Sight& sight, const Texels& texels, Sums& sums) {
 // Of the point that stands for a cell of the grid: where in the cell, the hash's upper bytes
 // tell in 256ths, and how its taps lie, the lowest bits.
 Texels texels_of_point(const Sight& sight, int column, int row, int columns, int rows) {
-  const std::uint32_t hash = hash_of(column, row);
+  const std::uint32_t hash = hash_of_place(column, row);
   const int right = static_cast<int>(hash >> 24), down = static_cast<int>(hash >> 16 & 0xFFu);
   return texels_around(sight, (column * 256 + right) * sight.picture.width / (columns * 256),
                        (row * 256 + down) * sight.picture.height / (rows * 256), hash);

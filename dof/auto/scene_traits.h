@@ -1,5 +1,5 @@
 #pragma once
-// What a picture tells about how hard it is to blur: what auto chooses by.
+// Traits of a picture that make it hard to blur, by which auto picks a method.
 //
 // The ranges are of every pixel, the rest of 1,600 points on a grid, each moved within
 // its cell as a hash of its place says. Around a point p lie four taps q in each of the rings
@@ -30,7 +30,7 @@ namespace softfocus {
 /// Radii R that filters are cut to, in pixels.
 inline constexpr std::array<float, 6> kFilterRadiiPx{2, 4, 8, 16, 32, 64};
 
-/// Numbers of samples N that a method takes that draws the scene.
+/// Numbers of samples N of the lens-view methods.
 inline constexpr std::array<int, 9> kSampleCounts{8, 16, 32, 64, 128, 256, 512, 1024, 2048};
 
 /// Means over the points, for filters that reach as far as R. All are 0 or more.

@@ -1,9 +1,8 @@
 #pragma once
-// The filter of softfocus_fixed.h for C++: memory as a constant, and the C functions under
-// the namespace's names.
+// softfocus_fixed.h for C++: its types in a namespace, and memory as a constant.
 //
-//   constexpr auto settings = Settings{160, 120, 7, SOFTFOCUS_FIXED_RGB565,
-//   SOFTFOCUS_FIXED_DEPTH8}; alignas(4) uint8_t memory[memory_bytes(settings)];
+//   constexpr Settings settings{160, 120, 7, SOFTFOCUS_FIXED_RGB565, SOFTFOCUS_FIXED_DEPTH8};
+//   alignas(4) uint8_t memory[memory_bytes(settings)];
 
 #include <stddef.h>
 
@@ -17,7 +16,7 @@ using Weights = softfocus_fixed_weights;
 using Settings = softfocus_fixed_settings;
 using Stream = softfocus_fixed_stream;
 
-/// Bytes that a stream needs; the settings must be within the limits.
+/// Bytes of memory that a stream needs. Needs settings within the limits.
 constexpr size_t memory_bytes(const Settings& settings) {
   if (settings.colour == SOFTFOCUS_FIXED_RGBA16F) {
     return SOFTFOCUS_FIXED_MEMORY_HALF(settings.width, settings.reach);
@@ -27,7 +26,7 @@ constexpr size_t memory_bytes(const Settings& settings) {
                                 settings.depth == SOFTFOCUS_FIXED_DEPTH8 ? 1u : 2u);
 }
 
-/// Taps to each side that circles up to a radius, Q16.16 pixels, need.
+/// Settings::reach for circles up to a radius, Q16.16 pixels: ceil(radius) - 1, or 0.
 constexpr uint8_t reach_of(uint32_t largest_radius) {
   return static_cast<uint8_t>(largest_radius > 0 ? (largest_radius - 1) >> 16 : 0);
 }

@@ -15,7 +15,7 @@ bool usable(const Lens& lens) {
          (lens.leak == 0 || lens.leak >= kLeastLeak);
 }
 
-/// A depth and the focus distance in the same unit, whatever it is; both below 2^63.
+/// `depth` and `focus` are in the same unit, any unit, and below 2^63.
 Weights weights_at(const Lens& lens, uint64_t depth, uint64_t focus) {
   const uint64_t away = depth > focus ? depth - focus : focus - depth;
   const uint64_t radius = multiply_divide(lens.radius_at_infinity, away, depth);
@@ -36,8 +36,8 @@ int make_table(const Lens* lens, uint32_t near_um, uint32_t far_um, uint32_t lar
   return 0;
 }
 
-// Micrometres and halves have this in common: 10^6 times the half's value in units of
-// 2^-24 m is the depth in units of 2^-24 um. Below 2^40 10^6 < 2^60.
+// A half is an integer in units of 2^-24 m. Times 10^6 that is the depth in units of 2^-24 um,
+// below 2^40 10^6 < 2^60.
 constexpr int kHalfBits = 24;
 constexpr uint64_t kMicrometres = 1000000;
 
@@ -83,8 +83,8 @@ int softfocus_fixed_radius_at_infinity(const Camera* camera, uint32_t* radius) {
       camera->height_px > SOFTFOCUS_FIXED_LARGEST_SIZE) {
     return SOFTFOCUS_FIXED_BAD_LENS;
   }
-  // f^2 height is at most 2^54, the divisor below 2^64. The factor makes up for the 8 bits
-  // of N, and has the 2 of 2 N and the 16 bits of the result.
+  // f^2 height is at most 2^54, the divisor below 2^64. The factor 2^(16 + 8 - 1): 16 bits of the
+  // result, 8 bits of N, and the 2 of 2 N.
   const uint64_t divisor = uint64_t{camera->f_number} * camera->film_height_um *
                            (camera->focus_um - camera->focal_length_um);
   const uint64_t at_infinity =

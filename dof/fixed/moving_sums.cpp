@@ -10,7 +10,7 @@ inline const Weights& weights_of(const Stream& stream, const Ring& ring, size_t 
   return stream.table[code];
 }
 
-/// Adds a tap that lies beyond the focus and reaches as far as half of `double_distance`.
+/// Adds a tap, if it lies beyond the focus and reaches the distance `double_distance` / 2.
 [[gnu::noinline]] void add_beyond(const Stream& stream, const Ring& ring, size_t pixel,
                                   uint32_t colour, uint32_t double_distance, Sums& sums) {
   const uint32_t reach = ring.reaches[pixel];
@@ -19,13 +19,13 @@ inline const Weights& weights_of(const Stream& stream, const Ring& ring, size_t 
   add(sums, colour, reach - double_distance < 2 ? weights.edge : weights.whole);
 }
 
-/// Sums along a row, and what changes in them from position to position: a ring in which the
-/// offset of a position in bytes counts modulo its length.
+/// Sums along a row, and their changes from position to position, in a ring: a position's offset
+/// in bytes counts modulo the ring's length.
 struct MovingAcross {
   Sums sums;
   Sums* changes;
   uint32_t mask;  ///< the ring's bytes less 1
-  uint32_t lag;   ///< bytes that receivers are behind
+  uint32_t lag;   ///< offset from the receiver to the pixel that comes in
 };
 
 constexpr uint32_t offset_of(uint32_t position) {
@@ -37,32 +37,32 @@ inline Sums& change_at(const MovingAcross& moving, uint32_t offset) {
                                   (offset & moving.mask));
 }
 
-/// Notes what a pixel changes in the sums of receivers at and after each position, and moves
-/// the sums one receiver on.
+/// Notes a pixel's four changes of the sums, and moves the sums on to the next receiver.
 [[gnu::noinline]] void move_across(MovingAcross& moving, uint32_t offset, uint32_t colour,
                                    const Weights& weights) {
   const uint32_t reach = offset_of(weights.reach);
   const uint32_t before = offset - reach;
   const uint32_t after = offset + reach;
-  add_and_take(change_at(moving, before), change_at(moving, after + offset_of(1)), colour,
-               weights.edge);
+  add_and_subtract(change_at(moving, before), change_at(moving, after + offset_of(1)), colour,
+                   weights.edge);
   const uint32_t inner = weights.whole - weights.edge;
-  if (inner != 0) {  // as it is where a circle was cut to the largest, and at reach 0
-    add_and_take(change_at(moving, before + offset_of(1)), change_at(moving, after), colour, inner);
+  if (inner != 0) {  // 0 if the circle was cut to the largest, or at reach 0
+    add_and_subtract(change_at(moving, before + offset_of(1)), change_at(moving, after), colour,
+                     inner);
   }
   Sums& change = change_at(moving, offset - moving.lag);
   moving.sums.weight += change.weight;
   moving.sums.r += change.r;
   moving.sums.g += change.g;
   moving.sums.b += change.b;
-  change.weight = 0;  // one by one: for all, memset() would be called
+  change.weight = 0;  // one by one: `change = {}` would call memset()
   change.r = 0;
   change.g = 0;
   change.b = 0;
 }
 
-// What is added to a sum before its quotient: half a step of the result, which is 1 after
-// the first pass, and 4 after the second, when two bits will be cut off.
+// Half a step of the result, added to a sum before its quotient. A step is 1 after the first
+// pass, and 4 after the second, when two bits are cut off.
 constexpr uint32_t half_step_across(uint32_t weight) { return weight >> 1; }
 constexpr uint32_t half_step_down(uint32_t weight) { return 2 * weight; }
 
@@ -73,7 +73,7 @@ constexpr uint32_t half_step_down(uint32_t weight) { return 2 * weight; }
               quotient(sums.b + more, divisor));
 }
 
-/// That of a receiver which takes less from beyond the focus.
+/// The mean colour of a receiver that takes less from beyond the focus.
 [[gnu::noinline]] uint32_t resolve_leaked(const Sums& all, const Sums& beyond, uint32_t leak,
                                           bool down) {
   const Sums taken = keep_leaked(all, beyond, leak);
@@ -82,8 +82,7 @@ constexpr uint32_t half_step_down(uint32_t weight) { return 2 * weight; }
                  down ? half_step_down(taken.weight) : half_step_across(taken.weight));
 }
 
-/// What resolve() is to other receivers: of one that may take less from beyond the focus, or
-/// that nothing reaches.
+/// resolve() for receivers that may take less from beyond the focus, or that nothing reaches.
 [[gnu::noinline]] uint32_t resolve_leaking_across(const Stream& stream, const Ring& ring,
                                                   uint32_t slot, uint32_t x, const Sums& sums) {
   const uint32_t last = stream.settings.width - 1u;
@@ -101,7 +100,7 @@ constexpr uint32_t half_step_down(uint32_t weight) { return 2 * weight; }
   return resolve_leaked(sums, beyond, centre.leak, false);
 }
 
-/// A row whose distance changes by 1, to what comes out.
+/// A row whose distance to the row that comes out changes by 1.
 struct MovingRow {
   const Weights* table;
   const void* codes;
@@ -111,14 +110,14 @@ struct MovingRow {
   uint32_t sign;  // 0 to come nearer, else ~0
 };
 
-/// One of its pixels, whose reach is the nearer distance, or the farther: `past` is 2 more
-/// then, and 1 more of pixels beyond the focus.
+/// Moves one of its pixels. `past` is 0 if its reach is the nearer distance, 2 if the farther,
+/// and 1 more if it lies beyond the focus.
 [[gnu::noinline]] void move_pixel(const MovingRow& row, size_t x, uint32_t past) {
   const uint32_t code = row.small_codes ? static_cast<const uint8_t*>(row.codes)[x]
                                         : static_cast<const uint16_t*>(row.codes)[x];
   const Weights& weights = row.table[code];
   const uint32_t weight = past > 1 ? weights.whole - weights.edge : weights.edge;
-  if (weight == 0) return;  // a circle that was cut to the largest has a whole edge
+  if (weight == 0) return;  // the circle was cut to the largest: its edge is whole
   const Sums more = weighted(row.colours[x], (weight ^ row.sign) - row.sign);
   Sums& sums = row.columns[x];
   sums.weight += more.weight;
@@ -127,8 +126,8 @@ struct MovingRow {
   sums.b += more.b;
 }
 
-/// A row's weights in ring.columns, from those at one distance to those at another, which
-/// is one more or one less.
+/// Changes a row's weights in ring.columns from those at distance `from` to those at `to`, one
+/// more or one less.
 void move_row(const Stream& stream, const Ring& ring, uint32_t row, uint32_t from, uint32_t to) {
   const uint32_t slot = slot_of(stream, row);
   const uint32_t nearer = from < to ? from : to;
@@ -144,7 +143,7 @@ void move_row(const Stream& stream, const Ring& ring, uint32_t row, uint32_t fro
   const uint8_t* const reaches = ring.reaches + first;
   const uint32_t double_nearer = 2 * nearer;
   for (size_t x = 0; x < width; ++x) {
-    // Pixels of another reach than these two distances weigh as much as before.
+    // Only pixels whose reach is one of the two distances change their weight.
     const uint32_t past = reaches[x] - double_nearer;
     if (past <= 3) move_pixel(moving, x, past);
   }
@@ -172,14 +171,14 @@ void move_columns_to(const Stream& stream, const Ring& ring, uint32_t row) {
   }
 }
 
-/// Takes what reaches `row` and not row + 1 out of ring.columns, as far as its rows leave the
-/// ring before row + 1 comes out.
+/// Subtracts from ring.columns the row that reaches `row` and leaves the ring before row + 1
+/// comes out.
 void leave_row(const Stream& stream, const Ring& ring, uint32_t row) {
   const uint32_t reach = stream.settings.reach;
   move_row(stream, ring, row > reach ? row - reach : 0, reach, reach + 1);
 }
 
-/// The same of a column; `taps` rows are listed.
+/// resolve_leaking_across() along a column; `taps` rows are listed.
 [[gnu::noinline]] uint32_t resolve_leaking_down(const Stream& stream, const Ring& ring,
                                                 size_t first, uint32_t x, uint32_t taps) {
   const Sums& sums = ring.columns[x];

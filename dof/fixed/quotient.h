@@ -1,7 +1,7 @@
 #pragma once
-// Quotients of sums by a weight, rounded to nearest with ties up, exact: by a reciprocal
-// that is too small by less than what one step of the quotient is, and a look at the
-// remainder. One reciprocal serves the channels of a pixel. No division.
+// floor(sum / weight), exact and without a division: by a reciprocal that is too small by less
+// than a step of the quotient, and a look at the remainder. One reciprocal serves the three
+// channels of a pixel.
 //
 // The weight is shifted to W in [2^20, 2^21).
 //   first   r0 = table[W >> 14], floor(2^14 / (i + 65)) for W in [i + 64, i + 65) 2^14: at
@@ -10,7 +10,7 @@
 //           0.054 %; cut to 2^36 / W, in two cuts of less than 2^-15 each
 //   then    (sum >> 15) r >> 21 with the sum shifted like the weight, below 1024 2^21:
 //           below the quotient by less than 1023.5 (0.054 % + 2 2^-15) + 2^-5 + 1 < 2
-// and so the quotient or one less.
+// so the result is the quotient or one less.
 
 #include <stdint.h>
 
@@ -38,7 +38,7 @@ struct Divisor {
   int shift;
 };
 
-/// Shifts a weight up that has no bit in its upper `step`.
+/// Shifts a weight up by `step` if its upper `step` bits, of 21, are 0.
 template <int step>
 inline void normalise(uint32_t& weight, int& shift) {
   if (weight >> (21 - step) != 0) return;
@@ -46,7 +46,7 @@ inline void normalise(uint32_t& weight, int& shift) {
   shift += step;
 }
 
-/// Of a weight that lies in [2^20, 2^21) when shifted.
+/// For a weight that lies in [2^20, 2^21) when shifted.
 inline Divisor make_divisor(uint32_t weight, int shift) {
   weight <<= shift;
   const uint32_t first = kReciprocals.of[(weight >> 14) - 64u];

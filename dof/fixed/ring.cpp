@@ -123,12 +123,12 @@ int softfocus_fixed_put_row(Stream* stream, uint32_t y, const void* colours, con
     return SOFTFOCUS_FIXED_BAD_ARGUMENT;
   }
   if (y != stream->rows_in || y >= settings.height) return SOFTFOCUS_FIXED_BAD_ROW;
-  stream->take(stream, colours, depths);
+  stream->add_row(stream, colours, depths);
   ++stream->rows_in;
   ++stream->next_slot;
   if (stream->next_slot == ring_rows(settings)) stream->next_slot = 0;
   if (y < settings.reach) return 0;
-  stream->give(stream, out);
+  stream->write_row(stream, out);
   ++stream->rows_out;
   return 1;
 }
@@ -137,7 +137,7 @@ int softfocus_fixed_finish_row(Stream* stream, void* out) {
   if (stream == nullptr || out == nullptr) return SOFTFOCUS_FIXED_BAD_ARGUMENT;
   if (stream->rows_in != stream->settings.height) return SOFTFOCUS_FIXED_BAD_ROW;
   if (stream->rows_out == stream->rows_in) return 0;
-  stream->give(stream, out);
+  stream->write_row(stream, out);
   ++stream->rows_out;
   return 1;
 }

@@ -12,18 +12,18 @@ namespace softfocus::fixed {
 using Stream = softfocus_fixed_stream;
 using Settings = softfocus_fixed_settings;
 
-/// What a pixel reaches, in a byte: the flag `beyond` below, so that it weighs anything at
-/// a distance d if the byte is at least 2 d.
+/// A pixel's reach and its flag `beyond`, in a byte: 2 reach + beyond. The pixel weighs
+/// something at distance d if that is at least 2 d.
 constexpr uint8_t reach_and_side(const Weights& weights) {
   return static_cast<uint8_t>(weights.reach << 1 | weights.beyond);
 }
 
-/// One of 32 bits, for a set of reaches that may say yes too often.
+/// A bit for a set of reaches; reaches that are 32 apart share one.
 constexpr uint32_t reach_bit(uint32_t reach) { return 1u << (reach & 31u); }
 
 struct Sums;  // sums8.h
 
-/// A row within reach of one that comes out.
+/// A row within reach of the row that comes out.
 struct Tap {
   uint32_t offset;           ///< of the row's first pixel in the ring
   uint32_t double_distance;  ///< 2 d
@@ -38,7 +38,7 @@ struct Ring {
   uint8_t* reaches;          ///< reach_and_side() of each pixel
   void* alphas;              ///< uint8_t or uint16_t, if there are any
   uint8_t* farthest;         ///< of each row, the largest reach
-  uint8_t* farthest_beyond;  ///< the same of pixels beyond the focus
+  uint8_t* farthest_beyond;  ///< of each row, the largest reach of pixels beyond the focus
   uint32_t* reaches_there;   ///< of each row, reach_bit() of its pixels
   Sums* columns;             ///< of 8-bit colour: of each column, for the next row
   Sums* changes;             ///< of 8-bit colour: of the row that came in
@@ -47,34 +47,34 @@ struct Ring {
 
 /// Hands out a stream's memory, part by part.
 struct Parts {
-  uint8_t* next;
+  uint8_t* rest;
 
-  uint8_t* take(size_t bytes) {
-    uint8_t* part = next;
-    next += bytes;
+  uint8_t* next(size_t bytes) {
+    uint8_t* part = rest;
+    rest += bytes;
     return part;
   }
 };
 
 constexpr uint32_t ring_rows(const Settings& settings) { return 2u * settings.reach + 1u; }
 
-/// The slot of a row: one of the last `rows` that came in, or the next one, which comes
-/// into the slot of the oldest.
+/// The slot of a row: of one of the last `rows` rows that came in, or of the next row, which gets
+/// the slot of the oldest.
 inline uint32_t slot_of(const Stream& stream, uint32_t row) {
   const uint32_t rows = ring_rows(stream.settings);
   const uint32_t back = stream.rows_in - row;
   return back <= stream.next_slot ? stream.next_slot - back : stream.next_slot + rows - back;
 }
 
-/// What begin() and begin_half() have in common; `bytes_needed` is 0 past the limits.
+/// The common part of softfocus_fixed_begin() and softfocus_fixed_begin_half().
 int begin_stream(Stream* stream, const Settings* settings, const Weights* table, void* memory,
                  size_t bytes, size_t bytes_needed);
 
-/// Copies the codes of a row into the ring, and what its pixels reach.
+/// Copies a row's codes into the ring, and notes how far its pixels reach.
 void put_codes(const Stream& stream, const Ring& ring, const void* codes, uint32_t slot);
 
-/// Lists the rows other than `row` that reach it by `farthest`, one of the ring's, those past
-/// the edges being the row at the edge; returns how many.
+/// Lists the other rows that reach `row`, and returns how many. `farthest` is the ring's farthest
+/// or farthest_beyond. A row past the picture's edge is the row at the edge.
 uint32_t list_taps(const Stream& stream, const Ring& ring, const uint8_t* farthest, uint32_t row);
 
 }  // namespace softfocus::fixed

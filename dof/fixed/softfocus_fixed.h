@@ -1,11 +1,11 @@
 #ifndef SOFTFOCUS_FIXED_H
 #define SOFTFOCUS_FIXED_H
-/* The two-pass depth-of-field filter in integers, for C. docs/fixed-point.md is its
- * specification: the same bits on every machine.
+/* The two-pass depth-of-field filter (Zhou, Chen and Pullen 2007) in integers, for C. It gives
+ * the same bits on every machine; docs/fixed-point.md is its specification.
  *
- * A lens and what depth codes mean become a table once. Then rows of a picture go in from
- * the top, one by one, and rows come out `reach` rows later. The caller gives all memory;
- * nothing is allocated, nothing static is written to, no floating point is used.
+ * Once for a lens, depth codes get a table of weights. Then rows of a picture go in from the
+ * top, one by one, and come out `reach` rows later. The caller gives all memory; nothing is
+ * allocated, no static data is written, no floating point is used.
  *
  *   softfocus_fixed_table8(&lens, near_um, far_um, table);
  *   softfocus_fixed_begin(&stream, &settings, table, memory, sizeof memory);
@@ -13,8 +13,8 @@
  *     if (softfocus_fixed_put_row(&stream, y, colours, depths, out) == 1) show(out);
  *   while (softfocus_fixed_finish_row(&stream, out) == 1) show(out);
  *
- * Functions return 0 or a positive number if all went well, else one of the negative
- * codes below, and then nothing was written. Qm.n has n bits after the point. */
+ * Functions return 0 or a positive number if all went well. Otherwise they return one of the
+ * negative codes below, and have written nothing. Qm.n has n bits after the point. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -23,7 +23,7 @@
 extern "C" {
 #endif
 
-/* What the interface admits. */
+/* Limits. */
 #define SOFTFOCUS_FIXED_LARGEST_SIZE 16384 /* of width and height, pixels; both from 1 */
 #define SOFTFOCUS_FIXED_LARGEST_REACH 63   /* taps to each side: circles of radius 64 */
 #define SOFTFOCUS_FIXED_ONE_PIXEL 65536    /* a pixel in Q16.16 */
@@ -41,7 +41,7 @@ enum {
 
 /* --- the lens --- */
 
-/* A lens as the filter sees it: the signed radius of the circle of confusion at depth z is
+/* A lens: at depth z the circle of confusion has the signed radius
  * radius_at_infinity * (z - focus) / z. */
 typedef struct softfocus_fixed_lens {
   uint32_t radius_at_infinity; /* Q16.16 pixels */
@@ -51,7 +51,7 @@ typedef struct softfocus_fixed_lens {
                                   0, or 4096 (1/16) and more */
 } softfocus_fixed_lens;
 
-/* What a camera's data sheet says. */
+/* A camera, as its data sheet describes it. */
 typedef struct softfocus_fixed_camera {
   uint32_t focal_length_um; /* 1 to 2^20 (1.05 m) */
   uint32_t f_number;        /* Q7.8: 512 is f/2; 1 to 2^15 - 1 */
@@ -76,16 +76,16 @@ typedef struct softfocus_fixed_weights {
   uint8_t beyond; /* 1 if it lies beyond the focus, else 0 */
 } softfocus_fixed_weights;
 
-/* Codes 0 to 255, or 0 to 65535, evenly from depth near_um to far_um, in micrometres:
+/* Codes 0 to 255, or 0 to 65535, lie evenly from depth near_um to far_um, in micrometres:
  * z = near + floor((far - near) * code / largest code). Either end may be the larger.
- * Depth 0 has a circle of the largest radius, like everything very near. */
+ * Depth 0 has the largest circle. BAD_LENS if the lens is past its limits. */
 int softfocus_fixed_table8(const softfocus_fixed_lens* lens, uint32_t near_um, uint32_t far_um,
                            softfocus_fixed_weights table[256]);
 int softfocus_fixed_table16(const softfocus_fixed_lens* lens, uint32_t near_um, uint32_t far_um,
                             softfocus_fixed_weights table[65536]);
 
-/* Codes are the bits of a half (binary16), depth in metres. NaN has a circle of the largest
- * radius and is not beyond the focus; infinity has it too, and +infinity is beyond. */
+/* Codes are the bits of a half (binary16), depth in metres. NaN and the infinities have the
+ * largest circle; only +infinity is beyond the focus. */
 int softfocus_fixed_table_half(const softfocus_fixed_lens* lens,
                                softfocus_fixed_weights table[65536]);
 
@@ -124,34 +124,35 @@ typedef struct softfocus_fixed_settings {
   (SOFTFOCUS_FIXED_ROUND_UP((size_t)(width) * (2u * (reach) + 1u) * 11u) + 24u * (reach) + 4u + \
    SOFTFOCUS_FIXED_ROUND_UP(4u * (reach) + 2u))
 
-/* The same as a function; 0 if the settings are past the limits. */
+/* The bytes that a stream of these settings needs; 0 if they are past the limits. */
 size_t softfocus_fixed_memory(const softfocus_fixed_settings* settings);
 
-/* A picture on its way. The caller owns it and reads nothing in it. */
+/* A picture on its way. The caller owns it; its members are the filter's. */
 typedef struct softfocus_fixed_stream {
   const softfocus_fixed_weights* table;
   uint8_t* memory;
   softfocus_fixed_settings settings;
   uint16_t rows_in, rows_out;
   uint8_t next_slot, leaking;
-  void (*take)(struct softfocus_fixed_stream*, const void*, const void*);
-  void (*give)(struct softfocus_fixed_stream*, void*);
+  void (*add_row)(struct softfocus_fixed_stream*, const void*, const void*);
+  void (*write_row)(struct softfocus_fixed_stream*, void*);
 } softfocus_fixed_stream;
 
-/* Makes a stream ready for a picture. The table and the memory, aligned to 4 bytes, stay
- * the caller's and must stay as they are until the picture is done. This one is for RGBA8
- * and RGB565. */
+/* Makes a stream ready for a picture of RGBA8 or RGB565. `bytes` of memory, aligned to 4 bytes,
+ * and the table are the caller's; neither may change until the picture is done. BAD_SIZE,
+ * BAD_FORMAT, BAD_TABLE, BAD_MEMORY or BAD_ARGUMENT. */
 int softfocus_fixed_begin(softfocus_fixed_stream* stream, const softfocus_fixed_settings* settings,
                           const softfocus_fixed_weights* table, void* memory, size_t bytes);
 
-/* The same for RGBA16F: a function of its own, so that a program for 8-bit colour need not
- * hold both. */
+/* softfocus_fixed_begin() for RGBA16F: a function of its own, so that a program for 8-bit colour
+ * does not link both. */
 int softfocus_fixed_begin_half(softfocus_fixed_stream* stream,
                                const softfocus_fixed_settings* settings,
                                const softfocus_fixed_weights* table, void* memory, size_t bytes);
 
-/* Takes row y; rows come in order, from 0. Returns 1 if row y - reach was written to `out`,
- * 0 if no row is ready. `out` may be `colours`. */
+/* Puts row y in; rows come in order, from 0. `colours` and `depths` are `width` pixels and codes.
+ * Returns 1 if row y - reach was written to `out`, in the format of `colours`; 0 if no row is
+ * ready. `out` may be `colours`. BAD_ROW if it is not the turn of row y. */
 int softfocus_fixed_put_row(softfocus_fixed_stream* stream, uint32_t y, const void* colours,
                             const void* depths, void* out);
 

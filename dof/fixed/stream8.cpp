@@ -5,23 +5,23 @@
 namespace softfocus::fixed {
 namespace {
 
-Ring ring_of(const Stream& stream) {
+Ring ring8(const Stream& stream) {
   const Settings& settings = stream.settings;
   Ring ring{};
   ring.rows = ring_rows(settings);
   const size_t pixels = static_cast<size_t>(ring.rows) * settings.width;
   Parts parts{stream.memory};
-  ring.colours = parts.take(4 * pixels);
-  ring.line = parts.take(4u * settings.width);
-  ring.columns = reinterpret_cast<Sums*>(parts.take(sizeof(Sums) * settings.width));
-  ring.changes = reinterpret_cast<Sums*>(parts.take(sizeof(Sums) * 4 * (settings.reach + 1u)));
-  ring.taps = reinterpret_cast<Tap*>(parts.take(2 * sizeof(Tap) * settings.reach));
-  ring.reaches_there = reinterpret_cast<uint32_t*>(parts.take(4 * ring.rows));
-  ring.codes = parts.take(settings.depth == SOFTFOCUS_FIXED_DEPTH8 ? pixels : 2 * pixels);
-  ring.reaches = parts.take(pixels);
-  ring.alphas = settings.colour == SOFTFOCUS_FIXED_RGBA8 ? parts.take(pixels) : nullptr;
-  ring.farthest = parts.take(ring.rows);
-  ring.farthest_beyond = parts.take(ring.rows);
+  ring.colours = parts.next(4 * pixels);
+  ring.line = parts.next(4u * settings.width);
+  ring.columns = reinterpret_cast<Sums*>(parts.next(sizeof(Sums) * settings.width));
+  ring.changes = reinterpret_cast<Sums*>(parts.next(sizeof(Sums) * 4 * (settings.reach + 1u)));
+  ring.taps = reinterpret_cast<Tap*>(parts.next(2 * sizeof(Tap) * settings.reach));
+  ring.reaches_there = reinterpret_cast<uint32_t*>(parts.next(4 * ring.rows));
+  ring.codes = parts.next(settings.depth == SOFTFOCUS_FIXED_DEPTH8 ? pixels : 2 * pixels);
+  ring.reaches = parts.next(pixels);
+  ring.alphas = settings.colour == SOFTFOCUS_FIXED_RGBA8 ? parts.next(pixels) : nullptr;
+  ring.farthest = parts.next(ring.rows);
+  ring.farthest_beyond = parts.next(ring.rows);
   return ring;
 }
 
@@ -31,8 +31,8 @@ constexpr uint32_t expand6(uint32_t value) { return value << 2 | value >> 4; }
 constexpr uint32_t reduce5(uint32_t byte) { return (byte * 249 + 1014) >> 11; }
 constexpr uint32_t reduce6(uint32_t byte) { return (byte * 253 + 505) >> 10; }
 
-void take_row(Stream* stream, const void* colours, const void* depths) {
-  const Ring ring = ring_of(*stream);
+void add_row8(Stream* stream, const void* colours, const void* depths) {
+  const Ring ring = ring8(*stream);
   const uint32_t width = stream->settings.width;
   const uint32_t slot = slot_of(*stream, stream->rows_in);
   put_codes(*stream, ring, depths, slot);
@@ -55,9 +55,9 @@ void take_row(Stream* stream, const void* colours, const void* depths) {
   filter_across(*stream, ring, slot);
 }
 
-/// The second pass of row rows_out.
-void give_row(Stream* stream, void* out) {
-  const Ring ring = ring_of(*stream);
+/// The second pass, of row rows_out.
+void write_row8(Stream* stream, void* out) {
+  const Ring ring = ring8(*stream);
   const uint32_t width = stream->settings.width;
   const uint32_t slot = slot_of(*stream, stream->rows_out);
   const size_t first = static_cast<size_t>(slot) * width;
@@ -94,7 +94,7 @@ int softfocus_fixed_begin(Stream* stream, const Settings* settings, const Weight
   const int error =
       begin_stream(stream, settings, table, memory, bytes, softfocus_fixed_memory(settings));
   if (error != 0) return error;
-  stream->take = take_row;
-  stream->give = give_row;
+  stream->add_row = add_row8;
+  stream->write_row = write_row8;
   return 0;
 }

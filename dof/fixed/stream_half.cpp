@@ -1,5 +1,5 @@
-// The filter for RGBA16F: colours are Q16.24 in 64 bits, which holds every half exactly,
-// and so do the sums: below 2^20.2 2^40. Between the passes colours are halves again.
+// The filter for RGBA16F. Colours are Q16.24 in 64 bits: exact for every half, and for the sums,
+// which are below 2^20.2 2^40. Between the passes colours are halves again.
 
 #include "dof/fixed/quotient.h"
 #include "dof/fixed/ring.h"
@@ -16,12 +16,11 @@ inline int64_t decode(uint32_t half) {
   return (half & 0x8000u) != 0 ? -value : value;
 }
 
-/// The half nearest to sum / weight, Q16.24; a tie goes to the even one. The sign is the
-/// sum's, and + for 0.
+/// The half nearest to sum / weight, Q16.24, ties to even. The sign is the sum's, and + for 0.
 ///
-/// In units of 2^-25 the magnitude is 2 |sum| / weight, below 2^41. Of that n has the upper
-/// 12 bits, one more than a half has room for. The reciprocal finds n or at most 3 less: its
-/// own error of 0.06 % is 2.5 of 4096, bits cut off are 1/8, and n is rounded downwards.
+/// In units of 2^-25 the magnitude is 2 |sum| / weight, below 2^41. n is its upper 12 bits, one
+/// more than a half has room for. The reciprocal finds n or at most 3 less: its error of 0.06 %
+/// is 2.5 of 4096, the bits cut off are 1/8, and n is rounded down.
 inline uint16_t encode_quotient(int64_t sum, uint32_t weight, const Divisor& divisor) {
   const uint64_t twice = 2 * static_cast<uint64_t>(sum < 0 ? -sum : sum);
   int cut = 0;
@@ -33,8 +32,8 @@ inline uint16_t encode_quotient(int64_t sum, uint32_t weight, const Divisor& div
   uint64_t rest = twice - n * step;
   for (; rest >= step; rest -= step) ++n;
   const bool up = (n & 1u) != 0 && (rest > 0 || (n & 2u) != 0);
-  // 1024 to 2047 of cut 0 are the normal halves of the least exponent: code and value in
-  // units of 2^-24 are the same there. A carry runs into the exponent.
+  // At cut 0, 1024 to 2047 are the normal halves of the least exponent: their code is their value
+  // in units of 2^-24. A carry runs into the exponent.
   uint32_t code = (n >> 1) + (static_cast<uint32_t>(cut) << 10) + (up ? 1 : 0);
   if (code > kHalfLargest) code = kHalfLargest;
   return static_cast<uint16_t>((sum < 0 ? 0x8000u : 0u) | code);
@@ -45,11 +44,11 @@ struct WideSums {
   int64_t colour[3];
 };
 
-inline uint32_t leaked(uint32_t sum, uint32_t leak) {
+inline uint32_t leaked_weight(uint32_t sum, uint32_t leak) {
   return static_cast<uint32_t>((uint64_t{sum} * leak) >> kLeakBits);
 }
 /// floor(sum leak) without an intermediate of more than 64 bits.
-inline int64_t leaked(int64_t sum, uint32_t leak) {
+inline int64_t leaked_colour(int64_t sum, uint32_t leak) {
   const auto low = static_cast<uint32_t>(sum) & (kLeakOne - 1);
   return (sum >> kLeakBits) * static_cast<int64_t>(leak) +
          static_cast<int64_t>((low * leak) >> kLeakBits);
@@ -59,8 +58,8 @@ struct BothSides {
   WideSums near, beyond;
 };
 
-/// What the taps of both passes share: pixels of a ring, whose colours lie in a row that
-/// came in (four halves a pixel) or in the ring's planes.
+/// Where the taps of a pass find their pixels: in the ring, with colours in the row that came in
+/// (four halves a pixel) or in the ring's planes.
 struct Source {
   const Stream& stream;
   const Ring& ring;
@@ -95,34 +94,34 @@ inline void add_tap(const Source& source, size_t pixel, size_t colour_pixel,
 
 /// Stores the three halves of a pixel, `step` apart.
 inline void resolve(const BothSides& sides, uint32_t leak, uint16_t* to, size_t step) {
-  const uint32_t weight = sides.near.weight + leaked(sides.beyond.weight, leak);
+  const uint32_t weight = sides.near.weight + leaked_weight(sides.beyond.weight, leak);
   const Divisor divisor = make_divisor(weight);
   for (int i = 0; i < 3; ++i) {
-    *to = encode_quotient(sides.near.colour[i] + leaked(sides.beyond.colour[i], leak), weight,
-                          divisor);
+    *to = encode_quotient(sides.near.colour[i] + leaked_colour(sides.beyond.colour[i], leak),
+                          weight, divisor);
     to += step;
   }
 }
 
-Ring ring_of(const Stream& stream) {
+Ring ring_half(const Stream& stream) {
   const Settings& settings = stream.settings;
   Ring ring{};
   ring.rows = ring_rows(settings);
   const size_t pixels = static_cast<size_t>(ring.rows) * settings.width;
   Parts parts{stream.memory};
-  ring.taps = reinterpret_cast<Tap*>(parts.take(2 * sizeof(Tap) * settings.reach));
-  ring.reaches_there = reinterpret_cast<uint32_t*>(parts.take(4 * ring.rows));
-  ring.colours = parts.take(6 * pixels);
-  ring.alphas = parts.take(2 * pixels);
-  ring.codes = parts.take(2 * pixels);
-  ring.reaches = parts.take(pixels);
-  ring.farthest = parts.take(ring.rows);
-  ring.farthest_beyond = parts.take(ring.rows);
+  ring.taps = reinterpret_cast<Tap*>(parts.next(2 * sizeof(Tap) * settings.reach));
+  ring.reaches_there = reinterpret_cast<uint32_t*>(parts.next(4 * ring.rows));
+  ring.colours = parts.next(6 * pixels);
+  ring.alphas = parts.next(2 * pixels);
+  ring.codes = parts.next(2 * pixels);
+  ring.reaches = parts.next(pixels);
+  ring.farthest = parts.next(ring.rows);
+  ring.farthest_beyond = parts.next(ring.rows);
   return ring;
 }
 
-void take_row(Stream* stream, const void* colours, const void* depths) {
-  const Ring ring = ring_of(*stream);
+void add_row_half(Stream* stream, const void* colours, const void* depths) {
+  const Ring ring = ring_half(*stream);
   const uint32_t width = stream->settings.width;
   const uint32_t slot = slot_of(*stream, stream->rows_in);
   const size_t first = static_cast<size_t>(slot) * width;
@@ -151,8 +150,8 @@ void take_row(Stream* stream, const void* colours, const void* depths) {
   }
 }
 
-void give_row(Stream* stream, void* out) {
-  const Ring ring = ring_of(*stream);
+void write_row_half(Stream* stream, void* out) {
+  const Ring ring = ring_half(*stream);
   const uint32_t width = stream->settings.width;
   const uint32_t slot = slot_of(*stream, stream->rows_out);
   const size_t first = static_cast<size_t>(slot) * width;
@@ -185,7 +184,7 @@ int softfocus_fixed_begin_half(Stream* stream, const Settings* settings, const W
   const int error =
       begin_stream(stream, settings, table, memory, bytes, softfocus_fixed_memory(settings));
   if (error != 0) return error;
-  stream->take = take_row;
-  stream->give = give_row;
+  stream->add_row = add_row_half;
+  stream->write_row = write_row_half;
   return 0;
 }

@@ -18,7 +18,7 @@ constexpr uint32_t red(uint32_t colour) { return colour & kColourMask; }
 constexpr uint32_t green(uint32_t colour) { return colour >> kColourBits & kColourMask; }
 constexpr uint32_t blue(uint32_t colour) { return colour >> (2 * kColourBits); }
 
-/// Modulo 2^32, so that a weight may also be taken away; whole sums fit (weights.h).
+/// Modulo 2^32, so that weights can be subtracted too; whole sums fit (weights.h).
 struct Sums {
   uint32_t weight, r, g, b;
 };
@@ -27,8 +27,8 @@ constexpr Sums weighted(uint32_t colour, uint32_t weight) {
   return {weight, red(colour) * weight, green(colour) * weight, blue(colour) * weight};
 }
 
-// Functions that are called: inlined into what has many values alive, they are longer and
-// slower on CPUs with few registers.
+// These are not inlined: among many live values they are longer and slower on CPUs with few
+// registers.
 
 [[gnu::noinline]] inline void add(Sums& sums, uint32_t colour, uint32_t weight) {
   const Sums more = weighted(colour, weight);
@@ -38,8 +38,9 @@ constexpr Sums weighted(uint32_t colour, uint32_t weight) {
   sums.b += more.b;
 }
 
-/// Adds to one and takes the same from another.
-[[gnu::noinline]] inline void add_and_take(Sums& to, Sums& from, uint32_t colour, uint32_t weight) {
+/// Adds to one sum and subtracts from another.
+[[gnu::noinline]] inline void add_and_subtract(Sums& to, Sums& from, uint32_t colour,
+                                               uint32_t weight) {
   const Sums more = weighted(colour, weight);
   to.weight += more.weight;
   from.weight -= more.weight;
@@ -57,16 +58,15 @@ constexpr uint32_t leaked(uint32_t sum, uint32_t leak) {
   return (sum >> kLeakBits) * leak + (((sum & kLow) * leak) >> kLeakBits);
 }
 
-/// Of all sums and of that part of them which is from beyond the focus, what a receiver
-/// takes.
+/// What a receiver takes of all sums. `beyond` is the part of them from beyond the focus.
 inline Sums keep_leaked(const Sums& all, const Sums& beyond, uint32_t leak) {
   return {all.weight - beyond.weight + leaked(beyond.weight, leak),
           all.r - beyond.r + leaked(beyond.r, leak), all.g - beyond.g + leaked(beyond.g, leak),
           all.b - beyond.b + leaked(beyond.b, leak)};
 }
 
-/// Where depth is even, so are the weights of one pixel after the other, and elsewhere they
-/// are of one size.
+/// The last divisor, for the next pixel: where depth is constant the weight is the same, and
+/// elsewhere it often needs the same shift.
 struct LastDivisor {
   uint32_t weight;  ///< 0: none yet
   Divisor divisor;

@@ -1,5 +1,5 @@
 #pragma once
-// Products and quotients of more than 64 bits, a bit at a time: for what is done once a
+// Products and quotients of more than 64 bits, a bit at a time: for work that is done once a
 // lens, on CPUs that may have no division.
 
 #include <stdint.h>

@@ -1,20 +1,24 @@
 #pragma once
-// Lines of pixels on their way through a pass of the fixed-point filter: as many at once as
-// a vector has lanes, node i holding pixel i of each. Nodes go in block by block, kLanes at
-// once, and come out `reach` nodes later.
+// Lines of pixels on their way through a pass of the integer filter, kLanes lines at once: node
+// i holds pixel i of each. Nodes go in kLanes at a time, and come out `reach` nodes later.
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dof/fixed/fixed.h"
 
 namespace softfocus {
 
-// Weights as the kernels use them: two words for each depth code. Numbers of 20 bits are split
-// as 2^5 h + l, for products of 16 bits: h lies in the upper half of a word, l in its lowest 5
-// bits. The bits between hold the rest:
-//   first word   whole - edge; reach and side (kKeyShift); the upper 4 bits of the leakage;
-//                below 0 if the leakage is 1
-//   second word  edge; the leakage's lower 11 bits; below 0 if the pixel is nearly sharp: its
-//                leakage is less than 1, or it reaches nothing
+// Weights as the kernels use them: two words for each depth code. A weight w of 20 bits is
+// split as 2^5 h + l, for products of 16 bits.
+//
+//   bits      31            30 .. 16    15 .. 12      11 .. 5        4 .. 0
+//   inner     leakage is 1  h           leakage >> 11 reach, beyond  l        w = whole - edge
+//   edge      nearly sharp  h           leakage: its lower 11 bits   l        w = edge
+//
+// A pixel is nearly sharp if its leakage is below 1 or it reaches nothing.
 
 inline constexpr int kSplitBits = 5;
 inline constexpr std::int32_t kSplitMask = 0x7FFF001F;
@@ -25,18 +29,18 @@ inline constexpr int kLeakBitsThere = 11;
 inline constexpr std::int32_t kLeaksAll = INT32_MIN;
 inline constexpr std::int32_t kNearlySharp = INT32_MIN;
 
-// What a node's colours take, and a sum of its weight and colours, in vectors.
+// Vectors that a node's colours take, and a sum of weights and colours.
 
 inline constexpr int kSmallColourWords = 1, kSmallSumVectors = 4;  ///< colours of 10 bits
 inline constexpr int kHalfColourWords = 2, kHalfSumVectors = 7;    ///< RGBA16F
 
-/// Nodes lie in a ring, as their numbers say modulo `node_slots`, sums at nodes in another.
-/// Sums are kept for either side of the focus: a slot is two of them.
+/// Node i lies in slot i modulo `node_slots`, the sums at node i in slot i modulo `sum_slots`.
+/// A slot of sums is two: nearer than the focus, and beyond it.
 struct FixedLine {
   int reach;               ///< no pixel reaches farther
   unsigned node_slots;     ///< a power of two, at least reach + kLanes
   unsigned sum_slots;      ///< a power of two, at least 2 reach + 2
-  std::uint32_t* colours;  ///< in the words of fixed_colours.inl or fixed_half_colours.inl
+  std::uint32_t* colours;  ///< in the words of fixed_colours.inl
   std::int32_t* inners;    ///< the table's words for a node
   std::int32_t* edges;
   std::uint32_t* sums;     ///< differences along the line
@@ -44,9 +48,9 @@ struct FixedLine {
   int touched[2];          ///< the last node that differences on this side go to
 };
 
-/// A part of a picture that a thread filters in one go, and how; strides in bytes.
+/// The part of a picture that a task filters, and how. Strides are in bytes.
 struct FixedStrip {
-  const std::int32_t* words;    ///< two for each code
+  const std::int32_t* words;    ///< weight_words()
   int width, height;            ///< of the picture
   const std::uint8_t* picture;  ///< RGBA8 or RGBA16F
   std::ptrdiff_t picture_stride;
@@ -54,13 +58,31 @@ struct FixedStrip {
   int code_bytes;
   std::uint8_t* result;  ///< in the format of the picture
   std::ptrdiff_t result_stride;
-  bool past_caches;  ///< writes it past the caches
+  bool past_caches;  ///< write_past_caches() of the result
 
   int x_begin, x_end, y_begin, y_end;  ///< x_begin and y_begin multiples of the lanes
   int halo;                            ///< the reach in whole vectors
   FixedLine across;
   FixedLine* down;        ///< one for each vector of columns
-  std::uint32_t* passed;  ///< what comes out of `across`: colours for each column
+  std::uint32_t* passed;  ///< colours that come out of `across`, column by column
 };
+
+/// How much memory lines have, from the reach and the unit's lanes.
+struct LineShape {
+  int reach, lanes;
+  unsigned node_slots, sum_slots;
+  unsigned colour_words, slot_vectors;
+};
+
+LineShape line_shape(int reach, int lanes, bool halves);
+
+/// 32-bit numbers of memory that a line takes.
+std::size_t numbers_of(const LineShape& shape);
+
+/// A line in that memory.
+FixedLine line_at(std::uint32_t* memory, const LineShape& shape);
+
+/// The kernels' words of a table, two for each code.
+std::vector<std::int32_t> weight_words(std::span<const fixed::Weights> table);
 
 }  // namespace softfocus

@@ -1,3 +1,5 @@
+#ifndef SOFTFOCUS_ISA
+
 #include "dof/fixed_pictures/fixed_two_pass.h"
 
 #include <algorithm>
@@ -6,58 +8,100 @@
 #include <numeric>
 #include <utility>
 
-#include "dof/fixed/weights.h"
 #include "dof/fixed_pictures/fixed_line.h"
-#include "dof/fixed_pictures/fixed_rows.h"
 #include "dof/focus_map.h"
 #include "dof/two_pass/two_pass_strip.h"
 #include "raster/threads/scratch_shelf.h"
 
-#define SOFTFOCUS_KERNELS "dof/fixed_pictures/fixed_two_pass_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/fixed_pictures/fixed_two_pass.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {
 
-// A strip's lines should stay in a core's second cache, of 2 MiB on what was measured, with
-// room for the picture beside them. Between these bounds: fewer columns or rows, and too much
-// of a strip is what lies around it.
+// --- scalar: the rows of dof/fixed, in strips with the rows above and below that reach them ---
+
+struct RowFilter {
+  const ConstImageView& picture;
+  const std::uint8_t* codes;
+  std::size_t code_bytes;
+  const fixed::Weights* table;
+  fixed::Settings settings;  // of the whole picture
+  const ImageView& result;
+};
+
+const std::byte* bytes_of(const ConstImageView& image, int y) {
+  return image.texels + y * image.stride_bytes;
+}
+std::byte* bytes_of(const ImageView& image, int y) { return image.texels + y * image.stride_bytes; }
+
+void filter_rows(const RowFilter& filter, int y_begin, int y_end) {
+  const int first = std::max(y_begin - filter.settings.reach, 0);
+  const int last = std::min(y_end + filter.settings.reach, filter.picture.height);
+  fixed::Settings settings = filter.settings;
+  settings.height = static_cast<std::uint16_t>(last - first);
+  std::vector<std::uint32_t> memory(fixed::memory_bytes(settings) / sizeof(std::uint32_t) + 1);
+  std::vector<std::byte> unwanted(bytes_per_texel(filter.result.format) *
+                                  static_cast<std::size_t>(filter.result.width));
+  fixed::Stream stream;
+  const auto begin = settings.colour == SOFTFOCUS_FIXED_RGBA16F ? softfocus_fixed_begin_half
+                                                                : softfocus_fixed_begin;
+  [[maybe_unused]] const int error =
+      begin(&stream, &settings, filter.table, memory.data(), memory.size() * sizeof(std::uint32_t));
+  assert(error == 0);
+  int out = first;
+  const auto place = [&] {
+    return out >= y_begin && out < y_end ? bytes_of(filter.result, out) : unwanted.data();
+  };
+  for (int y = first; y < last; ++y) {
+    const std::size_t code = static_cast<std::size_t>(y) * settings.width * filter.code_bytes;
+    out += softfocus_fixed_put_row(
+        &stream, static_cast<std::uint32_t>(y - first), bytes_of(filter.picture, y),
+        filter.codes != nullptr ? filter.codes + code : nullptr, place());
+  }
+  while (out < y_end && softfocus_fixed_finish_row(&stream, place()) == 1) ++out;
+}
+
+void fixed_two_pass_scalar(const ConstImageView& picture, softfocus_fixed_depth depth,
+                           const void* codes, std::span<const fixed::Weights> table,
+                           const ImageView& result, ThreadPool& pool) {
+  const bool bytes = picture.format == Format::rgba8;
+  assert(bytes || picture.format == Format::rgba16f);
+  int reach = 0;
+  for (const fixed::Weights& weights : table) reach = std::max(reach, int{weights.reach});
+  const RowFilter filter{
+      picture,
+      static_cast<const std::uint8_t*>(codes),
+      depth == SOFTFOCUS_FIXED_DEPTH8 ? std::size_t{1} : std::size_t{2},
+      table.data(),
+      {static_cast<std::uint16_t>(picture.width), static_cast<std::uint16_t>(picture.height),
+       static_cast<std::uint8_t>(reach),
+       static_cast<std::uint8_t>(bytes ? SOFTFOCUS_FIXED_RGBA8 : SOFTFOCUS_FIXED_RGBA16F),
+       static_cast<std::uint8_t>(depth)},
+      result};
+  // Strips much higher than the rows around them, and enough for all threads.
+  const int rows =
+      std::max(4 * reach + 16, (picture.height + 4 * pool.threads() - 1) / (4 * pool.threads()));
+  pool.for_each((picture.height + rows - 1) / rows, [&](int strip) {
+    filter_rows(filter, strip * rows, std::min((strip + 1) * rows, picture.height));
+  });
+}
+
+// --- lanes: strips of columns, kLanes lines at once ---
+
+// A strip's lines should stay in a core's second cache (2 MiB where this was measured), with
+// room for the picture beside them. With fewer columns or rows than these, too much of a strip
+// is its surroundings.
 constexpr std::size_t kLinesBytes = std::size_t{3} << 19;
 constexpr int kMostColumns = 512;
 constexpr int kLeastColumns = 128;
 constexpr int kLeastRows = 128;
 
-std::int32_t split(std::uint32_t weight) {
-  return static_cast<std::int32_t>((weight >> kSplitBits) << 16 |
-                                   (weight & ((1u << kSplitBits) - 1)));
-}
-
-/// What a thread filters strips in.
+// The memory that a task filters a strip in.
 struct StripMemory {
   std::vector<std::uint32_t, RowAllocator<std::uint32_t>> numbers;
   std::vector<FixedLine> down;
 };
-
-struct LineShape {
-  int reach, lanes;
-  unsigned node_slots, sum_slots;
-  unsigned colour_words, slot_vectors;
-};
-
-LineShape line_shape(int reach, int lanes, bool halves) {
-  return {reach,
-          lanes,
-          std::bit_ceil(static_cast<unsigned>(reach + lanes)),
-          std::bit_ceil(static_cast<unsigned>(2 * reach + 2)),
-          static_cast<unsigned>(halves ? kHalfColourWords : kSmallColourWords),
-          2u * static_cast<unsigned>(halves ? kHalfSumVectors : kSmallSumVectors)};
-}
-
-std::size_t numbers_of(const LineShape& shape) {
-  return ((2 + std::size_t{shape.colour_words}) * shape.node_slots +
-          std::size_t{shape.slot_vectors} * (shape.sum_slots + std::size_t{1})) *
-         static_cast<std::size_t>(shape.lanes);
-}
 
 int columns_of_strip(const LineShape& shape) {
   const std::size_t lines = kLinesBytes / (numbers_of(shape) * sizeof(std::uint32_t));
@@ -65,35 +109,14 @@ int columns_of_strip(const LineShape& shape) {
                     kMostColumns);
 }
 
-FixedLine line_at(std::uint32_t* memory, const LineShape& shape) {
-  const auto lanes = static_cast<std::size_t>(shape.lanes);
-  const auto take = [&memory, lanes](std::size_t vectors) {
-    std::uint32_t* part = memory;
-    memory += vectors * lanes;
-    return part;
-  };
-  const auto take_signed = [&take](std::size_t vectors) {
-    return reinterpret_cast<std::int32_t*>(take(vectors));
-  };
-  return {shape.reach,
-          shape.node_slots,
-          shape.sum_slots,
-          take(std::size_t{shape.colour_words} * shape.node_slots),
-          take_signed(shape.node_slots),
-          take_signed(shape.node_slots),
-          take(std::size_t{shape.slot_vectors} * shape.sum_slots),
-          take(shape.slot_vectors),
-          {0, 0}};
-}
-
 int rounded_up(int value, int step) { return (value + step - 1) / step * step; }
 
-/// Gives the strip its lines.
+// Gives the strip its lines.
 void lay_out(FixedStrip& strip, StripMemory& memory, const LineShape& shape) {
   const int lanes = shape.lanes;
   strip.halo = rounded_up(shape.reach, lanes);
   const int blocks = (strip.x_end - strip.x_begin + lanes - 1) / lanes;
-  // Nodes come out from `reach` before the halo to `reach` before the end of the other.
+  // The first node comes out `reach` before the left halo, and nothing reads it.
   const std::size_t node = static_cast<std::size_t>(lanes) * shape.colour_words;
   const std::size_t before = static_cast<std::size_t>(strip.halo + shape.reach) * node;
   const std::size_t passed = before + static_cast<std::size_t>(blocks * lanes + strip.halo) * node;
@@ -108,11 +131,11 @@ void lay_out(FixedStrip& strip, StripMemory& memory, const LineShape& shape) {
   strip.down = memory.down.data();
 }
 
-void filter_in_lanes(const FixedStrip& whole, int reach, bool halves, ThreadPool& pool) {
+void fixed_two_pass_lanes(const FixedStrip& whole, int reach, bool halves, ThreadPool& pool) {
   const LineShape shape = line_shape(reach, lanes_of(pool.isa()), halves);
   const int columns = columns_of_strip(shape);
   const int across = (whole.width + columns - 1) / columns;
-  // What a part takes hardly depends on what is in it: as many for one thread as for another.
+  // All parts cost about the same, so every thread gets as many.
   const int wanted = pool.threads() / std::gcd(pool.threads(), across);
   const int rows =
       std::max(rounded_up((whole.height + wanted - 1) / wanted, shape.lanes), kLeastRows);
@@ -135,14 +158,14 @@ void filter_in_lanes(const FixedStrip& whole, int reach, bool halves, ThreadPool
   });
 }
 
-/// `codes` are null if they are the picture's alpha.
+// `codes` are null if they are the picture's alpha.
 void filter(const ConstImageView& picture, const void* codes, softfocus_fixed_depth depth,
             const FixedTable& table, const ImageView& result, ThreadPool& pool) {
   const bool halves = picture.format == Format::rgba16f;
   assert(halves || (picture.format == Format::rgba8 && codes != nullptr));
   assert(result.format == picture.format);
   if (pool.isa() == Isa::scalar) {
-    fixed_two_pass_rows(picture, depth, codes, table.weights, result, pool);
+    fixed_two_pass_scalar(picture, depth, codes, table.weights, result, pool);
     return;
   }
   FixedStrip whole{};
@@ -156,22 +179,15 @@ void filter(const ConstImageView& picture, const void* codes, softfocus_fixed_de
   whole.result = reinterpret_cast<std::uint8_t*>(result.texels);
   whole.result_stride = result.stride_bytes;
   whole.past_caches = write_past_caches(result);
-  filter_in_lanes(whole, table.reach, halves, pool);
+  fixed_two_pass_lanes(whole, table.reach, halves, pool);
 }
 
 }  // namespace
 
 FixedTable fixed_table(std::vector<fixed::Weights> weights) {
   FixedTable table{std::move(weights), {}};
-  table.words.reserve(2 * table.weights.size());
+  table.words = weight_words(table.weights);
   for (const fixed::Weights& entry : table.weights) {
-    const int key = entry.reach << 1 | entry.beyond;
-    const int leak = entry.leak & (fixed::kLeakOne - 1);
-    table.words.push_back(split(entry.whole - entry.edge) | key << kKeyShift |
-                          leak >> kLeakBitsThere << (kKeyShift + 7) |
-                          (entry.leak == fixed::kLeakOne ? kLeaksAll : 0));
-    table.words.push_back(split(entry.edge) | (leak & ((1 << kLeakBitsThere) - 1)) << kLeakShift |
-                          (entry.leak < fixed::kLeakOne || entry.reach == 0 ? kNearlySharp : 0));
     table.reach = std::max(table.reach, int{entry.reach});
   }
   return table;
@@ -196,3 +212,309 @@ void fixed_two_pass(const ConstImageView& picture, const FixedTable& table, cons
 }
 
 }  // namespace softfocus
+
+#else  // Both passes, once a vector unit.
+
+namespace {
+
+#include "dof/fixed_pictures/fixed_line.inl"
+
+// The word of four bytes r, g, b, a.
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+inline constexpr std::uint32_t kAlphaByte = 0x000000FFu;
+SOFTFOCUS_INLINE Bits colours_from_bytes(Bits word) {
+  return (word >> 22 & 0x3FCu) | (word >> 4 & 0xFF000u) | (word << 14 & 0x3FC00000u);
+}
+SOFTFOCUS_INLINE Bits bytes_from_colours(Bits colour) {
+  return colour << 24 | (colour & 0xFF00u) << 8 | (colour >> 8 & 0xFF00u);
+}
+#else
+inline constexpr std::uint32_t kAlphaByte = 0xFF000000u;
+SOFTFOCUS_INLINE Bits colours_from_bytes(Bits word) {
+  return (word & 0xFFu) << 2 | (word & 0xFF00u) << 4 | (word & 0xFF0000u) << 6;
+}
+SOFTFOCUS_INLINE Bits bytes_from_colours(Bits colour) { return colour; }
+#endif
+
+using Bytes [[gnu::vector_size(SOFTFOCUS_LANES)]] = std::uint8_t;
+using Shorts [[gnu::vector_size(2 * SOFTFOCUS_LANES)]] = std::uint16_t;
+
+/// kLanes numbers of a row, at any address, from x on. Past its ends the row repeats its
+/// outermost numbers.
+template <class Vector, class Number>
+SOFTFOCUS_INLINE Vector load_repeating(const void* row, int x, int width) {
+  constexpr auto kBytes = static_cast<std::ptrdiff_t>(sizeof(Number));
+  const auto* bytes = static_cast<const std::uint8_t*>(row);
+  Number numbers[kLanes];
+  const void* from = bytes + kBytes * x;
+  if (x < 0 || x + kLanes > width) {
+    for (int i = 0; i < kLanes; ++i) {
+      const int inside = x + i < 0 ? 0 : x + i < width ? x + i : width - 1;
+      std::memcpy(numbers + i, bytes + kBytes * inside, sizeof(Number));
+    }
+    from = numbers;
+  }
+  Vector vector;
+  std::memcpy(&vector, from, sizeof vector);
+  return vector;
+}
+
+SOFTFOCUS_INLINE int row_inside(const FixedStrip& strip, int y) {
+  return y < 0 ? 0 : y < strip.height ? y : strip.height - 1;
+}
+
+// Rows lie too far apart for the hardware's prefetcher.
+SOFTFOCUS_INLINE void fetch_ahead(const FixedStrip& strip, int x, int y, int pixel_bytes) {
+  const std::ptrdiff_t ahead = x + 2 * kLanes;
+  __builtin_prefetch(strip.picture + y * strip.picture_stride + pixel_bytes * ahead);
+  if (strip.codes == nullptr) return;
+  __builtin_prefetch(static_cast<const std::uint8_t*>(strip.codes) +
+                     (static_cast<std::ptrdiff_t>(y) * strip.width + ahead) * strip.code_bytes);
+}
+
+SOFTFOCUS_INLINE Ints codes_at(const FixedStrip& strip, int x, int y) {
+  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(y) * strip.width;
+  if (strip.code_bytes == 1) {
+    const auto* row = static_cast<const std::uint8_t*>(strip.codes) + first;
+    return __builtin_convertvector(load_repeating<Bytes, std::uint8_t>(row, x, strip.width), Ints);
+  }
+  const auto* row = static_cast<const std::uint16_t*>(strip.codes) + first;
+  return __builtin_convertvector(load_repeating<Shorts, std::uint16_t>(row, x, strip.width), Ints);
+}
+
+/// Turns words of kLanes rows into words of kLanes nodes along x, `step` vectors apart.
+template <class Vector, class Number>
+SOFTFOCUS_INLINE void store_transposed(const FixedLine& line, Vector (&rows)[kLanes], Number* words,
+                                       int step, int x) {
+  transpose(rows);
+#pragma GCC unroll 16
+  for (int i = 0; i < kLanes; ++i) store(words + step * node_at(line, x + i), rows[i]);
+}
+
+// --- pictures of either format ---
+
+struct BytePixels : SmallColours {
+  SOFTFOCUS_INLINE static Bits pixels_at(const FixedStrip& strip, int x, int y) {
+    const std::uint8_t* row = strip.picture + y * strip.picture_stride;
+    return load_repeating<Bits, std::uint32_t>(row, x, strip.width);
+  }
+
+  SOFTFOCUS_INLINE static Ints codes(const FixedStrip& strip, int x, int y, const Bits&) {
+    return codes_at(strip, x, y);
+  }
+
+  /// Turns colours of kLanes rows into nodes.
+  SOFTFOCUS_INLINE static void load_colours(const FixedStrip& strip, int x, int y, Bits*) {
+    Bits colours[kLanes];
+#pragma GCC unroll 16
+    for (int i = 0; i < kLanes; ++i) {
+      const int row = row_inside(strip, y + i);
+      fetch_ahead(strip, x, row, 4);
+      colours[i] = colours_from_bytes(pixels_at(strip, x, row));
+    }
+    store_transposed(strip.across, colours, strip.across.colours, 1, x);
+  }
+
+  /// Writes `count` pixels, `words` from the second pass.
+  SOFTFOCUS_INLINE static void store_pixels(const FixedStrip& strip, int x, int y, int count,
+                                            const std::uint32_t* words) {
+    const Bits alpha = pixels_at(strip, x, y) & kAlphaByte;
+    const Bits pixels = bytes_from_colours(load(words)) | alpha;
+    std::uint8_t* to = strip.result + y * strip.result_stride + 4 * x;
+    if (count == kLanes && strip.past_caches) {
+      stream_bits(to, pixels);
+    } else if (count == kLanes) {
+      std::memcpy(to, &pixels, sizeof pixels);
+    } else {
+      std::memcpy(to, &pixels, 4 * static_cast<std::size_t>(count));
+    }
+  }
+};
+
+struct HalfPixels : HalfColours {
+  SOFTFOCUS_INLINE static HalfTexels pixels_at(const FixedStrip& strip, int x, int y) {
+    const auto* row =
+        reinterpret_cast<const std::uint16_t*>(strip.picture + y * strip.picture_stride);
+    if (x >= 0 && x + kLanes <= strip.width) return load_half_texels(row + 4 * x);
+    std::uint16_t halves[4 * kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      const int inside = x + i < 0 ? 0 : x + i < strip.width ? x + i : strip.width - 1;
+      std::memcpy(halves + 4 * i, row + 4 * inside, 4 * sizeof(std::uint16_t));
+    }
+    return load_half_texels(halves);
+  }
+
+  /// Infinities count as the largest half, NaN as 0.
+  SOFTFOCUS_INLINE static Bits finite(Bits half) {
+    const Bits magnitude = half & 0x7FFFu;
+    return select(magnitude > kHalfInfinity, splat(0u),
+                  select(magnitude == std::uint32_t{kHalfInfinity}, half - 1u, half));
+  }
+
+  SOFTFOCUS_INLINE static Ints codes(const FixedStrip& strip, int x, int y, const Bits& alpha) {
+    return strip.codes != nullptr ? codes_at(strip, x, y) : as_ints(alpha);
+  }
+
+  /// Turns colours of kLanes rows into nodes. Stores their alpha, a vector a row: it may be the
+  /// codes.
+  SOFTFOCUS_INLINE static void load_colours(const FixedStrip& strip, int x, int y, Bits* alpha) {
+    Bits rg[kLanes], b[kLanes];
+#pragma GCC unroll 16
+    for (int i = 0; i < kLanes; ++i) {
+      const int row = row_inside(strip, y + i);
+      fetch_ahead(strip, x, row, 8);
+      HalfTexels texels = pixels_at(strip, x, row);
+      // True of all that is not finite, and rarely of anything else.
+      if (any(((texels.r | texels.g | texels.b) & std::uint32_t{kHalfInfinity}) ==
+              std::uint32_t{kHalfInfinity})) {
+        texels.r = finite(texels.r);
+        texels.g = finite(texels.g);
+        texels.b = finite(texels.b);
+      }
+      rg[i] = texels.r | texels.g << 16;
+      b[i] = texels.b;
+      alpha[i] = texels.a;
+    }
+    store_transposed(strip.across, rg, strip.across.colours, kWords, x);
+    store_transposed(strip.across, b, strip.across.colours + kLanes, kWords, x);
+  }
+
+  SOFTFOCUS_INLINE static void store_pixels(const FixedStrip& strip, int x, int y, int count,
+                                            const std::uint32_t* words) {
+    const Bits rg = load(words);
+    const TexelWords pixels = interleave(
+        HalfTexels{rg & 0xFFFFu, rg >> 16, load(words + kLanes), pixels_at(strip, x, y).a});
+    std::uint8_t* row = strip.result + y * strip.result_stride;
+    auto* to = reinterpret_cast<std::uint16_t*>(row) + 4 * x;
+    if (count == kLanes && strip.past_caches) {
+      stream_texel_words(to, pixels);
+    } else if (count == kLanes) {
+      store_texel_words(to, pixels);
+    } else {
+      std::memcpy(to, &pixels, 8 * static_cast<std::size_t>(count));
+    }
+  }
+};
+
+// --- the passes ---
+
+/// Makes nodes x to x + kLanes - 1 of the line along x from the kLanes rows from y on. The line
+/// along y, if there is one, gets their weights.
+template <class Pixels>
+void load_block(const FixedStrip& strip, int x, int y, FixedLine* down) {
+  Bits alpha[kLanes];
+  Pixels::load_colours(strip, x, y, alpha);
+  Ints inners[kLanes], edges[kLanes];
+#pragma GCC unroll 16
+  for (int i = 0; i < kLanes; ++i) {
+    const Ints codes = Pixels::codes(strip, x, row_inside(strip, y + i), alpha[i]);
+    const IntPairs words = gather_pairs(strip.words, codes);
+    inners[i] = words.first;
+    edges[i] = words.second;
+    if (down != nullptr) {
+      const int at = node_at(*down, y + i);
+      store(down->inners + at, inners[i]);
+      store(down->edges + at, edges[i]);
+    }
+  }
+  store_transposed(strip.across, inners, strip.across.inners, 1, x);
+  store_transposed(strip.across, edges, strip.across.edges, 1, x);
+}
+
+/// Copies node `like` to the `count` nodes from `first` on.
+template <class Pixels>
+SOFTFOCUS_INLINE void repeat_node(const FixedLine& line, int like, int first, int count) {
+  const std::uint32_t* colours = colours_at<Pixels>(line, like);
+  const Ints inner = load(line.inners + node_at(line, like));
+  const Ints edge = load(line.edges + node_at(line, like));
+  for (int node = first; node < first + count; ++node) {
+    for (int word = 0; word < Pixels::kWords; ++word) {
+      store(colours_at<Pixels>(line, node) + word * kLanes, load(colours + word * kLanes));
+    }
+    store(line.inners + node_at(line, node), inner);
+    store(line.edges + node_at(line, node), edge);
+  }
+}
+
+/// The first pass of the kLanes rows from y on: they become nodes of the lines along y.
+template <class Pixels>
+void filter_across_fixed(FixedStrip& strip, int y) {
+  constexpr int kStep = Pixels::kWords * kLanes;
+  begin_line<Pixels>(strip.across);
+  const int columns = strip.x_end - strip.x_begin;
+  const int end = strip.x_begin + (columns + kLanes - 1) / kLanes * kLanes;
+  int loaded_to = strip.x_begin - strip.halo;
+  if (strip.x_begin == 0) {
+    load_block<Pixels>(strip, 0, y, strip.down);
+    repeat_node<Pixels>(strip.across, 0, -strip.halo, strip.halo);
+    loaded_to = kLanes;
+  }
+  for (int x = strip.x_begin - strip.halo; x < end + strip.halo; x += kLanes) {
+    if (x >= strip.width) {
+      repeat_node<Pixels>(strip.across, x - 1, x, kLanes);
+    } else if (x >= loaded_to) {
+      const bool inside = x >= strip.x_begin && x < end;
+      load_block<Pixels>(strip, x, y, inside ? strip.down + (x - strip.x_begin) / kLanes : nullptr);
+    }
+    // Room for the nodes that come out before the strip begins lies before `passed`.
+    filter_nodes<Pixels, false>(strip.across, x, strip.x_begin,
+                                strip.passed + (x - strip.across.reach - strip.x_begin) * kStep);
+  }
+  for (int x = strip.x_begin; x < end; x += kLanes) {
+    const FixedLine& down = strip.down[(x - strip.x_begin) / kLanes];
+    for (int word = 0; word < Pixels::kWords; ++word) {
+      Bits colours[kLanes];
+#pragma GCC unroll 16
+      for (int i = 0; i < kLanes; ++i) {
+        colours[i] = load(strip.passed + (x - strip.x_begin + i) * kStep + word * kLanes);
+      }
+      store_transposed(down, colours, down.colours + word * kLanes, Pixels::kWords, y);
+    }
+  }
+}
+
+/// The second pass of the kLanes nodes from y on, in all columns. Stores the finished rows.
+template <class Pixels>
+void filter_down_fixed(FixedStrip& strip, int y) {
+  for (int x = strip.x_begin; x < strip.x_end; x += kLanes) {
+    FixedLine& line = strip.down[(x - strip.x_begin) / kLanes];
+    std::uint32_t out[kLanes * Pixels::kWords * kLanes];
+    filter_nodes<Pixels, true>(line, y, strip.y_begin, out);
+    const int inside = strip.x_end - x < kLanes ? strip.x_end - x : kLanes;
+    for (int i = 0; i < kLanes; ++i) {
+      const int row = y + i - line.reach;
+      if (row < strip.y_begin || row >= strip.y_end) continue;
+      Pixels::store_pixels(strip, x, row, inside, out + i * Pixels::kWords * kLanes);
+    }
+  }
+}
+
+template <class Pixels>
+SOFTFOCUS_INLINE void filter_strip(FixedStrip& strip) {
+  const int blocks = (strip.x_end - strip.x_begin + kLanes - 1) / kLanes;
+  for (int i = 0; i < blocks; ++i) begin_line<Pixels>(strip.down[i]);
+  int passed_to = strip.y_begin - strip.halo;
+  if (strip.y_begin == 0) {
+    filter_across_fixed<Pixels>(strip, 0);
+    for (int i = 0; i < blocks; ++i) {
+      repeat_node<Pixels>(strip.down[i], 0, -strip.halo, strip.halo);
+    }
+    passed_to = kLanes;
+  }
+  for (int y = strip.y_begin - strip.halo; y - strip.across.reach < strip.y_end; y += kLanes) {
+    if (y >= strip.height) {
+      for (int i = 0; i < blocks; ++i) repeat_node<Pixels>(strip.down[i], y - 1, y, kLanes);
+    } else if (y >= passed_to) {
+      filter_across_fixed<Pixels>(strip, y);
+    }
+    filter_down_fixed<Pixels>(strip, y);
+  }
+  if (strip.past_caches) finish_streaming();
+}
+
+}  // namespace
+
+void filter_strip_of_bytes(FixedStrip& strip) { filter_strip<BytePixels>(strip); }
+void filter_strip_of_halves(FixedStrip& strip) { filter_strip<HalfPixels>(strip); }
+
+#endif

@@ -1,41 +1,40 @@
 #pragma once
-// The fixed-point filter of dof/fixed for pictures that lie in memory as a whole, on threads
-// and vector units: the same bits as rows one by one (docs/fixed-point.md).
+// The integer filter of dof/fixed for whole pictures in memory, on threads and vector units: the
+// bits of the rows one by one (docs/fixed-point.md).
 //
-// In integers a sum does not depend on its order. So what a pixel adds to its neighbours
-// along a line is not added neighbour by neighbour: four differences go to where its weight
-// changes, and running sums along the line do the rest. The work does not grow with the
-// radius, only the memory that it goes through.
+// Sums of integers do not depend on their order. So a pixel is not added to each neighbour along
+// a line. Instead four differences are noted where its weight changes, and running sums along
+// the line do the rest: the work does not grow with the radius.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "dof/fixed/fixed.h"
 #include "dof/dof.h"
+#include "dof/fixed/fixed.h"
 #include "raster/images/image.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
 
-/// A table from softfocus_fixed_table8() and its like, of 256 or 65536 entries, in the form
-/// that vector lanes use. Made once a lens.
+/// A table of weights, from softfocus_fixed_table8() and the like, with the form of it that
+/// vector lanes use. Made once a lens.
 struct FixedTable {
-  std::vector<fixed::Weights> weights;
-  std::vector<std::int32_t> words;  ///< two for each code: dof/fixed_pictures/fixed_line.h
-  int reach = 0;                    ///< of the farthest
+  std::vector<fixed::Weights> weights;  ///< 256 or 65536, one for each code
+  std::vector<std::int32_t> words;      ///< weight_words() of fixed_line.h
+  int reach = 0;                        ///< the farthest of all entries, 0 to 63
 };
 FixedTable fixed_table(std::vector<fixed::Weights> weights);
 
-/// Filters an RGBA8 or RGBA16F picture of up to 16384 pixels a side into another image of its
-/// size and format. Codes of depth
-/// lie row by row without gaps; the table has an entry for each code of 8 or 16 bits. `scalar`
-/// runs the rows of dof/fixed.
+/// Filters an RGBA8 or RGBA16F picture into another of its size and format, which shares no
+/// memory with it. Colours are linear; alpha goes through. Codes of depth lie row by row without
+/// gaps. Needs a table of 256 entries for codes of 8 bits, of 65536 for 16 bits.
 void fixed_two_pass(const ConstImageView& picture, std::span<const std::uint8_t> codes,
                     const FixedTable& table, const ImageView& result, ThreadPool& pool);
 void fixed_two_pass(const ConstImageView& picture, std::span<const std::uint16_t> codes,
                     const FixedTable& table, const ImageView& result, ThreadPool& pool);
-/// The same with the alpha of RGBA16F for codes.
-void fixed_two_pass(const ConstImageView& picture, const FixedTable& table, const ImageView& result, ThreadPool& pool);
+/// RGBA16F whose alpha, as 16 bits, is the code.
+void fixed_two_pass(const ConstImageView& picture, const FixedTable& table, const ImageView& result,
+                    ThreadPool& pool);
 
 }  // namespace softfocus

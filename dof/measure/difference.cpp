@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cmath>
 #include <glm/vec3.hpp>
-#include <limits>
 
+#include "dof/measure/squared_error.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
 
@@ -62,9 +61,7 @@ Difference compare_images(const Image& a, const Image& b) {
       }
     }
   }
-  const double mean = squares / (3.0 * a.width * a.height);
-  difference.psnr_db =
-      mean > 0.0 ? -10.0 * std::log10(mean) : std::numeric_limits<double>::infinity();
+  difference.psnr_db = psnr_db(squares / (3.0 * a.width * a.height));
   return difference;
 }
 

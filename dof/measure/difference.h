@@ -26,8 +26,8 @@ struct Difference {
 /// Both RGBA16F and of one size.
 Difference compare_images(const Image& a, const Image& b);
 
-/// Black where the pictures are equal; where they differ, blue for 1 half-ULP over
-/// green and yellow to red for 2^15, on a logarithmic scale, by the pixel's largest.
+/// Black where the pictures are equal. Else the pixel's largest difference on a logarithmic
+/// scale: blue for 1 half-ULP, then green and yellow, to red for 2^15.
 Image difference_picture(const Image& a, const Image& b);
 
 }  // namespace softfocus

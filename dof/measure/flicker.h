@@ -1,5 +1,5 @@
 #pragma once
-// Flicker: change from frame to frame that the truth does not have.
+// Flicker: change from frame to frame that the ground truth does not have.
 
 #include <span>
 
@@ -17,10 +17,10 @@ struct FlickerStep {
 };
 
 /// Mean over pixels, red, green and blue of |(I_t - I_t-1) - (G_t - G_t-1)| on toned
-/// values: 0 where all that moves moves as in the truth, wrong as it may be; at most 2.
+/// values, 0 to 2. A picture that is wrong in the same way in both frames has 0.
 double flicker(const FlickerStep& step, const ToneTable& tone);
 
-/// The mean over all steps of a sequence of two frames or more. Needs as many of the truth.
+/// The mean over the steps of two frames or more, and as many of the ground truth.
 double flicker(std::span<const Image> frames, std::span<const Image> truth, const ToneTable& tone);
 
 }  // namespace softfocus

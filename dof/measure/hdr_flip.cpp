@@ -4,19 +4,11 @@
 #include <cassert>
 #include <cmath>
 
-#include "raster/numbers/half.h"
-
 namespace softfocus {
 namespace {
 
 constexpr double kShownAs = 0.85;
 constexpr double kLeastMedian = 0x1p-14;
-
-/// 0 to 65504, as ToneTable has it.
-double light(std::uint16_t half) {
-  const auto value = static_cast<double>(half_to_float(half));
-  return value > 0.0 ? std::min(value, 65504.0) : 0.0;
-}
 
 std::vector<double> luminances(const Image& image) {
   std::vector<double> values;
@@ -24,7 +16,8 @@ std::vector<double> luminances(const Image& image) {
   for (int y = 0; y < image.height; ++y) {
     const auto texels = row<std::uint16_t>(image, y);
     for (std::size_t i = 0; i < texels.size(); i += 4) {
-      values.push_back(luminance(light(texels[i]), light(texels[i + 1]), light(texels[i + 2])));
+      values.push_back(
+          luminance(half_light(texels[i]), half_light(texels[i + 1]), half_light(texels[i + 2])));
     }
   }
   return values;

@@ -8,8 +8,8 @@
 
 namespace softfocus {
 
-/// Red, green and blue, 0 to 1, sRGB-encoded, of a value; outside of 0 to 1 as the nearer end,
-/// NaN as 0. Black for 0 alone; luminance rises all the way, so that it reads in grey too.
+/// Red, green and blue of a value, 0 to 1, sRGB-encoded. Values are clamped to 0..1; NaN is 0.
+/// Luminance rises with the value, so that the map reads in grey too.
 std::array<double, 3> heat_colour(double value);
 
 /// RGBA16F, linear light, alpha 1.

@@ -12,7 +12,7 @@ MeasuredPictures measure_pictures(const Image& reference, const Image& test, con
   const ToneTable linear = clamped_tone();
   const ToneTable screen = srgb_encoded(linear);
 
-  // Takes a map's means to their places, so that no two maps are kept at a time.
+  // Puts a map's means in their places, so that one map is kept at a time.
   const auto spread = [&](const PixelMap& map, const auto& put) {
     put(result.whole, RegionMean{map.values.size(), mean(map)});
     if (labels == nullptr) return;

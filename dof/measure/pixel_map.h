@@ -1,6 +1,5 @@
 #pragma once
-// A number for each pixel: what a measure says of every place of a picture, before it is
-// averaged over the whole of it or over a region.
+// A number for each pixel: a measure before it is averaged over the picture or a region.
 
 #include <cstddef>
 #include <span>

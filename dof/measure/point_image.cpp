@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "dof/measure/tone.h"
-#include "raster/numbers/half.h"
 
 namespace softfocus {
 namespace {
@@ -16,15 +15,12 @@ namespace {
 template <class Take>
 void for_each_luminance(const Image& image, const Take& take) {
   assert(image.format == Format::rgba16f);
-  const auto light = [](std::uint16_t half) {
-    const auto value = static_cast<double>(half_to_float(half));
-    return value > 0.0 ? std::min(value, 65504.0) : 0.0;
-  };
   for (int y = 0; y < image.height; ++y) {
     const auto texels = row<std::uint16_t>(image, y);
     for (int x = 0; x < image.width; ++x) {
       const auto i = 4 * static_cast<std::size_t>(x);
-      take(x, y, luminance(light(texels[i]), light(texels[i + 1]), light(texels[i + 2])));
+      take(x, y,
+           luminance(half_light(texels[i]), half_light(texels[i + 1]), half_light(texels[i + 2])));
     }
   }
 }
@@ -48,7 +44,7 @@ PointShape point_shape(const Image& image) {
   shape.centre_x_px /= shape.energy;
   shape.centre_y_px /= shape.energy;
 
-  // A second round, for the difference of large sums would lose what is asked for.
+  // A second round: the difference of large sums would lose the digits.
   double xx = 0.0, xy = 0.0, yy = 0.0;
   for_each_luminance(image, [&](int x, int y, double light) {
     const double dx = x + 0.5 - shape.centre_x_px;

@@ -1,6 +1,6 @@
 #pragma once
-// The picture that a method makes of one bright point on black: how much of its light is
-// left, and how much of a disc it is.
+// A method's picture of one bright point on black: how much of its light is left, and how close
+// it is to a disc.
 
 #include "raster/images/image.h"
 
@@ -16,9 +16,8 @@ struct PointShape {
   double energy = 0.0;
   double centre_x_px = 0.0;  ///< the pixel (0, 0) has its centre at (0.5, 0.5)
   double centre_y_px = 0.0;
-  /// The smaller eigenvalue of the matrix of second moments over the larger: 1 for what is
-  /// equally wide in all directions (a disc, but a square too), towards 0 for a line. 1 for
-  /// a single pixel.
+  /// The smaller eigenvalue of the matrix of second moments over the larger: 1 for a shape
+  /// equally wide in all directions (a disc, a square, a single pixel), towards 0 for a line.
   double eigenvalue_ratio = 1.0;
   /// Of the disc with these moments: sqrt(2 (larger + smaller)).
   double radius_px = 0.0;
@@ -29,7 +28,7 @@ PointShape point_shape(const Image& image);
 
 /// How far a point's image is from the disc of `radius_px` > 0 about its centre that holds
 /// the same light: the root of sum((image - disc)^2) / sum(disc^2). 0 for the disc, 1 for an
-/// image that spreads its light thinly over everything. What is no point's image has NaN.
+/// image that spreads its light thinly over everything; NaN for a black image.
 double disc_deviation(const Image& image, double radius_px);
 
 /// The part of the pixel (x, y) that a disc covers, 0 to 1, from 16x16 points of it.

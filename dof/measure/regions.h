@@ -1,6 +1,6 @@
 #pragma once
-// Where in a picture depth of field fails in which way: a label for each pixel, from its
-// depth and the lens. A mean over the whole picture hides every failure.
+// A label for each pixel, from its depth and the lens: depth of field fails differently in each
+// region, and a mean over the whole picture hides it.
 
 #include <array>
 #include <cstdint>
@@ -32,10 +32,10 @@ std::string_view region_name(Region region);
 inline constexpr float kFocusRadiusPx = 1.0f;
 
 /// Two neighbours whose signed radii differ by more are two sides of an edge in depth. No
-/// slope that a lens sees does that; two surfaces whose blur is alike are no trouble.
+/// slope has such a step, and two surfaces of like blur need no edge.
 inline constexpr float kEdgeStepPx = 1.0f;
 
-/// Whether a depth, in metres, can be told a region: above 0, infinity too.
+/// Whether a depth in metres has a region: above 0, infinity too.
 inline bool is_depth(float depth_m) { return depth_m > 0.0f; }
 
 /// A label, of Region, for each pixel of an RGBA16F picture with depths in alpha: an image
@@ -44,7 +44,7 @@ inline bool is_depth(float depth_m) { return depth_m > 0.0f; }
 /// edge. The rest is in focus, near or far by its own radius. Needs is_depth() everywhere.
 Image label_regions(const Image& scene, const PixelCoc& coc);
 
-/// For each region the mean of a map and the pixels that it was taken over.
+/// The mean of a map over a region, and the number of its pixels.
 struct RegionMean {
   std::uint64_t pixels = 0;
   double mean = 0.0;  ///< NaN where there are no pixels

@@ -1,7 +1,6 @@
 #pragma once
-// Filters that are a pass along rows and a pass along columns, on strips of a picture:
-// a strip with its margins stays in a core's cache, and no plane of the whole picture is
-// kept but the result.
+// Filters in two passes, along rows and along columns, on strips of a picture: a strip with its
+// margins stays in a core's cache.
 
 #include <functional>
 #include <span>
@@ -21,7 +20,7 @@ struct FilterTaps {
 /// exp(-x^2 / (2 sigma^2)), summing to 1.
 FilterTaps gaussian_taps(double sigma_px, int radius);
 
-/// Where a strip lies, and how far what is filtered must reach past it on all sides.
+/// Where a strip lies, and how far the filter reads past it on all sides.
 struct Strip {
   int first_row;
   int rows;
@@ -48,7 +47,7 @@ void fill_margins(PixelMap& map, const Strip& strip);
 /// A strip's map filtered along its rows, without the left and right margin.
 PixelMap filtered_along(const PixelMap& map, const Strip& strip, const FilterTaps& taps);
 
-/// That, filtered along its columns, without the margin above and below: the strip.
+/// That map filtered along its columns, without the margin above and below.
 PixelMap filtered_down(const PixelMap& map, const Strip& strip, const FilterTaps& taps);
 
 }  // namespace softfocus

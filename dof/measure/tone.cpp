@@ -20,14 +20,18 @@ template <class Curve>
 ToneTable tabulated(const Curve& curve) {
   ToneTable table(0x10000);
   for (std::size_t bits = 0; bits < table.size(); ++bits) {
-    const auto light = static_cast<double>(half_to_float(static_cast<std::uint16_t>(bits)));
-    // A NaN compares as false.
-    table[bits] = light > 0.0 ? std::clamp(curve(std::min(light, 65504.0)), 0.0, 1.0) : 0.0;
+    const double light = half_light(static_cast<std::uint16_t>(bits));
+    table[bits] = light > 0.0 ? std::clamp(curve(light), 0.0, 1.0) : 0.0;
   }
   return table;
 }
 
 }  // namespace
+
+double half_light(std::uint16_t half) {
+  const auto light = static_cast<double>(half_to_float(half));
+  return light > 0.0 ? std::min(light, 65504.0) : 0.0;  // NaN compares as false
+}
 
 ToneTable clamped_tone() {
   return tabulated([](double light) { return light; });

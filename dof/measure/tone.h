@@ -1,9 +1,6 @@
 #pragma once
-// What becomes of the light in a picture before it is measured: clamped, or put through a
-// film's curve, and encoded as a screen wants it.
-//
-// A half has only 65,536 values, so that any such curve is a table, and a curve of many
-// operations costs no more than a simple one.
+// Curves that a picture's light goes through before it is measured: clamped or a film's, and
+// perhaps encoded for a screen. A half has 65,536 values, so every curve is a table.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,9 +12,12 @@ namespace softfocus {
 /// NaN and what is below 0 count as 0.
 using ToneTable = std::vector<double>;
 
+/// The light of a half, 0 to 65504, as a table's curve gets it.
+double half_light(std::uint16_t half);
+
 inline double toned(const ToneTable& table, std::uint16_t half) { return table[half]; }
 
-/// Light as it is, clamped to 1: what a PNG of this program keeps.
+/// Light clamped to 1, as a PNG of this program keeps it.
 ToneTable clamped_tone();
 
 /// Light times 2^`exposure_stops` through Narkowicz's fit of the ACES film curve (2016),
@@ -31,8 +31,7 @@ ToneTable filmic_tone(double exposure_stops = 0.0);
 /// positive root of the quadratic.
 double filmic_inverse(double value);
 
-/// The same light as a screen is given it: through the sRGB curve (IEC 61966-2-1), in
-/// which equal steps look about equal.
+/// The table followed by the sRGB curve (IEC 61966-2-1), on which equal steps look about equal.
 ToneTable srgb_encoded(ToneTable table);
 
 /// Luminance of linear light and, on encoded values, the luma that stands for it (BT.709).

@@ -18,10 +18,6 @@
 namespace softfocus {
 namespace {
 
-constexpr int kMostLanes = 16;
-
-int lanes_of(Isa isa) { return isa == Isa::avx512 ? 16 : isa == Isa::avx2 ? 8 : 4; }
-
 float heat_flow(float radius_px) {
   return std::fabs(radius_px) > 0.5f ? radius_px * radius_px * 0.125f : 0.0f;
 }

@@ -1,17 +1,18 @@
 #pragma once
-// The one-pass filter with circular sampling (the thesis, 5.1): the weights of
-// weights.h over rings around the centre, in a single pass. It is round where the
-// two-pass filter is boxy, and its cost grows with the square of the radius.
+// The one-pass filter with circular sampling (the thesis, 5.1): the weights of weights.h over
+// rings around the centre, in a single pass. It is round; the two-pass filter is boxy. Its
+// cost grows with the square of the radius.
 //
-// Ring k holds the texels whose distance from the centre, sqrt(dx^2 + dy^2), rounds to
-// k, so each texel of the disc is sampled exactly once and a bright point's image has
-// no holes (samples at even angles, rounded to texels, leave some out and take others
-// twice). A sample's d is its own distance, not its ring's.
+// Ring k holds the texels whose distance from the centre, sqrt(dx^2 + dy^2), rounds to k. So
+// each texel of the disc is sampled exactly once, and a bright point's image has no holes
+// (samples at even angles, rounded to texels, miss some texels and hit others twice). A
+// sample's d is its own distance, not its ring's.
 //
-// At pixel C, in binary32, with every tap outside the picture moved to its edge:
+// At pixel C, in binary32; taps outside the picture move to its edge:
 //   gather = C;  ring by ring, in a ring by dy, then dx: add C + (dx, dy);  resolve
 //
-// Known failures: circles larger than max_coc are cut; no partial occlusion.
+// Known failures: circles larger than max_coc are cut; a foreground hides what its blur should
+// let through (no partial occlusion).
 
 #include <vector>
 
@@ -29,9 +30,10 @@ struct RingTap {
 /// The samples nearer than `radius_px`, in the order in which they are added.
 std::vector<RingTap> ring_taps(float radius_px);
 
+/// The filter. Its cost grows with the square of the largest radius in the picture.
 void one_pass(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
-/// The oracle of one_pass: as a fragment shader would be written.
-void one_pass_plain(const DofInput& input, const ImageView& result, ThreadPool& pool);
+/// The oracle, equal to the bit: every tap is fetched from the picture, up to max_coc.
+void one_pass_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -13,6 +13,7 @@
 
 #include "dof/picture_planes.h"
 #include "dof/scatter/scatter_discs.h"
+#include "raster/images/image.h"
 #include "raster/threads/scratch_shelf.h"
 
 #define SOFTFOCUS_KERNELS "dof/scatter/scatter.cpp"

@@ -1,11 +1,11 @@
+#ifndef SOFTFOCUS_ISA
+
 #include "dof/two_pass/two_pass_strip.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "dof/weights.h"
-
-#define SOFTFOCUS_KERNELS "dof/two_pass/two_pass_kernels.inl"
+#define SOFTFOCUS_KERNELS "dof/two_pass/two_pass_strip.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -13,7 +13,7 @@ namespace {
 
 int round_up(int value, int step) { return (value + step - 1) / step * step; }
 
-// Nodes that vectors of extents and pairs of receivers may read past a line's end.
+// Vectors of extents and pairs of receivers read up to this many nodes past a line's end.
 constexpr int kPast = kMostLanes;
 
 int node_capacity(const StripShape& shape, int lanes, int batch) {
@@ -33,7 +33,7 @@ StripSizes strip_sizes(int lanes, const StripShape& shape, int batch) {
   sizes.along_x = static_cast<std::size_t>(2 * round_up(shape.reach, lanes) + columns + kPast);
   sizes.along_y = static_cast<std::size_t>(columns / lanes * capacity + kPast);
   const auto results = static_cast<std::size_t>(std::max(columns, capacity) + kPast);
-  // Eight vectors a node, a vector of depths for each along y, three for each result.
+  // Eight vectors a node, one of depths for a node along y, three for a result.
   sizes.vectors = (8 * sizes.along_x + 8 * sizes.along_y + sizes.along_y + 3 * results) * vector;
   sizes.extents = 3 * (sizes.along_x + sizes.along_y);
   return sizes;
@@ -47,7 +47,7 @@ float* place(GatherNodes& nodes, std::size_t count, int lanes, float* vectors,
   return vectors + 2 * half;
 }
 
-// Node `from` of every line along y, copied to nodes `begin` to `end` - 1.
+// Copies node `from` of every line along y to nodes `begin` to `end` - 1.
 void repeat_node(const Strip& strip, int lanes, int from, int begin, int end) {
   const std::size_t floats = 4 * static_cast<std::size_t>(lanes);
   for (int column = 0; column < strip.columns / lanes; ++column) {
@@ -64,7 +64,7 @@ void repeat_node(const Strip& strip, int lanes, int from, int begin, int end) {
   }
 }
 
-// Nodes that reach none, of any content.
+// Nodes that reach nothing; their colours do not matter.
 void blank_nodes(const Strip& strip, int lanes, int begin, int end) {
   for (int column = 0; column < strip.columns / lanes; ++column) {
     for (std::int32_t* extent : {strip.down.covers, strip.down.covers_all, strip.down.touches}) {
@@ -74,7 +74,7 @@ void blank_nodes(const Strip& strip, int lanes, int begin, int end) {
   }
 }
 
-// Forgets the nodes that no row to come can reach.
+// Drops the nodes that are out of reach of the next rows.
 void slide(Strip& strip, int lanes) {
   const int gone = strip.next - strip.reach;
   if (gone <= 0) return;
@@ -98,14 +98,6 @@ void slide(Strip& strip, int lanes) {
 }
 
 }  // namespace
-
-int lanes_of(Isa isa) {
-  switch (isa) {
-    case Isa::avx512: return 16;
-    case Isa::avx2: return 8;
-    default: return 4;
-  }
-}
 
 std::size_t strip_bytes(const StripFilter& filter, const StripShape& shape, int batch) {
   const StripSizes sizes = strip_sizes(lanes_of(filter.isa), shape, batch);
@@ -164,11 +156,338 @@ void add_rows_below(Strip& strip, const StripFilter& filter, Outside below, int 
 
 int rows_done(const Strip& strip) { return strip.filled - strip.reach - strip.next; }
 
-void take_rows(Strip& strip, const StripFilter& filter, int count, std::uint16_t* result,
-               std::size_t stride) {
+void write_rows(Strip& strip, const StripFilter& filter, int count, std::uint16_t* result,
+                std::ptrdiff_t stride_bytes) {
   SOFTFOCUS_KERNEL(filter.isa, filter_down)
-  (strip, filter, strip.next, count, result, static_cast<std::ptrdiff_t>(stride));
+  (strip, filter, strip.next, count, result, stride_bytes);
   strip.next += count;
 }
 
 }  // namespace softfocus
+
+#else  // Both passes, once a vector unit.
+
+namespace {
+
+#include "dof/weights.inl"
+
+// Receivers that share their bounds of taps.
+constexpr int kBlock = 16;
+
+/// How far taps need which care, for a block of receivers.
+struct TapBounds {
+  int covered;      ///< up to this distance all taps are whole, at leakage 1
+  int covered_all;  ///< up to this distance all taps are whole, at any leakage
+  int touched;      ///< past this distance no tap weighs anything
+};
+
+SOFTFOCUS_INLINE TapBounds tap_bounds(const GatherNodes& line, int begin, int end, int reach) {
+  Ints covered = splat(reach), covered_all = covered, touched = splat(0);
+  for (int i = begin - reach; i < end + reach; i += kLanes) {
+    // Distance to the nearest receiver. Nodes past the range are too far off to matter.
+    const Ints node = lane_numbers() + i;
+    const Ints distance = larger(larger(begin - node, node - (end - 1)), splat(1));
+    const Ints touches = load(line.touches + i);
+    touched = larger(touched, select(touches >= distance, touches, splat(0)));
+    covered = smaller(covered, larger(load(line.covers + i), distance - 1));
+    covered_all = smaller(covered_all, larger(load(line.covers_all + i), distance - 1));
+  }
+  TapBounds bounds{reach, reach, 0};
+  for (int i = 0; i < kLanes; ++i) {
+    bounds.touched = bounds.touched > touched[i] ? bounds.touched : touched[i];
+    bounds.covered = bounds.covered < covered[i] ? bounds.covered : covered[i];
+    bounds.covered_all = bounds.covered_all < covered_all[i] ? bounds.covered_all : covered_all[i];
+  }
+  if (bounds.touched > reach) bounds.touched = reach;
+  return bounds;
+}
+
+/// Adds the tap at a node.
+template <bool leaking>
+SOFTFOCUS_INLINE void add_tap(const GatherNodes& line, int node, int distance, Floats distance_px,
+                              Floats receiver_leakage, Sums& sums) {
+  const float* whole = line.whole + node * 4 * kLanes;
+  if (distance <= (leaking ? line.covers_all : line.covers)[node]) {
+    add_whole(sums, whole, kLanes);
+  } else if (distance <= line.touches[node]) {
+    const float* part = line.part + node * 4 * kLanes;
+    add_part<leaking>(sums, load(part), load(whole), part + kLanes, kLanes, distance_px,
+                      receiver_leakage);
+  }
+}
+
+/// Two receivers at a time: each addition to a sum waits for the one before, and one
+/// receiver's four sums would leave the adders half idle.
+template <bool leaking>
+void gather_pair(const GatherNodes& line, int node, int covered, int touched,
+                 const Floats (&leakage_of)[2], Sums (&sums_of)[2]) {
+  Sums first = sums_of[0], second = sums_of[1];
+  const float* before = line.whole + node * 4 * kLanes;
+  const float* after = before;
+  int d = 1;
+  for (; d <= covered && d <= touched; ++d) {
+    before -= 4 * kLanes;
+    after += 4 * kLanes;
+    add_whole(first, before, kLanes);
+    add_whole(second, before + 4 * kLanes, kLanes);
+    add_whole(first, after, kLanes);
+    add_whole(second, after + 4 * kLanes, kLanes);
+  }
+  for (; d <= touched; ++d) {
+    const Floats distance_px = splat(static_cast<float>(d));
+    add_tap<leaking>(line, node - d, d, distance_px, leakage_of[0], first);
+    add_tap<leaking>(line, node + 1 - d, d, distance_px, leakage_of[1], second);
+    add_tap<leaking>(line, node + d, d, distance_px, leakage_of[0], first);
+    add_tap<leaking>(line, node + 1 + d, d, distance_px, leakage_of[1], second);
+  }
+  sums_of[0] = first;
+  sums_of[1] = second;
+}
+
+/// Results as two vectors of words: red in the low half and green in the high one; blue.
+template <HalfRounding rounding>
+struct HalfResults {
+  static constexpr int kVectors = 2;
+  SOFTFOCUS_INLINE static void put(const Sums& sums, std::uint32_t* to) {
+    const HalfColour colour = resolve<rounding>(sums);
+    store(to, colour.r | colour.g << 16);
+    store(to + kLanes, colour.b);
+  }
+};
+/// Results as three vectors of binary32.
+struct FloatResults {
+  static constexpr int kVectors = 3;
+  SOFTFOCUS_INLINE static void put(const Sums& sums, std::uint32_t* to) {
+    const FloatColour colour = resolve(sums);
+    store(to, as_bits(colour.r));
+    store(to + kLanes, as_bits(colour.g));
+    store(to + 2 * kLanes, as_bits(colour.b));
+  }
+};
+
+/// Filters nodes 0 to count - 1, rounded up to an even number; taps reach `reach` nodes
+/// to each side.
+template <class Results>
+void gather_line(const GatherNodes& line, int count, int reach, float leak,
+                 std::uint32_t* gathered) {
+  for (int begin = 0; begin < count; begin += kBlock) {
+    const int end = begin + kBlock < count ? begin + kBlock : count;
+    const TapBounds bounds = tap_bounds(line, begin, end, reach);
+    for (int node = begin; node < end; node += 2) {
+      Sums sums[2];
+      Floats leakages[2];
+      Mask leaks = splat(0);
+      for (int i = 0; i < 2; ++i) {
+        sums[i] = load_sums(line.whole + (node + i) * 4 * kLanes, kLanes);
+        leakages[i] = leakage(absolute(load(line.part + (node + i) * 4 * kLanes)), leak);
+        leaks = leaks | (leakages[i] < 1.0f);
+      }
+      if (any(leaks)) {
+        gather_pair<true>(line, node, bounds.covered_all, bounds.touched, leakages, sums);
+      } else {
+        gather_pair<false>(line, node, bounds.covered, bounds.touched, leakages, sums);
+      }
+      for (int i = 0; i < 2; ++i) {
+        Results::put(sums[i], gathered + (node + i) * Results::kVectors * kLanes);
+      }
+    }
+  }
+}
+
+/// Of kLanes nodes, one a lane: their smallest and largest radius, and whether any pixel lies
+/// beyond the focus (the sign bit).
+struct NodeExtent {
+  Floats smallest, largest;
+  Bits signs;
+};
+SOFTFOCUS_INLINE NodeExtent no_extent() { return {splat(0x1p20f), splat(0.0f), splat(0u)}; }
+SOFTFOCUS_INLINE void widen(NodeExtent& extent, Floats signed_radius_px) {
+  const Floats radius = absolute(signed_radius_px);
+  extent.smallest = smaller(extent.smallest, radius);
+  extent.largest = larger(extent.largest, radius);
+  extent.signs = extent.signs | as_bits(signed_radius_px);
+}
+
+// overlap(r, d) is 1 if r - d >= 1, and 0 if r <= d; rounding r - d changes neither.
+SOFTFOCUS_INLINE Ints covers(const NodeExtent& extent) {
+  return larger(truncate(extent.smallest) - 1, splat(0));
+}
+SOFTFOCUS_INLINE Ints covers_all(const NodeExtent& extent) {
+  return select(as_ints(extent.signs) < 0, splat(0), covers(extent));
+}
+SOFTFOCUS_INLINE Ints touches(const NodeExtent& extent) {
+  const Ints whole = truncate(extent.largest);
+  return larger(whole + (to_floats(whole) == extent.largest), splat(0));
+}
+
+SOFTFOCUS_INLINE void store_part(const GatherNodes& nodes, int node, Floats r, Floats g, Floats b,
+                                 Floats intensity_of_node) {
+  float* part = nodes.part + node * 4 * kLanes;
+  store(part + kLanes, r);
+  store(part + 2 * kLanes, g);
+  store(part + 3 * kLanes, b);
+  float* whole = nodes.whole + node * 4 * kLanes;
+  store(whole + kLanes, r * intensity_of_node);
+  store(whole + 2 * kLanes, g * intensity_of_node);
+  store(whole + 3 * kLanes, b * intensity_of_node);
+}
+
+/// Makes nodes `at` to `at` + kLanes - 1 of the line along x from kLanes rows. Unless `column`
+/// is negative, the pixels lie in the strip itself, in that vector of columns: then the lines
+/// along y get their radius, intensity and depth too.
+SOFTFOCUS_INLINE void load_block(const Strip& strip, const DofSettings& settings,
+                                 const std::uint16_t* const* rows, int x, int at, int column,
+                                 int node) {
+  Floats r[kLanes], g[kLanes], b[kLanes], radius[kLanes], light[kLanes];
+  NodeExtent across = no_extent(), down = no_extent();
+  for (int i = 0; i < kLanes; ++i) {
+    // Rows lie too far apart for the hardware's prefetcher.
+    __builtin_prefetch(rows[kLanes + i] + 4 * x);
+    if constexpr (kLanes == 16) __builtin_prefetch(rows[kLanes + i] + 4 * x + 32);
+    const HalfTexels texels = load_repeating(rows[i], x, strip.picture_width);
+    r[i] = half_to_float(texels.r);
+    g[i] = half_to_float(texels.g);
+    b[i] = half_to_float(texels.b);
+    radius[i] = signed_radius(settings, half_to_float(texels.a));
+    light[i] = intensity(absolute(radius[i]));
+    widen(across, radius[i]);
+    if (column >= 0) {
+      const int to = column * strip.capacity + node + i;
+      store(strip.down.part + to * 4 * kLanes, radius[i]);
+      store(strip.down.whole + to * 4 * kLanes, light[i]);
+      store(strip.depths + to * kLanes, stored_depth(texels.a));
+    }
+  }
+  transpose(r);
+  transpose(g);
+  transpose(b);
+  transpose(radius);
+  transpose(light);
+  for (int i = 0; i < kLanes; ++i) {
+    widen(down, radius[i]);
+    store(strip.across.part + (at + i) * 4 * kLanes, radius[i]);
+    store(strip.across.whole + (at + i) * 4 * kLanes, light[i]);
+    store_part(strip.across, at + i, r[i], g[i], b[i], light[i]);
+  }
+  store(strip.across.covers + at, covers(across));
+  store(strip.across.covers_all + at, covers_all(across));
+  store(strip.across.touches + at, touches(across));
+  if (column >= 0) {
+    const int to = column * strip.capacity + node;
+    store(strip.down.covers + to, covers(down));
+    store(strip.down.covers_all + to, covers_all(down));
+    store(strip.down.touches + to, touches(down));
+  }
+}
+
+SOFTFOCUS_INLINE GatherNodes nodes_from(const GatherNodes& nodes, int node) {
+  return {nodes.whole + node * 4 * kLanes, nodes.part + node * 4 * kLanes, nodes.covers + node,
+          nodes.covers_all + node, nodes.touches + node};
+}
+
+void gather(const StripFilter& filter, const GatherNodes& line, int count, int reach,
+            std::uint32_t* gathered) {
+  if (filter.rounding == HalfRounding::nearest_even) {
+    gather_line<HalfResults<HalfRounding::nearest_even> >(line, count, reach, filter.settings.leak,
+                                                          gathered);
+  } else {
+    gather_line<HalfResults<HalfRounding::toward_zero> >(line, count, reach, filter.settings.leak,
+                                                         gathered);
+  }
+}
+
+/// Turns the first pass's results, kLanes rows of a column, into nodes of the lines along y.
+SOFTFOCUS_INLINE void halves_to_nodes(const Strip& strip, int column, int node) {
+  Bits rg[kLanes], b[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const std::uint32_t* from = strip.gathered + (column * kLanes + i) * 2 * kLanes;
+    rg[i] = load(from);
+    b[i] = load(from + kLanes);
+  }
+  transpose(rg);
+  transpose(b);
+  for (int i = 0; i < kLanes; ++i) {
+    const int to = column * strip.capacity + node + i;
+    store_part(strip.down, to, half_to_float(rg[i] & 0xFFFFu), half_to_float(rg[i] >> 16),
+               half_to_float(b[i]), load(strip.down.whole + to * 4 * kLanes));
+  }
+}
+SOFTFOCUS_INLINE void singles_to_nodes(const Strip& strip, int column, int node) {
+  Bits r[kLanes], g[kLanes], b[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const std::uint32_t* from = strip.gathered + (column * kLanes + i) * 3 * kLanes;
+    r[i] = load(from);
+    g[i] = load(from + kLanes);
+    b[i] = load(from + 2 * kLanes);
+  }
+  transpose(r);
+  transpose(g);
+  transpose(b);
+  for (int i = 0; i < kLanes; ++i) {
+    const int to = column * strip.capacity + node + i;
+    store_part(strip.down, to, as_floats(r[i]), as_floats(g[i]), as_floats(b[i]),
+               load(strip.down.whole + to * 4 * kLanes));
+  }
+}
+
+}  // namespace
+
+/// The first pass: filters kLanes rows along x. They become the nodes of the lines along y
+/// from `node` on.
+void filter_across(const Strip& strip, const StripFilter& filter, const std::uint16_t* const* rows,
+                   int node) {
+  const int length = strip.halo + strip.columns + strip.halo;
+  for (int at = 0; at < length; at += kLanes) {
+    const bool inside = at >= strip.halo && at < strip.halo + strip.columns;
+    load_block(strip, filter.settings, rows, strip.x_begin - strip.halo + at, at,
+               inside ? (at - strip.halo) / kLanes : -1, node);
+  }
+  const GatherNodes line = nodes_from(strip.across, strip.halo);
+  if (filter.between == Between::single) {
+    gather_line<FloatResults>(line, strip.columns, strip.reach, filter.settings.leak,
+                              strip.gathered);
+  } else {
+    gather(filter, line, strip.columns, strip.reach, strip.gathered);
+  }
+  for (int column = 0; column < strip.columns / kLanes; ++column) {
+    if (filter.between == Between::single) {
+      singles_to_nodes(strip, column, node);
+    } else {
+      halves_to_nodes(strip, column, node);
+    }
+  }
+}
+
+/// The second pass: filters nodes `node` to `node` + count - 1 of the lines along y into rows
+/// of the picture, the first of which begins at `result`.
+void filter_down(const Strip& strip, const StripFilter& filter, int node, int count,
+                 std::uint16_t* result, std::ptrdiff_t stride_bytes) {
+  for (int column = 0; column < strip.columns / kLanes; ++column) {
+    const int from = column * strip.capacity + node;
+    const int x = strip.x_begin + column * kLanes;
+    gather(filter, nodes_from(strip.down, from), count, strip.reach, strip.gathered);
+    const int inside = strip.picture_width - x < kLanes ? strip.picture_width - x : kLanes;
+    for (int i = 0; i < count; ++i) {
+      const Bits rg = load(strip.gathered + i * 2 * kLanes);
+      const Bits b = load(strip.gathered + i * 2 * kLanes + kLanes);
+      const HalfTexels texels{rg & 0xFFFFu, rg >> 16, b, load(strip.depths + (from + i) * kLanes)};
+      auto* row =
+          reinterpret_cast<std::uint16_t*>(reinterpret_cast<std::byte*>(result) + i * stride_bytes);
+      std::uint16_t* to = row + 4 * x;
+      if (inside == kLanes) {
+        if (filter.past_caches) {
+          stream_texel_words(to, interleave(texels));
+        } else {
+          store_half_texels(to, texels);
+        }
+      } else if (inside > 0) {
+        std::uint16_t last[4 * kLanes];
+        store_half_texels(last, texels);
+        std::memcpy(to, last, 4 * sizeof *last * static_cast<std::size_t>(inside));
+      }
+    }
+  }
+  if (filter.past_caches) finish_streaming();
+}
+
+#endif

@@ -1,5 +1,5 @@
 #pragma once
-// What every bilinear filter shares: two texels an axis, rows first, then between rows.
+// Shared by the bilinear filters: two texels an axis; along both rows first, then between them.
 
 #include <glm/vec4.hpp>
 
@@ -12,7 +12,7 @@ struct Taps {
   float weight;
 };
 
-/// mix(a, b, t), a function of floats, of each component.
+/// mix(a, b, t) of each component.
 template <class Mix>
 glm::vec4 mix_components(glm::vec4 a, glm::vec4 b, float t, const Mix& mix) {
   return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t), mix(a.w, b.w, t)};

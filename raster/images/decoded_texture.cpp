@@ -5,7 +5,7 @@
 #include <cassert>
 #include <limits>
 
-#include "raster/images/fixed_filter.h"
+#include "raster/images/integer_filter.h"
 #include "raster/images/texel.h"
 #include "raster/images/unorm8_filter.h"
 #include "raster/numbers/lerp.h"
@@ -17,15 +17,15 @@ bool is_8_bit(Format format) {
   return bytes_per_texel(format) == static_cast<std::size_t>(channel_count(format));
 }
 
-// Whether texels are left from 0 to 255, to be filtered in integers: by llvmpipe with most
-// samplers.
+// Whether texels keep values from 0 to 255, to be filtered in integers. llvmpipe does so with
+// most samplers.
 bool stay_bytes(Format format, const Profile& profile) {
   const bool may_be =
-      profile.texture_unit == TextureUnit::llvmpipe || has_fixed_filter(format, profile);
+      profile.texture_unit == TextureUnit::llvmpipe || has_integer_filter(format, profile);
   return may_be && (format == Format::r8 || format == Format::rgba8);
 }
 
-// Of each code, what fetch_texel() makes of it in the colours and in alpha.
+// What fetch_texel() makes of each byte, in colours and in alpha.
 struct Codes {
   std::array<float, 256> colour;
   std::array<float, 256> alpha;
@@ -137,16 +137,16 @@ LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sam
   if (texture.texels.empty()) return LaneArithmetic::by_sample;
   const Format format = texture.source->levels[0].format;
   const bool fused = profile.lerp == Contraction::fused;
-  if (profile.texture_unit == TextureUnit::plain) {
+  if (profile.texture_unit == TextureUnit::standard) {
     if (fused) return LaneArithmetic::by_sample;
-    if (texture.are_bytes) return LaneArithmetic::plain_integers;
-    if (sampler.filter != Filter::nearest && has_fixed_filter(format, profile)) {
+    if (texture.are_bytes) return LaneArithmetic::standard_integers;
+    if (sampler.filter != Filter::nearest && has_integer_filter(format, profile)) {
       return LaneArithmetic::by_sample;  // halves' sums do not fit in a float
     }
-    return profile.bilinear_weights == BilinearWeights::fixed_8 ? LaneArithmetic::plain_fixed_8
-                                                                : LaneArithmetic::plain;
+    return profile.bilinear_weights == BilinearWeights::fixed_8 ? LaneArithmetic::standard_fixed_8
+                                                                : LaneArithmetic::standard;
   }
-  // 32-bit texels may be subnormal, and flushed ones are left to sample().
+  // Texels of 32 bits may be subnormal. Only sample() flushes them.
   const bool flushes_texels = format == Format::r32f || format == Format::rgba32f;
   if (profile.denormals == Denormals::keep || flushes_texels) return LaneArithmetic::by_sample;
   const auto in_floats = fused ? LaneArithmetic::llvmpipe_fused : LaneArithmetic::llvmpipe_unfused;

@@ -1,7 +1,6 @@
 #pragma once
-// A texture as vector code samples it: decoded once for a profile's texture unit, every
-// texel four floats, so that nothing is converted a pixel. raster/images/sample_lanes.inl
-// reads it.
+// A texture decoded once for a profile's texture unit, every texel four floats.
+// sample_lanes.inl reads it and need not convert texels pixel by pixel.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace softfocus {
 
-/// A lane of the widest vector for each: 16384x16384 texels have 15 levels.
+/// One lane of the widest vector a level. 16384x16384 texels have 15 levels.
 inline constexpr std::size_t kMaxDecodedLevels = 16;
 
 /// Widths or heights of the levels.
@@ -25,37 +24,34 @@ struct DecodedAxis {
 };
 
 struct DecodedTexture {
-  const Texture* source = nullptr;  ///< what it was made of, which must outlive it
+  const Texture* source = nullptr;  ///< must outlive this
   int level_count = 0;
-  /// Whether texels are left from 0 to 255, for they are filtered in integers: to_linear()
-  /// follows the filter.
+  /// Whether texels keep values from 0 to 255, to be filtered in integers. to_linear() comes
+  /// after the filter then.
   bool are_bytes = false;
   DecodedAxis u, v;
   /// Where each level's texels start in `texels`, in floats. Rows lie without gaps.
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
-  /// Red, green, blue and alpha of each texel, as fetch_texel() gives them or as
-  /// `are_bytes` says. Empty where sample() must do: for softpipe, for more levels than
-  /// kMaxDecodedLevels and for 2^31 floats and more.
+  /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_bytes` says. Empty
+  /// if only sample() will do: for softpipe, more than kMaxDecodedLevels levels, or 2^31 floats.
   std::vector<float, RowAllocator<float>> texels;
 };
 
-/// `texture`, which must have a level, for the texture unit of `profile`.
+/// Decodes for the texture unit of `profile`. Needs at least one level.
 DecodedTexture decode_texture(const Texture& texture, const Profile& profile);
 
-/// In which arithmetic sample_lanes() samples: one of those that have a vector form, or
-/// sample() itself, lane by lane.
+/// The arithmetic of sample_lanes().
 enum class LaneArithmetic : std::uint8_t {
-  by_sample,
-  plain,              ///< the plain unit with binary32 weights, nothing fused
-  plain_fixed_8,      ///< the same with weights of 8 bits
-  plain_integers,     ///< its filter in integers, of bytes
+  by_sample,          ///< none in lanes: sample(), lane by lane
+  standard,           ///< the standard unit: binary32 weights, unfused
+  standard_fixed_8,   ///< the standard unit with 8-bit weights
+  standard_integers,  ///< the standard unit's integer filter, of bytes
   llvmpipe_fused,     ///< llvmpipe's float filter
-  llvmpipe_unfused,   ///< the same, nothing fused
-  llvmpipe_integers,  ///< its filter of 8-bit integers
+  llvmpipe_unfused,   ///< llvmpipe's float filter, unfused
+  llvmpipe_integers,  ///< llvmpipe's filter in 8-bit integers
 };
 
-/// The one that `sampler` and `profile` need, for which the texture was decoded. Constant
-/// in a draw.
+/// The arithmetic for a texture that was decoded for `profile`. It stays the same in a draw.
 LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sampler,
                                const Profile& profile);
 

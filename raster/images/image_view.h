@@ -60,6 +60,14 @@ struct ImageView {
   }
 };
 
+/// A picture in rows one after the other, or `stride_bytes` apart.
+inline ImageView view_of(Format format, void* texels, int width, int height,
+                         std::ptrdiff_t stride_bytes = 0) {
+  const auto row_bytes = static_cast<std::ptrdiff_t>(bytes_per_texel(format)) * width;
+  return {format, width, height, stride_bytes != 0 ? stride_bytes : row_bytes,
+          static_cast<std::byte*>(texels)};
+}
+
 /// Row `y` as its channels' storage type (uint8_t, uint16_t or float): width times
 /// channel_count values. Needs the type that the format has.
 template <class Channel>

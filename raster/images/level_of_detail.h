@@ -1,5 +1,5 @@
 #pragma once
-// Which mip level a pixel reads: the logarithm of how many texels it spans.
+// Which mip level a pixel reads: the logarithm of the number of texels it spans.
 
 #include <glm/vec2.hpp>
 
@@ -8,28 +8,28 @@
 
 namespace softfocus {
 
-/// The level of detail of a footprint: how many texels of level 0 one pixel spans
-/// along x and y, as differences of (u, v).
+/// The level of detail of a footprint: differences of (u, v) from one pixel to the next, along
+/// x and along y.
 ///
-/// The plain unit and llvmpipe: half of log2_linear of the larger squared length;
-/// a footprint of length 0 has the most negative lod.
-/// softpipe: log2_by_table of the largest of |du| * width and |dv| * height. It takes the
-/// difference along x from the lower row of the 2x2 block of pixels.
+/// The standard unit and llvmpipe take half of log2_linear of the larger squared length in
+/// texels; length 0 gives the most negative lod. softpipe takes log2_by_table of the largest of
+/// |du| * width and |dv| * height, with the difference along x from the lower row of the 2x2
+/// block of pixels.
 float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y,
                       const Profile& profile);
 
-/// The plain unit's.
+/// The standard unit's and llvmpipe's.
 float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y);
 
-/// Binary logarithm with a straight line between powers of two: of x = 2^e * m, 1 <= m < 2,
-/// the sum (e - 1) + m, rounded once. Exact at powers of two, up to 0.0861 too small
-/// between them. GPUs compute the level so, and a shader can, bit for bit
-/// (floatBitsToInt). Subnormals count as e = -127, and 0 gives -127. Needs x >= 0.
+/// Binary logarithm, straight between powers of two: (e - 1) + m, rounded once, for
+/// x = 2^e * m with 1 <= m < 2. Exact at powers of two, up to 0.0861 too small between them. GPUs
+/// compute the level so; a shader can do it bit for bit (floatBitsToInt). Subnormals count as
+/// e = -127, and 0 gives -127. Needs x >= 0.
 float log2_linear(float x);
 
-/// Binary logarithm as softpipe takes it: the exponent plus the logarithm of the mantissa
-/// rounded to a multiple of 1/256, to nearest, ties up. Zero and subnormals count as
-/// 2^-127 times 1 and the mantissa's bits. Needs x >= 0.
+/// Binary logarithm as softpipe computes it: the exponent plus the logarithm of the mantissa,
+/// which is first rounded to a multiple of 1/256, to nearest, ties up. Zero and subnormals have
+/// the exponent -127 and an implicit 1. Needs x >= 0.
 float log2_by_table(float x);
 
 }  // namespace softfocus

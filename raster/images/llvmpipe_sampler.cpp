@@ -91,7 +91,7 @@ int llvmpipe_nearest(float coordinate, int size, int base_size, Wrap wrap) {
 glm::vec4 sample_llvmpipe(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
                           const Profile& profile) {
   const Image& base = texture.levels[0];
-  // Of all that follows only these can be subnormal, and only floor() tells them from 0.
+  // Only these can be subnormal, and only floor() tells them from 0.
   uv = {flush_denormal(uv.x, profile.denormals), flush_denormal(uv.y, profile.denormals)};
   lod = flush_denormal(lod, profile.denormals);
   const Levels levels = choose_levels(lod, texture.levels.size(), sampler.filter);

@@ -1,9 +1,9 @@
-// sample() and level_of_detail() for vectors of pixels, to the bit. A kernel file, to
-// be included by those that sample; raster/images/decoded_texture.h comes before.
+// sample() and level_of_detail() for vectors of pixels, to the bit. Kernels that sample include
+// this, after raster/images/decoded_texture.h.
 //
-// Addresses and weights are computed a lane each. Texels are four floats, so that one load
-// brings a texel: they are filtered kLanes / 4 pixels a vector, and transposed at the end.
-// Gathering red, green and blue by themselves would take three times as many loads.
+// Addresses and weights have a lane a pixel. A texel is four floats, which one load brings, so a
+// vector filters kLanes / 4 pixels; colours are transposed at the end. Gathering red, green and
+// blue would take three loads a texel.
 
 struct RgbLanes {
   Floats r, g, b;
@@ -18,7 +18,7 @@ struct SamplePoints {
 
 inline constexpr int kMostSampled = 8;  // vectors at once
 
-/// level_of_detail() of the plain unit and llvmpipe.
+/// level_of_detail() of the standard unit and llvmpipe.
 SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, Floats du_dx,
                                               Floats dv_dx, Floats du_dy, Floats dv_dy) {
   const float width = static_cast<float>(texture.source->levels.front().width);
@@ -64,14 +64,15 @@ SOFTFOCUS_INLINE Floats load_texels(const float* texels, const std::int32_t* off
 
 /// The scalar samplers' lerp.
 ///
-/// llvmpipe's flushes subnormals, of which there are none, so that nothing need be flushed:
-/// texels of 8 and 16 bits are multiples of 2^-35 (the cubic's least value is 2^-11.7, with
-/// 24 bits). Positions are multiples of 2^-25, for half a texel was subtracted: what they
-/// came from is one from 1/4 on, and below that the difference is 1/4 at least; so are
-/// weights along an axis. Differences, products and sums of multiples are multiples, and
-/// stay so when rounded: of 2^-60 after a row, of 2^-85 after both. The weight of the next
-/// level is 0 or from 2^-16 on a multiple of 2^-39 (lower ones go to sample()), and all
-/// that comes of it a multiple of 2^-124: 0 or a normal number.
+/// llvmpipe's flushes subnormals; here it need not, as none occur:
+/// - Texels of 8 and 16 bits are multiples of 2^-35 (the cubic's least value is 2^-11.7, with 24
+///   bits).
+/// - Positions are multiples of 2^-25, as half a texel was subtracted: from 1/4 on the minuend is
+///   such a multiple, and below 1/4 the difference is at least 1/4. So are weights along an axis.
+/// - Differences, products and sums of multiples are multiples, rounded or not: of 2^-60 after a
+///   row, of 2^-85 after both.
+/// - The next level's weight is 0, or at least 2^-16 and a multiple of 2^-39; sample() does the
+///   lower ones. So results are multiples of 2^-124: 0 or normal numbers.
 template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE Floats mix(Floats a, Floats b, Floats t) {
   if constexpr (arithmetic == LaneArithmetic::llvmpipe_fused) {
@@ -86,13 +87,13 @@ SOFTFOCUS_INLINE Floats mix(Floats a, Floats b, Floats t) {
 
 /// Between a colour of a level and one of the next.
 ///
-/// filter_fixed()'s sum, rounded once. Whole texels make a level's colours exact multiples of
-/// 2^-16 below 2^8, products and sums on the way too, for nothing needs more than 24 bits. To
-/// these a third weight of 8 bits adds 8 more. So wholes and fractions are mixed apart: exact
-/// multiples of 2^-8 below 2^8 and of 2^-24 below 1, of which only the sum is rounded.
+/// In integers, filter_in_integers()'s sum, rounded once. A level's colours are exact multiples of
+/// 2^-16 below 2^8, as are the products and sums that lead to them: 24 bits. The third weight adds
+/// 8 bits. So wholes and fractions are mixed apart, as exact multiples of 2^-8 below 2^8 and of
+/// 2^-24 below 1. Only their sum is rounded.
 template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE Floats mix_levels(Floats fine, Floats coarse, Floats weight) {
-  if constexpr (arithmetic == LaneArithmetic::plain_integers) {
+  if constexpr (arithmetic == LaneArithmetic::standard_integers) {
     const Floats fine_whole = to_floats(truncate(fine)), coarse_whole = to_floats(truncate(coarse));
     return mix<arithmetic>(fine_whole, coarse_whole, weight) +
            mix<arithmetic>(fine - fine_whole, coarse - coarse_whole, weight);
@@ -101,15 +102,15 @@ SOFTFOCUS_INLINE Floats mix_levels(Floats fine, Floats coarse, Floats weight) {
   }
 }
 
-/// A bilinear fetch a lane: where its texels lie, first row's before second's, and weights.
+/// A bilinear fetch a lane: its texels' offsets, first row before second, and weights.
 struct FetchLanes {
   alignas(64) std::int32_t offsets[4][kLanes];
   Floats weight_u, weight_v;
   bool neighbours;  ///< whether every lane's second texel of a row lies beside the first
 };
 
-/// Both texels of a row, of a group. `neighbours` come in one load, which is a third faster
-/// on AVX-512 and saves offsets on all.
+/// Both texels of a row, for a group. `neighbours` come in one load: a third faster on AVX-512,
+/// and it saves offsets on all units.
 template <bool neighbours>
 SOFTFOCUS_INLINE void load_row(const float* texels, const std::int32_t* first_offsets,
                                const std::int32_t* second_offsets, Floats& first, Floats& second) {
@@ -149,7 +150,7 @@ SOFTFOCUS_INLINE Floats filter_level(const float* texels, const FetchLanes& fetc
   return mix<arithmetic>(upper, lower, spread<group>(fetch.weight_v));
 }
 
-/// `coarse` is the next level's, and read where there are `two_levels`.
+/// `coarse` is the next level's, read if there are `two_levels`.
 template <LaneArithmetic arithmetic, bool neighbours, bool two_levels, int group>
 SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine,
                                      const FetchLanes& coarse, Floats next_weight) {
@@ -157,12 +158,12 @@ SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine
   if constexpr (!two_levels) return colour;
   const Floats next = filter_level<arithmetic, neighbours, group>(texels, coarse);
   const Floats weight = spread<group>(next_weight);
-  // A weight of 0 leaves alone what the sum would not: infinities, NaN, -0.
+  // With a weight of 0 the sum would change infinities, NaN and -0.
   return select(weight > 0.0f, mix_levels<arithmetic>(colour, next, weight), colour);
 }
 
-/// Not inlined: beside each other in one function, g++ computes all addresses of all forms
-/// first and runs out of registers, which takes half as long again.
+/// Not inlined: with all forms in one function g++ computes all their addresses first and runs out
+/// of registers. That takes half as long again.
 template <LaneArithmetic arithmetic, bool neighbours, bool two_levels>
 [[gnu::noinline]] void filter_lanes(const float* texels, const FetchLanes& fine,
                                     const FetchLanes& coarse, const Floats& next_weight,
@@ -182,7 +183,7 @@ SOFTFOCUS_INLINE constexpr bool is_llvmpipe(LaneArithmetic arithmetic) {
          arithmetic == LaneArithmetic::llvmpipe_integers;
 }
 
-// What does not change from level to level.
+// The same for all levels.
 struct PlaceLanes {
   const DecodedTexture& texture;
   const Sampler& sampler;
@@ -206,11 +207,11 @@ SOFTFOCUS_INLINE TapLanes taps(const AxisLanes& axis) {
   } else if constexpr (is_llvmpipe(arithmetic)) {
     return llvmpipe_taps(axis);
   } else {
-    return plain_taps(axis, arithmetic != LaneArithmetic::plain);
+    return standard_taps(axis, arithmetic != LaneArithmetic::standard);
   }
 }
 
-// A level's row of texels y, as an offset in floats. Below 2^31, as DecodedTexture's are.
+// Where row y of a level begins, in floats. Below 2^31, as all of DecodedTexture is.
 SOFTFOCUS_INLINE Ints row_offset(const DecodedTexture& texture, Ints level, Floats width, Ints y) {
   return look_up(texture.starts, level) + y * (truncate(width) << 2);
 }
@@ -237,8 +238,8 @@ SOFTFOCUS_INLINE RgbLanes sample_nearest(const PlaceLanes& place, Ints level) {
   constexpr bool kLlvmpipe = is_llvmpipe(arithmetic);
   const AxisLanes along_u = axis_u(place, level);
   const AxisLanes along_v = axis_v(place, level);
-  const Ints x = kLlvmpipe ? llvmpipe_nearest(along_u) : plain_nearest(along_u);
-  const Ints y = kLlvmpipe ? llvmpipe_nearest(along_v) : plain_nearest(along_v);
+  const Ints x = kLlvmpipe ? llvmpipe_nearest(along_u) : standard_nearest(along_u);
+  const Ints y = kLlvmpipe ? llvmpipe_nearest(along_v) : standard_nearest(along_v);
   alignas(64) std::int32_t offsets[kLanes];
   store(offsets, row_offset(place.texture, level, along_u.size, y) + (x << 2));
   const float* texels = place.texture.texels.data();
@@ -246,12 +247,12 @@ SOFTFOCUS_INLINE RgbLanes sample_nearest(const PlaceLanes& place, Ints level) {
                           load_texels(texels, offsets + 2), load_texels(texels, offsets + 3));
 }
 
-/// What a vector reads: found for many vectors before any is filtered.
+/// What one vector reads. Found for many vectors before any is filtered.
 struct SamplePlan {
   FetchLanes fine, coarse;
   Floats next_weight;
   bool two_levels;
-  bool by_lane;  ///< to be left to sample()
+  bool by_lane;  ///< sample() has to do it
 };
 
 template <LaneArithmetic arithmetic>
@@ -263,7 +264,7 @@ SOFTFOCUS_INLINE LevelLanes choose_levels(Floats lod, int last, bool trilinear) 
     }
     return levels;
   } else {
-    return choose_plain_levels(lod, last, trilinear, arithmetic != LaneArithmetic::plain);
+    return choose_standard_levels(lod, last, trilinear, arithmetic != LaneArithmetic::standard);
   }
 }
 
@@ -275,7 +276,7 @@ SOFTFOCUS_INLINE void plan_linear(const PlaceLanes& place, const LevelLanes& lev
   plan.two_levels = any(mixed);
   plan.by_lane = false;
   find_fetch<arithmetic>(place, levels.first, plan.fine);
-  // Neighbouring pixels read the same texels mostly: every fourth one's are asked for.
+  // Neighbouring pixels mostly read the same texels: prefetching for every fourth is enough.
   for (int lane = 0; lane < kLanes; lane += 4) {
     __builtin_prefetch(place.texture.texels.data() + plan.fine.offsets[0][lane]);
     __builtin_prefetch(place.texture.texels.data() + plan.fine.offsets[2][lane]);
@@ -320,11 +321,10 @@ SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, R
   }
 }
 
-/// What fetch_texel() makes of bytes that were left from 0 to 255, and what comes of mixing
-/// them.
+/// Decodes mixed bytes that kept values from 0 to 255, as fetch_texel() decodes texels.
 template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE Floats to_linear(const DecodedTexture& texture, Floats value) {
-  if constexpr (arithmetic == LaneArithmetic::plain_integers) {
+  if constexpr (arithmetic == LaneArithmetic::standard_integers) {
     return value / 255.0f;
   } else if constexpr (is_llvmpipe(arithmetic)) {
     return texture.are_bytes ? value * (1.0f / 255.0f) : value;
@@ -372,9 +372,9 @@ template <LaneArithmetic arithmetic>
   }
 }
 
-/// sample() of `count` vectors, kMostSampled at most, in the arithmetic that
-/// lane_arithmetic() chooses. First where all of them read, then what: so the CPU works on
-/// several at once, each of which is a long chain of operations.
+/// sample() of `count` vectors, kMostSampled at most, in the arithmetic that lane_arithmetic()
+/// chooses. A vector is a long chain of operations. So addresses of all come first, then all
+/// filters: the CPU works on several vectors at once.
 SOFTFOCUS_INLINE void sample_lanes(const DecodedTexture& texture, const Sampler& sampler,
                                    const Profile& profile, SamplePoints points, int count,
                                    RgbLanes* colours) {
@@ -385,11 +385,11 @@ SOFTFOCUS_INLINE void sample_lanes(const DecodedTexture& texture, const Sampler&
         sample_by_lane(texture, sampler, profile, points, i, colours[i]);
       }
       return;
-    case plain: return sample_batch<plain>(texture, sampler, profile, points, count, colours);
-    case plain_fixed_8:
-      return sample_batch<plain_fixed_8>(texture, sampler, profile, points, count, colours);
-    case plain_integers:
-      return sample_batch<plain_integers>(texture, sampler, profile, points, count, colours);
+    case standard: return sample_batch<standard>(texture, sampler, profile, points, count, colours);
+    case standard_fixed_8:
+      return sample_batch<standard_fixed_8>(texture, sampler, profile, points, count, colours);
+    case standard_integers:
+      return sample_batch<standard_integers>(texture, sampler, profile, points, count, colours);
     case llvmpipe_fused:
       return sample_batch<llvmpipe_fused>(texture, sampler, profile, points, count, colours);
     case llvmpipe_unfused:

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "raster/images/bilinear.h"
-#include "raster/images/fixed_filter.h"
+#include "raster/images/integer_filter.h"
 #include "raster/images/llvmpipe_sampler.h"
 #include "raster/images/softpipe_sampler.h"
 #include "raster/images/texel.h"
@@ -17,7 +17,7 @@ namespace {
 // Past this, floats have no fraction left and the texel index would not fit.
 constexpr float kLargestCoordinate = 0x1p22f;
 
-// A texel index that may lie outside, brought inside. `size` >= 1.
+// Brings a texel index inside. `size` >= 1.
 int wrap_index(int index, int size, Wrap wrap) {
   if (wrap == Wrap::clamp_to_edge) return std::clamp(index, 0, size - 1);
   if (wrap == Wrap::repeat) {
@@ -36,12 +36,12 @@ float to_texels(float coordinate, int size) {
   return std::clamp(coordinate * static_cast<float>(size), -kLargestCoordinate, kLargestCoordinate);
 }
 
-// The nearest multiple of 1/256 in 256ths; below 2^31, as what to_texels() gives is below 2^22.
+// In 256ths, rounded to nearest. to_texels() keeps it below 2^31.
 std::int32_t to_256ths(float value) {
   return static_cast<std::int32_t>(std::nearbyint(value * 256.0f));
 }
 
-FixedTaps fixed_taps(float coordinate, int size, Wrap wrap) {
+IntegerTaps integer_taps(float coordinate, int size, Wrap wrap) {
   const std::int32_t position = to_256ths(to_texels(coordinate, size) - 0.5f);
   const int index = position >> 8;
   return {wrap_index(index, size, wrap), wrap_index(index + 1, size, wrap), position & 255};
@@ -49,7 +49,7 @@ FixedTaps fixed_taps(float coordinate, int size, Wrap wrap) {
 
 Taps bilinear_taps(float coordinate, int size, Wrap wrap, BilinearWeights weights) {
   if (weights == BilinearWeights::fixed_8) {
-    const FixedTaps taps = fixed_taps(coordinate, size, wrap);
+    const IntegerTaps taps = integer_taps(coordinate, size, wrap);
     return {taps.first, taps.second, static_cast<float>(taps.weight) * (1.0f / 256.0f)};
   }
   const float position = to_texels(coordinate, size) - 0.5f;
@@ -74,9 +74,9 @@ glm::vec4 sample_bilinear(const Image& level, const Sampler& sampler, glm::vec2 
       [&](float a, float b, float t) { return lerp(a, b, t, profile.lerp); });
 }
 
-FixedFetch fixed_fetch(const Image& level, const Sampler& sampler, glm::vec2 uv) {
-  return {&level, fixed_taps(uv.x, level.width, sampler.wrap_u),
-          fixed_taps(uv.y, level.height, sampler.wrap_v)};
+IntegerFetch integer_fetch(const Image& level, const Sampler& sampler, glm::vec2 uv) {
+  return {&level, integer_taps(uv.x, level.width, sampler.wrap_u),
+          integer_taps(uv.y, level.height, sampler.wrap_v)};
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, f
   switch (profile.texture_unit) {
     case TextureUnit::llvmpipe: return sample_llvmpipe(texture, sampler, uv, lod, profile);
     case TextureUnit::softpipe: return sample_softpipe(texture, sampler, uv, lod, profile);
-    case TextureUnit::plain: break;
+    case TextureUnit::standard: break;
   }
   const auto last = static_cast<float>(texture.levels.size() - 1);
   const float level = lod > 0.0f ? std::min(lod, last) : 0.0f;
@@ -98,11 +98,12 @@ glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, f
   const bool trilinear = sampler.filter == Filter::trilinear;
   const float base = std::floor(trilinear ? level : level + 0.5f);
   float weight = trilinear ? level - base : 0.0f;
-  if (has_fixed_filter(image(base).format, profile)) {
+  if (has_integer_filter(image(base).format, profile)) {
     const int weight_256 = to_256ths(weight);
-    const FixedFetch fine = fixed_fetch(image(base), sampler, uv);
-    return filter_fixed(fine, weight_256 > 0 ? fixed_fetch(image(base + 1.0f), sampler, uv) : fine,
-                        weight_256, profile);
+    const IntegerFetch fine = integer_fetch(image(base), sampler, uv);
+    return filter_in_integers(
+        fine, weight_256 > 0 ? integer_fetch(image(base + 1.0f), sampler, uv) : fine, weight_256,
+        profile);
   }
   if (profile.bilinear_weights == BilinearWeights::fixed_8) {
     weight = static_cast<float>(to_256ths(weight)) * (1.0f / 256.0f);

@@ -12,7 +12,7 @@ namespace {
 
 float fraction_of(float value) { return value - std::floor(value); }
 
-// 1024 sizes make what is a little negative positive; what is more wraps round 2^32.
+// 1024 sizes make a little negative index positive; a larger one wraps round 2^32.
 int repeat(std::int32_t index, int size) {
   const auto length = static_cast<std::uint32_t>(size);
   return static_cast<int>((static_cast<std::uint32_t>(index) + 1024 * length) % length);
@@ -23,17 +23,17 @@ struct Place {
   int y;
 };
 
-// The driver fetches through a cache of 16 tiles of 32x32 texels, each with one possible
-// slot, and keeps where the four texels of a fetch stand in it, not their values. Where
-// two tiles of one fetch have the same slot (only at some corners of tiles on the seam
-// of a repeating texture), the later one's texels are read for both.
+// The driver fetches through a cache of tiles of 32x32 texels, which has 16 slots. A tile fits
+// one slot. A fetch keeps where its four texels lie in the cache, not their values. If two of
+// its tiles have the same slot, the later tile's texels are read for both. This happens only at
+// some corners of tiles on the seam of a repeating texture.
 constexpr int kTile = 32;
 
 int slot_of(int tile_x, int tile_y) { return (tile_x + 9 * tile_y) % 16; }
 
-// Which texel is read in place of (x, y), one of the four. Where that would be outside
-// the picture, in a tile that it fills in part, the driver reads what an earlier tile
-// has left there, which depends on all that was fetched before: (x, y) is given back.
+// The texel that is read for (x, y), one of the four. If it would lie outside the picture, the
+// driver reads texels that an earlier tile left there, which depends on all fetches before;
+// here (x, y) comes back.
 Place place_in_cache(const Image& image, int x, int y, const Taps& u, const Taps& v) {
   const bool one_tile = u.first / kTile == u.second / kTile && v.first / kTile == v.second / kTile;
   if (one_tile) return {x, y};
@@ -52,7 +52,7 @@ Place place_in_cache(const Image& image, int x, int y, const Taps& u, const Taps
 }  // namespace
 
 std::int32_t softpipe_floor(float value) {
-  if (value != value) return 0;          // whichever NaNs the sums below would be
+  if (value != value) return 0;          // the sums would be any NaN
   constexpr double kMagic = 12582912.5;  // 1.5 * 2^23 + 0.5
   const auto above = std::bit_cast<std::uint32_t>(static_cast<float>(kMagic + value));
   const auto below = std::bit_cast<std::uint32_t>(static_cast<float>(kMagic - value));
@@ -103,7 +103,7 @@ glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::v
                           const Profile& profile) {
   const Image& base = texture.levels[0];
   const std::size_t last = texture.levels.size() - 1;
-  // The sampler's default lod range; NaN goes to its start.
+  // The sampler's default range of lods; NaN goes to its start.
   const float level = lod > 0.0f ? std::min(lod, 1000.0f) : 0.0f;
   const std::size_t nearest_level = std::min(static_cast<std::size_t>(level + 0.5f), last);
   if (sampler.filter == Filter::nearest) {
@@ -112,8 +112,8 @@ glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::v
                        softpipe_nearest(uv.y, image.height, sampler.wrap_v), profile);
   }
 
-  // A fast path of its own: the weight is taken from softpipe_floor, and level 0 is mixed
-  // with weight 0.
+  // The driver's fast path: it takes the weight from softpipe_floor, and mixes level 1 into level
+  // 0 with weight 0.
   const bool is_fast = std::has_single_bit(static_cast<unsigned>(base.width)) &&
                        std::has_single_bit(static_cast<unsigned>(base.height)) &&
                        sampler.wrap_u == Wrap::repeat && sampler.wrap_v == Wrap::repeat;

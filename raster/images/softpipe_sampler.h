@@ -10,19 +10,19 @@
 
 namespace softfocus {
 
-/// sample() as softpipe does it. Coordinates past 2^22 texels read some texel, the same
-/// as in the driver.
+/// sample() as softpipe does it. Coordinates past 2^22 texels read the same texel as in the
+/// driver.
 ///
-/// Its cache of tiles hands out texels of another tile at some corners of tiles on the
-/// seam of a repeating texture, say of 256x256. One thing of that is left out: where the
-/// other tile is filled in part, for a side that is no multiple of 32, what is read
-/// depends on all fetches before.
+/// softpipe caches tiles. On the seam of a repeating texture, say of 256x256, it reads texels of
+/// the wrong tile at some corners of tiles, and so does this. One case is left out: if a side is
+/// no multiple of 32, that wrong tile may be filled only in part, and the texel depends on all
+/// fetches before.
 glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
                           const Profile& profile);
 
-/// Floor as softpipe takes it, by adding 1.5 * 2^23 and reading the sum's bits: right for
-/// |value| <= 2^22 but for negative values above -2^-30, which give 0; what it gives for
-/// larger ones is part of the driver. NaN gives 0.
+/// Floor as softpipe computes it: adds 1.5 * 2^23 and reads the sum's bits. Right for
+/// |value| <= 2^22, except that negative values above -2^-30 give 0. Larger values are wrong as in
+/// the driver. NaN gives 0.
 std::int32_t softpipe_floor(float value);
 
 /// The texels that its bilinear filter reads along an axis of `size` texels.

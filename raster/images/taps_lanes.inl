@@ -1,8 +1,7 @@
-// Which texels of which levels lanes read, and the weights between them: sampler.cpp's,
-// llvmpipe_sampler.cpp's and unorm8_filter.cpp's addresses, to the bit. Of sample_lanes.inl,
-// which includes it.
+// Which texels of which levels lanes read, and their weights: the addresses of sampler.cpp,
+// llvmpipe_sampler.cpp and unorm8_filter.cpp, to the bit. A part of sample_lanes.inl.
 //
-// Whatever a coordinate or a lod is, NaN too, the texels are some of the texture's.
+// For any coordinate and lod, NaN too, the texels lie in the texture.
 
 // --- which levels ---
 
@@ -30,8 +29,8 @@ struct LevelLanes {
   Floats next_weight;
 };
 
-SOFTFOCUS_INLINE LevelLanes choose_plain_levels(Floats lod, int last, bool trilinear,
-                                                bool fixed_8) {
+SOFTFOCUS_INLINE LevelLanes choose_standard_levels(Floats lod, int last, bool trilinear,
+                                                   bool fixed_8) {
   const Floats largest = splat(static_cast<float>(last));
   const Floats level = select(lod > 0.0f, smaller(lod, largest), splat(0.0f));
   if (!trilinear) return {truncate(level + 0.5f), splat(0.0f)};
@@ -41,7 +40,7 @@ SOFTFOCUS_INLINE LevelLanes choose_plain_levels(Floats lod, int last, bool trili
   return {truncate(base), weight};
 }
 
-// A lod that is no int32 is level 0, one that the profile flushes too.
+// Lods that no int32 holds, and those that the profile flushes, give level 0.
 SOFTFOCUS_INLINE LevelLanes choose_llvmpipe_levels(Floats lod, int last, bool trilinear) {
   const Floats used = select((lod >= 0x1p-126f) & (lod < 0x1p31f), lod, splat(0.0f));
   const Ints end = splat(last);
@@ -66,17 +65,17 @@ struct TapLanes {
   Floats weight;
 };
 
-// A whole number modulo `period`; its magnitude is 2^22 + 1 at most. The quotient's two
-// roundings move it by at most (2^22 + 1) 2^-23 / period, and it is that of a multiple or
-// at least 1 / period below the next one's: multiples alone may come out short, by one.
-// Products and differences are whole numbers below 2^24, thus exact.
+// A whole number, at most 2^22 + 1 in magnitude, modulo `period`. Two roundings move the
+// quotient by at most (2^22 + 1) 2^-23 / period. If the number is no multiple, the quotient lies
+// at least 1 / period below the next whole number, and its floor is right. A multiple may come
+// out short by one. Products and differences are whole numbers below 2^24, thus exact.
 SOFTFOCUS_INLINE Floats whole_modulo(Floats whole, Floats period, Floats inverse) {
   const Floats rest = whole - floor(whole * inverse) * period;
   return select(rest >= period, rest - period, rest);
 }
 
 // Two neighbouring texels, the first as a whole number up to 2^22 + 1 in magnitude.
-SOFTFOCUS_INLINE void wrap_plain(const AxisLanes& axis, Floats base, Ints& first, Ints& second) {
+SOFTFOCUS_INLINE void wrap_standard(const AxisLanes& axis, Floats base, Ints& first, Ints& second) {
   const Ints size = truncate(axis.size);
   if (axis.wrap == Wrap::clamp_to_edge) {
     const Ints index = truncate(base);
@@ -103,23 +102,23 @@ SOFTFOCUS_INLINE void wrap_plain(const AxisLanes& axis, Floats base, Ints& first
 }
 
 // A coordinate scaled to texels. Needs a finite one.
-SOFTFOCUS_INLINE Floats plain_texels(const AxisLanes& axis) {
+SOFTFOCUS_INLINE Floats standard_texels(const AxisLanes& axis) {
   return smaller(larger(axis.coordinate * axis.size, splat(-0x1p22f)), splat(0x1p22f));
 }
 
-SOFTFOCUS_INLINE TapLanes plain_taps(const AxisLanes& axis, bool fixed_8) {
-  Floats position = plain_texels(axis) - 0.5f;
+SOFTFOCUS_INLINE TapLanes standard_taps(const AxisLanes& axis, bool fixed_8) {
+  Floats position = standard_texels(axis) - 0.5f;
   if (fixed_8) position = nearest(position * 256.0f) * (1.0f / 256.0f);
   const Floats base = floor(position);
   TapLanes taps;
-  wrap_plain(axis, base, taps.first, taps.second);
+  wrap_standard(axis, base, taps.first, taps.second);
   taps.weight = position - base;
   return taps;
 }
 
-SOFTFOCUS_INLINE Ints plain_nearest(const AxisLanes& axis) {
+SOFTFOCUS_INLINE Ints standard_nearest(const AxisLanes& axis) {
   Ints first, second;
-  wrap_plain(axis, floor(plain_texels(axis)), first, second);
+  wrap_standard(axis, floor(standard_texels(axis)), first, second);
   return first;
 }
 
@@ -185,7 +184,7 @@ SOFTFOCUS_INLINE TapLanes unorm8_taps(const AxisLanes& axis) {
   } else {
     position_256 = axis.coordinate * (axis.size * 256.0f);
   }
-  // What no integer holds wraps round to the far end here.
+  // Positions that no integer holds wrap round to the far end here.
   const Ints position = as_ints(as_bits(round_to_int(position_256)) - 128u);
   const Floats weight = to_floats(position & 255) * (1.0f / 256.0f);
   const Ints index = position >> 8;

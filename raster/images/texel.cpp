@@ -31,7 +31,7 @@ void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& pro
 glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile) {
   const bool is_8_bit =
       bytes_per_texel(image.format) == static_cast<std::size_t>(channel_count(image.format));
-  if (profile.texture_unit == TextureUnit::plain || !is_8_bit) return load_texel(image, x, y);
+  if (profile.texture_unit == TextureUnit::standard || !is_8_bit) return load_texel(image, x, y);
   const auto index =
       static_cast<std::size_t>(x) * static_cast<std::size_t>(channel_count(image.format));
   const std::uint8_t* v = &row<std::uint8_t>(image, y)[index];

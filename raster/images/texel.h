@@ -1,6 +1,6 @@
 #pragma once
-// Reading and writing one texel as four floats, whatever the format. A one-channel
-// format reads as (value, 0, 0, 1) and stores the first component, as in OpenGL.
+// Reads and writes one texel of any format as four floats. A one-channel format reads as
+// (value, 0, 0, 1) and stores the first component, as in OpenGL.
 
 #include <glm/vec4.hpp>
 #include <limits>
@@ -34,8 +34,8 @@ glm::vec4 load_texel(const AnyImage& image, int x, int y) {
   }
 }
 
-/// What a 32-bit float texel holds of a value: subnormals as the profile has them, and
-/// for any NaN the one (half.h says why).
+/// A value as a 32-bit float texel stores it: subnormals kept or flushed as the profile says,
+/// every NaN as the same NaN (half.h says why).
 inline float stored_float(float value, const Profile& profile) {
   if (value != value) return std::numeric_limits<float>::quiet_NaN();
   return flush_denormal(value, profile.denormals);
@@ -64,23 +64,23 @@ void store_texel(AnyImage&& image, int x, int y, glm::vec4 value, const Profile&
   }
 }
 
-/// The same for a format known at run time. Needs 0 <= x < width, 0 <= y < height.
+/// For any format. Needs 0 <= x < width, 0 <= y < height.
 glm::vec4 load_texel(const Image& image, int x, int y);
 void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& profile);
 
-/// A filtered value of a texture with what its format lacks filled in: whatever the
-/// weights were, NaN too, missing channels are 0, 0 and 1.
+/// A filtered value with the channels that the format lacks set to 0, 0 and 1. Weights that are
+/// NaN can have spoilt them.
 inline glm::vec4 with_missing_channels(glm::vec4 value, Format format) {
   return channel_count(format) == 1 ? glm::vec4{value.x, 0.0f, 0.0f, 1.0f} : value;
 }
 
-/// What the profile's texture unit makes of a texel (texelFetch in GLSL). The units of
-/// drivers decode 8-bit formats in their own ways, the plain one as load_texel does.
+/// A texel as the profile's texture unit decodes it (texelFetch in GLSL). The standard unit does
+/// as load_texel; drivers' units decode 8-bit formats in their own ways.
 glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile);
 
 /// Sets every texel to `value`.
 void clear_image(Image& image, glm::vec4 value, const Profile& profile);
-/// The texels x_begin <= x < x_end, y_begin <= y < y_end, of which there is one at least.
+/// Sets the texels x_begin <= x < x_end, y_begin <= y < y_end. Needs at least one.
 void clear_image(Image& image, int x_begin, int y_begin, int x_end, int y_end, glm::vec4 value,
                  const Profile& profile);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A texture: an image with its mip levels.
+// An image with its mip levels.
 
 #include <utility>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace softfocus {
 
-/// An image and its mip levels, each half the size of the one before, rounded down,
-/// to 1x1. Without mipmaps there is one level.
+/// Each level has half the size of the one before, rounded down, to 1x1. Without mipmaps there
+/// is one level.
 struct Texture {
   std::vector<Image> levels;
 };

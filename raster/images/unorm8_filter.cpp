@@ -11,13 +11,13 @@
 namespace softfocus {
 namespace {
 
-// A position in 24.8 fixed point, less half a texel. What no integer holds comes out
-// at the far end, whatever its sign: x86 converts it to the least integer, from which
-// the subtraction wraps round to the largest ones.
+// A position in 24.8 fixed point, less half a texel. Values that no integer holds come out at
+// the far end, whatever their sign: x86 converts them to the least integer, and the subtraction
+// wraps round.
 std::int32_t less_half_texel(float position_256) { return from_centre(round_to_int(position_256)); }
 
-// `size` is the level's, `base_size` level 0's: the path is chosen by the latter.
-FixedTaps taps8(float coordinate, int size, int base_size, Wrap wrap) {
+// `size` is the level's; `base_size`, level 0's, chooses the path.
+IntegerTaps taps8(float coordinate, int size, int base_size, Wrap wrap) {
   const auto length = static_cast<float>(size);
   if (wrap == Wrap::repeat && !std::has_single_bit(static_cast<unsigned>(base_size))) {
     const float fraction = coordinate - std::floor(coordinate);
@@ -46,8 +46,8 @@ Texel8 lerp4(const Texel8& a, const Texel8& b, int weight) {
 }
 
 Texel8 bilinear(const Image& image, const Image& base, const Sampler& sampler, glm::vec2 uv) {
-  const FixedTaps u = taps8(uv.x, image.width, base.width, sampler.wrap_u);
-  const FixedTaps v = taps8(uv.y, image.height, base.height, sampler.wrap_v);
+  const IntegerTaps u = taps8(uv.x, image.width, base.width, sampler.wrap_u);
+  const IntegerTaps v = taps8(uv.y, image.height, base.height, sampler.wrap_v);
   const auto along_row = [&](int y) {
     return lerp4(load(image, u.first, y), load(image, u.second, y), u.weight);
   };
@@ -57,11 +57,11 @@ Texel8 bilinear(const Image& image, const Image& base, const Sampler& sampler, g
 }  // namespace
 
 bool is_filtered_in_integers(Format format, const Sampler& sampler) {
-  const auto plain_wrap = [](Wrap wrap) {
+  const auto has_path = [](Wrap wrap) {
     return wrap == Wrap::repeat || wrap == Wrap::clamp_to_edge;
   };
-  return (format == Format::r8 || format == Format::rgba8) && plain_wrap(sampler.wrap_u) &&
-         plain_wrap(sampler.wrap_v);
+  return (format == Format::r8 || format == Format::rgba8) && has_path(sampler.wrap_u) &&
+         has_path(sampler.wrap_v);
 }
 
 glm::vec4 sample_unorm8(const Texture& texture, const Sampler& sampler, glm::vec2 uv,

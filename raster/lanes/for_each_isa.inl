@@ -1,13 +1,20 @@
-// Compiles one file of kernels for every vector unit:
+// Compiles the kernels of a file once for every vector unit. The scalar form and the kernels
+// stand in one file, which includes itself:
 //
-//   #define SOFTFOCUS_KERNELS "dof/gather_kernels.inl"
+//   #ifndef SOFTFOCUS_ISA
+//   #include ...
+//   #define SOFTFOCUS_KERNELS "dof/gather.cpp"               // this file
 //   #include "raster/lanes/for_each_isa.inl"
-//   ... SOFTFOCUS_KERNEL(isa, filter_row)(arguments) ...   // isa: not scalar
+//   ... the scalar form ...
+//   ... SOFTFOCUS_KERNEL(isa, filter_row)(arguments) ...     // any isa but scalar
+//   #else  // once a vector unit
+//   void filter_row(...) { ... }
+//   #endif
 //
-// The file's text lies within a namespace of the unit, softfocus::baseline, avx2 or
-// avx512, in which lanes.inl has put vectors of the unit's width. It must not include
-// anything: headers are compiled for every CPU, and come before. Nor may it hold lambdas,
-// which clang would leave without the unit's instructions.
+// The kernels come to lie in a namespace of the unit, softfocus::baseline, avx2 or avx512,
+// beside lanes.inl's vectors of the unit's width. They may include other kernels (.inl) but no
+// headers, which are compiled for every CPU and come before. They must not hold lambdas: clang
+// compiles those without the unit's instructions.
 
 #include "raster/lanes/isa.h"
 #include "raster/lanes/lanes_headers.h"

@@ -1,6 +1,6 @@
 #pragma once
-// The vector units that kernels are compiled for. Which one runs is chosen at run time
-// and shows in the time alone: all give the same bits.
+// The vector units that kernels are compiled for. One is chosen at run time. All give the
+// same bits.
 
 #include <cstdint>
 #include <optional>
@@ -18,22 +18,26 @@
 namespace softfocus {
 
 enum class Isa : std::uint8_t {
-  scalar,    ///< no kernels: the plain form of everything
+  scalar,    ///< no kernels: the scalar form of everything
   baseline,  ///< 4 lanes, in what every CPU of the build has: SSE2, NEON on 64-bit Arm
   avx2,      ///< 8 lanes: AVX2, FMA and F16C
   avx512,    ///< 16 lanes: AVX-512 F, BW, DQ and VL beside those
 };
 
-/// Those that this CPU runs, `scalar` first, then by width.
+/// The units of this CPU, `scalar` first, then by width.
 std::span<const Isa> available_isas();
 
-/// The widest of them.
+/// The last of them.
 Isa widest_isa();
+
+/// 32-bit numbers in a vector of a unit, and in the widest of all. Needs an isa with vectors.
+constexpr int lanes_of(Isa isa) { return isa == Isa::avx512 ? 16 : isa == Isa::avx2 ? 8 : 4; }
+inline constexpr int kMostLanes = 16;
 
 /// "scalar", "baseline", "avx2", "avx512".
 std::string_view isa_name(Isa isa);
 
-/// The available one of that name; "neon" is another name of 64-bit Arm's baseline.
+/// The available unit of that name; "neon" is another name of 64-bit Arm's baseline.
 std::optional<Isa> find_isa(std::string_view name);
 
 }  // namespace softfocus

@@ -1,8 +1,7 @@
-// Vectors of SOFTFOCUS_LANES numbers, one a pixel, a vertex or a triangle, in the
-// compiler's own vector types (g++ and clang): + - * / & | ^ << >> and comparisons work
-// lane by lane, each rounded as a single float's. Here is what has no operator; a function
-// does in every lane what its scalar namesake does. Nothing is fused but where
-// fused_multiply_add says so.
+// Vectors of SOFTFOCUS_LANES numbers: one a pixel, a vertex or a triangle. They are the
+// compiler's own vector types (g++ and clang): + - * / & | ^ << >> and comparisons work lane by
+// lane and round as on single floats. The functions here do in every lane what their scalar
+// namesakes do. Only fused_multiply_add() fuses.
 //
 // Included by for_each_isa.inl, once a vector unit.
 
@@ -11,7 +10,7 @@ inline constexpr int kLanes = SOFTFOCUS_LANES;
 using Floats [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = float;
 using Ints [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = std::int32_t;
 using Bits [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = std::uint32_t;
-/// Of each lane all bits or none: what comparisons give.
+/// The result of a comparison: all bits of a lane, or none.
 using Mask = Ints;
 
 // --- memory; nothing need be aligned ---
@@ -35,14 +34,14 @@ SOFTFOCUS_INLINE void store(float* to, Floats v) { std::memcpy(to, &v, sizeof v)
 SOFTFOCUS_INLINE void store(std::int32_t* to, Ints v) { std::memcpy(to, &v, sizeof v); }
 SOFTFOCUS_INLINE void store(std::uint32_t* to, Bits v) { std::memcpy(to, &v, sizeof v); }
 
-/// Has what was stored there read from memory: lanes that are used one by one come faster
-/// from there than out of a vector register, where compilers prefer to keep them.
+/// Makes the compiler read a stored array from memory. Compilers prefer to keep it in a vector
+/// register, but lanes that are used one by one come faster from memory.
 template <class Array>
 SOFTFOCUS_INLINE void keep_in_memory(Array& array) {
   asm volatile("" : "+m"(array));
 }
 
-/// The value in every lane; no sum, which would turn -0 into 0.
+/// The value in every lane. Not as a sum with 0, which would turn -0 into 0.
 SOFTFOCUS_INLINE Floats splat(float value) {
 #if SOFTFOCUS_LANES == 16
   return Floats{value, value, value, value, value, value, value, value,
@@ -81,7 +80,7 @@ SOFTFOCUS_INLINE Bits select(Mask mask, Bits yes, Bits no) {
   return as_bits(mask ? as_ints(yes) : as_ints(no));
 }
 
-/// Bit i is set where lane i is.
+/// Bit i is set if lane i is.
 SOFTFOCUS_INLINE unsigned lane_bits(Mask mask) {
 #if SOFTFOCUS_LANES == 16
   return _mm512_movepi32_mask((__m512i)mask);
@@ -95,7 +94,7 @@ SOFTFOCUS_INLINE unsigned lane_bits(Mask mask) {
   return bits;
 #endif
 }
-/// Bit i is set where lane i is negative: of a mask that need not be made.
+/// Bit i is set if lane i is negative. On x86 it takes no comparison.
 SOFTFOCUS_INLINE unsigned sign_bits(Ints v) {
 #if SOFTFOCUS_LANES == 16 || SOFTFOCUS_LANES == 8 || defined(__SSE2__)
   return lane_bits(v);
@@ -103,8 +102,7 @@ SOFTFOCUS_INLINE unsigned sign_bits(Ints v) {
   return lane_bits(v < 0);
 #endif
 }
-/// Bit i is set where the lanes i are equal: lane_bits(a == b), but for the vector of a mask, which
-/// compilers make on the way there.
+/// lane_bits(a == b), without the vector of a mask that compilers would make in between.
 SOFTFOCUS_INLINE unsigned equal_lane_bits(Ints a, Ints b) {
 #if SOFTFOCUS_LANES == 16
   return _mm512_cmpeq_epi32_mask((__m512i)a, (__m512i)b);
@@ -119,8 +117,8 @@ SOFTFOCUS_INLINE bool all(Mask mask) { return lane_bits(mask) == kAllLaneBits; }
 /// The lanes before the `count`th.
 SOFTFOCUS_INLINE Mask first_lanes(int count) { return lane_numbers() < count; }
 
-// AVX-512 is written in its maskz forms: g++ 12 warns of the others, whose lanes outside
-// the mask are undefined, and compiles both to the same.
+// AVX-512 is written in its maskz forms. g++ 12 compiles the others to the same, but warns of
+// their lanes outside the mask, which are undefined.
 
 // --- arithmetic ---
 
@@ -181,8 +179,8 @@ SOFTFOCUS_INLINE Floats square_root(Floats v) {
 #endif
 }
 
-/// 1 / v, wrong by at most 1.5 2^-12 of it; how much, differs between CPUs. Needs a normal
-/// number between 2^-100 and 2^100.
+/// 1 / v with a relative error of at most 1.5 2^-12, which differs between CPUs. Needs 2^-100 to
+/// 2^100.
 SOFTFOCUS_INLINE Floats rough_reciprocal(Floats v) {
 #if SOFTFOCUS_LANES == 16
   return (Floats)_mm512_maskz_rcp14_ps(0xFFFF, (__m512)v);
@@ -222,7 +220,7 @@ SOFTFOCUS_INLINE Floats floor(Floats v) {
 #endif
 }
 
-/// As float_to_int.h has them: what does not fit becomes the least integer.
+/// As in float_to_int.h: values that do not fit become the least integer.
 SOFTFOCUS_INLINE Ints truncate_to_int(Floats v) {
 #if SOFTFOCUS_LANES == 16
   return (Ints)_mm512_maskz_cvttps_epi32(0xFFFF, (__m512)v);
@@ -264,7 +262,7 @@ SOFTFOCUS_INLINE Floats pick(Floats v, Ints index) {
 #endif
 }
 
-// --- gathers: base[index], in the lanes of the mask; 0 in the others ---
+// --- gathers: base[index] in the lanes of the mask, 0 in the others ---
 
 SOFTFOCUS_INLINE Ints gather(const std::int32_t* base, Ints index, Mask mask) {
 #if SOFTFOCUS_LANES == 16
@@ -335,7 +333,7 @@ SOFTFOCUS_INLINE IntPairs gather_pairs(const std::int32_t* base, Ints index) {
 
 // --- compression: the lanes of a mask moved to the front ---
 
-/// What compress() needs to know of a mask, found once for many vectors.
+/// A mask as compress() needs it, made once for many vectors.
 #if SOFTFOCUS_LANES == 16
 using Compression = __mmask16;
 SOFTFOCUS_INLINE Compression compression(Mask mask) { return _mm512_movepi32_mask((__m512i)mask); }
@@ -361,7 +359,7 @@ SOFTFOCUS_INLINE Ints compress(Ints v, Compression kept) { return (Ints)pick((Fl
 
 // --- fours: vectors as kLanes / 4 times four lanes ---
 
-/// Of each four lanes the one of that number, in all of the four.
+/// In each four lanes, all become the one of that number.
 template <int number, class Vector, std::size_t... lane>
 SOFTFOCUS_INLINE Vector spread_lanes(Vector v, std::index_sequence<lane...>) {
   return __builtin_shufflevector(v, v, ((lane & ~std::size_t{3}) + number)...);
@@ -371,7 +369,7 @@ SOFTFOCUS_INLINE Vector spread(Vector v) {
   return spread_lanes<number>(v, std::make_index_sequence<SOFTFOCUS_LANES>{});
 }
 
-/// Of the first kLanes / 4 lanes each in four lanes.
+/// Each of the first kLanes / 4 lanes, four times.
 template <std::size_t... lane>
 SOFTFOCUS_INLINE Ints repeat_lanes(Ints v, std::index_sequence<lane...>) {
   return __builtin_shufflevector(v, v, (lane / 4)...);
@@ -395,7 +393,7 @@ SOFTFOCUS_INLINE Floats load_fours(const float* const* from, std::size_t offset)
 #endif
 }
 
-// Of each four lanes: `from` and the next of two vectors by turns.
+// In each four lanes: a[from], b[from], a[from + 1], b[from + 1].
 template <std::size_t from, std::size_t... lane>
 SOFTFOCUS_INLINE Floats interleave_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
   return __builtin_shufflevector(
@@ -406,7 +404,7 @@ SOFTFOCUS_INLINE Floats interleave(Floats a, Floats b) {
   return interleave_lanes<from>(a, b, std::make_index_sequence<kLanes>{});
 }
 
-// Of each four lanes two of `a`, then two of `b`.
+// In each four lanes: a[from], a[from + 1], b[from], b[from + 1].
 template <std::size_t from, std::size_t... lane>
 SOFTFOCUS_INLINE Floats join_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
   return __builtin_shufflevector(
@@ -431,7 +429,7 @@ SOFTFOCUS_INLINE void transpose_fours(Floats& v0, Floats& v1, Floats& v2, Floats
 
 // --- transposition ---
 
-// Written without loops, so that all vectors stay in registers.
+// Without loops, so that all vectors stay in registers.
 
 // Swaps, in lanes and vectors at once, two blocks of `step` off the diagonal.
 template <int step, class Vector, std::size_t... lane>
@@ -443,14 +441,14 @@ SOFTFOCUS_INLINE void swap_blocks(Vector& a, Vector& b, std::index_sequence<lane
 }
 template <int step, class Vector, std::size_t... pair>
 SOFTFOCUS_INLINE void swap_all_blocks(Vector* v, std::index_sequence<pair...>) {
-  // Of each pair, the first: its number with a 0 put in at the bit of the step.
+  // The first of pair i is i with a 0 inserted at the bit of the step.
   ((swap_blocks<step>(v[pair / step * step * 2 + pair % step],
                       v[pair / step * step * 2 + pair % step + step],
                       std::make_index_sequence<SOFTFOCUS_LANES>{})),
    ...);
 }
 
-/// Of kLanes vectors, lane i of vector j and lane j of vector i change places.
+/// In kLanes vectors, lane i of vector j and lane j of vector i change places.
 template <class Vector>
 SOFTFOCUS_INLINE void transpose(Vector* v) {
   using Pairs = std::make_index_sequence<SOFTFOCUS_LANES / 2>;
@@ -462,7 +460,7 @@ SOFTFOCUS_INLINE void transpose(Vector* v) {
 
 // --- halves, one in the low bits of each lane ---
 
-/// As half_to_float().
+/// half_to_float().
 SOFTFOCUS_INLINE Floats half_to_float(Bits half) {
 #if SOFTFOCUS_LANES == 16
   return (Floats)_mm512_maskz_cvtph_ps(0xFFFF, _mm512_maskz_cvtepi32_epi16(0xFFFF, (__m512i)half));
@@ -478,7 +476,7 @@ SOFTFOCUS_INLINE Floats half_to_float(Bits half) {
   return as_floats(sign | select(magnitude >= kHalfInfinity, special, as_bits(scaled)));
 #endif
 }
-/// Of kLanes halves side by side.
+/// kLanes halves side by side, as floats.
 SOFTFOCUS_INLINE Floats load_halves(const std::uint16_t* from) {
 #if SOFTFOCUS_LANES == 16
   return (Floats)_mm512_maskz_cvtph_ps(0xFFFF, _mm256_loadu_si256((const __m256i*)from));
@@ -489,7 +487,7 @@ SOFTFOCUS_INLINE Floats load_halves(const std::uint16_t* from) {
 #endif
 }
 
-/// As float_to_half().
+/// float_to_half().
 template <HalfRounding rounding>
 SOFTFOCUS_INLINE Bits float_to_half(Floats value) {
 #if SOFTFOCUS_LANES >= 8
@@ -528,7 +526,7 @@ SOFTFOCUS_INLINE Bits float_to_half(Floats value) {
 
 // --- pixels of RGBA16F ---
 
-/// Channels of as many pixels, as halves.
+/// The channels of kLanes pixels, as halves.
 struct HalfTexels {
   Bits r, g, b, a;
 };
@@ -557,7 +555,7 @@ SOFTFOCUS_INLINE HalfTexels load_half_texels(const std::uint16_t* from) {
 #endif
 }
 
-/// Those pixels as they lie in memory: the first half of them, and the second.
+/// kLanes pixels as they lie in memory: the first half of them, then the second.
 struct TexelWords {
   Bits first, second;
 };
@@ -592,9 +590,9 @@ SOFTFOCUS_INLINE void store_half_texels(std::uint16_t* to, const HalfTexels& tex
   store_texel_words(to, interleave(texels));
 }
 
-/// The same past the caches, where that can be: for what is not read again soon. Needs an
-/// address that is a multiple of a vector's size, and finish_streaming() before another
-/// thread may read.
+/// A store past the caches if the CPU can, for pixels that are not read again soon. Needs an
+/// address that is a multiple of a vector's size, and finish_streaming() before another thread
+/// reads.
 SOFTFOCUS_INLINE void stream_texel_words(std::uint16_t* to, const TexelWords& words) {
 #if SOFTFOCUS_LANES == 16
   _mm512_stream_si512((__m512i*)to, (__m512i)words.first);

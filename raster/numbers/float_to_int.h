@@ -1,7 +1,7 @@
 #pragma once
-// Floats to 32-bit integers as x86 vector units convert them (Intel's manual,
-// CVTTPS2DQ and CVTPS2DQ): what does not fit, NaN too, becomes the least integer.
-// C++ leaves such conversions undefined, and other CPUs saturate.
+// Floats to 32-bit integers as x86 vector units convert them (Intel's manual, CVTTPS2DQ and
+// CVTPS2DQ): values that do not fit, NaN too, become the least integer. C++ leaves such
+// conversions undefined, and other CPUs saturate.
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// The one operation in which drivers differ most, in one place.
+// Linear interpolation, in which drivers differ most.
 
 #include <cmath>
 
@@ -24,8 +24,8 @@ inline float flush_denormal(float value, Denormals denormals) {
   return flushed ? std::copysign(0.0f, value) : value;
 }
 
-/// a + t (b - a) as a shader of the profile computes it: with its contraction, and
-/// with operands and results flushed where it flushes.
+/// a + t (b - a) as a shader of the profile computes it: with its contraction, and with operands
+/// and results flushed if it flushes.
 inline float lerp(float a, float b, float t, const Profile& profile) {
   const auto flush = [&](float value) { return flush_denormal(value, profile.denormals); };
   a = flush(a);

@@ -5,69 +5,55 @@
 namespace softfocus {
 namespace {
 
-Profile ieee() {
-  return {
-      .name = "ieee",
-      .summary = "IEEE 754 throughout: stores round to nearest even, float weights, nothing fused"};
-}
+constexpr Profile kD3d11{.half_store = HalfRounding::toward_zero,
+                         .denormals = Denormals::flush,
+                         .bilinear_weights = BilinearWeights::fixed_8,
+                         .bilinear_filter = BilinearFilter::integers};
 
-Profile d3d11() {
-  return {.name = "d3d11",
-          .summary = "the Direct3D 11.3 specification: stores truncate, 8-bit bilinear weights",
-          .half_store = HalfRounding::toward_zero,
-          .denormals = Denormals::flush,
-          .bilinear_weights = BilinearWeights::fixed_8,
-          .bilinear_filter = BilinearFilter::integers};
-}
-
-// Mesa's software rasterizers were measured; docs/exactness.md has every operation.
-Profile llvmpipe() {
-  return {.name = "llvmpipe",
-          .summary = "Mesa 22.3 llvmpipe on a CPU with fused multiply-add",
-          .half_store = HalfRounding::toward_zero,
+// Mesa's software rasterizers were measured; docs/specification.md has every operation.
+constexpr Profile llvmpipe(Contraction contraction) {
+  return {.half_store = HalfRounding::toward_zero,
           .unorm_store = UnormRounding::nearest_even,
           .denormals = Denormals::flush,
           .texture_unit = TextureUnit::llvmpipe,
-          .lerp = Contraction::fused,
-          .viewport = Contraction::fused,
+          .lerp = contraction,
+          .viewport = contraction,
           .guard_band = 1.0f,
           .clipping = Clipping::mesa,
           .attributes = AttributeSetup::planes_from_origin,
-          .interpolation = Contraction::fused};
+          .interpolation = contraction};
 }
 
-Profile llvmpipe_sse41() {
-  Profile profile = llvmpipe();
-  profile.name = "llvmpipe-sse41";
-  profile.summary = "Mesa 22.3 llvmpipe held to SSE4.1: nothing fused";
-  profile.lerp = Contraction::unfused;
-  profile.viewport = Contraction::unfused;
-  profile.interpolation = Contraction::unfused;
-  return profile;
-}
+constexpr Profile kSoftpipe{.half_store = HalfRounding::toward_zero,
+                            .unorm_store = UnormRounding::nearest_even,
+                            .texture_unit = TextureUnit::softpipe,
+                            .guard_band = 1.0f,
+                            .clipping = Clipping::mesa,
+                            .coverage = Coverage::scanlines,
+                            .attributes = AttributeSetup::planes_by_quad};
 
-Profile softpipe() {
-  return {.name = "softpipe",
-          .summary = "Mesa 22.3 softpipe: float spans, float textures, nothing fused",
-          .half_store = HalfRounding::toward_zero,
-          .unorm_store = UnormRounding::nearest_even,
-          .texture_unit = TextureUnit::softpipe,
-          .guard_band = 1.0f,
-          .clipping = Clipping::mesa,
-          .coverage = Coverage::scanlines,
-          .attributes = AttributeSetup::planes_by_quad};
-}
+constexpr std::array kProfiles{
+    NamedProfile{"ieee",
+                 "IEEE 754 throughout: stores round to nearest even, float weights, nothing fused",
+                 {}},
+    NamedProfile{"d3d11",
+                 "the Direct3D 11.3 specification: stores truncate, 8-bit bilinear weights",
+                 kD3d11},
+    NamedProfile{"llvmpipe", "Mesa 22.3 llvmpipe on a CPU with fused multiply-add",
+                 llvmpipe(Contraction::fused)},
+    NamedProfile{"llvmpipe-sse41", "Mesa 22.3 llvmpipe held to SSE4.1: nothing fused",
+                 llvmpipe(Contraction::unfused)},
+    NamedProfile{"softpipe", "Mesa 22.3 softpipe: float spans, float textures, nothing fused",
+                 kSoftpipe},
+};
 
 }  // namespace
 
-std::span<const Profile> profiles() {
-  static const std::array kProfiles{ieee(), d3d11(), llvmpipe(), llvmpipe_sse41(), softpipe()};
-  return kProfiles;
-}
+std::span<const NamedProfile> profiles() { return kProfiles; }
 
 std::optional<Profile> find_profile(std::string_view name) {
-  for (const Profile& profile : profiles()) {
-    if (profile.name == name) return profile;
+  for (const NamedProfile& known : kProfiles) {
+    if (known.name == name) return known.profile;
   }
   return std::nullopt;
 }

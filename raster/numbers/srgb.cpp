@@ -38,8 +38,8 @@ std::array<float, 256> decimal_decoding_table() {
   return values;
 }
 
-// Where one code gives way to the next, half-way between codes: the least floats that
-// are not below the curve there.
+// Where one code gives way to the next, half-way between codes: the least floats that are not
+// below the curve.
 std::array<float, 255> encoding_thresholds() {
   std::array<float, 255> values{};
   for (std::size_t k = 0; k < values.size(); ++k) {

@@ -11,8 +11,8 @@ namespace softfocus {
 /// Linear light, 0 to 1, of an 8-bit sRGB value: the curve in binary64, rounded once.
 float srgb8_to_linear(std::uint8_t encoded);
 
-/// The same as Mesa's table has it, which was printed with 8 significant digits: for 26
-/// codes the float beside the nearest.
+/// The same from Mesa's table, which was printed with 8 significant digits: for 26 codes the float
+/// beside the nearest.
 float srgb8_to_linear_decimal(std::uint8_t encoded);
 
 /// The same by llvmpipe's cubic, up to 1.2e-3 off: encoded / (12.6 * 255) up to 15, above
@@ -24,8 +24,8 @@ float srgb8_to_linear_by_cubic(std::uint8_t encoded, Contraction contraction);
 std::uint8_t linear_to_srgb8(float linear);
 
 /// Linear 8 bits: 255 * clamp(value, 0, 1), rounded to nearest; NaN gives 0.
-/// half_up: the exact product (in binary64, for binary32 would round some up to a tie),
-/// ties up. nearest_even: the product in binary32, ties to even, as drivers compute it.
+/// half_up: the exact product, ties up; in binary64, as binary32 would round some up to a tie.
+/// nearest_even: the product in binary32, ties to even, as drivers compute it.
 inline std::uint8_t linear_to_unorm8(float value, UnormRounding rounding = UnormRounding::half_up) {
   if (!(value > 0.0f)) return 0;
   if (value >= 1.0f) return 255;

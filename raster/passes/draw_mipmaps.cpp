@@ -40,7 +40,7 @@ struct Fetch {
 
 void draw_mipmaps(Texture& texture, const Profile& profile) {
   assert(!texture.levels.empty());
-  // softpipe, which elsewhere keeps them, draws with subnormals flushed what it need not clip.
+  // softpipe keeps subnormals elsewhere, but flushes them when it draws and need not clip.
   Profile drawing = profile;
   drawing.denormals = Denormals::flush;
   texture.levels.resize(1);
@@ -62,7 +62,7 @@ void draw_mipmaps(Texture& texture, const Profile& profile) {
 }
 
 void generate_mipmaps_as(Texture& texture, const Profile& profile) {
-  if (profile.texture_unit == TextureUnit::plain) {
+  if (profile.texture_unit == TextureUnit::standard) {
     generate_mipmaps(texture, profile);
   } else {
     draw_mipmaps(texture, profile);

@@ -1,6 +1,6 @@
 #pragma once
-// A full-screen pass: a function of the pixel, run for every pixel of a target. What a
-// GPU does with a full-screen triangle and a fragment shader.
+// A full-screen pass: a function of the pixel, run for every pixel of a target. On a GPU, a
+// full-screen triangle and a fragment shader.
 
 #include <algorithm>
 #include <cassert>

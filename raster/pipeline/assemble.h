@@ -1,5 +1,5 @@
 #pragma once
-// From a triangle in clip space to what is left of it in the window.
+// From a triangle in clip space to the triangles in the window that clipping leaves of it.
 
 #include <algorithm>
 #include <array>
@@ -25,8 +25,8 @@ inline std::array<std::size_t, 3> fan_triangle(std::size_t i, ProvokingVertex pr
                                             : std::array<std::size_t, 3>{0, i - 1, i};
 }
 
-/// Calls add(window vertices, varyings) for each triangle that clipping leaves of one, which
-/// is the triangle itself where all of it is inside.
+/// Calls add(window vertices, varyings) for each triangle that clipping leaves: the triangle
+/// itself if all of it is inside.
 template <std::size_t N, class Add>
 void to_window_triangles(const std::array<VertexOutput<N>, 3>& corners,
                          const std::array<Interpolation, N>& kinds, ProvokingVertex provoking,
@@ -55,7 +55,7 @@ void to_window_triangles(const std::array<VertexOutput<N>, 3>& corners,
   for (std::size_t i = 0; i < 3; ++i) {
     polygon.vertices[i].position = corners[i].position;
     for (std::size_t k = 0; k < N; ++k) {
-      // The fan below has other provoking vertices than the triangle: flat values go along.
+      // Triangles of the fan below have other provoking vertices: all get the flat values.
       const bool is_flat = kinds[k] == Interpolation::flat;
       polygon.vertices[i].varyings[k] =
           corners[is_flat ? provoking_index(provoking) : i].varyings[k];

@@ -1,5 +1,5 @@
 #pragma once
-// The draw call: vertex stage, clipping, set-up, binning, fragment stage, merge.
+// A scalar draw: vertex stage, clipping, set-up, sorting into tiles, fragment stage, merge.
 
 #include <algorithm>
 #include <cassert>
@@ -24,8 +24,7 @@ struct Chunk {
   std::vector<Bin> bins;
 };
 
-// All that a recorded draw holds. Loops over different vertices, chunks or tiles touch
-// different parts of it.
+// Iterations over different vertices, chunks or tiles touch different parts of it.
 template <class VertexStage, class FragmentStage, std::size_t N>
 struct Recorded {
   RenderTargets targets;
@@ -64,8 +63,8 @@ void add_triangle(const Draw& draw, Chunk<N>& chunk, const std::array<WindowVert
                (draw.width + kTileSize - 1) / kTileSize);
 }
 
-// Whether the triangles begin <= t < end are culled by unsnapped positions too: Mesa sends
-// all of a batch through its clipping stages if any vertex is outside.
+// Whether the triangles begin <= t < end are culled by unsnapped positions too. Mesa sends a
+// whole batch through its clipping stages if any vertex is outside.
 template <class Draw>
 bool culls_unsnapped(const Draw& draw, std::size_t begin, std::size_t end) {
   if (draw.state.cull == Cull::none || draw.profile.clipping != Clipping::mesa) return false;
@@ -76,14 +75,14 @@ bool culls_unsnapped(const Draw& draw, std::size_t begin, std::size_t end) {
 }
 
 template <class Draw, std::size_t N>
-void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::size_t end,
-                    const std::array<Interpolation, N>& kinds) {
+void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::size_t end) {
   const bool cull_unsnapped = culls_unsnapped(draw, begin, end);
   for (std::size_t t = begin; t < end; ++t) {
     std::array<VertexOutput<N>, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) corners[i] = draw.vertices[draw.indices[3 * t + i]];
     to_window_triangles(
-        corners, kinds, draw.state.provoking_vertex, draw.width, draw.height, draw.profile,
+        corners, decltype(draw.fragment_stage)::kInterpolation, draw.state.provoking_vertex,
+        draw.width, draw.height, draw.profile,
         [&](const std::array<WindowVertex, 3>& window, const std::array<Varyings<N>, 3>& varyings) {
           add_triangle(draw, chunk, window, varyings, cull_unsnapped);
         });
@@ -91,22 +90,21 @@ void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::s
 }
 
 template <class Draw, std::size_t N>
-void assemble_chunk(const Draw& draw, Chunk<N>& chunk, std::uint32_t number,
-                    const std::array<Interpolation, N>& kinds) {
+void assemble_chunk(const Draw& draw, Chunk<N>& chunk, std::uint32_t number) {
   const std::size_t triangle_count = draw.indices.size() / 3;
   const std::size_t chunk_begin = std::size_t{number} * kChunkTriangles;
   const std::size_t chunk_end = std::min(chunk_begin + kChunkTriangles, triangle_count);
   for (std::size_t begin = chunk_begin; begin < chunk_end; begin += kBatchTriangles) {
-    assemble_batch(draw, chunk, begin, std::min(begin + kBatchTriangles, chunk_end), kinds);
+    assemble_batch(draw, chunk, begin, std::min(begin + kBatchTriangles, chunk_end));
   }
   std::sort(chunk.bins.begin(), chunk.bins.end(), [](const Bin& a, const Bin& b) {
     return a.tile != b.tile ? a.tile < b.tile : a.triangle < b.triangle;
   });
 }
 
-// Clamped to 0..1; NaN, which is all that planes give where a sliver's area rounds to 0,
-// becomes 1. But softpipe keeps what a plane gives beyond a sliver's vertices.
-inline float stored_depth(float depth, const Profile& profile) {
+// Clamped to 0..1. NaN, which planes give if a sliver's area rounds to 0, becomes 1. softpipe
+// keeps the depths that a plane has beyond a sliver's vertices.
+inline float clamped_depth(float depth, const Profile& profile) {
   if (profile.attributes == AttributeSetup::planes_by_quad) return depth;
   return depth <= 1.0f ? std::max(depth, 0.0f) : 1.0f;
 }
@@ -116,9 +114,9 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
                     int x, int y) {
   using FragmentStage = decltype(draw.fragment_stage);
   const Interpolated<N> values = interpolator.at(x, y);
-  const float depth = stored_depth(values.depth, draw.profile);
+  const float depth = clamped_depth(values.depth, draw.profile);
   const bool front = triangle.setup.front_facing;
-  // Tests come first where the stage cannot take a fragment back.
+  // If the stage cannot discard a fragment, the tests come before it.
   if (!FragmentStage::kDiscards &&
       !depth_stencil_test(draw.state, draw.targets, x, y, depth, front)) {
     return;
@@ -160,9 +158,7 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
 template <class Interpolator, class Draw, std::size_t N>
 void shade_triangle(const Draw& draw, const Triangle<N>& triangle, const Rectangle& tile) {
   const TriangleSetup& setup = triangle.setup;
-  const Rectangle area{
-      std::max(tile.x_begin, setup.bounds.x_begin), std::max(tile.y_begin, setup.bounds.y_begin),
-      std::min(tile.x_end, setup.bounds.x_end), std::min(tile.y_end, setup.bounds.y_end)};
+  const Rectangle area = intersection(tile, setup.bounds);
   const Interpolator interpolator{triangle, draw.profile,
                                   decltype(draw.fragment_stage)::kInterpolation};
   for (int y = area.y_begin; y < area.y_end; ++y) {
@@ -192,12 +188,31 @@ void shade_tile(const Draw& draw, const Chunk<N>& chunk, std::span<const Bin> bi
   }
 }
 
+template <class Recorded>
+inline constexpr ScalarSteps kScalarSteps{
+    [](void* recorded, std::uint32_t begin, std::uint32_t end) {
+      auto& draw = *static_cast<Recorded*>(recorded);
+      for (std::uint32_t i = begin; i < end; ++i) draw.vertices[i] = draw.vertex_stage(i);
+    },
+    [](void* recorded, std::uint32_t chunk) {
+      auto& draw = *static_cast<Recorded*>(recorded);
+      assemble_chunk(draw, draw.chunks[chunk], chunk);
+    },
+    [](const void* recorded, std::uint32_t chunk) {
+      return std::span<const Bin>{static_cast<const Recorded*>(recorded)->chunks[chunk].bins};
+    },
+    [](const void* recorded, std::uint32_t chunk, std::span<const Bin> bins,
+       const Rectangle& tile) {
+      const auto& draw = *static_cast<const Recorded*>(recorded);
+      shade_tile(draw, draw.chunks[chunk], bins, tile);
+    }};
+
 }  // namespace draw_detail
 
-/// Records a draw of indices.size() / 3 triangles: the stages are copied, what they
-/// and `indices` point to must live until finish(). Needs every index below
-/// `vertex_count`, indices.size() a multiple of 3, and in the profile edge functions
-/// where attributes are barycentric: the weights are those functions'.
+/// Records a draw of indices.size() / 3 triangles. The stages are copied; data that they and
+/// `indices` point to must live until finish(). Needs every index below `vertex_count` and
+/// indices.size() a multiple of 3. A profile with barycentric attributes needs edge functions,
+/// which give the weights.
 template <class VertexStage, class FragmentStage>
 void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_t> indices,
           std::uint32_t vertex_count, VertexStage vertex_stage, FragmentStage fragment_stage) {
@@ -211,12 +226,7 @@ void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_
   using Recorded = draw_detail::Recorded<VertexStage, FragmentStage, N>;
 
   const Rectangle target = target_area(pass.targets);
-  Rectangle clip = target;
-  if (state.scissor) {
-    clip = {std::max(clip.x_begin, state.scissor->x_begin),
-            std::max(clip.y_begin, state.scissor->y_begin),
-            std::min(clip.x_end, state.scissor->x_end), std::min(clip.y_end, state.scissor->y_end)};
-  }
+  const Rectangle clip = state.scissor ? intersection(target, *state.scissor) : target;
   const auto triangles = static_cast<std::uint32_t>(indices.size() / 3);
   const std::uint32_t chunks = (triangles + kChunkTriangles - 1) / kChunkTriangles;
   auto recorded = std::make_shared<Recorded>(Recorded{
@@ -227,20 +237,8 @@ void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_
   DrawCall call;
   call.vertex_count = vertex_count;
   call.chunk_count = chunks;
-  call.shade_vertices = [recorded](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t i = begin; i < end; ++i) recorded->vertices[i] = recorded->vertex_stage(i);
-  };
-  call.assemble = [recorded](std::uint32_t chunk) {
-    draw_detail::assemble_chunk(*recorded, recorded->chunks[chunk], chunk,
-                                FragmentStage::kInterpolation);
-  };
-  call.bins = [recorded](std::uint32_t chunk) -> std::span<const Bin> {
-    return recorded->chunks[chunk].bins;
-  };
-  call.shade_tile = [recorded](std::uint32_t chunk, std::span<const Bin> bins,
-                               const Rectangle& tile) {
-    draw_detail::shade_tile(*recorded, recorded->chunks[chunk], bins, tile);
-  };
+  call.recorded = std::move(recorded);
+  call.scalar_steps = &draw_detail::kScalarSteps<Recorded>;
   pass.draws.push_back(std::move(call));
 }
 

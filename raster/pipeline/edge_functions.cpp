@@ -9,8 +9,8 @@
 namespace softfocus {
 namespace {
 
-// In 1/256 pixel from the centre of pixel (0, 0), as all positions here, but a multiple
-// of 2^-bits pixels.
+// In 1/256 pixel from the centre of pixel (0, 0), as all positions here; a multiple of 2^-bits
+// pixels.
 std::int64_t snap(float window_coordinate, int bits) {
   const float steps = (window_coordinate - 0.5f) * static_cast<float>(1 << bits);
   return std::int64_t{std::lrint(steps)} * (1 << (kSubpixelBits - bits));

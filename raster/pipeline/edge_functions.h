@@ -1,6 +1,6 @@
 #pragma once
-// Exact coverage (Pineda 1988): vertices snapped to the subpixel grid, and for each edge
-// a linear function in 64-bit integers that is positive on the triangle's side.
+// Exact coverage (Pineda 1988): vertices are snapped to the subpixel grid; each edge has a
+// linear function in 64-bit integers, positive on the triangle's side.
 
 #include <array>
 #include <cstdint>
@@ -22,9 +22,8 @@ struct EdgeFunction {
   bool owns_centres;  ///< a centre exactly on the edge (E = 0) is inside
 };
 
-/// Edge i runs between the two vertices other than vertex i, and E_0 + E_1 + E_2 = area.
-/// The edges that own the centres on them are those on the left, and of the level ones
-/// the upper or the lower, as the profile's fill rule says.
+/// Edge i lies opposite to vertex i, and E_0 + E_1 + E_2 = area. Left edges own the centres on
+/// them; of level edges the upper or the lower one does, as the profile's fill rule says.
 struct EdgeFunctions {
   std::array<EdgeFunction, 3> edges;
   std::int64_t area;  ///< twice the triangle's, in 1/65536 of a square pixel; positive
@@ -45,8 +44,7 @@ inline bool inside(const EdgeFunction& edge, std::int64_t value) {
 std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 3>& vertices,
                                                  const Profile& profile);
 
-/// The covered pixels of row y among x_begin <= x < x_end. A triangle is convex: they are
-/// neighbours.
+/// The covered pixels of row y among x_begin <= x < x_end: one span, as a triangle is convex.
 Span covered_span(const EdgeFunctions& functions, int y, int x_begin, int x_end);
 
 }  // namespace softfocus

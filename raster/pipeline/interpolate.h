@@ -1,6 +1,6 @@
 #pragma once
-// Depth and varyings at a pixel of a triangle, in the ways that profiles name. An
-// interpolator refers to its triangle and to the kinds of its varyings.
+// Depth and varyings at a pixel of a triangle, for each AttributeSetup. An interpolator refers
+// to its triangle and to the kinds of its varyings.
 
 #include <array>
 #include <cstddef>
@@ -32,8 +32,8 @@ struct Interpolated {
 ///   l_i = float(E_i) * (1 / float(area))                            linear weights
 ///   p_i = l_i * inverse_w_i;  s = (p_0 + p_1) + p_2;  q_i = p_i * (1 / s)
 ///   value = (a_0 + w_1 (a_1 - a_0)) + w_2 (a_2 - a_0)      w = l linear, q perspective
-/// Inside the triangle every l_i and p_i is at least 0 and s positive, whatever the
-/// sliver; a varying that is the same at all three vertices comes out unchanged. Needs
+/// Inside the triangle every l_i and p_i is at least 0 and s is positive, even in slivers. A
+/// varying that is equal at all three vertices comes out unchanged. Needs
 /// Coverage::edge_functions.
 template <std::size_t N>
 struct BarycentricInterpolator {
@@ -84,8 +84,8 @@ struct BarycentricInterpolator {
   }
 };
 
-/// By planes over the window, in one of the two ways of planes.h: perspective varyings
-/// as the plane of a / w, divided by that of 1 / w.
+/// By planes over the window (planes.h). A perspective varying is the plane of a / w divided by
+/// that of 1 / w.
 template <class Planes, std::size_t N>
 struct PlaneInterpolator {
   const std::array<Interpolation, N>& kinds;

@@ -117,7 +117,7 @@ void write_colour(const ColourState& state, Image& target, int x, int y, glm::ve
     store_texel(target, x, y, colour, profile);
     return;
   }
-  // Channels that are masked out keep their bits, whatever they mean.
+  // Channels that are masked out keep their bits, NaN too.
   const auto channels = static_cast<std::size_t>(channel_count(target.format));
   const std::size_t texel_bytes = bytes_per_texel(target.format);
   const std::size_t channel_bytes = texel_bytes / channels;

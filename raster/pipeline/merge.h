@@ -10,17 +10,16 @@
 
 namespace softfocus {
 
-/// Where a render pass draws: images of one size; what is not used is null. The depth
-/// buffer is r32f (cleared to 1 by the caller), the stencil r8.
+/// Where a render pass draws: images of one size, null if not used. The depth buffer is r32f
+/// (cleared to 1 by the caller), the stencil buffer r8.
 struct RenderTargets {
   std::array<Image*, kMaxColourTargets> colour{};
   Image* depth = nullptr;
   Image* stencil = nullptr;
 };
 
-/// Runs the stencil test and then the depth test at a pixel, updates both buffers, and
-/// says whether the fragment goes on. A test without a state or without a buffer
-/// passes and writes nothing.
+/// Runs the stencil test, then the depth test at a pixel, and updates both buffers. True if the
+/// fragment passes. A test without a state or a buffer passes and writes nothing.
 bool depth_stencil_test(const DrawState& state, const RenderTargets& targets, int x, int y,
                         float depth, bool front_facing);
 

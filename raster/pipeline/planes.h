@@ -1,7 +1,6 @@
 #pragma once
-// Attributes as planes over the window, a(x, y) = at_origin + x * per_x + y * per_y at
-// pixel (x, y): how two drivers of Mesa 22.3 set them up from unsnapped positions, and
-// how they round on the way to a pixel. Values are given by vertex, as positions are.
+// Attributes as planes over the window, a(x, y) = at_origin + x * per_x + y * per_y at pixel
+// (x, y): set up from unsnapped positions and rounded as in two drivers of Mesa 22.3.
 
 #include <array>
 #include <cstddef>
@@ -20,9 +19,9 @@ struct Plane {
   float per_y;
 };
 
-/// llvmpipe. Of a clockwise triangle the two vertices that are not provoking change
-/// places first. Differences over area are rounded once for all attributes; the products
-/// at a pixel are fused as the profile's `interpolation` says, those of set-up never.
+/// llvmpipe. First, in a clockwise triangle, the two vertices that are not provoking change
+/// places. Differences over area are rounded once, for all attributes. Products at a pixel are
+/// fused as the profile's `interpolation` says, products of set-up never.
 struct PlanesFromOrigin {
   std::array<std::size_t, 3> order;
   float x0, y0;  // from the centre of pixel (0, 0)
@@ -67,8 +66,8 @@ struct PlanesFromOrigin {
   static float divide(float over_w, float inverse_w) { return over_w * (1.0f / inverse_w); }
 };
 
-/// softpipe. The vertices are sorted from top to bottom; the plane is evaluated at the
-/// upper left pixel of a 2x2 block (even x, even y), and stepped to the other three.
+/// softpipe. The vertices are sorted from top to bottom. The plane is evaluated at the upper left
+/// pixel of a 2x2 block (even x, even y) and stepped to the other three.
 struct PlanesByQuad {
   std::array<std::size_t, 3> order;
   float x0, y0;                      // from the centre of pixel (0, 0)

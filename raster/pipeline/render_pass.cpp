@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "raster/images/texel.h"
-#include "raster/pipeline/lanes/lane_kernels.h"
+#include "raster/pipeline/lanes/rasterize_lanes.h"
 #include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
 
-// Of an area of an RGBA16F image. Image is const or not, and so is the byte.
+// The upper left texel of an area of an RGBA16F image. AnyImage may be const.
 template <class AnyImage>
 auto* first_texel(AnyImage& image, const Rectangle& area) {
   return image.bytes.data() + static_cast<std::size_t>(area.y_begin) * image.stride_bytes +
@@ -30,22 +30,22 @@ void clear_colours(const RenderPass& pass, const Rectangle& area) {
   }
 }
 
-// Draws in lanes gather in a VisibilityTile until a draw of the other kind, or the end.
-// Where they come first, clearing is left to it: most pixels are drawn over.
+// Draws in lanes collect in a VisibilityTile until a scalar draw or the end comes. If they come
+// first, the VisibilityTile clears: it need only clear the pixels that show no triangle.
 class TileDrawing {
  public:
-  /// Shades draws in lanes into `texels` if that is not null, and else into the target.
+  /// Draws in lanes go to `texels`, or to the target if that is null.
   TileDrawing(const RenderPass& pass, const Rectangle& area, TileMemory& memory, std::byte* texels)
       : pass_(pass), area_(area), memory_(memory), texels_(texels) {}
 
   void draw(const TileWork& item) {
     if (item.draw->lane_steps != nullptr) {
-      draw_lanes(item);
+      draw_in_lanes(item);
       return;
     }
     leave_lanes(true);
     clear();
-    item.draw->shade_tile(item.chunk, item.bins, area_);
+    item.draw->scalar_steps->shade_tile(item.draw->recorded.get(), item.chunk, item.bins, area_);
   }
 
   void end() {
@@ -54,7 +54,7 @@ class TileDrawing {
   }
 
  private:
-  void draw_lanes(const TileWork& item) {
+  void draw_in_lanes(const TileWork& item) {
     if (!has_begun_) begin_lanes();
     VisibilityTile& tile = *memory_;
     if (tile.triangles.size() + item.bins.size() > kMostVisible) {
@@ -124,7 +124,7 @@ void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMem
   TileDrawing drawing{pass, tile_area(lists, tile), memory, texels};
   const std::span<const TileWork> work = work_of_tile(lists, tile);
   for (std::size_t i = 0; i < work.size(); ++i) {
-    // What is drawn next was listed long ago.
+    // The next item was listed long ago, and has left the caches.
     if (i + 1 < work.size()) __builtin_prefetch(work[i + 1].bins.data());
     drawing.draw(work[i]);
   }

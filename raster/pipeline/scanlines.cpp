@@ -6,9 +6,8 @@
 namespace softfocus {
 namespace {
 
-// The rows whose centres lie between the two ends of an edge, and where it crosses the
-// first of them. In rows and columns counted from the centre of pixel (0, 0), the first
-// centre at or below y is ceil(y).
+// The rows whose centres lie between an edge's ends, and where the edge crosses the first.
+// Counted from the centre of pixel (0, 0), the first centre at or below y is ceil(y).
 struct Edge {
   int first_row;
   int rows;
@@ -26,12 +25,12 @@ Edge make_edge(const WindowVertex& upper, const WindowVertex& lower) {
           {(upper.x + 0.5f) + (first_row - y) * per_row, per_row}};
 }
 
-// The long edge beside the lower half: softpipe rounds on the way.
+// The long edge beside the lower half. softpipe rounds here.
 EdgeWalk walk_on(const EdgeWalk& walk, int rows) {
   return {walk.x + static_cast<float>(rows) * walk.per_row, walk.per_row};
 }
 
-// The pixel, clamped before the conversion: a walk that overflows must not reach it.
+// Clamped before the conversion, which must not see a walk that overflows.
 int pixel_at(const EdgeWalk& walk, int row, int least, int greatest) {
   const float x = walk.x + static_cast<float>(row) * walk.per_row;
   if (!(x > static_cast<float>(least))) return least;
@@ -90,7 +89,7 @@ std::optional<Scanlines> make_scanlines(const std::array<WindowVertex, 3>& verti
         {lower.first_row, lower.first_row + lower.rows, lower.walk, whole_lower}};
   }
 
-  // Not from the sign of `area`, which is that of other products.
+  // Not the sign of `area`, which other products give.
   scanlines.clockwise = !(unsnapped_area(vertices) < 0.0f);
   scanlines.bounds = {1 << 21, 1 << 21, -(1 << 21), -(1 << 21)};
   for (const HalfTriangle& half : scanlines.halves) extend_bounds(scanlines.bounds, half);

@@ -1,8 +1,7 @@
 #pragma once
-// Coverage by spans between floating-point edges, as Mesa's softpipe has it (22.3,
-// sp_setup.c): the triangle is cut at its middle vertex into an upper and a lower half,
-// and each half is filled row by row from its left edge to its right one. Positions are
-// not snapped, every operation is rounded by itself.
+// Coverage by spans between floating-point edges, as in Mesa's softpipe (22.3, sp_setup.c). The
+// triangle is cut at its middle vertex into an upper and a lower half; each half is filled row by
+// row from its left edge to its right one. Positions are not snapped, nothing is fused.
 
 #include <array>
 #include <cstddef>
@@ -13,8 +12,8 @@
 
 namespace softfocus {
 
-/// An edge as a half walks down it: the first pixel whose centre is on its right in row
-/// r of the half is trunc(x + r * per_row), where x carries the 1/2 that rounds up.
+/// An edge of a half, walked downwards. In the half's row r, the first pixel whose centre is on
+/// its right is trunc(x + r * per_row); x includes the 1/2 that rounds up.
 struct EdgeWalk {
   float x;
   float per_row;
@@ -34,8 +33,8 @@ struct Scanlines {
   Rectangle bounds;                    ///< all spans are within
 };
 
-/// The vertices' numbers from the least y to the greatest. Of equals that with the lower
-/// number comes first, but vertex 2 comes first of two that share the least y.
+/// The vertices' numbers from the least y to the greatest. If two are equal, the lower number
+/// comes first, except that vertex 2 comes first if it shares the least y.
 std::array<std::size_t, 3> from_top_to_bottom(const std::array<WindowVertex, 3>& vertices);
 
 /// Needs |x|, |y| <= 2^20. Nothing for a triangle whose area has no finite reciprocal.

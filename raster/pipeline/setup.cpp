@@ -15,11 +15,6 @@ bool is_drawable(const WindowVertex& v) {
          std::isfinite(v.depth) && std::isfinite(v.inverse_w) && v.inverse_w > 0.0f;
 }
 
-Rectangle intersection(const Rectangle& a, const Rectangle& b) {
-  return {std::max(a.x_begin, b.x_begin), std::max(a.y_begin, b.y_begin),
-          std::min(a.x_end, b.x_end), std::min(a.y_end, b.y_end)};
-}
-
 }  // namespace
 
 std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& vertices, Cull cull,

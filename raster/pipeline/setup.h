@@ -13,8 +13,8 @@
 
 namespace softfocus {
 
-/// The guard band keeps positions in the window far inside this, in pixels; what lies
-/// beyond is taken for no number, and not drawn.
+/// In pixels. The guard band keeps positions far below this; set-up treats those beyond as not
+/// finite.
 inline constexpr float kLargestPosition = 0x1p20f;
 
 struct TriangleSetup {
@@ -22,17 +22,17 @@ struct TriangleSetup {
   std::variant<EdgeFunctions, Scanlines> coverage;
   bool clockwise;  ///< the order of the vertices, as seen in the picture
   bool front_facing;
-  Rectangle bounds;  ///< covered pixels are within, and so within the clip
+  Rectangle bounds;  ///< holds all covered pixels; lies within the clip
 };
 
-/// Nothing for a triangle of no area, a culled one, one outside `clip`, or one with a
-/// coordinate that is not finite. `clip` lies within the target.
+/// Nothing for a triangle that has no area, is culled, lies outside `clip`, or has a coordinate
+/// that is not finite. `clip` lies within the target.
 std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& vertices, Cull cull,
                                              FrontFace front_face, const Rectangle& clip,
                                              const Profile& profile);
 
-/// Culling by unsnapped positions, where no area is a back face. Mesa's drivers cull so,
-/// in addition, what they send through their clipping stages.
+/// Culling by unsnapped positions; no area counts as a back face. Mesa's drivers do this, too, to
+/// all triangles that they send through their clipping stages.
 bool is_culled_unsnapped(const std::array<WindowVertex, 3>& vertices, Cull cull,
                          FrontFace front_face);
 

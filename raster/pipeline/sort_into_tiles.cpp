@@ -8,33 +8,33 @@
 namespace softfocus {
 namespace {
 
-// A part of a draw: vertices, or one chunk of triangles.
+// A part of a draw: some vertices, or one chunk of triangles.
 struct Part {
   RenderPass* pass;
   std::size_t draw;
   std::uint32_t begin;
   std::uint32_t end;
-  std::size_t lane_chunk;  // the draw's first: chunks of all draws of a pass are numbered through
+  std::size_t lane_chunk;  // the draw's first among the chunks of all draws of the pass
 };
 
 DrawCall& draw_of(const Part& part) { return part.pass->draws[part.draw]; }
 
 bool is_in_lanes(const DrawCall& draw) { return draw.lane_steps != nullptr; }
 
-// A small draw takes all steps at once, while what it writes is in a core's cache.
+// A small draw takes all steps at once, while its vertices are in a core's cache.
 bool is_small(const DrawCall& draw) {
   constexpr std::uint32_t kMostChunks = 4;
   return is_in_lanes(draw) && draw.vertex_count <= kChunkVertices &&
          draw.chunk_count <= kMostChunks;
 }
 
-// Columns in steps of whole vectors.
+// Vertices that its columns have room for: whole vectors.
 std::size_t room(const DrawCall& draw) {
-  constexpr std::size_t kStep = 16;
+  constexpr std::size_t kStep = kMostLanes;
   return (draw.vertex_count + kStep - 1) / kStep * kStep;
 }
 
-// Columns of small draws, one after the other.
+// Columns for one small draw after the other.
 struct SmallColumns {
   std::vector<std::int32_t> integers = std::vector<std::int32_t>(3 * kChunkVertices);
   std::vector<float> floats = std::vector<float>(3 * kChunkVertices);
@@ -45,12 +45,12 @@ void use_store(const DrawCall& draw, CacheLine* rows, std::int32_t* integers, fl
                std::uint8_t* used) {
   const std::size_t count = room(draw);
   draw.lane_steps->use_store(
-      draw.lane_draw.get(),
+      draw.recorded.get(),
       {rows->floats.data(), draw.vertex_stride, integers, integers + count, integers + 2 * count,
        floats, floats + count, floats + 2 * count, used});
 }
 
-// Gives every draw in lanes its rows, and columns if it is not small.
+// Gives each draw in lanes its rows, and its columns if it is not small.
 void give_memory(RenderPass& pass) {
   std::size_t lines = 0, vertices = 0, chunks = 0;
   for (DrawCall& draw : pass.draws) {
@@ -80,7 +80,7 @@ void give_memory(RenderPass& pass) {
   }
 }
 
-// Of the draws that `wanted` holds for, the vertices in batches.
+// The vertices, in batches, of the draws for which wanted(draw).
 template <class Wanted>
 std::vector<Part> vertices_of(std::span<RenderPass> passes, const Wanted& wanted) {
   std::vector<Part> parts;
@@ -103,24 +103,24 @@ void assemble_chunk(const Part& part, std::uint32_t number) {
   const DrawCall& draw = draw_of(part);
   LaneChunk& chunk = part.pass->memory.chunks[part.lane_chunk + number];
   clear(chunk);
-  draw.lane_steps->assemble(draw.lane_draw.get(), number, chunk);
+  draw.lane_steps->assemble(draw.recorded.get(), number, chunk);
 }
 
-// Returns the clip codes that all have.
+// All steps of a small draw. Returns the bits that all clip codes share.
 unsigned place_and_shade(const Part& part, SmallColumns& columns) {
   const DrawCall& draw = draw_of(part);
   use_store(draw, &part.pass->memory.rows[draw.first_line], columns.integers.data(),
             columns.floats.data(), columns.used.data());
-  void* of_draw = draw.lane_draw.get();
-  const unsigned common = draw.lane_steps->place_vertices(of_draw, part.begin, part.end);
+  void* recorded = draw.recorded.get();
+  const unsigned common = draw.lane_steps->place_vertices(recorded, part.begin, part.end);
   if (common != 0) return common;
   for (std::uint32_t c = 0; c < draw.chunk_count; ++c) assemble_chunk(part, c);
-  draw.lane_steps->shade_vertices(of_draw, part.begin, part.end);
+  draw.lane_steps->shade_vertices(recorded, part.begin, part.end);
   return common;
 }
 
-// Of draws in lanes that are not small, the positions alone. Finds the draws that are outside:
-// of vertices that have all one clip code, no triangle is left.
+// Loop 1, and all steps of small draws. Finds the draws that are outside: if all vertices
+// share a bit of their clip codes, no triangle is left.
 void place_all_vertices(std::span<RenderPass> passes, ThreadPool& pool) {
   const std::vector<Part> parts = vertices_of(passes, [](const DrawCall&) { return true; });
   std::vector<unsigned> common_codes(parts.size());
@@ -134,9 +134,9 @@ void place_all_vertices(std::span<RenderPass> passes, ThreadPool& pool) {
       common = place_and_shade(part, columns);
       shelf.put_back(std::move(columns));
     } else if (is_in_lanes(draw)) {
-      common = draw.lane_steps->place_vertices(draw.lane_draw.get(), part.begin, part.end);
+      common = draw.lane_steps->place_vertices(draw.recorded.get(), part.begin, part.end);
     } else {
-      draw.shade_vertices(part.begin, part.end);
+      draw.scalar_steps->shade_vertices(draw.recorded.get(), part.begin, part.end);
     }
   });
   for (std::size_t i = 0; i < parts.size();) {
@@ -164,7 +164,8 @@ void assemble_all_triangles(std::span<RenderPass> passes, ThreadPool& pool) {
     if (is_in_lanes(draw_of(chunk))) {
       assemble_chunk(chunk, chunk.begin);
     } else {
-      draw_of(chunk).assemble(chunk.begin);
+      const DrawCall& draw = draw_of(chunk);
+      draw.scalar_steps->assemble(draw.recorded.get(), chunk.begin);
     }
   });
 }
@@ -176,7 +177,7 @@ void shade_used_vertices(std::span<RenderPass> passes, ThreadPool& pool) {
   pool.for_each(static_cast<int>(parts.size()), [&](int i) {
     const Part& part = parts[static_cast<std::size_t>(i)];
     const DrawCall& draw = draw_of(part);
-    draw.lane_steps->shade_vertices(draw.lane_draw.get(), part.begin, part.end);
+    draw.lane_steps->shade_vertices(draw.recorded.get(), part.begin, part.end);
   });
 }
 
@@ -194,7 +195,7 @@ void for_each_work(const RenderPass& pass, const Visit& visit) {
         }
         continue;
       }
-      const std::span<const Bin> bins = draw.bins(c);
+      const std::span<const Bin> bins = draw.scalar_steps->bins(draw.recorded.get(), c);
       for (std::size_t begin = 0; begin < bins.size();) {
         std::size_t end = begin + 1;
         while (end < bins.size() && bins[end].tile == bins[begin].tile) ++end;

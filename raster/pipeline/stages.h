@@ -1,6 +1,6 @@
 #pragma once
-// What a programmer writes: a vertex stage and a fragment stage, plain callables known
-// at compile time, and the values that travel between them.
+// The programmer's part: a vertex stage and a fragment stage, callables known when compiling, and
+// the values that travel between them.
 
 #include <array>
 #include <cstddef>
@@ -43,13 +43,12 @@ template <std::size_t N>
 struct Fragment {
   int x = 0;
   int y = 0;
-  float depth = 0.0f;  ///< window depth, 0 to 1; of slivers in softpipe also beyond
+  float depth = 0.0f;  ///< window depth, 0 to 1; beyond in softpipe's slivers
   bool front_facing = true;
   Varyings<N> varyings{};
-  /// Differences to the next pixel right and down within the 2x2 block of pixels
-  /// (even x, even y) that this one is in, taken on the block's upper (in softpipe
-  /// its lower) and left side: the same for all four, as GPUs' coarse derivatives. Zero
-  /// unless asked for.
+  /// Differences to the next pixel right and down in this pixel's 2x2 block (even x, even y),
+  /// taken along the block's upper row (in softpipe its lower row) and left column. They are the
+  /// same for all four pixels, as GPUs' coarse derivatives are. Zero unless asked for.
   Varyings<N> ddx{};
   Varyings<N> ddy{};
 };

@@ -18,7 +18,7 @@ enum class Compare : std::uint8_t {
   always,
 };
 
-/// False for every comparison with NaN but not_equal and always.
+/// With NaN, only not_equal and always are true.
 template <class Value>
 constexpr bool compare(Compare function, Value incoming, Value stored) {
   switch (function) {
@@ -49,6 +49,15 @@ struct Rectangle {
   int x_end = 0;
   int y_end = 0;
 };
+
+/// The pixels of both; none if an end is not above its begin.
+constexpr Rectangle intersection(const Rectangle& a, const Rectangle& b) {
+  // Not std::max: <algorithm> doubles what there is to parse here.
+  const auto later = [](int x, int y) { return x > y ? x : y; };
+  const auto earlier = [](int x, int y) { return x < y ? x : y; };
+  return {later(a.x_begin, b.x_begin), later(a.y_begin, b.y_begin), earlier(a.x_end, b.x_end),
+          earlier(a.y_end, b.y_end)};
+}
 
 /// Pixels x_begin <= x < x_end of a row; none if x_begin >= x_end.
 struct Span {

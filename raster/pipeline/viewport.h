@@ -17,9 +17,9 @@ struct WindowVertex {
   float inverse_w;
 };
 
-/// In this order: r = 1 / w; ndc = (x r, y r, z r); x_window = ndc.x * (width/2) +
-/// width/2, likewise y; depth = ndc.z * 0.5 + 0.5; each product and sum rounded once if
-/// fused. Of w = 0 come infinities and NaN.
+/// In this order: r = 1 / w; ndc = (x r, y r, z r); x_window = ndc.x * (width/2) + width/2,
+/// likewise y; depth = ndc.z * 0.5 + 0.5. If fused, a product and its sum are rounded once. w = 0
+/// gives infinities and NaN.
 inline WindowVertex to_window(const glm::vec4& position, int width, int height,
                               Contraction contraction) {
   const float inverse_w = 1.0f / position.w;
@@ -30,9 +30,8 @@ inline WindowVertex to_window(const glm::vec4& position, int width, int height,
           multiply_add(position.z * inverse_w, 0.5f, 0.5f, contraction), inverse_w};
 }
 
-/// Twice the area in square pixels, positive if the vertices run clockwise as seen; in
-/// this order of operations, which is that of Mesa's drivers. For slivers the sign can be
-/// another than that of the snapped triangle's area.
+/// Twice the area in square pixels, positive if the vertices run clockwise as seen. The order of
+/// operations is that of Mesa's drivers. A sliver's sign can differ from that of its snapped area.
 inline float unsnapped_area(const std::array<WindowVertex, 3>& v) {
   return (v[0].x - v[2].x) * (v[1].y - v[2].y) - (v[0].y - v[2].y) * (v[1].x - v[2].x);
 }

@@ -6,11 +6,14 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "raster/threads/float_environment.h"
 
 namespace softfocus {
 namespace {
@@ -23,9 +26,9 @@ inline void let_the_core_rest() {
 #endif
 }
 
-// Loops follow each other closely, and to wake a sleeping thread takes tens of
-// microseconds: so long is waited awake first. Not by giving the core away, which is not
-// given back before another program's turn is over.
+// Loops follow each other closely, and waking a sleeping thread takes tens of microseconds.
+// So a thread waits that long before it sleeps. It does not yield: another program would keep
+// the core for its whole turn.
 template <class Condition>
 void wait_a_little(const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds{60};
@@ -38,12 +41,12 @@ struct ThreadPool::State {
   std::mutex mutex;
   std::condition_variable work_ready;
   std::condition_variable work_done;
-  // Written under the mutex, and looked at without it.
-  std::atomic<std::uint64_t> generation{0};  // counts the loops, so that a sleeper knows a new one
+  // Written under the mutex, read without it.
+  std::atomic<std::uint64_t> generation{0};  // counts loops: a sleeper sees a new one
   std::atomic<int> busy_workers{0};
   bool stopping = false;
 
-  const std::function<void(int)>* body = nullptr;
+  Iteration iteration{};
   int count = 0;
   std::atomic<int> next{0};
   std::exception_ptr failure;
@@ -53,7 +56,7 @@ struct ThreadPool::State {
   void run_iterations() {
     for (int i = next.fetch_add(1); i < count; i = next.fetch_add(1)) {
       try {
-        (*body)(i);
+        iteration.call(iteration.callable, i);
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (!failure) failure = std::current_exception();
@@ -63,6 +66,7 @@ struct ThreadPool::State {
   }
 
   void work() {
+    const DefaultFloatEnvironment environment;
     std::uint64_t seen = 0;
     for (;;) {
       wait_a_little([&] { return generation != seen; });
@@ -79,15 +83,16 @@ struct ThreadPool::State {
   }
 };
 
-ThreadPool::ThreadPool(int threads, Isa isa)
-    : state_(std::make_unique<State>()), isa_(isa) {
+ThreadPool::ThreadPool(int threads, Isa isa) : isa_(isa) {
+  auto state = std::make_unique<State>();
   try {
     for (int i = 1; i < threads; ++i) {
-      state_->workers.emplace_back([state = state_.get()] { state->work(); });
+      state->workers.emplace_back([shared = state.get()] { shared->work(); });
     }
   } catch (const std::system_error&) {
-    // The system gives no more threads: those that there are do the work.
+    // The system gives no more threads: the pool works with those it has.
   }
+  state_ = state.release();
 }
 
 ThreadPool::~ThreadPool() {
@@ -97,19 +102,21 @@ ThreadPool::~ThreadPool() {
   }
   state_->work_ready.notify_all();
   for (std::thread& worker : state_->workers) worker.join();
+  delete state_;
 }
 
 int ThreadPool::threads() const { return static_cast<int>(state_->workers.size()) + 1; }
 
-void ThreadPool::for_each(int count, const std::function<void(int)>& body) {
+void ThreadPool::run(int count, Iteration iteration) {
   if (count <= 0) return;
+  const DefaultFloatEnvironment environment;
   if (state_->workers.empty() || count == 1) {
-    for (int i = 0; i < count; ++i) body(i);
+    for (int i = 0; i < count; ++i) iteration.call(iteration.callable, i);
     return;
   }
   {
     const std::lock_guard lock(state_->mutex);
-    state_->body = &body;
+    state_->iteration = iteration;
     state_->count = count;
     state_->next.store(0);
     state_->failure = nullptr;

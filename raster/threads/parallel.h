@@ -1,10 +1,7 @@
 #pragma once
-// What work runs on: a pool of threads and one way to use it, a counted loop whose
-// iterations may run in any order on any thread, and the vector unit that kernels use
-// on each. What an iteration computes must depend on none of them.
-
-#include <functional>
-#include <memory>
+// A pool of threads, and the one way to use it: a counted loop whose iterations run in any
+// order on any thread. The pool carries the vector unit that kernels use. Results must
+// depend on neither.
 
 #include "raster/lanes/isa.h"
 
@@ -13,8 +10,8 @@ namespace softfocus {
 /// Threads that sleep until a loop wants them.
 class ThreadPool {
  public:
-  /// `threads` >= 1 counts the calling one; 1 starts none. Where the system gives fewer,
-  /// fewer it is. Needs an `isa` that this CPU has.
+  /// `threads` >= 1 counts the calling one; 1 starts none. If the system gives fewer, the pool
+  /// has fewer. Needs an `isa` that this CPU has.
   explicit ThreadPool(int threads, Isa isa = widest_isa());
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -23,14 +20,27 @@ class ThreadPool {
   int threads() const;
   Isa isa() const { return isa_; }
 
-  /// Runs body(0) to body(count - 1), each once, and returns when all have ended.
-  /// An exception of a body is rethrown here after the others have stopped; the
-  /// iterations not yet begun are left out. Not to be called from a body.
-  void for_each(int count, const std::function<void(int)>& body);
+  /// Runs body(0) to body(count - 1), each once and in the default floating-point environment
+  /// (float_environment.h), and returns when all have ended. If a body throws, iterations that
+  /// have not begun are left out, and the first exception is rethrown here. Must not be called
+  /// from a body.
+  template <class Body>
+  void for_each(int count, const Body& body) {
+    run(count,
+        {&body, [](const void* callable, int i) { (*static_cast<const Body*>(callable))(i); }});
+  }
 
  private:
+  // A reference to a callable of any type: std::function would copy it and allocate.
+  struct Iteration {
+    const void* callable;
+    void (*call)(const void* callable, int i);
+  };
   struct State;
-  std::unique_ptr<State> state_;
+
+  void run(int count, Iteration iteration);
+
+  State* state_;  // owned; <memory> is more to parse than all of this header
   Isa isa_;
 };
 

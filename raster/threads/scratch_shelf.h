@@ -1,6 +1,6 @@
 #pragma once
-// Memory that tasks of a loop use one after the other: as many pieces come to be as
-// threads run at once.
+// Memory that the tasks of a loop use one after the other: at most one piece per running
+// task.
 
 #include <mutex>
 #include <utility>

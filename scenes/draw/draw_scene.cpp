@@ -24,8 +24,8 @@ void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, Ren
     const auto number = surface.texture - prepared.scene->textures.data();
     fragment_stage.decoded = &prepared.textures[static_cast<std::size_t>(number)];
   }
-  draw_lanes(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage,
-             surface_lane_stages<variant>(pass.isa));
+  draw_in_lanes(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage,
+                surface_lane_stages<variant>(pass.isa));
 }
 
 void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {
@@ -62,31 +62,32 @@ PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPo
   return prepared;
 }
 
-void record_scene(const PreparedScene& prepared, const View& view, double frame, RenderPass& pass) {
+void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                  RenderPass& pass) {
   pass.clear_colour = clear_colour(*prepared.scene);
   pass.clear_depth = 1.0f;
   pass.keep_depth = false;
-  for (const SurfaceDraw& surface : surface_draws(*prepared.scene, view, frame)) {
+  for (const SurfaceDraw& surface : surface_draws(*prepared.scene, camera, frame)) {
     draw_surface(prepared, surface, pass);
   }
 }
 
-void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& picture,
+void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool) {
   if (prepared.depth.width != picture.width || prepared.depth.height != picture.height) {
     prepared.depth = make_image(Format::r32f, picture.width, picture.height);
   }
   prepared.pass.targets.colour[0] = &picture;
   prepared.pass.targets.depth = &prepared.depth;
-  record_scene(prepared, view, frame, prepared.pass);
+  record_scene(prepared, camera, frame, prepared.pass);
   finish(prepared.pass, pool);
 }
 
-Image draw_scene(const Scene& scene, const View& view, double frame, int width, int height,
-                 const Profile& profile, ThreadPool& pool) {
+Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
+                 int height, const Profile& profile, ThreadPool& pool) {
   Image picture = make_image(Format::rgba16f, width, height);
   PreparedScene prepared = prepare_scene(scene, profile, pool);
-  draw_scene(prepared, view, frame, picture, pool);
+  draw_scene(prepared, camera, frame, picture, pool);
   return picture;
 }
 

@@ -7,39 +7,40 @@
 #include "raster/images/decoded_texture.h"
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
-#include "raster/threads/parallel.h"
 #include "raster/pipeline/render_pass.h"
-#include "scenes/scene.h"
+#include "raster/threads/parallel.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 
-/// What a picture holds where nothing was drawn: the background, at the far distance.
+/// The background at the far distance: a picture's colour where nothing is drawn.
 glm::vec4 clear_colour(const Scene& scene);
 
 /// Draws one frame into an RGBA16F image of any size: linear colour, and in alpha the
 /// depth in metres along the axis (the camera's far distance where nothing was drawn).
 /// The same bits for any number of threads.
-Image draw_scene(const Scene& scene, const View& view, double frame, int width, int height,
-                 const Profile& profile, ThreadPool& pool);
+Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
+                 int height, const Profile& profile, ThreadPool& pool);
 
-/// A scene made ready for many frames: textures decoded, memory that is used again.
+/// A scene made ready for many frames: decoded textures, and memory to use again.
 struct PreparedScene {
   const Scene* scene;
-  std::vector<DecodedTexture> textures;  ///< of the scene, if draws are to be in lanes
+  std::vector<DecodedTexture> textures;  ///< decoded, for drawing in lanes
   RenderPass pass;
   Image depth;
 };
 
-/// The scene must outlive what is prepared; `pool` is that of the frames.
+/// The scene must outlive the result. `pool` is the one that will draw.
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);
 
 /// As above, into an RGBA16F picture.
-void draw_scene(PreparedScene& prepared, const View& view, double frame, Image& picture,
+void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool);
 
-/// Records a frame's draws, and what is cleared before, into a pass that has its targets, and
-/// the profile and isa of prepare_scene(). Depths are not kept.
-void record_scene(const PreparedScene& prepared, const View& view, double frame, RenderPass& pass);
+/// Records the clearing and the draws of a frame into a pass, which has its targets, and the
+/// profile and isa of prepare_scene(). Depths are not kept.
+void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                  RenderPass& pass);
 
 }  // namespace softfocus

@@ -54,16 +54,16 @@ glm::dmat4 perspective(double fov_y_degrees, double aspect, double near_m, doubl
 
 }  // namespace
 
-View camera_view(const Camera& camera, double frame, int width, int height) {
+CameraMatrices camera_matrices(const Camera& camera, double frame, int width, int height) {
   const glm::dvec3 arm = turn_about(camera.position - camera.target, normalize(camera.up),
                                     camera.orbit_degrees_per_frame * frame);
-  View view{};
-  view.eye = camera.target + arm;
-  view.view = look_at(view.eye, camera.target, camera.up);
-  view.projection =
+  CameraMatrices matrices{};
+  matrices.eye = camera.target + arm;
+  matrices.world_to_eye = look_at(matrices.eye, camera.target, camera.up);
+  matrices.eye_to_clip =
       perspective(camera.fov_y_degrees, static_cast<double>(width) / static_cast<double>(height),
                   camera.near_m, camera.far_m);
-  return view;
+  return matrices;
 }
 
 glm::dmat4 object_matrix(const Object& object, double frame) {

@@ -11,14 +11,14 @@ namespace softfocus {
 /// A camera's two matrices and its place. Clip space is OpenGL's (-w <= z <= w) with y
 /// pointing down, so that row 0 of the image is the top of the picture; clip w is the
 /// depth in metres along the axis.
-struct View {
-  glm::dmat4 view;        ///< world to eye; the eye looks along -z
-  glm::dmat4 projection;  ///< eye to clip
-  glm::dvec3 eye;         ///< in the world
+struct CameraMatrices {
+  glm::dmat4 world_to_eye;  ///< the eye looks along -z, y up
+  glm::dmat4 eye_to_clip;
+  glm::dvec3 eye;  ///< in the world
 };
 
 /// The scene's camera at a frame, for a picture of `width` x `height` square pixels.
-View camera_view(const Camera& camera, double frame, int width, int height);
+CameraMatrices camera_matrices(const Camera& camera, double frame, int width, int height);
 
 /// Object to world at a frame: move * turn z * turn y * turn x * scale.
 glm::dmat4 object_matrix(const Object& object, double frame);

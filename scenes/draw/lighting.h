@@ -13,8 +13,7 @@
 namespace softfocus {
 
 /// x^n for n >= 1 by squaring, from n's lowest bit up: the same products on every
-/// machine, where a driver's pow is an approximation. No product is taken that goes
-/// further than x^n.
+/// machine, where a driver's pow is an approximation. No product goes beyond x^n.
 inline float whole_power(float x, int n) {
   float power = 1.0f;
   for (float square = x;; square *= square) {
@@ -24,15 +23,15 @@ inline float whole_power(float x, int n) {
   }
 }
 
-/// A highlight counts from this cosine on. Below it, its power is less than 2^-63, and what
-/// comes soon after is no normal number: CPUs take a hundred cycles for each such product.
-/// For n up to 126 the power of it is at least 2^-126; above, (1 + 87/n)^-n > e^-87.
+/// A highlight counts from this cosine on. The powers of smaller ones are below 2^-63 and soon
+/// subnormal, which costs CPUs a hundred cycles a product. Its own power is at least 2^-126
+/// for n up to 126; above, (1 + 87/n)^-n > e^-87.
 inline float least_highlight(int n) {
   if (n > 126) return static_cast<float>(n) / static_cast<float>(n + 87);
   return 1.0f / static_cast<float>(std::uint64_t{1} << std::min(126 / n, 63));
 }
 
-/// What a texture multiplies, and what it does not.
+/// Apart, because a texture multiplies the base alone.
 struct LitColour {
   glm::vec3 base;  ///< ambient and diffuse
   glm::vec3 specular;

@@ -20,11 +20,12 @@ glm::mat3 normal_matrix(const glm::dmat4& to_world) {
                    glm::vec3{cross(x, y) * sign}};
 }
 
-SurfaceDraw surface_draw(const Scene& scene, const Object& object, const View& view, double frame) {
+SurfaceDraw surface_draw(const Scene& scene, const Object& object, const CameraMatrices& camera,
+                         double frame) {
   const Mesh& mesh = scene.meshes[object.mesh];
   const Material& material = scene.materials[object.material];
   const glm::dmat4 to_world = object_matrix(object, frame);
-  const glm::dmat4 to_clip = multiply(view.projection, multiply(view.view, to_world));
+  const glm::dmat4 to_clip = multiply(camera.eye_to_clip, multiply(camera.world_to_eye, to_world));
 
   SurfaceDraw draw{};
   draw.state.cull = material.two_sided ? Cull::none : Cull::back;
@@ -40,17 +41,18 @@ SurfaceDraw surface_draw(const Scene& scene, const Object& object, const View& v
                 glm::mat4{to_clip},
                 glm::mat4{to_world},
                 normal_matrix(to_world),
-                glm::vec3{view.eye}};
+                glm::vec3{camera.eye}};
   return draw;
 }
 
 }  // namespace
 
-std::vector<SurfaceDraw> surface_draws(const Scene& scene, const View& view, double frame) {
+std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,
+                                       double frame) {
   std::vector<SurfaceDraw> draws;
   draws.reserve(scene.objects.size());
   for (const Object& object : scene.objects) {
-    draws.push_back(surface_draw(scene, object, view, frame));
+    draws.push_back(surface_draw(scene, object, camera, frame));
   }
   return draws;
 }

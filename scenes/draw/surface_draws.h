@@ -1,12 +1,12 @@
 #pragma once
-// A frame's draws before anything is drawn: what the emulation and a GL driver both get.
+// A frame's list of draws, for the emulation and for a GL driver.
 
 #include <vector>
 
 #include "raster/pipeline/state.h"
-#include "scenes/scene.h"
-#include "scenes/draw/surface_stages.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/surface_stages.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 
@@ -15,10 +15,11 @@ struct SurfaceDraw {
   DrawState state;
   SurfaceVertexInput input;
   const Texture* texture;  ///< none if the variant is not textured
-  SurfaceVariant variant;  ///< what the material has, and nothing more
+  SurfaceVariant variant;  ///< the features of the material
 };
 
 /// One for each of the scene's objects, in the order of drawing.
-std::vector<SurfaceDraw> surface_draws(const Scene& scene, const View& view, double frame);
+std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,
+                                       double frame);
 
 }  // namespace softfocus

@@ -1,13 +1,20 @@
+// The stages of surface_stages.h for kLanes vertices or pixels at once: the same operations in
+// the same order. A draw's variant is a uniform choice at run time here: compiled for each
+// variant and vector unit, the kernels took a sixth of the compiler's time and ran no faster.
+
+#ifndef SOFTFOCUS_ISA
+
 #include "scenes/draw/surface_lanes.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <utility>
 
 #include "raster/numbers/fixed_point.h"
 
-#define SOFTFOCUS_KERNELS "scenes/draw/surface_lanes.inl"
+#define SOFTFOCUS_KERNELS "scenes/draw/surface_lanes.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -29,3 +36,225 @@ template SurfaceLaneStages<SurfaceVariant{true, true, false}> surface_lane_stage
 template SurfaceLaneStages<SurfaceVariant{true, true, true}> surface_lane_stages(Isa);
 
 }  // namespace softfocus
+
+#else  // the kernels, once a vector unit
+
+#include "raster/images/sample_lanes.inl"
+#include "raster/lanes/vector_math_lanes.inl"
+#include "raster/pipeline/lanes/block_lanes.inl"
+#include "raster/pipeline/lanes/edge_lanes.inl"
+#include "raster/pipeline/lanes/interpolate_lanes.inl"
+#include "raster/pipeline/lanes/shade_lanes.inl"
+#include "raster/pipeline/lanes/vertex_lanes.inl"
+
+namespace {
+
+// What all variants have room for.
+inline constexpr std::size_t kMostVaryings = surface_layout({true, true, true}).count;
+
+// --- vertices ---
+
+SOFTFOCUS_INLINE Floats whole_power(Floats x, int n) {
+  Floats power = splat(1.0f);
+  for (Floats square = x;; square *= square) {
+    if ((n & 1) != 0) power *= square;
+    n >>= 1;
+    if (n == 0) return power;
+  }
+}
+
+SOFTFOCUS_INLINE Vec3Lanes load_vectors(const std::vector<glm::vec3>& vectors, Ints index) {
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  const float* first = &vectors[0].x;
+  const Ints at = index * 3;
+  const Mask every = ~Mask{};
+  return {gather(first, at, every), gather(first + 1, at, every), gather(first + 2, at, every)};
+}
+
+struct LitLanes {
+  Vec3Lanes base, specular;
+};
+
+// As light_point(); without `shines`, no highlights.
+SOFTFOCUS_INLINE LitLanes light_points(const SurfaceVertexInput& input, bool shines,
+                                       const Vec3Lanes& point, const Vec3Lanes& normal,
+                                       const Vec3Lanes& towards_eye) {
+  const Material& material = *input.material;
+  const float least = least_highlight(material.shininess);
+  LitLanes lit{splat(input.ambient_light * material.ambient), splat(glm::vec3{0.0f})};
+  for (const Light& light : input.lights) {
+    const Vec3Lanes towards_light =
+        light.kind == LightKind::point ? normalize(splat(light.position_or_direction) - point)
+                                       : splat(::softfocus::normalize(light.position_or_direction));
+    const Floats facing = dot(normal, towards_light);
+    const Mask is_lit = facing > 0.0f;
+    lit.base = select(is_lit, lit.base + light.colour * (material.diffuse * facing), lit.base);
+    if (!shines) continue;
+    const Floats highlight = dot(normal, normalize(towards_light + towards_eye));
+    const Mask is_highlight = is_lit & (highlight >= least);
+    // Other lanes take no time either: see least_highlight().
+    const Floats power =
+        whole_power(select(is_highlight, highlight, splat(1.0f)), material.shininess);
+    lit.specular = select(is_highlight, lit.specular + light.colour * (material.specular * power),
+                          lit.specular);
+  }
+  return lit;
+}
+
+struct SurfaceVertexLanes {
+  static constexpr std::size_t kVaryings = kMostVaryings;
+  const SurfaceVertexInput& input;
+  SurfaceVariant variant;
+  SurfaceLayout layout = surface_layout(variant);
+
+  SOFTFOCUS_INLINE std::size_t varying_count() const { return layout.count; }
+
+  SOFTFOCUS_INLINE void position(Ints index, std::array<Floats, 4>& in_clip_space) const {
+    const Vec3Lanes p = load_vectors(input.mesh->positions, index);
+    for (int i = 0; i < 4; ++i) {
+      const glm::mat4& m = input.to_clip;
+      in_clip_space[static_cast<std::size_t>(i)] =
+          ((m[0][i] * p.x + m[1][i] * p.y) + m[2][i] * p.z) + m[3][i];
+    }
+  }
+
+  SOFTFOCUS_INLINE void operator()(Ints index, std::array<Floats, 4>& in_clip_space,
+                                   std::array<Floats, kVaryings>& varyings) const {
+    position(index, in_clip_space);
+    varyings[SurfaceLayout::kDepth] = in_clip_space[3];
+
+    const Vec3Lanes p = load_vectors(input.mesh->positions, index);
+    const glm::mat4& w = input.to_world;
+    const Vec3Lanes world{((w[0][0] * p.x + w[1][0] * p.y) + w[2][0] * p.z) + w[3][0],
+                          ((w[0][1] * p.x + w[1][1] * p.y) + w[2][1] * p.z) + w[3][1],
+                          ((w[0][2] * p.x + w[1][2] * p.y) + w[2][2] * p.z) + w[3][2]};
+    const Vec3Lanes n = load_vectors(input.mesh->normals, index);
+    const glm::mat3& r = input.normal_to_world;
+    Vec3Lanes normal = normalize({(r[0][0] * n.x + r[1][0] * n.y) + r[2][0] * n.z,
+                                  (r[0][1] * n.x + r[1][1] * n.y) + r[2][1] * n.z,
+                                  (r[0][2] * n.x + r[1][2] * n.y) + r[2][2] * n.z});
+    const Vec3Lanes towards_eye = normalize(splat(input.eye) - world);
+    // The front, and then perhaps the back.
+    for (std::size_t at = SurfaceLayout::kFront; at < layout.texture; at += layout.side_size) {
+      const LitLanes lit = input.material->lit
+                               ? light_points(input, variant.specular, world, normal, towards_eye)
+                               : LitLanes{splat(input.material->diffuse), splat(glm::vec3{0.0f})};
+      varyings[at] = lit.base.x;
+      varyings[at + 1] = lit.base.y;
+      varyings[at + 2] = lit.base.z;
+      if (variant.specular) {
+        varyings[at + 3] = lit.specular.x;
+        varyings[at + 4] = lit.specular.y;
+        varyings[at + 5] = lit.specular.z;
+      }
+      normal = {-normal.x, -normal.y, -normal.z};
+    }
+    if (variant.textured) {
+      const float* first = &input.mesh->uvs[0].x;
+      varyings[layout.texture] = gather(first, index * 2, ~Mask{});
+      varyings[layout.texture + 1] = gather(first + 1, index * 2, ~Mask{});
+    }
+  }
+};
+
+// --- fragments ---
+
+struct SurfaceFragmentLanes {
+  static constexpr std::array<Interpolation, kMostVaryings> kInterpolation{};  // perspective
+  // The colour that a texture is multiplied with, depth; and with a texture the place where it
+  // is sampled, and the highlights, which are else in the colour.
+  static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,
+                               kLod = 6, kHighlight = 7;
+  static constexpr std::size_t kInputs = 10;
+  const DecodedTexture* texture;
+  const Sampler& sampler;
+  const Profile& profile;
+  SurfaceVariant variant;
+  SurfaceLayout layout = surface_layout(variant);
+
+  SOFTFOCUS_INLINE std::size_t varying_count() const { return layout.count; }
+  SOFTFOCUS_INLINE std::size_t input_count() const {
+    return !variant.textured ? 4 : variant.specular ? 10 : 7;
+  }
+
+  template <class Put>
+  SOFTFOCUS_INLINE void inputs(const QuadFragments& in, const Put& put) const {
+    Vec3Lanes colour = side(in, 0);
+    if (variant.textured) {
+      const std::size_t u = layout.texture;
+      const std::size_t v = layout.texture + 1;
+      put(kU, in.varying(u));
+      put(kV, in.varying(v));
+      put(kLod, level_of_detail_lanes(*texture, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
+    }
+    if (variant.specular) {
+      const Vec3Lanes highlight = side(in, 3);
+      if (variant.textured) {
+        put(kHighlight, highlight.x);
+        put(kHighlight + 1, highlight.y);
+        put(kHighlight + 2, highlight.z);
+      } else {
+        colour = colour + highlight;
+      }
+    }
+    put(kRed, colour.x);
+    put(kGreen, colour.y);
+    put(kBlue, colour.z);
+    put(kDepth, smaller(in.varying(SurfaceLayout::kDepth), splat(65504.0f)));
+  }
+
+  SOFTFOCUS_INLINE void shade(const FragmentBatch<kInputs>& batch,
+                              std::array<Floats, 4>* colours) const {
+    const int count = batch.vectors();
+    for (int i = 0; i < count; ++i) {
+      colours[i] = {batch.input(kRed, i), batch.input(kGreen, i), batch.input(kBlue, i),
+                    batch.input(kDepth, i)};
+    }
+    if (!variant.textured) return;
+    std::array<RgbLanes, kMostSampled> texels;
+    sample_lanes(*texture, sampler, profile,
+                 {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
+                 count, texels.data());
+    for (int i = 0; i < count; ++i) {
+      const RgbLanes& texel = texels[static_cast<std::size_t>(i)];
+      colours[i][0] *= texel.r;
+      colours[i][1] *= texel.g;
+      colours[i][2] *= texel.b;
+      if (!variant.specular) continue;
+      for (std::size_t c = 0; c < 3; ++c) colours[i][c] += batch.input(kHighlight + c, i);
+    }
+  }
+
+  // Three varyings of the side that is seen.
+  SOFTFOCUS_INLINE Vec3Lanes side(const QuadFragments& in, std::size_t at) const {
+    const std::size_t front = SurfaceLayout::kFront + at;
+    const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
+    if (!variant.two_sided) return seen;
+    const std::size_t back = layout.back + at;
+    const Mask front_facing = in.front_facing();
+    if (all(front_facing)) return seen;
+    return select(front_facing, seen,
+                  Vec3Lanes{in.varying(back), in.varying(back + 1), in.varying(back + 2)});
+  }
+};
+
+}  // namespace
+
+template <SurfaceVariant variant>
+unsigned place_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {
+  return place_vertices(SurfaceVertexLanes{stage.input, variant}, job);
+}
+
+template <SurfaceVariant variant>
+void shade_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {
+  shade_vertices(SurfaceVertexLanes{stage.input, variant}, job);
+}
+
+template <SurfaceVariant variant>
+void shade_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
+                             const VisibilityTile& tile, const VisibleRun& run) {
+  shade_fragments(SurfaceFragmentLanes{stage.decoded, stage.sampler, stage.profile, variant}, job,
+                  tile, run);
+}
+
+#endif

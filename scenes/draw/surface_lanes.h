@@ -2,7 +2,7 @@
 // The stages of surface_stages.h as vector kernels.
 
 #include "raster/lanes/isa.h"
-#include "raster/pipeline/lanes/draw_lanes.h"
+#include "raster/pipeline/lanes/draw_in_lanes.h"
 #include "scenes/draw/surface_stages.h"
 
 namespace softfocus {

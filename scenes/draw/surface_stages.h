@@ -1,7 +1,6 @@
 #pragma once
-// The vertex and the fragment stage of a lit, perhaps textured surface. A material
-// picks its variant at compile time, and what it lacks is neither computed nor
-// interpolated.
+// The vertex and the fragment stage of a lit, perhaps textured surface. They are compiled for
+// each variant of material: a feature that it lacks is neither computed nor interpolated.
 
 #include <array>
 #include <cstddef>
@@ -30,15 +29,21 @@ struct SurfaceVariant {
 };
 
 /// Where each varying lies: depth, base colour, then what the variant has.
-template <SurfaceVariant variant>
 struct SurfaceLayout {
   static constexpr std::size_t kDepth = 0;
   static constexpr std::size_t kFront = 1;
-  static constexpr std::size_t kSideSize = variant.specular ? 6 : 3;
-  static constexpr std::size_t kBack = kFront + kSideSize;
-  static constexpr std::size_t kTexture = kBack + (variant.two_sided ? kSideSize : 0);
-  static constexpr std::size_t kCount = kTexture + (variant.textured ? 2 : 0);
+  std::size_t side_size;  ///< base colour, and highlight if there is one
+  std::size_t back;       ///< the back's base colour, if it is lit by itself
+  std::size_t texture;    ///< u and v, if there are such
+  std::size_t count;
 };
+
+constexpr SurfaceLayout surface_layout(SurfaceVariant variant) {
+  const std::size_t side_size = variant.specular ? 6 : 3;
+  const std::size_t back = SurfaceLayout::kFront + side_size;
+  const std::size_t texture = back + (variant.two_sided ? side_size : 0);
+  return {side_size, back, texture, texture + (variant.textured ? 2 : 0)};
+}
 
 /// What the vertex stage reads; matrices are rounded to binary32 once a draw.
 struct SurfaceVertexInput {
@@ -54,13 +59,13 @@ struct SurfaceVertexInput {
 
 template <SurfaceVariant variant>
 struct SurfaceVertexStage {
-  using Layout = SurfaceLayout<variant>;
+  static constexpr SurfaceLayout kLayout = surface_layout(variant);
   SurfaceVertexInput input;
 
-  VertexOutput<Layout::kCount> operator()(std::uint32_t index) const {
+  VertexOutput<kLayout.count> operator()(std::uint32_t index) const {
     const glm::vec3 position = input.mesh->positions[index];
-    VertexOutput<Layout::kCount> output{transform_point(input.to_clip, position), {}};
-    output.varyings[Layout::kDepth] = output.position.w;
+    VertexOutput<kLayout.count> output{transform_point(input.to_clip, position), {}};
+    output.varyings[kLayout.kDepth] = output.position.w;
 
     const Material& material = *input.material;
     const glm::vec4 world4 = transform_point(input.to_world, position);
@@ -79,11 +84,11 @@ struct SurfaceVertexStage {
         }
       }
     };
-    light_side(normal, Layout::kFront);
-    if constexpr (variant.two_sided) light_side(-normal, Layout::kBack);
+    light_side(normal, kLayout.kFront);
+    if constexpr (variant.two_sided) light_side(-normal, kLayout.back);
     if constexpr (variant.textured) {
-      output.varyings[Layout::kTexture] = input.mesh->uvs[index].x;
-      output.varyings[Layout::kTexture + 1] = input.mesh->uvs[index].y;
+      output.varyings[kLayout.texture] = input.mesh->uvs[index].x;
+      output.varyings[kLayout.texture + 1] = input.mesh->uvs[index].y;
     }
     return output;
   }
@@ -91,22 +96,22 @@ struct SurfaceVertexStage {
 
 template <SurfaceVariant variant>
 struct SurfaceFragmentStage {
-  using Layout = SurfaceLayout<variant>;
+  static constexpr SurfaceLayout kLayout = surface_layout(variant);
   static constexpr bool kDiscards = false;
   static constexpr bool kNeedsDerivatives = variant.textured;
-  static constexpr std::array<Interpolation, Layout::kCount> kInterpolation{};  // perspective
+  static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
 
   const Texture* texture;
   Sampler sampler;
   Profile profile;
   const DecodedTexture* decoded = nullptr;  ///< of `texture`, for the form in lanes
 
-  FragmentOutput<1> operator()(const Fragment<Layout::kCount>& in) const {
-    const std::size_t side = variant.two_sided && !in.front_facing ? Layout::kBack : Layout::kFront;
+  FragmentOutput<1> operator()(const Fragment<kLayout.count>& in) const {
+    const std::size_t side = variant.two_sided && !in.front_facing ? kLayout.back : kLayout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
     if constexpr (variant.textured) {
-      constexpr std::size_t u = Layout::kTexture;
-      constexpr std::size_t v = Layout::kTexture + 1;
+      constexpr std::size_t u = kLayout.texture;
+      constexpr std::size_t v = kLayout.texture + 1;
       const float lod =
           level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
       const glm::vec4 texel =
@@ -116,7 +121,7 @@ struct SurfaceFragmentStage {
     if constexpr (variant.specular) {
       colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
     }
-    return {{glm::vec4{colour, alpha_depth(in.varyings[Layout::kDepth])}}, false};
+    return {{glm::vec4{colour, alpha_depth(in.varyings[kLayout.kDepth])}}, false};
   }
 };
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "raster/threads/scratch_shelf.h"
-#include "scenes/lens_views/lens_view.h"
+#include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
@@ -18,7 +18,7 @@ constexpr std::size_t kTileHalves = std::size_t{kTileSize} * kTileSize * kTexelH
 
 // A group of samples of one tile, each a row after the other.
 struct TileSamples {
-  std::vector<std::uint16_t> halves = std::vector<std::uint16_t>(kViewGroup * kTileHalves);
+  std::vector<std::uint16_t> halves = std::vector<std::uint16_t>(kLensViewGroup * kTileHalves);
   TileMemory memory;
 };
 
@@ -43,15 +43,15 @@ void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const 
 
 }  // namespace
 
-SampledPicture accumulation(const SceneMethodInput& input, ThreadPool& pool) {
+SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
-    add_views(buffer, input, begin, end, sums, pool);
+    add_lens_views(buffer, input, begin, end, sums, pool);
   };
-  return take_samples(input, add_samples, kViewGroup, pool);
+  return take_samples(input, add_samples, kLensViewGroup, pool);
 }
 
-AccumulationBuffer make_accumulation_buffer(const SceneMethodInput& input, ThreadPool& pool) {
+AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool) {
   const int width = input.pinhole.width, height = input.pinhole.height;
   const Sampling& sampling = input.sampling;
   return {lens_points(sampling.aperture, sampling.samples),
@@ -64,39 +64,39 @@ AccumulationBuffer make_accumulation_buffer(const SceneMethodInput& input, Threa
           {}};
 }
 
-void add_views(AccumulationBuffer& buffer, const SceneMethodInput& input, int begin, int end,
-               SampleSums& sums, ThreadPool& pool) {
+void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
+                    SampleSums& sums, ThreadPool& pool) {
   const auto count = static_cast<std::size_t>(end - begin);
-  assert(begin % kSampleGroup == 0 && end - begin <= kViewGroup);
+  assert(begin % kSampleGroup == 0 && end - begin <= kLensViewGroup);
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
   for (std::size_t i = buffer.passes.size(); i < count; ++i) {
     RenderPass& pass = buffer.passes.emplace_back();
     pass.profile = buffer.prepared.pass.profile;
     pass.isa = buffer.prepared.pass.isa;
   }
-  if (buffer.views.size() < count) buffer.views.resize(count);
+  if (buffer.tile_lists.size() < count) buffer.tile_lists.resize(count);
   const std::span passes = std::span{buffer.passes}.first(count);
-  const std::span views = std::span{buffer.views}.first(count);
-  pool.for_each(static_cast<int>(count), [&](int view_number) {
-    const auto i = static_cast<std::size_t>(view_number);
+  const std::span tile_lists = std::span{buffer.tile_lists}.first(count);
+  pool.for_each(static_cast<int>(count), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
     passes[i].targets.colour[0] = &buffer.picture;  // the buffer may have moved
     passes[i].targets.depth = &buffer.depth;
     const std::size_t sample = static_cast<std::size_t>(begin) + i;
-    const View view =
-        lens_view(input.view, buffer.points[sample] * input.aperture_radius_m, input.focus_m,
-                  buffer.offsets[sample], buffer.picture.width, buffer.picture.height);
-    record_scene(buffer.prepared, view, input.frame, passes[i]);
+    const CameraMatrices camera =
+        lens_camera(input.camera, buffer.points[sample] * input.aperture_radius_m, input.focus_m,
+                    buffer.offsets[sample], buffer.picture.width, buffer.picture.height);
+    record_scene(buffer.prepared, camera, input.frame, passes[i]);
   });
-  sort_into_tiles(passes, views, pool);
+  sort_into_tiles(passes, tile_lists, pool);
   ScratchShelf<TileSamples> shelf;
-  pool.for_each(tile_count(views[0]), [&](int tile) {
+  pool.for_each(tile_count(tile_lists[0]), [&](int tile) {
     TileSamples samples = shelf.take();
-    const Rectangle area = tile_area(views[0], tile);
+    const Rectangle area = tile_area(tile_lists[0], tile);
     for (std::size_t i = 0; i < count; ++i) {
-      draw_tile_aside(passes[i], views[i], tile, samples.memory,
+      draw_tile_aside(passes[i], tile_lists[i], tile, samples.memory,
                       reinterpret_cast<std::byte*>(texels_of(samples, i)));
     }
-    // The sums come from memory for the first, and are at hand for the second.
+    // The first group fetches the sums from memory; the second finds them in the cache.
     for (std::size_t first = 0; first < count; first += kSampleGroup) {
       add_tile(samples, first, std::min<std::size_t>(count - first, kSampleGroup), area, sums,
                pool.isa());

@@ -1,6 +1,6 @@
 #pragma once
-// Where on the aperture a picture is seen from, and where in a pixel: low-discrepancy
-// points, the first n of which cover the area evenly whatever n is.
+// Points of the aperture, and of a pixel, to look from: low-discrepancy sequences, whose first
+// n points cover the area evenly for any n.
 
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -18,8 +18,8 @@ inline constexpr int kMostSamples = 65536;
 /// point in each of 2^k equal boxes, of any shape that halving gives. Sequences of another
 /// `series` are independent of each other.
 ///
-/// Scrambled, because the plain sequence's first n points lie on average 1/(2n) beside the
-/// centre: everything out of focus would be moved.
+/// Without scrambling the first n points lie on average 1/(2n) beside the centre, and everything
+/// out of focus would move.
 glm::dvec2 square_point(std::uint32_t index, std::uint32_t series);
 
 /// A disc of radius 1, or a regular polygon whose corners lie on its edge, one of them up.
@@ -45,9 +45,8 @@ class ApertureMap {
 /// The first `count` points of the lens, in radii; the first is the centre.
 std::vector<glm::dvec2> lens_points(ApertureShape shape, int count);
 
-/// As many offsets from a pixel's centre, in pixels from -0.5 to 0.5, in an order that has
-/// nothing to do with that of the lens's points; the first is 0. Without `jitter`
-/// all are.
+/// `count` offsets from a pixel's centre, in pixels from -0.5 to 0.5, in an order independent of
+/// the lens's points. The first is 0; without `jitter` all are.
 std::vector<glm::dvec2> pixel_offsets(bool jitter, int count);
 
 }  // namespace softfocus

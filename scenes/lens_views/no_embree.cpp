@@ -10,7 +10,7 @@ std::string_view ray_traced_missing() {
          "libembree-dev), then configure and build again";
 }
 
-SampledPicture ray_traced(const SceneMethodInput&, ThreadPool&) {
+SampledPicture ray_traced(const LensViewInput&, ThreadPool&) {
   throw std::runtime_error("ray-traced: " + std::string{ray_traced_missing()});
 }
 

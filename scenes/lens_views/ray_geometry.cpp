@@ -82,18 +82,18 @@ glm::vec3 texel_at(const RayMesh& mesh, const Corners& corners, const RayHit& hi
 
 }  // namespace
 
-std::vector<RayMesh> ray_meshes(const Scene& scene, const View& view, double frame) {
+std::vector<RayMesh> ray_meshes(const Scene& scene, const CameraMatrices& camera, double frame) {
   std::vector<RayMesh> meshes;
-  const std::vector<SurfaceDraw> draws = surface_draws(scene, view, frame);
+  const std::vector<SurfaceDraw> draws = surface_draws(scene, camera, frame);
   for (std::size_t i = 0; i < draws.size(); ++i) {
-    meshes.push_back(ray_mesh(draws[i], view.view, scene.objects[i], frame));
+    meshes.push_back(ray_mesh(draws[i], camera.world_to_eye, scene.objects[i], frame));
   }
   return meshes;
 }
 
-RayCamera ray_camera(const View& view, double focus_m, int width_px, int height_px) {
+RayCamera ray_camera(const CameraMatrices& camera, double focus_m, int width_px, int height_px) {
   const double width = width_px, height = height_px;
-  return {2.0 / (width * view.projection[0][0]), 2.0 / (height * view.projection[1][1]),
+  return {2.0 / (width * camera.eye_to_clip[0][0]), 2.0 / (height * camera.eye_to_clip[1][1]),
           width / 2.0, height / 2.0, focus_m};
 }
 

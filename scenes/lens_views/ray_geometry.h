@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "raster/numbers/profile.h"
-#include "scenes/scene.h"
-#include "scenes/draw/surface_draws.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/surface_draws.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 
@@ -24,7 +24,7 @@ struct RayMesh {
   std::vector<glm::vec3> base[2];
 };
 
-std::vector<RayMesh> ray_meshes(const Scene& scene, const View& view, double frame);
+std::vector<RayMesh> ray_meshes(const Scene& scene, const CameraMatrices& camera, double frame);
 
 /// From a point of the lens through one of the plane in focus; z of the direction is -1, so
 /// that the distance along the ray is the depth in metres.
@@ -39,7 +39,7 @@ struct RayCamera {
   double centre_x, centre_y;  ///< the pixel coordinate of the axis
   double focus_m;
 };
-RayCamera ray_camera(const View& view, double focus_m, int width_px, int height_px);
+RayCamera ray_camera(const CameraMatrices& camera, double focus_m, int width_px, int height_px);
 LensRay lens_ray(const RayCamera& camera, glm::dvec2 lens_point_m, double x_px, double y_px);
 
 /// Whether the ray meets the front of a triangle, as the rasterizer has it.

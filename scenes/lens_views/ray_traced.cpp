@@ -13,8 +13,9 @@
 #include <string>
 #include <type_traits>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/lens_views/lens_view.h"
+#include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/ray_geometry.h"
 #include "scenes/lens_views/take_samples.h"
 
@@ -74,9 +75,9 @@ void add_mesh(TracedScene& traced, RayMesh& mesh) {
   rtcAttachGeometry(traced.tree.get(), geometry.get());
 }
 
-TracedScene traced_scene(const SceneMethodInput& input) {
+TracedScene traced_scene(const LensViewInput& input) {
   TracedScene traced;
-  traced.meshes = ray_meshes(input.scene, input.view, input.frame);
+  traced.meshes = ray_meshes(input.scene, input.camera, input.frame);
   // No threads of its own: rays are traced on the pool's.
   traced.device.reset(rtcNewDevice("threads=1"));
   check(traced.device);
@@ -111,22 +112,13 @@ RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const Ca
   return hit;
 }
 
-/// Of each pixel another block of the sequence's points: an exclusive or leads every
-/// aligned block of 2^k points to another. The finaliser of MurmurHash3 (Appleby).
-std::uint32_t block_of_pixel(int x, int y) {
-  std::uint32_t hash =
-      static_cast<std::uint32_t>(x) * 0x9E3779B9u ^ static_cast<std::uint32_t>(y) * 0x85EBCA77u;
-  hash ^= hash >> 16;
-  hash *= 0x85EBCA6Bu;
-  hash ^= hash >> 13;
-  hash *= 0xC2B2AE35u;
-  hash ^= hash >> 16;
-  return hash % kMostSamples;
-}
+/// The pixel's block of the sequence. An exclusive or with it maps every aligned block of 2^k
+/// points to another.
+std::uint32_t block_of_pixel(int x, int y) { return hash_of_place(x, y) % kMostSamples; }
 
 /// Everything that a ray needs to know.
 struct Tracer {
-  const SceneMethodInput& input;
+  const LensViewInput& input;
   TracedScene traced;
   RayCamera camera;
   std::vector<glm::dvec2> points;   // of the lens, in metres
@@ -135,7 +127,7 @@ struct Tracer {
 };
 
 glm::vec3 trace(const Tracer& tracer, int x, int y, std::uint32_t sample) {
-  const SceneMethodInput& input = tracer.input;
+  const LensViewInput& input = tracer.input;
   const glm::dvec2 point = tracer.points[sample];
   const glm::dvec2 offset = tracer.offsets[sample] + 0.5;
   const auto ray_through = [&](int pixel_x, int pixel_y) {
@@ -155,19 +147,19 @@ glm::vec3 trace(const Tracer& tracer, int x, int y, std::uint32_t sample) {
 
 std::string_view ray_traced_missing() { return {}; }
 
-SampledPicture ray_traced(const SceneMethodInput& input, ThreadPool& pool) {
+SampledPicture ray_traced(const LensViewInput& input, ThreadPool& pool) {
   const int width = input.pinhole.width;
   Tracer tracer{input,
                 traced_scene(input),
-                ray_camera(input.view, input.focus_m, width, input.pinhole.height),
+                ray_camera(input.camera, input.focus_m, width, input.pinhole.height),
                 lens_points(input.sampling.aperture, kMostSamples),
                 pixel_offsets(input.sampling.jitter, kMostSamples),
                 {}};
   for (glm::dvec2& point : tracer.points) {
     point *= input.aperture_radius_m;
-    tracer.eyes.emplace_back(
-        lens_view(input.view, point, input.focus_m, glm::dvec2{0.0}, width, input.pinhole.height)
-            .eye);
+    tracer.eyes.emplace_back(lens_camera(input.camera, point, input.focus_m, glm::dvec2{0.0}, width,
+                                         input.pinhole.height)
+                                 .eye);
   }
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
     pool.for_each(sums.height, [&](int y) {

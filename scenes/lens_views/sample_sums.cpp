@@ -1,3 +1,5 @@
+#ifndef SOFTFOCUS_ISA
+
 #include "scenes/lens_views/sample_sums.h"
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 
 #include "raster/images/texel.h"
 
-#define SOFTFOCUS_KERNELS "scenes/lens_views/sums_kernels.inl"
+#define SOFTFOCUS_KERNELS "scenes/lens_views/sample_sums.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -34,7 +36,7 @@ SampleSums make_sample_sums(int width, int height) {
 
 void clear_sums(SampleSums& sums) {
   sums.count = 0;
-  // -0: what it is added to stays as it is, even -0.
+  // -0 leaves every number as it is, even -0.
   std::fill(sums.totals.begin(), sums.totals.end(), -0.0);
 }
 
@@ -45,7 +47,7 @@ const double* sums_at(const SampleSums& sums, int x, int y) {
   return sums.totals.data() + place_of(sums, x, y);
 }
 
-void add_row_plain(std::span<const std::uint16_t* const> rows, int halves, double* totals) {
+void add_row_scalar(std::span<const std::uint16_t* const> rows, int halves, double* totals) {
   for (int i = 0; i < halves; ++i) {
     float sum = half_to_float(rows[0][i]);
     for (const std::uint16_t* row_of_next : rows.subspan(1)) sum += half_to_float(row_of_next[i]);
@@ -66,7 +68,7 @@ void add_rows(std::span<const std::uint16_t* const> rows, int x, int y, int widt
   }
   std::array<const std::uint16_t*, kSampleGroup> rest{};
   for (std::size_t i = 0; i < rows.size(); ++i) rest[i] = rows[i] + done;
-  add_row_plain({rest.data(), rows.size()}, halves - done, totals + done);
+  add_row_scalar({rest.data(), rows.size()}, halves - done, totals + done);
 }
 
 void add_pictures(std::span<const Image> pictures, SampleSums& sums, ThreadPool& pool) {
@@ -131,7 +133,7 @@ SampleSums later_samples(const SampleSums& first, const SampleSums& all) {
 
 double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool) {
   assert(first_half.count > 0 && 2 * first_half.count == all.count);
-  // A row's own sum, then the rows' in order: the same for any number of threads.
+  // Rows first, then their sums in order: the same bits for any number of threads.
   std::vector<double> squares(static_cast<std::size_t>(all.height));
   pool.for_each(all.height, [&](int y) {
     double sum = 0.0;
@@ -151,3 +153,59 @@ double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadP
 }
 
 }  // namespace softfocus
+
+#else  // the kernels, once a vector unit
+
+namespace {
+
+using Doubles [[gnu::vector_size(8 * SOFTFOCUS_LANES)]] = double;
+using HalfLanes [[gnu::vector_size(2 * SOFTFOCUS_LANES)]] = std::uint16_t;
+
+}  // namespace
+
+/// add_row_scalar() for whole vectors. Returns how many halves it has added.
+int add_row(const std::uint16_t* const* rows, int row_count, int halves, double* totals) {
+  int done = 0;
+  for (; done + kLanes <= halves; done += kLanes) {
+    Floats sum = load_halves(rows[0] + done);
+    for (int i = 1; i < row_count; ++i) sum += load_halves(rows[i] + done);
+    Doubles total;
+    std::memcpy(&total, totals + done, sizeof total);
+    total += __builtin_convertvector(sum, Doubles);
+    std::memcpy(totals + done, &total, sizeof total);
+  }
+  return done;
+}
+
+namespace {
+
+template <HalfRounding rounding>
+int store_means_rounded(const double* totals, int samples, const std::uint16_t* depth, int halves,
+                        std::uint16_t* to) {
+  const Mask alpha = (lane_numbers() & 3) == 3;
+  int done = 0;
+  for (; done + kLanes <= halves; done += kLanes) {
+    Doubles total;
+    std::memcpy(&total, totals + done, sizeof total);
+    total /= static_cast<double>(samples);
+    const Bits mean = float_to_half<rounding>(__builtin_convertvector(total, Floats));
+    HalfLanes texels;
+    std::memcpy(&texels, depth + done, sizeof texels);
+    texels = __builtin_convertvector(select(alpha, __builtin_convertvector(texels, Bits), mean),
+                                     HalfLanes);
+    std::memcpy(to + done, &texels, sizeof texels);
+  }
+  return done;
+}
+
+}  // namespace
+
+/// store_mean() for whole vectors of a row. Returns how many halves it has stored.
+int store_means(const double* totals, int samples, HalfRounding rounding,
+                const std::uint16_t* depth, int halves, std::uint16_t* to) {
+  return rounding == HalfRounding::nearest_even
+             ? store_means_rounded<HalfRounding::nearest_even>(totals, samples, depth, halves, to)
+             : store_means_rounded<HalfRounding::toward_zero>(totals, samples, depth, halves, to);
+}
+
+#endif

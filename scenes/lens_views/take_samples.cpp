@@ -6,21 +6,21 @@
 namespace softfocus {
 namespace {
 
-// Fewer say nothing: two sets of four points can agree by chance.
+// Two sets of four points can agree by chance.
 constexpr int kFirstComparison = 16;
 
 bool is_power_of_two(int n) { return std::has_single_bit(static_cast<unsigned>(n)); }
 
 }  // namespace
 
-SampledPicture take_samples(const SceneMethodInput& input, const AddSamples& add_samples, int step,
+SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_samples, int step,
                             ThreadPool& pool) {
   const Sampling& sampling = input.sampling;
   SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
   SampleSums first_half;
   SampledPicture result;
   while (sums.count < sampling.samples) {
-    // Up to the first comparison in small steps, for the half that it compares with.
+    // Small steps up to the first comparison, which needs the first half.
     const int next = sums.count + (sums.count < kFirstComparison ? kSampleGroup : step);
     add_samples(sums.count, std::min(next, sampling.samples), sums);
     if (input.progress) input.progress(sums.count);

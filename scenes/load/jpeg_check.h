@@ -1,5 +1,5 @@
 #pragma once
-// What stb_image (2.27) lets pass in a JPEG and should not, looked for beforehand.
+// Damage in a JPEG that stb_image (2.27) lets pass.
 
 #include <string_view>
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/scene.h"
 #include "scenes/load/scene_error.h"
+#include "scenes/scene.h"
 
 namespace softfocus {
 

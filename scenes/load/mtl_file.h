@@ -10,8 +10,7 @@
 
 namespace softfocus {
 
-/// What libraries have given so far. Textures are shared by the materials that name
-/// the same file.
+/// The materials of libraries so far. Those that name the same file share its texture.
 struct MtlMaterials {
   std::vector<Texture> textures;
   std::map<std::string, Material> by_name;
@@ -29,7 +28,7 @@ struct MtlMaterials {
 /// JPEG, is a warning. Throws SceneError for a texture that is there and unreadable.
 void load_mtl(const std::filesystem::path& library, MtlMaterials& materials);
 
-/// What stands in for a material that is missing.
+/// Stands in for a missing material.
 Material neutral_grey();
 
 }  // namespace softfocus

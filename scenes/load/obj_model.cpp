@@ -6,13 +6,13 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/mtl_file.h"
 #include "scenes/load/obj_text.h"
-#include "scenes/make/polygon.h"
-#include "scenes/make/random_bits.h"
 #include "scenes/load/scene_error.h"
+#include "scenes/make/polygon.h"
 
 namespace softfocus {
 namespace {

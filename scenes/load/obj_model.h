@@ -20,7 +20,7 @@ struct ObjModel {
     std::uint32_t material = 0;
   };
   std::vector<Part> parts;
-  /// What was missing and made do without, a line each.
+  /// What was missing, a line each.
   std::vector<std::string> warnings;
 };
 

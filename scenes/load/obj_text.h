@@ -1,5 +1,5 @@
 #pragma once
-// The text of an OBJ file as numbers: what it says, checked, and nothing made of it yet.
+// The text of an OBJ file as checked numbers.
 //
 // Not tinyobjloader's reader, though its MTL reader is used: it counts the corners of a
 // face in 8 bits, checks no index, multiplies decimals out with the C library's pow

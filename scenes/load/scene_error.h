@@ -15,8 +15,8 @@ inline std::string printable(std::string text) {
   return text;
 }
 
-/// What came from outside and was wrong. The message is one line that names the file
-/// (and the line in it) and says what would be right.
+/// A fault in a file. The message is one line that names the file, the line in it, and what
+/// would be right.
 struct SceneError : std::runtime_error {
   explicit SceneError(const std::string& message) : std::runtime_error(printable(message)) {}
 };

@@ -7,8 +7,7 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/scene_error.h"
-#include "scenes/load/scene_objects.h"
-#include "scenes/load/scene_surfaces.h"
+#include "scenes/load/scene_sections.h"
 #include "scenes/load/toml_reading.h"
 
 namespace softfocus {

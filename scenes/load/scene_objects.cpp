@@ -1,12 +1,11 @@
-#include "scenes/load/scene_objects.h"
+#include "scenes/load/scene_sections.h"
 
 #include <optional>
 
+#include "raster/numbers/random_bits.h"
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
-#include "scenes/make/random_bits.h"
 #include "scenes/make/balls.h"
-#include "scenes/load/scene_shapes.h"
 
 namespace softfocus {
 namespace {
@@ -65,9 +64,9 @@ void read_object(Section& section, const std::filesystem::path& directory,
   scene.objects.push_back(object);
 }
 
-ScatterRule read_scatter_rule(Section& section, double mesh_radius) {
-  ScatterRule rule;
-  rule.count = read_whole_number(section, "count", 1, 1, kMaxScatterCount);
+BallRule read_ball_rule(Section& section, double mesh_radius) {
+  BallRule rule;
+  rule.count = read_whole_number(section, "count", 1, 1, kMostBalls);
   rule.seed = static_cast<std::uint64_t>(read_whole_number(section, "seed", 1, 0, 1 << 30));
   rule.region_min = read_vector(section, "region_min", rule.region_min, kAnyPlace);
   rule.region_max = read_vector(section, "region_max", rule.region_max, kAnyPlace);
@@ -87,11 +86,11 @@ ScatterRule read_scatter_rule(Section& section, double mesh_radius) {
   return rule;
 }
 
-void read_scatter(Section& section, const NamedSurfaces& surfaces, std::vector<Ball>& placed,
-                  Scene& scene) {
+void read_balls(Section& section, const NamedSurfaces& surfaces, std::vector<Ball>& placed,
+                Scene& scene) {
   Mesh mesh = read_shape(section);
   const double mesh_radius = bounding_radius(mesh);
-  const ScatterRule rule = read_scatter_rule(section, mesh_radius);
+  const BallRule rule = read_ball_rule(section, mesh_radius);
 
   std::vector<std::uint32_t> materials;
   for (const std::string& name : read_texts(section, "materials")) {
@@ -109,7 +108,7 @@ void read_scatter(Section& section, const NamedSurfaces& surfaces, std::vector<B
     obstacles.push_back({{row[0], row[1], row[2]}, row[3]});
   }
 
-  const auto balls = scatter(rule, obstacles);
+  const auto balls = place_balls(rule, obstacles);
   if (!balls) {
     fail_at(section, "count",
             "there is no room for so many in the region; a larger region, a smaller count, "
@@ -143,7 +142,7 @@ void read_objects(Section& top, const std::filesystem::path& directory,
   }
   std::vector<Ball> placed;
   for (Section& section : read_sections(top, "scatter")) {
-    read_scatter(section, surfaces, placed, scene);
+    read_balls(section, surfaces, placed, scene);
     finish_section(section);
   }
 }

@@ -1,4 +1,4 @@
-#include "scenes/load/scene_shapes.h"
+#include "scenes/load/scene_sections.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
-#include "scenes/load/scene_surfaces.h"
+#include "scenes/load/scene_sections.h"
 
 #include <array>
 #include <bit>
 
-#include "scenes/make/procedural_texture.h"
 #include "scenes/load/texture_file.h"
+#include "scenes/make/procedural_texture.h"
 
 namespace softfocus {
 namespace {

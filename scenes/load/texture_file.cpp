@@ -9,7 +9,7 @@
 #include "scenes/load/jpeg_check.h"
 #include "scenes/load/scene_error.h"
 
-// Its vector code gives other bits than its plain code for JPEG.
+// Its vector code gives other bits for JPEG than its scalar code.
 #define STBI_NO_SIMD
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
@@ -72,7 +72,7 @@ Texture load_texture(const std::filesystem::path& file) {
     std::copy(from, from + to.size(), to.begin());
   }
   Texture texture = make_texture(std::move(image));
-  generate_mipmaps(texture, profiles()[0]);
+  generate_mipmaps(texture, Profile{});
   return texture;
 }
 

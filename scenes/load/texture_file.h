@@ -13,7 +13,7 @@ namespace softfocus {
 /// texels along a side or kMaxTextureTexels in all.
 Texture load_texture(const std::filesystem::path& file);
 
-/// 8192 x 8192: a quarter of a gigabyte, and what a small file can be made to claim.
+/// 8192 x 8192, a quarter of a gigabyte: a small file can claim any size.
 inline constexpr int kMaxTextureTexels = 1 << 26;
 
 }  // namespace softfocus

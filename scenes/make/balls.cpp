@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/make/random_bits.h"
 
 namespace softfocus {
 namespace {
@@ -16,8 +16,8 @@ bool too_near(const Ball& a, const Ball& b, double gap) {
 
 }  // namespace
 
-std::optional<std::vector<Ball>> scatter(const ScatterRule& rule,
-                                         const std::vector<Ball>& obstacles) {
+std::optional<std::vector<Ball>> place_balls(const BallRule& rule,
+                                             const std::vector<Ball>& obstacles) {
   RandomSequence random{rule.seed};
   std::vector<Ball> balls;
   for (int i = 0; i < rule.count; ++i) {
@@ -26,7 +26,7 @@ std::optional<std::vector<Ball>> scatter(const ScatterRule& rule,
     const auto is_taken = [&](const Ball& other) { return too_near(ball, other, rule.gap); };
     int attempt = 0;
     do {
-      if (attempt++ == kScatterAttempts) return std::nullopt;
+      if (attempt++ == kBallAttempts) return std::nullopt;
       ball.centre.x = next_between(random, rule.region_min.x, rule.region_max.x);
       ball.centre.y = next_between(random, rule.region_min.y, rule.region_max.y);
       ball.centre.z = next_between(random, rule.region_min.z, rule.region_max.z);

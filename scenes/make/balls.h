@@ -1,5 +1,5 @@
 #pragma once
-// Many balls at random places, none touching another: the same ones on every machine.
+// Balls at random places, none touching another: the same ones on every machine.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -13,7 +13,7 @@ struct Ball {
   double radius = 1.0;
 };
 
-struct ScatterRule {
+struct BallRule {
   int count = 1;
   std::uint64_t seed = 1;
   glm::dvec3 region_min{-1.0};  ///< of the centres
@@ -24,14 +24,14 @@ struct ScatterRule {
   bool on_ground = false;  ///< the balls lie on y = region_min.y
 };
 
-/// Draws radius, x, y and z, in this order, for one ball after the other, and a place
-/// anew (x, y, z) while the ball comes nearer than `gap` to one of `obstacles` or an
-/// earlier ball. Nothing where a ball finds no place in kScatterAttempts.
-std::optional<std::vector<Ball>> scatter(const ScatterRule& rule,
-                                         const std::vector<Ball>& obstacles);
+/// Draws radius, x, y and z of each ball, in this order. Draws x, y and z again while the ball
+/// is nearer than `gap` to an obstacle or an earlier ball. Empty if a ball finds no place in
+/// kBallAttempts.
+std::optional<std::vector<Ball>> place_balls(const BallRule& rule,
+                                             const std::vector<Ball>& obstacles);
 
-inline constexpr int kScatterAttempts = 1000;
+inline constexpr int kBallAttempts = 1000;
 /// Each place is compared with every ball, so time grows with the square.
-inline constexpr int kMaxScatterCount = 4096;
+inline constexpr int kMostBalls = 4096;
 
 }  // namespace softfocus

@@ -4,8 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/srgb.h"
-#include "scenes/make/random_bits.h"
 
 namespace softfocus {
 namespace {
@@ -189,7 +189,7 @@ Texture make_procedural_texture(const TexturePattern& pattern, const TextureReci
     }
   }
   Texture texture = make_texture(std::move(image));
-  generate_mipmaps(texture, profiles()[0]);
+  generate_mipmaps(texture, Profile{});
   return texture;
 }
 

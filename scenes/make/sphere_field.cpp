@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "raster/numbers/exact_math.h"
+#include "raster/numbers/random_bits.h"
 #include "scenes/make/procedural_texture.h"
-#include "scenes/make/random_bits.h"
 #include "scenes/make/shapes.h"
 
 namespace softfocus {

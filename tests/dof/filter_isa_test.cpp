@@ -1,4 +1,4 @@
-// The filters' vector kernels against their plain forms, bit for bit, on every vector
+// The filters in lanes against their oracles, bit for bit, on every vector
 // unit that this CPU has.
 
 #include <doctest/doctest.h>
@@ -19,12 +19,13 @@ namespace {
 
 struct FilterPair {
   const char* name;
-  void (*fast)(const DofInput&, Image&, ThreadPool&);
-  void (*plain)(const DofInput&, Image&, ThreadPool&);
+  void (*apply)(const DofInput&, const ImageView&, ThreadPool&);
+  void (*oracle)(const DofInput&, const ImageView&, ThreadPool&);
 };
-constexpr std::array kFilters{FilterPair{"two-pass", two_pass, two_pass_plain},
-                              FilterPair{"two-pass-single", two_pass_single, two_pass_single_plain},
-                              FilterPair{"one-pass", one_pass, one_pass_plain}};
+constexpr std::array kFilters{
+    FilterPair{"two-pass", two_pass, two_pass_oracle},
+    FilterPair{"two-pass-single", two_pass_single, two_pass_single_oracle},
+    FilterPair{"one-pass", one_pass, one_pass_oracle}};
 
 constexpr DofSettings kSettings{.coc = {12.0f, 2.0f}, .max_coc_px = 7.3f, .leak = 1.0f};
 
@@ -32,14 +33,14 @@ void check_units(const FilterPair& filter, const Image& scene, const DofSettings
                  HalfRounding rounding = HalfRounding::nearest_even) {
   Profile profile;
   profile.half_store = rounding;
-  ThreadPool plain_pool(2);
+  ThreadPool any_pool(2);
   Image expected = make_image(scene.format, scene.width, scene.height);
-  filter.plain({scene, settings, profile}, expected, plain_pool);
+  filter.oracle({scene, settings, profile}, expected, any_pool);
   for (const Isa isa : available_isas()) {
     ThreadPool pool(2, isa);
     // What was there before must not show.
     Image actual = random_scene_image(scene.width, scene.height, 99);
-    filter.fast({scene, settings, profile}, actual, pool);
+    filter.apply({scene, settings, profile}, actual, pool);
     INFO(filter.name, " on ", std::string{isa_name(isa)}, ", ", scene.width, "x", scene.height,
          ", max_coc ", settings.max_coc_px, ", leak ", settings.leak);
     CHECK(equal(actual, expected));
@@ -69,7 +70,7 @@ Image noisy_scene_image(int width, int height, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("the filters' kernels give the plain forms' bits at every size of picture") {
+TEST_CASE("the filters' kernels give the oracles' bits at every size of picture") {
   struct Size {
     int width, height;
   };
@@ -90,11 +91,11 @@ TEST_CASE("the filters' kernels give the plain forms' bits at every size of pict
   }
 }
 
-TEST_CASE("the filters' kernels give the plain forms' bits for every largest radius") {
+TEST_CASE("the filters' kernels give the oracles' bits for every largest radius") {
   for (const FilterPair& filter : kFilters) {
     for (const float max_coc : {0.0f, 0.5f, 1.0f, 1.5f, 2.0f, 7.3f, 16.0f, 64.0f, 1024.0f}) {
-      // Past the picture's size the plain forms are slow, and one of them squared.
-      const int size = max_coc > 64.0f ? (filter.fast == one_pass ? 4 : 24) : 37;
+      // Past the picture's size the oracles are slow, and one of them squared.
+      const int size = max_coc > 64.0f ? (filter.apply == one_pass ? 4 : 24) : 37;
       DofSettings settings = kSettings;
       settings.max_coc_px = max_coc;
       for (const float horizon : {2.5f, 25.0f, 2000.0f}) {
@@ -105,7 +106,7 @@ TEST_CASE("the filters' kernels give the plain forms' bits for every largest rad
   }
 }
 
-TEST_CASE("the filters' kernels give the plain forms' bits at every leak and rounding") {
+TEST_CASE("the filters' kernels give the oracles' bits at every leak and rounding") {
   const Image patches = random_scene_image(67, 41, 4), noise = noisy_scene_image(67, 41, 5);
   for (const FilterPair& filter : kFilters) {
     for (const float leak : {0.0f, 0.06f, 0.3f, 1.0f, 5.0f, 1e-38f, 1e30f}) {
@@ -119,7 +120,7 @@ TEST_CASE("the filters' kernels give the plain forms' bits at every leak and rou
   }
 }
 
-TEST_CASE("the filters' kernels give the plain forms' bits of any colours") {
+TEST_CASE("the filters' kernels give the oracles' bits for any colours") {
   constexpr std::array<std::uint16_t, 12> kColours{0x0000, 0x8000, 0x0001, 0x83FF, 0x0400, 0xBC00,
                                                    0x7BFF, 0xFBFF, 0x7C00, 0xFC00, 0x7E01, 0xFD55};
   for (const FilterPair& filter : kFilters) {
@@ -144,7 +145,7 @@ TEST_CASE("the filters' kernels give the plain forms' bits of any colours") {
   }
 }
 
-TEST_CASE("the filters' kernels give the plain forms' bits of any depths") {
+TEST_CASE("the filters' kernels give the oracles' bits for any depths") {
   constexpr std::array<std::uint16_t, 10> kDepths{0x0000, 0x8000, 0x0001, 0x03FF, 0x4000,
                                                   0xC000, 0x7BFF, 0x7C00, 0xFC00, 0x7E01};
   for (const FilterPair& filter : kFilters) {
@@ -163,7 +164,7 @@ TEST_CASE("the filters' kernels give the plain forms' bits of any depths") {
   }
 }
 
-TEST_CASE("the filters' kernels give the plain forms' bits where part of a picture is in focus") {
+TEST_CASE("the filters' kernels give the oracles' bits where part of a picture is in focus") {
   struct Island {
     int x, y, size;
   };
@@ -193,24 +194,25 @@ TEST_CASE("the filters' kernels give the plain forms' bits where part of a pictu
   }
 }
 
-TEST_CASE("the filters' kernels give the same bits for any number of threads") {
+TEST_CASE("the filters' kernels give the same bits for any number of threads" *
+          doctest::test_suite("threads")) {
   const Image scene = random_scene_image(203, 141, 12);
   for (const FilterPair& filter : kFilters) {
     for (const Isa isa : available_isas()) {
       ThreadPool one(1, isa);
       Image expected = make_image(scene.format, scene.width, scene.height);
-      filter.fast({scene, kSettings, {}}, expected, one);
+      filter.apply({scene, kSettings, {}}, expected, one);
       for (const int threads : {2, 3, 7}) {
         ThreadPool pool(threads, isa);
         Image actual = make_image(scene.format, scene.width, scene.height);
-        filter.fast({scene, kSettings, {}}, actual, pool);
+        filter.apply({scene, kSettings, {}}, actual, pool);
         CHECK(equal(actual, expected));
       }
     }
   }
 }
 
-TEST_CASE("the filters' kernels give the plain forms' bits of a picture larger than caches") {
+TEST_CASE("the filters' kernels give the oracles' bits for a picture larger than caches") {
   // Written past them in whole vectors, and at the right edge not in whole ones.
   Image scene = random_scene_image(4099, 517, 13);
   set_depth(scene, [](int x, int y) { return x / 50 % 3 == 0 && y / 40 % 2 == 0 ? 8.0f : 2.0f; });

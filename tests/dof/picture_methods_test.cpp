@@ -56,7 +56,7 @@ Image filtered(const char* name, const Image& scene, const DofSettings& settings
   REQUIRE_MESSAGE(method != nullptr, name);
   // Its old contents must not show.
   Image result = random_scene_image(scene.width, scene.height, 99);
-  method->apply({scene, settings, {}}, result, pool);
+  apply(*method, {scene, settings, {}}, result, pool);
   return result;
 }
 
@@ -237,7 +237,8 @@ TEST_CASE("every method gives a mirrored picture's result mirrored") {
   }
 }
 
-TEST_CASE("every method gives the same bits for any number of threads") {
+TEST_CASE("every method gives the same bits for any number of threads" *
+          doctest::test_suite("threads")) {
   const Image scene = random_scene_image(203, 101, 6);
   for (const Claims& claims : kClaims) {
     ThreadPool one(1);

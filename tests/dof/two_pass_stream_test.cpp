@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "dof/two_pass/two_pass.h"
+#include "dof/two_pass/two_pass_strip.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -50,7 +51,7 @@ TEST_CASE("the streamed two-pass filter gives the whole picture's bits") {
     for (const Size size : {Size{1, 1}, {5, 60}, {60, 5}, {131, 33}, {300, 150}}) {
       const Image scene = random_scene_image(size.width, size.height, 1);
       for (const float max_coc : {0.0f, 1.0f, 3.5f, 16.0f, 90.0f}) {
-        TwoPassStream stream = begin_two_pass_stream(size.width, settings(max_coc), {}, isa);
+        TwoPassStream stream(size.width, settings(max_coc), {}, isa);
         INFO(std::string{isa_name(isa)}, ", ", size.width, "x", size.height, ", max_coc ", max_coc);
         CHECK(equal(streamed(stream, scene, pool), filtered(scene, settings(max_coc), pool)));
       }
@@ -60,17 +61,17 @@ TEST_CASE("the streamed two-pass filter gives the whole picture's bits") {
 
 TEST_CASE("a stream takes one picture after the other") {
   ThreadPool pool(1);
-  TwoPassStream stream = begin_two_pass_stream(50, settings(8.0f), {}, pool.isa());
+  TwoPassStream stream(50, settings(8.0f), {}, pool.isa());
   for (const int height : {40, 7, 90}) {
     const Image scene = random_scene_image(50, height, static_cast<unsigned>(height));
     CHECK(equal(streamed(stream, scene, pool), filtered(scene, settings(8.0f), pool)));
   }
 }
 
-TEST_CASE("no row, no picture") {
+TEST_CASE("a stream without rows gives no rows") {
   ThreadPool pool(1);
   for (const float max_coc : {0.0f, 8.0f}) {
-    TwoPassStream stream = begin_two_pass_stream(50, settings(max_coc), {}, pool.isa());
+    TwoPassStream stream(50, settings(max_coc), {}, pool.isa());
     int out = 0;
     end_rows(stream, pool, [&](std::span<const std::uint16_t>) { ++out; });
     CHECK(out == 0);
@@ -82,7 +83,7 @@ TEST_CASE("a row comes out of a stream within its reach and a group of rows") {
   for (const Isa isa : available_isas()) {
     ThreadPool pool(1, isa);
     const Image scene = random_scene_image(20, 100, 3);
-    TwoPassStream stream = begin_two_pass_stream(20, settings(max_coc), {}, isa);
+    TwoPassStream stream(20, settings(max_coc), {}, isa);
     std::vector<int> out_after;
     streamed(stream, scene, pool, &out_after);
     for (int in = 1; in <= 100; ++in) {
@@ -96,17 +97,10 @@ TEST_CASE("a row comes out of a stream within its reach and a group of rows") {
 TEST_CASE("a stream has the memory that it says, whatever the picture's height") {
   for (const Isa isa : available_isas()) {
     ThreadPool pool(1, isa);
-    TwoPassStream stream = begin_two_pass_stream(200, settings(16.0f), {}, isa);
-    const auto bytes = [&] {
-      std::size_t sum = sizeof stream + stream.strips.size() * sizeof(Strip);
-      for (const Strip& strip : stream.strips) {
-        sum += 4 * (strip.vectors.capacity() + strip.extents.capacity());
-      }
-      return sum + 2 * (stream.waiting.capacity() + stream.finished.capacity());
-    };
+    TwoPassStream stream(200, settings(16.0f), {}, isa);
     const std::size_t said = two_pass_stream_bytes(200, settings(16.0f), isa);
-    CHECK(bytes() == said);
+    CHECK(stream_bytes(stream) == said);
     streamed(stream, random_scene_image(200, 500, 4), pool);
-    CHECK(bytes() == said);
+    CHECK(stream_bytes(stream) == said);
   }
 }

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const Scene scene = make_model_scene(load_obj_model(fuzz_file(data, size, ".obj")), "fuzz");
     ThreadPool pool(1);
-    draw_scene(scene, camera_view(scene.camera, 0, 16, 16), 0, 16, 16, profiles()[0], pool);
+    draw_scene(scene, camera_matrices(scene.camera, 0, 16, 16), 0, 16, 16, Profile{}, pool);
   } catch (const SceneError&) {
   }
   return 0;

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (triangles > kMostTriangles) return 0;
     ThreadPool pool(1);
-    draw_scene(scene, camera_view(scene.camera, 1, 16, 16), 1, 16, 16, profiles()[0], pool);
+    draw_scene(scene, camera_matrices(scene.camera, 1, 16, 16), 1, 16, 16, Profile{}, pool);
   } catch (const SceneError&) {
   }
   return 0;

@@ -4,15 +4,15 @@
 
 #include <cmath>
 
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/make/random_bits.h"
 
 using namespace softfocus;
 
 namespace {
 
-ScatterRule some_rule() {
-  ScatterRule rule;
+BallRule some_rule() {
+  BallRule rule;
   rule.count = 200;
   rule.seed = 5;
   rule.region_min = {-3.0, 0.0, -4.0};
@@ -46,7 +46,7 @@ TEST_CASE("a number between two lies between them") {
 
 TEST_CASE("scattered balls keep their distance from one another and from obstacles") {
   const std::vector<Ball> obstacles = {{{0.0, 0.5, 0.0}, 1.0}};
-  const auto balls = scatter(some_rule(), obstacles);
+  const auto balls = place_balls(some_rule(), obstacles);
   REQUIRE(balls);
   REQUIRE(balls->size() == 200);
   for (std::size_t i = 0; i < balls->size(); ++i) {
@@ -60,8 +60,8 @@ TEST_CASE("scattered balls keep their distance from one another and from obstacl
 }
 
 TEST_CASE("scattered balls stay in the region and the range of radii") {
-  const ScatterRule rule = some_rule();
-  const auto balls = scatter(rule, {});
+  const BallRule rule = some_rule();
+  const auto balls = place_balls(rule, {});
   REQUIRE(balls);
   for (const Ball& ball : *balls) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,24 +74,24 @@ TEST_CASE("scattered balls stay in the region and the range of radii") {
 }
 
 TEST_CASE("balls on the ground touch it") {
-  ScatterRule rule = some_rule();
+  BallRule rule = some_rule();
   rule.on_ground = true;
   rule.region_min.y = rule.region_max.y = 0.25;
-  const auto balls = scatter(rule, {});
+  const auto balls = place_balls(rule, {});
   REQUIRE(balls);
   for (const Ball& ball : *balls) CHECK(ball.centre.y - ball.radius == doctest::Approx(0.25));
 }
 
 TEST_CASE("the same seed scatters the same balls, another seed others") {
-  ScatterRule rule = some_rule();
-  const auto once = *scatter(rule, {});
-  CHECK(scatter(rule, {})->back().centre == once.back().centre);
+  BallRule rule = some_rule();
+  const auto once = *place_balls(rule, {});
+  CHECK(place_balls(rule, {})->back().centre == once.back().centre);
   rule.seed = 6;
-  CHECK(scatter(rule, {})->back().centre != once.back().centre);
+  CHECK(place_balls(rule, {})->back().centre != once.back().centre);
 }
 
 TEST_CASE("where there is no room, there is no answer") {
-  ScatterRule rule = some_rule();
+  BallRule rule = some_rule();
   rule.radius_min = rule.radius_max = 2.0;
-  CHECK_FALSE(scatter(rule, {}));
+  CHECK_FALSE(place_balls(rule, {}));
 }

@@ -12,7 +12,7 @@ using namespace softfocus;
 
 namespace {
 
-const Profile kProfile = profiles()[0];
+const Profile kProfile = Profile{};
 
 // A square of 2 x 2 m in the plane z = 0, facing +z.
 Mesh square_mesh() {
@@ -40,7 +40,8 @@ Scene square_scene() {
 
 Image draw_square(const Scene& scene, int size = 65) {
   ThreadPool pool(1);
-  return draw_scene(scene, camera_view(scene.camera, 0, size, size), 0, size, size, kProfile, pool);
+  return draw_scene(scene, camera_matrices(scene.camera, 0, size, size), 0, size, size, kProfile,
+                    pool);
 }
 
 glm::vec4 centre(const Image& image) {

@@ -13,8 +13,8 @@ struct Landing {
   double x, y, depth, w;
 };
 
-Landing project(const View& view, glm::dvec3 point, int width, int height) {
-  const glm::dvec4 clip = view.projection * (view.view * glm::dvec4{point, 1.0});
+Landing project(const CameraMatrices& matrices, glm::dvec3 point, int width, int height) {
+  const glm::dvec4 clip = matrices.eye_to_clip * (matrices.world_to_eye * glm::dvec4{point, 1.0});
   return {(clip.x / clip.w + 1.0) * width / 2.0, (clip.y / clip.w + 1.0) * height / 2.0,
           clip.z / clip.w, clip.w};
 }
@@ -30,41 +30,41 @@ doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-12
 }  // namespace
 
 TEST_CASE("the target lies in the middle of the picture, at its distance") {
-  const Landing at = project(camera_view(kCamera, 0, 640, 480), {1.0, 2.0, 0.0}, 640, 480);
+  const Landing at = project(camera_matrices(kCamera, 0, 640, 480), {1.0, 2.0, 0.0}, 640, 480);
   CHECK(at.x == near(320.0));
   CHECK(at.y == near(240.0));
   CHECK(at.w == near(5.0));
 }
 
 TEST_CASE("up in the world is up in the picture, and right is right") {
-  const View view = camera_view(kCamera, 0, 640, 480);
-  CHECK(project(view, {1.0, 3.0, 0.0}, 640, 480).y < 240.0);
-  CHECK(project(view, {2.0, 2.0, 0.0}, 640, 480).x > 320.0);
+  const CameraMatrices matrices = camera_matrices(kCamera, 0, 640, 480);
+  CHECK(project(matrices, {1.0, 3.0, 0.0}, 640, 480).y < 240.0);
+  CHECK(project(matrices, {2.0, 2.0, 0.0}, 640, 480).x > 320.0);
 }
 
 TEST_CASE("the field of view is the vertical one and pixels are square") {
-  const View view = camera_view(kCamera, 0, 640, 480);
+  const CameraMatrices matrices = camera_matrices(kCamera, 0, 640, 480);
   // 90 degrees: 5 m away the upper border is 5 m above the axis.
-  CHECK(project(view, {1.0, 7.0, 0.0}, 640, 480).y == near(0.0));
-  const double up = 240.0 - project(view, {1.0, 3.0, 0.0}, 640, 480).y;
-  const double right = project(view, {2.0, 2.0, 0.0}, 640, 480).x - 320.0;
+  CHECK(project(matrices, {1.0, 7.0, 0.0}, 640, 480).y == near(0.0));
+  const double up = 240.0 - project(matrices, {1.0, 3.0, 0.0}, 640, 480).y;
+  const double right = project(matrices, {2.0, 2.0, 0.0}, 640, 480).x - 320.0;
   CHECK(up == near(right));
 }
 
 TEST_CASE("the near and the far distance are the ends of clip space") {
-  const View view = camera_view(kCamera, 0, 64, 64);
-  CHECK(project(view, {1.0, 2.0, 4.5}, 64, 64).depth == near(-1.0));
-  CHECK(project(view, {1.0, 2.0, -45.0}, 64, 64).depth == near(1.0));
+  const CameraMatrices matrices = camera_matrices(kCamera, 0, 64, 64);
+  CHECK(project(matrices, {1.0, 2.0, 4.5}, 64, 64).depth == near(-1.0));
+  CHECK(project(matrices, {1.0, 2.0, -45.0}, 64, 64).depth == near(1.0));
 }
 
 TEST_CASE("an orbit of 90 degrees brings the camera to the side, at the same distance") {
   Camera camera = kCamera;
   camera.orbit_degrees_per_frame = 30.0;
-  const View view = camera_view(camera, 3, 64, 64);
-  CHECK(view.eye.x == near(6.0));
-  CHECK(view.eye.y == near(2.0));
-  CHECK(view.eye.z == near(0.0));
-  CHECK(project(view, camera.target, 64, 64).w == near(5.0));
+  const CameraMatrices matrices = camera_matrices(camera, 3, 64, 64);
+  CHECK(matrices.eye.x == near(6.0));
+  CHECK(matrices.eye.y == near(2.0));
+  CHECK(matrices.eye.z == near(0.0));
+  CHECK(project(matrices, camera.target, 64, 64).w == near(5.0));
 }
 
 TEST_CASE("an object is scaled, turned about x, y and z in that order, and moved") {

@@ -27,7 +27,8 @@ double coc_px(const Scene& scene, double depth_m) {
 }
 
 double depth_of(const Scene& scene, glm::dvec3 place) {
-  const glm::dvec4 eye = camera_view(scene.camera, 0, 1024, 1024).view * glm::dvec4{place, 1.0};
+  const glm::dvec4 eye =
+      camera_matrices(scene.camera, 0, 1024, 1024).world_to_eye * glm::dvec4{place, 1.0};
   return -eye.z;
 }
 
@@ -176,10 +177,11 @@ TEST_CASE("a model of any size is seen whole, and near enough to see it") {
   for (const double size : {0.001, 1.0, 5000.0}) {
     CAPTURE(size);
     const Scene scene = model_scene(wedge(size));
-    const View view = camera_view(scene.camera, 0, 512, 512);
+    const CameraMatrices camera = camera_matrices(scene.camera, 0, 512, 512);
     double widest = 0.0;
     for (const glm::vec3& p : scene.meshes[0].positions) {
-      const glm::dvec4 clip = view.projection * (view.view * glm::dvec4{glm::dvec3{p}, 1.0});
+      const glm::dvec4 clip =
+          camera.eye_to_clip * (camera.world_to_eye * glm::dvec4{glm::dvec3{p}, 1.0});
       widest = std::max({widest, std::fabs(clip.x / clip.w), std::fabs(clip.y / clip.w)});
       CHECK(std::fabs(clip.z / clip.w) < 1.0);
     }

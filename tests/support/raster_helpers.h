@@ -1,6 +1,6 @@
 #pragma once
-// What several tests of the raster room share: a fixed random generator, stages that
-// read their values from lists, and one-call drawing.
+// Shared by several tests of the raster room: stages that read their values from lists, and
+// drawing in one call.
 
 #include <array>
 #include <bit>
@@ -16,33 +16,9 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/profile.h"
 #include "raster/pipeline/draw.h"
+#include "tests/support/random.h"
 
 namespace softfocus::test {
-
-/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers on every machine, which
-/// std's distributions do not promise.
-struct Random {
-  std::uint64_t state = 1;
-
-  std::uint64_t bits() {
-    state += 0x9E3779B97F4A7C15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-  }
-  /// Uniform in [low, high), a multiple of 2^-53 of the width.
-  double between(double low, double high) {
-    return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
-  }
-  float between(float low, float high) {
-    return static_cast<float>(between(static_cast<double>(low), static_cast<double>(high)));
-  }
-  /// low <= value <= high.
-  int whole(int low, int high) {
-    return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1));
-  }
-};
 
 inline Profile profile_named(std::string_view name) { return find_profile(name).value(); }
 

@@ -33,6 +33,8 @@ struct RunSetting {
   std::string err_to{};  ///< likewise standard error
   /// Stands for a full disk: a file's bytes past it cannot be written.
   std::optional<rlim_t> file_size_limit{};
+  /// As this user, where it may be changed.
+  std::optional<uid_t> user{};
 };
 
 inline ProgramRun run_program(const std::vector<std::string>& arguments,
@@ -60,6 +62,7 @@ inline ProgramRun run_program(const std::vector<std::string>& arguments,
       const rlimit limit{*setting.file_size_limit, *setting.file_size_limit};
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
+    if (setting.user && ::setuid(*setting.user) != 0) ::_exit(125);
     ::execv(SOFTFOCUS_PROGRAM, argv.data());
     ::_exit(126);
   }

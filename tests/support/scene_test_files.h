@@ -13,8 +13,8 @@ namespace softfocus::test {
 /// A PNG whose upper left texel is red and whose others are green.
 inline std::string png_bytes(int width, int height) {
   Image image = make_image(Format::rgba16f, width, height);
-  clear_image(image, {0.0f, 1.0f, 0.0f, 1.0f}, profiles()[0]);
-  store_texel(image, 0, 0, {1.0f, 0.0f, 0.0f, 1.0f}, profiles()[0]);
+  clear_image(image, {0.0f, 1.0f, 0.0f, 1.0f}, Profile{});
+  store_texel(image, 0, 0, {1.0f, 0.0f, 0.0f, 1.0f}, Profile{});
   const Bytes bytes = encode_png(image);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }

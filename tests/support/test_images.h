@@ -6,24 +6,11 @@
 #include "dof/measure/difference.h"
 #include "raster/images/image.h"
 #include "raster/images/texel.h"
+#include "tests/support/random.h"
 
 namespace softfocus {
 
-/// SplitMix64 (Steele, Lea and Flood 2014), the tests' source of chance.
-struct Random {
-  std::uint64_t state;
-
-  std::uint64_t next() {
-    state += 0x9E3779B97F4A7C15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-  }
-
-  /// 0 <= value < 1, a multiple of 2^-24.
-  float unit() { return static_cast<float>(next() >> 40) * 0x1p-24f; }
-};
+using test::Random;
 
 /// Random colours in 0..1 over random depths of 0.5 to 8.5 m in patches of 8x8 pixels.
 inline Image random_scene_image(int width, int height, std::uint64_t seed) {

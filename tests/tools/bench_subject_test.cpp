@@ -23,8 +23,8 @@ int triangles_of(SphereCut cut) { return kFieldSpheres * 2 * cut.segments * (cut
 Image drawn_field() {
   ThreadPool pool{2};
   const Scene scene = sphere_field(64000, 1.0);
-  const View view = camera_view(scene.camera, 0.0, kSide, kSide);
-  return draw_scene(scene, view, 0.0, kSide, kSide, profiles()[0], pool);
+  const CameraMatrices view = camera_matrices(scene.camera, 0.0, kSide, kSide);
+  return draw_scene(scene, view, 0.0, kSide, kSide, Profile{}, pool);
 }
 
 // The share of the pixels whose depth in metres is as `holds` says.

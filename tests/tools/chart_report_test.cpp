@@ -2,9 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/support/chart_points.h"
+#include "tools/files/json.h"
 
 using namespace softfocus;
 
@@ -40,24 +39,23 @@ TEST_CASE("chart: auto makes no front, and is on it if no fixed method as near i
 }
 
 TEST_CASE("chart: JSON has an entry for each point of each scene, with every key") {
-  const auto list = chart_json({test::chart_panel("figures"), test::chart_panel("other")});
-  REQUIRE(list.size() == 8);
-  CHECK(list[4]["scene"] == "other");
-  const auto& point = list[1];
-  CHECK(point.dump() ==
+  const Json list = chart_json({test::chart_panel("figures"), test::chart_panel("other")});
+  REQUIRE(list.values().size() == 8);
+  CHECK(list.at(4).at("scene").text() == "other");
+  CHECK(json_text(list.at(1)) ==
         R"({"scene":"figures","method":"two-pass","settings":{"max_coc_px":4.0,"profile":"ieee"},)"
         R"("median_ms":11.0,"psnr_db":30.5,"ssim":0.875,"flip":0.1,"flip_silhouette":0.5,)"
         R"("flip_near":null,"flip_focus":0.0,"flip_far":0.25,"filter_ms":2.5,"rounds":3,)"
         R"("on_front":true,"truth_samples":512,"noise_floor_flip":0.002,)"
         R"("noise_floor_psnr_db":60.0,"picture_hash":"0x0000000000000123"})");
-  CHECK(list[3]["settings"] == nlohmann::ordered_json{{"samples", 64}});
-  CHECK(list[3]["filter_ms"].is_null());
+  CHECK(json_text(list.at(3).at("settings")) == R"({"samples":64})");
+  CHECK(list.at(3).at("filter_ms").is_null());
 }
 
 TEST_CASE("chart: an infinite PSNR is null") {
   ChartPanel panel = test::chart_panel("figures");
   panel.points[0].errors.psnr_db = std::numeric_limits<double>::infinity();
-  CHECK(chart_json({panel})[0]["psnr_db"].is_null());
+  CHECK(chart_json({panel}).at(0).at("psnr_db").is_null());
 }
 
 TEST_CASE("chart: CSV is names and a line for each point") {

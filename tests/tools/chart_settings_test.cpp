@@ -3,10 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "raster/numbers/profile.h"
+#include "tools/files/json.h"
 
 using namespace softfocus;
 
@@ -94,12 +94,12 @@ TEST_CASE("chart settings: auto takes errors, and says what it chose once it has
   CHECK(entry.filter == nullptr);
   entry.chosen = "two-pass, radius 8";
   CHECK(settings_text(entry) == "max-error 0.02: two-pass, radius 8");
-  CHECK(settings_json(entry).dump() == R"({"max_error":0.02,"chosen":"two-pass, radius 8"})");
+  CHECK(json_text(settings_json(entry)) == R"({"max_error":0.02,"chosen":"two-pass, radius 8"})");
 }
 
 TEST_CASE("chart settings: as JSON they name what the method minds, and nothing else") {
   const auto json = [](const std::string& method) {
-    return settings_json(chart_entries(method, 512, false).front()).dump();
+    return json_text(settings_json(chart_entries(method, 512, false).front()));
   };
   CHECK(json("two-pass") == R"({"max_coc_px":2.0,"profile":"ieee"})");
   CHECK(json("accumulation") == R"({"samples":8})");

@@ -25,7 +25,7 @@ const std::vector<GoldenScene>& scenes() {
 
 std::vector<NamedHash> frames(std::string_view profile, int threads) {
   ThreadPool pool(threads);
-  const Profile named = find_profile(profile).value();
+  const NamedProfile named{profile, {}, find_profile(profile).value()};
   return frame_hashes(scenes(), {&named, 1}, pool);
 }
 
@@ -42,7 +42,8 @@ TEST_CASE("every golden hash is the table's") {
   CHECK(describe_failures(check_hashes(expected_hashes(), computed)) == "");
 }
 
-TEST_CASE("a frame's golden hash does not depend on the number of threads") {
+TEST_CASE("a frame's golden hash does not depend on the number of threads" *
+          doctest::test_suite("threads")) {
   const std::vector<NamedHash> expected = frames("ieee", 1);
   for (const int threads : {2, 3, 8}) {
     CHECK(describe_failures(check_hashes(expected, frames("ieee", threads))) == "");

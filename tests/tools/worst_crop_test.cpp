@@ -36,7 +36,7 @@ TEST_CASE("worst crop: the square with the most error, the first of equal ones")
 TEST_CASE("worst crop: the sums agree with adding up every square") {
   test::Random random;
   PixelMap map = make_pixel_map(23, 17);
-  for (double& value : map.values) value = static_cast<double>(random.bits() % 1000) / 1000.0;
+  for (double& value : map.values) value = static_cast<double>(random.next() % 1000) / 1000.0;
   constexpr int kSide = 5;
   double most = 0.0;
   for (int y = 0; y + kSide <= map.height; ++y) {

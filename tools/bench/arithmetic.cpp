@@ -28,7 +28,7 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
                                        }}};
   const std::vector<TimedStage> floats{
       {"dof", [&] {
-         work.method->apply({picture, work.settings, work.profile}, theirs, pool);
+         apply(*work.method, {picture, work.settings, work.profile}, theirs, pool);
        }}};
   warm_up(fixed);
   warm_up(floats);

@@ -39,7 +39,7 @@ void filter(OurFrame& frame) {
   const Image& scene = work.scene ? frame.drawn : work.picture;
   Image& filtered = frame.filtered;  // one memory for all frames
   if (filtered.bytes.empty()) filtered = make_image(scene.format, scene.width, scene.height);
-  work.method->apply({scene, work.settings, work.profile}, filtered, frame.pool);
+  apply(*work.method, {scene, work.settings, work.profile}, filtered, frame.pool);
 }
 
 // The stages of one contender, by what it does to draw and to filter and how it ends:

@@ -1,12 +1,9 @@
 #include "tools/bench/options.h"
 
 #include "scenes/make/sphere_field.h"
-#include "tools/options/arithmetic_option.h"
-#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
-#include "tools/options/memory_check.h"
 #include "tools/options/method_options.h"
-#include "tools/options/profile_option.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {
@@ -16,7 +13,7 @@ constexpr int kMostRuns = 1000;
 
 /// A drawn and a filtered picture, one between (8 bytes a pixel each) and depth (4), for
 /// each of the two contenders; two pictures read back and compared.
-constexpr std::uint64_t kBytesPerPixel = 72;
+constexpr std::uint64_t kBenchBytesPerPixel = 72;
 
 void add_subject_options(CLI::App& parser, BenchOptions& options) {
   add_optional_argument(parser, "SCENE", "A scene or a file, as render takes it", options.scene);
@@ -31,8 +28,7 @@ void add_subject_options(CLI::App& parser, BenchOptions& options) {
   add_value(parser, "--image", "WxH",
             "Instead of SCENE: a picture of that size that nothing draws, for the filter alone",
             [&options](const std::string& text) { options.image = parse_size("--image", text); });
-  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
-            [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_size(parser, options.size);
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
 }
@@ -43,14 +39,9 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_subject_options(parser, options);
   add_method_option(parser, options.method);
   add_arithmetic_option(parser, options.arithmetic);
-  add_lens_options(parser, options.lens,
-                   {.focus = "the scene's",
-                    .focal_length = "the scene's",
-                    .f_number = "the scene's",
-                    .coc_scale = "the scene's"});
+  add_lens_options(parser, options.lens);
   add_max_coc_option(parser, options.max_coc_px);
-  add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
-                     [&options](const Profile& profile) { options.profile = profile; });
+  add_profile_option(parser, options.profile, options.profile_name);
   add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--runs", "N", "Times that each is run and timed, 10 to 1000 (default: 15)",
             [&options](const std::string& text) {
@@ -75,7 +66,7 @@ void complete(BenchOptions& options, const CLI::App& parser) {
   }
   if (options.image) options.size = *options.image;
   check_arithmetic(options.arithmetic, options.method->name, options.versus != nullptr);
-  check_memory(options.image ? "--image" : "--size", options.size, kBytesPerPixel);
+  check_memory(options.image ? "--image" : "--size", options.size, kBenchBytesPerPixel);
 }
 
 }  // namespace softfocus

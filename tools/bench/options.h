@@ -9,11 +9,11 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
 #include "raster/numbers/profile.h"
-#include "tools/gl/driver.h"
-#include "tools/options/lens_options.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/options/pool_options.h"
+#include "tools/gl/driver.h"
+#include "tools/options/lens_options.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 
@@ -29,7 +29,8 @@ struct BenchOptions {
   Arithmetic arithmetic = Arithmetic::floats;
   LensOptions lens;
   std::optional<float> max_coc_px;
-  Profile profile = profiles().front();
+  Profile profile;
+  std::string profile_name = "ieee";
   PoolOptions pool;
   int runs = 15;
   const Driver* versus = nullptr;

@@ -6,7 +6,7 @@
 
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
-#include "scenes/make/random_bits.h"
+#include "raster/numbers/random_bits.h"
 
 namespace softfocus {
 namespace {

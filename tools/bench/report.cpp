@@ -2,18 +2,16 @@
 
 #include <array>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
-#include "tools/cli/machine.h"
 #include "tools/bench/timing.h"
+#include "tools/cli/machine.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 namespace {
 
-using nlohmann::ordered_json;
-
 // Two decimals, or three where there is one digit before them.
-std::string ms_text(double ms) {
+std::string milliseconds_text(double ms) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), ms < 10.0 ? "%.3f" : "%.2f", ms);
   return text.data();
@@ -31,7 +29,8 @@ std::string padded(const std::string& text, std::size_t width) {
 
 std::string times_text(const StageSamples& stage) {
   const Spread ms = spread_of(stage.ms);
-  return ms_text(ms.median) + " [" + ms_text(ms.min) + ", " + ms_text(ms.max) + "]";
+  return milliseconds_text(ms.median) + " [" + milliseconds_text(ms.min) + ", " +
+         milliseconds_text(ms.max) + "]";
 }
 
 Spread ratio_of(const BenchRecord& record, std::size_t stage) {
@@ -48,7 +47,7 @@ std::string heading(const BenchRecord& record) {
                ? ""
                : " " + std::string{arithmetic_name(record.options.arithmetic)}) +
           ", max-coc " + short_number(static_cast<double>(work.settings.max_coc_px)) + "\n";
-  text += "profile " + work.profile.name + ", " + std::to_string(pool.threads) +
+  text += "profile " + work.profile_name + ", " + std::to_string(pool.threads) +
           (pool.threads == 1 ? " thread, " : " threads, ") + std::string{isa_name(pool.isa)} +
           ", " + std::to_string(record.options.runs) + " runs, " +
           cpu_name().value_or("a CPU without a name") + "\n";
@@ -59,8 +58,8 @@ std::string heading(const BenchRecord& record) {
   return text;
 }
 
-ordered_json stages_json(const std::vector<StageSamples>& stages) {
-  auto list = ordered_json::array();
+Json stages_json(const std::vector<StageSamples>& stages) {
+  auto list = Json::array();
   for (const StageSamples& stage : stages) {
     const Spread ms = spread_of(stage.ms);
     list.push_back(
@@ -70,8 +69,8 @@ ordered_json stages_json(const std::vector<StageSamples>& stages) {
 }
 
 // One number for each stage, null for one that was not measured.
-ordered_json ratio_json(const BenchRecord& record, double Spread::*value) {
-  ordered_json json{{"raster", nullptr}, {"dof", nullptr}, {"frame", nullptr}};
+Json ratio_json(const BenchRecord& record, double Spread::*value) {
+  Json json{{"raster", nullptr}, {"dof", nullptr}, {"frame", nullptr}};
   for (std::size_t i = 0; i < record.samples.ours.size(); ++i) {
     json[record.samples.ours[i].name] = ratio_of(record, i).*value;
   }
@@ -106,25 +105,25 @@ std::string bench_text(const BenchRecord& record) {
 std::string bench_json(const BenchRecord& record) {
   const BenchWork& work = record.work;
   const PoolOptions& pool = record.options.pool;
-  ordered_json json{{"softfocus", SOFTFOCUS_VERSION},
-                    {"scene", work.name},
-                    {"triangles", nullptr},
-                    {"size", size_text(work.size)},
-                    {"method", work.method->name},
-                    {"arithmetic", arithmetic_name(record.options.arithmetic)},
-                    {"max_coc", work.settings.max_coc_px},
-                    {"profile", work.profile.name},
-                    {"threads", pool.threads},
-                    {"isa", isa_name(pool.isa)},
-                    {"runs", record.options.runs},
-                    {"cpu", nullptr},
-                    {"compiler", compiler_name()},
-                    {"stages", stages_json(record.samples.ours)},
-                    {"peer", nullptr},
-                    {"ratio", nullptr},
-                    {"ratio_min", nullptr},
-                    {"ratio_max", nullptr},
-                    {"equal", nullptr}};
+  Json json{{"softfocus", SOFTFOCUS_VERSION},
+            {"scene", work.name},
+            {"triangles", nullptr},
+            {"size", size_text(work.size)},
+            {"method", work.method->name},
+            {"arithmetic", arithmetic_name(record.options.arithmetic)},
+            {"max_coc", work.settings.max_coc_px},
+            {"profile", work.profile_name},
+            {"threads", pool.threads},
+            {"isa", isa_name(pool.isa)},
+            {"runs", record.options.runs},
+            {"cpu", nullptr},
+            {"compiler", compiler_name()},
+            {"stages", stages_json(record.samples.ours)},
+            {"peer", nullptr},
+            {"ratio", nullptr},
+            {"ratio_min", nullptr},
+            {"ratio_max", nullptr},
+            {"equal", nullptr}};
   if (work.scene) json["triangles"] = triangle_count(*work.scene);
   if (const auto cpu = cpu_name()) json["cpu"] = *cpu;
   if (record.peer) {
@@ -137,7 +136,7 @@ std::string bench_json(const BenchRecord& record) {
     json["equal"] = record.peer->equal;
   }
   // Neither a driver's words nor a file's name need be UTF-8, but JSON must be.
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace softfocus

@@ -2,10 +2,9 @@
 
 #include "scenes/load/load_scene.h"
 #include "scenes/make/sphere_field.h"
-#include "tools/options/arithmetic_option.h"
 #include "tools/bench/picture.h"
 #include "tools/options/method_options.h"
-#include "tools/options/scene_warnings.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {
@@ -56,6 +55,7 @@ BenchWork make_work(const BenchOptions& options) {
   work.size = options.size;
   work.method = options.method;
   work.profile = options.profile;
+  work.profile_name = options.profile_name;
   if (options.image) {
     work.name = "picture";
     work.settings = chosen_settings(options, picture_lens(options.max_coc_px, height), work.name);
@@ -66,7 +66,7 @@ BenchWork make_work(const BenchOptions& options) {
   print_scene_warnings(scene.warnings, false);
   work.name = scene.name;
   work.settings = chosen_settings(options, {scene.lens, scene.camera.fov_y_degrees}, work.name);
-  work.view = camera_view(scene.camera, work.frame, width, height);
+  work.view = camera_matrices(scene.camera, work.frame, width, height);
   return work;
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "dof/dof.h"
-#include "scenes/scene.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/scene.h"
 #include "tools/bench/options.h"
 
 namespace softfocus {
@@ -16,12 +16,13 @@ struct BenchWork {
   std::string name;            ///< of the scene; "spheres" and "picture" for those made here
   std::optional<Scene> scene;  ///< none: `picture` is filtered
   Image picture;
-  View view{};
+  CameraMatrices view{};
   double frame = 0.0;
   PictureSize size;
   const Method* method = nullptr;
   DofSettings settings;
   Profile profile;
+  std::string profile_name;
 };
 
 /// Loads or makes what is to be measured. Throws UsageError for a lens that cannot be,

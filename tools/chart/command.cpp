@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "scenes/load/file_bytes.h"
+#include "tools/chart/gnuplot.h"
 #include "tools/chart/key.h"
 #include "tools/chart/measure.h"
 #include "tools/chart/options.h"
@@ -17,7 +17,6 @@
 #include "tools/chart/work.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/chart/gnuplot.h"
 #include "tools/files/whole_file.h"
 
 namespace softfocus {

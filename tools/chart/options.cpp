@@ -7,7 +7,7 @@
 #include "tools/chart/settings.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/errors.h"
-#include "tools/options/memory_check.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {
@@ -17,7 +17,7 @@ constexpr int kMostRounds = 100;
 
 /// Sums of all samples and of the halves (72 bytes a pixel), a group of pictures (64), textures
 /// and planes of the methods, and the maps of the measures.
-constexpr std::uint64_t kBytesPerPixel = 320;
+constexpr std::uint64_t kChartBytesPerPixel = 320;
 
 /// The parts of "a,b,c". Throws UsageError for an empty one and for one that comes twice.
 std::vector<std::string> parts_of(const std::string& option, const std::string& text) {
@@ -104,7 +104,7 @@ void complete(ChartOptions& options) {
   if (options.scenes.empty()) {
     throw UsageError("no scenes were found; give --scenes with a .toml or .obj file");
   }
-  check_memory("--size", options.size, kBytesPerPixel);
+  check_memory("--size", options.size, kChartBytesPerPixel);
 }
 
 }  // namespace softfocus

@@ -8,7 +8,7 @@
 
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/options/pool_options.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 

@@ -2,24 +2,24 @@
 // What `chart` keeps in files to go on with later, as JSON.
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "tools/chart/point.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 
 /// Writes it whole or not at all. Throws FileError.
-void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
+void write_json(const std::filesystem::path& file, const Json& json);
 
 /// What a file holds, if it is there and is JSON.
-std::optional<nlohmann::ordered_json> read_json(const std::filesystem::path& file);
+std::optional<Json> read_json(const std::filesystem::path& file);
 
 /// {psnr_db, ssim, flip, flip_silhouette, flip_near, flip_focus, flip_far}. What is no number
 /// is null: an infinite PSNR, a region without pixels.
-nlohmann::ordered_json errors_json(const ChartErrors& errors);
-ChartErrors errors_of(const nlohmann::ordered_json& json);
+Json errors_json(const ChartErrors& errors);
+ChartErrors errors_of(const Json& json);
 
 /// Errors, the worst place and the pictures of a point, under a key. Times are kept apart: they
 /// grow with each round.

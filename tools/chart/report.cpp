@@ -1,29 +1,28 @@
 #include "tools/chart/report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "tools/chart/key.h"
-#include "tools/chart/record.h"
-#include "tools/golden/hash_text.h"
-#include "tools/chart/pareto.h"
 #include "tools/bench/timing.h"
+#include "tools/chart/key.h"
+#include "tools/chart/pareto.h"
+#include "tools/chart/record.h"
+#include "tools/files/json.h"
+#include "tools/golden/hash_text.h"
 
 namespace softfocus {
 namespace {
-
-using nlohmann::ordered_json;
 
 /// What auto may take longer than the method that it chose, by a factor: it looks at the
 /// picture first. That, and what times of one run differ by.
 constexpr double kChoosing = 1.1;
 
-ordered_json point_json(const ChartPanel& panel, const ChartPoint& point) {
-  ordered_json json{{"scene", panel.scene},
-                    {"method", point.entry.method},
-                    {"settings", settings_json(point.entry)},
-                    {"median_ms", point.median_ms}};
-  json.update(errors_json(point.errors));
+Json point_json(const ChartPanel& panel, const ChartPoint& point) {
+  Json json{{"scene", panel.scene},
+            {"method", point.entry.method},
+            {"settings", settings_json(point.entry)},
+            {"median_ms", point.median_ms}};
+  const Json errors = errors_json(point.errors);
+  for (const std::string& name : errors.names()) json[name] = errors.at(name);
   json["filter_ms"] = nullptr;
   if (!point.times.filter_ms.empty()) {
     json["filter_ms"] = spread_of(point.times.filter_ms).median;
@@ -31,9 +30,9 @@ ordered_json point_json(const ChartPanel& panel, const ChartPoint& point) {
   json["rounds"] = point.times.frame_ms.size();
   json["on_front"] = point.on_front;
   json["truth_samples"] = panel.truth_samples;
-  const ordered_json floor = errors_json(panel.noise_floor);
-  json["noise_floor_flip"] = floor["flip"];
-  json["noise_floor_psnr_db"] = floor["psnr_db"];
+  const Json floor = errors_json(panel.noise_floor);
+  json["noise_floor_flip"] = floor.at("flip");
+  json["noise_floor_psnr_db"] = floor.at("psnr_db");
   json["picture_hash"] = hash_text(point.picture_hash);
   return json;
 }
@@ -45,14 +44,15 @@ std::string csv_text(const std::string& text) {
   return result + "\"";
 }
 
-std::string csv_field(const ordered_json& value) {
+std::string csv_field(const Json& value) {
   if (value.is_null()) return "";
-  if (value.is_string()) return csv_text(value.get<std::string>());
-  if (!value.is_object()) return value.dump();
+  if (value.is_text()) return csv_text(value.text());
+  if (!value.is_object()) return json_text(value);
   std::string settings;
-  for (const auto& [name, setting] : value.items()) {
+  for (const std::string& name : value.names()) {
+    const Json& setting = value.at(name);
     settings += (settings.empty() ? "" : ";") + name + "=" +
-                (setting.is_string() ? setting.get<std::string>() : setting.dump());
+                (setting.is_text() ? setting.text() : json_text(setting));
   }
   return csv_text(settings);
 }
@@ -79,8 +79,8 @@ void settle_points(ChartPanel& panel) {
   }
 }
 
-ordered_json chart_json(const std::vector<ChartPanel>& panels) {
-  ordered_json list = ordered_json::array();
+Json chart_json(const std::vector<ChartPanel>& panels) {
+  Json list = Json::array();
   for (const ChartPanel& panel : panels) {
     for (const ChartPoint& point : panel.points) list.push_back(point_json(panel, point));
   }
@@ -89,11 +89,12 @@ ordered_json chart_json(const std::vector<ChartPanel>& panels) {
 
 std::string chart_csv(const std::vector<ChartPanel>& panels) {
   std::string text;
-  for (const ordered_json& point : chart_json(panels)) {
+  const Json list = chart_json(panels);
+  for (const Json& point : list.values()) {
     std::string names, values;
-    for (const auto& [name, value] : point.items()) {
+    for (const std::string& name : point.names()) {
       names += (names.empty() ? "" : ",") + name;
-      values += (values.empty() ? "" : ",") + csv_field(value);
+      values += (values.empty() ? "" : ",") + csv_field(point.at(name));
     }
     if (text.empty()) text = names + "\n";
     text += values + "\n";

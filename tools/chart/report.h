@@ -1,11 +1,11 @@
 #pragma once
 // The chart as numbers: CSV and JSON.
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "tools/chart/point.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 
@@ -18,7 +18,7 @@ void settle_points(ChartPanel& panel);
 /// flip_near, flip_focus, flip_far, filter_ms, rounds, on_front, truth_samples, noise_floor_flip,
 /// noise_floor_psnr_db, picture_hash}. null: an infinite PSNR, a region without pixels, the
 /// filter's share where nothing is filtered.
-nlohmann::ordered_json chart_json(const std::vector<ChartPanel>& panels);
+Json chart_json(const std::vector<ChartPanel>& panels);
 
 /// The same with a line a point and names on top (RFC 4180, but for the line's end, which is
 /// LF). Settings are "max_coc_px=16;profile=ieee"; null is empty.

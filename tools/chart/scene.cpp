@@ -8,7 +8,7 @@
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
 #include "tools/options/lens_options.h"
-#include "tools/options/scene_warnings.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {
@@ -41,27 +41,26 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
   chart.scene = load_scene(name, scene_search_path(options.scene_path));
   print_scene_warnings(chart.scene.warnings, false);
   chart.frame = options.frame;
-  chart.view = camera_view(chart.scene.camera, chart.frame, width, height);
+  chart.view = camera_matrices(chart.scene.camera, chart.frame, width, height);
   chart.lens = chart.scene.lens.lens;
   check_lens(chart.lens, {}, name);
   const double coc_scale = chart.scene.lens.coc_scale;
   chart.coc = checked_pixel_coc(chart.lens, chart.scene.camera.fov_y_degrees, height, coc_scale);
   chart.aperture_m = aperture_radius_m(chart.lens, coc_scale);
-  chart.pinhole =
-      draw_scene(chart.scene, chart.view, chart.frame, width, height, profiles().front(), pool);
+  chart.pinhole = draw_scene(chart.scene, chart.view, chart.frame, width, height, Profile{}, pool);
   chart.labels = label_regions(chart.pinhole, chart.coc);
   return chart;
 }
 
-SceneMethodInput accumulation_input(const ChartScene& scene, int samples) {
+LensViewInput accumulation_input(const ChartScene& scene, int samples) {
   return {.scene = scene.scene,
-          .view = scene.view,
+          .camera = scene.view,
           .frame = scene.frame,
           .pinhole = scene.pinhole,
           .focus_m = scene.lens.focus_m,
           .aperture_radius_m = scene.aperture_m,
           .sampling = {.samples = samples},
-          .profile = profiles().front(),
+          .profile = Profile{},
           .progress = {}};
 }
 
@@ -91,7 +90,7 @@ PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
 }
 
 void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
-  filter.apply({drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
+  apply(filter, {drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
 }
 
 // What belongs to a lens is made once, as it would be for many frames.
@@ -133,14 +132,14 @@ void ChartRunner::warm_up_views() {
     sums_ = make_sample_sums(drawn_.width, drawn_.height);
   }
   clear_sums(sums_);
-  add_views(*buffer_, views_, 0, kViewGroup, sums_, pool_);
+  add_lens_views(*buffer_, views_, 0, kLensViewGroup, sums_, pool_);
 }
 
 void ChartRunner::add_all_views(int samples) {
   clear_sums(sums_);
   while (sums_.count < samples) {
-    const int end = std::min(sums_.count + kViewGroup, samples);
-    add_views(*buffer_, views_, sums_.count, end, sums_, pool_);
+    const int end = std::min(sums_.count + kLensViewGroup, samples);
+    add_lens_views(*buffer_, views_, sums_.count, end, sums_, pool_);
   }
   store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
 }
@@ -152,20 +151,20 @@ RunTime ChartRunner::accumulate(int samples) {
   return {ms_between(start, Clock::now()), std::nullopt};
 }
 
-void ChartRunner::carry_out(const Choice& choice) {
+void ChartRunner::carry_out(const AutoMethod& choice) {
   if (choice.samples > 0) return add_all_views(choice.samples);
   if (is_sharp(choice)) return std::swap(drawn_, result_);
   filter_drawn(*find_method(choice.method), choice.radius_px, views_.profile);
 }
 
 RunTime ChartRunner::choose(double max_error) {
-  PreparedScene& prepared = prepared_for(views_.profile.name);
+  PreparedScene& prepared = prepared_for("ieee");
   const auto chosen = [&] {
-    return softfocus::choose(scene_traits(drawn_, scene_.coc, pool_), {max_error},
-                             {{}, triangle_count(scene_.scene)});
+    return auto_method(scene_traits(drawn_, scene_.coc, pool_), {max_error},
+                       {{}, triangle_count(scene_.scene)});
   };
   draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
-  const Choice before = chosen();
+  const AutoMethod before = chosen();
   chosen_ = setting_text(before);
   if (before.samples > 0) {
     warm_up_views();

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "dof/auto/choose.h"
+#include "dof/auto/auto_method.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/draw/draw_scene.h"
 #include "tools/chart/options.h"
@@ -15,7 +15,7 @@ namespace softfocus {
 
 struct ChartScene {
   Scene scene;
-  View view{};
+  CameraMatrices view{};
   double frame = 0.0;
   ThinLens lens;
   PixelCoc coc;
@@ -32,7 +32,7 @@ void check_scenes(const ChartOptions& options);
 ChartScene load_chart_scene(const std::string& name, const ChartOptions& options, ThreadPool& pool);
 
 /// For the methods that draw the scene; no jitter, for a filter looks from pixels' centres too.
-SceneMethodInput accumulation_input(const ChartScene& scene, int samples);
+LensViewInput accumulation_input(const ChartScene& scene, int samples);
 
 /// Milliseconds of one run. What auto takes to choose counts as filtering.
 struct RunTime {
@@ -68,10 +68,10 @@ class ChartRunner {
   const FixedTable& table_for(float max_coc_px);
   void warm_up_views();
   void add_all_views(int samples);
-  void carry_out(const Choice& choice);
+  void carry_out(const AutoMethod& choice);
 
   const ChartScene& scene_;
-  SceneMethodInput views_;  // with as many points of the lens as anything here takes
+  LensViewInput views_;  // with as many points of the lens as anything here takes
   ThreadPool& pool_;
   std::map<std::string, PreparedScene> prepared_;  // by profile
   std::map<float, FixedTable> tables_;             // by radius

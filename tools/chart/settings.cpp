@@ -1,9 +1,9 @@
 #include "tools/chart/settings.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "tools/cli/option_values.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 namespace {
@@ -83,10 +83,10 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
   return entries;
 }
 
-nlohmann::ordered_json settings_json(const ChartEntry& entry) {
+Json settings_json(const ChartEntry& entry) {
   if (entry.max_error) return {{"max_error", *entry.max_error}, {"chosen", entry.chosen}};
   if (entry.filter == nullptr) return {{"samples", entry.samples}};
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  Json json = Json::object();
   if (entry.max_coc_px) json["max_coc_px"] = *entry.max_coc_px;
   json["profile"] = entry.profile;
   if (entry.arithmetic != Arithmetic::floats) {

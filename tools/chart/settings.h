@@ -1,7 +1,6 @@
 #pragma once
 // What `chart` measures: for each method a list of settings.
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +8,7 @@
 
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 
@@ -34,7 +34,7 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
 
 /// {"max_coc_px": 16, "profile": "ieee"}, {"max_coc_px": 16, "profile": "ieee", "arithmetic":
 /// "fixed-8"}, {"samples": 32} or {"max_error": 0.02, "chosen": "disc-layers, radius 16"}.
-nlohmann::ordered_json settings_json(const ChartEntry& entry);
+Json settings_json(const ChartEntry& entry);
 
 /// "max-coc 16, d3d11", "32 samples", "max-error 0.02: disc-layers, radius 16"; the profile ieee
 /// and no settings at all are not told.

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
-#include <nlohmann/json.hpp>
 
 #include "tools/chart/key.h"
 #include "tools/chart/record.h"
 #include "tools/cli/errors.h"
-#include "tools/golden/hash_text.h"
 #include "tools/files/image_file.h"
+#include "tools/files/json.h"
 #include "tools/files/whole_file.h"
+#include "tools/golden/hash_text.h"
 
 namespace softfocus {
 namespace {
@@ -24,12 +24,13 @@ ChartTruth make_truth(const ChartScene& scene, int samples,
                       const std::function<void(int)>& on_samples, ThreadPool& pool) {
   // Or the half would lie inside of a group, and the bits would not be accumulation()'s.
   assert(samples % kTruthSampleStep == 0);
-  const SceneMethodInput input = accumulation_input(scene, samples);
+  const LensViewInput input = accumulation_input(scene, samples);
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
   SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
   const auto add_until = [&](int last) {
     while (sums.count < last) {
-      add_views(buffer, input, sums.count, std::min(sums.count + kViewGroup, last), sums, pool);
+      add_lens_views(buffer, input, sums.count, std::min(sums.count + kLensViewGroup, last), sums,
+                     pool);
       on_samples(sums.count);
     }
   };
@@ -56,15 +57,17 @@ void save_truth(const ChartTruth& truth, const std::string& key,
 
 std::optional<ChartTruth> load_truth(const std::string& key, const std::filesystem::path& file) {
   const auto json = read_json(with_ending(file, ".json"));
-  if (!json || json->value("key", "") != key) return std::nullopt;
+  if (!json) return std::nullopt;
   try {
+    if (json->at("key").text() != key) return std::nullopt;
     ChartTruth truth{read_image_file(with_ending(file, ".npy")).image,
                      errors_of(json->at("noise_floor"))};
-    const auto picture_hash = json->at("picture_hash").get<std::string>();
-    if (hash_text(hash_image(truth.picture)) != picture_hash) return std::nullopt;
+    if (hash_text(hash_image(truth.picture)) != json->at("picture_hash").text()) {
+      return std::nullopt;
+    }
     return truth;
   } catch (const FileError&) {
-  } catch (const nlohmann::json::exception&) {
+  } catch (const JsonError&) {
   }
   return std::nullopt;  // damaged: it is made again
 }

@@ -1,6 +1,5 @@
 #pragma once
-// The table of subcommands. Adding one touches its own file, this list and
-// command_line.cpp.
+// The table of subcommands. Adding one touches its own file, this list and main.cpp.
 
 #include <functional>
 

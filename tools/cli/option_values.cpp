@@ -40,6 +40,11 @@ void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& direct
       });
 }
 
+void add_size(CLI::App& parser, PictureSize& size) {
+  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
+            [&size](const std::string& text) { size = parse_size("--size", text); });
+}
+
 void add_frame(CLI::App& parser, double& frame) {
   add_value(parser, "--frame", "N", "Frame of the animation, from 0 (default: 0)",
             [&frame](const std::string& text) {

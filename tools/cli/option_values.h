@@ -26,6 +26,9 @@ struct Pixel {
 /// Adds --scene-path, which may be repeated: directories that must exist.
 void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories);
 
+/// Adds --size.
+void add_size(CLI::App& parser, PictureSize& size);
+
 /// Adds --frame, a time of the animation.
 void add_frame(CLI::App& parser, double& frame);
 

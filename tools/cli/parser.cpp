@@ -1,10 +1,84 @@
 #include "tools/cli/parser.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
 
 #include "tools/cli/errors.h"
 
 namespace softfocus {
+namespace {
+
+/// Throws for the arguments that the parser had no place for.
+void check_rest(const CLI::App& program) {
+  const auto rest = program.remaining(true);
+  if (rest.empty()) return;
+  const auto parsed = program.get_subcommands();
+  const bool is_option = rest.front().starts_with('-');
+  if (!is_option && (parsed.empty() || !program.remaining(false).empty())) {
+    std::string names;
+    for (const CLI::App* command : program.get_subcommands({})) {
+      names += (names.empty() ? "" : ", ") + command->get_name();
+    }
+    throw UsageError("unknown command '" + rest.front() + "'; there are " + names);
+  }
+  const std::string help =
+      "softfocus " + (parsed.empty() ? "" : parsed.front()->get_name() + " ") + "--help";
+  throw UsageError((is_option ? "unknown option '" : "unexpected argument '") + rest.front() +
+                   "'; " + help + " lists what there is");
+}
+
+/// CLI11's own complaints in this program's words: an option without its value, a
+/// missing argument.
+std::string reworded(const CLI::ParseError& error) {
+  const std::string message = error.what();
+  if (error.get_name() == "ArgumentMismatch") {
+    return message.substr(0, message.find(':')) + " needs a value; --help says which";
+  }
+  if (error.get_name() == "RequiredError") {
+    return message.substr(0, message.find(' ')) + " is missing; --help says what to give";
+  }
+  return message;
+}
+
+}  // namespace
+
+std::shared_ptr<CLI::App> make_program(const std::string& name, const std::string& version,
+                                       const std::string& help) {
+  const auto program = std::make_shared<CLI::App>(help, name);
+  program->set_version_flag("--version", name + " " + version);
+  program->require_subcommand(0, 1);
+  program->get_formatter()->column_width(26);
+  return program;
+}
+
+Parsed parse(CLI::App& program, std::vector<std::string> arguments) {
+  // Left-over arguments are refused in check_rest().
+  program.allow_extras();
+  for (CLI::App* command : program.get_subcommands({})) command->allow_extras();
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  try {
+    try {
+      program.parse(std::move(arguments));
+    } catch (const CLI::RequiredError&) {
+      // What is missing may stand there misspelt.
+      check_rest(program);
+      throw;
+    }
+    check_rest(program);
+  } catch (const CLI::Success& request) {
+    program.exit(request);
+    return {nullptr, true};
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(reworded(error));
+  }
+  const auto commands = program.get_subcommands();
+  if (!commands.empty()) return {commands.front(), false};
+  std::cerr << program.help();
+  return {nullptr, false};
+}
+
+std::string name_of(const CLI::App& command) { return command.get_name(); }
 
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help) {
   return program.add_subcommand(name, help);

@@ -1,8 +1,9 @@
 #pragma once
 // What the commands ask of the parser. CLI11's headers take longer to compile than most
-// of what is here: only parser.cpp and command_line.cpp include them.
+// of what is here: only parser.cpp includes them.
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,22 @@ class App;
 }
 
 namespace softfocus {
+
+/// The program's parser, with --help and --version.
+std::shared_ptr<CLI::App> make_program(const std::string& name, const std::string& version,
+                                       const std::string& help);
+
+/// What the arguments ask for.
+struct Parsed {
+  CLI::App* command;  ///< or nullptr: there was none, or --help or --version was answered
+  bool answered;
+};
+
+/// Reads the arguments, without the program's name. Without any, the help is printed on standard
+/// error. Throws UsageError.
+Parsed parse(CLI::App& program, std::vector<std::string> arguments);
+
+std::string name_of(const CLI::App& command);
 
 /// Adds a command to the program. The program owns its parser.
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help);

@@ -3,15 +3,13 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "tools/cli/option_values.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 namespace {
-
-using nlohmann::ordered_json;
 
 std::string bucket_name(std::size_t bucket) {
   if (bucket < 2) return std::to_string(bucket);
@@ -20,11 +18,6 @@ std::string bucket_name(std::size_t bucket) {
 
 /// A number, or a dash for what does not exist.
 std::string number_or_dash(double value) { return std::isnan(value) ? "-" : short_number(value); }
-
-/// JSON has neither NaN nor infinity.
-ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
 
 void print_line(const std::string& name, const std::string& value) {
   std::cout << name << std::string(20 - name.size(), ' ') << value << '\n';
@@ -84,7 +77,7 @@ void print_point(const PointFindings& point) {
   print_line("  from the disc", pair(point.a_deviation, point.b_deviation));
 }
 
-void add_measures(ordered_json& json, const Measures& m) {
+void add_measures(Json& json, const Measures& m) {
   json["mse"] = number_or_null(m.mse);
   json["tone_mapped_mse"] = number_or_null(m.toned_mse);
   json["tone_mapped_psnr_db"] = number_or_null(m.toned_psnr_db);
@@ -93,27 +86,27 @@ void add_measures(ordered_json& json, const Measures& m) {
   if (m.hdr_flip) json["hdr_flip"] = number_or_null(*m.hdr_flip);
 }
 
-ordered_json regions_json(const MeasuredPictures& measured) {
-  ordered_json list = ordered_json::array();
+Json regions_json(const MeasuredPictures& measured) {
+  Json list = Json::array();
   for (const Region region : kAllRegions) {
     const Measures& m = measured.by_region[static_cast<std::size_t>(region)];
-    ordered_json entry{{"region", region_name(region)},
-                       {"pixels", m.pixels},
-                       {"psnr_db", number_or_null(m.psnr_db)}};
+    Json entry{{"region", region_name(region)},
+               {"pixels", m.pixels},
+               {"psnr_db", number_or_null(m.psnr_db)}};
     add_measures(entry, m);
     list.push_back(entry);
   }
   return list;
 }
 
-ordered_json point_json(const PointFindings& point) {
+Json point_json(const PointFindings& point) {
   const auto of = [](const PointShape& shape, double deviation) {
-    return ordered_json{{"energy", number_or_null(shape.energy)},
-                        {"x", shape.centre_x_px},
-                        {"y", shape.centre_y_px},
-                        {"eigenvalue_ratio", number_or_null(shape.eigenvalue_ratio)},
-                        {"radius_px", number_or_null(shape.radius_px)},
-                        {"disc_deviation", number_or_null(deviation)}};
+    return Json{{"energy", number_or_null(shape.energy)},
+                {"x", shape.centre_x_px},
+                {"y", shape.centre_y_px},
+                {"eigenvalue_ratio", number_or_null(shape.eigenvalue_ratio)},
+                {"radius_px", number_or_null(shape.radius_px)},
+                {"disc_deviation", number_or_null(deviation)}};
   };
   return {{"disc_radius_px", point.disc_radius_px},
           {"energy_ratio", number_or_null(energy_ratio(point))},
@@ -142,13 +135,13 @@ void print_compare_text(const CompareFindings& findings) {
 
 void print_compare_json(const CompareFindings& findings) {
   const Difference& d = findings.difference;
-  ordered_json json{{"equal", d.differing == 0},
-                    {"values", d.values},
-                    {"differing", d.differing},
-                    {"max_half_ulps", d.max_ulp},
-                    {"psnr_db", number_or_null(d.psnr_db)},
-                    {"first", nullptr},
-                    {"histogram", ordered_json::array()}};
+  Json json{{"equal", d.differing == 0},
+            {"values", d.values},
+            {"differing", d.differing},
+            {"max_half_ulps", d.max_ulp},
+            {"psnr_db", number_or_null(d.psnr_db)},
+            {"first", nullptr},
+            {"histogram", Json::array()}};
   if (d.differing != 0) {
     json["first"] = {{"x", d.first_x},
                      {"y", d.first_y},
@@ -164,7 +157,7 @@ void print_compare_json(const CompareFindings& findings) {
   add_measures(json, findings.measured->whole);
   if (findings.regions) json["regions"] = regions_json(*findings.measured);
   if (findings.point) json["point"] = point_json(*findings.point);
-  std::cout << json.dump(2) << '\n';
+  std::cout << json_text(json, 2) << '\n';
 }
 
 double mean_flicker(const std::vector<double>& steps) {
@@ -177,9 +170,8 @@ void print_flicker_text(const std::vector<double>& steps) {
 }
 
 void print_flicker_json(const std::vector<double>& steps) {
-  const ordered_json json{
-      {"frames", steps.size() + 1}, {"flicker", mean_flicker(steps)}, {"steps", steps}};
-  std::cout << json.dump(2) << '\n';
+  const Json json{{"frames", steps.size() + 1}, {"flicker", mean_flicker(steps)}, {"steps", steps}};
+  std::cout << json_text(json, 2) << '\n';
 }
 
 }  // namespace softfocus

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "raster/numbers/profile.h"
+#include "raster/numbers/random_bits.h"
 #include "raster/threads/parallel.h"
-#include "scenes/make/random_bits.h"
 #include "tools/crosscheck/tally.h"
 #include "tools/gl/context.h"
 #include "tools/gl/shaders.h"

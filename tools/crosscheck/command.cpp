@@ -4,23 +4,20 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "raster/threads/parallel.h"
 #include "scenes/load/scene_error.h"
 #include "tools/cli/commands.h"
-#include "tools/crosscheck/run_cases.h"
-#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/options/profile_option.h"
+#include "tools/crosscheck/run_cases.h"
+#include "tools/files/json.h"
 #include "tools/files/whole_file.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {
-
-using nlohmann::ordered_json;
 
 // As for compare.
 constexpr int kEqual = 0;
@@ -29,7 +26,7 @@ constexpr int kIncomplete = 2;
 
 struct CrosscheckOptions {
   std::vector<const Driver*> drivers;
-  std::optional<Profile> profile;
+  std::optional<ChosenProfile> profile;
   std::string cases = "*";
   std::filesystem::path pictures;
   Shaders shaders;
@@ -40,18 +37,18 @@ struct CrosscheckOptions {
 /// What a driver is to do.
 struct DriverWork {
   const Driver* driver;
-  Profile profile;
+  ChosenProfile profile;
   int cases;
 };
 
-Profile profile_for(const Driver& driver, const CrosscheckOptions& options) {
+ChosenProfile profile_for(const Driver& driver, const CrosscheckOptions& options) {
   if (options.profile) return *options.profile;
   if (driver.profile.empty()) {
     throw UsageError("--driver " + std::string(driver.name) +
                      " needs --profile: softfocus probe --driver " + std::string(driver.name) +
                      " makes one");
   }
-  return find_profile(driver.profile).value();
+  return {std::string(driver.profile), "", find_profile(driver.profile).value()};
 }
 
 // Without --driver: those whose profile is known. All that can be wrong with the options
@@ -104,11 +101,10 @@ void print_result(const CaseResult& result) {
   if (!result.picture.empty()) std::cout << "    " << printable(result.picture) << '\n';
 }
 
-ordered_json json_of(const DriverWork& work, const CaseResult& result) {
-  ordered_json entry{{"driver", work.driver->name}, {"profile", work.profile.name},
-                     {"stage", result.stage},       {"case", result.name},
-                     {"values", result.values},     {"differing", nullptr},
-                     {"max_ulp", nullptr}};
+Json json_of(const DriverWork& work, const CaseResult& result) {
+  Json entry{{"driver", work.driver->name}, {"profile", work.profile.name}, {"stage", result.stage},
+             {"case", result.name},         {"values", result.values},      {"differing", nullptr},
+             {"max_ulp", nullptr}};
   // What was not compared is not equal.
   if (was_compared(result)) {
     entry["differing"] = result.differing;
@@ -126,7 +122,7 @@ ordered_json json_of(const DriverWork& work, const CaseResult& result) {
 }
 
 // For a driver that could not be used, or not to its end.
-ordered_json json_of(const DriverWork& work, const std::string& error) {
+Json json_of(const DriverWork& work, const std::string& error) {
   return {{"driver", work.driver->name},
           {"profile", work.profile.name},
           {"stage", nullptr},
@@ -163,7 +159,7 @@ void print_summary(const Count& count, const CrosscheckOptions& options) {
 }
 
 int crosscheck(const CrosscheckOptions& options) {
-  ordered_json entries = ordered_json::array();
+  Json entries = Json::array();
   Count count;
   bool complete = true;
   for (const DriverWork& work : planned_work(options)) {
@@ -177,17 +173,18 @@ int crosscheck(const CrosscheckOptions& options) {
         std::cout << work.driver->name << " against profile " << printable(work.profile.name)
                   << '\n';
       }
-      const DriverRun run = run_cases({*work.driver, work.profile, options.shaders, options.cases,
-                                       options.quick, options.pictures, hardware_threads()},
-                                      [&](const CaseResult& result) {
-                                        add(count, result);
-                                        if (options.json) {
-                                          entries.push_back(json_of(work, result));
-                                        } else {
-                                          print_result(result);
-                                          std::cout.flush();
-                                        }
-                                      });
+      const DriverRun run =
+          run_cases({*work.driver, work.profile.profile, options.shaders, options.cases,
+                     options.quick, options.pictures, hardware_threads()},
+                    [&](const CaseResult& result) {
+                      add(count, result);
+                      if (options.json) {
+                        entries.push_back(json_of(work, result));
+                      } else {
+                        print_result(result);
+                        std::cout.flush();
+                      }
+                    });
       if (!options.json && !run.renderer.empty()) {
         std::cout << "  (" << printable(run.renderer) << ")\n";
       }
@@ -201,7 +198,7 @@ int crosscheck(const CrosscheckOptions& options) {
   }
   if (options.json) {
     // A file's name need not be UTF-8, but JSON must be.
-    std::cout << entries.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+    std::cout << json_text(entries, 2) << '\n';
   } else {
     print_summary(count, options);
   }
@@ -251,7 +248,7 @@ Command add_crosscheck_command(CLI::App& program) {
                       }
                     });
   add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
-                     [options](const Profile& profile) { options->profile = profile; });
+                     [options](const ChosenProfile& chosen) { options->profile = chosen; });
   add_value(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
             [options](const std::string& text) { options->cases = text; });
   add_value(*parser, "--shaders", "DIR",

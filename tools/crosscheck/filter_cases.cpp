@@ -25,7 +25,7 @@ enum class TestPicture {
 
 Image drawn(const char* name, int width, int height, const Bench& bench) {
   const Scene scene = load_scene(name, scene_search_path({}));
-  return draw_scene(scene, camera_view(scene.camera, 5, width, height), 5, width, height,
+  return draw_scene(scene, camera_matrices(scene.camera, 5, width, height), 5, width, height,
                     bench.profile, bench.pool);
 }
 

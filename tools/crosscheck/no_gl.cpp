@@ -27,7 +27,7 @@ struct FrameOnGl::State {};
 FrameOnGl::FrameOnGl(const Driver&) { refuse(); }
 FrameOnGl::~FrameOnGl() = default;
 std::string FrameOnGl::renderer() const { refuse(); }
-Image FrameOnGl::draw(const Scene&, const View&, double, int, int) { refuse(); }
+Image FrameOnGl::draw(const Scene&, const CameraMatrices&, double, int, int) { refuse(); }
 Image FrameOnGl::filter(const Method&, const DofSettings&, const Image&) { refuse(); }
 
 struct RepeatedOnGl::State {};

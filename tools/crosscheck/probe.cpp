@@ -9,9 +9,9 @@
 
 #include "raster/images/texel.h"
 #include "raster/numbers/lerp.h"
+#include "tools/cli/option_values.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/objects.h"
-#include "tools/cli/option_values.h"
 
 namespace softfocus {
 namespace {
@@ -88,12 +88,12 @@ std::vector<Candidate> texture_candidates(const Profile& profile) {
     return candidates.back().profile;
   };
   using enum Contraction;
-  add("plain, 8-bit weights, unfused", TextureUnit::plain, BilinearWeights::fixed_8, unfused);
-  add("plain, 8-bit weights, fused", TextureUnit::plain, BilinearWeights::fixed_8, fused);
-  add("plain, in integers", TextureUnit::plain, BilinearWeights::fixed_8, unfused).bilinear_filter =
-      BilinearFilter::integers;
-  add("plain, float weights, unfused", TextureUnit::plain, BilinearWeights::binary32, unfused);
-  add("plain, float weights, fused", TextureUnit::plain, BilinearWeights::binary32, fused);
+  add("plain, 8-bit weights, unfused", TextureUnit::standard, BilinearWeights::fixed_8, unfused);
+  add("plain, 8-bit weights, fused", TextureUnit::standard, BilinearWeights::fixed_8, fused);
+  add("plain, in integers", TextureUnit::standard, BilinearWeights::fixed_8, unfused)
+      .bilinear_filter = BilinearFilter::integers;
+  add("plain, float weights, unfused", TextureUnit::standard, BilinearWeights::binary32, unfused);
+  add("plain, float weights, fused", TextureUnit::standard, BilinearWeights::binary32, fused);
   add("llvmpipe, unfused", TextureUnit::llvmpipe, BilinearWeights::binary32, unfused);
   add("llvmpipe, fused", TextureUnit::llvmpipe, BilinearWeights::binary32, fused);
   add("softpipe, unfused", TextureUnit::softpipe, BilinearWeights::binary32, unfused);
@@ -137,9 +137,9 @@ std::vector<Candidate> attribute_candidates(const Profile& profile) {
 
 std::vector<Candidate> clipping_candidates(const Profile& profile) {
   std::vector<Candidate> candidates;
-  for (const Clipping clipping : {Clipping::plain, Clipping::mesa}) {
+  for (const Clipping clipping : {Clipping::standard, Clipping::mesa}) {
     for (const float guard_band : {1.0f, 2.0f, 4.0f, 8.0f, 16.0f}) {
-      candidates.push_back({std::string(clipping == Clipping::plain ? "plain" : "as Mesa") +
+      candidates.push_back({std::string(clipping == Clipping::standard ? "plain" : "as Mesa") +
                                 ", guard band " + std::to_string(static_cast<int>(guard_band)),
                             profile});
       candidates.back().profile.clipping = clipping;
@@ -286,7 +286,7 @@ Probe probe_driver(const Driver& driver) {
   Laboratory lab{gl, {}};
   Probe probe;
   probe.renderer = gl.renderer() + ", OpenGL " + gl.version();
-  Profile& profile = probe.profile;
+  Profile& profile = probe.profile.profile;
   const auto ask = [&](const std::string& question, const std::vector<std::string>& cases,
                        const std::vector<Candidate>& candidates) {
     probe.findings.push_back(choose(lab, question, cases, candidates, profile));
@@ -319,8 +319,8 @@ Probe probe_driver(const Driver& driver) {
   ask("clipping", {"coverage/across-edges-4000", "attributes/across-edges"},
       clipping_candidates(profile));
 
-  profile.name = profile_name(driver, gl.renderer());
-  profile.summary = probe.renderer;
+  probe.profile.name = profile_name(driver, gl.renderer());
+  probe.profile.summary = probe.renderer;
   return probe;
 }
 

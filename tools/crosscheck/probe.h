@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "raster/numbers/profile.h"
+#include "tools/files/profile_file.h"
 #include "tools/gl/driver.h"
 
 namespace softfocus {
@@ -18,7 +18,7 @@ struct ProbeFinding {
 
 struct Probe {
   std::string renderer;  ///< GL_RENDERER and GL_VERSION
-  Profile profile;
+  ChosenProfile profile;
   std::vector<ProbeFinding> findings;
 };
 

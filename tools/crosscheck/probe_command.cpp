@@ -5,7 +5,7 @@
 
 #include "tools/cli/commands.h"
 #include "tools/crosscheck/probe.h"
-#include "tools/options/driver_option.h"
+#include "tools/options/run_options.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/profile_file.h"

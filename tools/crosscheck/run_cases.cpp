@@ -2,17 +2,14 @@
 
 #include <fnmatch.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tools/crosscheck/cases.h"
-#include "tools/gl/driver_process.h"
 #include "tools/files/image_file.h"
+#include "tools/files/json.h"
 #include "tools/files/whole_file.h"
+#include "tools/gl/driver_process.h"
 
 namespace softfocus {
 namespace {
-
-using nlohmann::json;
 
 std::vector<Case> chosen_cases(const std::string& pattern, bool quick, bool slow) {
   std::vector<Case> chosen;
@@ -35,8 +32,8 @@ void write_picture(const Tally& tally, const std::filesystem::path& name) {
   file.commit();
 }
 
-json line_of(const Case& one, const Tally& tally, bool has_picture, const std::string& error) {
-  json line{{"stage", one.stage},
+Json line_of(const Case& one, const Tally& tally, bool has_picture, const std::string& error) {
+  Json line{{"stage", one.stage},
             {"name", one.name},
             {"values", tally.values},
             {"differing", tally.differing},
@@ -55,34 +52,35 @@ json line_of(const Case& one, const Tally& tally, bool has_picture, const std::s
   return line;
 }
 
-CaseResult result_of(const json& line, const CrosscheckWork& work) {
-  CaseResult result{line.at("stage"),
-                    line.at("name"),
-                    line.at("values"),
-                    line.at("differing"),
-                    line.at("max_ulp"),
-                    std::nullopt,
-                    "",
-                    line.at("error")};
-  if (line.at("has_picture"))
+CaseResult result_of(const Json& line, const CrosscheckWork& work) {
+  CaseResult result;
+  result.stage = line.at("stage").text();
+  result.name = line.at("name").text();
+  result.values = static_cast<std::uint64_t>(line.at("values").integer());
+  result.differing = static_cast<std::uint64_t>(line.at("differing").integer());
+  result.max_ulp = static_cast<std::uint32_t>(line.at("max_ulp").integer());
+  result.error = line.at("error").text();
+  if (line.at("has_picture").boolean()) {
     result.picture = picture_name(work, result.stage, result.name).string();
-  if (line.contains("first")) {
-    const json& first = line["first"];
-    result.first = {first.at("x"),      first.at("y"),        first.at("channel"),
-                    first.at("driver"), first.at("emulated"), first.at("where")};
+  }
+  if (const Json* first = line.find("first")) {
+    const auto whole = [&](const char* name) {
+      return static_cast<int>(first->at(name).integer());
+    };
+    result.first = {whole("x"),
+                    whole("y"),
+                    whole("channel"),
+                    first->at("driver").text(),
+                    first->at("emulated").text(),
+                    first->at("where").text()};
   }
   return result;
-}
-
-// Neither a driver's words nor a file's name need be UTF-8.
-std::string text_of(const json& line) {
-  return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 // In the driver's process.
 void compare_all(const CrosscheckWork& work, const SendLine& send) {
   const GlContext gl{work.driver};
-  send(text_of({{"renderer", gl.renderer() + ", OpenGL " + gl.version()}}));
+  send(json_text({{"renderer", gl.renderer() + ", OpenGL " + gl.version()}}));
   ThreadPool pool{work.threads};
   const Bench bench{gl, work.shaders, work.profile, pool};
   for (const Case& one : chosen_cases(work.cases, work.quick, work.driver.slow)) {
@@ -98,7 +96,7 @@ void compare_all(const CrosscheckWork& work, const SendLine& send) {
     } catch (const std::exception& refused) {
       error = refused.what();  // of this case; the others still run
     }
-    send(text_of(line_of(one, tally, has_picture, error)));
+    send(json_text(line_of(one, tally, has_picture, error)));
   }
 }
 
@@ -109,9 +107,9 @@ DriverRun run_cases(const CrosscheckWork& work,
   DriverRun run;
   run.error = run_driver_process([&](const SendLine& send) { compare_all(work, send); },
                                  [&](const std::string& text) {
-                                   const json line = json::parse(text);
-                                   if (line.contains("renderer")) {
-                                     run.renderer = line["renderer"];
+                                   const Json line = parse_json(text).value();
+                                   if (const Json* renderer = line.find("renderer")) {
+                                     run.renderer = renderer->text();
                                    } else {
                                      report(result_of(line, work));
                                    }

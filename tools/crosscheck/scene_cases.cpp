@@ -40,7 +40,7 @@ DofSettings settings_of(const Scene& scene, int height) {
 
 void scene_both(const Bench& bench, Tally& tally, const SceneCase& what) {
   const Scene& scene = loaded(what.scene);
-  const View view = camera_view(scene.camera, what.frame, what.width, what.height);
+  const CameraMatrices view = camera_matrices(scene.camera, what.frame, what.width, what.height);
   GlScene on_gl{bench.gl, bench.shaders, scene};
   const GlTarget drawn = make_scene_target(what.width, what.height);
   on_gl.draw(view, what.frame, drawn);

@@ -86,11 +86,12 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-std::string profile_text(const Profile& profile, const std::string& heading) {
+std::string profile_text(const ChosenProfile& chosen, const std::string& heading) {
+  const Profile& profile = chosen.profile;
   std::ostringstream text;
   std::istringstream lines{heading};
   for (std::string line; std::getline(lines, line);) text << "# " << printable(line) << '\n';
-  text << "name = " << quoted(profile.name) << "\nsummary = " << quoted(profile.summary) << "\n\n";
+  text << "name = " << quoted(chosen.name) << "\nsummary = " << quoted(chosen.summary) << "\n\n";
   for_each_choice([&](const auto& choice) {
     const auto value = static_cast<std::size_t>(profile.*choice.member);
     std::string line{choice.key};
@@ -106,7 +107,7 @@ std::string profile_text(const Profile& profile, const std::string& heading) {
   return text.str();
 }
 
-Profile load_profile(const std::filesystem::path& file) {
+ChosenProfile load_profile(const std::filesystem::path& file) {
   constexpr std::size_t kMaxFileBytes = 65536;
   const std::string text = read_file_bytes(file, kMaxFileBytes);
   toml::table table;
@@ -119,11 +120,12 @@ Profile load_profile(const std::filesystem::path& file) {
   }
   Section section{&table, file.string(), "", {}};
 
-  Profile profile;
-  profile.name = read_text(section, "name", "");
-  if (profile.name.empty())
+  ChosenProfile chosen;
+  chosen.name = read_text(section, "name", "");
+  if (chosen.name.empty())
     fail_at(section, "name", "is missing; a name for the profile would be right");
-  profile.summary = read_text(section, "summary", "");
+  chosen.summary = read_text(section, "summary", "");
+  Profile& profile = chosen.profile;
   for_each_choice([&](const auto& choice) {
     using Choice = std::remove_reference_t<decltype(profile.*choice.member)>;
     const auto fallback = static_cast<std::size_t>(profile.*choice.member);
@@ -140,7 +142,7 @@ Profile load_profile(const std::filesystem::path& file) {
             "and attributes do not fit together; scanlines with planes-by-quad, or "
             "edge-functions with another, would be right");
   }
-  return profile;
+  return chosen;
 }
 
 }  // namespace softfocus

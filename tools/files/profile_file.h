@@ -8,12 +8,19 @@
 
 namespace softfocus {
 
+/// A profile with a name of its own: read from a file, or found by experiment.
+struct ChosenProfile {
+  std::string name;
+  std::string summary;
+  Profile profile;
+};
+
 /// The whole file, one key a line with what it means. `heading` becomes comment lines
 /// on top: which driver, which version.
-std::string profile_text(const Profile& profile, const std::string& heading);
+std::string profile_text(const ChosenProfile& chosen, const std::string& heading);
 
 /// Reads a profile. A key that is missing has ieee's value; `name` must be there. Throws
 /// SceneError naming the file, the line, the key and what would be right.
-Profile load_profile(const std::filesystem::path& file);
+ChosenProfile load_profile(const std::filesystem::path& file);
 
 }  // namespace softfocus

@@ -21,7 +21,8 @@ std::string FrameOnGl::renderer() const {
   return state_->context.renderer() + ", OpenGL " + state_->context.version();
 }
 
-Image FrameOnGl::draw(const Scene& scene, const View& view, double frame, int width, int height) {
+Image FrameOnGl::draw(const Scene& scene, const CameraMatrices& view, double frame, int width,
+                      int height) {
   return naming(state_->driver, [&] {
     GlScene on_gl{state_->context, state_->shaders, scene};
     const GlTarget target = make_scene_target(width, height);

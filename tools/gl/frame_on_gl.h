@@ -21,7 +21,7 @@ class FrameOnGl {
   std::string renderer() const;
 
   /// As draw_scene: RGBA16F, depth in alpha.
-  Image draw(const Scene& scene, const View& view, double frame, int width, int height);
+  Image draw(const Scene& scene, const CameraMatrices& view, double frame, int width, int height);
 
   /// As the method's apply(). Throws DriverError for a method that has no shader.
   Image filter(const Method& method, const DofSettings& settings, const Image& scene);

@@ -91,7 +91,7 @@ const GlProgram& GlScene::program(SurfaceVariant variant) {
   return program;
 }
 
-void GlScene::draw(const View& view, double frame, const GlTarget& target) {
+void GlScene::draw(const CameraMatrices& view, double frame, const GlTarget& target) {
   bind(target);
   const glm::vec4 clear = clear_colour(scene_);
   glClearColor(clear.r, clear.g, clear.b, clear.a);

@@ -19,7 +19,7 @@ class GlScene {
   GlScene(const GlContext& context, const Shaders& shaders, const Scene& scene);
 
   /// Draws one frame into an RGBA16F target with depth, cleared first.
-  void draw(const View& view, double frame, const GlTarget& target);
+  void draw(const CameraMatrices& view, double frame, const GlTarget& target);
 
  private:
   struct Mesh {

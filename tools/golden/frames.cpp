@@ -3,9 +3,9 @@
 
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/sample_sums.h"
-#include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
 #include "tools/golden/hashes.h"
 
@@ -47,18 +47,19 @@ std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
 }
 
 std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
-                                    std::span<const Profile> profiles, ThreadPool& pool) {
+                                    std::span<const NamedProfile> profiles, ThreadPool& pool) {
   // A whole group of sums and a part of one.
   const Sampling sampling{.samples = kSampleGroup + 3, .jitter = true, .aperture = {7}};
   std::vector<NamedHash> hashes;
   for (const auto& [name, scene] : scenes) {
     for (const auto [width, height] : kSizes) {
       const DofSettings settings = settings_for(scene, height);
-      const View view = camera_view(scene.camera, kFrame, width, height);
-      for (const Profile& profile : profiles) {
+      const CameraMatrices view = camera_matrices(scene.camera, kFrame, width, height);
+      for (const NamedProfile& known : profiles) {
+        const Profile& profile = known.profile;
         const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
-        const std::string where =
-            ' ' + profile.name + ' ' + std::to_string(width) + 'x' + std::to_string(height);
+        const std::string where = ' ' + std::string{known.name} + ' ' + std::to_string(width) +
+                                  'x' + std::to_string(height);
         for (const Method& method : methods()) {
           hashes.push_back({name + ' ' + std::string{method.name} + where,
                             hash_image(apply(method, {picture, settings, profile}, pool))});
@@ -69,7 +70,7 @@ std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
           hashes.push_back({name + " two-pass-" + std::string{arithmetic_name(arithmetic)} + where,
                             hash_image(filtered)});
         }
-        const SceneMethodInput from_lens{
+        const LensViewInput from_lens{
             scene,
             view,
             kFrame,

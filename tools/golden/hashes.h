@@ -30,11 +30,11 @@ std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool);
 
 /// "SCENE METHOD PROFILE WIDTHxHEIGHT": every method, at a small size and an odd one.
 std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
-                                    std::span<const Profile> profiles, ThreadPool& pool);
+                                    std::span<const NamedProfile> profiles, ThreadPool& pool);
 
 /// "sampler FILTER FORMAT PROFILE": random textures, every wrap, coordinates and levels
 /// inside and far outside; "mipmaps FORMAT PROFILE": their levels.
-std::vector<NamedHash> sampler_hashes(std::span<const Profile> profiles);
+std::vector<NamedHash> sampler_hashes(std::span<const NamedProfile> profiles);
 
 /// "number ...": half, 8 bits, fixed point, fused multiply-add, exact_math.
 std::vector<NamedHash> number_hashes();

@@ -7,8 +7,8 @@
 #include "raster/numbers/half.h"
 #include "raster/numbers/hash.h"
 #include "raster/numbers/lerp.h"
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/srgb.h"
-#include "scenes/make/random_bits.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {

@@ -7,7 +7,7 @@
 #include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/hash.h"
-#include "scenes/make/random_bits.h"
+#include "raster/numbers/random_bits.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {
@@ -36,7 +36,7 @@ constexpr int kHeight = 8;
 constexpr int kFetches = 64;
 
 // Which NaN an operation gives differs between processors (half.h).
-void add_value(Hash& hash, float value) {
+void add_number(Hash& hash, float value) {
   add_to_hash(hash, value == value ? value : std::numeric_limits<float>::quiet_NaN());
 }
 
@@ -92,7 +92,7 @@ void add_samples(Hash& hash, const Texture& texture, Filter filter, const Profil
         const float v = random_coordinate(random);
         const auto lod = static_cast<float>(next_between(random, -1.0, 5.0));
         const glm::vec4 value = sample(texture, {filter, wrap_u, wrap_v}, {u, v}, lod, profile);
-        for (int c = 0; c < 4; ++c) add_value(hash, value[c]);
+        for (int c = 0; c < 4; ++c) add_number(hash, value[c]);
       }
     }
   }
@@ -100,11 +100,12 @@ void add_samples(Hash& hash, const Texture& texture, Filter filter, const Profil
 
 }  // namespace
 
-std::vector<NamedHash> sampler_hashes(std::span<const Profile> profiles) {
+std::vector<NamedHash> sampler_hashes(std::span<const NamedProfile> profiles) {
   std::vector<NamedHash> hashes;
-  for (const Profile& profile : profiles) {
+  for (const NamedProfile& known : profiles) {
+    const Profile& profile = known.profile;
     for (const auto& [format_name, format] : kFormats) {
-      const std::string under = std::string{format_name} + ' ' + profile.name;
+      const std::string under = std::string{format_name} + ' ' + std::string{known.name};
       std::vector<Texture> textures;
       Hash mipmaps;
       for (const int width : kWidths) {

@@ -3,13 +3,13 @@
 
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/golden/hashes.h"
+#include "tools/files/json.h"
 #include "tools/golden/hash_text.h"
-#include "tools/options/pool_options.h"
+#include "tools/golden/hashes.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {
@@ -28,18 +28,17 @@ void print_table(const std::vector<HashCheck>& checks) {
 }
 
 void print_json(const std::vector<HashCheck>& checks) {
-  using nlohmann::ordered_json;
   const auto text_or_null = [](const std::optional<std::uint64_t>& hash) {
-    return hash ? ordered_json(hash_text(*hash)) : ordered_json(nullptr);
+    return hash ? Json(hash_text(*hash)) : Json(nullptr);
   };
-  auto list = ordered_json::array();
+  auto list = Json::array();
   for (const HashCheck& check : checks) {
     list.push_back({{"name", check.name},
                     {"expected", text_or_null(check.expected)},
                     {"computed", text_or_null(check.computed)},
                     {"pass", passes(check)}});
   }
-  std::cout << list.dump(2) << '\n';
+  std::cout << json_text(list, 2) << '\n';
 }
 
 int selftest(const SelftestOptions& options) {

@@ -5,14 +5,14 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "dof/lens.h"
 #include "raster/images/image.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/options/lens_options.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/json.h"
+#include "tools/options/lens_options.h"
 
 namespace softfocus {
 namespace {
@@ -66,7 +66,7 @@ LensFigures figures(const LensCommandOptions& options) {
   return f;
 }
 
-void print_text(const LensFigures& f, const LensCommandOptions& options) {
+void print_lens_text(const LensFigures& f, const LensCommandOptions& options) {
   const auto line = [](const char* name, const std::string& value) {
     std::cout << std::left << std::setw(23) << name << value << '\n';
   };
@@ -97,29 +97,28 @@ void print_text(const LensFigures& f, const LensCommandOptions& options) {
   }
 }
 
-void print_json(const LensFigures& f, const LensCommandOptions& options) {
-  using nlohmann::ordered_json;
-  ordered_json json{{"focal_length_mm", f.lens.focal_length_mm},
-                    {"f_number", f.lens.f_number},
-                    {"aperture_mm", aperture_mm(f.lens)},
-                    {"focus_m", f.lens.focus_m},
-                    {"fov_y_degrees", options.fov_y_degrees},
-                    {"height_px", options.height_px},
-                    {"coc_scale", options.lens.coc_scale.value_or(1.0)},
-                    {"film_height_mm", f.film_mm},
-                    {"largest_sharp_coc_mm", f.largest_coc_mm},
-                    {"sharp_from_m", f.sharp.near_m},
-                    {"sharp_to_m", nullptr},  // infinity, which JSON has not
-                    {"hyperfocal_m", f.hyperfocal_m},
-                    {"radius_at_infinity_px", f.coc.radius_at_infinity_px},
-                    {"at", ordered_json::array()}};
+void print_lens_json(const LensFigures& f, const LensCommandOptions& options) {
+  Json json{{"focal_length_mm", f.lens.focal_length_mm},
+            {"f_number", f.lens.f_number},
+            {"aperture_mm", aperture_mm(f.lens)},
+            {"focus_m", f.lens.focus_m},
+            {"fov_y_degrees", options.fov_y_degrees},
+            {"height_px", options.height_px},
+            {"coc_scale", options.lens.coc_scale.value_or(1.0)},
+            {"film_height_mm", f.film_mm},
+            {"largest_sharp_coc_mm", f.largest_coc_mm},
+            {"sharp_from_m", f.sharp.near_m},
+            {"sharp_to_m", nullptr},  // infinity, which JSON has not
+            {"hyperfocal_m", f.hyperfocal_m},
+            {"radius_at_infinity_px", f.coc.radius_at_infinity_px},
+            {"at", Json::array()}};
   if (std::isfinite(f.sharp.far_m)) json["sharp_to_m"] = f.sharp.far_m;
   for (const CocAtDistance& at : f.at) {
     json["at"].push_back({{"distance_m", at.distance_m},
                           {"coc_on_film_mm", at.on_film_mm},
                           {"radius_px", at.radius_px}});
   }
-  std::cout << json.dump(2) << '\n';
+  std::cout << json_text(json, 2) << '\n';
 }
 
 void add_options(CLI::App& parser, LensCommandOptions& options) {
@@ -155,7 +154,7 @@ Command add_lens_command(CLI::App& program) {
   const auto options = std::make_shared<LensCommandOptions>();
   add_options(*parser, *options);
   return {parser, [options] {
-            (options->json ? print_json : print_text)(figures(*options), *options);
+            (options->json ? print_lens_json : print_lens_text)(figures(*options), *options);
             return kDone;
           }};
 }

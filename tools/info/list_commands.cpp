@@ -8,11 +8,11 @@
 
 #include "dof/dof.h"
 #include "raster/numbers/profile.h"
-#include "scenes/lens_views/scene_method.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
-#include "tools/options/method_options.h"
 #include "tools/cli/option_values.h"
+#include "tools/options/method_options.h"
 
 namespace softfocus {
 namespace {
@@ -59,7 +59,7 @@ Command add_methods_command(CLI::App& program) {
               rows.push_back({std::string{method.name}, std::string{method.needs},
                               std::string{method.summary}});
             }
-            for (const SceneMethod& method : scene_methods()) {
+            for (const LensViewMethod& method : lens_view_methods()) {
               const char* lack = method.missing.empty() ? "" : " (not in this build)";
               rows.push_back({std::string{method.name}, std::string{method.needs},
                               std::string{method.summary} + lack});
@@ -75,7 +75,7 @@ Command add_profiles_command(CLI::App& program) {
   CLI::App* parser = add_command(program, "profiles", "List the GPUs to agree with: name, summary");
   return {parser, [] {
             std::vector<Row> rows;
-            for (const Profile& profile : profiles()) {
+            for (const NamedProfile& profile : profiles()) {
               rows.push_back({std::string{profile.name}, std::string{profile.summary}});
             }
             print_aligned(rows);

@@ -23,7 +23,10 @@ double checked(std::string_view option, const std::string& text, std::string_vie
   return lens.*value;
 }
 
-}  // namespace
+/// For the help.
+struct LensDefaults {
+  std::string focus, focal_length, f_number, coc_scale;
+};
 
 void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults& defaults) {
   const auto add = [&](const char* name, const char* type, const std::string& help,
@@ -50,6 +53,13 @@ void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults
       [&place = options.coc_scale](const std::string& text) {
         place = parse_number("--coc-scale", text, 0.0, 1e6, "a factor from 0 to 1000000");
       });
+}
+
+}  // namespace
+
+void add_lens_options(CLI::App& parser, LensOptions& options) {
+  const std::string scenes = "the scene's";
+  add_lens_options(parser, options, {scenes, scenes, scenes, scenes});
 }
 
 void add_own_lens_options(CLI::App& parser, LensOptions& options,

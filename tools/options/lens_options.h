@@ -19,15 +19,11 @@ struct LensOptions {
   std::optional<double> coc_scale;
 };
 
-/// Adds --focus, --focal-length, --f-number and --coc-scale. A value that no lens can
-/// have is refused as it is read. `defaults` fills the help's "(default: ...)", with
-/// one entry for each in that order.
-struct LensDefaults {
-  std::string focus, focal_length, f_number, coc_scale;
-};
-void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults& defaults);
+/// Adds --focus, --focal-length, --f-number and --coc-scale, whose defaults are the scene's. A
+/// value that no lens can have is refused as it is read.
+void add_lens_options(CLI::App& parser, LensOptions& options);
 
-/// The same with a plain lens's values as defaults, and --fov: where no scene has a lens.
+/// Likewise for a command without a scene: the defaults are ThinLens's, and --fov is added.
 void add_own_lens_options(CLI::App& parser, LensOptions& options,
                           std::function<void(double degrees)> on_fov);
 

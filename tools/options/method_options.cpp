@@ -1,11 +1,22 @@
 #include "tools/options/method_options.h"
 
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 
 namespace softfocus {
+namespace {
+
+std::string given(Arithmetic arithmetic) {
+  return "--arithmetic " + std::string{arithmetic_name(arithmetic)};
+}
+
+constexpr std::array kSamplingOptions{"--samples", "--jitter", "--until", "--aperture-blades"};
+
+}  // namespace
 
 void add_method_option(CLI::App& parser, const Method*& method) {
   add_value(parser, "--method", "NAME",
@@ -22,11 +33,11 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
   add_value(parser, "--method", "NAME",
             "Depth-of-field method (default: " + std::string{method.name()} + ")",
             [&method](const std::string& text) {
-              method = {find_method(text), find_scene_method(text)};
+              method = {find_method(text), find_lens_view_method(text)};
               if (method.filter != nullptr || text == kAutoMethod) return;
               if (method.of_scene == nullptr) {
                 throw UsageError("--method '" + text + "': there are " + names_of(methods()) +
-                                 ", " + names_of(scene_methods()) + ", " +
+                                 ", " + names_of(lens_view_methods()) + ", " +
                                  std::string{kAutoMethod});
               }
               if (!method.of_scene->missing.empty()) {
@@ -47,6 +58,120 @@ void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px) {
 float used_max_coc_px(std::optional<float> given, const SceneLens& of_scene, int height_px) {
   const double scaled = of_scene.max_coc_px_at_1024 * height_px / 1024.0;
   return given.value_or(static_cast<float>(std::fmin(scaled, static_cast<double>(kLargestMaxCoc))));
+}
+
+void add_arithmetic_option(CLI::App& parser, Arithmetic& arithmetic) {
+  add_value(parser, "--arithmetic", "float|fixed|fixed-8",
+            "Numbers that two-pass computes with: binary32, integers, integers on 8-bit colours "
+            "(default: float)",
+            [&arithmetic](const std::string& text) {
+              for (const Arithmetic choice : arithmetics()) {
+                if (arithmetic_name(choice) == text) {
+                  arithmetic = choice;
+                  return;
+                }
+              }
+              throw UsageError("--arithmetic '" + text + "': there are float, fixed, fixed-8");
+            });
+}
+
+void check_arithmetic(Arithmetic arithmetic, std::string_view method, bool on_driver) {
+  if (arithmetic == Arithmetic::floats) return;
+  if (method != "two-pass") {
+    throw UsageError(given(arithmetic) + " and --method " + std::string{method} +
+                     " exclude each other: only two-pass is there in integers");
+  }
+  if (on_driver) {
+    throw UsageError(given(arithmetic) +
+                     " and a GL driver exclude each other: drivers compute with floats");
+  }
+}
+
+void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings) {
+  if (arithmetic == Arithmetic::floats) return;
+  if (const char* error = fixed_settings_error(settings)) {
+    throw UsageError(given(arithmetic) + ": " + error);
+  }
+}
+
+void add_sampling_options(CLI::App& parser, Sampling& sampling) {
+  add_value(parser, "--samples", "N",
+            "Of accumulation and ray-traced: points on the lens, 1 to 65536 (default: " +
+                std::to_string(sampling.samples) + ", with --until 65536)",
+            [&sampling](const std::string& text) {
+              sampling.samples =
+                  parse_whole("--samples", text, 1, kMostSamples, "a whole number from 1 to 65536");
+            });
+  add_flag(parser, "--jitter",
+           "Of the same: look from all over each pixel, not from its centre alone",
+           sampling.jitter);
+  add_value(parser, "--until", "ERROR",
+            "Of the same: stop when two half-sets of samples differ by this RMS of linear values",
+            [&sampling](const std::string& text) {
+              sampling.until =
+                  parse_number("--until", text, 1e-9, 1e9, "an error above 0, such as 0.001");
+            });
+  add_value(parser, "--aperture-blades", "N",
+            "Of the same: an aperture of 3 to 64 straight blades, 0 = round (default: 0)",
+            [&blades = sampling.aperture.blades](const std::string& text) {
+              constexpr const char* kWanted = "0 for a disc or a whole number from 3 to 64";
+              blades = parse_whole("--aperture-blades", text, 0, kMostBlades, kWanted);
+              if (blades == 1 || blades == 2) {
+                throw UsageError("--aperture-blades '" + text + "': give " + kWanted);
+              }
+            });
+}
+
+void complete_sampling(Sampling& sampling, const CLI::App& parser) {
+  if (sampling.until && !is_given(parser, "--samples")) sampling.samples = kMostSamples;
+}
+
+void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
+  for (const char* option : kSamplingOptions) {
+    if (!is_given(parser, option)) continue;
+    throw UsageError(std::string{option} + ": the method " + std::string{method} +
+                     " does not sample the lens; give --method " + names_of(lens_view_methods()));
+  }
+}
+
+void add_auto_options(CLI::App& parser, AutoGoal& goal) {
+  add_value(parser, "--max-error", "E",
+            "Of auto: the cheapest method whose mean FLIP should be at most this (default: " +
+                short_number(goal.max_error) + ")",
+            [&goal](const std::string& text) {
+              goal.max_error = parse_number("--max-error", text, 0.0, 1.0,
+                                            "a mean FLIP from 0 to 1, such as 0.02");
+            });
+  add_value(parser, "--max-time", "MS",
+            "Of auto: the most accurate method that two cores of the reference machine should "
+            "do in this time, beside drawing",
+            [&goal](const std::string& text) {
+              goal.max_time_ms = parse_number("--max-time", text, 0.0, 1e9,
+                                              "a time in milliseconds of 0 or more, such as 8");
+            });
+}
+
+void check_auto_options(const CLI::App& parser, const MethodChoice& method) {
+  if (is_given(parser, "--max-error") && is_given(parser, "--max-time")) {
+    throw UsageError("--max-error and --max-time exclude each other; give one");
+  }
+  for (const char* option : {"--max-error", "--max-time"}) {
+    if (!is_given(parser, option) || method.is_auto()) continue;
+    throw UsageError(std::string{option} + ": the method " + std::string{method.name()} +
+                     " keeps to no bound; give --method auto");
+  }
+  if (!method.is_auto()) return;
+  if (is_given(parser, "--gl")) {
+    throw UsageError(
+        "--gl and --method auto exclude each other: what auto may choose no driver can do; "
+        "give a method");
+  }
+  for (const char* option : kSamplingOptions) {
+    if (!is_given(parser, option)) continue;
+    throw UsageError(std::string{option} +
+                     ": the method auto settles by itself how the lens is sampled; "
+                     "give --method accumulation");
+  }
 }
 
 }  // namespace softfocus

@@ -1,24 +1,28 @@
 #pragma once
-// --method and --max-coc, as `render` and `bench` share them.
+// The method and how it works: --method, --max-coc, --arithmetic, how the lens is sampled, and
+// the limits of --method auto.
 
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "dof/auto/auto_method.h"
 #include "dof/dof.h"
-#include "scenes/lens_views/scene_method.h"
+#include "dof/fixed_pictures/arithmetic.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
 #include "tools/cli/parser.h"
 
 namespace softfocus {
 
-/// What chooses a method by the scene (dof/auto/choose.h).
+/// What chooses a method by the scene (dof/auto/auto_method.h).
 inline constexpr std::string_view kAutoMethod = "auto";
 
 /// A method of either table: a filter of the drawn picture or one that draws the scene. Or
 /// neither: the scene shall choose.
 struct MethodChoice {
   const Method* filter = nullptr;
-  const SceneMethod* of_scene = nullptr;
+  const LensViewMethod* of_scene = nullptr;
 
   bool is_auto() const { return filter == nullptr && of_scene == nullptr; }
   std::string_view name() const {
@@ -38,5 +42,27 @@ void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px);
 /// The filter size for a picture of that height: as given, or the scene's, at most
 /// kLargestMaxCoc.
 float used_max_coc_px(std::optional<float> given, const SceneLens& of_scene, int height_px);
+
+void add_arithmetic_option(CLI::App& parser, Arithmetic& arithmetic);
+
+/// Throws UsageError if a method has no other arithmetic than floats and another is wanted.
+void check_arithmetic(Arithmetic arithmetic, std::string_view method, bool on_driver);
+
+/// Throws UsageError for settings that integers cannot have.
+void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings);
+
+void add_sampling_options(CLI::App& parser, Sampling& sampling);
+
+/// Once all options are read: --until without --samples may take kMostSamples.
+void complete_sampling(Sampling& sampling, const CLI::App& parser);
+
+/// Throws UsageError if one of them was given, for a filter does not sample the lens.
+void refuse_sampling_options(const CLI::App& parser, std::string_view method);
+
+void add_auto_options(CLI::App& parser, AutoGoal& goal);
+
+/// Throws UsageError if both were given, or either without --method auto, or with it an
+/// option that it settles itself.
+void check_auto_options(const CLI::App& parser, const MethodChoice& method);
 
 }  // namespace softfocus

@@ -4,21 +4,20 @@
 #include <iostream>
 #include <memory>
 
-#include "dof/auto/choose.h"
+#include "dof/auto/auto_method.h"
 #include "dof/show.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
-#include "tools/options/arithmetic_option.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/progress.h"
+#include "tools/files/whole_file.h"
 #include "tools/gl/frame_on_gl.h"
 #include "tools/options/method_options.h"
-#include "tools/render/performance_report.h"
-#include "tools/cli/progress.h"
+#include "tools/options/run_options.h"
 #include "tools/render/options.h"
-#include "tools/options/scene_warnings.h"
-#include "tools/files/whole_file.h"
+#include "tools/render/performance_report.h"
 
 namespace softfocus {
 namespace {
@@ -26,12 +25,14 @@ namespace {
 /// Does a stage's work, with its name on the terminal and its time noted.
 template <class Work>
 auto timed(Progress& progress, const char* stage, double& ms, Work work) {
-  using Clock = std::chrono::steady_clock;
   progress.show(stage);
   struct Stopwatch {
     double& ms;
-    Clock::time_point start = Clock::now();
-    ~Stopwatch() { ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Stopwatch() {
+      const auto end = std::chrono::steady_clock::now();
+      ms = std::chrono::duration<double, std::milli>(end - start).count();
+    }
   } const stopwatch{ms};
   return work();
 }
@@ -71,7 +72,7 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
 }
 
 /// The method that draws the scene itself, from many points of the lens.
-Image sampled_picture(const Scene& scene, const View& view, const Image& pinhole,
+Image sampled_picture(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
                       PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
                       Progress& progress, ThreadPool& pool) {
   const UsedLens& used = *record.lens;
@@ -103,7 +104,7 @@ std::string until_warning(const RenderRecord& record) {
 /// What auto was to keep to and foresees that it will not, as a line, or nothing.
 std::string goal_warning(const RenderOptions& options, const RenderRecord& record) {
   if (!record.used.choice || record.used.choice->meets_goal) return {};
-  const Choice& choice = *record.used.choice;
+  const AutoMethod& choice = *record.used.choice;
   return "--max-error " + short_number(options.goal.max_error) +
          ": no method is foreseen to keep to it; " + setting_text(choice) +
          " comes nearest, with a foreseen error of " + short_number(choice.predicted_error);
@@ -114,9 +115,10 @@ void choose_method(RenderRecord& record, const Image& drawn, const RenderOptions
                    ThreadPool& pool) {
   DofSettings& settings = record.lens->settings;
   const SceneTraits traits = scene_traits(drawn, settings.coc, pool);
-  const Choice choice = choose(traits, options.goal, {options.max_coc_px, record.triangles});
+  const AutoMethod choice =
+      auto_method(traits, options.goal, {options.max_coc_px, record.triangles});
   UsedMethod& used = record.used;
-  used.method = {find_method(choice.method), find_scene_method(choice.method)};
+  used.method = {find_method(choice.method), find_lens_view_method(choice.method)};
   if (used.method.of_scene != nullptr) used.sampling.samples = choice.samples;
   if (used.method.filter != nullptr) settings.max_coc_px = choice.radius_px;
   used.choice = choice;
@@ -165,7 +167,7 @@ int render(const RenderOptions& options) {
   const int width = options.size.width, height = options.size.height;
   std::optional<FrameOnGl> on_gl;
   if (options.gl != nullptr) record.gl_renderer = on_gl.emplace(*options.gl).renderer();
-  const View view = camera_view(scene.camera, options.frame, width, height);
+  const CameraMatrices view = camera_matrices(scene.camera, options.frame, width, height);
   std::optional<PreparedScene> prepared;
   Image drawn = timed(progress, "drawing", ms.draw, [&] {
     if (on_gl) return on_gl->draw(scene, view, options.frame, width, height);

@@ -4,15 +4,10 @@
 #include <cstdint>
 
 #include "raster/images/image.h"
-#include "tools/options/arithmetic_option.h"
-#include "tools/options/auto_options.h"
-#include "tools/options/driver_option.h"
 #include "tools/cli/errors.h"
-#include "tools/options/memory_check.h"
-#include "tools/options/method_options.h"
 #include "tools/cli/platform.h"
-#include "tools/options/profile_option.h"
-#include "tools/options/sampling_options.h"
+#include "tools/options/method_options.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 namespace {
@@ -42,8 +37,7 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
               if (!format) throw UsageError("--format '" + text + "': there are png, pfm, npy");
               options.format = *format;
             });
-  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
-            [&options](const std::string& text) { options.size = parse_size("--size", text); });
+  add_size(parser, options.size);
   add_value(parser, "--show", "image|pinhole|coc|depth",
             "The picture with depth of field, without, or a grey map (default: image)",
             [&options](const std::string& text) {
@@ -65,11 +59,7 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
 void add_method_options(CLI::App& parser, RenderOptions& options) {
   add_method_option(parser, options.method);
   add_arithmetic_option(parser, options.arithmetic);
-  add_lens_options(parser, options.lens,
-                   {.focus = "the scene's",
-                    .focal_length = "the scene's",
-                    .f_number = "the scene's",
-                    .coc_scale = "the scene's"});
+  add_lens_options(parser, options.lens);
   add_value(parser, "--autofocus", "[X,Y]",
             "Focus on what is at this pixel, from the top left (default: the centre)",
             [&options](const std::string& text) {
@@ -89,8 +79,7 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
 }
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
-  add_profile_option(parser, "GPU to agree with to the bit (default: ieee)",
-                     [&options](const Profile& profile) { options.profile = profile; });
+  add_profile_option(parser, options.profile, options.profile_name);
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
   add_pool_options(parser, options.pool, "the picture is the same");
@@ -110,7 +99,7 @@ bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b
 
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
 /// depth (4) and the largest encoding (12).
-constexpr std::uint64_t kBytesPerPixel = 40;
+constexpr std::uint64_t kRenderBytesPerPixel = 40;
 
 /// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and
 /// its depth.
@@ -180,7 +169,8 @@ void complete(RenderOptions& options, const CLI::App& parser) {
                      " exclude each other: it draws in the emulation; give one");
   }
   const bool may_sample = samples || options.method.is_auto();
-  check_memory("--size", options.size, kBytesPerPixel + (may_sample ? kSamplingBytesPerPixel : 0));
+  check_memory("--size", options.size,
+               kRenderBytesPerPixel + (may_sample ? kSamplingBytesPerPixel : 0));
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "dof/auto/choose.h"
+#include "dof/auto/auto_method.h"
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/dof.h"
 #include "raster/numbers/profile.h"
-#include "tools/gl/driver.h"
-#include "tools/files/image_file.h"
-#include "tools/options/lens_options.h"
-#include "tools/options/method_options.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/options/pool_options.h"
+#include "tools/files/image_file.h"
+#include "tools/gl/driver.h"
+#include "tools/options/lens_options.h"
+#include "tools/options/method_options.h"
+#include "tools/options/run_options.h"
 
 namespace softfocus {
 
@@ -30,13 +30,14 @@ struct RenderOptions {
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
   double frame = 0.0;
-  Profile profile = profiles().front();
+  Profile profile;
+  std::string profile_name = "ieee";
   const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;  ///< of a method that draws the scene
-  Goal goal;          ///< of auto
+  AutoGoal goal;      ///< of auto
   LensOptions lens;
   bool autofocus = false;
   std::optional<Pixel> autofocus_pixel;  ///< the picture's centre if none

@@ -2,7 +2,8 @@
 
 #include <array>
 #include <cstdio>
-#include <nlohmann/json.hpp>
+
+#include "tools/files/json.h"
 
 namespace softfocus {
 namespace {
@@ -55,7 +56,7 @@ std::string filter_lines(const UsedLens& used) {
          line("Leak", short_number(used.settings.leak));
 }
 
-std::string choice_lines(const Choice& choice) {
+std::string choice_lines(const AutoMethod& choice) {
   return line("Chosen", setting_text(choice)) + line("Because", choice.reason) +
          line("Predicted error", short_number(choice.predicted_error) + " (mean FLIP)") +
          line("Predicted time",
@@ -73,12 +74,12 @@ std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
   return text;
 }
 
-nlohmann::ordered_json traits_json(const SceneTraits& traits) {
-  nlohmann::ordered_json json{{"nearest_px", traits.nearest_px},
-                              {"farthest_px", traits.farthest_px},
-                              {"blurred_share", traits.blurred_share},
-                              {"blur", traits.blur},
-                              {"ghosts", traits.ghosts}};
+Json traits_json(const SceneTraits& traits) {
+  Json json{{"nearest_px", traits.nearest_px},
+            {"farthest_px", traits.farthest_px},
+            {"blurred_share", traits.blurred_share},
+            {"blur", traits.blur},
+            {"ghosts", traits.ghosts}};
   for (const RadiusTraits& of : traits.by_radius) {
     json["blurred"].push_back(of.blurred);
     json["lost"].push_back(of.lost);
@@ -88,8 +89,8 @@ nlohmann::ordered_json traits_json(const SceneTraits& traits) {
   return json;
 }
 
-nlohmann::ordered_json choice_json(const Choice& choice, const Goal& goal) {
-  nlohmann::ordered_json json{{"method", choice.method}};
+Json choice_json(const AutoMethod& choice, const AutoGoal& goal) {
+  Json json{{"method", choice.method}};
   if (choice.radius_px > 0.0f) json["max_coc_px"] = choice.radius_px;
   if (choice.samples > 0) json["samples"] = choice.samples;
   if (goal.max_time_ms) {
@@ -135,7 +136,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   }
   if (record.used.choice) text += choice_lines(*record.used.choice);
   text += line("Picture", std::string{name_of(options.show)});
-  text += record.gl_renderer.empty() ? line("Profile", options.profile.name)
+  text += record.gl_renderer.empty() ? line("Profile", options.profile_name)
                                      : line("GL driver", record.gl_renderer);
   text += line("Threads", std::to_string(options.pool.threads));
   text += line("Vector unit", std::string{isa_name(options.pool.isa)});
@@ -162,14 +163,13 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
 }
 
 std::string json_report(const RenderOptions& options, const RenderRecord& record) {
-  using nlohmann::ordered_json;
   const StageTimes& ms = record.ms;
-  ordered_json json{
+  Json json{
       {"softfocus", SOFTFOCUS_VERSION},  {"scene", record.scene_name},
       {"title", record.scene_title},     {"frame", options.frame},
       {"width", options.size.width},     {"height", options.size.height},
       {"triangles", record.triangles},   {"method", options.method.name()},
-      {"show", name_of(options.show)},   {"profile", options.profile.name},
+      {"show", name_of(options.show)},   {"profile", options.profile_name},
       {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
       {"output", options.output},
   };
@@ -213,7 +213,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     json["stages_ms"][stage.name] = ms.*stage.ms;
   }
   // A file's name need not be UTF-8, but JSON must be.
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace softfocus

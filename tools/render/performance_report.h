@@ -34,7 +34,7 @@ struct UsedLens {
 struct UsedMethod {
   MethodChoice method;
   Sampling sampling;
-  std::optional<Choice> choice;  ///< of auto
+  std::optional<AutoMethod> choice;  ///< of auto
 };
 
 /// What a method that draws the scene came to.

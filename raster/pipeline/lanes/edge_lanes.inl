@@ -1,4 +1,4 @@
-// Edge functions past 32 bits, in binary64: two vectors for the lanes of one.
+// Edge functions that 32 bits do not hold, in binary64: two vectors have the lanes of one.
 
 namespace {
 
@@ -9,7 +9,7 @@ using HalfInts [[gnu::vector_size(2 * SOFTFOCUS_LANES)]] = std::int32_t;
 struct WideLanes {
   HalfDoubles low, high;
 
-  // As friends they are looked for with these operands alone, and hide no others.
+  // Friends are found by their operands alone, and so hide no other operators.
   SOFTFOCUS_INLINE friend WideLanes operator+(const WideLanes& a, const WideLanes& b) {
     return {a.low + b.low, a.high + b.high};
   }
@@ -48,8 +48,7 @@ template <std::size_t... lane>
 SOFTFOCUS_INLINE Floats join_halves(HalfFloats low, HalfFloats high, std::index_sequence<lane...>) {
   return __builtin_shufflevector(low, high, lane...);
 }
-/// Rounded to nearest, as from the integers that they are: so 0 and 1 stay where they are among
-/// the others.
+/// Rounded to nearest. The values are integers, so they stay on their side of 0 and 1.
 SOFTFOCUS_INLINE Floats narrow(const WideLanes& v) {
   return join_halves(__builtin_convertvector(v.low, HalfFloats),
                      __builtin_convertvector(v.high, HalfFloats),

@@ -1,44 +1,42 @@
-// Varyings at the pixels of kQuads quads, each of a triangle of its own: interpolate.h and
-// planes.h, lane by lane.
+// Varyings at the pixels of kQuads quads. Each quad shows a triangle of its own. The scalar form
+// is interpolate.h and planes.h.
 
 namespace {
 
 /// The triangle that each quad shows.
 using QuadTriangles = std::array<const LaneTriangle*, kQuads>;
 
-/// The floats kFirst <= k < kEnd of the three vertices' rows, in the lanes of their quads.
-template <std::size_t kFirst, std::size_t kEnd>
-struct VertexLanes {
-  std::array<std::array<Floats, kEnd - kFirst>, 3> values;
+template <const auto& kinds>
+inline constexpr bool kAllPerspective = std::count(kinds.begin(), kinds.end(),
+                                                   Interpolation::perspective) == std::ssize(kinds);
 
-  SOFTFOCUS_INLINE Floats at(std::size_t vertex, std::size_t k) const {
-    return values[vertex][k - kFirst];
+/// Lanes j of each four for which varying 4 `four` + j is of the kind.
+template <const auto& kinds>
+SOFTFOCUS_INLINE Mask lanes_of_kind(Interpolation kind, std::size_t four) {
+  Mask mask{};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::size_t varying = 4 * four + static_cast<std::size_t>(lane % 4);
+    if (varying < kinds.size() && kinds[varying] == kind) mask[lane] = -1;
   }
-  /// `rows` are of one vertex of each quad's triangle.
-  SOFTFOCUS_INLINE void load(std::size_t vertex, const std::array<const float*, kQuads>& rows) {
-    load_all(vertex, rows, std::make_index_sequence<(kEnd + 3) / 4 - kFirst / 4>{});
-  }
+  return mask;
+}
 
- private:
-  template <std::size_t... four>
-  SOFTFOCUS_INLINE void load_all(std::size_t vertex, const std::array<const float*, kQuads>& rows,
-                                 std::index_sequence<four...>) {
-    (load_four<(kFirst / 4 + four) * 4>(vertex, rows), ...);
-  }
-  template <std::size_t k>
-  SOFTFOCUS_INLINE void load_four(std::size_t vertex,
-                                  const std::array<const float*, kQuads>& rows) {
-    const Floats four = load_fours(rows.data(), k);
-    put<k>(vertex, spread<0>(four));
-    put<k + 1>(vertex, spread<1>(four));
-    put<k + 2>(vertex, spread<2>(four));
-    put<k + 3>(vertex, spread<3>(four));
-  }
-  template <std::size_t k>
-  SOFTFOCUS_INLINE void put(std::size_t vertex, Floats value) {
-    if constexpr (k >= kFirst && k < kEnd) values[vertex][k - kFirst] = value;
-  }
-};
+// Varyings come four at a time: the lanes of a quad hold four varyings of a vertex or a plane,
+// as they lie in its row, and for each of the quad's pixels four values are computed. The last
+// step, a transposition, gives each varying the lanes of the pixels.
+
+/// Each pixel's number in all lanes of its quad.
+using OfPixels = std::array<Floats, kQuadPixels>;
+SOFTFOCUS_INLINE OfPixels of_pixels(Floats v) {
+  return {spread<0>(v), spread<1>(v), spread<2>(v), spread<3>(v)};
+}
+
+/// The rows of one vertex of each quad's triangle.
+using VertexRows = std::array<const float*, kQuads>;
+
+SOFTFOCUS_INLINE Floats load_varyings(const VertexRows& rows, std::size_t four) {
+  return load_fours(rows.data(), kVertexVaryings + 4 * four);
+}
 
 /// The weights of vertices 1 and 2 at a pixel.
 struct Weights {
@@ -46,10 +44,15 @@ struct Weights {
 };
 
 /// As BarycentricInterpolator.
-template <std::size_t N>
+template <const auto& kinds>
 struct BarycentricLanes {
   using Point = Weights;
-  VertexLanes<kVertexInverseW, kVertexVaryings + N> vertices;
+  /// At vertex 0, the differences of the others to it, and at the provoking vertex.
+  struct Four {
+    Floats first, to_second, to_third, flat;
+  };
+  std::array<Four, (kinds.size() + 3) / 4> fours;
+  std::array<Floats, 3> inverse_w;
   std::array<Ints, 3> edge, per_x, per_y;
   Ints x_origin, y_origin;
   Floats inverse_area;
@@ -57,16 +60,26 @@ struct BarycentricLanes {
   bool any_large;
 
   /// Keeps a pointer to the triangles.
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t) {
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking,
+                             std::size_t varyings) {
     any_large = false;
+    std::array<VertexRows, 3> rows_of;
 #pragma GCC unroll 3
     for (std::size_t vertex = 0; vertex < 3; ++vertex) {
-      std::array<const float*, kQuads> rows;
 #pragma GCC unroll 4
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
-        rows[quad] = triangles[quad]->vertices[vertex];
+        rows_of[vertex][quad] = triangles[quad]->vertices[vertex];
       }
-      vertices.load(vertex, rows);
+      inverse_w[vertex] = spread<kVertexInverseW>(load_fours(rows_of[vertex].data(), 0));
+    }
+    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
+      const Floats first = load_varyings(rows_of[0], four);
+      fours[four].first = first;
+      fours[four].to_second = load_varyings(rows_of[1], four) - first;
+      fours[four].to_third = load_varyings(rows_of[2], four) - first;
+      if constexpr (!kAllPerspective<kinds>) {
+        fours[four].flat = load_varyings(rows_of[provoking], four);
+      }
     }
     std::array<const float*, kQuads> numbers;
 #pragma GCC unroll 4
@@ -98,14 +111,14 @@ struct BarycentricLanes {
     if (any_large) weigh_large(x, y, l);
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) l[i] *= inverse_area;
-    const Floats p0 = l[0] * vertices.at(0, kVertexInverseW);
-    const Floats p1 = l[1] * vertices.at(1, kVertexInverseW);
-    const Floats p2 = l[2] * vertices.at(2, kVertexInverseW);
+    const Floats p0 = l[0] * inverse_w[0];
+    const Floats p1 = l[1] * inverse_w[1];
+    const Floats p2 = l[2] * inverse_w[2];
     const Floats reciprocal = 1.0f / ((p0 + p1) + p2);
     return {l[1], l[2], p1 * reciprocal, p2 * reciprocal};
   }
 
-  // Edge functions that 32 bits do not hold, and with them those of the other quads.
+  // Edge functions of all quads, if 32 bits do not hold those of one.
   struct WideEdge {
     WideLanes at_origin, per_x, per_y;
   };
@@ -152,63 +165,74 @@ struct BarycentricLanes {
     }
   }
 
-  SOFTFOCUS_INLINE Floats blend(std::size_t varying, Floats weight1, Floats weight2) const {
-    const Floats a0 = vertices.at(0, kVertexVaryings + varying);
-    const Floats a1 = vertices.at(1, kVertexVaryings + varying);
-    const Floats a2 = vertices.at(2, kVertexVaryings + varying);
-    return (a0 + weight1 * (a1 - a0)) + weight2 * (a2 - a0);
-  }
-
-  SOFTFOCUS_INLINE Floats value(std::size_t varying, Interpolation kind, std::size_t provoking,
-                                const Weights& w) const {
-    switch (kind) {
-      case Interpolation::perspective: return blend(varying, w.perspective1, w.perspective2);
-      case Interpolation::linear: return blend(varying, w.linear1, w.linear2);
-      case Interpolation::flat: break;
+  /// The values of varyings at pixels, up to a multiple of four.
+  SOFTFOCUS_INLINE void values(const Weights& w, std::size_t varyings, Floats* to) const {
+    const OfPixels second = of_pixels(w.perspective1);
+    const OfPixels third = of_pixels(w.perspective2);
+    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
+      const Four& of = fours[four];
+      OfPixels value;
+#pragma GCC unroll 4
+      for (std::size_t i = 0; i < kQuadPixels; ++i) {
+        value[i] = (of.first + second[i] * of.to_second) + third[i] * of.to_third;
+      }
+      if constexpr (!kAllPerspective<kinds>) {
+        const OfPixels linear2 = of_pixels(w.linear1);
+        const OfPixels linear3 = of_pixels(w.linear2);
+        const Mask linear = lanes_of_kind<kinds>(Interpolation::linear, four);
+        const Mask flat = lanes_of_kind<kinds>(Interpolation::flat, four);
+        for (std::size_t i = 0; i < kQuadPixels; ++i) {
+          value[i] = select(
+              linear, (of.first + linear2[i] * of.to_second) + linear3[i] * of.to_third, value[i]);
+          value[i] = select(flat, of.flat, value[i]);
+        }
+      }
+      transpose_fours(value[0], value[1], value[2], value[3]);
+#pragma GCC unroll 4
+      for (std::size_t i = 0; i < 4; ++i) to[4 * four + i] = value[i];
     }
-    return vertices.at(provoking, kVertexVaryings + varying);
   }
 };
 
-/// The window position of a pixel and 1 / (1 / w) there.
+/// A pixel, and w there as 1 / (1 / w).
 struct PlanePoint {
   Floats x, y, w;
 };
 
-/// As Plane.
+/// Plane in lanes.
 struct PlaneOfLanes {
   Floats at_origin, per_x, per_y;
 };
 
-/// As PlaneInterpolator with PlanesFromOrigin, for varyings of these kinds.
+/// PlaneInterpolator with PlanesFromOrigin in lanes, for varyings of these kinds.
 template <const auto& kinds, Contraction contraction>
 struct PlaneLanes {
-  static constexpr std::size_t N = kinds.size();
   using Point = PlanePoint;
-  PlaneOfLanes inverse_w;
-  std::array<PlaneOfLanes, N> planes;  // a flat varying's value is at_origin
+  PlaneOfLanes inverse_w{};
+  std::array<PlaneOfLanes, (kinds.size() + 3) / 4> fours;  // a flat varying's value is at_origin
 
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
-    VertexLanes<kVertexX, kVertexVaryings + N> vertices;
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking,
+                             std::size_t varyings) {
+    std::array<VertexRows, 3> rows_of;
+    std::array<Floats, 3> window;
 #pragma GCC unroll 3
     for (std::size_t vertex = 0; vertex < 3; ++vertex) {
       // A clockwise triangle's vertices 1 and `other` change places.
       const std::size_t other = provoking == 0 ? 2 : 0;
       const std::size_t swapped = vertex == 1 ? other : vertex == other ? 1 : vertex;
-      std::array<const float*, kQuads> rows;
 #pragma GCC unroll 4
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         const LaneTriangle& t = *triangles[quad];
-        rows[quad] = t.vertices[t.clockwise ? swapped : vertex];
+        rows_of[vertex][quad] = t.vertices[t.clockwise ? swapped : vertex];
       }
-      vertices.load(vertex, rows);
+      window[vertex] = load_fours(rows_of[vertex].data(), 0);
     }
-    const Floats x = vertices.at(0, kVertexX);
-    const Floats y = vertices.at(0, kVertexY);
-    const Floats dx01 = x - vertices.at(1, kVertexX);
-    const Floats dy01 = y - vertices.at(1, kVertexY);
-    const Floats dx20 = vertices.at(2, kVertexX) - x;
-    const Floats dy20 = vertices.at(2, kVertexY) - y;
+    const Floats x = spread<kVertexX>(window[0]);
+    const Floats y = spread<kVertexY>(window[0]);
+    const Floats dx01 = x - spread<kVertexX>(window[1]);
+    const Floats dy01 = y - spread<kVertexY>(window[1]);
+    const Floats dx20 = spread<kVertexX>(window[2]) - x;
+    const Floats dy20 = spread<kVertexY>(window[2]) - y;
     const Floats one_over_area = 1.0f / (dx01 * dy20 - dx20 * dy01);
     const Slopes slopes{x - 0.5f,
                         y - 0.5f,
@@ -216,22 +240,26 @@ struct PlaneLanes {
                         dy01 * one_over_area,
                         dx20 * one_over_area,
                         dy20 * one_over_area};
-    const Floats w0 = vertices.at(0, kVertexInverseW);
-    const Floats w1 = vertices.at(1, kVertexInverseW);
-    const Floats w2 = vertices.at(2, kVertexInverseW);
+    const Floats w0 = spread<kVertexInverseW>(window[0]);
+    const Floats w1 = spread<kVertexInverseW>(window[1]);
+    const Floats w2 = spread<kVertexInverseW>(window[2]);
     inverse_w = slopes.plane(w0, w1, w2);
-#pragma GCC unroll 16
-    for (std::size_t i = 0; i < N; ++i) {
-      const Floats a0 = vertices.at(0, kVertexVaryings + i);
-      const Floats a1 = vertices.at(1, kVertexVaryings + i);
-      const Floats a2 = vertices.at(2, kVertexVaryings + i);
-      switch (kinds[i]) {
-        case Interpolation::perspective: planes[i] = slopes.plane(a0 * w0, a1 * w1, a2 * w2); break;
-        case Interpolation::linear: planes[i] = slopes.plane(a0, a1, a2); break;
-        case Interpolation::flat:
-          // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
-          planes[i].at_origin = provoking == 0 ? a0 : a2;
-          break;
+    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
+      const Floats a0 = load_varyings(rows_of[0], four);
+      const Floats a1 = load_varyings(rows_of[1], four);
+      const Floats a2 = load_varyings(rows_of[2], four);
+      if constexpr (kAllPerspective<kinds>) {
+        fours[four] = slopes.plane(a0 * w0, a1 * w1, a2 * w2);
+      } else {
+        // Times 1: the number itself.
+        const Mask perspective = lanes_of_kind<kinds>(Interpolation::perspective, four);
+        const Floats one = splat(1.0f);
+        fours[four] =
+            slopes.plane(a0 * select(perspective, w0, one), a1 * select(perspective, w1, one),
+                         a2 * select(perspective, w2, one));
+        // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
+        fours[four].at_origin = select(lanes_of_kind<kinds>(Interpolation::flat, four),
+                                       provoking == 0 ? a0 : a2, fours[four].at_origin);
       }
     }
   }
@@ -242,12 +270,25 @@ struct PlaneLanes {
     return {column, row, 1.0f / at(inverse_w, column, row)};
   }
 
-  SOFTFOCUS_INLINE Floats value(std::size_t varying, Interpolation kind, std::size_t,
-                                const PlanePoint& point) const {
-    const PlaneOfLanes& plane = planes[varying];
-    if (kind == Interpolation::flat) return plane.at_origin;
-    const Floats value = at(plane, point.x, point.y);
-    return kind == Interpolation::linear ? value : value * point.w;
+  /// As BarycentricLanes.
+  SOFTFOCUS_INLINE void values(const PlanePoint& point, std::size_t varyings, Floats* to) const {
+    const OfPixels x = of_pixels(point.x), y = of_pixels(point.y), w = of_pixels(point.w);
+    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
+      OfPixels value;
+#pragma GCC unroll 4
+      for (std::size_t i = 0; i < kQuadPixels; ++i) {
+        const Floats linear = at(fours[four], x[i], y[i]);
+        value[i] = linear * w[i];
+        if constexpr (!kAllPerspective<kinds>) {
+          value[i] = select(lanes_of_kind<kinds>(Interpolation::linear, four), linear, value[i]);
+          value[i] = select(lanes_of_kind<kinds>(Interpolation::flat, four), fours[four].at_origin,
+                            value[i]);
+        }
+      }
+      transpose_fours(value[0], value[1], value[2], value[3]);
+#pragma GCC unroll 4
+      for (std::size_t i = 0; i < 4; ++i) to[4 * four + i] = value[i];
+    }
   }
 
  private:

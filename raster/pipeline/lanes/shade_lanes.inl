@@ -1,28 +1,26 @@
-// The fragment stage over what is seen of a draw in a tile.
+// The fragment stage, over the pixels of a tile that show a draw.
 //
-// A fragment stage in lanes works in two steps, the first on the quads of a triangle, the
-// second on the pixels that are seen:
+// A fragment stage in lanes has two steps, the first on quads, the second on the pixels that are
+// seen:
 //     static constexpr auto kInterpolation   // as the scalar stage's
 //     static constexpr std::size_t kInputs   // numbers that go from step to step
-//     template <class Quads> std::array<Floats, kInputs> inputs(const Quads&) const
+//     template <class Put> void inputs(const QuadFragments&, const Put& put) const
 //     void shade(const FragmentBatch<kInputs>&, std::array<Floats, 4>* colours) const
-// Quads are QuadFragments: what the stage does not ask for is not computed. The steps take
-// many vectors each: what one vector waits for in a long chain of operations, or in memory,
-// the CPU fills with the others, which it could not see past a whole fragment stage.
+// `inputs` calls put(i, Floats) for each input. A stage that knows the number of its varyings and
+// inputs at run time alone has so many at most, and
+//     std::size_t varying_count() const
+//     std::size_t input_count() const
+// Each step takes many vectors: while one waits for a long chain of operations, or for memory,
+// the CPU works on the others, which it could not see past a whole fragment stage.
 
 namespace {
 
 /// Quads of 2x2 pixels, each of one triangle.
-template <class Stage, class Interpolator>
 struct QuadFragments {
-  const Interpolator& triangles;
-  std::size_t provoking;
+  const Floats* varyings;
   const QuadTriangles& of_quads;
-  typename Interpolator::Point here;
 
-  SOFTFOCUS_INLINE Floats varying(std::size_t i) const {
-    return triangles.value(i, Stage::kInterpolation[i], provoking, here);
-  }
+  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return varyings[i]; }
   // Along the quad's upper row and left column.
   SOFTFOCUS_INLINE Floats ddx(std::size_t i) const {
     const Floats values = varying(i);
@@ -47,6 +45,7 @@ struct FragmentBatch {
   static constexpr int kMost = 8 * kLanes;
   alignas(64) std::array<std::array<float, kMost>, kInputs> inputs;
   alignas(64) std::array<std::int32_t, kMost> offsets;  ///< in bytes from the tile's first pixel
+  std::size_t input_count;
   int count = 0;
 
   SOFTFOCUS_INLINE int vectors() const { return (count + kLanes - 1) / kLanes; }
@@ -55,19 +54,32 @@ struct FragmentBatch {
   }
   SOFTFOCUS_INLINE bool has_room() const { return count <= kMost - kLanes; }
 
+  /// Stores whole vectors from a place on.
+  struct PutAll {
+    float* first;
+    SOFTFOCUS_INLINE void operator()(std::size_t i, Floats v) const { store(first + i * kMost, v); }
+  };
+  /// Packs the seen lanes first.
+  struct PutSeen {
+    float* first;
+    const Compression& kept;
+    SOFTFOCUS_INLINE void operator()(std::size_t i, Floats v) const {
+      store(first + i * kMost, compress(v, kept));
+    }
+  };
+
   /// Appends the pixels of the mask.
-  SOFTFOCUS_INLINE void append(const std::array<Floats, kInputs>& values, Ints pixel_offsets,
-                               Mask seen) {
+  template <class Stage>
+  SOFTFOCUS_INLINE void append(const Stage& stage, const QuadFragments& fragments,
+                               Ints pixel_offsets, Mask seen) {
     const auto at = static_cast<std::size_t>(count);
     const unsigned bits = lane_bits(seen);
     if (bits == kAllLaneBits) {
-#pragma GCC unroll 16
-      for (std::size_t i = 0; i < kInputs; ++i) store(&inputs[i][at], values[i]);
+      stage.inputs(fragments, PutAll{&inputs[0][at]});
       store(&offsets[at], pixel_offsets);
     } else {
       const Compression kept = compression(seen);
-#pragma GCC unroll 16
-      for (std::size_t i = 0; i < kInputs; ++i) store(&inputs[i][at], compress(values[i], kept));
+      stage.inputs(fragments, PutSeen{&inputs[0][at], kept});
       store(&offsets[at], compress(pixel_offsets, kept));
     }
     count += __builtin_popcount(bits);
@@ -76,20 +88,20 @@ struct FragmentBatch {
   SOFTFOCUS_INLINE void fill_up() {
     const int last = (vectors() - 1) * kLanes;
     const Mask present = first_lanes(count - last);
-    for (std::array<float, kMost>& column : inputs) {
-      float* from = &column[static_cast<std::size_t>(last)];
+    for (std::size_t i = 0; i < input_count; ++i) {
+      float* from = &inputs[i][static_cast<std::size_t>(last)];
       store(from, select(present, load(from), splat(from[0])));
     }
   }
 };
 
-// A quad that shows a triangle of a run: the triangle's id less the run's first, above the
-// quad's number, above a bit for each pixel that shows it.
+// A quad that shows a triangle of a run, in 32 bits. From the top: the triangle's id less the
+// run's first; the quad's number; a bit for each pixel that shows the triangle.
 inline constexpr int kQuadBits = 10;
 static_assert(kTilePixels / kQuadPixels == 1 << kQuadBits);
 static_assert(kMostVisible >> (32 - kQuadBits - kQuadPixels) == 0);
 
-// Vertices are asked for so many vectors before they are read: a few hundred cycles.
+// Vertices are prefetched this many vectors ahead: a few hundred cycles.
 inline constexpr int kQuadsAhead = 3;
 
 struct SeenQuads {
@@ -101,7 +113,7 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   return entry >> (kQuadBits + kQuadPixels);
 }
 
-// Of kQuads entries, each in the lanes of its quad.
+// The triangles of kQuads entries, each in the lanes of its quad.
 SOFTFOCUS_INLINE Ints triangles_of(const std::uint32_t* entries) {
   return as_ints(as_bits(repeat_by_four(as_ints(load(entries)))) >> (kQuadBits + kQuadPixels));
 }
@@ -112,7 +124,7 @@ SOFTFOCUS_INLINE std::uint32_t quad_entry(const VisibleRun& run, std::int32_t id
   return (triangle << kQuadBits | static_cast<unsigned>(quad)) << kQuadPixels | pixels;
 }
 
-// Of the lanes that begin with a quad. Returns how many quads are listed then.
+// Lists the quads of the vector that begins with `quad`. Returns the new count.
 SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& run, int quad,
                                 Mask in_area, std::uint32_t* entries, int count) {
   const std::int32_t* first_id = &tile.ids[static_cast<std::size_t>(quad * kQuadPixels)];
@@ -124,7 +136,7 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
           quad_entry(run, ids[0], quad, 0xFu) + as_bits(lane_numbers() << kQuadPixels));
     return count + kQuads;
   }
-  // The triangle that each quad's first pixel shows, and then the others.
+  // First the triangle that each quad's first pixel shows, then the others.
   const unsigned as_first = lane_bits(ids == spread<0>(ids)) & seen;
   for (int i = 0; i < kQuads; ++i) {
     const unsigned pixels = as_first >> (i * kQuadPixels) & 0xFu;
@@ -141,8 +153,9 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
   return count;
 }
 
-SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& run,
-                                SeenQuads& seen) {
+// Not inlined: one copy for all stages.
+[[gnu::noinline]] inline void list_seen(const VisibilityTile& tile, const VisibleRun& run,
+                                        SeenQuads& seen) {
   int x_begin = tile.area.x_end, y_begin = tile.area.y_end;
   int x_end = tile.area.x_begin, y_end = tile.area.y_begin;
   for (std::int32_t id = run.first_id; id < run.end_id; ++id) {
@@ -170,7 +183,7 @@ SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& ru
     }
   }
   seen.count = count;
-  // Quads of which nothing is seen fill up the last vector and those that are fetched ahead.
+  // Quads without a pixel fill up the last vector and those that are prefetched.
   if (seen.count == 0) return;
   const auto end = static_cast<std::size_t>(seen.count);
   for (std::size_t i = 0; i < (kQuadsAhead + 1) * kQuads; ++i) {
@@ -178,7 +191,7 @@ SOFTFOCUS_INLINE void list_seen(const VisibilityTile& tile, const VisibleRun& ru
   }
 }
 
-// Asks for the vertices of quads to come, which were written long ago.
+// Prefetches the vertices of quads to come, which were written long ago.
 SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
                                      const std::uint32_t* entries) {
   for (int quad = 0; quad < kQuads; ++quad) {
@@ -200,7 +213,7 @@ SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
           float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
 }
 
-// The second step. Its own function, which all interpolators share.
+// The second step. Not inlined: all interpolators share it.
 template <class Stage>
 [[gnu::noinline]] void shade_batch(const Stage& stage, const FragmentJob& job,
                                    const VisibilityTile& tile,
@@ -224,6 +237,18 @@ template <class Stage>
   batch.count = 0;
 }
 
+template <class Stage>
+SOFTFOCUS_INLINE std::size_t interpolated_count(const Stage& stage) {
+  if constexpr (requires { stage.varying_count(); }) return stage.varying_count();
+  return Stage::kInterpolation.size();
+}
+
+template <class Stage>
+SOFTFOCUS_INLINE std::size_t input_count(const Stage& stage) {
+  if constexpr (requires { stage.input_count(); }) return stage.input_count();
+  return Stage::kInputs;
+}
+
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
@@ -236,8 +261,10 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   const bool in_picture = tile.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
 
+  const std::size_t varyings = interpolated_count(stage);
   FragmentBatch<Stage::kInputs> batch;
-  Interpolator interpolator{};
+  batch.input_count = input_count(stage);
+  Interpolator interpolator;
   QuadTriangles of_quads{};
   Ints loaded = splat(-1);
   for (int i = 0; i < seen.count; i += kQuads) {
@@ -251,7 +278,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         of_quads[quad] = triangles[triangle_of(entries[quad])];
       }
-      interpolator.load(of_quads, job.provoking);
+      interpolator.load(of_quads, job.provoking, varyings);
       loaded = triangle;
     }
     const Ints quad = entry >> kQuadPixels;
@@ -260,14 +287,15 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     const Ints x = (block & 15) * kBlockSize + (quad & 1) * 2 + (lane_numbers() & 1);
     const Ints y = (block >> 4 & 15) * kBlockSize + (quad & 2) + (lane_numbers() >> 1 & 1);
 
-    const QuadFragments<Stage, Interpolator> fragments{
-        interpolator, job.provoking, of_quads,
-        interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y)};
+    std::array<Floats, (Stage::kInterpolation.size() + 3) / 4 * 4> values;
+    interpolator.values(interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y),
+                        varyings, values.data());
+    const QuadFragments fragments{values.data(), of_quads};
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
-    batch.append(stage.inputs(fragments),
+    batch.append(stage, fragments,
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
                  (entry & own_pixel) != 0);
-    // The rows of the picture that the second step writes; those of a tile alone are at hand.
+    // The second step writes there. A tile apart from the picture is in the cache anyway.
     for (int lane = 0; in_picture && lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
       __builtin_prefetch(first + offsets[lane], 1);
     }
@@ -280,7 +308,7 @@ template <class Stage>
 void shade_fragments(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                      const VisibleRun& run) {
   if (job.profile->attributes == AttributeSetup::exact_barycentric) {
-    shade_seen<BarycentricLanes<Stage::kInterpolation.size()>>(stage, job, tile, run);
+    shade_seen<BarycentricLanes<Stage::kInterpolation>>(stage, job, tile, run);
   } else if (job.profile->interpolation == Contraction::fused) {
     shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, tile, run);
   } else {

@@ -1,18 +1,19 @@
-// The vertex stage, twice: of every vertex the position, and of those that a triangle to be
-// drawn has, all. In a scene most triangles face away, lie beside the picture or between the
-// pixels' centres.
+// The vertex stage runs twice: for the positions of all vertices, then in full for the vertices
+// of triangles that are drawn. Most triangles of a scene are not: they face away, or lie beside
+// the picture or between the pixels' centres.
 //
 // A vertex stage in lanes has kVaryings, and
 //     void position(Ints index, std::array<Floats, 4>& position) const
 //     void operator()(Ints index, std::array<Floats, 4>& position,
 //                     std::array<Floats, kVaryings>& varyings) const
-// with the same bits for the position.
+// with the same bits for the position. A stage whose number of varyings is known at run time
+// alone has kVaryings at most, and std::size_t varying_count() const.
 
 namespace {
 
 SOFTFOCUS_INLINE Mask is_finite(Floats v) { return (as_bits(v) & 0x7F800000u) != 0x7F800000u; }
 
-// As clip_code().
+// clip_code().
 SOFTFOCUS_INLINE Ints clip_codes(const std::array<Floats, 4>& position, float guard_band) {
   const Floats edge = guard_band * position[3];
   const std::array<Floats, 6> distances{edge - position[0],        edge + position[0],
@@ -38,12 +39,12 @@ SOFTFOCUS_INLINE Ints snapped(Floats window, Mask drawable, int bits) {
   return truncate(select(drawable, steps, splat(0.0f))) << (kSubpixelBits - bits);
 }
 
-/// As WindowVertex.
+/// WindowVertex.
 struct WindowLanes {
   Floats x, y, depth, inverse_w;
 };
 
-// As to_window().
+// to_window().
 SOFTFOCUS_INLINE WindowLanes window_lanes(const std::array<Floats, 4>& position,
                                           const VertexJob& job) {
   const Contraction contraction = job.profile->viewport;
@@ -54,20 +55,20 @@ SOFTFOCUS_INLINE WindowLanes window_lanes(const std::array<Floats, 4>& position,
       to_window_lanes(position[2] * inverse_w, 0.5f, contraction), inverse_w};
 }
 
-// Returns the clip codes that all of the vertices have.
+// Returns the bits that the clip codes of all vertices share.
 template <class Stage>
 unsigned place_vertices(const Stage& stage, const VertexJob& job) {
   const Profile& profile = *job.profile;
   const VertexStore& to = job.store;
   Ints common = ~Ints{};
   for (std::uint32_t begin = job.begin; begin < job.end; begin += kLanes) {
-    // Lanes past the last vertex do it once more; there is room for them.
+    // Lanes past the last vertex repeat it; the store has room for them.
     const Ints index = smaller(static_cast<std::int32_t>(begin) + lane_numbers(),
                                splat(static_cast<std::int32_t>(job.end) - 1));
     std::array<Floats, 4> position;
     stage.position(index, position);
     const WindowLanes window = window_lanes(position, job);
-    // As setup.cpp's is_drawable().
+    // is_drawable() of setup.cpp.
     const Mask drawable = (absolute(window.x) < kLargestPosition) &
                           (absolute(window.y) < kLargestPosition) & is_finite(window.depth) &
                           is_finite(window.inverse_w) & (window.inverse_w > 0.0f);
@@ -88,25 +89,31 @@ unsigned place_vertices(const Stage& stage, const VertexJob& job) {
   return static_cast<unsigned>(of_all) & ~kNotDrawable;
 }
 
+template <class Stage>
+SOFTFOCUS_INLINE std::size_t varying_count(const Stage& stage) {
+  if constexpr (requires { stage.varying_count(); }) return stage.varying_count();
+  return Stage::kVaryings;
+}
+
 // The rows of kLanes vertices.
 template <class Stage>
 SOFTFOCUS_INLINE void shade_rows(const Stage& stage, const VertexJob& job,
                                  const std::int32_t* numbers) {
-  constexpr std::size_t kQuantities = vertex_row_size(Stage::kVaryings);
+  const std::size_t varyings_of_stage = varying_count(stage);
   std::array<Floats, 4> position;
   std::array<Floats, Stage::kVaryings> varyings;
   stage(load(numbers), position, varyings);
   const WindowLanes window = window_lanes(position, job);
-  std::array<Floats, kQuantities> quantities{};
+  std::array<Floats, vertex_row_size(Stage::kVaryings)> quantities{};
   quantities[kVertexX] = window.x;
   quantities[kVertexY] = window.y;
   quantities[kVertexDepth] = window.depth;
   quantities[kVertexInverseW] = window.inverse_w;
-  for (std::size_t i = 0; i < Stage::kVaryings; ++i) quantities[kVertexVaryings + i] = varyings[i];
-  for (std::size_t k = 0; k < kQuantities; k += 4) {
+  for (std::size_t i = 0; i < varyings_of_stage; ++i) quantities[kVertexVaryings + i] = varyings[i];
+  for (std::size_t k = 0; k < vertex_row_size(varyings_of_stage); k += 4) {
     Floats* four = &quantities[k];
     transpose_fours(four[0], four[1], four[2], four[3]);
-    // Vector i has vertex i and each fourth after it.
+    // Vector i has vertices i, i + 4, i + 8 ...
     for (std::size_t vertex = 0; vertex < kLanes; ++vertex) {
       std::memcpy(job.store.rows + static_cast<std::size_t>(numbers[vertex]) * job.store.stride + k,
                   reinterpret_cast<const float*>(&four[vertex % 4]) + vertex / 4 * 4,
@@ -117,7 +124,7 @@ SOFTFOCUS_INLINE void shade_rows(const Stage& stage, const VertexJob& job,
 
 SOFTFOCUS_INLINE std::size_t place_in_list(int i) { return static_cast<std::size_t>(i); }
 
-// Of the used vertices, whose marks it takes away.
+// Shades the marked vertices and clears their marks.
 template <class Stage>
 void shade_vertices(const Stage& stage, const VertexJob& job) {
   constexpr std::uint32_t kMarks = sizeof(std::uint64_t);

@@ -125,7 +125,8 @@ TEST_CASE("scene traits: depths that are none lie beyond the focus, or before it
   CHECK(with(0.0f).nearest_px == -1024.0f);
 }
 
-TEST_CASE("scene traits: the same bits for any number of threads and on every vector unit") {
+TEST_CASE("scene traits: the same bits for any number of threads and on every vector unit" *
+          doctest::test_suite("threads")) {
   for (const auto& [width, height] : {std::pair{301, 77}, std::pair{16, 9}, std::pair{1, 1}}) {
     const Image image = random_scene_image(width, height, 5);
     ThreadPool one{1, Isa::scalar};

@@ -30,7 +30,7 @@ std::vector<SceneFrame> scene_frames() {
   ThreadPool pool(1);
   std::vector<SceneFrame> frames;
   for (const GoldenScene& golden : load_golden_scenes(pool)) {
-    const View view = camera_view(golden.scene.camera, 0.0, kWidth, kHeight);
+    const CameraMatrices view = camera_matrices(golden.scene.camera, 0.0, kWidth, kHeight);
     SceneFrame frame{golden.name,
                      draw_scene(golden.scene, view, 0.0, kWidth, kHeight, Profile{}, pool),
                      {},

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "raster/images/fixed_bilinear.h"
+#include "raster/images/integer_bilinear.h"
 #include "raster/numbers/half.h"
 #include "tests/support/test_images.h"
 
@@ -60,7 +60,7 @@ TEST_CASE("halves in integers: every finite one is its value times 2^24") {
     const auto half = static_cast<std::uint16_t>(bits);
     REQUIRE(is_finite_half(half) == std::isfinite(half_to_float(half)));
     if (!is_finite_half(half)) continue;
-    REQUIRE(static_cast<double>(half_to_fixed(half)) ==
+    REQUIRE(static_cast<double>(half_to_integer(half)) ==
             static_cast<double>(half_to_float(half)) * 0x1p24);
   }
 }

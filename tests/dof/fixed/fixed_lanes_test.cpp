@@ -1,12 +1,11 @@
-// The fixed-point filter in vector lanes and on threads against the rows, bit for bit.
+// The integer filter in lanes, on threads, against its scalar form, bit for bit.
 
 #include <array>
 #include <cstdlib>
 #include <string>
 
-#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/fixed/weights.h"
-#include "dof/fixed_pictures/fixed_rows.h"
+#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/fixed_pictures/fixed_two_pass.h"
 #include "dof/focus_map.h"
 #include "tests/support/fixed_pictures.h"
@@ -81,8 +80,8 @@ bool same(const Image& a, const Image& b) {
 
 }  // namespace
 
-TEST_CASE("fixed point: every vector unit gives the bits of the rows, whatever size and lens") {
-  ThreadPool plain(1, Isa::scalar);
+TEST_CASE("fixed point: every vector unit gives the scalar bits, whatever size and lens") {
+  ThreadPool scalar(1, Isa::scalar);
   for (const auto& random_of : {random_bytes, random_halves}) {
     for (const Isa isa : available_isas()) {
       ThreadPool pool(2, isa);
@@ -94,14 +93,14 @@ TEST_CASE("fixed point: every vector unit gives the bits of the rows, whatever s
         const int height = 1 + static_cast<int>(any_below(random, i % 8 == 1 ? 300 : 70));
         const PictureAndCodes input = random_of(random, width, height);
         INFO(std::string{isa_name(isa)}, ", picture ", i, ", ", width, "x", height);
-        CHECK(same(in_lanes(input, table, pool), in_lanes(input, table, plain)));
+        CHECK(same(in_lanes(input, table, pool), in_lanes(input, table, scalar)));
       }
     }
   }
 }
 
-TEST_CASE("fixed point: lines have room for every reach, in strips that lie beside others") {
-  ThreadPool plain(1, Isa::scalar);
+TEST_CASE("fixed point: lines have room for every reach, also in strips beside others") {
+  ThreadPool scalar(1, Isa::scalar);
   Random random{12};
   for (const auto& random_of : {random_bytes, random_halves}) {
     // One strip lies between two others, side by side or one above the other.
@@ -111,7 +110,7 @@ TEST_CASE("fixed point: lines have room for every reach, in strips that lie besi
       for (const std::uint32_t radius_px : {1u, 2u, 16u, 17u, 18u, 33u, 34u, 49u, 64u}) {
         const Lens lens{200u << 16, 1000000, radius_px << 16, 65536};
         const auto table = table8(lens, 300000, 5000000);
-        const Image expected = in_lanes(input, table, plain);
+        const Image expected = in_lanes(input, table, scalar);
         for (const Isa isa : available_isas()) {
           ThreadPool pool(3, isa);
           INFO(std::string{isa_name(isa)}, ", radius ", radius_px, ", ", width, "x", height);
@@ -122,7 +121,7 @@ TEST_CASE("fixed point: lines have room for every reach, in strips that lie besi
   }
 }
 
-TEST_CASE("fixed point: the largest sums are those of wide integers") {
+TEST_CASE("fixed point: the largest sums do not overflow") {
   // Every pixel reaches the one in the middle, and weighs the most that it can there.
   constexpr int kWidth = 200, kMiddle = 100;
   std::vector<Weights> table;
@@ -197,7 +196,8 @@ TEST_CASE("fixed point: pictures that are written past the caches are whole") {
   }
 }
 
-TEST_CASE("fixed point: the bits do not depend on the number of threads") {
+TEST_CASE("fixed point: the bits do not depend on the number of threads" *
+          doctest::test_suite("threads")) {
   Random random{9};
   const Lens lens{200u << 16, 1000000, 64u << 16, 65536};
   const auto table = table8(lens, 300000, 5000000);
@@ -215,8 +215,8 @@ TEST_CASE("fixed point: the bits do not depend on the number of threads") {
   }
 }
 
-TEST_CASE("fixed point: codes of 16 bits and in alpha give the bits of the rows") {
-  ThreadPool plain(1, Isa::scalar);
+TEST_CASE("fixed point: codes of 16 bits and codes in alpha give the scalar bits") {
+  ThreadPool scalar(1, Isa::scalar);
   Random random{10};
   for (int i = 0; i < 12; ++i) {
     const FixedTable table = fixed_table(half_table(any_lens(random, i % 4 == 0 ? 64 : 10)));
@@ -239,16 +239,16 @@ TEST_CASE("fixed point: codes of 16 bits and in alpha give the bits of the rows"
       for (const Isa isa : available_isas()) {
         ThreadPool pool(2, isa);
         INFO(std::string{isa_name(isa)}, ", picture ", i);
-        CHECK(same(filtered(pool, false), filtered(plain, false)));
+        CHECK(same(filtered(pool, false), filtered(scalar, false)));
         if (picture.format == Format::rgba16f) {
-          CHECK(same(filtered(pool, true), filtered(plain, true)));
+          CHECK(same(filtered(pool, true), filtered(scalar, true)));
         }
       }
     }
   }
 }
 
-TEST_CASE("fixed point: a mean of the largest halves is not past them") {
+TEST_CASE("fixed point: a mean of the largest halves is the largest half") {
   // What is rounded in taking part of a neighbour beyond makes the quotient larger by 1 / weight.
   constexpr Weights kSharp{1u << 19, 1u << 19, 32768, 0, 0};
   constexpr Weights kReceiver{2073, 1866, 32600, 15, 0};
@@ -267,13 +267,13 @@ TEST_CASE("fixed point: a mean of the largest halves is not past them") {
   }
 }
 
-TEST_CASE("fixed point: depths as halves in lanes give the bits of the rows") {
+TEST_CASE("fixed point: depths as halves give the scalar bits") {
   const Image scene = random_scene_image(100, 60, 5);
   const DofSettings settings{.coc = {12.0f, 2.0f}, .max_coc_px = 7.3f, .leak = 1.0f};
-  ThreadPool plain(1, Isa::scalar);
+  ThreadPool scalar(1, Isa::scalar);
   for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
     Image expected = make_image(Format::rgba16f, 100, 60);
-    two_pass_in(arithmetic, {scene, settings, {}}, expected, plain);
+    two_pass_in(arithmetic, {scene, settings, {}}, expected, scalar);
     for (const Isa isa : available_isas()) {
       ThreadPool pool(2, isa);
       Image actual = make_image(Format::rgba16f, 100, 60);

@@ -1,4 +1,4 @@
-// Tables of the fixed-point filter: against the lens in binary64, and at every limit.
+// Tables of the integer filter: against the lens in binary64, and at every limit.
 
 #include <doctest/doctest.h>
 
@@ -14,6 +14,7 @@
 
 using namespace softfocus;
 using namespace softfocus::fixed;
+using softfocus::fixed::Camera;  // not a scene's
 
 namespace {
 
@@ -104,7 +105,7 @@ TEST_CASE("fixed point: every table that can be made keeps within the bounds of 
   }
 }
 
-TEST_CASE("fixed point: lenses at every limit make tables, those past it are refused") {
+TEST_CASE("fixed point: a lens at any limit makes a table, a lens past it is refused") {
   std::vector<Weights> table(256);
   constexpr std::uint32_t kMost = 0xFFFFFFFF;
   for (const std::uint32_t at_infinity : {0u, 1u, kMost}) {

@@ -114,7 +114,7 @@ std::vector<std::uint8_t> filter_as_stream(const CodedPicture& picture,
 
 }  // namespace
 
-TEST_CASE("sums that move from pixel to pixel are the sums of all taps") {
+TEST_CASE("moving sums are the sums of all taps") {
   struct Size {
     int width, height;
   };
@@ -132,7 +132,7 @@ TEST_CASE("sums that move from pixel to pixel are the sums of all taps") {
   }
 }
 
-TEST_CASE("a table in which a pixel would not weigh anything is refused") {
+TEST_CASE("a table with a pixel of weight 0 is refused") {
   std::vector<fixed::Weights> table = table_of(kLenses[3].lens);
   table[7].edge = 0;
   const fixed::Settings settings = {4, 4, 7, SOFTFOCUS_FIXED_RGBA8, SOFTFOCUS_FIXED_DEPTH8};

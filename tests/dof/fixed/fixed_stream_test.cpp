@@ -1,5 +1,5 @@
-// The fixed-point filter row by row against the plain evaluation in wide integers, bit for
-// bit, and what it refuses.
+// The integer filter row by row against the oracle in wide integers, bit for bit, and what it
+// refuses.
 
 #include <cstring>
 
@@ -150,7 +150,7 @@ int begin(const Settings& settings, const std::vector<Weights>& table, std::size
 
 }  // namespace
 
-TEST_CASE("fixed point: rows of 8-bit colour have the bits of the plain evaluation") {
+TEST_CASE("fixed point: rows of 8-bit colour have the bits of the oracle") {
   Random random{1};
   for (int i = 0; i < 240; ++i) {
     const Lens lens = any_lens(random, i % 4 == 0 ? 64 : 10);
@@ -163,7 +163,7 @@ TEST_CASE("fixed point: rows of 8-bit colour have the bits of the plain evaluati
   }
 }
 
-TEST_CASE("fixed point: codes of 16 bits and of halves have the bits of the plain evaluation") {
+TEST_CASE("fixed point: codes of 16 bits and of halves have the bits of the oracle") {
   Random random{2};
   for (int i = 0; i < 10; ++i) {
     const Lens lens = any_lens(random, 12);
@@ -177,7 +177,7 @@ TEST_CASE("fixed point: codes of 16 bits and of halves have the bits of the plai
   }
 }
 
-TEST_CASE("fixed point: rows of halves have the bits of the plain evaluation") {
+TEST_CASE("fixed point: rows of halves have the bits of the oracle") {
   Random random{3};
   for (int i = 0; i < 45; ++i) {
     const Lens lens = any_lens(random, i % 4 == 0 ? 64 : 9);
@@ -215,7 +215,7 @@ TEST_CASE("fixed point: a constant picture stays constant") {
   }
 }
 
-TEST_CASE("fixed point: a row may come out over the one that went in") {
+TEST_CASE("fixed point: a row may be written over the row that went in") {
   Random random{5};
   const auto table = table8(kLens, 500000, 4000000);
   PackedPicture picture = random_picture(random, {20, 12, 3, SOFTFOCUS_FIXED_RGBA8, 0});
@@ -239,7 +239,7 @@ TEST_CASE("fixed point: a row may come out over the one that went in") {
   CHECK(all == expected);
 }
 
-TEST_CASE("fixed point: a stream that could not be right does not begin") {
+TEST_CASE("fixed point: a stream with wrong settings, table or memory does not begin") {
   const auto table = table8(kLens, 500000, 4000000);
   CHECK(begin(kSettings, table) == 0);
   CHECK(begin(kSettings, table, 1) == SOFTFOCUS_FIXED_BAD_MEMORY);
@@ -285,7 +285,7 @@ TEST_CASE("fixed point: a stream that could not be right does not begin") {
         SOFTFOCUS_FIXED_BAD_FORMAT);
 }
 
-TEST_CASE("fixed point: a row whose turn it is not writes nothing") {
+TEST_CASE("fixed point: a row out of turn writes nothing") {
   Begun begun;
   const auto memory = begun.memory;
   CHECK(begun.put(1) == SOFTFOCUS_FIXED_BAD_ROW);

@@ -87,7 +87,7 @@ TEST_CASE("no coordinate leads a driver's unit outside the texture") {
       for (const Wrap wrap : kWraps) {
         // llvmpipe masks levels of power-of-two textures, so they must be one as well.
         for (int i = 0; i < 5'000; ++i) {
-          float u = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()));
+          float u = std::bit_cast<float>(static_cast<std::uint32_t>(random.next()));
           if (i % 3 == 0) u = random.between(-2.0f, 2.0f);
           const Taps a = llvmpipe_taps(u, size, base_size, wrap);
           const Taps b = softpipe_taps(u, size, wrap);

@@ -1,5 +1,7 @@
 // The vector sampler against the scalar one, to the bit.
 
+#ifndef SOFTFOCUS_ISA
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -10,7 +12,7 @@
 #include <vector>
 
 #include "raster/images/decoded_texture.h"
-#include "raster/images/fixed_bilinear.h"
+#include "raster/images/integer_bilinear.h"
 #include "tests/support/raster_helpers.h"
 
 namespace softfocus {
@@ -29,7 +31,7 @@ struct Footprint {
 }  // namespace
 }  // namespace softfocus
 
-#define SOFTFOCUS_KERNELS "tests/raster/images/sample_lanes_kernels.inl"
+#define SOFTFOCUS_KERNELS "tests/raster/images/sample_lanes_test.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 using namespace softfocus;
@@ -56,16 +58,14 @@ constexpr std::array kSizes{Size{1, 1}, Size{1, 7},  Size{6, 1},    Size{3, 5},
 constexpr std::size_t kPoints = 192;
 
 // The known ones, and d3d11's texture unit filtering the other way and without its weights.
-std::vector<Profile> tested_profiles() {
-  std::vector<Profile> list(profiles().begin(), profiles().end());
+std::vector<NamedProfile> tested_profiles() {
+  std::vector<NamedProfile> list(profiles().begin(), profiles().end());
   Profile profile = profile_named("d3d11");
-  profile.name = "d3d11 in floats";
   profile.bilinear_filter = BilinearFilter::floats;
-  list.push_back(profile);
-  profile.name = "in integers by float weights";
+  list.push_back({"d3d11 in floats", {}, profile});
   profile.bilinear_filter = BilinearFilter::integers;
   profile.bilinear_weights = BilinearWeights::binary32;
-  list.push_back(profile);
+  list.push_back({"in integers by float weights", {}, profile});
   return list;
 }
 
@@ -173,14 +173,15 @@ int count_wrong(Isa isa, const Texture& texture, const Profile& profile, Random&
 
 TEST_CASE("pixels sampled in lanes have the bits of pixels sampled one by one") {
   for (const Isa isa : vector_isas()) {
-    for (const Profile& profile : tested_profiles()) {
+    for (const NamedProfile& known : tested_profiles()) {
+      const Profile& profile = known.profile;
       Random random{41};
       for (const Format format : kFormats) {
         int wrong = 0;
         for (const Size size : kSizes) {
           wrong += count_wrong(isa, mipmapped(format, size, 42), profile, random);
         }
-        CHECK_MESSAGE(wrong == 0, isa_name(isa), ", ", profile.name, ", format ",
+        CHECK_MESSAGE(wrong == 0, isa_name(isa), ", ", known.name, ", format ",
                       static_cast<int>(format));
       }
     }
@@ -189,7 +190,8 @@ TEST_CASE("pixels sampled in lanes have the bits of pixels sampled one by one") 
 
 TEST_CASE("so have infinities, NaN, both zeros and subnormals among the texels") {
   for (const Isa isa : vector_isas()) {
-    for (const Profile& profile : tested_profiles()) {
+    for (const NamedProfile& known : tested_profiles()) {
+      const Profile& profile = known.profile;
       Random random{43};
       for (const Format format : {Format::rgba16f, Format::rgba32f}) {
         Image image = make_image(format, 8, 8);
@@ -201,7 +203,7 @@ TEST_CASE("so have infinities, NaN, both zeros and subnormals among the texels")
         Texture texture = make_texture(std::move(image));
         generate_mipmaps(texture, {});
         CHECK_MESSAGE(count_wrong(isa, texture, profile, random) == 0, isa_name(isa), ", ",
-                      profile.name, ", format ", static_cast<int>(format));
+                      known.name, ", format ", static_cast<int>(format));
       }
     }
   }
@@ -215,9 +217,10 @@ TEST_CASE("levels that halve no size are sampled in lanes all the same") {
   }
   for (const Isa isa : vector_isas()) {
     Random random{45};
-    for (const Profile& profile : tested_profiles()) {
+    for (const NamedProfile& known : tested_profiles()) {
+      const Profile& profile = known.profile;
       CHECK_MESSAGE(count_wrong(isa, texture, profile, random) == 0, isa_name(isa), ", ",
-                    profile.name);
+                    known.name);
     }
   }
 }
@@ -225,15 +228,15 @@ TEST_CASE("levels that halve no size are sampled in lanes all the same") {
 TEST_CASE("so are profiles that have no arithmetic in lanes") {
   const Texture texture = mipmapped(Format::srgb8, {16, 16}, 46);
   const Texture bytes = mipmapped(Format::rgba8, {16, 16}, 46);
-  Profile fused_plain = profile_named("ieee");
-  fused_plain.lerp = Contraction::fused;
-  Profile fused_integers = fused_plain;
+  Profile fused_floats = profile_named("ieee");
+  fused_floats.lerp = Contraction::fused;
+  Profile fused_integers = fused_floats;
   fused_integers.bilinear_filter = BilinearFilter::integers;
   Profile keeping = profile_named("llvmpipe");
   keeping.denormals = Denormals::keep;
   for (const Isa isa : vector_isas()) {
     Random random{47};
-    CHECK(count_wrong(isa, texture, fused_plain, random) == 0);
+    CHECK(count_wrong(isa, texture, fused_floats, random) == 0);
     CHECK(count_wrong(isa, bytes, fused_integers, random) == 0);
     CHECK(count_wrong(isa, texture, keeping, random) == 0);
   }
@@ -250,7 +253,8 @@ TEST_CASE("the least weights of a next level underflow in lanes as in one pixel"
     points.insert(points.end(), 16, {0.3f, 0.3f, std::ldexp(1.0f, exponent)});
   }
   for (const Isa isa : vector_isas()) {
-    for (const Profile& profile : tested_profiles()) {
+    for (const NamedProfile& known : tested_profiles()) {
+      const Profile& profile = known.profile;
       const DecodedTexture decoded = decode_texture(texture, profile);
       CHECK(count_wrong(isa, texture, decoded, sampler, profile, points) == 0);
     }
@@ -260,7 +264,7 @@ TEST_CASE("the least weights of a next level underflow in lanes as in one pixel"
 TEST_CASE("in lanes bytes in integers are the sums of the header that stands alone, over 255") {
   const Texture texture = random_texture(Format::rgba8, 32, 16, 51);
   const auto bytes = [&](int y) { return row<std::uint8_t>(texture.levels[0], y); };
-  const Profile profile = tested_profiles().back();
+  const Profile profile = tested_profiles().back().profile;
   const DecodedTexture decoded = decode_texture(texture, profile);
   const Sampler sampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::repeat};
   Random random{52};
@@ -271,8 +275,8 @@ TEST_CASE("in lanes bytes in integers are the sums of the header that stands alo
     const int v_256 = random.whole(-256 * 40, 256 * 40);
     points.push_back({static_cast<float>(u_256) / (256.0f * 32.0f),
                       static_cast<float>(v_256) / (256.0f * 16.0f), 0.0f});
-    const FixedTaps u = clamped_taps(from_centre(u_256), 32);
-    const FixedTaps v = repeated_taps(from_centre(v_256), 16);
+    const IntegerTaps u = clamped_taps(from_centre(u_256), 32);
+    const IntegerTaps v = repeated_taps(from_centre(v_256), 16);
     std::array<float, 3> colour{};
     for (std::size_t c = 0; c < 3; ++c) {
       const auto at = [&](int x, int y) { return bytes(y)[4 * static_cast<std::size_t>(x) + c]; };
@@ -300,13 +304,14 @@ namespace {
 // A channel of a decoded texel as a fetch gives it.
 float linear(const DecodedTexture& decoded, const Profile& profile, float value) {
   if (!decoded.are_bytes) return value;
-  return profile.texture_unit == TextureUnit::plain ? value / 255.0f : value * (1.0f / 255.0f);
+  return profile.texture_unit == TextureUnit::standard ? value / 255.0f : value * (1.0f / 255.0f);
 }
 
 }  // namespace
 
 TEST_CASE("a decoded texture holds each texel as the profile's texture unit fetches it") {
-  for (const Profile& profile : tested_profiles()) {
+  for (const NamedProfile& known : tested_profiles()) {
+    const Profile& profile = known.profile;
     if (profile.texture_unit == TextureUnit::softpipe) continue;
     for (const Format format : kFormats) {
       const Texture texture = mipmapped(format, {5, 3}, 48);
@@ -321,7 +326,7 @@ TEST_CASE("a decoded texture holds each texel as the profile's texture unit fetc
             wrong += !same(linear(decoded, profile, texel[c]), expected[c]);
         }
       }
-      CHECK_MESSAGE(wrong == 0, profile.name, ", format ", static_cast<int>(format));
+      CHECK_MESSAGE(wrong == 0, known.name, ", format ", static_cast<int>(format));
     }
   }
 }
@@ -350,3 +355,51 @@ TEST_CASE("levels of detail found in lanes have the bits of those found one by o
     }
   }
 }
+
+#else  // once a vector unit
+
+#include "raster/images/sample_lanes.inl"
+
+inline void sample_all(const DecodedTexture& texture, const Sampler& sampler,
+                       const Profile& profile, std::span<const SamplePoint> points,
+                       std::span<SampledColour> colours) {
+  constexpr auto kStep = static_cast<std::size_t>(kLanes);
+  std::vector<float> u, v, lod;
+  for (const SamplePoint& point : points) {
+    u.push_back(point.u);
+    v.push_back(point.v);
+    lod.push_back(point.lod);
+  }
+  std::array<RgbLanes, kMostSampled> texels;
+  // Batches of 1, 2, ... vectors by turns.
+  std::size_t most = 0;
+  for (std::size_t done = 0; done < points.size();) {
+    most = most % kMostSampled + 1;
+    const std::size_t count = std::min(most, (points.size() - done) / kStep);
+    sample_lanes(texture, sampler, profile, {&u[done], &v[done], &lod[done]},
+                 static_cast<int>(count), texels.data());
+    for (std::size_t i = 0; i < count * kStep; ++i) {
+      const RgbLanes& rgb = texels[i / kStep];
+      const int lane = static_cast<int>(i % kStep);
+      colours[done + i] = {rgb.r[lane], rgb.g[lane], rgb.b[lane]};
+    }
+    done += count * kStep;
+  }
+}
+
+inline void find_levels(const DecodedTexture& texture, std::span<const Footprint> footprints,
+                        std::span<float> lods) {
+  for (std::size_t start = 0; start < footprints.size(); start += kLanes) {
+    Floats du_dx, dv_dx, du_dy, dv_dy;
+    for (int i = 0; i < kLanes; ++i) {
+      const Footprint& footprint = footprints[start + static_cast<std::size_t>(i)];
+      du_dx[i] = footprint.uv_per_x.x;
+      dv_dx[i] = footprint.uv_per_x.y;
+      du_dy[i] = footprint.uv_per_y.x;
+      dv_dy[i] = footprint.uv_per_y.y;
+    }
+    store(&lods[start], level_of_detail_lanes(texture, du_dx, dv_dx, du_dy, dv_dy));
+  }
+}
+
+#endif

@@ -129,7 +129,8 @@ TEST_CASE("fetched one-channel texels are (value, 0, 0, 1) in every profile") {
   for (const Format format : {Format::r8, Format::r32f}) {
     Image image = make_image(format, 1, 1);
     store_texel(image, 0, 0, glm::vec4{1.0f}, {});
-    for (const Profile& profile : profiles()) {
+    for (const NamedProfile& known : profiles()) {
+      const Profile& profile = known.profile;
       CHECK(same_bits(fetch_texel(image, 0, 0, profile), {1.0f, 0.0f, 0.0f, 1.0f}));
     }
   }
@@ -139,7 +140,8 @@ TEST_CASE("a fetched float texel keeps its bits, subnormals too, in every profil
   Image image = make_image(Format::rgba32f, 1, 1);
   const glm::vec4 value{1e-42f, -kInfinity, -0.0f, 3e38f};
   store_texel(image, 0, 0, value, {});
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     CHECK(same_bits(fetch_texel(image, 0, 0, profile), value));
   }
 }

@@ -202,7 +202,7 @@ TEST_CASE("encoding random floats agrees with encoding by division") {
   test::Random random{2026};
   int wrong = 0;
   for (int i = 0; i < 400'000; ++i) {
-    auto bits = static_cast<std::uint32_t>(random.bits());
+    auto bits = static_cast<std::uint32_t>(random.next());
     // Every second one where halves live: exponents -30 to 17.
     if (i % 2 == 0) {
       const auto exponent = static_cast<std::uint32_t>(random.whole(97, 144));
@@ -243,7 +243,7 @@ TEST_CASE("the distance of halves is symmetric and adds up along the number line
   for (int i = 0; i < 100'000; ++i) {
     std::array<std::uint16_t, 3> h{};
     for (auto& value : h) {
-      do value = static_cast<std::uint16_t>(random.bits());
+      do value = static_cast<std::uint16_t>(random.next());
       while (is_nan_half(value));
     }
     std::sort(h.begin(), h.end(),

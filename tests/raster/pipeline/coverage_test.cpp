@@ -96,7 +96,8 @@ TEST_CASE("a fan of triangles covers each pixel around its centre once, wherever
 
 TEST_CASE("a fan that reaches past the guard band covers each pixel once, in every profile") {
   test::Random random{72};
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     int wrong = 0;
     for (const float radius : {200.0f, 1'000.0f, 30'000.0f}) {
       for (int i = 0; i < 10; ++i) {
@@ -105,7 +106,7 @@ TEST_CASE("a fan that reaches past the guard band covers each pixel once, in eve
             count_coverage(fan(centre, radius, random.whole(3, 60), 64, 64), 64, 64, profile));
       }
     }
-    CHECK_MESSAGE(wrong == 0, profile.name);
+    CHECK_MESSAGE(wrong == 0, known.name);
   }
 }
 
@@ -123,7 +124,8 @@ TEST_CASE("a jittered grid of shared edges covers each pixel once") {
 
 TEST_CASE("a jittered grid through the guard band covers each pixel once, in every profile") {
   test::Random random{74};
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     int wrong = 0;
     for (int i = 0; i < 5; ++i) {
       for (const int cells : {3, 17, 60}) {
@@ -133,7 +135,7 @@ TEST_CASE("a jittered grid through the guard band covers each pixel once, in eve
                            128, 128, profile));
       }
     }
-    CHECK_MESSAGE(wrong == 0, profile.name);
+    CHECK_MESSAGE(wrong == 0, known.name);
   }
 }
 
@@ -314,8 +316,9 @@ TEST_CASE("one triangle over the whole target covers each pixel once") {
   const Vertices vertices{{{-1.0f, -1.0f, 0.0f, 1.0f}, {}},
                           {{3.0f, -1.0f, 0.0f, 1.0f}, {}},
                           {{-1.0f, 3.0f, 0.0f, 1.0f}, {}}};
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     CHECK_MESSAGE(pixels_not_covered_once(count_coverage(vertices, 150, 97, profile)) == 0,
-                  profile.name);
+                  known.name);
   }
 }

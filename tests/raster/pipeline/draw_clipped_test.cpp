@@ -16,7 +16,8 @@ using namespace softfocus;
 using test::profile_named;
 
 TEST_CASE("a flat varying is the last vertex's value, or the first's if it provokes, cut or not") {
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     for (const float reach : {0.9f, 40.0f}) {  // inside, and beyond any guard band
       const std::vector<VertexOutput<4>> vertices{{{-reach, -reach, 0, 1}, {1, 0, 0, 0}},
                                                   {{reach, -reach, 0, 1}, {2, 0, 0, 0}},
@@ -28,8 +29,8 @@ TEST_CASE("a flat varying is the last vertex's value, or the first's if it provo
         test::draw_list({.colour = {&target}}, state, vertices,
                         test::VaryingColour<Interpolation::flat>{}, profile);
         const float expected = provoking == ProvokingVertex::last ? 3.0f : 1.0f;
-        CHECK_MESSAGE(load_texel(target, 4, 4).x == expected, profile.name);
-        CHECK_MESSAGE(load_texel(target, 10, 2).x == expected, profile.name);
+        CHECK_MESSAGE(load_texel(target, 4, 4).x == expected, known.name);
+        CHECK_MESSAGE(load_texel(target, 10, 2).x == expected, known.name);
       }
     }
   }

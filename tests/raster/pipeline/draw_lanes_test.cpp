@@ -1,6 +1,8 @@
 // Drawing in vector lanes against drawing fragment by fragment: the same bits.
 
-#include "raster/pipeline/lanes/draw_lanes.h"
+#ifndef SOFTFOCUS_ISA
+
+#include "raster/pipeline/lanes/draw_in_lanes.h"
 
 #include <doctest/doctest.h>
 
@@ -37,7 +39,7 @@ struct MixedColour {
 
 }  // namespace softfocus
 
-#define SOFTFOCUS_KERNELS "tests/raster/pipeline/draw_lanes_kernels.inl"
+#define SOFTFOCUS_KERNELS "tests/raster/pipeline/draw_lanes_test.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 using namespace softfocus;
@@ -81,7 +83,7 @@ Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Ve
     draw(pass, state, indices, count, vertex_stage, MixedColour{});
   } else {
     REQUIRE(can_draw_in_lanes(pass, state));
-    draw_lanes(pass, state, indices, count, vertex_stage, MixedColour{}, stages_for(isa));
+    draw_in_lanes(pass, state, indices, count, vertex_stage, MixedColour{}, stages_for(isa));
   }
   finish(pass, pool);
   return drawn;
@@ -112,7 +114,7 @@ void check_all_isas(const Target& target, const DrawState& state, const Vertices
   for (const Isa isa : available_isas()) {
     if (isa == Isa::scalar) continue;
     const Drawn drawn = draw_mixed(isa, target, state, vertices, profile);
-    INFO("isa ", isa_name(isa), ", profile ", profile.name);
+    INFO("isa ", isa_name(isa));
     CHECK(equal(drawn.colour, expected.colour));
     CHECK(equal(drawn.depth, expected.depth));
   }
@@ -133,6 +135,7 @@ RenderPass pass_into(Image& colour, Image& depth, Isa isa) {
 
 TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
   for (const char* name : kProfileNames) {
+    INFO("profile ", name);
     test::Random random{501};
     for (const double size : {0.4, 1.5, 6.0, 40.0, 200.0, 3000.0}) {
       check_all_isas(kTarget, {}, random_triangles(random, kTarget, 1500, size),
@@ -155,6 +158,7 @@ TEST_CASE("lanes: triangles between the pixels' centres leave no trace") {
   test::Random random{502};
   const Target target{64, 64};
   for (const char* name : kProfileNames) {
+    INFO("profile ", name);
     DrawState state;
     state.cull = Cull::none;
     check_all_isas(target, state, random_triangles(random, target, 20000, 0.6),
@@ -164,6 +168,7 @@ TEST_CASE("lanes: triangles between the pixels' centres leave no trace") {
 
 TEST_CASE("lanes: clipping by every plane, and through the eye, is the scalar form's") {
   for (const char* name : kProfileNames) {
+    INFO("profile ", name);
     test::Random random{503};
     Vertices vertices;
     for (int i = 0; i < 3 * 700; ++i) {
@@ -187,6 +192,7 @@ TEST_CASE("lanes: positions that are no numbers draw what the scalar form draws"
                             0.0f,      -0.0f,      1e-41f,
                             3e38f,     -3e38f};
   for (const char* name : kProfileNames) {
+    INFO("profile ", name);
     test::Random random{504};
     Vertices vertices = random_triangles(random, kTarget, 900, 20.0);
     for (VertexOutput<4>& vertex : vertices) {
@@ -223,6 +229,7 @@ TEST_CASE(
   state.cull = Cull::none;
   state.depth = DepthState{Compare::always, true};
   for (const char* name : kProfileNames) {
+    INFO("profile ", name);
     Vertices vertices = random_triangles(random, kTarget, 3000, 40.0);
     // Two corners, at times three, on the far plane or a hair before it.
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -267,7 +274,7 @@ TEST_CASE("lanes: pictures of every width to 70 pixels") {
   }
 }
 
-TEST_CASE("lanes: threads change nothing") {
+TEST_CASE("lanes: threads change nothing" * doctest::test_suite("threads")) {
   test::Random random{508};
   const Target target{300, 200};
   const Vertices vertices = random_triangles(random, target, 5000, 15.0);
@@ -298,7 +305,7 @@ TEST_CASE("lanes: a pass mixes draws in lanes with draws that blend") {
       if (isa == Isa::scalar) {
         draw(pass, {}, indices, count, solid, MixedColour{});
       } else {
-        draw_lanes(pass, {}, indices, count, solid, MixedColour{}, stages_for(isa));
+        draw_in_lanes(pass, {}, indices, count, solid, MixedColour{}, stages_for(isa));
       }
       DrawState blending = test::adding_state();
       blending.depth = DepthState{};
@@ -330,8 +337,8 @@ TEST_CASE("lanes: a vertex is shaded where triangles that are drawn have it, and
     RenderPass pass = pass_into(colour, depth, isa);
     ThreadPool pool{1, isa};
     for (const bool again : {false, true}) {
-      draw_lanes(pass, {}, indices, 5, test::ListedVertices<4>{&vertices}, MixedColour{},
-                 stages_for(isa));
+      draw_in_lanes(pass, {}, indices, 5, test::ListedVertices<4>{&vertices}, MixedColour{},
+                    stages_for(isa));
       TileLists lists;
       if (again) std::memset(pass.memory.rows.get(), 0x7F, 5 * sizeof(CacheLine));
       sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
@@ -357,8 +364,8 @@ TEST_CASE("lanes: a draw beyond one plane of the view is set aside with its vert
     const std::vector<std::uint32_t> indices = test::indices_up_to(beside.size());
     for (const std::size_t count : {std::size_t{900}, beside.size()}) {
       for (const Vertices* vertices : {&beside, &across}) {
-        draw_lanes(pass, {}, std::span{indices}.first(count), static_cast<std::uint32_t>(count),
-                   test::ListedVertices<4>{vertices}, MixedColour{}, stages_for(isa));
+        draw_in_lanes(pass, {}, std::span{indices}.first(count), static_cast<std::uint32_t>(count),
+                      test::ListedVertices<4>{vertices}, MixedColour{}, stages_for(isa));
       }
     }
     TileLists lists;
@@ -390,7 +397,7 @@ TEST_CASE("lanes: a tile drawn aside has the bits that the target would have") {
     if (isa == Isa::scalar) {
       draw(pass, {}, indices, count, stage, MixedColour{});
     } else {
-      draw_lanes(pass, {}, indices, count, stage, MixedColour{}, stages_for(isa));
+      draw_in_lanes(pass, {}, indices, count, stage, MixedColour{}, stages_for(isa));
     }
     TileLists lists;
     ThreadPool pool{1, isa};
@@ -415,7 +422,7 @@ TEST_CASE("lanes: a tile drawn aside has the bits that the target would have") {
 
 TEST_CASE("lanes: scenes have the scalar form's bits, drawn again with the same memory too") {
   for (const char* name : {"cube-room", "figures", "sphere-world"}) {
-    ThreadPool plain{2, Isa::scalar};
+    ThreadPool scalar{2, Isa::scalar};
     const Scene scene = load_scene(name, scene_search_path({}));
     const Target target{333, 250};
     for (const char* profile_name : {"ieee", "llvmpipe"}) {
@@ -426,10 +433,11 @@ TEST_CASE("lanes: scenes have the scalar form's bits, drawn again with the same 
         PreparedScene prepared = prepare_scene(scene, profile, pool);
         Image picture = make_image(Format::rgba16f, target.width, target.height);
         for (const double frame : {0.0, 40.0, 0.0}) {
-          const View view = camera_view(scene.camera, frame, target.width, target.height);
+          const CameraMatrices view =
+              camera_matrices(scene.camera, frame, target.width, target.height);
           draw_scene(prepared, view, frame, picture, pool);
           const Image expected =
-              draw_scene(scene, view, frame, target.width, target.height, profile, plain);
+              draw_scene(scene, view, frame, target.width, target.height, profile, scalar);
           INFO(name, ", ", profile_name, ", ", isa_name(isa), ", frame ", frame);
           CHECK(equal(picture, expected));
         }
@@ -437,3 +445,72 @@ TEST_CASE("lanes: scenes have the scalar form's bits, drawn again with the same 
     }
   }
 }
+
+#else  // once a vector unit
+
+#include "raster/pipeline/lanes/block_lanes.inl"
+#include "raster/pipeline/lanes/edge_lanes.inl"
+#include "raster/pipeline/lanes/interpolate_lanes.inl"
+#include "raster/pipeline/lanes/shade_lanes.inl"
+#include "raster/pipeline/lanes/vertex_lanes.inl"
+
+namespace {
+
+struct ListedLanes {
+  static constexpr std::size_t kVaryings = 4;
+  const std::vector<VertexOutput<4>>& list;
+
+  void position(Ints index, std::array<Floats, 4>& in_clip_space) const {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const VertexOutput<4>& vertex = list[static_cast<std::size_t>(index[lane])];
+      for (int i = 0; i < 4; ++i) {
+        in_clip_space[static_cast<std::size_t>(i)][lane] = vertex.position[i];
+      }
+    }
+  }
+  void operator()(Ints index, std::array<Floats, 4>& in_clip_space,
+                  std::array<Floats, 4>& varyings) const {
+    position(index, in_clip_space);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const VertexOutput<4>& vertex = list[static_cast<std::size_t>(index[lane])];
+      for (int i = 0; i < 4; ++i) {
+        varyings[static_cast<std::size_t>(i)][lane] = vertex.varyings[static_cast<std::size_t>(i)];
+      }
+    }
+  }
+};
+
+struct MixedLanes {
+  static constexpr auto kInterpolation = MixedColour::kInterpolation;
+  static constexpr std::size_t kInputs = 4;
+
+  template <class Put>
+  void inputs(const QuadFragments& in, const Put& put) const {
+    put(0, in.varying(0) + in.ddx(0));
+    put(1, in.varying(1) - in.ddy(0));
+    put(2, select(in.front_facing(), in.varying(2), -in.varying(2)));
+    put(3, in.varying(3) + in.ddx(1));
+  }
+  void shade(const FragmentBatch<4>& batch, std::array<Floats, 4>* colours) const {
+    for (int i = 0; i < batch.vectors(); ++i) {
+      colours[i] = {batch.input(0, i), batch.input(1, i), batch.input(2, i), batch.input(3, i)};
+    }
+  }
+};
+
+}  // namespace
+
+unsigned place_listed(const test::ListedVertices<4>& stage, const VertexJob& job) {
+  return place_vertices(ListedLanes{*stage.list}, job);
+}
+
+void shade_listed(const test::ListedVertices<4>& stage, const VertexJob& job) {
+  shade_vertices(ListedLanes{*stage.list}, job);
+}
+
+void shade_mixed(const MixedColour&, const FragmentJob& job, const VisibilityTile& tile,
+                 const VisibleRun& run) {
+  shade_fragments(MixedLanes{}, job, tile, run);
+}
+
+#endif

@@ -134,7 +134,8 @@ struct BusyScene {
 }  // namespace
 
 TEST_CASE(
-    "blended triangles merge in the order of submission, across chunks, draws, tiles and threads") {
+    "blended triangles merge in the order of submission, across chunks, draws, tiles and threads" *
+    doctest::test_suite("threads")) {
   // Two draws of 3,000 translucent triangles, each over four tiles at least, against the
   // same sums taken one by one.
   test::Random random{91};
@@ -165,13 +166,14 @@ TEST_CASE(
          test::ListedVertices<4>{&vertices}, test::VaryingColour<Interpolation::flat>{});
   }
   // Only a few pixels of each tile: 6,000 blends each are slow without optimisation.
-  for (DrawCall& call : pass.draws) {
-    call.shade_tile = [shade = call.shade_tile](std::uint32_t chunk, std::span<const Bin> bins,
-                                                const Rectangle& tile) {
-      const Rectangle corner{tile.x_end - 2, tile.y_end - 2, tile.x_end, tile.y_end};
-      shade(chunk, bins, corner);
-    };
-  }
+  static const ScalarSteps kWhole = *pass.draws[0].scalar_steps;
+  ScalarSteps corners = kWhole;
+  corners.shade_tile = [](const void* recorded, std::uint32_t chunk, std::span<const Bin> bins,
+                          const Rectangle& tile) {
+    kWhole.shade_tile(recorded, chunk, bins,
+                      {tile.x_end - 2, tile.y_end - 2, tile.x_end, tile.y_end});
+  };
+  for (DrawCall& call : pass.draws) call.scalar_steps = &corners;
   ThreadPool pool{2};
   finish(pass, pool);
   for (const int y : {62, 63, 126, 127, 129}) {
@@ -179,17 +181,20 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a busy scene gives the same image for 1, 2, 3 and 8 threads, in every profile") {
+TEST_CASE("a busy scene gives the same image for 1, 2, 3 and 8 threads, in every profile" *
+          doctest::test_suite("threads")) {
   const BusyScene scene{92};
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     const std::uint64_t one = scene.draw_hash(1, profile);
     for (const int threads : {2, 3, 8}) {
-      CHECK_MESSAGE(scene.draw_hash(threads, profile) == one, profile.name);
+      CHECK_MESSAGE(scene.draw_hash(threads, profile) == one, known.name);
     }
   }
 }
 
-TEST_CASE("a busy scene gives the same bits in every build, with 3 threads") {
+TEST_CASE("a busy scene gives the same bits in every build, with 3 threads" *
+          doctest::test_suite("threads")) {
   struct Golden {
     std::string_view profile;
     Format format;
@@ -207,7 +212,8 @@ TEST_CASE("a busy scene gives the same bits in every build, with 3 threads") {
   }
 }
 
-TEST_CASE("one pass may be used for one frame after another, on the same threads") {
+TEST_CASE("one pass may be used for one frame after another, on the same threads" *
+          doctest::test_suite("threads")) {
   const std::vector<VertexOutput<0>> vertices = test::covering_quad(70, 70);
   const auto indices = test::indices_up_to(vertices.size());
   Image target = make_image(Format::r32f, 70, 70);
@@ -232,7 +238,8 @@ TEST_CASE("a pass without draws, and a draw without triangles, leave the targets
   CHECK(all_zero(target));
 }
 
-TEST_CASE("the vertex stage runs once a vertex, however often indices name it, on any thread") {
+TEST_CASE("the vertex stage runs once a vertex, however often indices name it, on any thread" *
+          doctest::test_suite("threads")) {
   std::vector<VertexOutput<0>> vertices(5'000, VertexOutput<0>{{0.0f, 0.0f, 0.0f, 1.0f}, {}});
   std::vector<std::atomic<int>> calls(vertices.size());
   const std::vector<std::uint32_t> indices(300, 7u);
@@ -245,7 +252,8 @@ TEST_CASE("the vertex stage runs once a vertex, however often indices name it, o
   CHECK(std::all_of(calls.begin(), calls.end(), [](const auto& count) { return count == 1; }));
 }
 
-TEST_CASE("the fragment stage runs once for each pixel that passes the early test, on any thread") {
+TEST_CASE("the fragment stage runs once for each pixel that passes the early test, on any thread" *
+          doctest::test_suite("threads")) {
   Image target = make_image(Format::r8, 100, 100);
   Image depth = make_image(Format::r32f, 100, 100);
   for (int y = 0; y < 100; ++y) {
@@ -316,7 +324,8 @@ TEST_CASE("a depth buffer alone can be drawn into") {
 }
 
 TEST_CASE("a triangle with a NaN or infinite position draws nothing, its neighbours draw") {
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     for (int component = 0; component < 4; ++component) {
       for (const float odd : {kNan, kInfinity, -kInfinity}) {
         std::vector<VertexOutput<0>> vertices = test::covering_quad(16, 16);
@@ -332,7 +341,8 @@ TEST_CASE("a triangle with a NaN or infinite position draws nothing, its neighbo
 }
 
 TEST_CASE("a triangle whose vertices all have w = 0 draws nothing") {
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     const std::vector<VertexOutput<0>> vertices{{{-1, -1, 0, 0}, {}}, {{3, -1, 0, 0}, {}},
                                                 {{-1, 3, 0, 0}, {}},  {{0, 0, 0, 0}, {}},
                                                 {{0, 0, 0, 0}, {}},   {{0, 0, 0, 0}, {}}};
@@ -348,7 +358,8 @@ TEST_CASE("a triangle with one vertex in the plane of the eye (w = 0) draws the 
   const auto at = [](float x, float w) {
     return VertexOutput<0>{{x, 1.0f, (8.1f * w - 1.6f) / 7.9f, w}, {}};
   };
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     Image target = make_image(Format::r32f, 32, 32);
     test::draw_list({.colour = {&target}}, test::adding_state(),
                     std::vector{at(0, 0), at(-9, 8), at(9, 8)}, test::OneColour{}, profile);
@@ -379,12 +390,13 @@ TEST_CASE("positions at random over the whole range of floats draw without harm"
     glm::vec4 p{};
     for (int k = 0; k < 4; ++k) {
       p[k] = random.whole(0, 1) == 0
-                 ? std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()))
+                 ? std::bit_cast<float>(static_cast<std::uint32_t>(random.next()))
                  : std::ldexp(random.between(-1.0f, 1.0f), random.whole(-3, 3));
     }
     vertices.push_back({p, {random.between(-1.0f, 1.0f), kNan, kInfinity, 1e38f}});
   }
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     Image target = make_image(Format::rgba16f, 40, 40);
     Image depth = make_image(Format::r32f, 40, 40);
     clear_image(depth, glm::vec4{1.0f}, {});
@@ -399,11 +411,12 @@ TEST_CASE("positions at random over the whole range of floats draw without harm"
         outside += !(d >= 0.0f && d <= 1.0f);
       }
     }
-    CHECK_MESSAGE(outside == 0, profile.name);
+    CHECK_MESSAGE(outside == 0, known.name);
   }
 }
 
-TEST_CASE("an exception in a fragment stage on any thread reaches the caller of finish") {
+TEST_CASE("an exception in a fragment stage on any thread reaches the caller of finish" *
+          doctest::test_suite("threads")) {
   struct Thrower {
     int unused = 0;
   };
@@ -414,7 +427,11 @@ TEST_CASE("an exception in a fragment stage on any thread reaches the caller of 
   RenderPass pass{.targets = {.colour = {&target}}, .profile = {}, .draws = {}};
   draw(pass, test::plain_state(), indices, 6, test::ListedVertices<0>{&vertices},
        test::OneColour{});
-  pass.draws[0].shade_tile = [](auto&&...) { throw Thrower{}; };
+  ScalarSteps throwing = *pass.draws[0].scalar_steps;
+  throwing.shade_tile = [](const void*, std::uint32_t, std::span<const Bin>, const Rectangle&) {
+    throw Thrower{};
+  };
+  pass.draws[0].scalar_steps = &throwing;
   CHECK_THROWS_AS(finish(pass, pool), Thrower);
 }
 

@@ -253,7 +253,8 @@ TEST_CASE("a perspective varying halfway across is nearer the closer vertex's va
 TEST_CASE("a flat varying has the provoking vertex's value at every pixel, to the bit") {
   test::Random random{84};
   int wrong = 0;
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     std::vector<VertexOutput<4>> vertices;
     for (int i = 0; i < 3; ++i) {
       const auto v = static_cast<float>(i + 1);
@@ -320,7 +321,8 @@ TEST_CASE("interpolated values stay within rounding of the vertices' range on an
 }
 
 TEST_CASE("the depth that a draw stores runs from 0 at the near plane to 1 at the far one") {
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     // A wall from the near plane on the left to beyond the far plane on the right.
     const std::vector<VertexOutput<0>> vertices{
         {{-1, -8, -1, 1}, {}}, {{1.5f, -8, 1.5f, 1}, {}}, {{-1, 8, -1, 1}, {}},
@@ -338,14 +340,15 @@ TEST_CASE("the depth that a draw stores runs from 0 at the near plane to 1 at th
         outside += std::fabs(value - (x + 0.5) / kSize) > 1e-5;
       }
     }
-    CHECK_MESSAGE(outside == 0, profile.name);
+    CHECK_MESSAGE(outside == 0, known.name);
   }
 }
 
 TEST_CASE("depth never leaves 0 to 1, on any triangle and in any profile but softpipe") {
   test::Random random{87};
-  for (const Profile& profile : profiles()) {
-    if (profile.name == "softpipe") continue;
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
+    if (known.name == "softpipe") continue;
     std::vector<VertexOutput<0>> vertices;
     for (int i = 0; i < 3 * 500; ++i) {
       glm::vec4 p{random.between(-2.0f, 2.0f), random.between(-2.0f, 2.0f), 0.0f, 1.0f};
@@ -368,7 +371,7 @@ TEST_CASE("depth never leaves 0 to 1, on any triangle and in any profile but sof
         }
       }
     }
-    CHECK_MESSAGE(outside == 0, profile.name);
+    CHECK_MESSAGE(outside == 0, known.name);
   }
 }
 
@@ -426,7 +429,8 @@ TEST_CASE("varyings of all kinds are the same whether the guard band clips or no
 }
 
 TEST_CASE("derivatives are equal for the four pixels of each 2x2 block, in odd targets too") {
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     for (const auto give_ddx : {true, false}) {
       const Image target =
           give_ddx
@@ -442,14 +446,15 @@ TEST_CASE("derivatives are equal for the four pixels of each 2x2 block, in odd t
           wrong += !test::same_bits(load_texel(target, x, y), load_texel(target, x & ~1, y & ~1));
         }
       }
-      CHECK_MESSAGE(wrong == 0, profile.name);
+      CHECK_MESSAGE(wrong == 0, known.name);
       CHECK(blocks > 2'000);
     }
   }
 }
 
 TEST_CASE("derivatives are the differences on the block's upper and left side, softpipe's lower") {
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
+    const Profile& profile = known.profile;
     const Image values =
         draw_four(slanted_floor(), GiveFour<kPerspective, Give::values>{}, profile);
     const Image ddx = draw_four(slanted_floor(), GiveFour<kPerspective, Give::ddx>{}, profile);
@@ -459,13 +464,13 @@ TEST_CASE("derivatives are the differences on the block's upper and left side, s
       for (int x = 0; x < kSize; x += 2) {
         if (std::abs(x - y) < 4) continue;
         const glm::vec4 corner = load_texel(values, x, y);
-        const int row = profile.name == "softpipe" ? y + 1 : y;
+        const int row = known.name == "softpipe" ? y + 1 : y;
         const glm::vec4 left = load_texel(values, x, row);
         wrong += load_texel(ddx, x + 1, y) != load_texel(values, x + 1, row) - left;
         wrong += load_texel(ddy, x + 1, y + 1) != load_texel(values, x, y + 1) - corner;
       }
     }
-    CHECK_MESSAGE(wrong == 0, profile.name);
+    CHECK_MESSAGE(wrong == 0, known.name);
   }
 }
 

@@ -287,9 +287,9 @@ TEST_CASE("blending into a normalised format clamps the source to 0..1 first") {
   ColourState state;
   state.blend = BlendState{{BlendFactor::one, BlendFactor::one, BlendOp::subtract},
                            {BlendFactor::one, BlendFactor::one, BlendOp::subtract}};
-  store_texel(target, 0, 0, {0.2f, 0.2f, 0.2f, 0.2f}, profiles()[0]);
+  store_texel(target, 0, 0, {0.2f, 0.2f, 0.2f, 0.2f}, Profile{});
   // 3 counts as 1, -1 and NaN as 0.
-  write_colour(state, target, 0, 0, {3.0f, -1.0f, kNan, 1.0f}, profiles()[0]);
+  write_colour(state, target, 0, 0, {3.0f, -1.0f, kNan, 1.0f}, Profile{});
   const auto texel = row<std::uint8_t>(target, 0);
   CHECK(texel[0] == 204);
   CHECK(texel[1] == 0);
@@ -303,7 +303,7 @@ TEST_CASE("a NaN's payload survives in a channel that is masked out") {
   texel[1] = 0x7D55;
   ColourState state;
   state.write = {true, false, true, true};
-  write_colour(state, target, 0, 0, {1.0f, 1.0f, 1.0f, 1.0f}, profiles()[0]);
+  write_colour(state, target, 0, 0, {1.0f, 1.0f, 1.0f, 1.0f}, Profile{});
   CHECK(texel[0] == kHalfOne);
   CHECK(texel[1] == 0x7D55);
   CHECK(texel[2] == kHalfOne);

@@ -2,10 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include "scenes/lens_views/lens_view.h"
+#include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/load/load_scene.h"
-#include "tests/support/ground_truth_scenes.h"
+#include "tests/support/lens_view_scenes.h"
 
 using namespace softfocus;
 using test::Drawn;
@@ -46,7 +46,8 @@ TEST_CASE("accumulation: what lies in the plane of focus is as sharp as the pinh
   CHECK(equal(drawn.sampled.picture, drawn.pinhole));
 }
 
-TEST_CASE("accumulation: the same bits for any number of threads and on every vector unit") {
+TEST_CASE("accumulation: the same bits for any number of threads and on every vector unit" *
+          doctest::test_suite("threads")) {
   const Scene scene = built_in("figures");
   const Sampling sampling{.samples = 50, .jitter = true, .until = 1e-6, .aperture = {7}};
   ThreadPool one{1};
@@ -68,9 +69,9 @@ TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes"
   const Scene scene = built_in("sphere-world");
   const int width = 150, height = 70;  // parts of tiles
   const Profile profile{};
-  const View pinhole_view = camera_view(scene.camera, 0.0, width, height);
+  const CameraMatrices pinhole_camera = camera_matrices(scene.camera, 0.0, width, height);
   const double radius_m = aperture_radius_m(scene.lens.lens, 1.0);
-  for (const int samples : {kSampleGroup, 2 * kViewGroup + kSampleGroup + 3}) {
+  for (const int samples : {kSampleGroup, 2 * kLensViewGroup + kSampleGroup + 3}) {
     ThreadPool pool{2};
     const Sampling sampling{.samples = samples, .jitter = true};
     const Drawn drawn = accumulated(scene, sampling, width, height, pool);
@@ -80,9 +81,9 @@ TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes"
     SampleSums sums = make_sample_sums(width, height);
     std::vector<Image> group;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const View view = lens_view(pinhole_view, points[i] * radius_m, scene.lens.lens.focus_m,
-                                  offsets[i], width, height);
-      group.push_back(draw_scene(scene, view, 0.0, width, height, profile, pool));
+      const CameraMatrices camera = lens_camera(pinhole_camera, points[i] * radius_m,
+                                                scene.lens.lens.focus_m, offsets[i], width, height);
+      group.push_back(draw_scene(scene, camera, 0.0, width, height, profile, pool));
       if (group.size() < kSampleGroup && i + 1 < points.size()) continue;
       add_pictures(group, sums, pool);
       group.clear();
@@ -132,11 +133,11 @@ TEST_CASE("accumulation: it stops when the half-sets agree to the error asked fo
 TEST_CASE("accumulation: it tells how far it is") {
   ThreadPool pool{1};
   const Scene scene = square_scene(2.0, 1.0);
-  const View view = camera_view(scene.camera, 0.0, 16, 16);
-  const Image pinhole = draw_scene(scene, view, 0.0, 16, 16, Profile{}, pool);
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, 16, 16);
+  const Image pinhole = draw_scene(scene, camera, 0.0, 16, 16, Profile{}, pool);
   std::vector<int> told;
   accumulation({scene,
-                view,
+                camera,
                 0.0,
                 pinhole,
                 2.0,

@@ -4,7 +4,8 @@
 
 #include "dof/measure/difference.h"
 #include "scenes/load/load_scene.h"
-#include "tests/support/ground_truth_scenes.h"
+#include "tests/support/lens_view_scenes.h"
+#include "tests/support/skip.h"
 
 using namespace softfocus;
 using test::Drawn;
@@ -14,7 +15,7 @@ namespace {
 
 bool is_missing() {
   if (ray_traced_missing().empty()) return false;
-  MESSAGE("not tried: " << ray_traced_missing());
+  skip("embree", ray_traced_missing());
   return true;
 }
 
@@ -82,7 +83,7 @@ TEST_CASE("ray-traced: one-sided surfaces are seen from their fronts alone, mirr
   }
 }
 
-TEST_CASE("ray-traced: the same bits for any number of threads") {
+TEST_CASE("ray-traced: the same bits for any number of threads" * doctest::test_suite("threads")) {
   if (is_missing()) return;
   const Scene scene = load_scene("figures", scene_search_path({}));
   const Sampling sampling{.samples = 20, .jitter = true, .aperture = {7}};

@@ -25,7 +25,7 @@ Image random_picture(int width, int height, test::Random& random) {
   Image picture = make_image(Format::rgba16f, width, height);
   for (int y = 0; y < height; ++y) {
     for (std::uint16_t& half : row<std::uint16_t>(picture, y)) {
-      half = static_cast<std::uint16_t>(random.bits());
+      half = static_cast<std::uint16_t>(random.next());
     }
   }
   return picture;
@@ -42,7 +42,8 @@ bool same_bits(const SampleSums& a, const SampleSums& b) {
 
 }  // namespace
 
-TEST_CASE("sums are the same on every vector unit and any number of threads") {
+TEST_CASE("sums are the same on every vector unit and any number of threads" *
+          doctest::test_suite("threads")) {
   test::Random random;
   for (const int width : {1, 3, 16, 17, 50}) {
     for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{8}}) {

@@ -69,7 +69,8 @@ TEST_CASE("auto: the bytes are those of the method that it says it chose") {
   CHECK(contains(methods, "accumulation"));
 }
 
-TEST_CASE("auto: the same choice and bytes for any number of threads and on every vector unit") {
+TEST_CASE("auto: the same choice and bytes for any number of threads and on every vector unit" *
+          doctest::test_suite("threads")) {
   const Words options = auto_with({"--max-error", "0.05", "--coc-scale", "4"});
   const auto with = [&](const Words& more) {
     Words words = options;

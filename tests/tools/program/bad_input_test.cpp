@@ -1,6 +1,7 @@
 #include <sys/stat.h>
 
 #include "tests/support/cli_refused.h"
+#include "tests/support/skip.h"
 
 using namespace softfocus;
 
@@ -162,16 +163,27 @@ TEST_CASE("bad input: an output where nothing can be written") {
 }
 
 TEST_CASE("bad input: an output in a directory or over a file protected against writing") {
-  if (::geteuid() == 0) return;  // nothing is protected against root
+  // Nothing is protected against root, who becomes nobody.
+  RunSetting setting;
+  if (::geteuid() == 0) setting.user = 65534;
+  if (run_program({"--version"}, setting).status != 0) {
+    return skip("other-user", "run as root, and nobody else may run the program");
+  }
   const TemporaryDirectory directory;
   std::filesystem::create_directory(directory.file("closed"));
   REQUIRE(::chmod(directory.file("closed").c_str(), 0500) == 0);
   write_file(directory.file("closed.png"), "mine");
   REQUIRE(::chmod(directory.file("closed.png").c_str(), 0400) == 0);
+  if (setting.user) {
+    for (const std::string& name :
+         {directory.path(), directory.file("closed"), directory.file("closed.png")}) {
+      REQUIRE(::chown(name.c_str(), *setting.user, *setting.user) == 0);
+    }
+  }
   check_refused(directory, {"render", "figures", "-o", directory.file("closed/out.png")}, 1,
-                {"closed/out.png"});
+                {"closed/out.png"}, setting);
   check_refused(directory, {"render", "figures", "-o", directory.file("closed.png")}, 1,
-                {"closed.png"});
+                {"closed.png"}, setting);
   CHECK(read_file(directory.file("closed.png")) == "mine");
 }
 
@@ -191,7 +203,7 @@ TEST_CASE("bad input: a full disk, met while writing, leaves nothing and harms n
 
 TEST_CASE("bad input: a full disk met by the report takes the picture back too") {
   const TemporaryDirectory directory;
-  if (!std::filesystem::exists("/dev/full")) return;
+  if (!std::filesystem::exists("/dev/full")) return skip("full-device", "no /dev/full");
   check_refused(directory,
                 {"render", "figures", "--size", "16x16", "-o", directory.file("out.png"),
                  "--report", "/dev/full"},
@@ -199,7 +211,7 @@ TEST_CASE("bad input: a full disk met by the report takes the picture back too")
 }
 
 TEST_CASE("bad input: a full device, as a file and as standard output") {
-  if (!std::filesystem::exists("/dev/full")) return;
+  if (!std::filesystem::exists("/dev/full")) return skip("full-device", "no /dev/full");
   const TemporaryDirectory directory;
   check_refused(directory,
                 {"render", "figures", "--size", "16x16", "-o", "/dev/full", "--format", "npy"}, 1,

@@ -2,6 +2,7 @@
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
+#include "tests/support/skip.h"
 #include "tools/chart/gnuplot.h"
 
 using namespace softfocus;
@@ -17,7 +18,7 @@ bool has_gnuplot() {
     check_gnuplot();
     return true;
   } catch (const std::runtime_error& error) {
-    MESSAGE(error.what());
+    skip("gnuplot", error.what());
     return false;
   }
 }

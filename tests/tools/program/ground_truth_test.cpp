@@ -1,6 +1,7 @@
 #include "scenes/lens_views/ray_traced.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
+#include "tests/support/skip.h"
 
 using namespace softfocus;
 
@@ -26,7 +27,8 @@ TEST_CASE("ground truth: one sample is the pinhole's file, more are none of the 
   CHECK(more != rendered("figures", {"--method", "two-pass", "--max-coc", "16"}));
 }
 
-TEST_CASE("ground truth: the bytes are the same for 1, 2 and 3 threads") {
+TEST_CASE("ground truth: the bytes are the same for 1, 2 and 3 threads" *
+          doctest::test_suite("threads")) {
   Words methods{"accumulation"};
   if (ray_traced_missing().empty()) methods.emplace_back("ray-traced");
   for (const std::string& method : methods) {
@@ -113,6 +115,6 @@ TEST_CASE("ground truth: bad input") {
 }
 
 TEST_CASE("ground truth: without Embree, ray-traced says how to get it") {
-  if (ray_traced_missing().empty()) return;
+  if (ray_traced_missing().empty()) return skip("", "built with Embree");
   check_refused_render({"--method", "ray-traced"}, {"ray-traced", "Embree", "libembree-dev"});
 }

@@ -2,8 +2,8 @@
 
 #include "raster/numbers/profile.h"
 #include "tests/support/gl_drivers.h"
-#include "tools/gl/driver.h"
 #include "tools/files/profile_file.h"
+#include "tools/gl/driver.h"
 
 using namespace softfocus;
 
@@ -35,9 +35,9 @@ std::string check_probe_finds_profile(const std::string& driver) {
   const ProgramRun run = run_program({"probe", "--driver", driver, "-o", file});
   CHECK(run.status == 0);
   CHECK(run.out + run.err == "");
-  const Profile probed = load_profile(file);
+  const ChosenProfile probed = load_profile(file);
   CHECK(probed.name == driver + "-probed");
-  check_same_arithmetic(probed, find_profile(find_driver(driver)->profile).value());
+  check_same_arithmetic(probed.profile, find_profile(find_driver(driver)->profile).value());
   return read_file(file);
 }
 
@@ -80,19 +80,20 @@ TEST_CASE("probe: experiments on softpipe find its profile, and print it without
   CHECK(run.err == "");
   const TemporaryDirectory directory;
   write_file(directory.file("printed.toml"), run.out);
-  check_same_arithmetic(load_profile(directory.file("printed.toml")),
+  check_same_arithmetic(load_profile(directory.file("printed.toml")).profile,
                         find_profile("softpipe").value());
 }
 
 TEST_CASE("a profile's file gives back every known profile") {
   const TemporaryDirectory directory;
-  for (const Profile& profile : profiles()) {
+  for (const NamedProfile& known : profiles()) {
     const std::string file = directory.file("profile.toml");
-    write_file(file, profile_text(profile, "a heading\nof two lines"));
-    const Profile back = load_profile(file);
-    CHECK(back.name == profile.name);
-    CHECK(back.summary == profile.summary);
-    check_same_arithmetic(back, profile);
+    const ChosenProfile chosen{std::string{known.name}, std::string{known.summary}, known.profile};
+    write_file(file, profile_text(chosen, "a heading\nof two lines"));
+    const ChosenProfile back = load_profile(file);
+    CHECK(back.name == known.name);
+    CHECK(back.summary == known.summary);
+    check_same_arithmetic(back.profile, known.profile);
   }
 }
 

@@ -22,7 +22,8 @@ TEST_CASE("render: a picture is 1024 x 1024 if no size is given") {
   CHECK(bytes.size() == 128 + 1024 * 1024 * 8);
 }
 
-TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads, by every method") {
+TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads, by every method" *
+          doctest::test_suite("threads")) {
   for (const Method& entry : methods()) {
     const std::string method{entry.name};
     const auto with_threads = [&](const std::string& threads) {

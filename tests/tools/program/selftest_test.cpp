@@ -14,7 +14,8 @@ TEST_CASE("selftest passes and says how many hashes there were") {
   CHECK(run.err == "");
 }
 
-TEST_CASE("selftest --print prints the table's source, the same on 1 thread and on 8") {
+TEST_CASE("selftest --print prints the table's source, the same on 1 thread and on 8" *
+          doctest::test_suite("threads")) {
   const ProgramRun one = run_program({"selftest", "--print", "--threads", "1"});
   CHECK(one.status == 0);
   CHECK(one.out == read_file(SOFTFOCUS_TEST_DATA "/../../tools/golden/table.inc"));

@@ -1,0 +1,50 @@
+#pragma once
+// Auto: picks the cheapest candidate whose predicted error is within a limit, or the most
+// accurate whose predicted time is. Nothing is timed: the same picture gives the same method on
+// every machine.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dof/auto/scene_traits.h"
+
+namespace softfocus {
+
+struct AutoGoal {
+  double max_error = 0.02;              ///< mean FLIP; ignored if there is a time
+  std::optional<double> max_time_ms{};  ///< for the method, beside drawing
+};
+
+/// What auto has to keep to, beside the goal.
+struct AutoLimits {
+  std::optional<float> max_radius_px;  ///< filters cut circles to no more than this
+  std::size_t triangles = 0;           ///< of the scene, to predict the time to draw it again
+};
+
+/// A method of dof/dof.h with a radius, or of scenes/lens_views/lens_view_method.h with a number
+/// of samples.
+struct AutoMethod {
+  std::string_view method;
+  float radius_px = 0.0f;  ///< max_coc_px of a filter
+  int samples = 0;         ///< of a lens-view method; 0: a filter
+  double predicted_error = 0.0;
+  double predicted_ms = 0.0;
+  bool meets_goal = true;  ///< false: no candidate does, and this is the nearest
+  std::string reason{};    ///< one sentence, without its full stop
+  SceneTraits traits;
+};
+
+/// The pinhole, with a predicted error of 0, if no circle reaches half a pixel. For an error:
+/// the most accurate of the candidates within it that take at most a twentieth longer than the
+/// cheapest. Of equal candidates the first in the table.
+AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits);
+
+/// Whether the method's picture is the pinhole's, to the bit.
+bool is_sharp(const AutoMethod& choice);
+
+/// "two-pass, radius 8", "accumulation, 64 samples", "pinhole".
+std::string setting_text(const AutoMethod& choice);
+
+}  // namespace softfocus

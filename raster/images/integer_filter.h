@@ -1,0 +1,33 @@
+#pragma once
+// The standard texture unit's integer filter, for linear bytes and halves: 8-bit weights, exact
+// sums (integer_bilinear.h), one rounding.
+
+#include <glm/vec4.hpp>
+
+#include "raster/images/image.h"
+#include "raster/images/integer_bilinear.h"
+#include "raster/numbers/profile.h"
+
+namespace softfocus {
+
+/// Whether textures of this format are filtered in integers. sRGB bytes are not, as they are
+/// decoded first; nor are texels of 32 bits.
+bool has_integer_filter(Format format, const Profile& profile);
+
+/// Where a bilinear fetch reads; `level` of r8, rgba8 or rgba16f.
+struct IntegerFetch {
+  const Image* level;
+  IntegerTaps u, v;
+};
+
+/// fine + next_weight / 256 (coarse - fine), next_weight 0 to 256; with 0 `coarse` is not read.
+///
+/// Bytes: the sum in 2^-24 of 255 is exact in 32 bits, is rounded to binary32 (a single level
+/// needs no rounding) and divided by 255 2^24. So four equal texels give the same as a nearest
+/// fetch. Halves: the sum in 2^-48 is exact and rounded once to binary32. If any half that is
+/// read is infinite or NaN, whatever it weighs, its channel is filtered in floats with the
+/// profile's lerp.
+glm::vec4 filter_in_integers(const IntegerFetch& fine, const IntegerFetch& coarse, int next_weight,
+                             const Profile& profile);
+
+}  // namespace softfocus

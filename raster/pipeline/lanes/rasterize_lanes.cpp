@@ -1,0 +1,309 @@
+// Coverage and depth of triangles in a tile, block by block.
+
+#ifndef SOFTFOCUS_ISA
+
+#include "raster/pipeline/lanes/rasterize_lanes.h"
+
+#include <algorithm>
+#include <array>
+
+#include "raster/images/texel.h"
+
+#define SOFTFOCUS_KERNELS "raster/pipeline/lanes/rasterize_lanes.cpp"
+#include "raster/lanes/for_each_isa.inl"
+
+namespace softfocus {
+
+void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
+                     const DepthState& state, const Profile& profile, VisibilityTile& tile) {
+  SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, state, profile, tile);
+}
+
+void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile) {
+  Image row = make_image(Format::rgba16f, kBlockSize, 1);
+  clear_image(row, 0, 0, kBlockSize, 1, value, profile);
+  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, row.bytes.data());
+}
+
+}  // namespace softfocus
+
+#else  // once a vector unit
+
+#include "raster/pipeline/lanes/block_lanes.inl"
+#include "raster/pipeline/lanes/edge_lanes.inl"
+
+namespace {
+
+SOFTFOCUS_INLINE Mask passes(Compare test, Floats incoming, Floats stored) {
+  switch (test) {
+    case Compare::never: return Mask{};
+    case Compare::less: return incoming < stored;
+    case Compare::equal: return incoming == stored;
+    case Compare::less_equal: return incoming <= stored;
+    case Compare::greater: return incoming > stored;
+    case Compare::not_equal: return ~(incoming == stored);
+    case Compare::greater_equal: return incoming >= stored;
+    case Compare::always: return ~Mask{};
+  }
+  return Mask{};
+}
+
+// clamped_depth() of draw.h, for planes_from_origin and barycentric weights.
+SOFTFOCUS_INLINE Floats clamped_depth(Floats depth) {
+  return select(depth <= 1.0f, select(depth < 0.0f, splat(0.0f), depth), splat(1.0f));
+}
+
+/// A triangle's depths in a tile, and their test.
+template <Compare test, bool kPlanes>
+struct DepthWriter {
+  const DepthState& state;
+  VisibilityTile& tile;
+  std::int32_t id;
+  Contraction contraction;
+  Floats z0, z1, z2;
+  Floats inverse_area;
+
+  // Tests the covered lanes of a part of a block. Lane 0 is pixel (x, y).
+  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
+    Floats depth;
+    if constexpr (kPlanes) {
+      const Floats column = to_floats(x + lane_x());
+      const Floats line = to_floats(y + lane_y());
+      if (contraction == Contraction::fused) {
+        depth = fused_multiply_add(z2, line, fused_multiply_add(z1, column, z0));
+      } else {
+        depth = z2 * line + (z1 * column + z0);
+      }
+    } else {
+      depth = (z0 + (e1 * inverse_area) * z1) + (e2 * inverse_area) * z2;
+    }
+    depth = clamped_depth(depth);
+    const Floats stored = load(&tile.depth[at]);
+    const Mask seen = covered & passes(test, depth, stored);
+    if (state.write) store(&tile.depth[at], select(seen, depth, stored));
+    store(&tile.ids[at], select(seen, splat(id), load(&tile.ids[at])));
+  }
+};
+
+struct BlockRange {
+  int x_begin, y_begin, x_end, y_end;  // pixels, multiples of kBlockSize
+};
+
+SOFTFOCUS_INLINE BlockRange blocks_of(const LaneTriangle& t, const VisibilityTile& tile) {
+  return {std::max<int>(t.bounds[0], tile.area.x_begin) & ~3,
+          std::max<int>(t.bounds[1], tile.area.y_begin) & ~3,
+          std::min<int>(t.bounds[2], tile.area.x_end), std::min<int>(t.bounds[3], tile.area.y_end)};
+}
+
+// Where the part of a block that begins with pixel (x, y) is kept.
+SOFTFOCUS_INLINE std::size_t place_in_tile(const VisibilityTile& tile, int x, int y) {
+  return place_of_pixel(x - tile.area.x_begin, y - tile.area.y_begin);
+}
+
+template <class Writer>
+SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTile& tile,
+                                      Writer& writer) {
+  const BlockRange range = blocks_of(t, tile);
+  const int dx = range.x_begin - t.x_origin;
+  const int dy = range.y_begin - t.y_origin;
+  // Edge functions less their thresholds, over the first part of a block in a row; and steps to
+  // the next part and row.
+  std::array<Ints, 3> row, per_part, per_row;
+#pragma GCC unroll 3
+  for (std::size_t i = 0; i < 3; ++i) {
+    row[i] = (lane_x() + dx) * t.per_x[i] + (lane_y() + dy) * t.per_y[i] +
+             (t.edge[i] - std::int32_t{t.thresholds[i]});
+    per_part[i] = splat(t.per_x[i] * kPartColumns);
+    per_row[i] = splat(t.per_y[i] * kPartRows);
+  }
+  const Ints threshold1 = splat(std::int32_t{t.thresholds[1]});
+  const Ints threshold2 = splat(std::int32_t{t.thresholds[2]});
+  for (int y = range.y_begin; y < range.y_end; y += kPartRows) {
+    Ints e0 = row[0], e1 = row[1], e2 = row[2];
+    for (int x = range.x_begin; x < range.x_end; x += kPartColumns) {
+      const Ints signs = e0 | e1 | e2;
+      if (sign_bits(signs) != kAllLaneBits) {
+        writer.write(x, y, place_in_tile(tile, x, y), signs >= 0, to_floats(e1 + threshold1),
+                     to_floats(e2 + threshold2));
+      }
+      e0 += per_part[0];
+      e1 += per_part[1];
+      e2 += per_part[2];
+    }
+    for (std::size_t i = 0; i < 3; ++i) row[i] += per_row[i];
+  }
+}
+
+template <class Writer>
+SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile& tile,
+                                     Writer& writer) {
+  const BlockRange range = blocks_of(t, tile);
+  const WideLanes x = widen(lane_x() + (range.x_begin - t.x_origin));
+  const WideLanes y = widen(lane_y() + (range.y_begin - t.y_origin));
+  std::array<WideLanes, 3> row, per_part, per_row;
+  std::array<Floats, 3> thresholds;
+#pragma GCC unroll 3
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double per_x = t.large->per_x[i], per_y = t.large->per_y[i];
+    row[i] = wide_splat(t.large->edge[i]) + (x * wide_splat(per_x) + y * wide_splat(per_y));
+    per_part[i] = wide_splat(per_x * kPartColumns);
+    per_row[i] = wide_splat(per_y * kPartRows);
+    thresholds[i] = splat(static_cast<float>(t.thresholds[i]));
+  }
+  for (int top = range.y_begin; top < range.y_end; top += kPartRows) {
+    std::array<WideLanes, 3> e = row;
+    for (int left = range.x_begin; left < range.x_end; left += kPartColumns) {
+      const Floats e0 = narrow(e[0]), e1 = narrow(e[1]), e2 = narrow(e[2]);
+      const Mask covered = (e0 >= thresholds[0]) & (e1 >= thresholds[1]) & (e2 >= thresholds[2]);
+      if (any(covered)) {
+        writer.write(left, top, place_in_tile(tile, left, top), covered, e1, e2);
+      }
+#pragma GCC unroll 3
+      for (std::size_t i = 0; i < 3; ++i) e[i] = e[i] + per_part[i];
+    }
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) row[i] = row[i] + per_row[i];
+  }
+}
+
+// Exact for any triangle: these are far larger than pictures.
+template <class Writer>
+void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& writer) {
+  const BlockRange range = blocks_of(t, tile);
+  const auto& edges = t.large->exact.edges;
+  for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
+    for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
+      // An edge function is largest in one corner of the block.
+      bool outside = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int corner_x = edges[i].per_x > 0 ? x + kBlockSize - 1 : x;
+        const int corner_y = edges[i].per_y > 0 ? y + kBlockSize - 1 : y;
+        outside = outside || edge_at(edges[i], corner_x, corner_y) < t.thresholds[i];
+      }
+      if (outside) continue;
+      for (int part = 0; part < kBlockParts; ++part) {
+        const int left = x + part * kPartColumns % kBlockSize;
+        const int top = y + part * kPartColumns / kBlockSize * kPartRows;
+        Ints covered = ~Ints{};
+        std::array<Floats, 3> e{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (int lane = 0; lane < kLanes; ++lane) {
+            const std::int64_t value = edge_at(edges[i], left + lane_x(lane), top + lane_y(lane));
+            e[i][lane] = static_cast<float>(value);
+            if (value < t.thresholds[i]) covered[lane] = 0;
+          }
+        }
+        if (!any(covered)) continue;
+        writer.write(left, top, place_in_tile(tile, left, top), covered, e[1], e[2]);
+      }
+    }
+  }
+}
+
+template <Compare test, bool kPlanes>
+void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+                   const Profile& profile, VisibilityTile& tile) {
+  // Triangles were written long ago, perhaps by another thread.
+  constexpr std::size_t kAhead = 6;
+  for (std::size_t i = 0; i < std::min(kAhead, bins.size()); ++i) {
+    __builtin_prefetch(&chunk.triangles[bins[i].triangle]);
+    __builtin_prefetch(&chunk.triangles[bins[i].triangle].bounds);
+  }
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const auto* ahead = reinterpret_cast<const char*>(
+        &chunk.triangles[bins[std::min(i + kAhead, bins.size() - 1)].triangle]);
+    __builtin_prefetch(ahead);
+    __builtin_prefetch(ahead + 64);
+    const LaneTriangle& t = chunk.triangles[bins[i].triangle];
+    tile.triangles.push_back(&t);
+    DepthWriter<test, kPlanes> writer{state,
+                                      tile,
+                                      static_cast<std::int32_t>(tile.triangles.size()),
+                                      profile.interpolation,
+                                      splat(t.depth[0]),
+                                      splat(t.depth[1]),
+                                      splat(t.depth[2]),
+                                      splat(t.inverse_area)};
+    if (t.large == nullptr) {
+      rasterize_small(t, tile, writer);
+    } else if (t.large->fits_doubles) {
+      rasterize_wide(t, tile, writer);
+    } else {
+      rasterize_huge(t, tile, writer);
+    }
+  }
+}
+
+template <Compare test>
+void rasterize_test(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+                    const Profile& profile, VisibilityTile& tile) {
+  if (profile.attributes == AttributeSetup::planes_from_origin) {
+    rasterize_all<test, true>(chunk, bins, state, profile, tile);
+  } else {
+    rasterize_all<test, false>(chunk, bins, state, profile, tile);
+  }
+}
+
+}  // namespace
+
+void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+               const Profile& profile, VisibilityTile& tile) {
+  switch (state.test) {
+    case Compare::never: return rasterize_test<Compare::never>(chunk, bins, state, profile, tile);
+    case Compare::less: return rasterize_test<Compare::less>(chunk, bins, state, profile, tile);
+    case Compare::equal: return rasterize_test<Compare::equal>(chunk, bins, state, profile, tile);
+    case Compare::less_equal:
+      return rasterize_test<Compare::less_equal>(chunk, bins, state, profile, tile);
+    case Compare::greater:
+      return rasterize_test<Compare::greater>(chunk, bins, state, profile, tile);
+    case Compare::not_equal:
+      return rasterize_test<Compare::not_equal>(chunk, bins, state, profile, tile);
+    case Compare::greater_equal:
+      return rasterize_test<Compare::greater_equal>(chunk, bins, state, profile, tile);
+    case Compare::always: return rasterize_test<Compare::always>(chunk, bins, state, profile, tile);
+  }
+}
+
+namespace {
+
+// The inverse of place_of_pixel().
+SOFTFOCUS_INLINE int tile_x(std::uint32_t place) {
+  return static_cast<int>(place / kBlockPixels % kTileBlocks * kBlockSize + (place >> 1 & 2) +
+                          (place & 1));
+}
+SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
+  return static_cast<int>(place / (kBlockPixels * kTileBlocks) * kBlockSize + (place >> 2 & 2) +
+                          (place >> 1 & 1));
+}
+
+}  // namespace
+
+// `texels`: a row of a block, four halves a texel.
+void set_unseen(const VisibilityTile& tile, const std::byte* texels) {
+  constexpr std::size_t kTexelBytes = 8;
+  const int width = tile.area.x_end - tile.area.x_begin;
+  const int height = tile.area.y_end - tile.area.y_begin;
+  for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
+    const Ints ids = load(&tile.ids[place]);
+    const unsigned unseen = lane_bits(ids == 0);
+    const int left = tile_x(place), top = tile_y(place);
+    if (unseen == kAllLaneBits && left + kPartColumns <= width && top + kPartRows <= height) {
+      std::byte* to = tile.texels + static_cast<std::size_t>(top) * tile.stride_bytes +
+                      static_cast<std::size_t>(left) * kTexelBytes;
+      for (int row = 0; row < kPartRows; ++row, to += tile.stride_bytes) {
+        std::memcpy(to, texels, kPartColumns * kTexelBytes);
+      }
+      continue;
+    }
+    for (unsigned rest = unseen; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      const int x = left + lane_x(lane), y = top + lane_y(lane);
+      if (x >= width || y >= height) continue;
+      std::memcpy(tile.texels + static_cast<std::size_t>(y) * tile.stride_bytes +
+                      static_cast<std::size_t>(x) * kTexelBytes,
+                  texels, kTexelBytes);
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,64 @@
+#pragma once
+// A tile while it is drawn in lanes: depths, and the nearest triangle of each pixel. Fragments
+// are shaded when all triangles have passed, so that each pixel is shaded once.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "raster/images/image.h"
+#include "raster/pipeline/draw_call.h"
+#include "raster/pipeline/lanes/lane_chunk.h"
+#include "raster/pipeline/state.h"
+
+namespace softfocus {
+
+/// A tile is kept in blocks of 4x4 pixels, a block in quads of 2x2 pixels; blocks, quads and
+/// pixels row by row. Differences of varyings are taken within a quad.
+inline constexpr int kQuadPixels = 4;
+inline constexpr int kBlockSize = 4;
+inline constexpr int kBlockPixels = kBlockSize * kBlockSize;
+inline constexpr int kTileBlocks = kTileSize / kBlockSize;
+inline constexpr int kTilePixels = kTileSize * kTileSize;
+
+/// The index of pixel (x, y) of a tile.
+inline constexpr std::size_t place_of_pixel(int x, int y) {
+  const int block = y / kBlockSize * kTileBlocks + x / kBlockSize;
+  return static_cast<std::size_t>(block * kBlockPixels + ((y & 2) + (x >> 1 & 1)) * kQuadPixels +
+                                  ((y & 1) * 2 + (x & 1)));
+}
+
+/// A run of a tile's triangles that belong to one draw.
+struct VisibleRun {
+  const DrawCall* draw;
+  std::int32_t first_id;
+  std::int32_t end_id;
+};
+
+struct VisibilityTile {
+  Rectangle area;  ///< in the target; x_begin and y_begin are multiples of kTileSize
+  /// Where shaded pixels go, RGBA16F: the upper left one.
+  std::byte* texels;
+  std::size_t stride_bytes;
+  alignas(64) std::array<float, kTilePixels> depth;
+  alignas(64) std::array<std::int32_t, kTilePixels> ids;  ///< from 1 on; 0: none
+  std::vector<const LaneTriangle*> triangles;             ///< by id - 1
+  std::vector<VisibleRun> runs;
+};
+
+/// Begins a tile that shows nothing, at `clear_depth` or, without one, at the buffer's depths.
+void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
+                std::optional<float> clear_depth);
+/// Shades what the tile shows, draw by draw.
+void shade_tile(const VisibilityTile& tile);
+/// Forgets the triangles and keeps the depths.
+void forget_seen(VisibilityTile& tile);
+/// Writes the tile's depths to the buffer.
+void end_tile(const VisibilityTile& tile, Image& depth);
+
+/// Up to this id, an id fits beside a quad's number and pixels in 32 bits (shade_lanes.inl).
+inline constexpr std::size_t kMostVisible = (std::size_t{1} << 18) - 1;
+
+}  // namespace softfocus

@@ -1,0 +1,73 @@
+#pragma once
+// The table of methods that draw lens views: pictures of the scene from many points of the
+// lens. Their mean, over enough points, is the ground truth for the filters of dof/dof.h. A
+// method is one entry: adding one touches its own file, the table and a test.
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "dof/lens.h"
+#include "raster/images/image.h"
+#include "raster/numbers/profile.h"
+#include "raster/threads/parallel.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/frame_matrices.h"
+#include "scenes/lens_views/lens_points.h"
+#include "scenes/scene.h"
+
+namespace softfocus {
+
+/// How the lens is sampled.
+struct Sampling {
+  int samples = 256;    ///< 1 to kMostSamples; with `until`, the most
+  bool jitter = false;  ///< looks through all of the pixel, not through its centre alone
+  /// Stops when half_set_rms() is at most this, which is tried at 16, 32, 64, ... samples.
+  std::optional<double> until = {};
+  ApertureShape aperture = {};
+};
+
+/// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
+double aperture_radius_m(const ThinLens& lens, double coc_scale);
+
+struct LensViewInput {
+  const Scene& scene;
+  const CameraMatrices& camera;  ///< the pinhole
+  double frame = 0.0;
+  /// The scene as that camera sees it, RGBA16F: gives the size, and the result its alpha.
+  const Image& pinhole;
+  double focus_m = 1.0;
+  double aperture_radius_m = 0.0;
+  Sampling sampling;
+  Profile profile;
+  /// Told how many samples are in, now and then, on the calling thread. May be empty.
+  std::function<void(int samples)> progress;
+  /// The prepared scene of the pinhole's picture, to be moved from. Null: the scene is prepared
+  /// anew if the method needs it.
+  PreparedScene* prepared = nullptr;
+};
+
+struct SampledPicture {
+  Image picture;    ///< RGBA16F: linear colour, in alpha the pinhole's depth
+  int samples = 0;  ///< that it is the mean of
+  /// With `until`, half_set_rms() at the end; none if there were too few samples.
+  std::optional<double> half_set_rms;
+};
+
+struct LensViewMethod {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view needs;
+  /// If this build lacks something: what, and how to get it. Else empty.
+  std::string_view missing;
+  /// The same bits for any number of threads. Throws std::runtime_error if a library fails.
+  SampledPicture (*render)(const LensViewInput& input, ThreadPool& pool);
+};
+
+std::span<const LensViewMethod> lens_view_methods();
+
+/// The method of that name, or nullptr.
+const LensViewMethod* find_lens_view_method(std::string_view name);
+
+}  // namespace softfocus

@@ -1,0 +1,102 @@
+#include "tools/options/run_options.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "scenes/load/scene_error.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
+#include "tools/cli/platform.h"
+
+namespace softfocus {
+namespace {
+
+std::string isa_names() {
+  std::string list;
+  for (const Isa isa : available_isas()) {
+    list += (list.empty() ? "" : ", ") + std::string{isa_name(isa)};
+  }
+  return list;
+}
+
+ChosenProfile profile_of(const std::string& text) {
+  if (const auto known = find_profile(text)) return {text, "", *known};
+  if (text.find_first_of("/\\.") == std::string::npos) {
+    throw UsageError("--profile '" + text + "': there are " + names_of(profiles()) +
+                     "; or give a profile's file, such as ./mine.toml");
+  }
+  try {
+    return load_profile(text);
+  } catch (const SceneError& error) {
+    throw UsageError(std::string("--profile: ") + error.what());
+  }
+}
+
+}  // namespace
+
+void add_pool_options(CLI::App& parser, PoolOptions& options, const std::string& same) {
+  add_value(parser, "--threads", "N", "Threads, 1 to 256; " + same + " (default: all)",
+            [&options](const std::string& text) {
+              options.threads = parse_whole("--threads", text, 1, 256, "a number from 1 to 256");
+            });
+  add_value(parser, "--isa", "NAME",
+            "Vector unit: of this CPU " + isa_names() + "; " + same + " (default: the widest)",
+            [&options](const std::string& text) {
+              const auto isa = find_isa(text);
+              if (!isa) throw UsageError("--isa '" + text + "': this CPU has " + isa_names());
+              options.isa = *isa;
+            });
+}
+
+const Driver& parse_driver(std::string_view option, const std::string& text) {
+  const Driver* driver = find_driver(text);
+  if (driver == nullptr) {
+    throw UsageError(std::string(option) + " '" + text + "': there are " + names_of(drivers()));
+  }
+  return *driver;
+}
+
+void add_driver_option(CLI::App& parser, const std::string& help,
+                       std::function<void(const Driver&)> take) {
+  add_repeatable_value(
+      parser, "--driver", "NAME", help,
+      [take = std::move(take)](const std::string& name) { take(parse_driver("--driver", name)); });
+}
+
+void add_profile_option(CLI::App& parser, const std::string& help,
+                        std::function<void(const ChosenProfile&)> take) {
+  add_value(parser, "--profile", "NAME|FILE", help,
+            [take = std::move(take)](const std::string& text) { take(profile_of(text)); });
+}
+
+void add_profile_option(CLI::App& parser, Profile& profile, std::string& name) {
+  add_profile_option(parser, "GPU to agree with to the bit (default: " + name + ")",
+                     [&profile, &name](const ChosenProfile& chosen) {
+                       profile = chosen.profile;
+                       name = chosen.name;
+                     });
+}
+
+void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel) {
+  const auto needed = bytes_per_pixel * static_cast<std::uint64_t>(size.width) *
+                      static_cast<std::uint64_t>(size.height);
+  const auto there = memory_bytes();
+  if (!there || needed <= *there) return;
+  constexpr double kGigabyte = 1e9;
+  throw UsageError(
+      std::string{option} + " " + size_text(size) + ": needs " +
+      short_number(static_cast<double>(needed) / kGigabyte) + " GB of memory and there are " +
+      short_number(static_cast<double>(*there) / kGigabyte) + " GB; give a smaller size");
+}
+
+void print_scene_warnings(const std::vector<std::string>& warnings, bool all) {
+  constexpr std::size_t kMostLines = 3;
+  const std::size_t lines = all ? warnings.size() : std::min(warnings.size(), kMostLines);
+  for (std::size_t i = 0; i < lines; ++i)
+    std::cerr << "softfocus: warning: " << warnings[i] << '\n';
+  if (lines < warnings.size()) {
+    std::cerr << "softfocus: warning: " << warnings.size() - lines << " more; -v lists them\n";
+  }
+}
+
+}  // namespace softfocus

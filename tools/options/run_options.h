@@ -1,0 +1,49 @@
+#pragma once
+// What a command runs on, and what it says before it does: --threads and --isa, --driver,
+// --profile, too little memory, what a scene lacks.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raster/threads/parallel.h"
+#include "tools/cli/option_values.h"
+#include "tools/cli/parser.h"
+#include "tools/files/profile_file.h"
+#include "tools/gl/driver.h"
+
+namespace softfocus {
+
+struct PoolOptions {
+  int threads = hardware_threads();
+  Isa isa = widest_isa();
+};
+
+/// Adds --threads and --isa. `same` ends the help of the first: what does not depend on it.
+void add_pool_options(CLI::App& parser, PoolOptions& options, const std::string& same);
+
+/// The driver of that name; throws UsageError, listing those there are.
+const Driver& parse_driver(std::string_view option, const std::string& text);
+
+/// Adds --driver, which may be repeated.
+void add_driver_option(CLI::App& parser, const std::string& help,
+                       std::function<void(const Driver&)> take);
+
+/// Adds --profile: the name of a known profile, or a profile's file (a name with a
+/// slash or a dot in it).
+void add_profile_option(CLI::App& parser, const std::string& help,
+                        std::function<void(const ChosenProfile&)> take);
+
+/// Adds --profile for the emulated GPU. `profile` and `name` hold the default.
+void add_profile_option(CLI::App& parser, Profile& profile, std::string& name);
+
+/// Throws UsageError, naming the option that gave the size, if the machine has less memory
+/// than so many bytes a pixel. Where the system does not tell, allocation decides.
+void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel);
+
+/// A line each. A model may lack a hundred textures: three at most, unless `all`.
+void print_scene_warnings(const std::vector<std::string>& warnings, bool all);
+
+}  // namespace softfocus
