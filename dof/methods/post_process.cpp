@@ -1,5 +1,6 @@
 #ifndef SOFTFOCUS_ISA
 // The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+// There is no scalar form: Isa::scalar runs the baseline kernels, which need no vector unit.
 
 #include "dof/methods/post_process.h"
 
@@ -40,7 +41,7 @@ namespace softfocus {
 namespace {
 
 constexpr int kQuarter = 4;
-constexpr int kNear = 3;           // the plane of the near radius, after the colours
+constexpr int kNear = 3;  // the plane of the near radius, after the colours
 constexpr int kTaskRows = 8;
 
 // Variances along an axis, in square pixels: that of a mean of 4x4 pixels, and what

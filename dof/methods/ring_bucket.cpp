@@ -1,5 +1,6 @@
 #ifndef SOFTFOCUS_ISA
 // The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+// There is no scalar form: Isa::scalar runs the baseline kernels, which need no vector unit.
 
 #include "dof/methods/ring_bucket.h"
 
