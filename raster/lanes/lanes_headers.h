@@ -7,9 +7,9 @@
 #include <cstring>
 #include <utility>
 
+#include "raster/lanes/isa.h"
 #include "raster/numbers/fused.h"
 #include "raster/numbers/half.h"
-#include "raster/lanes/isa.h"
 
 #if defined(__SSE2__)
 #include <immintrin.h>

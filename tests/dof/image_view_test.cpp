@@ -35,8 +35,7 @@ constexpr std::array kLayouts{
 class Framed {
  public:
   Framed(Format format, int width, int height, const Layout& layout, std::uint16_t around)
-      : layout_(layout),
-        row_bytes_(bytes_per_texel(format) * static_cast<std::size_t>(width)),
+      : row_bytes_(bytes_per_texel(format) * static_cast<std::size_t>(width)),
         stride_(row_bytes_ + layout.gap_bytes),
         bytes_(2 * kMargin + (stride_ * static_cast<std::size_t>(height) + 1) / 2 * 2),
         around_(around) {
@@ -76,7 +75,6 @@ class Framed {
 
  private:
   static constexpr std::size_t kMargin = 8192;  // vectors and rows too far would lie in it
-  Layout layout_;
   std::size_t row_bytes_, stride_;
   std::vector<std::byte, RowAllocator<std::byte>> bytes_;
   std::uint16_t around_;
