@@ -16,6 +16,7 @@
 #include "dof/scatter/scatter.h"
 #include "dof/two_pass/two_pass.h"
 #include "raster/images/image.h"
+#include "raster/threads/float_environment.h"
 
 namespace softfocus {
 namespace {
@@ -92,6 +93,7 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
 
 void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool) {
   assert(input_error(input, result) == nullptr);
+  const DefaultFloatEnvironment environment;
   method.filter(input, result, pool);
 }
 
