@@ -1,6 +1,6 @@
 // One pass of the two-pass filter (Zhou, Chen and Pullen 2007): run with direction (1, 0)
 // on the picture, then with (0, 1) on the result, both times into RGBA16F. Beside
-// dof/two_pass/two_pass_plain.cpp.
+// dof/two_pass/two_pass.cpp.
 #include "weights.glsl"
 
 uniform ivec2 direction;

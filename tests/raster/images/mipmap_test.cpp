@@ -250,8 +250,8 @@ TEST_CASE("levels are drawn for the profiles of drivers and box-filtered for the
     generate_mipmaps_as(asked, profile);
     draw_mipmaps(drawn, profile);
     generate_mipmaps(boxed, profile);
-    const bool is_plain = profile.texture_unit == TextureUnit::standard;
-    CHECK(equal(asked.levels[1], boxed.levels[1]) == is_plain);
-    CHECK(equal(asked.levels[1], drawn.levels[1]) == !is_plain);
+    const bool is_standard = profile.texture_unit == TextureUnit::standard;
+    CHECK(equal(asked.levels[1], boxed.levels[1]) == is_standard);
+    CHECK(equal(asked.levels[1], drawn.levels[1]) == !is_standard);
   }
 }
