@@ -1,7 +1,7 @@
 # Installs the package, builds the programs of docs/examples/embedding against it and holds
 # what they print against the golden hashes, which the flags they are built with must not
 # change:
-#   cmake -D BUILD=FOLDER -D SOURCE=FOLDER -D CXX=COMPILER -P embedding.cmake
+#   cmake -D BUILD=FOLDER -D SOURCE=FOLDER -D CXX=COMPILER -D TESTS=PROGRAM -P embedding.cmake
 set(work ${BUILD}/embedding)
 set(triangle_hash 2e4e01e28b673d46)
 set(blur_hash 0d6a42bf84e87dce)
@@ -39,6 +39,21 @@ run(${CMAKE_COMMAND} --build ${work}/build -j 2)
 expect(${work}/build/blur_buffer ${blur_hash})
 expect(${work}/build/blur_buffer_fast ${blur_hash})
 expect(${work}/build/triangle ${triangle_hash})
+
+if(EXISTS ${work}/build/gl_renderer_blurred)
+  set(ENV{GALLIUM_DRIVER} llvmpipe)
+  set(ENV{LIBGL_ALWAYS_SOFTWARE} 1)
+  execute_process(COMMAND ${work}/build/gl_renderer_blurred ${work}/texels
+                  OUTPUT_FILE ${work}/blurred.ppm ERROR_VARIABLE output RESULT_VARIABLE status)
+  if(status EQUAL 0)
+    set(ENV{SOFTFOCUS_GL_RENDERER_TEXELS} ${work}/texels)
+    run(${TESTS} "--test-case=the shaders in another renderer*")
+  elseif(DEFINED ENV{SOFTFOCUS_REQUIRE})
+    message(FATAL_ERROR "${output}")
+  else()
+    message("skipped: ${output}")
+  endif()
+endif()
 
 # The same by pkg-config, and how much dof.h makes a compiler read.
 find_program(PKG_CONFIG pkg-config)
