@@ -23,9 +23,9 @@ float finite_colour(float value) {
 }  // namespace
 
 std::ptrdiff_t plane_stride(int width) {
-  const std::ptrdiff_t stride = (width + kWidestVector - 1) / kWidestVector * kWidestVector;
+  const std::ptrdiff_t stride = (width + kMostLanes - 1) / kMostLanes * kMostLanes;
   // Rows a multiple of 1 KiB apart would meet in a few sets of a cache.
-  return stride % 256 == 0 ? stride + kWidestVector : stride;
+  return stride % 256 == 0 ? stride + kMostLanes : stride;
 }
 
 Planes make_planes(int count, int width, int height) {

@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "dof/dof.h"
+#include "raster/lanes/isa.h"
 
 namespace softfocus {
-
-/// Pixels of the widest vector unit.
-inline constexpr int kWidestVector = 16;
 
 /// Planes of rows of floats. A row ends at a whole vector of the widest unit: methods may
 /// read and write the values between `width` and `stride`, which mean nothing.
@@ -25,7 +23,7 @@ struct Planes {
   std::unique_ptr<float[]> values;
 };
 
-/// Floats from row to row for rows of `width`: a multiple of kWidestVector.
+/// Floats from row to row for rows of `width`: a multiple of kMostLanes.
 std::ptrdiff_t plane_stride(int width);
 
 /// `count` planes, not initialised.

@@ -28,8 +28,8 @@ std::string percent_text(double share) {
                                         : std::to_string(std::lround(percent)) + " %";
 }
 
-AutoMethod foreseen(const Candidate& candidate, const SceneTraits& traits,
-                    const AutoLimits& limits) {
+AutoMethod with_predictions(const Candidate& candidate, const SceneTraits& traits,
+                            const AutoLimits& limits) {
   AutoMethod choice{.method = candidate.method, .traits = traits};
   if (candidate.radius >= 0) {
     // No filter does otherwise with a radius that no circle reaches.
@@ -60,7 +60,7 @@ std::string blur_text(const SceneTraits& traits) {
 }
 
 std::string off_by(const AutoMethod& other) {
-  return setting_text(other) + " is foreseen to be off by " + number_text(other.predicted_error);
+  return setting_text(other) + " is predicted to be off by " + number_text(other.predicted_error);
 }
 
 // The most accurate of those that are cheaper.
@@ -112,7 +112,7 @@ AutoMethod most_accurate_within(const std::vector<AutoMethod>& choices, double m
     if (next == nullptr || choice.predicted_ms < next->predicted_ms) next = &choice;
   }
   AutoMethod chosen = *found;
-  chosen.reason = blur_text(chosen.traits) + "; nothing as fast is foreseen to be more accurate";
+  chosen.reason = blur_text(chosen.traits) + "; nothing as fast is predicted to be more accurate";
   if (next != nullptr) {
     chosen.reason +=
         ", and " + setting_text(*next) + " would take " + number_text(next->predicted_ms) + " ms";
@@ -125,7 +125,7 @@ AutoMethod most_accurate_within(const std::vector<AutoMethod>& choices, double m
 AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits) {
   std::vector<AutoMethod> choices;
   for (const Candidate& candidate : candidates()) {
-    AutoMethod choice = foreseen(candidate, traits, limits);
+    AutoMethod choice = with_predictions(candidate, traits, limits);
     if (is_open(candidate, choice, traits, limits)) choices.push_back(std::move(choice));
   }
   if (largest_px(traits) < kSharpBelow) {

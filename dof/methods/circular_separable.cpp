@@ -106,7 +106,7 @@ void circular(const DofInput& input, const ImageView& result, int components, Th
   Planes across = make_planes(values, scene.width, scene.height);
   ScratchShelf<RowScratch> shelf;
   const int tasks = (scene.height + kTaskRows - 1) / kTaskRows;
-  const std::ptrdiff_t padded = scene.width + 2 * reach + 2 * kWidestVector;
+  const std::ptrdiff_t padded = scene.width + 2 * reach + 2 * kMostLanes;
   pool.for_each(tasks, [&](int task) {
     RowScratch scratch = shelf.take();
     scratch.values.resize(static_cast<std::size_t>(4 * padded));

@@ -100,7 +100,7 @@ Planes convolve(const Planes& source, const std::vector<float>& weights, ThreadP
   Planes across = make_planes(4, source.width, source.height);
   Planes result = make_planes(4, source.width, source.height);
   pool.for_each(source.height, [&](int y) {
-    std::vector<float> padded(static_cast<std::size_t>(source.width + 2 * reach + kWidestVector));
+    std::vector<float> padded(static_cast<std::size_t>(source.width + 2 * reach + kMostLanes));
     std::vector<const float*> rows;
     for (int i = 0; i < taps; ++i) rows.push_back(padded.data() + i);
     for (int c = 0; c < 4; ++c) {
@@ -169,7 +169,7 @@ void blend(const DofInput& input, const ImageView& result, const Planes& full, c
     if (i > 0) pattern.inverses[i] = static_cast<float>(1.0 / (squares[i] - squares[i - 1]));
   }
   pattern.count = full.width;
-  const std::ptrdiff_t length = full.stride + 2 * kWidestVector;
+  const std::ptrdiff_t length = full.stride + 2 * kMostLanes;
   pattern.sharp_plane = pattern.blurred_plane = pattern.result_plane = length;
   pool.for_each((full.height + kTaskRows - 1) / kTaskRows, [&](int task) {
     const int first = task * kTaskRows, end = std::min(first + kTaskRows, full.height);

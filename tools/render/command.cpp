@@ -101,13 +101,13 @@ std::string until_warning(const RenderRecord& record) {
          std::to_string(record.sampled->samples) + " samples: " + found;
 }
 
-/// What auto was to keep to and foresees that it will not, as a line, or nothing.
+/// What auto was to keep to and predicts that it will not, as a line, or nothing.
 std::string goal_warning(const RenderOptions& options, const RenderRecord& record) {
   if (!record.used.choice || record.used.choice->meets_goal) return {};
   const AutoMethod& choice = *record.used.choice;
   return "--max-error " + short_number(options.goal.max_error) +
-         ": no method is foreseen to keep to it; " + setting_text(choice) +
-         " comes nearest, with a foreseen error of " + short_number(choice.predicted_error);
+         ": no method is predicted to keep to it; " + setting_text(choice) +
+         " comes nearest, with a predicted error of " + short_number(choice.predicted_error);
 }
 
 /// Lets auto choose, by the drawn picture.

@@ -53,7 +53,7 @@ TEST_CASE("auto: the pinhole if no circle reaches half a pixel, whatever is aske
 }
 
 TEST_CASE(
-    "auto: a smaller error is never answered with a larger foreseen one, nor with less time") {
+    "auto: a smaller error is never answered with a larger predicted one, nor with less time") {
   for (const float strength : {0.02f, 0.3f, 1.0f, 3.0f}) {
     const SceneTraits traits = blurred_traits(strength);
     AutoMethod last = within_error(traits, 1.0);
@@ -68,7 +68,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("auto: more time is never answered with a larger foreseen error, and is kept to") {
+TEST_CASE("auto: more time is never answered with a larger predicted error, and is kept to") {
   const SceneTraits traits = blurred_traits(1.0f);
   AutoMethod last = auto_method(traits, {.max_time_ms = 0.0}, kNoLimits);
   CHECK(last.method == "pinhole");
@@ -83,7 +83,7 @@ TEST_CASE("auto: more time is never answered with a larger foreseen error, and i
 }
 
 TEST_CASE(
-    "auto: nothing cheaper by a twentieth than what is chosen is foreseen to keep to the error") {
+    "auto: nothing cheaper by a twentieth than what is chosen is predicted to keep to the error") {
   const SceneTraits traits = blurred_traits(1.0f);
   const AutoMethod choice = within_error(traits, 0.03);
   REQUIRE(choice.meets_goal);
@@ -125,7 +125,7 @@ TEST_CASE(
   CHECK(not_the_cheapest > 0);
 }
 
-TEST_CASE("auto: edges of either kind are foreseen to cost what the table says") {
+TEST_CASE("auto: edges of either kind are predicted to cost what the table says") {
   for (const Candidate& candidate : candidates()) {
     if (candidate.radius < 0) continue;
     const SceneTraits plain = blurred_traits(1.0f);

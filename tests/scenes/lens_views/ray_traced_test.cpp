@@ -97,7 +97,8 @@ TEST_CASE("ray-traced: the same bits for any number of threads" * doctest::test_
   }
 }
 
-TEST_CASE("ray-traced: it agrees with accumulation on each scene, and what is left is no bias") {
+TEST_CASE("ray-traced: it agrees with accumulation on each scene, and what is left is no bias" *
+          doctest::test_suite("long")) {
   if (is_missing()) return;
   ThreadPool pool{2};
   for (const char* name : {"figures", "cube-room", "sphere-world"}) {

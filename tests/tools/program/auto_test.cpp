@@ -83,7 +83,7 @@ TEST_CASE("auto: the same choice and bytes for any number of threads and on ever
   }
 }
 
-TEST_CASE("auto: an error of 0.02 is kept to on every scene") {
+TEST_CASE("auto: an error of 0.02 is kept to on every scene" * doctest::test_suite("long")) {
   for (const char* scene : {"cube-room", "figures", "sphere-world", "dunes", "lattice"}) {
     CAPTURE(scene);
     const TemporaryDirectory directory;
@@ -134,7 +134,7 @@ TEST_CASE("auto: it says what it chose and why, in the report, with -v and in JS
   }
 }
 
-TEST_CASE("auto: with --max-time the foreseen time is kept to") {
+TEST_CASE("auto: with --max-time the predicted time is kept to") {
   for (const char* ms : {"0.05", "1", "100"}) {
     const auto choice = rendered_json("lattice", auto_with({"--max-time", ms}))["choice"];
     CHECK(choice["predicted_ms"] <= std::stod(ms));
@@ -151,13 +151,13 @@ TEST_CASE("auto: --max-coc bounds the radius of what it chooses") {
   }
 }
 
-TEST_CASE("auto: an error that nothing is foreseen to keep to is told, and the picture is there") {
+TEST_CASE("auto: an error that nothing is predicted to keep to is told, and the picture is there") {
   const TemporaryDirectory directory;
   const ProgramRun run =
       run_program(render("figures", directory.file("a.npy"), auto_with({"--max-error", "0"})));
   CHECK(run.status == 0);
   CHECK(is_one_line(run.err));
-  CHECK(contains(run.err, "--max-error 0: no method is foreseen to keep to it"));
+  CHECK(contains(run.err, "--max-error 0: no method is predicted to keep to it"));
   CHECK(directory.listing() == Words{"a.npy"});
 }
 

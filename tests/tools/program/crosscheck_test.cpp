@@ -102,17 +102,19 @@ void check_shader_caught(const std::string& cases, const std::string& shader,
 
 }  // namespace
 
-TEST_CASE("crosscheck: llvmpipe and its profile give the same bits") {
+TEST_CASE("crosscheck: llvmpipe and its profile give the same bits" * doctest::test_suite("long")) {
   check_all_equal("llvmpipe");
 }
-TEST_CASE("crosscheck: llvmpipe held to SSE4.1 and its profile give the same bits") {
+TEST_CASE("crosscheck: llvmpipe held to SSE4.1 and its profile give the same bits" *
+          doctest::test_suite("long")) {
   check_all_equal("llvmpipe-sse41");
 }
 TEST_CASE("crosscheck: softpipe and its profile give the same bits") {
   check_all_equal("softpipe");
 }
 
-TEST_CASE("crosscheck: another rounding, contraction or rule in a profile is caught") {
+TEST_CASE("crosscheck: another rounding, contraction or rule in a profile is caught" *
+          doctest::test_suite("long")) {
   if (!has_driver("llvmpipe-sse41")) return;
   check_profile_caught("store/rgba16f-around-every-half", "half_store", "\"nearest-even\"");
   check_profile_caught("store/rgba8-around-every-byte", "unorm_store", "\"half-up\"");
@@ -133,7 +135,8 @@ TEST_CASE("crosscheck: another rounding, contraction or rule in a profile is cau
   check_profile_caught("frame/figures-128x96-frame7-two-pass", "half_store", "\"nearest-even\"");
 }
 
-TEST_CASE("crosscheck: another order of operations in a shader is caught") {
+TEST_CASE("crosscheck: another order of operations in a shader is caught" *
+          doctest::test_suite("long")) {
   if (!has_driver("llvmpipe")) return;
   // 1/512 texel: one step of an 8-bit weight for every other sample.
   check_shader_caught("bilinear-rgba8/64x32-repeat", "sample.frag", "at.xy",

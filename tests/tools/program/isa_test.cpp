@@ -8,8 +8,9 @@
 
 using namespace softfocus;
 
-TEST_CASE("selftest passes on every vector unit of this CPU") {
+TEST_CASE("selftest passes on every vector unit of this CPU" * doctest::test_suite("long")) {
   for (const Isa isa : available_isas()) {
+    if (isa == widest_isa()) continue;  // selftest_test.cpp
     CAPTURE(isa_name(isa));
     const ProgramRun run = run_program({"selftest", "--isa", std::string{isa_name(isa)}});
     CHECK(run.status == 0);
@@ -17,7 +18,8 @@ TEST_CASE("selftest passes on every vector unit of this CPU") {
   }
 }
 
-TEST_CASE("render: the bytes are the same on every vector unit, by every method") {
+TEST_CASE("render: the bytes are the same on every vector unit, by every method" *
+          doctest::test_suite("long")) {
   for (const Method& entry : methods()) {
     const std::string method{entry.name};
     const auto on = [&](Isa isa) {

@@ -61,7 +61,8 @@ void check_render_on_gl(const std::string& driver) {
 
 }  // namespace
 
-TEST_CASE("probe: experiments on llvmpipe find its profile, and the file says what it rests on") {
+TEST_CASE("probe: experiments on llvmpipe find its profile, and the file says what it rests on" *
+          doctest::test_suite("long")) {
   if (!has_driver("llvmpipe")) return;
   const std::string text = check_probe_finds_profile("llvmpipe");
   CHECK(text.starts_with("# Probed by softfocus "));
@@ -70,7 +71,8 @@ TEST_CASE("probe: experiments on llvmpipe find its profile, and the file says wh
   CHECK(contains(text, "# - a * b + c in a shader: rounded twice"));
   CHECK(contains(text, "\nhalf_store = \"toward-zero\" "));
 }
-TEST_CASE("probe: experiments on llvmpipe held to SSE4.1 find its profile") {
+TEST_CASE("probe: experiments on llvmpipe held to SSE4.1 find its profile" *
+          doctest::test_suite("long")) {
   if (has_driver("llvmpipe-sse41")) check_probe_finds_profile("llvmpipe-sse41");
 }
 TEST_CASE("probe: experiments on softpipe find its profile, and print it without -o") {
@@ -137,8 +139,11 @@ TEST_CASE("render: --profile takes a file") {
   CHECK(ieee != truncating);
 }
 
-TEST_CASE("render: --gl llvmpipe gives the bits of its profile") { check_render_on_gl("llvmpipe"); }
-TEST_CASE("render: --gl llvmpipe-sse41 gives the bits of its profile") {
+TEST_CASE("render: --gl llvmpipe gives the bits of its profile" * doctest::test_suite("long")) {
+  check_render_on_gl("llvmpipe");
+}
+TEST_CASE("render: --gl llvmpipe-sse41 gives the bits of its profile" *
+          doctest::test_suite("long")) {
   check_render_on_gl("llvmpipe-sse41");
 }
 TEST_CASE("render: --gl softpipe gives the bits of its profile") { check_render_on_gl("softpipe"); }

@@ -14,16 +14,15 @@ TEST_CASE("selftest passes and says how many hashes there were") {
   CHECK(run.err == "");
 }
 
-TEST_CASE("selftest --print prints the table's source, the same on 1 thread and on 8" *
-          doctest::test_suite("threads")) {
-  const ProgramRun one = run_program({"selftest", "--print", "--threads", "1"});
-  CHECK(one.status == 0);
-  CHECK(one.out == read_file(SOFTFOCUS_TEST_DATA "/../../tools/golden/table.inc"));
-  CHECK(run_program({"selftest", "--print", "--threads", "8"}).out == one.out);
+TEST_CASE("selftest --print prints the table's source, on 8 threads too" *
+          doctest::test_suite("long threads")) {
+  const ProgramRun run = run_program({"selftest", "--print", "--threads", "8"});
+  CHECK(run.status == 0);
+  CHECK(run.out == read_file(SOFTFOCUS_TEST_DATA "/../../tools/golden/table.inc"));
 }
 
 TEST_CASE("selftest --json lists what was expected, what was computed and whether it passes") {
-  const ProgramRun run = run_program({"selftest", "--json"});
+  const ProgramRun run = run_program({"selftest", "--json", "--threads", "1"});
   CHECK(run.status == 0);
   const auto list = nlohmann::json::parse(run.out);
   CHECK(list.size() > 100);
