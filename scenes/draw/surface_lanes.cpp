@@ -1,6 +1,6 @@
 // The stages of surface_stages.h for kLanes vertices or pixels at once: the same operations in
-// the same order. A draw's variant is a uniform choice at run time here: compiled for each
-// variant and vector unit, the kernels took a sixth of the compiler's time and ran no faster.
+// the same order. For vertices a draw's variant is a choice at run time: compiled for each, their
+// kernels take longer to compile and run no faster.
 
 #ifndef SOFTFOCUS_ISA
 
@@ -159,37 +159,32 @@ struct SurfaceVertexLanes {
 
 // --- fragments ---
 
+template <SurfaceVariant variant>
 struct SurfaceFragmentLanes {
-  static constexpr std::array<Interpolation, kMostVaryings> kInterpolation{};  // perspective
+  static constexpr SurfaceLayout layout = surface_layout(variant);
+  static constexpr std::array<Interpolation, layout.count> kInterpolation{};  // perspective
   // The colour that a texture is multiplied with, depth; and with a texture the place where it
   // is sampled, and the highlights, which are else in the colour.
   static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,
                                kLod = 6, kHighlight = 7;
-  static constexpr std::size_t kInputs = 10;
+  static constexpr std::size_t kInputs = !variant.textured ? 4 : variant.specular ? 10 : 7;
   const DecodedTexture* texture;
   const Sampler& sampler;
   const Profile& profile;
-  SurfaceVariant variant;
-  SurfaceLayout layout = surface_layout(variant);
 
-  SOFTFOCUS_INLINE std::size_t varying_count() const { return layout.count; }
-  SOFTFOCUS_INLINE std::size_t input_count() const {
-    return !variant.textured ? 4 : variant.specular ? 10 : 7;
-  }
-
-  template <class Put>
-  SOFTFOCUS_INLINE void inputs(const QuadFragments& in, const Put& put) const {
+  template <class Quads, class Put>
+  SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
     Vec3Lanes colour = side(in, 0);
-    if (variant.textured) {
+    if constexpr (variant.textured) {
       const std::size_t u = layout.texture;
       const std::size_t v = layout.texture + 1;
       put(kU, in.varying(u));
       put(kV, in.varying(v));
       put(kLod, level_of_detail_lanes(*texture, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
     }
-    if (variant.specular) {
+    if constexpr (variant.specular) {
       const Vec3Lanes highlight = side(in, 3);
-      if (variant.textured) {
+      if constexpr (variant.textured) {
         put(kHighlight, highlight.x);
         put(kHighlight + 1, highlight.y);
         put(kHighlight + 2, highlight.z);
@@ -210,7 +205,7 @@ struct SurfaceFragmentLanes {
       colours[i] = {batch.input(kRed, i), batch.input(kGreen, i), batch.input(kBlue, i),
                     batch.input(kDepth, i)};
     }
-    if (!variant.textured) return;
+    if constexpr (!variant.textured) return;
     std::array<RgbLanes, kMostSampled> texels;
     sample_lanes(*texture, sampler, profile,
                  {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
@@ -220,16 +215,17 @@ struct SurfaceFragmentLanes {
       colours[i][0] *= texel.r;
       colours[i][1] *= texel.g;
       colours[i][2] *= texel.b;
-      if (!variant.specular) continue;
+      if constexpr (!variant.specular) continue;
       for (std::size_t c = 0; c < 3; ++c) colours[i][c] += batch.input(kHighlight + c, i);
     }
   }
 
   // Three varyings of the side that is seen.
-  SOFTFOCUS_INLINE Vec3Lanes side(const QuadFragments& in, std::size_t at) const {
+  template <class Quads>
+  SOFTFOCUS_INLINE Vec3Lanes side(const Quads& in, std::size_t at) const {
     const std::size_t front = SurfaceLayout::kFront + at;
     const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
-    if (!variant.two_sided) return seen;
+    if constexpr (!variant.two_sided) return seen;
     const std::size_t back = layout.back + at;
     const Mask front_facing = in.front_facing();
     if (all(front_facing)) return seen;
@@ -253,7 +249,7 @@ void shade_surface_vertices(const SurfaceVertexStage<variant>& stage, const Vert
 template <SurfaceVariant variant>
 void shade_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
                              const VisibilityTile& tile, const VisibleRun& run) {
-  shade_fragments(SurfaceFragmentLanes{stage.decoded, stage.sampler, stage.profile, variant}, job,
+  shade_fragments(SurfaceFragmentLanes<variant>{stage.decoded, stage.sampler, stage.profile}, job,
                   tile, run);
 }
 

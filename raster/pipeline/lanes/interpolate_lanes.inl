@@ -10,32 +10,22 @@ template <const auto& kinds>
 inline constexpr bool kAllPerspective = std::count(kinds.begin(), kinds.end(),
                                                    Interpolation::perspective) == std::ssize(kinds);
 
-/// Lanes j of each four for which varying 4 `four` + j is of the kind.
-template <const auto& kinds>
-SOFTFOCUS_INLINE Mask lanes_of_kind(Interpolation kind, std::size_t four) {
-  Mask mask{};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const std::size_t varying = 4 * four + static_cast<std::size_t>(lane % 4);
-    if (varying < kinds.size() && kinds[varying] == kind) mask[lane] = -1;
-  }
-  return mask;
-}
-
-// Varyings come four at a time: the lanes of a quad hold four varyings of a vertex or a plane,
-// as they lie in its row, and for each of the quad's pixels four values are computed. The last
-// step, a transposition, gives each varying the lanes of the pixels.
-
-/// Each pixel's number in all lanes of its quad.
-using OfPixels = std::array<Floats, kQuadPixels>;
-SOFTFOCUS_INLINE OfPixels of_pixels(Floats v) {
-  return {spread<0>(v), spread<1>(v), spread<2>(v), spread<3>(v)};
-}
-
 /// The rows of one vertex of each quad's triangle.
 using VertexRows = std::array<const float*, kQuads>;
 
-SOFTFOCUS_INLINE Floats load_varyings(const VertexRows& rows, std::size_t four) {
-  return load_fours(rows.data(), kVertexVaryings + 4 * four);
+/// The first N varyings of a vertex. They lie in its row four to four lanes.
+template <std::size_t N>
+SOFTFOCUS_INLINE std::array<Floats, N> load_varyings(const VertexRows& rows) {
+  std::array<Floats, N> varyings;
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i < N; i += 4) {
+    const Floats four = load_fours(rows.data(), kVertexVaryings + i);
+    varyings[i] = spread<0>(four);
+    if (i + 1 < N) varyings[i + 1] = spread<1>(four);
+    if (i + 2 < N) varyings[i + 2] = spread<2>(four);
+    if (i + 3 < N) varyings[i + 3] = spread<3>(four);
+  }
+  return varyings;
 }
 
 /// The weights of vertices 1 and 2 at a pixel.
@@ -47,11 +37,9 @@ struct Weights {
 template <const auto& kinds>
 struct BarycentricLanes {
   using Point = Weights;
+  static constexpr std::size_t N = kinds.size();
   /// At vertex 0, the differences of the others to it, and at the provoking vertex.
-  struct Four {
-    Floats first, to_second, to_third, flat;
-  };
-  std::array<Four, (kinds.size() + 3) / 4> fours;
+  std::array<Floats, N> first, to_second, to_third, flat;
   std::array<Floats, 3> inverse_w;
   std::array<Ints, 3> edge, per_x, per_y;
   Ints x_origin, y_origin;
@@ -60,8 +48,7 @@ struct BarycentricLanes {
   bool any_large;
 
   /// Keeps a pointer to the triangles.
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking,
-                             std::size_t varyings) {
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
     any_large = false;
     std::array<VertexRows, 3> rows_of;
 #pragma GCC unroll 3
@@ -72,14 +59,14 @@ struct BarycentricLanes {
       }
       inverse_w[vertex] = spread<kVertexInverseW>(load_fours(rows_of[vertex].data(), 0));
     }
-    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
-      const Floats first = load_varyings(rows_of[0], four);
-      fours[four].first = first;
-      fours[four].to_second = load_varyings(rows_of[1], four) - first;
-      fours[four].to_third = load_varyings(rows_of[2], four) - first;
-      if constexpr (!kAllPerspective<kinds>) {
-        fours[four].flat = load_varyings(rows_of[provoking], four);
-      }
+    first = load_varyings<N>(rows_of[0]);
+    to_second = load_varyings<N>(rows_of[1]);
+    to_third = load_varyings<N>(rows_of[2]);
+    if constexpr (!kAllPerspective<kinds>) flat = provoking == 0 ? first : to_third;
+#pragma GCC unroll 16
+    for (std::size_t i = 0; i < N; ++i) {
+      to_second[i] -= first[i];
+      to_third[i] -= first[i];
     }
     std::array<const float*, kQuads> numbers;
 #pragma GCC unroll 4
@@ -165,32 +152,18 @@ struct BarycentricLanes {
     }
   }
 
-  /// The values of varyings at pixels, up to a multiple of four.
-  SOFTFOCUS_INLINE void values(const Weights& w, std::size_t varyings, Floats* to) const {
-    const OfPixels second = of_pixels(w.perspective1);
-    const OfPixels third = of_pixels(w.perspective2);
-    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
-      const Four& of = fours[four];
-      OfPixels value;
-#pragma GCC unroll 4
-      for (std::size_t i = 0; i < kQuadPixels; ++i) {
-        value[i] = (of.first + second[i] * of.to_second) + third[i] * of.to_third;
-      }
-      if constexpr (!kAllPerspective<kinds>) {
-        const OfPixels linear2 = of_pixels(w.linear1);
-        const OfPixels linear3 = of_pixels(w.linear2);
-        const Mask linear = lanes_of_kind<kinds>(Interpolation::linear, four);
-        const Mask flat = lanes_of_kind<kinds>(Interpolation::flat, four);
-        for (std::size_t i = 0; i < kQuadPixels; ++i) {
-          value[i] = select(
-              linear, (of.first + linear2[i] * of.to_second) + linear3[i] * of.to_third, value[i]);
-          value[i] = select(flat, of.flat, value[i]);
-        }
-      }
-      transpose_fours(value[0], value[1], value[2], value[3]);
-#pragma GCC unroll 4
-      for (std::size_t i = 0; i < 4; ++i) to[4 * four + i] = value[i];
+  SOFTFOCUS_INLINE Floats value(std::size_t varying, const Weights& w) const {
+    switch (kinds[varying]) {
+      case Interpolation::perspective: return blend(varying, w.perspective1, w.perspective2);
+      case Interpolation::linear: return blend(varying, w.linear1, w.linear2);
+      case Interpolation::flat: break;
     }
+    return flat[varying];
+  }
+
+ private:
+  SOFTFOCUS_INLINE Floats blend(std::size_t varying, Floats weight1, Floats weight2) const {
+    return (first[varying] + weight1 * to_second[varying]) + weight2 * to_third[varying];
   }
 };
 
@@ -208,11 +181,11 @@ struct PlaneOfLanes {
 template <const auto& kinds, Contraction contraction>
 struct PlaneLanes {
   using Point = PlanePoint;
+  static constexpr std::size_t N = kinds.size();
   PlaneOfLanes inverse_w;
-  std::array<PlaneOfLanes, (kinds.size() + 3) / 4> fours;  // a flat varying's value is at_origin
+  std::array<PlaneOfLanes, N> planes;  // a flat varying's value is at_origin
 
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking,
-                             std::size_t varyings) {
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
     std::array<VertexRows, 3> rows_of;
     std::array<Floats, 3> window;
 #pragma GCC unroll 3
@@ -244,22 +217,19 @@ struct PlaneLanes {
     const Floats w1 = spread<kVertexInverseW>(window[1]);
     const Floats w2 = spread<kVertexInverseW>(window[2]);
     inverse_w = slopes.plane(w0, w1, w2);
-    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
-      const Floats a0 = load_varyings(rows_of[0], four);
-      const Floats a1 = load_varyings(rows_of[1], four);
-      const Floats a2 = load_varyings(rows_of[2], four);
-      if constexpr (kAllPerspective<kinds>) {
-        fours[four] = slopes.plane(a0 * w0, a1 * w1, a2 * w2);
-      } else {
-        // Times 1: the number itself.
-        const Mask perspective = lanes_of_kind<kinds>(Interpolation::perspective, four);
-        const Floats one = splat(1.0f);
-        fours[four] =
-            slopes.plane(a0 * select(perspective, w0, one), a1 * select(perspective, w1, one),
-                         a2 * select(perspective, w2, one));
-        // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
-        fours[four].at_origin = select(lanes_of_kind<kinds>(Interpolation::flat, four),
-                                       provoking == 0 ? a0 : a2, fours[four].at_origin);
+    const auto at_first = load_varyings<N>(rows_of[0]);
+    const auto at_second = load_varyings<N>(rows_of[1]);
+    const auto at_third = load_varyings<N>(rows_of[2]);
+#pragma GCC unroll 16
+    for (std::size_t i = 0; i < N; ++i) {
+      const Floats a0 = at_first[i], a1 = at_second[i], a2 = at_third[i];
+      switch (kinds[i]) {
+        case Interpolation::perspective: planes[i] = slopes.plane(a0 * w0, a1 * w1, a2 * w2); break;
+        case Interpolation::linear: planes[i] = slopes.plane(a0, a1, a2); break;
+        case Interpolation::flat:
+          // What swapping put elsewhere: vertex 2 if that is provoking, else vertex 0, stays.
+          planes[i].at_origin = provoking == 0 ? a0 : a2;
+          break;
       }
     }
   }
@@ -270,25 +240,11 @@ struct PlaneLanes {
     return {column, row, 1.0f / at(inverse_w, column, row)};
   }
 
-  /// As BarycentricLanes.
-  SOFTFOCUS_INLINE void values(const PlanePoint& point, std::size_t varyings, Floats* to) const {
-    const OfPixels x = of_pixels(point.x), y = of_pixels(point.y), w = of_pixels(point.w);
-    for (std::size_t four = 0; four < (varyings + 3) / 4; ++four) {
-      OfPixels value;
-#pragma GCC unroll 4
-      for (std::size_t i = 0; i < kQuadPixels; ++i) {
-        const Floats linear = at(fours[four], x[i], y[i]);
-        value[i] = linear * w[i];
-        if constexpr (!kAllPerspective<kinds>) {
-          value[i] = select(lanes_of_kind<kinds>(Interpolation::linear, four), linear, value[i]);
-          value[i] = select(lanes_of_kind<kinds>(Interpolation::flat, four), fours[four].at_origin,
-                            value[i]);
-        }
-      }
-      transpose_fours(value[0], value[1], value[2], value[3]);
-#pragma GCC unroll 4
-      for (std::size_t i = 0; i < 4; ++i) to[4 * four + i] = value[i];
-    }
+  SOFTFOCUS_INLINE Floats value(std::size_t varying, const PlanePoint& point) const {
+    const PlaneOfLanes& plane = planes[varying];
+    if (kinds[varying] == Interpolation::flat) return plane.at_origin;
+    const Floats value = at(plane, point.x, point.y);
+    return kinds[varying] == Interpolation::linear ? value : value * point.w;
   }
 
  private:

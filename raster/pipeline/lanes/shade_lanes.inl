@@ -4,23 +4,22 @@
 // seen:
 //     static constexpr auto kInterpolation   // as the scalar stage's
 //     static constexpr std::size_t kInputs   // numbers that go from step to step
-//     template <class Put> void inputs(const QuadFragments&, const Put& put) const
+//     template <class Quads, class Put> void inputs(const Quads&, const Put& put) const
 //     void shade(const FragmentBatch<kInputs>&, std::array<Floats, 4>* colours) const
-// `inputs` calls put(i, Floats) for each input. A stage that knows the number of its varyings and
-// inputs at run time alone has so many at most, and
-//     std::size_t varying_count() const
-//     std::size_t input_count() const
-// Each step takes many vectors: while one waits for a long chain of operations, or for memory,
-// the CPU works on the others, which it could not see past a whole fragment stage.
+// `inputs` gets QuadFragments and calls put(i, Floats) for each input. Each step takes many
+// vectors: while one waits for a long chain of operations, or for memory, the CPU works on the
+// others, which it could not see past a whole fragment stage.
 
 namespace {
 
 /// Quads of 2x2 pixels, each of one triangle.
+template <class Interpolator>
 struct QuadFragments {
-  const Floats* varyings;
+  const Interpolator& interpolator;
+  typename Interpolator::Point point;
   const QuadTriangles& of_quads;
 
-  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return varyings[i]; }
+  SOFTFOCUS_INLINE Floats varying(std::size_t i) const { return interpolator.value(i, point); }
   // Along the quad's upper row and left column.
   SOFTFOCUS_INLINE Floats ddx(std::size_t i) const {
     const Floats values = varying(i);
@@ -45,7 +44,6 @@ struct FragmentBatch {
   static constexpr int kMost = 8 * kLanes;
   alignas(64) std::array<std::array<float, kMost>, kInputs> inputs;
   alignas(64) std::array<std::int32_t, kMost> offsets;  ///< in bytes from the tile's first pixel
-  std::size_t input_count;
   int count = 0;
 
   SOFTFOCUS_INLINE int vectors() const { return (count + kLanes - 1) / kLanes; }
@@ -69,9 +67,9 @@ struct FragmentBatch {
   };
 
   /// Appends the pixels of the mask.
-  template <class Stage>
-  SOFTFOCUS_INLINE void append(const Stage& stage, const QuadFragments& fragments,
-                               Ints pixel_offsets, Mask seen) {
+  template <class Stage, class Quads>
+  SOFTFOCUS_INLINE void append(const Stage& stage, const Quads& fragments, Ints pixel_offsets,
+                               Mask seen) {
     const auto at = static_cast<std::size_t>(count);
     const unsigned bits = lane_bits(seen);
     if (bits == kAllLaneBits) {
@@ -88,7 +86,7 @@ struct FragmentBatch {
   SOFTFOCUS_INLINE void fill_up() {
     const int last = (vectors() - 1) * kLanes;
     const Mask present = first_lanes(count - last);
-    for (std::size_t i = 0; i < input_count; ++i) {
+    for (std::size_t i = 0; i < kInputs; ++i) {
       float* from = &inputs[i][static_cast<std::size_t>(last)];
       store(from, select(present, load(from), splat(from[0])));
     }
@@ -237,18 +235,6 @@ template <class Stage>
   batch.count = 0;
 }
 
-template <class Stage>
-SOFTFOCUS_INLINE std::size_t interpolated_count(const Stage& stage) {
-  if constexpr (requires { stage.varying_count(); }) return stage.varying_count();
-  return Stage::kInterpolation.size();
-}
-
-template <class Stage>
-SOFTFOCUS_INLINE std::size_t input_count(const Stage& stage) {
-  if constexpr (requires { stage.input_count(); }) return stage.input_count();
-  return Stage::kInputs;
-}
-
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
@@ -261,9 +247,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   const bool in_picture = tile.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
 
-  const std::size_t varyings = interpolated_count(stage);
   FragmentBatch<Stage::kInputs> batch;
-  batch.input_count = input_count(stage);
   Interpolator interpolator{};
   QuadTriangles of_quads{};
   Ints loaded = splat(-1);
@@ -278,7 +262,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         of_quads[quad] = triangles[triangle_of(entries[quad])];
       }
-      interpolator.load(of_quads, job.provoking, varyings);
+      interpolator.load(of_quads, job.provoking);
       loaded = triangle;
     }
     const Ints quad = entry >> kQuadPixels;
@@ -287,10 +271,8 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     const Ints x = (block & 15) * kBlockSize + (quad & 1) * 2 + (lane_numbers() & 1);
     const Ints y = (block >> 4 & 15) * kBlockSize + (quad & 2) + (lane_numbers() >> 1 & 1);
 
-    std::array<Floats, (Stage::kInterpolation.size() + 3) / 4 * 4> values;
-    interpolator.values(interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y),
-                        varyings, values.data());
-    const QuadFragments fragments{values.data(), of_quads};
+    const QuadFragments<Interpolator> fragments{
+        interpolator, interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y), of_quads};
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
     batch.append(stage, fragments,
                  y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),

@@ -484,8 +484,8 @@ struct MixedLanes {
   static constexpr auto kInterpolation = MixedColour::kInterpolation;
   static constexpr std::size_t kInputs = 4;
 
-  template <class Put>
-  void inputs(const QuadFragments& in, const Put& put) const {
+  template <class Quads, class Put>
+  void inputs(const Quads& in, const Put& put) const {
     put(0, in.varying(0) + in.ddx(0));
     put(1, in.varying(1) - in.ddy(0));
     put(2, select(in.front_facing(), in.varying(2), -in.varying(2)));
