@@ -5,7 +5,7 @@
 // whatever its radius: its overlap is 0 up to radius d, and (r - d) / r^2 grows up to
 // r = d + 1. Both sides and the centre together weigh at most
 // 2^19 (2 pi^2 / 6 - 1) + 126 = 1,200,701 < 2^20.2; times a colour of 10 bits, less than
-// 2^30.3.
+// 2^30.2.
 //
 // A receiver's leakage L multiplies the sums of all neighbours beyond the focus at once:
 // floor(sum L). The floor changes the quotient by less than colour / weight. That is half a step

@@ -110,8 +110,8 @@ struct SurfaceFragmentStage {
     const std::size_t side = variant.two_sided && !in.front_facing ? kLayout.back : kLayout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
     if constexpr (variant.textured) {
-      constexpr std::size_t u = kLayout.texture;
-      constexpr std::size_t v = kLayout.texture + 1;
+      const std::size_t u = kLayout.texture;
+      const std::size_t v = kLayout.texture + 1;
       const float lod =
           level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
       const glm::vec4 texel =

@@ -76,7 +76,7 @@ FreeMemory free_memory() {
 size_t static_bytes() { return static_cast<size_t>(variables_end - variables_begin); }
 
 __attribute__((noinline)) void paint_stack() {
-  // Its own frame is at the most the room left here.
+  // 64 bytes are left for this function's own frame.
   auto* const top = static_cast<uint8_t*>(__builtin_frame_address(0)) - 64;
   for (volatile uint8_t* byte = stack_limit; byte < top; ++byte) *byte = kPaint;
 }

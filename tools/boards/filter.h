@@ -9,20 +9,21 @@
 
 namespace softfocus::boards {
 
-/// The only one that the filter takes.
+/// The only format that the filter takes.
 extern const FrameFormat kFilterFormat;
 
-/// Bytes that the filter wants of its caller, rows in and out not counted.
+/// Bytes of memory that the filter needs, without the rows that come in and go out.
 size_t filter_bytes(const FrameSettings& settings);
 
-/// Takes the memory (aligned for any type) and makes the tables; nullptr if it refuses.
+/// Makes the tables in `memory`, which is aligned for any type; nullptr if the settings are
+/// refused.
 struct Filter;
 Filter* begin_filter(const FrameSettings& settings, uint8_t* memory, size_t bytes);
 
-/// Takes a row; whether one came out, into `out`.
+/// Takes a row. Returns whether a row was written to `out`.
 bool put_row(Filter& filter, const void* colour, const void* depth, void* out);
 
-/// After the last row: whether there is another to come out, into `out`.
+/// To be called after the last row, until it returns false: as put_row().
 bool next_row(Filter& filter, void* out);
 
 }  // namespace softfocus::boards

@@ -55,7 +55,7 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
             [&options](const std::string& text) { options.directory = text; });
   add_value(parser, "--scenes", "A,B,...", "Scenes or files, as render takes them (default: all)",
             [&options](const std::string& text) { options.scenes = parts_of("--scenes", text); });
-  add_value(parser, "--methods", "A,B,...", "Methods (default: all filters, and accumulation)",
+  add_value(parser, "--methods", "A,B,...", "Methods (default: all filters, accumulation, auto)",
             [&options](const std::string& text) { options.methods = known_methods(text); });
   add_value(
       parser, "--size", "WxH",

@@ -16,7 +16,7 @@
 namespace softfocus {
 namespace {
 
-// The driver, and the cases that are put to it under one profile after another.
+// The driver, and the cases by which it is compared with one profile after another.
 struct Laboratory {
   const GlContext& gl;
   Shaders shaders;

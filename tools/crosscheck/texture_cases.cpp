@@ -50,7 +50,7 @@ Image random_coordinates(int width, int height, float lod_least, float lod_most,
     for (std::size_t x = 0; x < kSamples; ++x) {
       float* at = &values[4 * x];
       const auto along = [&](int size) {
-        // Now and then what is no place at all; drivers read some texel there too.
+        // Now and then a number that is no place; drivers read some texel there too.
         static constexpr std::array<float, 6> kNoPlaces{
             1e9f, -1e9f, 3e38f, HUGE_VALF, -HUGE_VALF, std::numeric_limits<float>::quiet_NaN()};
         if (random.below(64) == 0) {

@@ -109,8 +109,8 @@ std::vector<Vertex> random_triangles(int count, MakeTriangle make, RandomNumbers
   return vertices;
 }
 
-// Triangles told apart by what they add to a pixel: two errors that make up for each
-// other in a sum are 1 in a thousand.
+// Each triangle adds a number of its own to its pixels, so that two errors cancel in a sum once in
+// a thousand.
 std::vector<Vertex> counted_triangles(int count, MakeTriangle make, RandomNumbers& random) {
   std::vector<Vertex> vertices = random_triangles(count, make, random);
   for (std::size_t i = 0; i < vertices.size(); i += 3) {

@@ -116,7 +116,7 @@ ChosenProfile load_profile(const std::filesystem::path& file) {
   } catch (const toml::parse_error& error) {
     throw SceneError(file.string() + ':' + std::to_string(error.source().begin.line) +
                      ": is no TOML: " + std::string(error.description()) +
-                     "; see https://toml.io and docs/exactness.md");
+                     "; see https://toml.io and docs/specification.md");
   }
   Section section{&table, file.string(), "", {}};
 

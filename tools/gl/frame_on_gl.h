@@ -20,7 +20,7 @@ class FrameOnGl {
   /// GL_RENDERER and GL_VERSION.
   std::string renderer() const;
 
-  /// As draw_scene: RGBA16F, depth in alpha.
+  /// As draw_scene(): RGBA16F, depth in alpha.
   Image draw(const Scene& scene, const CameraMatrices& view, double frame, int width, int height);
 
   /// As the method's apply(). Throws DriverError for a method that has no shader.

@@ -76,7 +76,7 @@ Image read_colour(const GlTarget& target, std::size_t index);
 Image read_depth(const GlTarget& target);
 
 /// Compiles and links two of the project's shaders (tools/gl/shaders.h). `defines` come
-/// after the version line. Throws DriverError with the driver's first complaint.
+/// after the version line. Throws DriverError with the driver's first message.
 GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
                        std::string_view fragment, const std::string& defines = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 // The project's GLSL. The files lie beside the C++ that they mirror, and are compiled
-// into the program; files of the user's can stand in for some of them.
+// into the program; a user's files can replace some of them.
 
 #include <filesystem>
 #include <map>
@@ -29,7 +29,7 @@ struct Shaders {
 Shaders read_shaders(const std::filesystem::path& folder);
 
 /// A shader's text with every line `#include "NAME"` replaced by that shader's, and #line
-/// directives, so that a compiler's complaint has the file's own line. Throws DriverError if there
+/// directives, so that a compiler's message has the file's own line. Throws DriverError if there
 /// is no such name, or if a shader includes itself.
 std::string shader_source(const Shaders& shaders, std::string_view name);
 

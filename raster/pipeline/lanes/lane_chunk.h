@@ -18,7 +18,8 @@
 namespace softfocus {
 
 /// A vertex as a row of floats: these, then its varyings, filled up to a multiple of four.
-enum VertexRow : std::size_t { kVertexX, kVertexY, kVertexDepth, kVertexInverseW, kVertexVaryings };
+inline constexpr std::size_t kVertexX = 0, kVertexY = 1, kVertexDepth = 2, kVertexInverseW = 3,
+                             kVertexVaryings = 4;
 
 inline constexpr std::size_t vertex_row_size(std::size_t varyings) {
   return (kVertexVaryings + varyings + 3) / 4 * 4;

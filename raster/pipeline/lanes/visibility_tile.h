@@ -26,8 +26,9 @@ inline constexpr int kTilePixels = kTileSize * kTileSize;
 /// The index of pixel (x, y) of a tile.
 inline constexpr std::size_t place_of_pixel(int x, int y) {
   const int block = y / kBlockSize * kTileBlocks + x / kBlockSize;
-  return static_cast<std::size_t>(block * kBlockPixels + ((y & 2) + (x >> 1 & 1)) * kQuadPixels +
-                                  ((y & 1) * 2 + (x & 1)));
+  const int quad = (y & 2) + (x >> 1 & 1);
+  const int place = block * kBlockPixels + quad * kQuadPixels + (y & 1) * 2 + (x & 1);
+  return static_cast<std::size_t>(place);
 }
 
 /// A run of a tile's triangles that belong to one draw.

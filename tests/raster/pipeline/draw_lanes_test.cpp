@@ -413,7 +413,7 @@ TEST_CASE("lanes: a tile drawn aside has the bits that the target would have") {
         const auto from = row<std::uint16_t>(expected.colour, y);
         all_equal = all_equal &&
                     std::memcmp(&texels[static_cast<std::size_t>(y - area.y_begin) * row_bytes],
-                                &from[static_cast<std::size_t>(4 * area.x_begin)], row_bytes) == 0;
+                                &from[4 * static_cast<std::size_t>(area.x_begin)], row_bytes) == 0;
       }
       CHECK(all_equal);
     }
