@@ -1,7 +1,8 @@
 # Installs the package, builds the programs of docs/examples/embedding against it and holds
 # what they print against the golden hashes, which the flags they are built with must not
 # change:
-#   cmake -D BUILD=FOLDER -D SOURCE=FOLDER -D CXX=COMPILER -D TESTS=PROGRAM -P embedding.cmake
+#   cmake -D BUILD=FOLDER -D SOURCE=FOLDER -D CXX=COMPILER -D GENERATOR=NAME -D TESTS=PROGRAM
+#         -P embedding.cmake
 set(work ${BUILD}/embedding)
 set(triangle_hash 2e4e01e28b673d46)
 set(blur_hash 0d6a42bf84e87dce)
@@ -34,7 +35,7 @@ foreach(internal dof/method.cpp dof/weights.h dof/picture_planes.h raster/lanes/
   endif()
 endforeach()
 run(${CMAKE_COMMAND} -S ${SOURCE}/docs/examples/embedding -B ${work}/build
-    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${work}/prefix)
+    -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${work}/prefix)
 run(${CMAKE_COMMAND} --build ${work}/build -j 2)
 expect(${work}/build/blur_buffer ${blur_hash})
 expect(${work}/build/blur_buffer_fast ${blur_hash})

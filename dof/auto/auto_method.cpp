@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -91,8 +92,9 @@ AutoMethod cheapest_within(const std::vector<AutoMethod>& choices, double max_er
     if (found == nullptr || choice.predicted_ms < found->predicted_ms) found = &choice;
   }
   const AutoMethod& cheapest = found != nullptr ? *found : *nearest;
-  AutoMethod chosen =
-      found != nullptr ? *best_within(choices, kAsFast * found->predicted_ms) : *nearest;
+  const AutoMethod* const as_fast = best_within(choices, kAsFast * cheapest.predicted_ms);
+  assert(as_fast != nullptr);  // the cheapest is among them
+  AutoMethod chosen = found != nullptr ? *as_fast : *nearest;
   chosen.meets_goal = found != nullptr;
   chosen.reason = blur_text(chosen.traits);
   if (const AutoMethod* cheaper = best_below(choices, cheapest.predicted_ms)) {

@@ -19,6 +19,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* NOLINTBEGIN(readability-identifier-naming): C's names */
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -163,4 +164,5 @@ int softfocus_fixed_finish_row(softfocus_fixed_stream* stream, void* out);
 #ifdef __cplusplus
 }
 #endif
+/* NOLINTEND(readability-identifier-naming) */
 #endif

@@ -90,6 +90,7 @@ std::vector<float> gaussian_weights(double variance) {
     sum += exact.back();
   }
   std::vector<float> weights;
+  weights.reserve(exact.size());
   for (const double weight : exact) weights.push_back(static_cast<float>(weight / sum));
   return weights;
 }
@@ -102,6 +103,7 @@ Planes convolve(const Planes& source, const std::vector<float>& weights, ThreadP
   pool.for_each(source.height, [&](int y) {
     std::vector<float> padded(static_cast<std::size_t>(source.width + 2 * reach + kMostLanes));
     std::vector<const float*> rows;
+    rows.reserve(weights.size());
     for (int i = 0; i < taps; ++i) rows.push_back(padded.data() + i);
     for (int c = 0; c < 4; ++c) {
       const float* from = plane_row(source, c, y);
