@@ -161,8 +161,8 @@ struct SurfaceVertexLanes {
 
 template <SurfaceVariant variant>
 struct SurfaceFragmentLanes {
-  static constexpr SurfaceLayout layout = surface_layout(variant);
-  static constexpr std::array<Interpolation, layout.count> kInterpolation{};  // perspective
+  static constexpr SurfaceLayout kLayout = surface_layout(variant);
+  static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
   // The colour that a texture is multiplied with, depth; and with a texture the place where it
   // is sampled, and the highlights, which are else in the colour.
   static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,
@@ -176,8 +176,8 @@ struct SurfaceFragmentLanes {
   SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
     Vec3Lanes colour = side(in, 0);
     if constexpr (variant.textured) {
-      const std::size_t u = layout.texture;
-      const std::size_t v = layout.texture + 1;
+      const std::size_t u = kLayout.texture;
+      const std::size_t v = kLayout.texture + 1;
       put(kU, in.varying(u));
       put(kV, in.varying(v));
       put(kLod, level_of_detail_lanes(*texture, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
@@ -226,7 +226,7 @@ struct SurfaceFragmentLanes {
     const std::size_t front = SurfaceLayout::kFront + at;
     const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
     if constexpr (!variant.two_sided) return seen;
-    const std::size_t back = layout.back + at;
+    const std::size_t back = kLayout.back + at;
     const Mask front_facing = in.front_facing();
     if (all(front_facing)) return seen;
     return select(front_facing, seen,

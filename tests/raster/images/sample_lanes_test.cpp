@@ -104,9 +104,9 @@ std::vector<SamplePoint> drawn_points(Random& random, const Image& base) {
     const float dv = std::exp2(lod) / static_cast<float>(base.height);
     const glm::vec2 start{random.between(-2.0f, 2.0f), random.between(-2.0f, 2.0f)};
     for (int i = 0; i < 16; ++i) {
-      points.push_back({start.x + du * static_cast<float>(i % 4),
-                        start.y + dv * static_cast<float>(i / 4),
-                        lod + random.between(0.0f, 0.1f)});
+      const int column = i % 4, row = i / 4;
+      points.push_back({start.x + du * static_cast<float>(column),
+                        start.y + dv * static_cast<float>(row), lod + random.between(0.0f, 0.1f)});
     }
   }
   return points;

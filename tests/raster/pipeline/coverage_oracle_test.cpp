@@ -107,6 +107,7 @@ TEST_CASE("random triangles cover what an oracle without an edge rule says, at m
   for (const auto& [width, height] : {std::pair{1, 1}, {7, 5}, {64, 64}, {65, 63}, {100, 130}}) {
     for (const float margin : {0.0f, 30.0f, 400.0f}) {
       std::vector<glm::vec4> positions;
+      positions.reserve(3 * 150);
       for (int i = 0; i < 3 * 150; ++i) {
         positions.push_back(
             some_position(random, width, height,
@@ -153,6 +154,7 @@ TEST_CASE("small triangles and slivers cover what the oracle says") {
 TEST_CASE("triangles as large as the guard band cover what the oracle says") {
   test::Random random{79};
   std::vector<glm::vec4> positions;
+  positions.reserve(3 * 1'500);
   for (int i = 0; i < 3 * 1'500; ++i) {
     positions.push_back({random.between(-15.9f, 15.9f), random.between(-15.9f, 15.9f), 0.0f, 1.0f});
   }
