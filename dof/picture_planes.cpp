@@ -34,8 +34,7 @@ Planes make_planes(int count, int width, int height) {
   planes.height = height;
   planes.stride = plane_stride(width);
   planes.plane = planes.stride * height;
-  planes.values =
-      std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(count * planes.plane));
+  planes.values.reset(new float[static_cast<std::size_t>(count * planes.plane)]);
   return planes;
 }
 

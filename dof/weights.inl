@@ -37,8 +37,8 @@ SOFTFOCUS_INLINE Floats clamp_to_half(Floats value) {
 
 /// A pixel's radius; the sign bit is set if it lies beyond the focus.
 SOFTFOCUS_INLINE Floats signed_radius(const DofSettings& settings, Floats depth_m) {
-  const Bits beyond = as_bits(depth_m > settings.coc.focus_m) & 0x80000000u;
-  return as_floats(as_bits(filter_radius(settings, depth_m)) | beyond);
+  const Mask beyond = depth_m > settings.coc.focus_m;
+  return as_floats(as_bits(filter_radius(settings, depth_m)) | (as_bits(beyond) & 0x80000000u));
 }
 
 /// The half that store_texel writes for a depth that load_texel read: there is one NaN.

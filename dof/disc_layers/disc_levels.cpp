@@ -89,7 +89,7 @@ std::unique_ptr<float[]> share_memory(std::vector<DiscLevel>& levels) {
     if (&level == &levels[0]) continue;
     floats += static_cast<std::size_t>(kPlanes * row_stride(level) * level.height);
   }
-  auto memory = std::make_unique_for_overwrite<float[]>(floats);
+  auto memory = std::unique_ptr<float[]>(new float[floats]);  // not initialised
   float* next = memory.get();
   for (DiscLevel& level : levels) {
     if (&level == &levels[0]) continue;

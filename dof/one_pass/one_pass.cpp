@@ -218,7 +218,8 @@ std::vector<TileTask> plan_tiles(const FocusMap& map, int farthest) {
     }
     if (task.reach > 0) tasks.push_back(std::move(task));
   }
-  std::ranges::stable_sort(tasks, std::ranges::greater{}, &TileTask::reach);
+  std::stable_sort(tasks.begin(), tasks.end(),
+                   [](const TileTask& a, const TileTask& b) { return a.reach > b.reach; });
   return tasks;
 }
 

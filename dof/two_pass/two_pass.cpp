@@ -201,7 +201,8 @@ void cut(const StripTask& task, int rows, std::vector<StripTask>& parts) {
 
 // Costliest tasks first and the cheapest in small parts, so that threads end together.
 std::vector<StripTask> share_out(std::vector<StripTask> tasks) {
-  std::ranges::stable_sort(tasks, std::ranges::greater{}, cost);
+  std::stable_sort(tasks.begin(), tasks.end(),
+                   [](const StripTask& a, const StripTask& b) { return cost(a) > cost(b); });
   double total = 0.0;
   for (const StripTask& task : tasks) total += cost(task);
   std::vector<StripTask> parts;

@@ -129,8 +129,9 @@ void put_row(TwoPassStream& stream, std::span<const std::uint16_t> row, ThreadPo
              const RowSink& sink) {
   State& state = *stream.state;
   assert(row.size() == state.row_halves);
-  std::ranges::copy(row, state.waiting.begin() +
-                             state.rows_waiting * static_cast<std::ptrdiff_t>(state.row_halves));
+  std::copy(
+      row.begin(), row.end(),
+      state.waiting.begin() + state.rows_waiting * static_cast<std::ptrdiff_t>(state.row_halves));
   if (++state.rows_waiting == group_rows(state)) filter_waiting(state, pool, sink);
 }
 

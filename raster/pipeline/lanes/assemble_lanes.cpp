@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/clip.h"
@@ -126,8 +125,8 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
     t.thresholds[i] = static_cast<std::int8_t>(columns.threshold[i][lane]);
     const auto vertex = static_cast<std::size_t>(columns.index[i][lane]);
     t.vertices[i] = job.vertices.rows + vertex * job.vertices.stride;
-    // Chunks share vertices, and threads take chunks.
-    std::atomic_ref{job.vertices.used[vertex]}.store(1, std::memory_order_relaxed);
+    // Chunks share vertices, and threads take chunks. clang's library has no std::atomic_ref.
+    __atomic_store_n(&job.vertices.used[vertex], std::uint8_t{1}, __ATOMIC_RELAXED);
   }
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < 4; ++i) {
