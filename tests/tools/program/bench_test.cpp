@@ -48,9 +48,9 @@ void check_stages(const json& stages, const Words& names) {
 
 const Words kAllStages{"raster", "dof", "frame"};
 
-void check_versus(const std::string& driver, const Words& methods) {
+void check_versus(const std::string& driver) {
   if (!has_driver(driver)) return;
-  for (const std::string& method : methods) {
+  for (const char* method : {"two-pass", "one-pass", "pinhole"}) {
     CAPTURE(method);
     const json result = benched(kScene, {"--vs", driver, "--profile", profile_of(driver),
                                          "--method", method, "--max-coc", "4"});
@@ -139,10 +139,11 @@ TEST_CASE("bench: the text is a heading and a line for each stage") {
 
 TEST_CASE("bench: --vs llvmpipe times both, whose pictures are equal in its profile" *
           doctest::test_suite("long")) {
-  check_versus("llvmpipe", {"two-pass", "one-pass", "pinhole"});
+  check_versus("llvmpipe");
 }
-TEST_CASE("bench: --vs softpipe times both, whose pictures are equal in its profile") {
-  check_versus("softpipe", {"two-pass"});  // a second a frame
+TEST_CASE("bench: --vs softpipe times both, whose pictures are equal in its profile" *
+          doctest::test_suite("long")) {
+  check_versus("softpipe");
 }
 
 TEST_CASE("bench: --vs of a picture compares the filter alone") {
