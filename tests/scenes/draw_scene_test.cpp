@@ -6,6 +6,7 @@
 
 #include "raster/images/texel.h"
 #include "scenes/draw/lighting.h"
+#include "scenes/load/load_scene.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -187,5 +188,30 @@ TEST_CASE("no highlight takes numbers below the normal ones, and what is left ou
     // The largest square on the way to the power.
     CHECK(whole_power(least, static_cast<int>(std::bit_floor(static_cast<unsigned>(n)))) >=
           std::numeric_limits<float>::min());
+  }
+}
+
+TEST_CASE(
+    "scenes drawn in lanes have the scalar form's bits, drawn again with the same memory too") {
+  for (const char* name : {"cube-room", "figures", "sphere-world"}) {
+    ThreadPool scalar{2, Isa::scalar};
+    const Scene scene = load_scene(name, scene_search_path({}));
+    const int width = 333, height = 250;
+    for (const char* profile_name : {"ieee", "llvmpipe"}) {
+      const Profile profile = find_profile(profile_name).value();
+      for (const Isa isa : available_isas()) {
+        if (isa == Isa::scalar) continue;
+        ThreadPool pool{2, isa};
+        PreparedScene prepared = prepare_scene(scene, profile, pool);
+        Image picture = make_image(Format::rgba16f, width, height);
+        for (const double frame : {0.0, 40.0, 0.0}) {
+          const CameraMatrices view = camera_matrices(scene.camera, frame, width, height);
+          draw_scene(prepared, view, frame, picture, pool);
+          const Image expected = draw_scene(scene, view, frame, width, height, profile, scalar);
+          INFO(name, ", ", profile_name, ", ", isa_name(isa), ", frame ", frame);
+          CHECK(equal(picture, expected));
+        }
+      }
+    }
   }
 }

@@ -17,8 +17,6 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/draw.h"
-#include "scenes/draw/draw_scene.h"
-#include "scenes/load/load_scene.h"
 #include "tests/support/raster_helpers.h"
 
 namespace softfocus {
@@ -416,32 +414,6 @@ TEST_CASE("lanes: a tile drawn aside has the bits that the target would have") {
                                 &from[4 * static_cast<std::size_t>(area.x_begin)], row_bytes) == 0;
       }
       CHECK(all_equal);
-    }
-  }
-}
-
-TEST_CASE("lanes: scenes have the scalar form's bits, drawn again with the same memory too") {
-  for (const char* name : {"cube-room", "figures", "sphere-world"}) {
-    ThreadPool scalar{2, Isa::scalar};
-    const Scene scene = load_scene(name, scene_search_path({}));
-    const Target target{333, 250};
-    for (const char* profile_name : {"ieee", "llvmpipe"}) {
-      const Profile profile = profile_named(profile_name);
-      for (const Isa isa : available_isas()) {
-        if (isa == Isa::scalar) continue;
-        ThreadPool pool{2, isa};
-        PreparedScene prepared = prepare_scene(scene, profile, pool);
-        Image picture = make_image(Format::rgba16f, target.width, target.height);
-        for (const double frame : {0.0, 40.0, 0.0}) {
-          const CameraMatrices view =
-              camera_matrices(scene.camera, frame, target.width, target.height);
-          draw_scene(prepared, view, frame, picture, pool);
-          const Image expected =
-              draw_scene(scene, view, frame, target.width, target.height, profile, scalar);
-          INFO(name, ", ", profile_name, ", ", isa_name(isa), ", frame ", frame);
-          CHECK(equal(picture, expected));
-        }
-      }
     }
   }
 }
