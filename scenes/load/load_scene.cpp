@@ -1,10 +1,12 @@
 #include "scenes/load/load_scene.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
 #include "scenes/load/scene_file.h"
+#include "scenes/random/random_scene.h"
 
 namespace softfocus {
 namespace {
@@ -48,14 +50,33 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   throw SceneError("there is no scene \"" + std::string(name) + "\"" + nearest +
-                   (names.empty()
-                        ? "; no scenes were found at all: give a .toml or .obj file"
-                        : "; there are " + names + ", and any .toml or .obj file can be given"));
+                   (names.empty() ? "; no scenes were found at all: give a .toml or .obj file"
+                                  : "; there are " + names +
+                                        ", random:SEED, and any .toml or .obj file can be given"));
+}
+
+constexpr std::string_view kRandom = "random:";
+
+// One number has one spelling, so that one scene has one name.
+std::uint64_t read_seed(std::string_view scene) {
+  const std::string_view digits = scene.substr(kRandom.size());
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seed);
+  if (error != std::errc{} || end != digits.data() + digits.size() ||
+      std::to_string(seed) != digits) {
+    throw SceneError("\"" + std::string(scene) +
+                     "\" has no seed; a whole number from 0 to 18446744073709551615 without "
+                     "leading zeros would be right, as in random:7");
+  }
+  return seed;
 }
 
 }  // namespace
 
+bool is_random_scene(std::string_view scene) { return scene.starts_with(kRandom); }
+
 Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path) {
+  if (is_random_scene(scene)) return make_random_scene(read_seed(scene));
   const std::filesystem::path file{scene};
   if (has_extension(scene, ".toml")) return read_scene_file(file);
   if (has_extension(scene, ".obj")) {

@@ -26,8 +26,12 @@ struct SceneListing {
 /// Every .toml file on the path, by name; the first of a name wins.
 std::vector<SceneListing> list_scenes(const std::vector<std::filesystem::path>& search_path);
 
-/// `scene` is a .toml file, an .obj model (any string that ends so is a path), or
-/// the name of a scene on the path. Throws SceneError.
+/// Whether `scene` names one of the scenes without end: "random:" and what should be a number.
+bool is_random_scene(std::string_view scene);
+
+/// `scene` is a .toml file, an .obj model (any string that ends so is a path), "random:SEED"
+/// (scenes/random/random_scene.h; SEED is 0 to 2^64 - 1), or the name of a scene on the path.
+/// Throws SceneError.
 Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path);
 
 }  // namespace softfocus

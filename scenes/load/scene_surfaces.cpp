@@ -56,9 +56,9 @@ Texture read_texture(Section& section, const std::filesystem::path& directory) {
 }
 
 Material read_material(Section& section, const std::string& name, const NamedSurfaces& surfaces) {
-  // Light that is reflected more than once over is no material's, but a scene's author
-  // may want it.
-  constexpr double kLargest = 10.0;
+  // No surface reflects more than it gets, but a lamp is an unlit one, and a mirror's highlight
+  // is as bright as the lamp.
+  constexpr double kLargest = 1000.0;
   Material material;
   material.name = name;
   material.diffuse = read_colour(section, "diffuse", material.diffuse, kLargest);

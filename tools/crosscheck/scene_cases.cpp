@@ -1,5 +1,6 @@
 // Stages `scene` and `frame`: the scenes drawn, and drawn and filtered.
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -64,6 +65,7 @@ void add_scene_cases(std::vector<Case>& cases) {
     std::string name = what.scene + '-' + std::to_string(what.width) + 'x' +
                        std::to_string(what.height) + "-frame" +
                        std::to_string(static_cast<int>(what.frame));
+    std::replace(name.begin(), name.end(), ':', '-');  // a file of --diff has this name
     if (what.method != nullptr) name += std::string("-") + what.method;
     cases.push_back({what.method == nullptr ? "scene" : "frame", name, quick, slow_too,
                      [what](const Bench& bench, Tally& tally) { scene_both(bench, tally, what); }});
@@ -82,6 +84,14 @@ void add_scene_cases(std::vector<Case>& cases) {
       add({scene, 512, 512, 7, method}, false, false);
       add({scene, 512, 512, 100, method}, false, false);
     }
+  }
+  for (const char* scene : {"bright-edges", "clutter", "dunes", "foliage", "grazing-floor",
+                            "interior", "lattice", "near-fence", "night-lights", "portrait",
+                            "random:1", "random:6", "random:20", "random:48"}) {
+    add({scene, 128, 96, 7, nullptr}, true, true);
+    add({scene, 512, 512, 7, nullptr}, false, false);
+    add({scene, 512, 512, 7, "two-pass"}, false, false);
+    add({scene, 333, 517, 0, "one-pass"}, false, false);
   }
 }
 

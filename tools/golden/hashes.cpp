@@ -33,6 +33,7 @@ std::vector<NamedHash> golden_hashes(ThreadPool& pool) {
   };
   append(sampler_hashes(profiles()));
   append(frame_hashes(load_golden_scenes(pool), profiles(), pool));
+  append(more_frame_hashes(pool));
   return hashes;
 }
 

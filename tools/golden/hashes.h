@@ -28,12 +28,16 @@ struct GoldenScene {
   Scene scene;
 };
 
-/// The three scenes that come along. Throws SceneError.
+/// The thesis's three scenes. Throws SceneError.
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool);
 
 /// "SCENE METHOD PROFILE WIDTHxHEIGHT": every method, at a small size and an odd one.
 std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
                                     std::span<const NamedProfile> profiles, ThreadPool& pool);
+
+/// The same names, for the other scenes that come along and some random ones: few methods, one
+/// profile, one size.
+std::vector<NamedHash> more_frame_hashes(ThreadPool& pool);
 
 /// "sampler FILTER FORMAT PROFILE": random textures, every wrap, coordinates and levels
 /// inside and far outside; "mipmaps FORMAT PROFILE": their levels.

@@ -45,6 +45,7 @@ Command add_scenes_command(CLI::App& program) {
             for (const SceneListing& scene : list_scenes(scene_search_path(*path))) {
               rows.push_back({scene.name, scene.title});
             }
+            rows.push_back({"random:SEED", "A scene drawn from the number SEED, 0 to 2^64 - 1"});
             print_aligned(rows);
             return kDone;
           }};

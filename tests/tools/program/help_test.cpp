@@ -75,7 +75,10 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
     CHECK(std::count(run.out.begin(), run.out.end(), '\n') ==
           static_cast<std::ptrdiff_t>(names.size()));
   };
-  lists("scenes", {"cube-room", "dunes", "figures", "lattice", "sphere-world"});
+  lists("scenes",
+        {"bright-edges", "clutter", "cube-room", "dunes", "figures", "foliage", "grazing-floor",
+         "interior", "lattice", "near-fence", "night-lights", "portrait", "sphere-world",
+         "random:SEED"});
   lists("methods",
         {"pinhole", "two-pass", "two-pass-single", "one-pass", "scatter", "scatter-sorted",
          "layers", "diffusion", "ring-bucket", "circular-1", "circular-2", "post-process",
@@ -87,5 +90,5 @@ TEST_CASE("scenes lists those of --scene-path with their titles") {
   const TemporaryDirectory directory;
   write_file(directory.file("mine.toml"), "title = \"My own\"\n" + kCube);
   CHECK(contains(run_program({"scenes", "--scene-path", directory.path()}).out,
-                 "mine          My own\n"));
+                 "mine           My own\n"));
 }
