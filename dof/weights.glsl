@@ -73,9 +73,10 @@ void add_neighbour(inout Gather gather, ivec2 at, float distance_px, float recei
   gather = Gather(colour, sum);
 }
 
-// Into what a half holds; NaN stays NaN.
+// Into what a half holds; NaN stays NaN. Not as in weights.h, by two comparisons with a limit:
+// Mesa makes min and max of those, which lose NaN.
 float clamp_to_half(float value) {
-  return value > 65504.0 ? 65504.0 : value < -65504.0 ? -65504.0 : value;
+  return abs(value) > 65504.0 ? (value > 0.0 ? 65504.0 : -65504.0) : value;
 }
 
 vec3 resolve(Gather gather) {

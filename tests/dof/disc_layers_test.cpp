@@ -166,3 +166,38 @@ TEST_CASE("a surface that runs through all layers is nowhere seen through") {
   for (int x = 0; x < 256; ++x) least = std::fmin(least, load_texel(result, x, 90).y);
   CHECK(least > 0.998f);
 }
+
+TEST_CASE("disc-layers keeps a point's light and its circle's second moment from 4 to 64 pixels") {
+  ThreadPool pool(2);
+  for (int step = 0; step <= 32; ++step) {
+    const double radius = 4.0 * std::exp2(step / 8.0);
+    const int size = 4 * static_cast<int>(radius) + 65;
+    for (const float depth_m : {4.0f, 4.0f / 3.0f}) {  // behind the focus and before it
+      // Not in the middle of a level's pixel, nor in the same place of it each time.
+      const int at_x = size / 2 + step % 5, at_y = size / 2 + step % 7;
+      Image scene = make_image(Format::rgba16f, size, size);
+      clear_image(scene, {0.0f, 0.0f, 0.0f, depth_m}, {});
+      store_texel(scene, at_x, at_y, {30000.0f, 30000.0f, 30000.0f, depth_m}, {});
+      const Image result =
+          blurred(scene, settings(2.0f * static_cast<float>(radius), kLargestMaxCoc), pool);
+      double light = 0.0, square = 0.0, off_x = 0.0, off_y = 0.0;
+      for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+          const double value = static_cast<double>(load_texel(result, x, y).y);
+          const double dx = x - at_x, dy = y - at_y;
+          light += value;
+          square += value * (dx * dx + dy * dy);
+          off_x += value * dx;
+          off_y += value * dy;
+        }
+      }
+      INFO("radius ", radius, " at ", depth_m, " m");
+      CHECK(light / 30000.0 == doctest::Approx(1.0).epsilon(0.002));
+      // sqrt(2 E[d^2]) about the point itself, that of a disc with its second moment.
+      CHECK(std::sqrt(2.0 * square / light) == doctest::Approx(radius).epsilon(0.02));
+      // A level's pixel stands for all that lies in it: its middle can be half of it away.
+      CHECK(std::fabs(off_x / light) <= radius / 8.0);
+      CHECK(std::fabs(off_y / light) <= radius / 8.0);
+    }
+  }
+}

@@ -20,7 +20,7 @@ enum class TestPicture {
   sphere_world,
   random,   ///< random colours, random depths
   steps,    ///< random colours on a few depths, in blocks: silhouettes
-  special,  ///< half subnormals, 65504, infinities, zero and infinite depths
+  special,  ///< half subnormals, 65504, infinities and NaN; zero, infinite and NaN depths
 };
 
 Image drawn(const char* name, int width, int height, const Bench& bench) {
@@ -34,11 +34,11 @@ Image make_picture(TestPicture kind, int width, int height, unsigned seed, const
   if (kind == TestPicture::cube_room) return drawn("cube-room", width, height, bench);
   if (kind == TestPicture::sphere_world) return drawn("sphere-world", width, height, bench);
   static constexpr std::array<float, 6> kDepths{0.5f, 1.0f, 1.9f, 2.0f, 4.0f, 50.0f};
-  static constexpr std::array<std::uint16_t, 12> kSpecialColours{0x0000, 0x8000, 0x0001, 0x03FF,
-                                                                 0x83FF, 0x0400, 0x3C00, 0x3555,
-                                                                 0x7BFF, 0xFBFF, 0x7C00, 0xB800};
-  static constexpr std::array<std::uint16_t, 8> kSpecialDepths{0x0000, 0x8000, 0x0001, 0x3C00,
-                                                               0x4000, 0x4880, 0x7BFF, 0x7C00};
+  static constexpr std::array<std::uint16_t, 13> kSpecialColours{
+      0x0000, 0x8000, 0x0001, 0x03FF, 0x83FF, 0x0400, 0x3C00,
+      0x3555, 0x7BFF, 0xFBFF, 0x7C00, 0xB800, 0x7E00};
+  static constexpr std::array<std::uint16_t, 9> kSpecialDepths{
+      0x0000, 0x8000, 0x0001, 0x3C00, 0x4000, 0x4880, 0x7BFF, 0x7C00, 0x7E00};
   RandomNumbers random{seed};
   Image image = make_image(Format::rgba16f, width, height);
   for (int y = 0; y < height; ++y) {
@@ -46,9 +46,10 @@ Image make_picture(TestPicture kind, int width, int height, unsigned seed, const
     for (int x = 0; x < width; ++x) {
       std::uint16_t* texel = &values[static_cast<std::size_t>(4 * x)];
       for (int i = 0; i < 3; ++i) {
-        texel[i] = kind == TestPicture::special && random.below(8) == 0
-                       ? kSpecialColours[static_cast<std::size_t>(random.below(12))]
-                       : float_to_half(random.between(0.0f, 3.0f), HalfRounding::nearest_even);
+        texel[i] =
+            kind == TestPicture::special && random.below(8) == 0
+                ? kSpecialColours[static_cast<std::size_t>(random.below(kSpecialColours.size()))]
+                : float_to_half(random.between(0.0f, 3.0f), HalfRounding::nearest_even);
       }
       float depth = random.between(0.3f, 20.0f);
       if (kind == TestPicture::steps) {
@@ -56,7 +57,7 @@ Image make_picture(TestPicture kind, int width, int height, unsigned seed, const
       }
       texel[3] = float_to_half(depth, HalfRounding::nearest_even);
       if (kind == TestPicture::special && random.below(4) == 0) {
-        texel[3] = kSpecialDepths[static_cast<std::size_t>(random.below(8))];
+        texel[3] = kSpecialDepths[static_cast<std::size_t>(random.below(kSpecialDepths.size()))];
       }
     }
   }

@@ -19,11 +19,11 @@ constexpr int kSamples = 256;  // a side of the picture of samples
 // What a texture's texels are made of.
 enum class Texels { any_colour, special };
 
-// Colours with detail; or half subnormals, the largest halves, zeros of both signs and
-// infinities, where a weight of exactly 0 matters.
+// Colours with detail; or half subnormals, the largest halves, zeros of both signs,
+// infinities and NaN, where a weight of exactly 0 matters.
 Image random_image(Format format, int width, int height, Texels texels, RandomNumbers& random) {
-  static constexpr std::array<std::uint16_t, 10> kSpecial{0x0000, 0x8000, 0x0001, 0x83FF, 0x0400,
-                                                          0x7BFF, 0xFBFF, 0x7C00, 0x3C00, 0x3555};
+  static constexpr std::array<std::uint16_t, 11> kSpecial{
+      0x0000, 0x8000, 0x0001, 0x83FF, 0x0400, 0x7BFF, 0xFBFF, 0x7C00, 0x3C00, 0x3555, 0x7E00};
   Image image = make_image(format, width, height);
   for (int y = 0; y < height; ++y) {
     if (format == Format::rgba16f) {

@@ -118,6 +118,19 @@ TEST_CASE("chart: what is missing or damaged is measured again, the rest is kept
   CHECK_FALSE(contains(run_program(small_chart(out, {"--again"})).out, "went on"));
 }
 
+TEST_CASE("chart: where circles are large, blurred is nearer to the truth than sharp, to the eye") {
+  if (!has_gnuplot()) return;
+  const TemporaryDirectory directory;
+  const std::string out = directory.file("chart"), scene = directory.file("mine.toml");
+  write_file(scene, kCube + "[lens]\nf_number = 0.2\nfocus_m = 1.0\n");
+  Words words = small_chart(out);
+  words[2] = scene;
+  REQUIRE(run_program(words).status == 0);
+  const json list = json::parse(read_file(out + "/chart.json"));
+  CHECK(list[3]["settings"]["max_coc_px"] == 4.0);
+  CHECK(list[3]["flip"] < 0.7 * list[0]["flip"].get<double>());
+}
+
 TEST_CASE("chart: a scene that changed is measured anew") {
   if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
