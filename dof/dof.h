@@ -49,6 +49,9 @@ struct Method {
   /// The inputs that the method reads, for the list of methods.
   std::string_view needs;
   void (*filter)(const DofInput& input, const ImageView& result, ThreadPool& pool);
+  /// Whether a larger max_coc_px costs nothing and leaves smaller circles as they are: then no
+  /// circle need be cut.
+  bool any_radius_costs_the_same = false;
 };
 
 std::span<const Method> methods();

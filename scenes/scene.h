@@ -3,6 +3,7 @@
 // World units are metres, y points up, the coordinate system is right-handed.
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -95,6 +96,8 @@ struct Scene {
   std::vector<Object> objects;
   /// What was missing, a line each: a model's texture, say.
   std::vector<std::string> warnings;
+  /// What it was read from: the scene's file, models, material libraries, textures.
+  std::vector<std::filesystem::path> files;
 };
 
 std::size_t triangle_count(const Scene& scene);

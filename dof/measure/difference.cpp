@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "dof/measure/squared_error.h"
 #include "raster/images/texel.h"
@@ -15,6 +17,13 @@ namespace {
 double display_value(std::uint16_t half) {
   const float value = half_to_float(half);
   return value > 0.0f ? std::min(static_cast<double>(value), 1.0) : 0.0;
+}
+
+// Of values with different bits.
+double error_between(std::uint16_t a, std::uint16_t b) {
+  const double error =
+      std::fabs(static_cast<double>(half_to_float(a)) - static_cast<double>(half_to_float(b)));
+  return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
 }
 
 // A stop for each quarter of the logarithmic scale.
@@ -53,6 +62,9 @@ Difference compare_images(const Image& a, const Image& b) {
           difference.first_channel = static_cast<int>(i % 4);
         }
         ++difference.differing;
+        if (i % 4 != 3) {
+          difference.max_error = std::max(difference.max_error, error_between(of_a[i], of_b[i]));
+        }
         difference.max_ulp = std::max(difference.max_ulp, ulps);
       }
       if (i % 4 != 3) {

@@ -12,6 +12,9 @@ struct Difference {
   std::uint64_t values = 0;     ///< compared: width * height * 4
   std::uint64_t differing = 0;  ///< of them, with other bits (+0 and -0 are equal)
   int max_ulp = 0;              ///< largest distance in half-ULPs (half_ulps_between)
+  /// Largest absolute difference of a red, green or blue value, in linear light, not clamped. NaN
+  /// or infinity against anything else is infinitely far.
+  double max_error = 0.0;
   /// Bucket 0 counts the equal values, bucket k the distances 2^(k-1) to 2^k - 1.
   std::array<std::uint64_t, 17> ulp_histogram{};
   /// Peak signal-to-noise ratio of colour, linear and clamped to 0..1 (peak 1), in

@@ -143,6 +143,7 @@ void add_model(Scene& scene, ObjModel model, const Object& placement,
     }
   }
   scene.warnings.insert(scene.warnings.end(), model.warnings.begin(), model.warnings.end());
+  scene.files.insert(scene.files.end(), model.files.begin(), model.files.end());
 }
 
 Scene make_model_scene(ObjModel model, const std::string& name) {

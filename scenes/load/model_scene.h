@@ -11,7 +11,8 @@
 namespace softfocus {
 
 /// Puts each part of the model where `placement` says, with its own materials or all
-/// of `material`. The model's warnings become the scene's.
+/// of `material`. The model's warnings and files
+/// become the scene's.
 void add_model(Scene& scene, ObjModel model, const Object& placement,
                std::optional<std::uint32_t> material);
 

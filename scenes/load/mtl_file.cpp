@@ -65,7 +65,10 @@ std::optional<std::uint32_t> texture_index(const std::filesystem::path& library,
   }
   const auto [entry, is_new] = materials.texture_of_file.emplace(
       file.lexically_normal().string(), static_cast<std::uint32_t>(materials.textures.size()));
-  if (is_new) materials.textures.push_back(load_texture(file));
+  if (is_new) {
+    materials.textures.push_back(load_texture(file));
+    materials.files.push_back(file);
+  }
   return entry->second;
 }
 
@@ -108,6 +111,7 @@ Material neutral_grey() {
 
 void load_mtl(const std::filesystem::path& library, MtlMaterials& materials) {
   std::istringstream text(read_file_bytes(library, kMaxMtlBytes));
+  materials.files.push_back(library);
   std::map<std::string, int> index_of_name;
   std::vector<tinyobj::material_t> read;
   std::string warning;

@@ -16,6 +16,7 @@ struct MtlMaterials {
   std::map<std::string, Material> by_name;
   std::map<std::string, std::uint32_t> texture_of_file;
   std::vector<std::string> warnings;
+  std::vector<std::filesystem::path> files;  ///< the libraries and textures that were read
 };
 
 /// Adds the materials of a library; the first of a name stays. From Kd, Ka, Ks, Ns and

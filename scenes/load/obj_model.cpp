@@ -251,6 +251,8 @@ ObjModel load_obj_model(const std::filesystem::path& file) {
   ObjModel model;
   model.materials = list_materials(obj, file, library);
   model.textures = std::move(library.textures);
+  model.files = std::move(library.files);
+  model.files.push_back(file);
   for (const std::string& warning : library.warnings) {
     model.warnings.push_back(printable(warning));
   }

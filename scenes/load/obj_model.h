@@ -22,6 +22,7 @@ struct ObjModel {
   std::vector<Part> parts;
   /// What was missing, a line each.
   std::vector<std::string> warnings;
+  std::vector<std::filesystem::path> files;  ///< the model, its libraries and their textures
 };
 
 /// Reads a model, its materials and their textures. Throws SceneError for a file that

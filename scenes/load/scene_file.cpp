@@ -119,7 +119,9 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file) 
 }
 
 Scene read_scene_file(const std::filesystem::path& file) {
-  return read_scene_text(read_file_bytes(file, kMaxSceneBytes), file);
+  Scene scene = read_scene_text(read_file_bytes(file, kMaxSceneBytes), file);
+  scene.files.push_back(file);
+  return scene;
 }
 
 std::string read_scene_title(const std::filesystem::path& file) {

@@ -44,7 +44,7 @@ Texture read_procedural_texture(Section& section) {
   return make_procedural_texture(pattern, recipe);
 }
 
-Texture read_texture(Section& section, const std::filesystem::path& directory) {
+Texture read_texture(Section& section, const std::filesystem::path& directory, Scene& scene) {
   const bool has_kind = has_key(section, "kind");
   const bool has_file = has_key(section, "file");
   if (has_kind == has_file) {
@@ -52,7 +52,8 @@ Texture read_texture(Section& section, const std::filesystem::path& directory) {
             "a texture has either a `kind` (made by formula) or a `file` (PNG or JPEG)");
   }
   if (has_kind) return read_procedural_texture(section);
-  return load_texture(directory / read_text(section, "file", ""));
+  scene.files.push_back(directory / read_text(section, "file", ""));
+  return load_texture(scene.files.back());
 }
 
 Material read_material(Section& section, const std::string& name, const NamedSurfaces& surfaces) {
@@ -97,7 +98,7 @@ NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory
         read_choice(section, "filter", static_cast<std::size_t>(sampler.filter), kFilters));
     sampler.wrap_u = sampler.wrap_v = static_cast<Wrap>(
         read_choice(section, "wrap", static_cast<std::size_t>(sampler.wrap_u), kWraps));
-    Texture texture = read_texture(section, directory);
+    Texture texture = read_texture(section, directory, scene);
     finish_section(section);
     surfaces.textures[name] = {static_cast<std::uint32_t>(scene.textures.size()), sampler};
     scene.textures.push_back(std::move(texture));

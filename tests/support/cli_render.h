@@ -25,6 +25,12 @@ inline Words render(const std::string& scene, const std::string& output, const W
   return words;
 }
 
+/// What a render leaves in a folder: an NPY or a PFM has a sidecar.
+inline Words written(const std::string& name, const std::string& bytes) {
+  if (bytes.starts_with("\x89PNG")) return {name};
+  return {name, name + ".json"};
+}
+
 /// The bytes of a picture that was rendered without complaint.
 inline std::string rendered(const std::string& scene, const Words& more,
                             const char* name = "a.npy") {
@@ -32,8 +38,9 @@ inline std::string rendered(const std::string& scene, const Words& more,
   const ProgramRun run = run_program(render(scene, directory.file(name), more));
   CHECK(run.status == 0);
   CHECK(run.err == "");
-  CHECK(directory.listing() == Words{name});
-  return read_file(directory.file(name));
+  std::string bytes = read_file(directory.file(name));
+  CHECK(directory.listing() == written(name, bytes));
+  return bytes;
 }
 
 inline Picture rendered_picture(const std::string& scene, const Words& more) {

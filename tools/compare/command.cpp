@@ -11,6 +11,7 @@
 #include "tools/compare/options.h"
 #include "tools/compare/report.h"
 #include "tools/files/image_file.h"
+#include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 
 namespace softfocus {
@@ -20,13 +21,17 @@ namespace {
 constexpr int kEqual = 0;
 constexpr int kDifferent = 1;
 
-/// A picture and what its file is called.
+/// A picture, what its file is called, and what the file says of it.
 struct NamedPicture {
   std::string name;
   Picture picture;
+  FoundNotes notes;
 };
 
-NamedPicture read_named(const std::string& name) { return {name, read_image_file(name)}; }
+NamedPicture read_named(const std::string& name) {
+  const Bytes bytes = read_picture_bytes(name);
+  return {name, decode_picture(bytes, name), find_notes(name, bytes)};
+}
 
 void check_same_size(const NamedPicture& a, const NamedPicture& b) {
   const Image& one = a.picture.image;
@@ -59,29 +64,35 @@ void check_depths(const NamedPicture& of) {
   }
 }
 
-Image regions_of(const NamedPicture& depths, const CompareOptions& options) {
+Image regions_of(const NamedPicture& depths, const NotedLens& lens) {
   if (!depths.picture.has_alpha) {
     throw UsageError("--regions: '" + depths.name +
                      "' has no depth in alpha; give --depth with a .npy that has");
   }
   check_depths(depths);
-  const ThinLens lens = overruled(ThinLens{}, options.lens);
-  check_lens(lens, options.lens, "the default lens");
-  return label_regions(
-      depths.picture.image,
-      checked_pixel_coc(lens, options.fov_y_degrees.value_or(40.0), depths.picture.image.height,
-                        options.lens.coc_scale.value_or(1.0)));
+  return label_regions(depths.picture.image,
+                       checked_pixel_coc(lens.lens, lens.fov_y_degrees, depths.picture.image.height,
+                                         lens.coc_scale));
 }
 
+/// Labels the regions if they are wanted, and finds the lens that they are of.
 std::optional<Image> regions_wanted(const NamedPicture& a, const NamedPicture& b,
-                                    const CompareOptions& options) {
+                                    const CompareOptions& options, CompareFindings& findings) {
+  std::vector<NamedNotes> notes{{b.name, b.notes}, {a.name, a.notes}};
+  findings.doubts = lens_doubts(notes);
   if (!options.regions) return std::nullopt;
+  std::optional<NamedPicture> deep;
   if (options.depth_file) {
-    const NamedPicture depths = read_named(*options.depth_file);
-    check_same_size(depths, b);
-    return regions_of(depths, options);
+    deep = read_named(*options.depth_file);
+    check_same_size(*deep, b);
+    notes.push_back({deep->name, deep->notes});
   }
-  return regions_of(b.picture.has_alpha || !a.picture.has_alpha ? b : a, options);
+  findings.lens = assumed_lens(options, notes);
+  std::vector<ReadFile> inputs;
+  for (const auto& file : findings.lens->files) inputs.push_back({file, "a file of --scene"});
+  check_maps(options, inputs);
+  const NamedPicture& own = b.picture.has_alpha || !a.picture.has_alpha ? b : a;
+  return regions_of(deep ? *deep : own, findings.lens->lens);
 }
 
 void write_map(const std::optional<std::string>& name, const Image& map) {
@@ -110,12 +121,11 @@ int compare_pictures(const CompareOptions& options) {
   NamedPicture a = read_named(options.first);
   NamedPicture b = read_named(options.second);
   check_same_size(a, b);
-  const std::optional<Image> regions = regions_wanted(a, b, options);
   const Image& image_a = a.picture.image;
   const Image& image_b = b.picture.image;
 
   CompareFindings findings;
-  findings.regions = options.regions;
+  const std::optional<Image> regions = regions_wanted(a, b, options, findings);
   Difference& difference = findings.difference;
   difference = counted(a.picture, b.picture);
   if (difference.differing != 0) {
@@ -125,7 +135,8 @@ int compare_pictures(const CompareOptions& options) {
     findings.first_b = half_to_float(row<std::uint16_t>(image_b, difference.first_y)[index]);
   }
   // Equal pictures are one line of text, and need no measuring.
-  if (difference.differing != 0 || options.json || options.regions || options.flip_map_file) {
+  if (difference.differing != 0 || options.json || options.regions || options.flip_map_file ||
+      options.tolerance.max_flip) {
     ThreadPool pool{hardware_threads()};
     findings.measured =
         measure_pictures(image_b, image_a, regions ? &*regions : nullptr, options.measures, pool);
@@ -138,8 +149,12 @@ int compare_pictures(const CompareOptions& options) {
   if (options.flip_map_file)
     write_map(options.flip_map_file, heat_picture(findings.measured->flip));
   if (options.ulp_map_file) write_map(options.ulp_map_file, difference_picture(image_a, image_b));
+  findings.limits =
+      check_limits(options.tolerance, difference,
+                   findings.measured ? std::optional{findings.measured->whole.flip} : std::nullopt);
   (options.json ? print_compare_json : print_compare_text)(findings);
-  return difference.differing == 0 ? kEqual : kDifferent;
+  if (findings.limits.empty()) return difference.differing == 0 ? kEqual : kDifferent;
+  return within_limits(findings) ? kEqual : kDifferent;
 }
 
 /// Two frames of each sequence are in memory at a time.
@@ -169,7 +184,8 @@ int compare_sequences(const CompareOptions& options) {
 Command add_compare_command(CLI::App& program) {
   CLI::App* parser = add_command(
       program, "compare",
-      "Count and measure differences of pictures; status 0 equal, 1 different, 2 error");
+      "Count and measure differences of pictures; status 0 equal or within the tolerance, 1 not, 2 "
+      "error");
   const auto options = std::make_shared<CompareOptions>();
   add_compare_options(*parser, *options);
   return {parser, [options] {

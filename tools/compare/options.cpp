@@ -3,6 +3,8 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/image_file.h"
+#include "tools/files/picture_notes.h"
+#include "tools/files/same_file.h"
 
 namespace softfocus {
 namespace {
@@ -26,6 +28,7 @@ void add_frames(CLI::App& parser, const std::string& name, const std::string& he
 /// The first of the options for --regions that was given, or none.
 std::string for_regions(const CompareOptions& options) {
   if (options.depth_file) return "--depth";
+  if (options.scene) return "--scene";
   if (options.fov_y_degrees) return "--fov";
   if (options.lens.focus_m) return "--focus";
   if (options.lens.focal_length_mm) return "--focal-length";
@@ -41,10 +44,11 @@ void check_sequences(const CompareOptions& options) {
     throw UsageError("--flicker needs --against with the same frames of the ground truth");
   }
   if (!options.first.empty() || options.regions || options.point_radius_px ||
-      options.flip_map_file || options.ulp_map_file || options.measures.hdr_flip) {
+      options.flip_map_file || options.ulp_map_file || options.measures.hdr_flip ||
+      has_limits(options.tolerance)) {
     throw UsageError(
         "--flicker compares two sequences; leave out A, B, --diff, --diff-ulps, --regions, "
-        "--hdr and --point");
+        "--hdr, --point, --max-ulps, --max-flip and --max-error");
   }
   if (options.frames.size() != options.truth.size()) {
     throw UsageError("--flicker has " + std::to_string(options.frames.size()) +
@@ -52,6 +56,18 @@ void check_sequences(const CompareOptions& options) {
                      "; give as many");
   }
   if (options.frames.size() < 2) throw UsageError("--flicker needs two frames or more");
+}
+
+std::vector<ReadFile> compared_files(const CompareOptions& options) {
+  std::vector<ReadFile> files;
+  const auto add = [&](const std::string& file, const std::string& what) {
+    files.push_back({file, what});
+    files.push_back({sidecar_of(file), "the sidecar of " + what});
+  };
+  add(options.first, "A");
+  add(options.second, "B");
+  if (options.depth_file) add(*options.depth_file, "--depth");
+  return files;
 }
 
 }  // namespace
@@ -83,8 +99,29 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_value(parser, "--depth", "FILE",
             "Picture whose alpha is the depth for --regions (default: B, or A if B has none)",
             [&options](const std::string& text) { options.depth_file = text; });
-  add_own_lens_options(parser, options.lens,
-                       [&options](double degrees) { options.fov_y_degrees = degrees; });
+  add_value(parser, "--scene", "NAME",
+            "Scene whose lens and field of view make the regions (default: what B or A carries)",
+            [&options](const std::string& text) { options.scene = text; });
+  add_scene_path(parser, options.scene_path);
+  add_compared_lens_options(parser, options.lens,
+                            [&options](double degrees) { options.fov_y_degrees = degrees; });
+  add_value(parser, "--max-ulps", "N",
+            "Tolerance: status 0 up to so many half-ULPs between any two values, 0 to 65535",
+            [&tolerance = options.tolerance](const std::string& text) {
+              tolerance.max_half_ulps =
+                  parse_whole("--max-ulps", text, 0, 65535, "a whole number from 0 to 65535");
+            });
+  add_value(parser, "--max-flip", "E", "Tolerance: status 0 up to this mean FLIP, 0 to 1",
+            [&tolerance = options.tolerance](const std::string& text) {
+              tolerance.max_flip = parse_number("--max-flip", text, 0.0, 1.0,
+                                                "a mean FLIP from 0 to 1, such as 0.01");
+            });
+  add_value(parser, "--max-error", "E",
+            "Tolerance: status 0 up to this difference of any red, green or blue, in linear light",
+            [&tolerance = options.tolerance](const std::string& text) {
+              tolerance.max_error = parse_number("--max-error", text, 0.0, 1e6,
+                                                 "a difference from 0 to 1000000, such as 0.01");
+            });
   add_value(parser, "--point", "PIXELS",
             "The pictures are of one bright point on black: compare light and shape with the disc "
             "of this radius",
@@ -99,6 +136,11 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_flag(parser, "--json", "Print JSON", options.json);
 }
 
+void check_maps(const CompareOptions& options, const std::vector<ReadFile>& inputs) {
+  if (options.flip_map_file) check_not_read("--diff", *options.flip_map_file, inputs);
+  if (options.ulp_map_file) check_not_read("--diff-ulps", *options.ulp_map_file, inputs);
+}
+
 void check_compare_options(const CompareOptions& options) {
   const std::string lens_option = for_regions(options);
   if (!options.regions && !lens_option.empty()) {
@@ -107,6 +149,11 @@ void check_compare_options(const CompareOptions& options) {
   if (!options.frames.empty() || !options.truth.empty()) return check_sequences(options);
   if (options.first.empty()) throw UsageError("A is missing; --help says what to give");
   if (options.second.empty()) throw UsageError("B is missing; --help says what to give");
+  check_maps(options, compared_files(options));
+  if (options.flip_map_file && options.ulp_map_file &&
+      is_same_file(*options.flip_map_file, *options.ulp_map_file)) {
+    throw UsageError("--diff and --diff-ulps name the same file; give two");
+  }
 }
 
 }  // namespace softfocus

@@ -1,12 +1,15 @@
 #pragma once
 // What `compare` is asked: two pictures and what to say of them, or two sequences.
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "dof/measure/measures.h"
 #include "tools/cli/parser.h"
+#include "tools/compare/tolerance.h"
+#include "tools/files/same_file.h"
 #include "tools/options/lens_options.h"
 
 namespace softfocus {
@@ -20,10 +23,14 @@ struct CompareOptions {
 
   bool regions = false;
   std::optional<std::string> depth_file;  ///< instead of the pictures' alpha
+  std::optional<std::string> scene;       ///< whose lens and field of view make the regions
+  std::vector<std::filesystem::path> scene_path;
   LensOptions lens;
   std::optional<double> fov_y_degrees;
 
   std::optional<double> point_radius_px;  ///< both are images of a point with this disc
+
+  Tolerance tolerance;
 
   std::vector<std::string> frames;  ///< --flicker
   std::vector<std::string> truth;   ///< --against
@@ -32,6 +39,9 @@ struct CompareOptions {
 };
 
 void add_compare_options(CLI::App& parser, CompareOptions& options);
+
+/// Throws UsageError if a map would be written over one of these files.
+void check_maps(const CompareOptions& options, const std::vector<ReadFile>& inputs);
 
 /// Throws UsageError where options need or exclude each other.
 void check_compare_options(const CompareOptions& options);

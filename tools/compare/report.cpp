@@ -1,5 +1,6 @@
 #include "tools/compare/report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -114,7 +115,40 @@ Json point_json(const PointFindings& point) {
           {"b", of(point.b, point.b_deviation)}};
 }
 
+Json texts_json(const std::vector<std::string>& texts) {
+  Json list = Json::array();
+  for (const std::string& text : texts) list.push_back(text);
+  return list;
+}
+
+Json lens_json(const AssumedLens& assumed) {
+  const auto& [lens, coc_scale, fov_y_degrees] = assumed.lens;
+  return {{"focus_m", lens.focus_m},
+          {"focal_length_mm", lens.focal_length_mm},
+          {"f_number", lens.f_number},
+          {"coc_scale", coc_scale},
+          {"fov_y_degrees", fov_y_degrees},
+          {"source", assumed.source},
+          {"name", assumed.name.empty() ? Json() : Json(assumed.name)},
+          {"given", texts_json(assumed.given)}};
+}
+
+Json limits_json(const std::vector<LimitFinding>& findings) {
+  Json list = Json::array();
+  for (const LimitFinding& finding : findings) {
+    list.push_back({{"option", finding.option},
+                    {"limit", finding.limit},
+                    {"value", number_or_null(finding.value)},
+                    {"kept", is_kept(finding)}});
+  }
+  return list;
+}
+
 }  // namespace
+
+bool within_limits(const CompareFindings& findings) {
+  return std::all_of(findings.limits.begin(), findings.limits.end(), is_kept);
+}
 
 void print_compare_text(const CompareFindings& findings) {
   const Difference& d = findings.difference;
@@ -126,11 +160,18 @@ void print_compare_text(const CompareFindings& findings) {
                                        ": " + short_number(static_cast<double>(findings.first_a)) +
                                        " and " +
                                        short_number(static_cast<double>(findings.first_b)));
+    print_line("largest error", short_number(d.max_error) + " (linear light)");
     print_whole(findings.measured->whole);
     print_histogram(d);
   }
-  if (findings.regions) print_regions(*findings.measured);
+  if (findings.lens) {
+    print_line("lens", lens_text(findings.lens->lens));
+    print_line("", source_text(*findings.lens));
+  }
+  for (const std::string& doubt : findings.doubts) print_line("note", doubt);
+  if (findings.lens) print_regions(*findings.measured);
   if (findings.point) print_point(*findings.point);
+  for (const LimitFinding& limit : findings.limits) print_line("limit", limit_text(limit));
 }
 
 void print_compare_json(const CompareFindings& findings) {
@@ -139,6 +180,7 @@ void print_compare_json(const CompareFindings& findings) {
             {"values", d.values},
             {"differing", d.differing},
             {"max_half_ulps", d.max_ulp},
+            {"max_error", number_or_null(d.max_error)},
             {"psnr_db", number_or_null(d.psnr_db)},
             {"first", nullptr},
             {"histogram", Json::array()}};
@@ -155,8 +197,16 @@ void print_compare_json(const CompareFindings& findings) {
         {{"half_ulps", bucket_name(bucket)}, {"values", d.ulp_histogram[bucket]}});
   }
   add_measures(json, findings.measured->whole);
-  if (findings.regions) json["regions"] = regions_json(*findings.measured);
+  if (findings.lens) {
+    json["lens"] = lens_json(*findings.lens);
+    json["regions"] = regions_json(*findings.measured);
+  }
+  if (!findings.doubts.empty()) json["notes"] = texts_json(findings.doubts);
   if (findings.point) json["point"] = point_json(*findings.point);
+  if (!findings.limits.empty()) {
+    json["within_limits"] = within_limits(findings);
+    json["limits"] = limits_json(findings.limits);
+  }
   std::cout << json_text(json, 2) << '\n';
 }
 

@@ -8,6 +8,8 @@
 #include "dof/measure/difference.h"
 #include "dof/measure/measures.h"
 #include "dof/measure/point_image.h"
+#include "tools/compare/assumed_lens.h"
+#include "tools/compare/tolerance.h"
 
 namespace softfocus {
 
@@ -25,9 +27,14 @@ struct CompareFindings {
   float first_a = 0.0f;
   float first_b = 0.0f;
   std::optional<MeasuredPictures> measured;  ///< not where the text says all in one line
-  bool regions = false;                      ///< measured->by_region is filled
+  std::optional<AssumedLens> lens;           ///< of --regions: then measured->by_region is filled
+  std::vector<std::string> doubts;           ///< lens_doubts()
+  std::vector<LimitFinding> limits;
   std::optional<PointFindings> point;
 };
+
+/// Whether all limits were kept.
+bool within_limits(const CompareFindings& findings);
 
 void print_compare_text(const CompareFindings& findings);
 void print_compare_json(const CompareFindings& findings);

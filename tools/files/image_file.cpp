@@ -16,26 +16,6 @@ bool starts_with(std::span<const std::byte> bytes, std::string_view start) {
   return bytes.size() >= start.size() && std::memcmp(bytes.data(), start.data(), start.size()) == 0;
 }
 
-Bytes read_bytes(const std::filesystem::path& file) {
-  const auto refuse = [&](int error) {
-    throw FileError("cannot read '" + file.string() + "': " +
-                    std::generic_category().message(error) + "; give a .png, .pfm or .npy file");
-  };
-  if (std::filesystem::is_directory(file)) refuse(EISDIR);
-  std::ifstream stream{file, std::ios::binary};
-  if (!stream) refuse(errno);
-  Bytes bytes;
-  for (;;) {
-    constexpr std::size_t kPart = 1 << 20;
-    const std::size_t before = bytes.size();
-    bytes.resize(before + kPart);
-    stream.read(reinterpret_cast<char*>(bytes.data() + before), kPart);
-    bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
-    if (stream.bad()) refuse(EIO);
-    if (!stream) return bytes;
-  }
-}
-
 }  // namespace
 
 std::optional<FileFormat> format_by_name(std::string_view name) {
@@ -73,8 +53,27 @@ Picture decode(std::span<const std::byte> bytes, FileFormat format) {
   return {};
 }
 
-Picture read_image_file(const std::filesystem::path& file) {
-  const Bytes bytes = read_bytes(file);
+Bytes read_picture_bytes(const std::filesystem::path& file) {
+  const auto refuse = [&](int error) {
+    throw FileError("cannot read '" + file.string() + "': " +
+                    std::generic_category().message(error) + "; give a .png, .pfm or .npy file");
+  };
+  if (std::filesystem::is_directory(file)) refuse(EISDIR);
+  std::ifstream stream{file, std::ios::binary};
+  if (!stream) refuse(errno);
+  Bytes bytes;
+  for (;;) {
+    constexpr std::size_t kPart = 1 << 20;
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kPart);
+    stream.read(reinterpret_cast<char*>(bytes.data() + before), kPart);
+    bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
+    if (stream.bad()) refuse(EIO);
+    if (!stream) return bytes;
+  }
+}
+
+Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::path& file) {
   try {
     if (starts_with(bytes, "\x89PNG")) return decode_png(bytes);
     if (starts_with(bytes, "\x93NUMPY")) return decode_npy(bytes);
@@ -83,6 +82,10 @@ Picture read_image_file(const std::filesystem::path& file) {
   } catch (const FileError& error) {
     throw FileError("cannot read '" + file.string() + "': " + error.what());
   }
+}
+
+Picture read_image_file(const std::filesystem::path& file) {
+  return decode_picture(read_picture_bytes(file), file);
 }
 
 }  // namespace softfocus

@@ -47,7 +47,12 @@ Picture decode_png(std::span<const std::byte> bytes);
 Picture decode_pfm(std::span<const std::byte> bytes);
 Picture decode_npy(std::span<const std::byte> bytes);
 
-/// Reads a file of any of the formats, told by its first bytes. FileError names it.
+/// The bytes of a picture's file, and the picture in them, of any of the formats, told by the first
+/// bytes. FileError names the file.
+Bytes read_picture_bytes(const std::filesystem::path& file);
+Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::path& file);
+
+/// Both.
 Picture read_image_file(const std::filesystem::path& file);
 
 }  // namespace softfocus

@@ -9,8 +9,8 @@
 
 #include "raster/images/texel.h"
 #include "tools/cli/errors.h"
-#include "tools/files/byte_order.h"
 #include "tools/files/image_file.h"
+#include "tools/files/png_text.h"
 
 namespace {
 
@@ -39,41 +39,6 @@ void* grown(void* memory, std::size_t size) {
 #endif
 
 namespace softfocus {
-namespace {
-
-/// CRC-32 of ISO 3309, as the PNG specification's annex D gives it.
-std::uint32_t crc32(std::span<const std::byte> bytes) {
-  std::uint32_t crc = 0xFFFFFFFFu;
-  for (const std::byte byte : bytes) {
-    crc ^= std::to_integer<std::uint32_t>(byte);
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1u) != 0 ? 0xEDB88320u ^ crc >> 1 : crc >> 1;
-  }
-  return ~crc;
-}
-
-/// Goes through the chunks, which stb reads without their checksums and, once it has
-/// its pixels, without minding the end.
-void check_chunks(std::span<const std::byte> bytes) {
-  constexpr std::size_t kSignature = 8, kFrame = 12;  // a chunk: length, type, data, CRC
-  constexpr std::uint32_t kIend = 0x49454E44;
-  const FileError truncated{"the PNG is cut short"};
-  if (bytes.size() < kSignature) throw truncated;
-  for (auto rest = bytes.subspan(kSignature);;) {
-    if (rest.size() < kFrame) throw truncated;
-    const std::size_t length = big_endian<std::uint32_t>(rest);
-    if (rest.size() - kFrame < length) throw truncated;
-    const auto type_and_data = rest.subspan(4, 4 + length);
-    if (crc32(type_and_data) != big_endian<std::uint32_t>(rest.subspan(8 + length))) {
-      throw FileError("the PNG is damaged: a checksum is wrong");
-    }
-    rest = rest.subspan(kFrame + length);
-    if (big_endian<std::uint32_t>(type_and_data) != kIend) continue;
-    if (!rest.empty()) throw FileError("the PNG goes on after its end");
-    return;
-  }
-}
-
-}  // namespace
 
 Bytes encode_png(const Image& image) {
   std::vector<std::uint8_t> rgb;
@@ -94,7 +59,7 @@ Bytes encode_png(const Image& image) {
 }
 
 Picture decode_png(std::span<const std::byte> bytes) {
-  check_chunks(bytes);
+  check_png_chunks(bytes);  // stb reads them without checksums, and does not mind the end
   if (bytes.size() > 0x7FFFFFFF) throw FileError("the PNG is larger than 2 GB");
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int data_size = static_cast<int>(bytes.size());

@@ -13,6 +13,7 @@ struct ChosenProfile {
   std::string name;
   std::string summary;
   Profile profile;
+  std::filesystem::path file{};  ///< that it was read from; else empty
 };
 
 /// The whole file, one key a line with what it means. `heading` becomes comment lines

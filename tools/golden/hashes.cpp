@@ -1,7 +1,6 @@
 #include "tools/golden/hashes.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -19,12 +18,6 @@ constexpr TableEntry kTable[] = {
 };
 
 }  // namespace
-
-std::string hash_text(std::uint64_t hash) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
 
 std::vector<NamedHash> golden_hashes(ThreadPool& pool) {
   std::vector<NamedHash> hashes = number_hashes();

@@ -11,11 +11,9 @@
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
 #include "scenes/scene.h"
+#include "tools/files/hash_text.h"
 
 namespace softfocus {
-
-/// As it is printed and kept: 0x and 16 digits.
-std::string hash_text(std::uint64_t hash);
 
 /// What was computed, in words, and the FNV-1a hash of its bits.
 struct NamedHash {

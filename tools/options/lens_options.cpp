@@ -55,6 +55,14 @@ void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults
       });
 }
 
+void add_fov(CLI::App& parser, const std::string& standard,
+             std::function<void(double degrees)> on_fov) {
+  add_value(parser, "--fov", "DEGREES", "Vertical field of view (default: " + standard + ")",
+            [on_fov = std::move(on_fov)](const std::string& text) {
+              on_fov(parse_number("--fov", text, 0.01, 179.0, "degrees from 0.01 to 179"));
+            });
+}
+
 }  // namespace
 
 void add_lens_options(CLI::App& parser, LensOptions& options) {
@@ -70,10 +78,14 @@ void add_own_lens_options(CLI::App& parser, LensOptions& options,
                     .focal_length = short_number(standard.focal_length_mm),
                     .f_number = short_number(standard.f_number),
                     .coc_scale = "1"});
-  add_value(parser, "--fov", "DEGREES", "Vertical field of view (default: 40)",
-            [on_fov = std::move(on_fov)](const std::string& text) {
-              on_fov(parse_number("--fov", text, 0.01, 179.0, "degrees from 0.01 to 179"));
-            });
+  add_fov(parser, "40", std::move(on_fov));
+}
+
+void add_compared_lens_options(CLI::App& parser, LensOptions& options,
+                               std::function<void(double degrees)> on_fov) {
+  const std::string theirs = "--scene's or the picture's";
+  add_lens_options(parser, options, {theirs, theirs, theirs, theirs});
+  add_fov(parser, theirs, std::move(on_fov));
 }
 
 ThinLens overruled(ThinLens lens, const LensOptions& options) {

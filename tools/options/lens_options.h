@@ -27,6 +27,10 @@ void add_lens_options(CLI::App& parser, LensOptions& options);
 void add_own_lens_options(CLI::App& parser, LensOptions& options,
                           std::function<void(double degrees)> on_fov);
 
+/// Likewise for pictures that may carry a lens: the defaults are theirs.
+void add_compared_lens_options(CLI::App& parser, LensOptions& options,
+                               std::function<void(double degrees)> on_fov);
+
 /// `lens` with what was given put in.
 ThinLens overruled(ThinLens lens, const LensOptions& options);
 

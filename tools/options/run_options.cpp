@@ -26,7 +26,9 @@ ChosenProfile profile_of(const std::string& text) {
                      "; or give a profile's file, such as ./mine.toml");
   }
   try {
-    return load_profile(text);
+    ChosenProfile chosen = load_profile(text);
+    chosen.file = text;
+    return chosen;
   } catch (const SceneError& error) {
     throw UsageError(std::string("--profile: ") + error.what());
   }

@@ -1,6 +1,7 @@
 // softfocus render: the way of a frame from a scene's file to a picture's.
 
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -18,6 +19,7 @@
 #include "tools/options/run_options.h"
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
+#include "tools/render/picture_files.h"
 
 namespace softfocus {
 namespace {
@@ -59,7 +61,7 @@ UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene) {
 
 /// Focuses on the drawn picture if that is asked for, and computes the frame's constants.
 void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
-              double fov_y_degrees) {
+              double fov_y_degrees, ThreadPool& pool) {
   if (used.autofocus_pixel) {
     const auto [x, y] = *used.autofocus_pixel;
     used.lens.focus_m = load_texel<Format::rgba16f>(scene, x, y).w;
@@ -68,6 +70,10 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
   }
   used.settings.coc =
       checked_pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
+  if (takes_all_circles(options)) {
+    const CircleSizes sizes = circle_sizes(scene, used.settings.coc, 0.0f, pool);
+    used.settings.max_coc_px = std::ceil(sizes.largest_px);
+  }
   if (options.show == Show::image) check_arithmetic(options.arithmetic, used.settings);
 }
 
@@ -159,6 +165,7 @@ int render(const RenderOptions& options) {
   });
   progress.clear();
   print_scene_warnings(scene.warnings, options.verbose);
+  check_outputs(options, scene);
   record.scene_name = scene.name;
   record.scene_title = scene.title;
   record.triangles = triangle_count(scene);
@@ -168,6 +175,8 @@ int render(const RenderOptions& options) {
   std::optional<FrameOnGl> on_gl;
   if (options.gl != nullptr) record.gl_renderer = on_gl.emplace(*options.gl).renderer();
   const CameraMatrices view = camera_matrices(scene.camera, options.frame, width, height);
+  record.camera = scene.camera;
+  record.camera.position = view.eye;
   std::optional<PreparedScene> prepared;
   Image drawn = timed(progress, "drawing", ms.draw, [&] {
     if (on_gl) return on_gl->draw(scene, view, options.frame, width, height);
@@ -177,11 +186,14 @@ int render(const RenderOptions& options) {
     return picture;
   });
 
+  std::vector<std::string> warnings;
   DofSettings settings;
   if (record.lens) {
     timed(progress, "focusing", ms.focus,
-          [&] { set_lens(*record.lens, drawn, options, scene.camera.fov_y_degrees); });
+          [&] { set_lens(*record.lens, drawn, options, scene.camera.fov_y_degrees, pool); });
     settings = record.lens->settings;
+    if (cuts_by_default(options))
+      warnings.push_back(cut_warning(drawn, options, *record.lens, pool));
   }
   record.used = {options.method, options.sampling, {}};
   if (options.show == Show::image && options.method.is_auto()) {
@@ -201,26 +213,40 @@ int render(const RenderOptions& options) {
   });
 
   progress.clear();
-  for (const std::string& warning : {until_warning(record), goal_warning(options, record)}) {
-    if (!warning.empty()) std::cerr << "softfocus: warning: " << warning << '\n';
+  warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record)});
+  auto sidecar = sidecar_place(options);
+  if (sidecar && !is_free_for_sidecar(*sidecar)) {
+    warnings.push_back("'" + sidecar->string() +
+                       "' is no sidecar of a picture and stays as it is: the picture's lens is "
+                       "written nowhere");
+    sidecar.reset();
   }
 
-  const Bytes bytes =
-      timed(progress, "encoding", ms.encode, [&] { return encode(picture, options.format); });
+  const Bytes bytes = timed(progress, "encoding", ms.encode, [&] {
+    record.picture_hash = hash_image(picture);
+    return encode_with_notes(picture, options.format, notes_of(options, record));
+  });
   // The files get their names together, when nothing can fail but the naming.
-  std::optional<WholeFile> picture_file, report_file;
+  std::optional<WholeFile> picture_file, sidecar_file, report_file;
   timed(progress, "writing", ms.write, [&] {
     if (to_standard_output) {
       write_to_standard_output(bytes);
     } else {
       picture_file.emplace(options.output).write(bytes);
     }
+    if (sidecar) {
+      sidecar_file.emplace(*sidecar).write(sidecar_text(notes_of(options, record), bytes));
+    }
   });
   const std::string report = text_report(options, record);
   if (options.report) report_file.emplace(*options.report).write(report);
   if (picture_file) picture_file->commit();
+  if (sidecar_file) sidecar_file->commit();
   if (report_file) report_file->commit();
   progress.clear();
+  for (const std::string& warning : warnings) {
+    if (!warning.empty()) std::cerr << "softfocus: warning: " << warning << '\n';
+  }
 
   if (options.json) std::cout << json_report(options, record);
   if (options.verbose) std::cerr << report;

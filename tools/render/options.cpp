@@ -6,6 +6,7 @@
 #include "raster/images/image.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
+#include "tools/files/same_file.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 
@@ -79,7 +80,12 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
 }
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
-  add_profile_option(parser, options.profile, options.profile_name);
+  add_profile_option(parser, "GPU to agree with to the bit (default: " + options.profile_name + ")",
+                     [&options](const ChosenProfile& chosen) {
+                       options.profile = chosen.profile;
+                       options.profile_name = chosen.name;
+                       options.profile_file = chosen.file;
+                     });
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
   add_pool_options(parser, options.pool, "the picture is the same");
@@ -87,14 +93,6 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
             [&options](const std::string& text) { options.report = text; });
   add_flag(parser, "--json", "Print the report as JSON on standard output", options.json);
   add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);
-}
-
-/// Whether two names lead to one file, there already or not.
-bool is_one_place(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code error_a, error_b;
-  const auto place_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a), error_a);
-  const auto place_b = std::filesystem::weakly_canonical(std::filesystem::absolute(b), error_b);
-  return a == b || (!error_a && !error_b && place_a == place_b);
 }
 
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
@@ -141,7 +139,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (options.report && options.report->empty()) {
     throw UsageError("--report '': give the name of a file");
   }
-  if (options.report && is_one_place(*options.report, options.output)) {
+  if (options.report && is_same_file(*options.report, options.output)) {
     throw UsageError("--report and -o name the same file; give two");
   }
   if (options.autofocus && options.lens.focus_m) {

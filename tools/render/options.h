@@ -32,7 +32,8 @@ struct RenderOptions {
   double frame = 0.0;
   Profile profile;
   std::string profile_name = "ieee";
-  const Driver* gl = nullptr;  ///< renders the frame instead of the emulation
+  std::filesystem::path profile_file;  ///< empty if the profile is a known one
+  const Driver* gl = nullptr;          ///< renders the frame instead of the emulation
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 
+#include "tools/files/hash_text.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
@@ -72,6 +73,17 @@ std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
     text += line("Half-sets differ by", short_number(*used.half_set_rms) + " (RMS, linear)");
   }
   return text;
+}
+
+Json vector_json(const glm::dvec3& v) { return std::vector<double>{v.x, v.y, v.z}; }
+
+Json camera_json(const Camera& camera) {
+  return {{"fov_y_degrees", camera.fov_y_degrees},
+          {"position", vector_json(camera.position)},
+          {"target", vector_json(camera.target)},
+          {"up", vector_json(camera.up)},
+          {"near_m", camera.near_m},
+          {"far_m", camera.far_m}};
 }
 
 Json traits_json(const SceneTraits& traits) {
@@ -165,13 +177,21 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
 std::string json_report(const RenderOptions& options, const RenderRecord& record) {
   const StageTimes& ms = record.ms;
   Json json{
-      {"softfocus", SOFTFOCUS_VERSION},  {"scene", record.scene_name},
-      {"title", record.scene_title},     {"frame", options.frame},
-      {"width", options.size.width},     {"height", options.size.height},
-      {"triangles", record.triangles},   {"method", options.method.name()},
-      {"show", name_of(options.show)},   {"profile", options.profile_name},
-      {"threads", options.pool.threads}, {"isa", isa_name(options.pool.isa)},
+      {"softfocus", SOFTFOCUS_VERSION},
+      {"scene", record.scene_name},
+      {"title", record.scene_title},
+      {"frame", options.frame},
+      {"width", options.size.width},
+      {"height", options.size.height},
+      {"triangles", record.triangles},
+      {"method", options.method.name()},
+      {"show", name_of(options.show)},
+      {"profile", options.profile_name},
+      {"threads", options.pool.threads},
+      {"isa", isa_name(options.pool.isa)},
       {"output", options.output},
+      {"picture_hash", hash_text(record.picture_hash)},
+      {"camera", camera_json(record.camera)},
   };
   if (options.arithmetic != Arithmetic::floats) {
     json["arithmetic"] = arithmetic_name(options.arithmetic);

@@ -47,7 +47,9 @@ struct RenderRecord {
   std::string scene_name;
   std::string scene_title;
   std::size_t triangles = 0;
-  std::string gl_renderer;  ///< of --gl; else empty
+  Camera camera;                   ///< at the frame
+  std::uint64_t picture_hash = 0;  ///< hash_image()
+  std::string gl_renderer;         ///< of --gl; else empty
   UsedMethod used;
   std::optional<UsedLens> lens;        ///< none where the picture needs none
   std::optional<UsedSamples> sampled;  ///< none of a filter

@@ -158,7 +158,7 @@ TEST_CASE("auto: an error that nothing is predicted to keep to is told, and the 
   CHECK(run.status == 0);
   CHECK(is_one_line(run.err));
   CHECK(contains(run.err, "--max-error 0: no method is predicted to keep to it"));
-  CHECK(directory.listing() == Words{"a.npy"});
+  CHECK(directory.listing() == Words{"a.npy", "a.npy.json"});
 }
 
 TEST_CASE("auto: maps and the pinhole's picture need no choice") {

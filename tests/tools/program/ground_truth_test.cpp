@@ -91,7 +91,7 @@ TEST_CASE("ground truth: an error that is not reached is told, and the picture i
     CHECK(is_one_line(run.err));
     CHECK(contains(run.err, "--until 1e-07"));
     CHECK(contains(run.err, said));
-    CHECK(directory.listing() == Words{"a.npy"});
+    CHECK(directory.listing() == Words{"a.npy", "a.npy.json"});
   }
 }
 

@@ -37,7 +37,7 @@ TEST_CASE("render: standard output gets the bytes that a file gets, a PNG if not
 
 TEST_CASE("render: --format decides whatever the file's name says") {
   CHECK(rendered("figures", {"--format", "npy"}, "picture") == rendered("figures", {}));
-  CHECK(rendered("figures", {"--format", "npy"}, "a.png") == rendered("figures", {}));
+  CHECK(rendered("figures", {"--format", "png"}, "a.npy") == rendered("figures", {}, "a.png"));
 }
 
 TEST_CASE("render: a file that was there is replaced and keeps its permissions") {
@@ -68,7 +68,7 @@ TEST_CASE("render: a symbolic link is written through, even to a file that is no
     CHECK(std::filesystem::is_symlink(directory.file("a.npy")));
     CHECK(read_file(directory.file("deep/b.npy")) == rendered("figures", {}));
   }
-  CHECK(directory.listing() == Words{"a.npy", "deep"});
+  CHECK(directory.listing() == Words{"a.npy", "a.npy.json", "deep"});
 }
 
 TEST_CASE("render: a device is written to and stays a device") {

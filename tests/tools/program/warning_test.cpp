@@ -27,7 +27,8 @@ TEST_CASE(
     "render: what a model lacks is warned of, in three lines and a count, and is no failure") {
   const TemporaryDirectory directory;
   write_file(directory.file("m.obj"), model_without_materials());
-  const ProgramRun run = run_program(render(directory.file("m.obj"), directory.file("a.npy")));
+  const ProgramRun run =
+      run_program(render(directory.file("m.obj"), directory.file("a.npy"), {"--max-coc", "4"}));
   CHECK(run.status == 0);
   CHECK(run.err.starts_with("softfocus: warning: "));
   CHECK(run.err.find("material a is not defined") != std::string::npos);

@@ -1,0 +1,147 @@
+#include "tools/files/picture_notes.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "raster/numbers/hash.h"
+#include "tools/files/hash_text.h"
+#include "tools/files/png_text.h"
+
+namespace softfocus {
+namespace {
+
+/// Marks the JSON; its value is the version of the form.
+constexpr const char* kMark = "softfocus_picture";
+constexpr int kForm = 1;
+constexpr const char* kKeyword = "softfocus";
+/// No notes are longer: larger files are not read for being taken for some.
+constexpr std::size_t kMostBytes = 65536;
+
+std::string hash_of_file(std::span<const std::byte> bytes) {
+  Hash hash;
+  for (const std::byte byte : bytes) add_to_hash(hash, std::to_integer<std::uint8_t>(byte));
+  return hash_text(hash.value);
+}
+
+/// The text of a small regular file, or nullopt.
+std::optional<std::string> small_text(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
+  const auto size = std::filesystem::file_size(file, error);
+  if (error || size > kMostBytes) return std::nullopt;
+  std::ifstream stream{file, std::ios::binary};
+  if (!stream) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>{stream}, {}};
+}
+
+PictureNotes notes_of(const Json& json) {
+  PictureNotes notes;
+  notes.scene = json.at("scene").text();
+  notes.frame = json.at("frame").number();
+  notes.width = static_cast<int>(json.at("width").integer());
+  notes.height = static_cast<int>(json.at("height").integer());
+  notes.show = json.at("show").text();
+  notes.fov_y_degrees = json.at("fov_y_degrees").number();
+  notes.method = json.at("method");
+  const Json& lens = json.at("lens");
+  if (!lens.is_null()) {
+    notes.lens = {{lens.at("focal_length_mm").number(), lens.at("f_number").number(),
+                   lens.at("focus_m").number()},
+                  lens.at("coc_scale").number(),
+                  notes.fov_y_degrees};
+  }
+  notes.picture_hash = std::stoull(json.at("picture_hash").text(), nullptr, 16);
+  return notes;
+}
+
+/// A field of view and a lens that cannot be are no notes of ours.
+bool is_usable(const PictureNotes& notes) {
+  const bool sees = notes.fov_y_degrees > 0.0 && notes.fov_y_degrees < 180.0;
+  return sees && (!notes.lens || (lens_error(notes.lens->lens) == nullptr &&
+                                  notes.lens->coc_scale >= 0.0 && notes.lens->coc_scale <= 1e6));
+}
+
+}  // namespace
+
+Json notes_json(const PictureNotes& notes) {
+  Json json{{kMark, kForm},
+            {"softfocus", SOFTFOCUS_VERSION},
+            {"scene", notes.scene},
+            {"frame", notes.frame},
+            {"width", notes.width},
+            {"height", notes.height},
+            {"show", notes.show},
+            {"lens", nullptr},
+            {"fov_y_degrees", notes.fov_y_degrees},
+            {"method", notes.method},
+            {"picture_hash", hash_text(notes.picture_hash)}};
+  if (notes.lens) {
+    json["lens"] = {{"focus_m", notes.lens->lens.focus_m},
+                    {"focal_length_mm", notes.lens->lens.focal_length_mm},
+                    {"f_number", notes.lens->lens.f_number},
+                    {"coc_scale", notes.lens->coc_scale}};
+  }
+  return json;
+}
+
+std::optional<PictureNotes> parse_notes(std::string_view text) {
+  const std::optional<Json> json = parse_json(text);
+  if (!json || !json->is_object() || json->find(kMark) == nullptr) return std::nullopt;
+  try {
+    if (json->at(kMark).integer() != kForm) return std::nullopt;
+    PictureNotes notes = notes_of(*json);
+    if (!is_usable(notes)) return std::nullopt;
+    return notes;
+  } catch (const JsonError&) {
+    return std::nullopt;
+  } catch (const std::logic_error&) {  // a hash that is no number
+    return std::nullopt;
+  }
+}
+
+Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes) {
+  Bytes bytes = encode(image, format);
+  if (format != FileFormat::png) return bytes;
+  return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION},
+                                {kKeyword, json_text(notes_json(notes))}});
+}
+
+bool needs_sidecar(FileFormat format) { return format != FileFormat::png; }
+
+std::filesystem::path sidecar_of(const std::filesystem::path& picture) {
+  std::filesystem::path sidecar = picture;
+  return sidecar += ".json";
+}
+
+std::string sidecar_text(const PictureNotes& notes, const Bytes& picture) {
+  Json json = notes_json(notes);
+  json["file_hash"] = hash_of_file(picture);
+  return json_text(json, 2) + "\n";
+}
+
+bool is_free_for_sidecar(const std::filesystem::path& sidecar) {
+  std::error_code error;
+  const auto status = std::filesystem::status(sidecar, error);
+  if (status.type() == std::filesystem::file_type::not_found) return true;
+  const auto text = small_text(sidecar);
+  return text && parse_notes(*text);
+}
+
+FoundNotes find_notes(const std::filesystem::path& picture, std::span<const std::byte> bytes) {
+  if (is_png(bytes)) {
+    const auto text = find_png_text(bytes, kKeyword);
+    return {text ? parse_notes(*text) : std::nullopt, picture};
+  }
+  FoundNotes found{std::nullopt, sidecar_of(picture)};
+  const auto text = small_text(found.place);
+  if (!text) return found;
+  found.notes = parse_notes(*text);
+  if (!found.notes) return found;
+  const std::optional<Json> json = parse_json(*text);
+  const Json* hash = json->find("file_hash");
+  found.stale = hash == nullptr || !hash->is_text() || hash->text() != hash_of_file(bytes);
+  if (found.stale) found.notes.reset();
+  return found;
+}
+
+}  // namespace softfocus

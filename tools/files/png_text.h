@@ -1,0 +1,33 @@
+#pragma once
+// Texts in a PNG: chunks tEXt and iTXt (PNG specification, 11.3.4), and the walk over chunks.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace softfocus {
+
+bool is_png(std::span<const std::byte> bytes);
+
+/// Throws FileError for chunks that are cut short, have a wrong checksum, or do not end where the
+/// bytes do.
+void check_png_chunks(std::span<const std::byte> png);
+
+struct PngText {
+  std::string_view keyword;  ///< 1 to 79 Latin letters, digits and single blanks
+  std::string text;          ///< UTF-8
+};
+
+/// A PNG with these texts behind its header. What is plain ASCII on one line without quotes is a
+/// tEXt, all else an uncompressed iTXt.
+std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
+                                      const std::vector<PngText>& texts);
+
+/// The first text of that keyword, of a tEXt or an uncompressed iTXt. Needs sound chunks
+/// (check_png_chunks()).
+std::optional<std::string> find_png_text(std::span<const std::byte> png, std::string_view keyword);
+
+}  // namespace softfocus

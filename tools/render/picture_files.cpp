@@ -1,0 +1,110 @@
+#include "tools/render/picture_files.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/files/same_file.h"
+
+namespace softfocus {
+namespace {
+
+/// Less of the picture than this is not worth a line.
+constexpr double kNoticeableShare = 0.01;
+
+/// A circle is cut so far that it can be seen from a tenth and a pixel on.
+float noticeable_px(float max_coc_px) { return 1.1f * max_coc_px + 1.0f; }
+
+/// The largest --max-coc that the method takes (fixed_settings_error()).
+float most_max_coc_px(Arithmetic arithmetic) {
+  return arithmetic == Arithmetic::floats ? kLargestMaxCoc : 64.0f;
+}
+
+Json method_json(const RenderOptions& options, const RenderRecord& record) {
+  if (options.show != Show::image) return nullptr;
+  const MethodChoice& method = record.used.method;
+  Json json{{"name", method.name()}};
+  if (record.sampled) {
+    json["samples"] = record.sampled->samples;
+    json["jitter"] = record.used.sampling.jitter;
+    json["aperture_blades"] = record.used.sampling.aperture.blades;
+  } else if (record.lens) {
+    json["max_coc_px"] = record.lens->settings.max_coc_px;
+    json["leak"] = record.lens->settings.leak;
+    json["arithmetic"] = arithmetic_name(options.arithmetic);
+  }
+  if (record.gl_renderer.empty()) {
+    json["profile"] = options.profile_name;
+  } else {
+    json["gl_driver"] = record.gl_renderer;
+  }
+  return json;
+}
+
+}  // namespace
+
+void check_outputs(const RenderOptions& options, const Scene& scene) {
+  std::vector<ReadFile> inputs;
+  for (const auto& file : scene.files) inputs.push_back({file, "a file of the scene"});
+  if (!options.profile_file.empty()) inputs.push_back({options.profile_file, "the profile"});
+  if (options.output != "-") check_not_read("-o", options.output, inputs);
+  if (options.report) check_not_read("--report", *options.report, inputs);
+  if (const auto sidecar = sidecar_place(options)) {
+    check_not_read("-o", *sidecar, inputs);
+    if (options.report && is_same_file(*options.report, *sidecar)) {
+      throw UsageError("--report '" + options.report->string() +
+                       "' is where -o writes the picture's lens; give another name");
+    }
+  }
+}
+
+PictureNotes notes_of(const RenderOptions& options, const RenderRecord& record) {
+  PictureNotes notes{.scene = record.scene_name,
+                     .frame = options.frame,
+                     .width = options.size.width,
+                     .height = options.size.height,
+                     .show = std::string{name_of(options.show)},
+                     .fov_y_degrees = record.camera.fov_y_degrees,
+                     .lens = {},
+                     .method = method_json(options, record),
+                     .picture_hash = record.picture_hash};
+  if (record.lens) {
+    notes.lens = {record.lens->lens, record.lens->coc_scale, notes.fov_y_degrees};
+  }
+  return notes;
+}
+
+std::optional<std::filesystem::path> sidecar_place(const RenderOptions& options) {
+  if (options.output == "-" || !needs_sidecar(options.format)) return std::nullopt;
+  std::error_code error;
+  const auto status = std::filesystem::status(options.output, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return std::nullopt;
+  }
+  return sidecar_of(options.output);
+}
+
+bool cuts_by_default(const RenderOptions& options) {
+  return options.show == Show::image && options.method.filter != nullptr &&
+         has_depth_of_field(options) && !options.max_coc_px && !takes_all_circles(options);
+}
+
+bool takes_all_circles(const RenderOptions& options) {
+  return options.show == Show::image && options.method.filter != nullptr &&
+         options.method.filter->any_radius_costs_the_same && !options.max_coc_px;
+}
+
+std::string cut_warning(const Image& drawn, const RenderOptions& options, const UsedLens& used,
+                        ThreadPool& pool) {
+  const float max_coc_px = used.settings.max_coc_px;
+  const CircleSizes sizes = circle_sizes(drawn, used.settings.coc, noticeable_px(max_coc_px), pool);
+  if (sizes.beyond_limit < kNoticeableShare) return {};
+  const float most = most_max_coc_px(options.arithmetic);
+  const float needed = std::min(std::ceil(sizes.largest_px), most);
+  return "--max-coc, " + short_number(static_cast<double>(max_coc_px)) +
+         " by default, cuts the circles of " +
+         short_number(std::round(100.0 * sizes.beyond_limit)) + " % of the picture; --max-coc " +
+         short_number(static_cast<double>(needed)) +
+         (sizes.largest_px >= most ? " cuts as few as can be" : " cuts none");
+}
+
+}  // namespace softfocus
