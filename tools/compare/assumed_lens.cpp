@@ -2,6 +2,7 @@
 
 #include "scenes/load/load_scene.h"
 #include "tools/cli/option_values.h"
+#include "tools/options/lens_options.h"
 
 namespace softfocus {
 namespace {

@@ -99,7 +99,7 @@ std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
                                    [](char c) { return c >= ' ' && c <= '~' && c != '"'; });
     // A zero ends the keyword; behind an iTXt's no compression, no language, no translation.
     const std::string ends = plain ? std::string(1, '\0') : std::string(5, '\0');
-    append_chunk(result, plain ? "tEXt" : "iTXt", std::string{keyword} + ends + text);
+    append_chunk(result, plain ? "tEXt" : "iTXt", std::string{keyword}.append(ends).append(text));
   }
   result.insert(result.end(), png.begin() + kHeaderEnd, png.end());
   return result;

@@ -18,8 +18,14 @@ void check_not_read(const std::string& option, const std::filesystem::path& outp
                     const std::vector<ReadFile>& inputs) {
   for (const auto& [file, what] : inputs) {
     if (!is_same_file(output, file)) continue;
-    throw UsageError(option + " '" + output.string() + "' would write over " + what + ", '" +
-                     file.string() + "'; give another name");
+    throw UsageError(std::string{option}
+                         .append(" '")
+                         .append(output.string())
+                         .append("' would write over ")
+                         .append(what)
+                         .append(", '")
+                         .append(file.string())
+                         .append("'; give another name"));
   }
 }
 

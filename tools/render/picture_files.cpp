@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
 #include "tools/files/same_file.h"
 
 namespace softfocus {
