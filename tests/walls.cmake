@@ -6,7 +6,7 @@ set(order
   raster/numbers raster/lanes raster/threads raster/images raster/pipeline raster/passes raster/raster.h
   dof/fixed dof dof/two_pass dof/one_pass dof/disc_layers dof/scatter dof/methods
   dof/fixed_pictures dof/method.cpp dof/measure dof/auto
-  scenes/scene.h scenes/make scenes/random scenes/load scenes/draw scenes/lens_views scenes/scenes.h
+  scenes/scene.h scenes/make scenes/random scenes/load scenes/draw scenes/lens_views scenes/auto scenes/scenes.h
   tools/cli tools/files tools/gl tools/options tools/info tools/render tools/compare tools/bench
   tools/golden tools/chart tools/crosscheck tools/boards tools)
 

@@ -48,7 +48,7 @@ int run(std::vector<std::string> arguments) {
       make_program("softfocus", SOFTFOCUS_VERSION, "Renders scenes with depth of field.");
   const std::vector<Command> commands{
       add_render_command(*program),     add_scenes_command(*program),
-      add_methods_command(*program),    add_profiles_command(*program),
+      add_methods_command(*program), add_candidates_command(*program),    add_profiles_command(*program),
       add_lens_command(*program),       add_compare_command(*program),
       add_crosscheck_command(*program), add_probe_command(*program),
       add_shaders_command(*program),    add_bench_command(*program),

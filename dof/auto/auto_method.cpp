@@ -32,6 +32,7 @@ std::string percent_text(double share) {
 AutoMethod with_predictions(const Candidate& candidate, const SceneTraits& traits,
                             const AutoLimits& limits) {
   AutoMethod choice{.method = candidate.method, .traits = traits};
+  choice.candidate = static_cast<std::size_t>(&candidate - candidates().data());
   if (candidate.radius >= 0) {
     // No filter does otherwise with a radius that no circle reaches.
     choice.radius_px = std::min(kFilterRadiiPx[static_cast<std::size_t>(candidate.radius)],
@@ -124,12 +125,17 @@ AutoMethod most_accurate_within(const std::vector<AutoMethod>& choices, double m
 
 }  // namespace
 
-AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits) {
+std::vector<AutoMethod> open_choices(const SceneTraits& traits, const AutoLimits& limits) {
   std::vector<AutoMethod> choices;
   for (const Candidate& candidate : candidates()) {
     AutoMethod choice = with_predictions(candidate, traits, limits);
     if (is_open(candidate, choice, traits, limits)) choices.push_back(std::move(choice));
   }
+  return choices;
+}
+
+AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits) {
+  const std::vector<AutoMethod> choices = open_choices(traits, limits);
   if (largest_px(traits) < kSharpBelow) {
     AutoMethod sharp = choices.front();
     sharp.predicted_error = 0.0;

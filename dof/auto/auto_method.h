@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dof/auto/scene_traits.h"
 
@@ -27,8 +28,9 @@ struct AutoLimits {
 /// of samples.
 struct AutoMethod {
   std::string_view method;
-  float radius_px = 0.0f;  ///< max_coc_px of a filter
-  int samples = 0;         ///< of a lens-view method; 0: a filter
+  std::size_t candidate = 0;  ///< its index in candidates()
+  float radius_px = 0.0f;     ///< max_coc_px of a filter
+  int samples = 0;            ///< of a lens-view method; 0: a filter
   double predicted_error = 0.0;
   double predicted_ms = 0.0;
   bool meets_goal = true;  ///< false: no candidate does, and this is the nearest
@@ -40,6 +42,10 @@ struct AutoMethod {
 /// the most accurate of the candidates within it that take at most a twentieth longer than the
 /// cheapest. Of equal candidates the first in the table.
 AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits);
+
+/// The candidates that differ on such a picture, from cheap to dear, with their predictions. A
+/// filter's radius is cut to the largest circle.
+std::vector<AutoMethod> open_choices(const SceneTraits& traits, const AutoLimits& limits);
 
 /// Whether the method's picture is the pinhole's, to the bit.
 bool is_sharp(const AutoMethod& choice);

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "dof/auto/cell_means.h"
 #include "dof/auto/depth_range.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
@@ -19,7 +20,8 @@ constexpr int kPointsAcross = 40;
 constexpr std::array kRingsPx{1, 2, 4, 8, 16, 32, 64};
 // sqrt(1/2) D, rounded: taps on the diagonals.
 constexpr std::array kDiagonalsPx{1, 1, 3, 6, 11, 23, 45};
-constexpr float kLargestRadiusPx = 1024.0f;
+// Rings from here on see the means of cells, nearer ones pixels.
+constexpr std::size_t kFirstRingOfCells = 4;
 constexpr float kHalfAPixel = 0.5f;
 constexpr float kSquareRootOfPi = 1.7724539f;
 constexpr float kGhostsSeenPx = 3.0f;  // ghosts so far apart are seen in full
@@ -47,19 +49,24 @@ struct Tap {
   float far_edge;   // across any other edge
 };
 
-float signed_radius(const PixelCoc& coc, float depth_m) {
-  const float radius = coc_radius_px(coc, depth_m);
-  if (!(radius < kLargestRadiusPx)) return kLargestRadiusPx;  // NaN, too
-  return radius < -kLargestRadiusPx ? -kLargestRadiusPx : radius;
-}
+// Light as an eye sees it, about, on a screen that shows 0 to 1.
+float seen(float light) { return std::sqrt(light < 1.0f ? light : 1.0f); }
 
-float seen(std::uint16_t half) {
-  const float value = half_to_float(half);
-  return value > 0.0f ? std::sqrt(value < 1.0f ? value : 1.0f) : 0.0f;  // NaN is black
+float seen_difference(const Colour& a, const Colour& b) {
+  return std::max({std::fabs(seen(a[0]) - seen(b[0])), std::fabs(seen(a[1]) - seen(b[1])),
+                   std::fabs(seen(a[2]) - seen(b[2]))});
 }
 
 float difference(const Colour& a, const Colour& b) {
   return std::max({std::fabs(a[0] - b[0]), std::fabs(a[1] - b[1]), std::fabs(a[2] - b[2])});
+}
+
+float brightest(const Colour& colour) { return std::max({colour[0], colour[1], colour[2]}); }
+
+// How far off a light is seen if it is off by `error`, up or down.
+float seen_error(float light, float error) {
+  const float here = seen(light);
+  return std::max(seen(light + error) - here, here - seen(std::max(light - error, 0.0f)));
 }
 
 // d^(3/4)
@@ -95,9 +102,16 @@ CutAreas cut_areas() {
 struct Sight {
   const Image& picture;
   const PixelCoc& coc;
+  const CellMeans& cells;
   std::size_t rings;  // that any circle of the picture reaches
   CutAreas cut_areas;
 };
+
+Point point_of(const Sight& sight, const std::uint16_t* texel) {
+  return {{trait_light(half_to_float(texel[0])), trait_light(half_to_float(texel[1])),
+           trait_light(half_to_float(texel[2]))},
+          signed_trait_radius(sight.coc, half_to_float(texel[3]))};
+}
 
 const std::uint16_t* texel_at(const Sight& sight, int x, int y) {
   x = std::clamp(x, 0, sight.picture.width - 1);
@@ -111,10 +125,9 @@ struct Taps {
 };
 
 // Appends the tap if it can matter to anything.
-void add_tap(const Sight& sight, const Point& p, const std::uint16_t* texel, std::size_t ring,
-             Taps& taps) {
+void add_tap(const Point& p, const Point& q, std::size_t ring, Taps& taps) {
   const auto distance_px = static_cast<float>(kRingsPx[ring]);
-  const float radius_px = signed_radius(sight.coc, half_to_float(texel[3]));
+  const float radius_px = q.radius_px;
   const float here = std::fabs(p.radius_px), there = std::fabs(radius_px);
   const bool edge = std::fabs(radius_px - p.radius_px) > 1.0f + 0.25f * distance_px;
   const bool before = radius_px < p.radius_px;
@@ -124,7 +137,7 @@ void add_tap(const Sight& sight, const Point& p, const std::uint16_t* texel, std
   const float part = within(reach_px, distance_px);
   if (part == 0.0f) return;
   Tap& tap = taps.all[taps.count++];
-  tap.colour = {seen(texel[0]), seen(texel[1]), seen(texel[2])};
+  tap.colour = q.colour;
   tap.ring = ring;
   tap.weight = part * ring_area(distance_px);
   tap.reach_px = reach_px;
@@ -134,28 +147,45 @@ void add_tap(const Sight& sight, const Point& p, const std::uint16_t* texel, std
   tap.far_edge = near ? 0.0f : step;
 }
 
-/// The texels of a point and of its taps, ring by ring. Fetched one point ahead: they lie
-/// far apart, and most of the time goes into waiting for them.
-struct Texels {
+/// Where a point and its taps lie: texels, and cells for the wide rings. Fetched one point ahead:
+/// they lie far apart, and most of the time goes into waiting for them.
+struct Places {
   const std::uint16_t* centre;
-  std::array<const std::uint16_t*, 4 * kRingsPx.size()> around;
+  std::array<const std::uint16_t*, 4 * kFirstRingOfCells> texels;
+  std::array<const CellMean*, 4 * (kRingsPx.size() - kFirstRingOfCells)> cells;
 };
 
-Texels texels_around(const Sight& sight, int x, int y, std::uint32_t hash) {
-  Texels texels{texel_at(sight, x, y), {}};
-  __builtin_prefetch(texels.centre);
+const CellMean* cell_at(const Sight& sight, int x, int y) {
+  const int column = std::clamp(x, 0, sight.picture.width - 1) / kCellPx;
+  const int row = std::clamp(y, 0, sight.picture.height - 1) / kCellPx;
+  return &sight.cells.cells[static_cast<std::size_t>(row * sight.cells.columns + column)];
+}
+
+Places places_around(const Sight& sight, int x, int y, std::uint32_t hash) {
+  Places places{texel_at(sight, x, y), {}, {}};
+  __builtin_prefetch(places.centre);
   for (std::size_t ring = 0; ring < sight.rings; ++ring) {
     const bool axes = (hash >> ring & 1u) != 0;
     const int dx = axes ? kRingsPx[ring] : kDiagonalsPx[ring];
     const int dy = axes ? 0 : kDiagonalsPx[ring];
-    const std::array taps{texel_at(sight, x + dx, y + dy), texel_at(sight, x - dy, y + dx),
-                          texel_at(sight, x - dx, y - dy), texel_at(sight, x + dy, y - dx)};
-    for (std::size_t i = 0; i < taps.size(); ++i) {
-      __builtin_prefetch(taps[i]);
-      texels.around[4 * ring + i] = taps[i];
+    const std::array<std::array<int, 2>, 4> steps{{{dx, dy}, {-dy, dx}, {-dx, -dy}, {dy, -dx}}};
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const int to_x = x + steps[i][0], to_y = y + steps[i][1];
+      if (ring < kFirstRingOfCells) {
+        places.texels[4 * ring + i] = texel_at(sight, to_x, to_y);
+        __builtin_prefetch(places.texels[4 * ring + i]);
+      } else {
+        places.cells[4 * (ring - kFirstRingOfCells) + i] = cell_at(sight, to_x, to_y);
+      }
     }
   }
-  return texels;
+  return places;
+}
+
+Point tap_at(const Sight& sight, const Places& places, std::size_t tap) {
+  if (tap < 4 * kFirstRingOfCells) return point_of(sight, places.texels[tap]);
+  const CellMean& cell = *places.cells[tap - 4 * kFirstRingOfCells];
+  return {cell.colour, cell.radius_px};
 }
 
 /// What a lens makes of a point, for each cut.
@@ -219,43 +249,46 @@ void add_ghosts(const Point& p, std::span<const Tap> taps, const Colour& mean, S
     largest_px = std::max(largest_px, tap.reach_px);
   }
   const float spread = std::sqrt(squares / weights);
+  const float light = brightest(mean);
   for (std::size_t i = 0; i < kSampleCounts.size(); ++i) {
     const float root = std::sqrt(static_cast<float>(kSampleCounts[i]));
     const float apart_px = largest_px * kSquareRootOfPi / root;
-    sums.ghosts[i] += static_cast<double>(spread / root * std::min(apart_px / kGhostsSeenPx, 1.0f));
+    const float error = spread / root * std::min(apart_px / kGhostsSeenPx, 1.0f);
+    sums.ghosts[i] += static_cast<double>(seen_error(light, error));
   }
 }
 
-void add_point(const Sight& sight, const Texels& texels, Sums& sums) {
-  const std::uint16_t* texel = texels.centre;
-  const Point p{{seen(texel[0]), seen(texel[1]), seen(texel[2])},
-                signed_radius(sight.coc, half_to_float(texel[3]))};
+void add_point(const Sight& sight, const Places& places, Sums& sums) {
+  const Point p = point_of(sight, places.centre);
   if (std::fabs(p.radius_px) >= kHalfAPixel) sums.blurred_share += 1.0;
   Taps found;
   for (std::size_t i = 0; i < 4 * sight.rings; ++i) {
-    add_tap(sight, p, texels.around[i], i / 4, found);
+    add_tap(p, tap_at(sight, places, i), i / 4, found);
   }
   if (found.count == 0) return;  // nothing comes here: every sum would grow by 0
   const std::span taps{found.all.data(), found.count};
   const LensSums lens = lens_sums(sight, p, taps);
   const Colour mean = mean_of(lens, kUncut);
-  sums.blur += static_cast<double>(felt(difference(mean, p.colour)));
+  sums.blur += static_cast<double>(felt(seen_difference(mean, p.colour)));
   for (std::size_t i = 0; i < kFilterRadiiPx.size(); ++i) {
     const Colour cut = mean_of(lens, i);
-    sums.lost[i] += static_cast<double>(felt(difference(cut, mean)));
-    sums.blurred[i] += static_cast<double>(felt(difference(cut, p.colour)));
-    sums.near_edges[i] += static_cast<double>(felt(lens.near_edges[i] / lens.weights[i]));
-    sums.far_edges[i] += static_cast<double>(felt(lens.far_edges[i] / lens.weights[i]));
+    const float light = brightest(cut);
+    const float near = lens.near_edges[i] / lens.weights[i];
+    const float far = lens.far_edges[i] / lens.weights[i];
+    sums.lost[i] += static_cast<double>(felt(seen_difference(cut, mean)));
+    sums.blurred[i] += static_cast<double>(felt(seen_difference(cut, p.colour)));
+    sums.near_edges[i] += static_cast<double>(felt(seen_error(light, near)));
+    sums.far_edges[i] += static_cast<double>(felt(seen_error(light, far)));
   }
   add_ghosts(p, taps, mean, sums);
 }
 
 // Of the point that stands for a cell of the grid: where in the cell, the hash's upper bytes
 // tell in 256ths, and how its taps lie, the lowest bits.
-Texels texels_of_point(const Sight& sight, int column, int row, int columns, int rows) {
+Places places_of_point(const Sight& sight, int column, int row, int columns, int rows) {
   const std::uint32_t hash = hash_of_place(column, row);
   const int right = static_cast<int>(hash >> 24), down = static_cast<int>(hash >> 16 & 0xFFu);
-  return texels_around(sight, (column * 256 + right) * sight.picture.width / (columns * 256),
+  return places_around(sight, (column * 256 + right) * sight.picture.width / (columns * 256),
                        (row * 256 + down) * sight.picture.height / (rows * 256), hash);
 }
 
@@ -278,21 +311,22 @@ SceneTraits scene_traits(const Image& pinhole, const PixelCoc& coc, ThreadPool& 
   SceneTraits traits{.width = pinhole.width, .height = pinhole.height};
   // The radius grows with depth, so its ends are those of depth.
   const DepthRange depths = depth_range(pinhole, pool);
-  traits.nearest_px = signed_radius(coc, half_to_float(depths.least));
-  traits.farthest_px = signed_radius(coc, half_to_float(depths.most));
+  traits.nearest_px = signed_trait_radius(coc, half_to_float(depths.least));
+  traits.farthest_px = signed_trait_radius(coc, half_to_float(depths.most));
   if (largest_px(traits) < kHalfAPixel) return traits;
 
   const int columns = std::min(kPointsAcross, pinhole.width);
   const int rows = std::min(kPointsAcross, pinhole.height);
-  const Sight sight{pinhole, coc, rings_within(largest_px(traits)), cut_areas()};
+  const CellMeans cells = cell_means(pinhole, coc, pool);
+  const Sight sight{pinhole, coc, cells, rings_within(largest_px(traits)), cut_areas()};
   std::vector<Sums> of_rows(static_cast<std::size_t>(rows));
   pool.for_each(rows, [&](int j) {
     Sums& sums = of_rows[static_cast<std::size_t>(j)];
-    Texels texels = texels_of_point(sight, 0, j, columns, rows);
+    Places places = places_of_point(sight, 0, j, columns, rows);
     for (int i = 0; i < columns; ++i) {
-      const Texels next = texels_of_point(sight, std::min(i + 1, columns - 1), j, columns, rows);
-      add_point(sight, texels, sums);
-      texels = next;
+      const Places next = places_of_point(sight, std::min(i + 1, columns - 1), j, columns, rows);
+      add_point(sight, places, sums);
+      places = next;
     }
   });
   Sums sums;

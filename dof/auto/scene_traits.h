@@ -3,9 +3,10 @@
 //
 // The ranges are of every pixel, the rest of 1,600 points on a grid, each moved within
 // its cell as a hash of its place says. Around a point p lie four taps q in each of the rings
-// of radius D = 1, 2, 4, ... 64 pixels, along the axes or the diagonals. With r the signed
-// radius of the circle of confusion in pixels, negative nearer than the focus, and C the
-// colour, linear light cut to 0..1 and its square root taken, about as an eye sees it:
+// of radius D = 1, 2, 4, ... 64 pixels, along the axes or the diagonals. From ring 16 on a tap is
+// the mean of 8x8 pixels (cell_means.h), so that small lights are not missed. With r the signed
+// radius of the circle of confusion in pixels, negative nearer than the focus, and C the colour
+// in linear light, not cut:
 //
 //   edge(p, q)   |r_q - r_p| > 1 + D/4: something ends between the two; a slope changes less
 //   reach(p, q)  how far light comes between them: |r_q| where q lies before p across an
@@ -16,8 +17,11 @@
 //   m_R(p)       (C_p + sum W_R C_q) / (1 + sum W_R): what a lens of such circles makes of p,
 //                as far as the picture shows it; m without the cut
 //
-// |..| of colours is the largest of the three channels' differences; F(d) = d^(3/4), because
-// FLIP weighs half a difference by more than a half.
+// Light is added up as it is, and cut to 0..1 and its square root s taken, about as an eye sees
+// it on a screen, at the end. |a - b| of two sums is the largest of the three channels'
+// differences of s; an error e of light is seen as E(e) = max(s(L + e) - s(L), s(L) - s(L - e)),
+// L the largest channel of m_R. F(d) = d^(3/4), because FLIP weighs half a difference by more
+// than a half.
 
 #include <array>
 
@@ -37,7 +41,7 @@ inline constexpr std::array<int, 9> kSampleCounts{8, 16, 32, 64, 128, 256, 512, 
 struct RadiusTraits {
   float lost = 0.0f;     ///< F(|m_R - m|): blur that the filter cannot give
   float blurred = 0.0f;  ///< F(|m_R - C|): blur that it gives, a disc or not
-  /// F(sum of W_R |C_q - C_p| / (1 + sum W_R)), the first sum over edges whose nearer side lies
+  /// F(E(sum of W_R |C_q - C_p| / (1 + sum W_R))), the first sum over edges whose nearer side lies
   /// before the focus, blurred by half a pixel or more: what one should see through, and behind.
   float near_edges = 0.0f;
   float far_edges = 0.0f;  ///< the same over all other edges
@@ -52,8 +56,8 @@ struct SceneTraits {
   float blurred_share = 0.0f;  ///< points with |r| of half a pixel or more, 0 to 1
   float blur = 0.0f;           ///< F(|m - C|): what is lost without any blur
   std::array<RadiusTraits, kFilterRadiiPx.size()> by_radius{};
-  /// s / sqrt(N) min(1, g / 3), what is left of the ghosts of N samples once the eye has
-  /// blurred them: s is the root of the mean square of |C_q - m| over a point's circle,
+  /// E(d / sqrt(N) min(1, g / 3)), what is left of the ghosts of N samples once the eye has
+  /// blurred them: d is the root of the mean square of |C_q - m| over a point's circle,
   /// g = r sqrt(pi / N) the distance between ghosts, r the largest reach.
   std::array<float, kSampleCounts.size()> ghosts{};
 };

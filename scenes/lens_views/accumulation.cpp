@@ -65,7 +65,7 @@ AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPo
 }
 
 void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
-                    SampleSums& sums, ThreadPool& pool) {
+                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles) {
   const auto count = static_cast<std::size_t>(end - begin);
   assert(begin % kSampleGroup == 0 && end - begin <= kLensViewGroup);
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
@@ -89,7 +89,9 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
   });
   sort_into_tiles(passes, tile_lists, pool);
   ScratchShelf<TileSamples> shelf;
-  pool.for_each(tile_count(tile_lists[0]), [&](int tile) {
+  const int drawn = tiles.empty() ? tile_count(tile_lists[0]) : static_cast<int>(tiles.size());
+  pool.for_each(drawn, [&](int number) {
+    const int tile = tiles.empty() ? number : tiles[static_cast<std::size_t>(number)];
     TileSamples samples = shelf.take();
     const Rectangle area = tile_area(tile_lists[0], tile);
     for (std::size_t i = 0; i < count; ++i) {

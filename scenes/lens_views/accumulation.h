@@ -3,6 +3,7 @@
 // lens, and the mean of the pictures.
 
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
 #include "scenes/draw/draw_scene.h"
@@ -38,8 +39,9 @@ inline constexpr int kLensViewGroup = 2 * kSampleGroup;
 /// Draws the samples `begin` to `end` - 1 and adds them to the sums. They are at most
 /// kLensViewGroup, and `begin` is a multiple of kSampleGroup. All are drawn in one tile before
 /// the next, so that their pixels stay in a core's cache. The buffer must have been made for
-/// `end` points or more, with the input's scene and profile.
+/// `end` points or more, with the input's scene and profile. Of the picture only `tiles` are drawn
+/// (row by row, kTileSize), unless that is empty.
 void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
-                    SampleSums& sums, ThreadPool& pool);
+                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles = {});
 
 }  // namespace softfocus

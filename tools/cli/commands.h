@@ -21,6 +21,7 @@ struct Command {
 Command add_render_command(CLI::App& program);
 Command add_scenes_command(CLI::App& program);
 Command add_methods_command(CLI::App& program);
+Command add_candidates_command(CLI::App& program);
 Command add_profiles_command(CLI::App& program);
 Command add_lens_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);

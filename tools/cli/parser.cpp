@@ -88,6 +88,11 @@ void add_flag(CLI::App& parser, const std::string& name, const std::string& help
   parser.add_flag(name, given, help);
 }
 
+void add_flag(CLI::App& parser, const std::string& name, const std::string& help,
+              std::function<void()> take) {
+  parser.add_flag_callback(name, std::move(take), help);
+}
+
 void add_value(CLI::App& parser, const std::string& name, const std::string& type,
                const std::string& help, std::function<void(const std::string&)> take) {
   const std::string shown = name.substr(0, name.find(','));

@@ -35,6 +35,10 @@ CLI::App* add_command(CLI::App& program, const std::string& name, const std::str
 /// Adds an option without a value, which sets `given`.
 void add_flag(CLI::App& parser, const std::string& name, const std::string& help, bool& given);
 
+/// The same, which does more than set it.
+void add_flag(CLI::App& parser, const std::string& name, const std::string& help,
+              std::function<void()> take);
+
 /// Adds an option that takes one value and may be given once. `type` stands for the
 /// value in the help; `take` gets the text and throws UsageError.
 void add_value(CLI::App& parser, const std::string& name, const std::string& type,

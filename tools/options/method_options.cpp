@@ -134,7 +134,7 @@ void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
   }
 }
 
-void add_auto_options(CLI::App& parser, AutoGoal& goal) {
+void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify) {
   add_value(parser, "--max-error", "E",
             "Of auto: the cheapest method whose mean FLIP should be at most this (default: " +
                 short_number(goal.max_error) + ")",
@@ -149,13 +149,25 @@ void add_auto_options(CLI::App& parser, AutoGoal& goal) {
               goal.max_time_ms = parse_number("--max-time", text, 0.0, 1e9,
                                               "a time in milliseconds of 0 or more, such as 8");
             });
+  add_flag(
+      parser, "--verify",
+      "Of auto: hold every choice by --max-error against views of the lens (default: where the "
+      "predicted error is near the limit)",
+      [&verify] { verify = Verify::always; });
+  add_flag(parser, "--no-verify", "Of auto: hold none", [&verify] { verify = Verify::never; });
 }
 
 void check_auto_options(const CLI::App& parser, const MethodChoice& method) {
   if (is_given(parser, "--max-error") && is_given(parser, "--max-time")) {
     throw UsageError("--max-error and --max-time exclude each other; give one");
   }
-  for (const char* option : {"--max-error", "--max-time"}) {
+  if (is_given(parser, "--verify") && is_given(parser, "--no-verify")) {
+    throw UsageError("--verify and --no-verify exclude each other; give one");
+  }
+  if (is_given(parser, "--verify") && is_given(parser, "--max-time")) {
+    throw UsageError("--verify holds the picture to --max-error; with --max-time leave it out");
+  }
+  for (const char* option : {"--max-error", "--max-time", "--verify", "--no-verify"}) {
     if (!is_given(parser, option) || method.is_auto()) continue;
     throw UsageError(std::string{option} + ": the method " + std::string{method.name()} +
                      " keeps to no bound; give --method auto");

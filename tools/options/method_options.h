@@ -9,6 +9,7 @@
 #include "dof/auto/auto_method.h"
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "scenes/auto/auto_picture.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
 #include "tools/cli/parser.h"
@@ -59,7 +60,8 @@ void complete_sampling(Sampling& sampling, const CLI::App& parser);
 /// Throws UsageError if one of them was given, for a filter does not sample the lens.
 void refuse_sampling_options(const CLI::App& parser, std::string_view method);
 
-void add_auto_options(CLI::App& parser, AutoGoal& goal);
+/// Adds --max-error, --max-time, --verify and --no-verify.
+void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify);
 
 /// Throws UsageError if both were given, or either without --method auto, or with it an
 /// option that it settles itself.

@@ -1,13 +1,14 @@
 // softfocus render: the way of a frame from a scene's file to a picture's.
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
 
-#include "dof/auto/auto_method.h"
 #include "dof/show.h"
 #include "raster/images/texel.h"
+#include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
@@ -111,23 +112,67 @@ std::string until_warning(const RenderRecord& record) {
 std::string goal_warning(const RenderOptions& options, const RenderRecord& record) {
   if (!record.used.choice || record.used.choice->meets_goal) return {};
   const AutoMethod& choice = *record.used.choice;
+  if (record.used.measured_error) {
+    return "--max-error " + short_number(options.goal.max_error) + ": not kept to; " +
+           setting_text(choice) + " shows an error of " + short_number(*record.used.measured_error);
+  }
   return "--max-error " + short_number(options.goal.max_error) +
          ": no method is predicted to keep to it; " + setting_text(choice) +
          " comes nearest, with a predicted error of " + short_number(choice.predicted_error);
 }
 
-/// Lets auto choose, by the drawn picture.
-void choose_method(RenderRecord& record, const Image& drawn, const RenderOptions& options,
-                   ThreadPool& pool) {
-  DofSettings& settings = record.lens->settings;
-  const SceneTraits traits = scene_traits(drawn, settings.coc, pool);
-  const AutoMethod choice =
-      auto_method(traits, options.goal, {options.max_coc_px, record.triangles});
+/// The picture of what auto chooses.
+Image auto_drawn(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
+                 PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
+                 Progress& progress, ThreadPool& pool) {
+  UsedLens& lens = *record.lens;
+  StageTimes& ms = record.ms;
+  using StageClock = std::chrono::steady_clock;
+  StageClock::time_point begun = StageClock::now();
+  double* stage_ms = &ms.choose;
+  const auto end_stage = [&] {
+    const StageClock::time_point now = StageClock::now();
+    *stage_ms += std::chrono::duration<double, std::milli>(now - begun).count();
+    begun = now;
+  };
+  const auto begin_stage = [&](AutoStage stage) {
+    end_stage();
+    static constexpr std::array kNames{"choosing", "filtering", "sampling the lens", "checking"};
+    progress.show(kNames[static_cast<std::size_t>(stage)]);
+    stage_ms = stage == AutoStage::choosing   ? &ms.choose
+               : stage == AutoStage::checking ? &ms.check
+                                              : &ms.filter;
+  };
+  const LensViewInput views{scene,
+                            view,
+                            options.frame,
+                            pinhole,
+                            lens.lens.focus_m,
+                            aperture_radius_m(lens.lens, lens.coc_scale),
+                            options.sampling,
+                            options.profile,
+                            {},
+                            prepared};
+  AutoPicture found = auto_picture({.views = views,
+                                    .settings = lens.settings,
+                                    .goal = options.goal,
+                                    .limits = {options.max_coc_px, record.triangles},
+                                    .verify = options.verify,
+                                    .on_stage = begin_stage},
+                                   pool);
+  end_stage();
   UsedMethod& used = record.used;
+  const AutoMethod& choice = found.choice;
   used.method = {find_method(choice.method), find_lens_view_method(choice.method)};
-  if (used.method.of_scene != nullptr) used.sampling.samples = choice.samples;
-  if (used.method.filter != nullptr) settings.max_coc_px = choice.radius_px;
+  if (choice.samples > 0) {
+    used.sampling.samples = choice.samples;
+    record.sampled = {choice.samples, {}};
+  } else {
+    lens.settings.max_coc_px = choice.radius_px;
+  }
   used.choice = choice;
+  used.measured_error = found.measured_error;
+  return std::move(found.picture);
 }
 
 Image shown_picture(Image scene, const RenderOptions& options, const Method* filter,
@@ -195,22 +240,24 @@ int render(const RenderOptions& options) {
     if (cuts_by_default(options))
       warnings.push_back(cut_warning(drawn, options, *record.lens, pool));
   }
-  record.used = {options.method, options.sampling, {}};
-  if (options.show == Show::image && options.method.is_auto()) {
-    timed(progress, "choosing", ms.choose, [&] { choose_method(record, drawn, options, pool); });
-    settings = record.lens->settings;
-  }
+  record.used = {options.method, options.sampling, {}, {}};
+  const bool is_auto = options.show == Show::image && options.method.is_auto();
   const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
-  if (!from_lens) prepared.reset();
-  const Image picture = timed(progress, from_lens ? "sampling" : "filtering", ms.filter, [&] {
-    if (from_lens) {
-      return sampled_picture(scene, view, drawn, prepared ? &*prepared : nullptr, options, record,
-                             progress, pool);
+  if (!from_lens && !is_auto) prepared.reset();
+  const auto make_picture = [&] {
+    PreparedScene* const ready = prepared ? &*prepared : nullptr;
+    if (is_auto) {
+      return auto_drawn(scene, view, drawn, ready, options, record, progress, pool);
     }
-    if (record.used.choice && is_sharp(*record.used.choice)) return std::move(drawn);
+    if (from_lens) {
+      return sampled_picture(scene, view, drawn, ready, options, record, progress, pool);
+    }
     return shown_picture(std::move(drawn), options, record.used.method.filter, scene.camera,
                          settings, on_gl ? &*on_gl : nullptr, pool);
-  });
+  };
+  const Image picture =
+      is_auto ? make_picture()  // which times its stages itself
+              : timed(progress, from_lens ? "sampling" : "filtering", ms.filter, make_picture);
 
   progress.clear();
   warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record)});

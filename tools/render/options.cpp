@@ -76,7 +76,7 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
                   parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
             });
   add_sampling_options(parser, options.sampling);
-  add_auto_options(parser, options.goal);
+  add_auto_options(parser, options.goal, options.verify);
 }
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {

@@ -10,6 +10,7 @@
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/numbers/profile.h"
+#include "scenes/auto/auto_picture.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
 #include "tools/files/image_file.h"
@@ -39,6 +40,7 @@ struct RenderOptions {
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;  ///< of a method that draws the scene
   AutoGoal goal;      ///< of auto
+  Verify verify = Verify::in_doubt;
   LensOptions lens;
   bool autofocus = false;
   std::optional<Pixel> autofocus_pixel;  ///< the picture's centre if none

@@ -5,6 +5,7 @@
 
 #include "tools/files/hash_text.h"
 #include "tools/files/json.h"
+#include "tools/info/candidates.h"
 
 namespace softfocus {
 namespace {
@@ -16,10 +17,10 @@ struct NamedTime {
 constexpr std::array kStages{
     NamedTime{"load", &StageTimes::load},     NamedTime{"draw", &StageTimes::draw},
     NamedTime{"focus", &StageTimes::focus},   NamedTime{"choose", &StageTimes::choose},
-    NamedTime{"filter", &StageTimes::filter}, NamedTime{"encode", &StageTimes::encode},
-    NamedTime{"write", &StageTimes::write}};
+    NamedTime{"filter", &StageTimes::filter}, NamedTime{"check", &StageTimes::check},
+    NamedTime{"encode", &StageTimes::encode}, NamedTime{"write", &StageTimes::write}};
 
-double cost_ms(const StageTimes& ms) { return ms.focus + ms.choose + ms.filter; }
+double cost_ms(const StageTimes& ms) { return ms.focus + ms.choose + ms.filter + ms.check; }
 
 double frames_per_second(double ms) { return ms > 0.0 ? 1000.0 / ms : 0.0; }
 
@@ -57,9 +58,10 @@ std::string filter_lines(const UsedLens& used) {
          line("Leak", short_number(used.settings.leak));
 }
 
-std::string choice_lines(const AutoMethod& choice) {
+std::string choice_lines(const AutoMethod& choice, std::optional<double> measured_error) {
   return line("Chosen", setting_text(choice)) + line("Because", choice.reason) +
          line("Predicted error", short_number(choice.predicted_error) + " (mean FLIP)") +
+         (measured_error ? line("Measured error", short_number(*measured_error)) : "") +
          line("Predicted time",
               short_number(choice.predicted_ms) + " ms (two cores of the reference machine)");
 }
@@ -86,23 +88,9 @@ Json camera_json(const Camera& camera) {
           {"far_m", camera.far_m}};
 }
 
-Json traits_json(const SceneTraits& traits) {
-  Json json{{"nearest_px", traits.nearest_px},
-            {"farthest_px", traits.farthest_px},
-            {"blurred_share", traits.blurred_share},
-            {"blur", traits.blur},
-            {"ghosts", traits.ghosts}};
-  for (const RadiusTraits& of : traits.by_radius) {
-    json["blurred"].push_back(of.blurred);
-    json["lost"].push_back(of.lost);
-    json["near_edges"].push_back(of.near_edges);
-    json["far_edges"].push_back(of.far_edges);
-  }
-  return json;
-}
-
-Json choice_json(const AutoMethod& choice, const AutoGoal& goal) {
-  Json json{{"method", choice.method}};
+Json choice_json(const UsedMethod& used, const AutoGoal& goal) {
+  const AutoMethod& choice = *used.choice;
+  Json json{{"candidate", candidate_id(choice)}, {"method", choice.method}};
   if (choice.radius_px > 0.0f) json["max_coc_px"] = choice.radius_px;
   if (choice.samples > 0) json["samples"] = choice.samples;
   if (goal.max_time_ms) {
@@ -112,6 +100,8 @@ Json choice_json(const AutoMethod& choice, const AutoGoal& goal) {
   }
   json["meets_goal"] = choice.meets_goal;
   json["predicted_error"] = choice.predicted_error;
+  json["measured_error"] = nullptr;
+  if (used.measured_error) json["measured_error"] = *used.measured_error;
   json["predicted_ms"] = choice.predicted_ms;
   json["reason"] = choice.reason;
   json["traits"] = traits_json(choice.traits);
@@ -146,7 +136,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   if (options.arithmetic != Arithmetic::floats) {
     text += line("Arithmetic", std::string{arithmetic_name(options.arithmetic)});
   }
-  if (record.used.choice) text += choice_lines(*record.used.choice);
+  if (record.used.choice) text += choice_lines(*record.used.choice, record.used.measured_error);
   text += line("Picture", std::string{name_of(options.show)});
   text += record.gl_renderer.empty() ? line("Profile", options.profile_name)
                                      : line("GL driver", record.gl_renderer);
@@ -169,6 +159,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += "\n" + line("Stage", "milliseconds");
   for (const NamedTime& stage : kStages) {
     if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
+    if (stage.ms == &StageTimes::check && !record.used.measured_error) continue;
     text += time_line(stage.name, ms.*stage.ms, false);
   }
   return text;
@@ -214,7 +205,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       json["lens"]["autofocus_pixel"] = {used.autofocus_pixel->x, used.autofocus_pixel->y};
     }
   }
-  if (record.used.choice) json["choice"] = choice_json(*record.used.choice, options.goal);
+  if (record.used.choice) json["choice"] = choice_json(record.used, options.goal);
   if (record.sampled) {
     json["sampling"] = {{"samples", record.sampled->samples},
                         {"jitter", record.used.sampling.jitter},
@@ -230,6 +221,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
   }
   for (const NamedTime& stage : kStages) {
     if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
+    if (stage.ms == &StageTimes::check && !record.used.measured_error) continue;
     json["stages_ms"][stage.name] = ms.*stage.ms;
   }
   // A file's name need not be UTF-8, but JSON must be.

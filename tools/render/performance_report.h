@@ -17,6 +17,7 @@ struct StageTimes {
   double draw = 0.0;
   double focus = 0.0;   ///< finding the focus and the per-frame constants
   double choose = 0.0;  ///< of auto: looking at the picture and at the table
+  double check = 0.0;   ///< of auto: holding the picture against views of the lens
   double filter = 0.0;  ///< the method, or the map that --show asks for
   double encode = 0.0;
   double write = 0.0;
@@ -34,7 +35,8 @@ struct UsedLens {
 struct UsedMethod {
   MethodChoice method;
   Sampling sampling;
-  std::optional<AutoMethod> choice;  ///< of auto
+  std::optional<AutoMethod> choice;      ///< of auto
+  std::optional<double> measured_error;  ///< of auto, if it was checked
 };
 
 /// What a method that draws the scene came to.

@@ -72,7 +72,7 @@ TEST_CASE("bad input: an unknown name is answered with the names there are") {
   check_option_refused({"--format", "gif"}, {"'gif'", "png, pfm, npy"});
   const TemporaryDirectory directory;
   check_refused(directory, {"render", "figurines", "-o", directory.file("out.png")}, 1,
-                {"figurines", "cube-room, dunes, figures, lattice, sphere-world"});
+                {"figurines", "clutter, cube-room, dunes, figures, foliage"});
 }
 
 TEST_CASE("bad input: --focus and --autofocus exclude each other") {

@@ -1,0 +1,227 @@
+#include "scenes/auto/auto_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "dof/measure/flip.h"
+#include "scenes/auto/tile_sample.h"
+#include "scenes/lens_views/accumulation.h"
+
+namespace softfocus {
+namespace {
+
+// Of predictions on scenes left out, one in a hundred is low by more (docs/auto.md).
+constexpr double kDoubt = 2.0;
+constexpr int kFirstViews = 64, kMostViews = 512;
+// Filters that are tried before views of the lens are taken.
+constexpr int kMostFilters = 4;
+// The FLIP of the mean of all views is at most this times that of their two halves. Of twelve
+// scenes, against 2,048 views: .26 to .74 for 16 views, .31 to .66 for 32 to 256.
+double halves_to_whole(int views) { return views < 32 ? 0.75 : 0.62; }
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+class Work {
+ public:
+  Work(const AutoInput& input, ThreadPool& pool)
+      : input_(input), views_(with_all_samples(input.views)), pool_(pool) {}
+
+  AutoPicture run() {
+    tell(AutoStage::choosing);
+    traits_ = scene_traits(views_.pinhole, input_.settings.coc, pool_);
+    AutoMethod choice = auto_method(traits_, input_.goal, input_.limits);
+    for (;;) {
+      AutoPicture result = draw(choice);
+      if (!is_checked(choice)) return result;
+      if (choice.samples > 0) return result;  // its own halves have told
+      check(result);
+      if (result.choice.meets_goal || !step_up(result, choice)) return result;
+    }
+  }
+
+ private:
+  static LensViewInput with_all_samples(LensViewInput views) {
+    views.sampling.samples = kSampleCounts.back();
+    return views;
+  }
+
+  void tell(AutoStage stage) const {
+    if (input_.on_stage) input_.on_stage(stage);
+  }
+
+  bool is_checked(const AutoMethod& choice) const {
+    if (input_.goal.max_time_ms || is_sharp(choice, traits_)) return false;
+    if (input_.verify == Verify::never) return false;
+    return input_.verify == Verify::always || rejected_ > 0 || is_in_doubt(choice, input_.goal);
+  }
+
+  // No circle reaches half a pixel: the pinhole is the truth.
+  static bool is_sharp(const AutoMethod& choice, const SceneTraits& traits) {
+    return softfocus::is_sharp(choice) && largest_px(traits) < 0.5f;
+  }
+
+  AutoPicture draw(const AutoMethod& choice) {
+    if (choice.samples > 0) return draw_views(choice);
+    tell(AutoStage::filtering);
+    AutoPicture result;
+    result.choice = choice;
+    result.max_coc_px = choice.radius_px;
+    result.picture = filtered(choice.method, choice.radius_px);
+    result.rejected = rejected_;
+    return result;
+  }
+
+  Image filtered(std::string_view method, float radius_px) {
+    DofSettings settings = input_.settings;
+    settings.max_coc_px = radius_px;
+    return apply(*find_method(method), {views_.pinhole, settings, views_.profile}, pool_);
+  }
+
+  AccumulationBuffer& buffer() {
+    if (!buffer_) buffer_ = make_accumulation_buffer(views_, pool_);
+    return *buffer_;
+  }
+
+  Image mean_of(const SampleSums& sums) {
+    return mean_picture(sums, views_.pinhole, views_.profile, pool_);
+  }
+
+  void add_views(SampleSums& sums, int until, std::span<const int> tiles) {
+    while (sums.count < until) {
+      // As take_samples() has it, for the same bits.
+      const int step = sums.count < kLensViewGroup ? kSampleGroup : kLensViewGroup;
+      add_lens_views(buffer(), views_, sums.count, std::min(sums.count + step, until), sums, pool_,
+                     tiles);
+      if (views_.progress && tiles.empty()) views_.progress(sums.count);
+    }
+  }
+
+  AutoPicture draw_views(AutoMethod choice) {
+    tell(AutoStage::sampling);
+    SampleSums sums = make_sample_sums(views_.pinhole.width, views_.pinhole.height);
+    AutoPicture result;
+    // Halves of whole groups, so that they have the bits of fewer samples.
+    if (is_checked(choice)) choice.samples = std::max(choice.samples, 2 * kSampleGroup);
+    if (choice.samples >= 2 * kSampleGroup) add_views(sums, choice.samples / 2, {});
+    for (;;) {
+      const SampleSums half = sums;
+      add_views(sums, choice.samples, {});
+      if (!is_checked(choice)) break;
+      tell(AutoStage::checking);
+      const PixelMap flip =
+          flip_map(mean_of(half), mean_of(later_samples(half, sums)), clamped_tone(), pool_);
+      result.measured_error = halves_to_whole(sums.count) * mean(flip);
+      choice.meets_goal = *result.measured_error <= input_.goal.max_error;
+      choice.reason += "; its halves show an error of " + number_text(*result.measured_error);
+      if (choice.meets_goal || choice.samples >= kSampleCounts.back()) break;
+      choice.reason += ", so its samples were doubled";
+      choice.samples *= 2;
+      ++rejected_;
+      tell(AutoStage::sampling);
+    }
+    result.picture = mean_of(sums);
+    result.choice = std::move(choice);
+    result.rejected = rejected_;
+    return result;
+  }
+
+  // Begins the truth of the sampled tiles.
+  void take_tiles() {
+    // What a lens would do, about: the most accurate of the filters that cut no circle.
+    const Image guess = filtered("disc-layers", std::min(largest_px(traits_), kLargestMaxCoc));
+    sample_ = sample_tiles(views_.pinhole, guess, kCheckedTiles, pool_);
+    for (const SampledTile& of : sample_.tiles) tiles_.push_back(of.tile);
+    checked_ = make_sample_sums(views_.pinhole.width, views_.pinhole.height);
+    add_views(checked_, kFirstViews / 2, tiles_);
+    double_views();
+  }
+
+  void double_views() {
+    const SampleSums half = checked_;
+    add_views(checked_, 2 * half.count, tiles_);
+    const Estimate noise =
+        flip_of_tiles(sample_, mean_of(half), mean_of(later_samples(half, checked_)), pool_);
+    noise_ = halves_to_whole(checked_.count) * noise.mean;
+    truth_ = mean_of(checked_);
+  }
+
+  // The noise of the views adds to what is measured. So what is measured within the limit is
+  // within it, and what is beyond it by less than the noise wants more views.
+  void check(AutoPicture& result) {
+    tell(AutoStage::checking);
+    if (sample_.tiles.empty()) take_tiles();
+    const double limit = input_.goal.max_error;
+    Estimate error = flip_of_tiles(sample_, truth_, result.picture, pool_);
+    while (error.mean + error.standard_error > limit && error.mean - noise_ <= limit &&
+           checked_.count < kMostViews) {
+      double_views();
+      error = flip_of_tiles(sample_, truth_, result.picture, pool_);
+    }
+    result.measured_error = error.mean + error.standard_error;
+    AutoMethod& choice = result.choice;
+    choice.meets_goal = *result.measured_error <= limit;
+    choice.reason += "; " + std::to_string(sample_.tiles.size()) + " tiles held against " +
+                     std::to_string(checked_.count) + " views of the lens show an error of " +
+                     number_text(*result.measured_error);
+  }
+
+  // The next dearer choice that should do, if there is one.
+  bool step_up(const AutoPicture& result, AutoMethod& choice) {
+    ++rejected_;
+    const double excess =
+        std::clamp(*result.measured_error / result.choice.predicted_error, 1.0, 4.0);
+    const AutoMethod* next = nullptr;
+    const std::vector<AutoMethod> choices = open_choices(traits_, input_.limits);
+    for (const AutoMethod& other : choices) {
+      if (other.predicted_ms <= choice.predicted_ms) continue;
+      if (other.samples == 0 &&
+          (rejected_ >= kMostFilters || other.predicted_error >= choice.predicted_error)) {
+        continue;
+      }
+      const double expected = other.predicted_error * (other.samples == 0 ? excess : 1.0);
+      if (expected > input_.goal.max_error) continue;
+      if (next == nullptr || other.predicted_ms < next->predicted_ms) next = &other;
+    }
+    // No prediction is within the limit: views of the lens get there by doubling.
+    for (std::size_t i = choices.size(); next == nullptr && i-- > 0;) {
+      if (choices[i].samples > 0 && choices[i].samples <= kFirstViews) next = &choices[i];
+    }
+    if (next == nullptr) return false;
+    const std::string why = result.choice.reason + ", so " + setting_text(*next) + " was taken";
+    choice = *next;
+    choice.reason = why;
+    return true;
+  }
+
+  const AutoInput& input_;
+  LensViewInput views_;
+  ThreadPool& pool_;
+  SceneTraits traits_;
+  std::optional<AccumulationBuffer> buffer_;
+  TileSample sample_;
+  std::vector<int> tiles_;
+  SampleSums checked_;  // of the sampled tiles alone
+  Image truth_;         // their mean
+  double noise_ = 0.0;  // how far off that is, as a mean FLIP
+  int rejected_ = 0;
+};
+
+}  // namespace
+
+bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal) {
+  return !choice.meets_goal || choice.predicted_error * kDoubt > goal.max_error;
+}
+
+AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool) {
+  return Work{input, pool}.run();
+}
+
+}  // namespace softfocus

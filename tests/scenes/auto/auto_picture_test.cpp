@@ -1,0 +1,146 @@
+#include "scenes/auto/auto_picture.h"
+
+#include <doctest/doctest.h>
+
+#include "dof/measure/difference.h"
+#include "dof/measure/flip.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/lens_views/accumulation.h"
+#include "scenes/load/load_scene.h"
+
+using namespace softfocus;
+
+namespace {
+
+constexpr int kSize = 192;
+
+// A scene as auto gets it. Stays where it is: the views refer to it.
+struct Subject {
+  Subject(const char* name, ThreadPool& pool)
+      : scene(load_scene(name, scene_search_path({}))),
+        camera(camera_matrices(scene.camera, 0.0, kSize, kSize)),
+        pinhole(draw_scene(scene, camera, 0.0, kSize, kSize, Profile{}, pool)),
+        views{.scene = scene,
+              .camera = camera,
+              .pinhole = pinhole,
+              .focus_m = scene.lens.lens.focus_m,
+              .aperture_radius_m = aperture_radius_m(scene.lens.lens, scene.lens.coc_scale),
+              .sampling = {},
+              .profile = Profile{},
+              .progress = {}} {
+    settings.coc =
+        pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, kSize, scene.lens.coc_scale);
+  }
+
+  AutoInput input(double max_error, Verify verify) const {
+    return {.views = views,
+            .settings = settings,
+            .goal = {.max_error = max_error},
+            .limits = {.max_radius_px = {}, .triangles = triangle_count(scene)},
+            .verify = verify};
+  }
+
+  Image by_views(int samples, ThreadPool& pool) const {
+    LensViewInput of = views;
+    of.sampling.samples = samples;
+    return accumulation(of, pool).picture;
+  }
+
+  double error_of(const Image& picture, ThreadPool& pool) const {
+    return mean(flip_map(by_views(1024, pool), picture, clamped_tone(), pool));
+  }
+
+  Scene scene;
+  CameraMatrices camera;
+  Image pinhole;
+  LensViewInput views;
+  DofSettings settings;
+};
+
+bool are_equal(const Image& a, const Image& b) { return compare_images(a, b).differing == 0; }
+
+}  // namespace
+
+TEST_CASE("auto picture: what is checked keeps to the error that was asked") {
+  ThreadPool pool{2};
+  for (const char* name : {"night-lights", "near-fence"}) {
+    const Subject subject{name, pool};
+    for (const double limit : {0.03, 0.012}) {
+      const AutoPicture found = auto_picture(subject.input(limit, Verify::always), pool);
+      CAPTURE(name);
+      CAPTURE(limit);
+      CAPTURE(setting_text(found.choice));
+      REQUIRE(found.measured_error);
+      CHECK(found.choice.meets_goal);
+      CHECK(*found.measured_error <= limit);
+      CHECK(subject.error_of(found.picture, pool) <= 1.1 * limit);
+    }
+  }
+}
+
+TEST_CASE("auto picture: the bits are those of the method by its own name, checked or not") {
+  ThreadPool pool{2};
+  const Subject subject{"lattice", pool};
+  for (const Verify verify : {Verify::never, Verify::always}) {
+    for (const double limit : {0.3, 0.02}) {
+      const AutoPicture found = auto_picture(subject.input(limit, verify), pool);
+      CAPTURE(setting_text(found.choice));
+      if (found.choice.samples > 0) {
+        CHECK(are_equal(found.picture, subject.by_views(found.choice.samples, pool)));
+        continue;
+      }
+      DofSettings settings = subject.settings;
+      settings.max_coc_px = found.choice.radius_px;
+      CHECK(are_equal(found.picture, apply(*find_method(found.choice.method),
+                                           {subject.pinhole, settings, Profile{}}, pool)));
+    }
+  }
+}
+
+TEST_CASE("auto picture: never checked, it is what is predicted; by time it never is checked") {
+  ThreadPool pool{2};
+  const Subject subject{"figures", pool};
+  const SceneTraits traits = scene_traits(subject.pinhole, subject.settings.coc, pool);
+  AutoInput input = subject.input(0.02, Verify::never);
+  AutoPicture found = auto_picture(input, pool);
+  CHECK(setting_text(found.choice) == setting_text(auto_method(traits, input.goal, input.limits)));
+  CHECK_FALSE(found.measured_error);
+  input.verify = Verify::always;
+  input.goal.max_time_ms = 3.0;
+  found = auto_picture(input, pool);
+  CHECK(setting_text(found.choice) == setting_text(auto_method(traits, input.goal, input.limits)));
+  CHECK_FALSE(found.measured_error);
+}
+
+TEST_CASE("auto picture: an error that nothing reaches is said to be missed") {
+  ThreadPool pool{2};
+  const Subject subject{"figures", pool};
+  const AutoPicture found = auto_picture(subject.input(1e-6, Verify::in_doubt), pool);
+  CHECK_FALSE(found.choice.meets_goal);
+  REQUIRE(found.measured_error);
+  CHECK(*found.measured_error > 1e-6);
+  CHECK(found.choice.samples == kSampleCounts.back());
+}
+
+TEST_CASE("auto picture: a check is due unless the prediction is far within the limit") {
+  AutoMethod choice{.method = "two-pass", .predicted_error = 0.011, .traits = {}};
+  CHECK(is_in_doubt(choice, {.max_error = 0.02}));
+  CHECK_FALSE(is_in_doubt(choice, {.max_error = 0.05}));
+  choice.meets_goal = false;
+  CHECK(is_in_doubt(choice, {.max_error = 0.05}));
+}
+
+TEST_CASE("auto picture: the same bits and the same words on any threads and vector unit" *
+          doctest::test_suite("threads")) {
+  ThreadPool one{1, Isa::scalar};
+  const Subject subject{"random:48", one};
+  const AutoPicture expected = auto_picture(subject.input(0.02, Verify::always), one);
+  for (const Isa isa : {Isa::baseline, widest_isa()}) {
+    ThreadPool pool{3, isa};
+    const Subject again{"random:48", pool};
+    const AutoPicture found = auto_picture(again.input(0.02, Verify::always), pool);
+    CHECK(are_equal(found.picture, expected.picture));
+    CHECK(found.choice.reason == expected.choice.reason);
+    CHECK(found.measured_error == expected.measured_error);
+  }
+}
