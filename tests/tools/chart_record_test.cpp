@@ -23,14 +23,20 @@ TEST_CASE("chart record: a point comes back as it was, with what is no number") 
   const TemporaryDirectory directory;
   ChartPoint point = test::chart_point("two-pass", 2, {1.5}, 0.0625);
   point.errors.psnr_db = std::numeric_limits<double>::infinity();
-  save_point(point, "key", directory.file("a.json"));
+  save_errors(point, "key", directory.file("a.json"));
+  save_pictures(point, "key", directory.file("a.pictures.json"));
   ChartPoint kept = bare(point);
-  REQUIRE(load_point(kept, "key", directory.file("a.json")));
+  REQUIRE(load_errors(kept, "key", directory.file("a.json")));
+  CHECK(kept.pictures.empty());
+  REQUIRE(load_pictures(kept, "key", directory.file("a.pictures.json")));
   CHECK(std::isinf(kept.errors.psnr_db));
   CHECK(kept.errors.ssim == 0.875);
   CHECK(kept.errors.flip == 0.0625);
   CHECK(std::isnan(kept.errors.flip_by_region[1]));
   CHECK(kept.errors.flip_by_region[3] == 0.25);
+  CHECK(kept.errors.hdr_flip == 0.125);
+  CHECK(kept.errors.hdr_flip_by_region[0] == 0.75);
+  CHECK(std::isnan(kept.errors.hdr_flip_by_region[1]));
   CHECK(kept.worst.x == 3);
   CHECK(kept.worst.side == 16);
   CHECK(kept.pictures.picture == "AAAA");
@@ -42,21 +48,36 @@ TEST_CASE("chart record: another key, another picture or a damaged file is not t
   const TemporaryDirectory directory;
   const std::string file = directory.file("a.json");
   const ChartPoint point = test::chart_point("two-pass", 2, {1.5}, 0.0625);
-  save_point(point, "key", file);
-  ChartPoint kept = bare(point);
-  CHECK_FALSE(load_point(kept, "another", file));
-  ++kept.picture_hash;
-  CHECK_FALSE(load_point(kept, "key", file));
-  --kept.picture_hash;
-  const std::string bytes = read_file(file);
-  for (const std::string& damaged :
-       {bytes.substr(0, bytes.size() / 2), std::string{"[]"}, std::string{},
-        R"({"key":"key","picture_hash":"0000000000000123","errors":{}})" + std::string{}}) {
-    write_file(file, damaged);
-    CHECK_FALSE(load_point(kept, "key", file));
-    CHECK(kept.pictures.picture.empty());
+  for (const auto& [save, load] :
+       {std::pair{&save_errors, &load_errors}, std::pair{&save_pictures, &load_pictures}}) {
+    save(point, "key", file);
+    ChartPoint kept = bare(point);
+    CHECK_FALSE(load(kept, "another", file));
+    ++kept.picture_hash;
+    CHECK_FALSE(load(kept, "key", file));
+    --kept.picture_hash;
+    const std::string bytes = read_file(file);
+    for (const std::string& damaged :
+         {bytes.substr(0, bytes.size() / 2), std::string{"[]"}, std::string{}, std::string{"{}"},
+          R"({"key":"key","picture_hash":"0x0000000000000123","errors":{}})" + std::string{}}) {
+      write_file(file, damaged);
+      CHECK_FALSE(load(kept, "key", file));
+      CHECK(kept.pictures.empty());
+      CHECK(kept.errors.flip == 0.0);
+    }
+    CHECK_FALSE(load(kept, "key", directory.file("not-there.json")));
   }
-  CHECK_FALSE(load_point(kept, "key", directory.file("not-there.json")));
+}
+
+TEST_CASE("chart record: the truth's picture comes back under its key alone") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("a.json");
+  CHECK(load_truth_picture("key", file).empty());
+  save_truth_picture("AAAA", "key", file);
+  CHECK(load_truth_picture("key", file) == "AAAA");
+  CHECK(load_truth_picture("another", file).empty());
+  write_file(file, "{\"key\": \"key\"}");
+  CHECK(load_truth_picture("key", file).empty());
 }
 
 TEST_CASE("chart record: times come back to the points whose pictures are the same") {

@@ -60,22 +60,47 @@ TEST_CASE("chart settings: no two entries have an id in common") {
   CHECK(ids.contains("pinhole"));
 }
 
-TEST_CASE(
-    "chart settings: two-pass takes radii of 4 to 64, in a GPU's profile and in integers too") {
+TEST_CASE("chart settings: every filter takes the same radii") {
+  for (const bool quick : {false, true}) {
+    const auto radii = texts("one-pass", 1024, quick);
+    CHECK(radii.size() == (quick ? 2 : 4));
+    for (const Method& method : methods()) {
+      if (method.name == kPinhole) continue;
+      CAPTURE(method.name);
+      const auto own = texts(std::string{method.name}, 1024, quick);
+      REQUIRE(own.size() >= radii.size());
+      CHECK(std::equal(radii.begin(), radii.end(), own.begin()));
+      // More of them are the same radii again, in another profile or arithmetic.
+      for (const std::string& text : own) {
+        CHECK(std::count(radii.begin(), radii.end(), text.substr(0, text.find(','))) == 1);
+      }
+    }
+  }
   CHECK(texts("two-pass", 1024, false) ==
-        std::vector<std::string>{"max-coc 4", "max-coc 8", "max-coc 16", "max-coc 32", "max-coc 64",
-                                 "max-coc 4, d3d11", "max-coc 8, d3d11", "max-coc 16, d3d11",
-                                 "max-coc 32, d3d11", "max-coc 64, d3d11", "max-coc 4, fixed-8",
-                                 "max-coc 8, fixed-8", "max-coc 16, fixed-8", "max-coc 32, fixed-8",
-                                 "max-coc 64, fixed-8"});
+        std::vector<std::string>{"max-coc 8", "max-coc 16", "max-coc 32", "max-coc 64",
+                                 "max-coc 8, d3d11", "max-coc 16, d3d11", "max-coc 32, d3d11",
+                                 "max-coc 64, d3d11", "max-coc 8, fixed-8", "max-coc 16, fixed-8",
+                                 "max-coc 32, fixed-8", "max-coc 64, fixed-8"});
   // Integers have circles of up to 64 pixels.
   CHECK(texts("two-pass", 2048, false).back() == "max-coc 64, fixed-8");
-  CHECK(texts("two-pass", 2048, false).size() == 14);
+  CHECK(texts("two-pass", 2048, false).size() == 11);
+}
+
+TEST_CASE("chart settings: entries of one series differ in one setting alone") {
+  std::vector<std::string> series, settings;
+  for (const ChartEntry& entry : chart_entries("two-pass", 1024, true)) {
+    series.push_back(series_name(entry));
+    settings.push_back(setting_within_series(entry));
+  }
+  CHECK(series == std::vector<std::string>{"two-pass", "two-pass", "two-pass, d3d11",
+                                           "two-pass, d3d11", "two-pass, fixed-8",
+                                           "two-pass, fixed-8"});
+  CHECK(settings == std::vector<std::string>{"max-coc 16", "max-coc 64", "max-coc 16", "max-coc 64",
+                                             "max-coc 16", "max-coc 64"});
 }
 
 TEST_CASE("chart settings: radii follow the picture's height, and stay what a filter takes") {
-  CHECK(texts("one-pass", 256, true) ==
-        std::vector<std::string>{"max-coc 1", "max-coc 4", "max-coc 16"});
+  CHECK(texts("one-pass", 256, true) == std::vector<std::string>{"max-coc 4", "max-coc 16"});
   for (const ChartEntry& entry : chart_entries("two-pass", 16384, false)) {
     CHECK(entry.max_coc_px.value() <= kLargestMaxCoc);
   }
@@ -101,7 +126,7 @@ TEST_CASE("chart settings: as JSON they name what the method minds, and nothing 
   const auto json = [](const std::string& method) {
     return json_text(settings_json(chart_entries(method, 512, false).front()));
   };
-  CHECK(json("two-pass") == R"({"max_coc_px":2.0,"profile":"ieee"})");
+  CHECK(json("two-pass") == R"({"max_coc_px":4.0,"profile":"ieee"})");
   CHECK(json("accumulation") == R"({"samples":8})");
   CHECK(json("pinhole") == R"({"profile":"ieee"})");
 }

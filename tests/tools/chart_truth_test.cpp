@@ -6,6 +6,7 @@
 
 #include "tests/support/cli_render.h"
 #include "tools/chart/key.h"
+#include "tools/chart/measure.h"
 
 using namespace softfocus;
 
@@ -17,6 +18,7 @@ struct Case {
   PictureSize size{40, 32};
   double frame = 0.0;
   int samples = 128;
+  std::uint64_t measures = 1;
 };
 
 ChartScene scene_of(const Case& from, ThreadPool& pool) {
@@ -28,7 +30,7 @@ ChartScene scene_of(const Case& from, ThreadPool& pool) {
 
 std::string key_of(const Case& from) {
   ThreadPool pool{2};
-  return truth_key(scene_of(from, pool), from.file_bytes, from.samples, pool);
+  return truth_key(scene_of(from, pool), from.file_bytes, from.samples, from.measures, pool);
 }
 
 ChartTruth truth_of(const ChartScene& scene, ThreadPool& pool) {
@@ -74,6 +76,7 @@ TEST_CASE("chart key: the same for the same, another for anything that the truth
   CHECK(key_of({.size = {40, 33}}) != plain);
   CHECK(key_of({.frame = 3.0}) != plain);
   CHECK(key_of({.samples = 144}) != plain);
+  CHECK(key_of({.measures = 2}) != plain);
 }
 
 TEST_CASE(
@@ -85,7 +88,8 @@ TEST_CASE(
     ChartOptions options;
     options.size = {32, 32};
     const std::string name = directory.file("mine.toml");
-    return truth_key(load_chart_scene(name, options, pool), scene_file_bytes(name, {}), 128, pool);
+    return truth_key(load_chart_scene(name, options, pool), scene_file_bytes(name, {}), 128, 1,
+                     pool);
   };
   const std::string plain = key_with("");
   CHECK(key_with("") == plain);
@@ -128,4 +132,14 @@ TEST_CASE("chart truth: a damaged file is not taken") {
   save_truth(truth, "key", file);
   std::filesystem::remove(file + ".npy");
   CHECK_FALSE(load_truth("key", file).has_value());
+}
+
+TEST_CASE("chart key: the measures' hash is the same each time, on any number of threads") {
+  ThreadPool one{1}, four{4};
+  CHECK(measures_hash(one) == measures_hash(one));
+  CHECK(measures_hash(one) == measures_hash(four));
+}
+
+TEST_CASE("chart key: a random scene has no file; its name stands for it") {
+  CHECK(scene_file_bytes("random:5", {}) == "random:5");
 }

@@ -1,22 +1,27 @@
 // softfocus chart: speed against accuracy of every method on every scene.
 
 #include <algorithm>
+#include <cerrno>
+#include <functional>
 #include <iostream>
 #include <memory>
+#include <system_error>
 
 #include "scenes/load/file_bytes.h"
-#include "tools/chart/gnuplot.h"
 #include "tools/chart/key.h"
-#include "tools/chart/measure.h"
 #include "tools/chart/options.h"
-#include "tools/chart/page.h"
-#include "tools/chart/plot.h"
+#include "tools/chart/pictures.h"
 #include "tools/chart/record.h"
-#include "tools/chart/report.h"
+#include "tools/chart/report/gnuplot.h"
+#include "tools/chart/report/numbers.h"
+#include "tools/chart/report/page.h"
+#include "tools/chart/report/plot.h"
+#include "tools/chart/report/summary_plot.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/work.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
 #include "tools/files/whole_file.h"
 
 namespace softfocus {
@@ -28,37 +33,98 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   whole.commit();
 }
 
-void make_directory(const std::filesystem::path& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) {
-    throw FileError("cannot make the directory '" + directory.string() + "': " + error.message() +
-                    "; give -o a place that can be written to");
+constexpr std::size_t kLargestPlot = std::size_t{1} << 28;
+
+/// A new empty file, so that two charts into one directory do not draw into the same.
+std::filesystem::path scratch_file(const std::filesystem::path& directory) {
+  for (int attempt = 0;; ++attempt) {
+    const std::filesystem::path file =
+        directory / ("plot-" + std::to_string(process_number()) + "-" + std::to_string(attempt));
+    const int descriptor = create_file(file);
+    if (descriptor >= 0) {
+      close_file(descriptor);
+      return file;
+    }
+    if (errno != EEXIST) {
+      throw FileError("cannot write '" + file.string() +
+                      "': " + std::generic_category().message(errno));
+    }
   }
 }
 
-constexpr std::size_t kLargestPlot = std::size_t{1} << 28;
+/// What gnuplot draws, by a script for a terminal and a file. gnuplot draws into a scratch file,
+/// so that the chart's own appears whole.
+using PlotScript =
+    std::function<std::string(std::string_view terminal, const std::filesystem::path& file)>;
 
-/// gnuplot draws into a scratch file, so that the chart's own appears whole.
-std::string plotted(const std::vector<ChartPanel>& panels, const char* terminal,
-                    const std::filesystem::path& scratch) {
-  run_gnuplot(plot_script(panels, terminal, scratch));
-  const std::string bytes = read_file_bytes(scratch, kLargestPlot);
+std::string plotted(const PlotScript& script, const char* terminal, const ChartOptions& options) {
+  const std::filesystem::path scratch = scratch_file(options.directory / "cache");
+  std::string bytes;
+  try {
+    run_gnuplot(script(terminal, scratch));
+    bytes = read_file_bytes(scratch, kLargestPlot);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(scratch, ignored);
+    throw;
+  }
   std::error_code ignored;
   std::filesystem::remove(scratch, ignored);
   return bytes;
 }
 
+/// Draws NAME.png and NAME.svg, and returns the latter's text.
+std::string write_plots(const PlotScript& script, const std::string& name,
+                        const ChartOptions& options) {
+  write_text(options.directory / (name + ".png"), plotted(script, "pngcairo", options));
+  std::string svg = plotted(script, "svg", options);
+  write_text(options.directory / (name + ".svg"), svg);
+  return svg;
+}
+
+/// A panel a scene, of errors against times. Old ones would not belong to the new numbers.
+std::string write_panels(const std::vector<ChartPanel>& panels, const RankedError& error,
+                         const std::string& name, const ChartOptions& options) {
+  if (options.rounds == 0 || panels.size() > kMostPanels) {
+    for (const char* ending : {".png", ".svg"}) {
+      std::error_code ignored;
+      std::filesystem::remove(options.directory / (name + ending), ignored);
+    }
+    return "";
+  }
+  return write_plots(
+      [&](std::string_view terminal, const std::filesystem::path& file) {
+        return plot_script(panels, error, terminal, file);
+      },
+      name, options);
+}
+
+void write_list(const Json& list, const std::string& name, const ChartOptions& options) {
+  write_text(options.directory / (name + ".csv"), csv_of(list));
+  write_json(options.directory / (name + ".json"), list);
+}
+
 void write_chart(const std::vector<ChartPanel>& panels, const ChartOptions& options) {
-  const std::filesystem::path& directory = options.directory;
-  write_text(directory / "chart.csv", chart_csv(panels));
-  write_json(directory / "chart.json", chart_json(panels));
-  const std::filesystem::path scratch = directory / "cache" / "plot";
-  write_text(directory / "chart.png", plotted(panels, "pngcairo", scratch));
-  const std::string svg = plotted(panels, "svg", scratch);
-  write_text(directory / "chart.svg", svg);
-  write_text(directory / "index.html",
-             chart_page(panels, svg, {size_text(options.size), machine_key(options.pool)}));
+  const std::vector<BestForBudget> best = best_for_budgets(panels);
+  const std::vector<SummaryRow> summary = summary_of(panels);
+  write_list(chart_json(panels), "chart", options);
+  write_list(best_json(best), "best", options);
+  write_list(summary_json(summary), "summary", options);
+  const std::string summary_svg = write_plots(
+      [&](std::string_view terminal, const std::filesystem::path& file) {
+        return summary_script(summary, terminal, file);
+      },
+      "summary", options);
+  write_text(options.directory / "index.html",
+             chart_page({.panels = panels,
+                         .best = best,
+                         .summary = summary,
+                         .size = size_text(options.size),
+                         .machine = machine_key(options.pool),
+                         .summary_svg = summary_svg,
+                         .flip_svg = write_panels(panels, kRankedErrors[0], "chart", options),
+                         .hdr_flip_svg =
+                             write_panels(panels, kRankedErrors[1], "chart-hdr-flip", options)}));
 }
 
 void print_fronts(const std::vector<ChartPanel>& panels) {
@@ -79,23 +145,43 @@ void print_fronts(const std::vector<ChartPanel>& panels) {
   }
 }
 
+/// Each method at its best setting.
+void print_summary(const std::vector<ChartPanel>& panels) {
+  std::cout << "FLIP over " << panels.size() << " scenes, at the best setting of each: median, 90 %"
+            << ", worst\n";
+  for (const SummaryRow& row : summary_of(panels)) {
+    if (row.settings != kBestSetting && !row.settings.empty()) continue;
+    const OverScenes& flip = row.errors[0];
+    std::cout << "  " << short_number(flip.median) << ", " << short_number(flip.p90) << ", "
+              << short_number(flip.worst) << ": " << row.method << '\n';
+  }
+}
+
 int chart(const ChartOptions& options) {
   check_scenes(options);
   check_gnuplot();
   make_directory(options.directory / "cache");
   // So that nothing is measured in vain.
-  for (const char* name : {"chart.csv", "chart.json", "chart.svg", "chart.png", "index.html"}) {
-    check_writable(options.directory / name);
+  for (const char* name : {"chart", "best", "summary"}) {
+    for (const char* ending : {".csv", ".json"}) {
+      check_writable(options.directory / (std::string{name} + ending));
+    }
   }
+  for (const char* name : {"chart", "chart-hdr-flip", "summary"}) {
+    for (const char* ending : {".svg", ".png"}) {
+      check_writable(options.directory / (std::string{name} + ending));
+    }
+  }
+  check_writable(options.directory / "index.html");
   ThreadPool pool{options.pool.threads, options.pool.isa};
-  ChartFindings findings = measure_chart(options, pool);
-  for (ChartPanel& panel : findings.panels) settle_points(panel);
+  const ChartFindings findings = measure_chart(options, pool);
   write_chart(findings.panels, options);
   if (findings.kept > 0) {
     std::cout << "went on: " << findings.kept << " of " << findings.all
               << " results were there already\n";
   }
-  print_fronts(findings.panels);
+  if (options.rounds > 0 && findings.panels.size() <= kMostPanels) print_fronts(findings.panels);
+  if (findings.panels.size() > 1) print_summary(findings.panels);
   std::cout << "written to " << (options.directory / "index.html").string() << '\n';
   return kDone;
 }

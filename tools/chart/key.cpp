@@ -7,6 +7,7 @@
 #include "raster/numbers/hash.h"
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/load_scene.h"
+#include "tools/chart/measure.h"
 #include "tools/cli/machine.h"
 #include "tools/golden/hashes.h"
 
@@ -34,7 +35,7 @@ std::string exact(double value) {
 }  // namespace
 
 std::string truth_key(const ChartScene& scene, const std::string& file_bytes, int samples,
-                      ThreadPool& pool) {
+                      std::uint64_t measures, ThreadPool& pool) {
   const Image probe = accumulation(accumulation_input(scene, kProbeSamples), pool).picture;
   const ThinLens& lens = scene.lens;
   return "softfocus " SOFTFOCUS_VERSION "; scene " + scene.scene.name + "; file " +
@@ -43,7 +44,13 @@ std::string truth_key(const ChartScene& scene, const std::string& file_bytes, in
          "; focus " + exact(lens.focus_m) + " m; focal length " + exact(lens.focal_length_mm) +
          " mm; f/" + exact(lens.f_number) + "; aperture " + exact(scene.aperture_m) +
          " m; samples " + std::to_string(samples) + "; pinhole " +
-         hash_text(hash_image(scene.pinhole)) + "; first samples " + hash_text(hash_image(probe));
+         hash_text(hash_image(scene.pinhole)) + "; first samples " + hash_text(hash_image(probe)) +
+         "; measures " + hash_text(measures);
+}
+
+std::string point_key(const std::string& truth_key, const Image& truth) {
+  return truth_key + "; truth " + hash_text(hash_image(truth)) + "; pictures of " +
+         std::to_string(kPagePicturePx);
 }
 
 std::string machine_key(const PoolOptions& pool) {
@@ -53,6 +60,7 @@ std::string machine_key(const PoolOptions& pool) {
 
 std::string scene_file_bytes(const std::string& scene,
                              const std::vector<std::filesystem::path>& from_user) {
+  if (is_random_scene(scene)) return scene;
   const auto listings = list_scenes(scene_search_path(from_user));
   const auto found = std::find_if(listings.begin(), listings.end(),
                                   [&](const SceneListing& of) { return of.name == scene; });

@@ -1,8 +1,12 @@
 #include "tools/chart/measure.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "dof/measure/heat_map.h"
+#include "dof/measure/regions.h"
+#include "raster/images/texel.h"
+#include "raster/numbers/hash.h"
 #include "tools/chart/worst_crop.h"
 #include "tools/files/base64.h"
 #include "tools/files/image_file.h"
@@ -21,12 +25,55 @@ int crop_side(const Image& picture) {
 
 int page_factor(int width, int height) { return reduction_factor(width, height, kPagePicturePx); }
 
+struct TestPair {
+  Image truth;
+  Image picture;
+};
+
+/// Circles of up to some 8 pixels.
+constexpr PixelCoc kTestCoc{.radius_at_infinity_px = 4.0f, .focus_m = 2.0f};
+
+/// Stripes, lights and three depths; the picture is the truth with every fifth pixel's light
+/// changed and a corner that is wrong. Whole numbers and their quotients alone: no function that
+/// a library computes in its own way.
+TestPair test_pair() {
+  constexpr int kWidth = 56, kHeight = 40;
+  TestPair pair{make_image(Format::rgba16f, kWidth, kHeight),
+                make_image(Format::rgba16f, kWidth, kHeight)};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float depth_m = x < 18 ? 1.0f : x < 36 ? 2.0f : 6.0f;
+      const bool is_lamp = x % 13 == 5 && y % 11 == 4;
+      const auto light = is_lamp ? 8.0f : static_cast<float>((3 * x + 5 * y) % 17) / 16.0f;
+      const glm::vec4 texel{light, light / 2.0f, 1.0f - light / 8.0f, depth_m};
+      store_texel<Format::rgba16f>(pair.truth, x, y, texel, {});
+      const float wrong = (x + 3 * y) % 5 == 0 ? 0.75f : x > 44 && y < 9 ? 0.25f : 1.0f;
+      store_texel<Format::rgba16f>(pair.picture, x, y, texel * glm::vec4{wrong, wrong, wrong, 1.0f},
+                                   {});
+    }
+  }
+  return pair;
+}
+
+void add_number(Hash& hash, double number) {
+  add_to_hash(hash, std::bit_cast<std::uint64_t>(number));
+}
+
+void add_text(Hash& hash, const std::string& text) {
+  for (const char byte : text) add_to_hash(hash, static_cast<std::uint8_t>(byte));
+}
+
 }  // namespace
 
 ChartErrors chart_errors(const MeasuredPictures& measured) {
-  ChartErrors errors{measured.whole.psnr_db, measured.whole.ssim, measured.whole.flip, {}};
+  const auto hdr_flip = [](const Measures& of) { return of.hdr_flip.value(); };
+  ChartErrors errors{.psnr_db = measured.whole.psnr_db,
+                     .ssim = measured.whole.ssim,
+                     .flip = measured.whole.flip,
+                     .hdr_flip = hdr_flip(measured.whole)};
   for (std::size_t i = 0; i < kRegions; ++i) {
     errors.flip_by_region[i] = measured.by_region[i].flip;
+    errors.hdr_flip_by_region[i] = hdr_flip(measured.by_region[i]);
   }
   return errors;
 }
@@ -35,11 +82,14 @@ std::string page_picture(const Image& picture) {
   return png_text(reduced(picture, page_factor(picture.width, picture.height)));
 }
 
-void measure_point(ChartPoint& point, const Image& picture, const Image& truth, const Image& labels,
-                   ThreadPool& pool) {
-  const MeasuredPictures measured = measure_pictures(truth, picture, &labels, {}, pool);
-  const PixelMap& flip = measured.flip;
-  point.errors = chart_errors(measured);
+ChartErrors measure_picture(const Image& picture, const Image& truth, const Image& labels,
+                            ThreadPool& pool) {
+  return chart_errors(measure_pictures(truth, picture, &labels, {.hdr_flip = true}, pool));
+}
+
+void add_point_pictures(ChartPoint& point, const Image& picture, const Image& truth,
+                        ThreadPool& pool) {
+  const PixelMap flip = flip_map(truth, picture, clamped_tone(), pool);
   point.worst = worst_crop(flip, crop_side(picture));
   const int factor = page_factor(flip.width, flip.height);
   point.pictures = {.picture = page_picture(picture),
@@ -47,6 +97,27 @@ void measure_point(ChartPoint& point, const Image& picture, const Image& truth, 
                     .worst = png_text(cropped(picture, point.worst)),
                     .worst_truth = png_text(cropped(truth, point.worst)),
                     .worst_error = png_text(heat_picture(cropped(flip, point.worst)))};
+}
+
+std::uint64_t measures_hash(ThreadPool& pool) {
+  const TestPair pair = test_pair();
+  const Image labels = label_regions(pair.truth, kTestCoc);
+  const ChartErrors errors = measure_picture(pair.picture, pair.truth, labels, pool);
+  ChartPoint point;
+  add_point_pictures(point, pair.picture, pair.truth, pool);
+  Hash hash;
+  for (const double number : {errors.psnr_db, errors.ssim, errors.flip, errors.hdr_flip}) {
+    add_number(hash, number);
+  }
+  for (std::size_t i = 0; i < kRegions; ++i) {
+    add_number(hash, errors.flip_by_region[i]);
+    add_number(hash, errors.hdr_flip_by_region[i]);
+  }
+  for (const int number : {point.worst.x, point.worst.y, point.worst.side}) {
+    add_number(hash, number);
+  }
+  for (const KeptPicture& of : kKeptPictures) add_text(hash, point.pictures.*of.picture);
+  return hash.value;
 }
 
 }  // namespace softfocus

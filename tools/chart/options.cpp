@@ -4,6 +4,7 @@
 
 #include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
+#include "tools/chart/scene_names.h"
 #include "tools/chart/settings.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/errors.h"
@@ -19,26 +20,9 @@ constexpr int kMostRounds = 100;
 /// and planes of the methods, and the maps of the measures.
 constexpr std::uint64_t kChartBytesPerPixel = 320;
 
-/// The parts of "a,b,c". Throws UsageError for an empty or a repeated one.
-std::vector<std::string> parts_of(const std::string& option, const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find(',', start), text.size());
-    parts.push_back(text.substr(start, end - start));
-    start = end + 1;
-    if (parts.back().empty()) {
-      throw UsageError(option + " '" + text + "': give names with a comma between two");
-    }
-    if (std::count(parts.begin(), parts.end(), parts.back()) > 1) {
-      throw UsageError(option + " '" + text + "': '" + parts.back() + "' stands there twice");
-    }
-  }
-  return parts;
-}
-
 std::vector<std::string> known_methods(const std::string& text) {
   const std::vector<std::string> known = chart_methods();
-  const std::vector<std::string> wanted = parts_of("--methods", text);
+  const std::vector<std::string> wanted = listed_names("--methods", text);
   for (const std::string& name : wanted) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     std::string list;
@@ -53,9 +37,12 @@ std::vector<std::string> known_methods(const std::string& text) {
 void add_chart_options(CLI::App& parser, ChartOptions& options) {
   add_value(parser, "-o,--output", "DIR", "Where the chart and what was measured go; required",
             [&options](const std::string& text) { options.directory = text; });
-  add_value(parser, "--scenes", "A,B,...", "Scenes or files, as render takes them (default: all)",
-            [&options](const std::string& text) { options.scenes = parts_of("--scenes", text); });
-  add_value(parser, "--methods", "A,B,...", "Methods (default: all filters, accumulation, auto)",
+  add_value(parser, "--scenes", "A,B,...",
+            "Scenes or files, as render takes them, and ranges such as random:64..127 (default: "
+            "all that have a file)",
+            [&options](const std::string& text) { options.scenes = scene_names(text); });
+  add_value(parser, "--methods", "A,B,...",
+            "Methods beside the pinhole (default: all filters, accumulation, auto)",
             [&options](const std::string& text) { options.methods = known_methods(text); });
   add_value(
       parser, "--size", "WxH",
@@ -75,11 +62,11 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
               }
             });
   add_value(parser, "--rounds", "N",
-            "Times that each is timed, in turn with the others, 1 to 100 (default: 7; 3 with "
-            "--quick)",
+            "Times that each is timed, in turn with the others, 0 to 100 (default: 7; 3 with "
+            "--quick); 0: errors alone",
             [&options](const std::string& text) {
               options.given_rounds =
-                  parse_whole("--rounds", text, 1, kMostRounds, "a number from 1 to 100");
+                  parse_whole("--rounds", text, 0, kMostRounds, "a number from 0 to 100");
             });
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
@@ -96,6 +83,9 @@ void complete(ChartOptions& options) {
   options.truth_samples = options.given_samples.value_or(options.quick ? 512 : 4096);
   options.rounds = options.given_rounds.value_or(options.quick ? 3 : 7);
   if (options.methods.empty()) options.methods = chart_methods();
+  // Its frame is the unit of the others' times, its error what they have to better.
+  const auto pinhole = std::find(options.methods.begin(), options.methods.end(), kPinhole);
+  if (pinhole == options.methods.end()) options.methods.emplace(options.methods.begin(), kPinhole);
   if (options.scenes.empty()) {
     for (const SceneListing& scene : list_scenes(scene_search_path(options.scene_path))) {
       options.scenes.push_back(scene.name);

@@ -15,7 +15,7 @@ namespace softfocus {
 struct ChartOptions {
   std::filesystem::path directory;
   std::vector<std::string> scenes;   ///< as `render` takes them; none given: all that are found
-  std::vector<std::string> methods;  ///< none given: all
+  std::vector<std::string> methods;  ///< none given: all; the pinhole is always there
   std::vector<std::filesystem::path> scene_path;
   std::optional<PictureSize> given_size;
   std::optional<int> given_samples;
@@ -28,7 +28,7 @@ struct ChartOptions {
   // Settled by complete().
   PictureSize size;
   int truth_samples = 0;  ///< a multiple of kTruthSampleStep
-  int rounds = 0;
+  int rounds = 0;         ///< 0: nothing is timed
 };
 
 void add_chart_options(CLI::App& parser, ChartOptions& options);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dof/measure/measures.h"
@@ -12,15 +13,29 @@
 
 namespace softfocus {
 
-/// How far a picture is from the truth. NaN for a region without pixels.
+/// How far a picture is from the truth. NaN for a region without pixels; by region in the order
+/// of Region.
 struct ChartErrors {
   double psnr_db = std::numeric_limits<double>::infinity();
   double ssim = 1.0;
   double flip = 0.0;
-  std::array<double, kRegions> flip_by_region{};  ///< in the order of Region
+  std::array<double, kRegions> flip_by_region{};
+  double hdr_flip = 0.0;
+  std::array<double, kRegions> hdr_flip_by_region{};
 };
 
+/// Needs pictures measured with HDR-FLIP.
 ChartErrors chart_errors(const MeasuredPictures& measured);
+
+/// One of the errors by which contenders are ranked.
+struct RankedError {
+  std::string_view key;    ///< "flip", as in chart.json
+  std::string_view title;  ///< "FLIP"
+  double ChartErrors::*value;
+};
+inline constexpr std::array kRankedErrors{
+    RankedError{"flip", "FLIP", &ChartErrors::flip},
+    RankedError{"hdr_flip", "HDR-FLIP", &ChartErrors::hdr_flip}};
 
 /// Milliseconds, run by run: of the whole frame, from the drawing to the result, and of the
 /// filter's share in it. Nothing is filtered in an accumulation: `filter_ms` is empty.
@@ -43,17 +58,35 @@ struct ChartPictures {
   std::string worst;        ///< where it is worst, every pixel
   std::string worst_truth;  ///< the truth there
   std::string worst_error;
+
+  bool empty() const { return picture.empty(); }
 };
+
+struct KeptPicture {
+  const char* name;
+  std::string ChartPictures::*picture;
+};
+inline constexpr std::array kKeptPictures{KeptPicture{"picture", &ChartPictures::picture},
+                                          KeptPicture{"error", &ChartPictures::error},
+                                          KeptPicture{"worst", &ChartPictures::worst},
+                                          KeptPicture{"worst_truth", &ChartPictures::worst_truth},
+                                          KeptPicture{"worst_error", &ChartPictures::worst_error}};
+
+inline constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
 
 struct ChartPoint {
   ChartEntry entry;
   std::uint64_t picture_hash = 0;
   ChartErrors errors{};
   Crop worst{};
-  ChartPictures pictures{};
+  ChartPictures pictures{};  ///< of chosen points only: pictured_points()
   ChartTimes times{};
-  double median_ms = 0.0;
-  bool on_front = false;  ///< no contender is both faster and nearer to the truth
+
+  // Settled by settle_points().
+  double median_ms = kNotTimed;
+  double pinhole_frames = kNotTimed;  ///< median_ms in frames of the scene's pinhole
+  bool on_front = false;              ///< no contender is both faster and nearer to the truth
+  bool best_setting = false;          ///< the least FLIP of its series on this scene
 };
 
 /// A scene with all its contenders.
@@ -62,8 +95,10 @@ struct ChartPanel {
   std::string title;
   int truth_samples = 0;
   ChartErrors noise_floor{};    ///< one half of the truth's samples against the other
-  std::string truth_picture{};  ///< reduced
+  std::string truth_picture{};  ///< reduced; empty if no point has pictures
   std::vector<ChartPoint> points{};
+  std::string given_name{};  ///< as --scenes has it
+  std::string key{};         ///< under which its points are kept
 };
 
 }  // namespace softfocus

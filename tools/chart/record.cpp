@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "tools/chart/key.h"
+#include "tools/cli/errors.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
 #include "tools/golden/hashes.h"
@@ -15,19 +15,44 @@ double number_or(const Json& json, double otherwise) {
   return json.is_null() ? otherwise : json.number();
 }
 
-std::string flip_key(Region region) { return "flip_" + std::string{region_name(region)}; }
-
-struct KeptPicture {
-  const char* name;
-  std::string ChartPictures::*picture;
+/// One FLIP of the whole and by region, in JSON under `name`.
+struct FlipMembers {
+  std::string name;
+  double ChartErrors::*whole;
+  std::array<double, kRegions> ChartErrors::*by_region;
 };
-constexpr std::array kPictures{KeptPicture{"picture", &ChartPictures::picture},
-                               KeptPicture{"error", &ChartPictures::error},
-                               KeptPicture{"worst", &ChartPictures::worst},
-                               KeptPicture{"worst_truth", &ChartPictures::worst_truth},
-                               KeptPicture{"worst_error", &ChartPictures::worst_error}};
+const std::array<FlipMembers, 2>& flips() {
+  static const std::array<FlipMembers, 2> kFlips{
+      FlipMembers{"flip", &ChartErrors::flip, &ChartErrors::flip_by_region},
+      FlipMembers{"hdr_flip", &ChartErrors::hdr_flip, &ChartErrors::hdr_flip_by_region}};
+  return kFlips;
+}
+
+std::string region_key(const FlipMembers& of, Region region) {
+  return of.name + "_" + std::string{region_name(region)};
+}
+
+/// What a file keeps under that key for the picture of that point; nullopt for another.
+std::optional<Json> kept_for(const ChartPoint& point, const std::string& key,
+                             const std::filesystem::path& file) {
+  auto json = read_json(file);
+  if (!json || json->at("key").text() != key) return std::nullopt;
+  if (json->at("picture_hash").text() != hash_text(point.picture_hash)) return std::nullopt;
+  return json;
+}
 
 }  // namespace
+
+void make_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  // Another chart may have made it in the meantime.
+  std::error_code no_directory;
+  if (error && !std::filesystem::is_directory(directory, no_directory)) {
+    throw FileError("cannot make the directory '" + directory.string() + "': " + error.message() +
+                    "; give -o a place that can be written to");
+  }
+}
 
 void write_json(const std::filesystem::path& file, const Json& json) {
   WholeFile whole{file};
@@ -45,11 +70,13 @@ std::optional<Json> read_json(const std::filesystem::path& file) {
 }
 
 Json errors_json(const ChartErrors& errors) {
-  Json json{
-      {"psnr_db", number_or_null(errors.psnr_db)}, {"ssim", errors.ssim}, {"flip", errors.flip}};
-  for (const Region region : kAllRegions) {
-    json[flip_key(region)] =
-        number_or_null(errors.flip_by_region[static_cast<std::size_t>(region)]);
+  Json json{{"psnr_db", number_or_null(errors.psnr_db)}, {"ssim", errors.ssim}};
+  for (const FlipMembers& of : flips()) {
+    json[of.name] = errors.*of.whole;
+    for (const Region region : kAllRegions) {
+      json[region_key(of, region)] =
+          number_or_null((errors.*of.by_region)[static_cast<std::size_t>(region)]);
+    }
   }
   return json;
 }
@@ -58,42 +85,71 @@ ChartErrors errors_of(const Json& json) {
   ChartErrors errors;
   errors.psnr_db = number_or(json.at("psnr_db"), std::numeric_limits<double>::infinity());
   errors.ssim = json.at("ssim").number();
-  errors.flip = json.at("flip").number();
-  for (const Region region : kAllRegions) {
-    errors.flip_by_region[static_cast<std::size_t>(region)] =
-        number_or(json.at(flip_key(region)), std::numeric_limits<double>::quiet_NaN());
+  for (const FlipMembers& of : flips()) {
+    errors.*of.whole = json.at(of.name).number();
+    for (const Region region : kAllRegions) {
+      (errors.*of.by_region)[static_cast<std::size_t>(region)] =
+          number_or(json.at(region_key(of, region)), std::numeric_limits<double>::quiet_NaN());
+    }
   }
   return errors;
 }
 
-void save_point(const ChartPoint& point, const std::string& key,
-                const std::filesystem::path& file) {
+void save_errors(const ChartPoint& point, const std::string& key,
+                 const std::filesystem::path& file) {
+  write_json(file, {{"key", key},
+                    {"picture_hash", hash_text(point.picture_hash)},
+                    {"errors", errors_json(point.errors)}});
+}
+
+bool load_errors(ChartPoint& point, const std::string& key, const std::filesystem::path& file) {
+  try {
+    const auto json = kept_for(point, key, file);
+    if (json) point.errors = errors_of(json->at("errors"));
+    return json.has_value();
+  } catch (const JsonError&) {
+    return false;  // damaged: it is measured again
+  }
+}
+
+void save_pictures(const ChartPoint& point, const std::string& key,
+                   const std::filesystem::path& file) {
   Json json{{"key", key},
             {"picture_hash", hash_text(point.picture_hash)},
-            {"errors", errors_json(point.errors)},
             {"worst", {point.worst.x, point.worst.y, point.worst.side}}};
-  for (const KeptPicture& of : kPictures) json["png"][of.name] = point.pictures.*of.picture;
+  for (const KeptPicture& of : kKeptPictures) json["png"][of.name] = point.pictures.*of.picture;
   write_json(file, json);
 }
 
-bool load_point(ChartPoint& point, const std::string& key, const std::filesystem::path& file) {
-  const auto json = read_json(file);
-  if (!json) return false;
+bool load_pictures(ChartPoint& point, const std::string& key, const std::filesystem::path& file) {
   try {
-    if (json->at("key").text() != key) return false;
-    if (json->at("picture_hash").text() != hash_text(point.picture_hash)) return false;
-    ChartPoint filled = point;
-    filled.errors = errors_of(json->at("errors"));
+    const auto json = kept_for(point, key, file);
+    if (!json) return false;
     const Json& worst = json->at("worst");
     const auto whole = [&](std::size_t i) { return static_cast<int>(worst.at(i).integer()); };
-    filled.worst = {whole(0), whole(1), whole(2)};
-    for (const KeptPicture& of : kPictures) {
-      filled.pictures.*of.picture = json->at("png").at(of.name).text();
+    ChartPictures pictures;
+    for (const KeptPicture& of : kKeptPictures) {
+      pictures.*of.picture = json->at("png").at(of.name).text();
     }
-    point = std::move(filled);
+    point.worst = {whole(0), whole(1), whole(2)};
+    point.pictures = std::move(pictures);
     return true;
   } catch (const JsonError&) {
-    return false;  // damaged: it is measured again
+    return false;  // damaged: they are made again
+  }
+}
+
+void save_truth_picture(const std::string& picture, const std::string& key,
+                        const std::filesystem::path& file) {
+  write_json(file, {{"key", key}, {"picture", picture}});
+}
+
+std::string load_truth_picture(const std::string& key, const std::filesystem::path& file) {
+  const auto json = read_json(file);
+  try {
+    return json && json->at("key").text() == key ? json->at("picture").text() : "";
+  } catch (const JsonError&) {
+    return "";  // damaged: it is made again
   }
 }
 

@@ -10,23 +10,38 @@
 
 namespace softfocus {
 
+/// Makes a directory and those above it. Throws FileError.
+void make_directory(const std::filesystem::path& directory);
+
 /// Writes it whole or not at all. Throws FileError.
 void write_json(const std::filesystem::path& file, const Json& json);
 
 /// What a file holds, if it is there and is JSON.
 std::optional<Json> read_json(const std::filesystem::path& file);
 
-/// {psnr_db, ssim, flip, flip_silhouette, flip_near, flip_focus, flip_far}. An infinite
-/// PSNR and a region without pixels are null.
+/// {psnr_db, ssim, flip, flip_silhouette, flip_near, flip_focus, flip_far, hdr_flip,
+/// hdr_flip_silhouette, hdr_flip_near, hdr_flip_focus, hdr_flip_far}. An infinite PSNR and a
+/// region without pixels are null.
 Json errors_json(const ChartErrors& errors);
 ChartErrors errors_of(const Json& json);
 
-/// Errors, the worst place and the pictures of a point, under a key. Times are kept apart: they
-/// grow with each round.
-void save_point(const ChartPoint& point, const std::string& key, const std::filesystem::path& file);
+/// A point's errors, under a key. Pictures are kept apart, for most points have none, and times,
+/// which grow with each round.
+void save_errors(const ChartPoint& point, const std::string& key,
+                 const std::filesystem::path& file);
 
-/// Fills in what save_point() kept under that key, if the picture's hash is the point's.
-bool load_point(ChartPoint& point, const std::string& key, const std::filesystem::path& file);
+/// Fills in what save_errors() kept under that key, if the picture's hash is the point's.
+bool load_errors(ChartPoint& point, const std::string& key, const std::filesystem::path& file);
+
+/// Likewise the pictures and the worst place.
+void save_pictures(const ChartPoint& point, const std::string& key,
+                   const std::filesystem::path& file);
+bool load_pictures(ChartPoint& point, const std::string& key, const std::filesystem::path& file);
+
+/// The truth reduced for the page, under the key of its scene's points; empty if none is kept.
+void save_truth_picture(const std::string& picture, const std::string& key,
+                        const std::filesystem::path& file);
+std::string load_truth_picture(const std::string& key, const std::filesystem::path& file);
 
 /// The times of all points that have some, under a key.
 void save_times(const std::vector<ChartPoint>& points, const std::string& key,

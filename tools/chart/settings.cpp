@@ -10,12 +10,16 @@ namespace {
 
 constexpr std::string_view kAccumulation = "accumulation", kAuto = "auto", kTwoPass = "two-pass";
 
-/// Every radius is taken with every profile. Radii are --max-coc for a picture 1024 rows high,
-/// scaled with the height as those of scenes are.
+/// Of every filter, so that no filter is held against another at a larger radius. Radii are
+/// --max-coc for a picture 1024 rows high, scaled with the height as those of scenes are.
+const std::vector<double>& radii_at_1024(bool quick) {
+  static const std::vector<double> kAll{8, 16, 32, 64}, kQuick{16, 64};
+  return quick ? kQuick : kAll;
+}
+
 struct SettingsOfMethod {
   std::string_view method;
-  std::vector<double> radii_at_1024;
-  std::vector<double> quick_radii;
+  bool radii = true;  ///< each radius with each profile
   std::vector<std::string_view> profiles{"ieee"};
   std::vector<int> samples{};
   std::vector<int> quick_samples{};
@@ -25,13 +29,20 @@ struct SettingsOfMethod {
 
 const std::vector<SettingsOfMethod>& table() {
   static const std::vector<SettingsOfMethod> kTable{
-      {"pinhole", {}, {}},
-      {kTwoPass, {4, 8, 16, 32, 64}, {4, 16, 64}, {"ieee", "d3d11"}},
-      {"one-pass", {4, 8, 16, 32, 64}, {4, 16, 64}},
-      {kAccumulation, {}, {}, {}, {8, 16, 32, 64}, {8, 32}},
-      {kAuto, {}, {}, {}, {}, {}, {0.05, 0.02, 0.01}, {0.05, 0.02}},
+      {.method = kPinhole, .radii = false},
+      {.method = kTwoPass, .profiles = {"ieee", "d3d11"}},
+      {.method = kAccumulation,
+       .radii = false,
+       .profiles = {},
+       .samples = {8, 16, 32, 64},
+       .quick_samples = {8, 32}},
+      {.method = kAuto,
+       .radii = false,
+       .profiles = {},
+       .max_errors = {0.05, 0.02, 0.01},
+       .quick_max_errors = {0.05, 0.02}},
       // Of every other method.
-      {"", {16, 32, 64}, {16, 64}},
+      {.method = ""},
   };
   return kTable;
 }
@@ -62,7 +73,7 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
   for (const double error : quick ? of.quick_max_errors : of.max_errors) {
     entries.push_back({.method = method, .max_error = error});
   }
-  const std::vector<double>& radii = quick ? of.quick_radii : of.radii_at_1024;
+  const std::vector<double> radii = of.radii ? radii_at_1024(quick) : std::vector<double>{};
   for (const std::string_view profile : of.profiles) {
     const ChartEntry plain{.method = method, .filter = filter, .profile = std::string{profile}};
     if (radii.empty()) entries.push_back(plain);
@@ -96,18 +107,19 @@ Json settings_json(const ChartEntry& entry) {
 }
 
 std::string settings_text(const ChartEntry& entry) {
-  if (entry.max_error) {
-    return "max-error " + short_number(*entry.max_error) +
-           (entry.chosen.empty() ? "" : ": " + entry.chosen);
-  }
-  if (entry.filter == nullptr) return std::to_string(entry.samples) + " samples";
-  std::string text;
-  if (entry.max_coc_px) text = "max-coc " + short_number(double{*entry.max_coc_px});
+  std::string text = setting_within_series(entry);
+  if (!entry.chosen.empty()) text += ": " + entry.chosen;
   if (entry.profile != "ieee") text += (text.empty() ? "" : ", ") + entry.profile;
   if (entry.arithmetic != Arithmetic::floats) {
     text += ", " + std::string{arithmetic_name(entry.arithmetic)};
   }
   return text;
+}
+
+std::string setting_within_series(const ChartEntry& entry) {
+  if (entry.max_error) return "max-error " + short_number(*entry.max_error);
+  if (entry.filter == nullptr) return std::to_string(entry.samples) + " samples";
+  return entry.max_coc_px ? "max-coc " + short_number(double{*entry.max_coc_px}) : "";
 }
 
 std::string entry_id(const ChartEntry& entry) {
@@ -120,6 +132,15 @@ std::string entry_id(const ChartEntry& entry) {
     id += "-" + std::string{arithmetic_name(entry.arithmetic)};
   }
   return id;
+}
+
+std::string series_name(const ChartEntry& entry) {
+  std::string name = entry.method;
+  if (entry.profile != "ieee") name += ", " + entry.profile;
+  if (entry.arithmetic != Arithmetic::floats) {
+    name += ", " + std::string{arithmetic_name(entry.arithmetic)};
+  }
+  return name;
 }
 
 }  // namespace softfocus

@@ -24,6 +24,8 @@ struct ChartEntry {
   std::string chosen{};               ///< by auto, once it has: "disc-layers, radius 16"
 };
 
+inline constexpr std::string_view kPinhole = "pinhole";
+
 /// The names that --methods takes: every filter of dof/dof.h, accumulation and auto.
 std::vector<std::string> chart_methods();
 
@@ -38,6 +40,13 @@ Json settings_json(const ChartEntry& entry);
 /// "max-coc 16, d3d11", "32 samples", "max-error 0.02: disc-layers, radius 16"; the profile
 /// ieee is left out.
 std::string settings_text(const ChartEntry& entry);
+
+/// Entries of one series differ in radius, in the number of samples or in the error alone:
+/// "two-pass", "two-pass, d3d11".
+std::string series_name(const ChartEntry& entry);
+
+/// How an entry differs from others of its series: "max-coc 16", "32 samples", "max-error 0.02".
+std::string setting_within_series(const ChartEntry& entry);
 
 /// A name of its own for each entry, for files and for addresses in the page:
 /// "two-pass-r16-d3d11".

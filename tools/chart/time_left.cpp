@@ -1,27 +1,76 @@
 #include "tools/chart/time_left.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <utility>
+
+#include "tools/cli/option_values.h"
 
 namespace softfocus {
+namespace {
 
-double TimeLeft::seconds() const {
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  return seconds(all_units_, done_units_, elapsed.count());
+double steady_seconds() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
 }
 
-double TimeLeft::seconds(double all_units, double done_units, double elapsed_s) {
-  if (done_units <= 0.0) return 0.0;
-  return std::max(all_units - done_units, 0.0) / done_units * elapsed_s;
+double rounded_up(double value, double step) { return std::ceil(value / step) * step; }
+
+}  // namespace
+
+TimeLeft::TimeLeft(std::function<double()> clock_s)
+    : clock_s_(clock_s ? std::move(clock_s) : std::function<double()>{steady_seconds}),
+      last_s_(clock_s_()) {}
+
+void TimeLeft::plan(const std::string& kind, double units, double guess) {
+  Kind& of = kinds_[kind];
+  of.planned += units;
+  of.guess = guess;
+}
+
+void TimeLeft::done(const std::string& kind, double units) {
+  const double now_s = clock_s_();
+  Kind& of = kinds_[kind];
+  of.planned = std::max(of.planned - units, 0.0);
+  of.done += units;
+  of.seconds += now_s - last_s_;
+  last_s_ = now_s;
+}
+
+void TimeLeft::drop(const std::string& kind, double units) {
+  Kind& of = kinds_[kind];
+  of.planned = std::max(of.planned - units, 0.0);
+}
+
+double TimeLeft::units_left(const std::string& kind) const {
+  const auto found = kinds_.find(kind);
+  return found == kinds_.end() ? 0.0 : found->second.planned;
+}
+
+double TimeLeft::seconds() const {
+  double done_s = 0.0, guessed = 0.0;
+  for (const auto& [name, kind] : kinds_) {
+    done_s += kind.seconds;
+    guessed += kind.done * kind.guess;
+  }
+  if (guessed <= 0.0) return 0.0;
+  double left_s = 0.0;
+  for (const auto& [name, kind] : kinds_) {
+    const double rate = kind.done > 0.0 ? kind.seconds / kind.done : kind.guess * done_s / guessed;
+    left_s += kind.planned * rate;
+  }
+  return left_s;
 }
 
 std::string time_left_text(double seconds) {
-  constexpr int kMinute = 60, kStep = 10;
-  if (seconds > kMinute) {
-    return "about " + std::to_string(static_cast<int>(std::ceil(seconds / kMinute))) + " min left";
-  }
-  const int steps = std::max(static_cast<int>(std::ceil(seconds / kStep)), 1);
-  return "about " + std::to_string(steps * kStep) + " s left";
+  constexpr double kMinute = 60.0, kHour = 3600.0;
+  const auto about = [](double number, const char* unit) {
+    return "about " + short_number(number) + unit + " left";
+  };
+  if (seconds > 2.0 * kHour) return about(rounded_up(seconds / kHour, 0.25), " h");
+  if (seconds > kMinute) return about(rounded_up(seconds / kMinute, 1.0), " min");
+  return about(std::max(rounded_up(seconds, seconds > 20.0 ? 10.0 : 5.0), 5.0), " s");
 }
 
 }  // namespace softfocus

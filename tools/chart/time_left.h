@@ -1,30 +1,48 @@
 #pragma once
-// How long work still takes, by the time of the parts that are done.
+// How long work still takes, by the time that each kind of it has taken so far.
 
-#include <chrono>
+#include <functional>
+#include <map>
 #include <string>
 
 namespace softfocus {
 
-/// Parts of about equal length. Those that needed no doing are taken out.
+/// Work is planned in units of named kinds. The rate of a kind is what its units have taken; of a
+/// kind that nothing was done of yet it is a guess, scaled by how long the kinds that were done
+/// took beside theirs.
 class TimeLeft {
  public:
-  explicit TimeLeft(double all_units) : all_units_(all_units) {}
+  /// `clock_s` gives seconds from any start on; the default is the steady clock.
+  explicit TimeLeft(std::function<double()> clock_s = {});
 
-  void done(double units) { done_units_ += units; }
-  void skipped(double units) { all_units_ -= units; }
+  /// `guess` is how long a unit takes, in a measure that all kinds share. The last guess counts.
+  void plan(const std::string& kind, double units, double guess);
+  /// The time since the last done(), start() or the construction was for these units.
+  void done(const std::string& kind, double units);
+  /// Units that need no doing.
+  void drop(const std::string& kind, double units);
+  double units_left(const std::string& kind) const;
+  /// What was done up to now was for nothing that is planned.
+  void start() { last_s_ = clock_s_(); }
 
-  /// At the pace since the start; 0 before anything is done.
+  /// 0 before anything is done.
   double seconds() const;
-  static double seconds(double all_units, double done_units, double elapsed_s);
 
  private:
-  double all_units_;
-  double done_units_ = 0.0;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  struct Kind {
+    double planned = 0.0;  ///< units that are left
+    double guess = 0.0;
+    double done = 0.0;
+    double seconds = 0.0;  ///< that the done ones took
+  };
+
+  std::function<double()> clock_s_;
+  double last_s_;
+  std::map<std::string, Kind> kinds_;
 };
 
-/// "about 3 min left", "about 20 s left"; rounded up to minutes, to ten seconds below one.
+/// "about 2 h left", "about 3 min left", "about 20 s left"; rounded up to quarters of an hour from
+/// two hours on, to minutes, to ten seconds below one minute, and to five below twenty.
 std::string time_left_text(double seconds);
 
 }  // namespace softfocus

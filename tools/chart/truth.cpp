@@ -40,8 +40,8 @@ ChartTruth make_truth(const ChartScene& scene, int samples,
   const auto mean = [&](const SampleSums& of) {
     return mean_picture(of, input.pinhole, input.profile, pool);
   };
-  const MeasuredPictures halves =
-      measure_pictures(mean(first), mean(later_samples(first, sums)), &scene.labels, {}, pool);
+  const MeasuredPictures halves = measure_pictures(mean(first), mean(later_samples(first, sums)),
+                                                   &scene.labels, {.hdr_flip = true}, pool);
   return {mean(sums), chart_errors(halves)};
 }
 

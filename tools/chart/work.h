@@ -1,9 +1,11 @@
 #pragma once
 // All that `chart` measures, kept in DIR/cache as it goes.
 //
-//   cache/SCENE.truth.npy, .json   the ground truth, and its noise
-//   cache/SCENE/ENTRY.json         errors and pictures of a contender
-//   cache/SCENE/times.json         the times of all, written after each round
+//   cache/SCENE.truth.npy, .json      the ground truth, and its noise
+//   cache/SCENE/ENTRY.json            errors of a contender
+//   cache/SCENE/ENTRY.pictures.json   its pictures, if the page shows them
+//   cache/SCENE/truth.picture.json    the truth for the page
+//   cache/SCENE/times.json            the times of all, written after each round
 
 #include <vector>
 
@@ -18,8 +20,8 @@ struct ChartFindings {
   int all = 0;   ///< results
 };
 
-/// Measures what is not kept already, with a line on the terminal that says how long it takes.
-/// Needs the directory, with "cache" in it.
+/// Settled panels with pictures. Measures what is not kept already, with a line on the terminal
+/// that says how long it takes. Needs the directory, with "cache" in it.
 ChartFindings measure_chart(const ChartOptions& options, ThreadPool& pool);
 
 }  // namespace softfocus

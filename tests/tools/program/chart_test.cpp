@@ -3,7 +3,7 @@
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 #include "tests/support/skip.h"
-#include "tools/chart/gnuplot.h"
+#include "tools/chart/report/gnuplot.h"
 
 using namespace softfocus;
 
@@ -11,7 +11,10 @@ namespace {
 
 using nlohmann::json;
 
-const Words kFiles{"cache", "chart.csv", "chart.json", "chart.png", "chart.svg", "index.html"};
+const Words kFiles{"best.csv",           "best.json",  "cache",       "chart-hdr-flip.png",
+                   "chart-hdr-flip.svg", "chart.csv",  "chart.json",  "chart.png",
+                   "chart.svg",          "index.html", "summary.csv", "summary.json",
+                   "summary.png",        "summary.svg"};
 
 bool has_gnuplot() {
   try {
@@ -49,7 +52,7 @@ void check_refused_chart(const Words& options, const Words& named, int status = 
 
 }  // namespace
 
-TEST_CASE("chart: writes five files, and goes on from what is there to the same results") {
+TEST_CASE("chart: writes its files, and goes on from what is there to the same results") {
   if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("new/chart");
@@ -61,11 +64,11 @@ TEST_CASE("chart: writes five files, and goes on from what is there to the same 
   CHECK(listing_of(out) == kFiles);
 
   const json list = json::parse(read_file(out + "/chart.json"));
-  REQUIRE(list.size() == 10);
+  REQUIRE(list.size() == 7);
   CHECK(list[0]["method"] == "pinhole");
-  CHECK(list[1]["settings"] == json{{"max_coc_px", 0.25}, {"profile", "ieee"}});
-  CHECK(list[6]["settings"] == json{{"max_coc_px", 4.0}, {"profile", "d3d11"}});
-  CHECK(list[9]["settings"] ==
+  CHECK(list[1]["settings"] == json{{"max_coc_px", 1.0}, {"profile", "ieee"}});
+  CHECK(list[4]["settings"] == json{{"max_coc_px", 4.0}, {"profile", "d3d11"}});
+  CHECK(list[6]["settings"] ==
         json{{"max_coc_px", 4.0}, {"profile", "ieee"}, {"arithmetic", "fixed-8"}});
   for (const json& point : list) {
     CHECK(point["scene"] == "figures");
@@ -73,19 +76,24 @@ TEST_CASE("chart: writes five files, and goes on from what is there to the same 
     CHECK(point["median_ms"] > 0.0);
     CHECK(point["filter_ms"] <= point["median_ms"]);
     CHECK(point["flip"] > 0.0);
+    CHECK(point["hdr_flip"] > point["flip"]);
+    CHECK(point["pinhole_frames"] ==
+          point["median_ms"].get<double>() / list[0]["median_ms"].get<double>());
     CHECK(point["psnr_db"] > 10.0);
     CHECK(point["truth_samples"] == 128);
     CHECK(point["noise_floor_flip"] < point["flip"]);
   }
-  CHECK(list[3]["psnr_db"] > list[0]["psnr_db"]);  // blurred is nearer to the truth than sharp
-  CHECK(list[3]["flip"] != list[0]["flip"]);       // the settings count
-  CHECK(list[6]["flip"] != list[3]["flip"]);
-  CHECK(list[9]["flip"] != list[3]["flip"]);  // bytes are another picture, but hardly
-  CHECK(list[9]["flip"].get<double>() ==
-        doctest::Approx(list[3]["flip"].get<double>()).epsilon(0.2));
+  CHECK(list[2]["psnr_db"] > list[0]["psnr_db"]);  // blurred is nearer to the truth than sharp
+  CHECK(list[2]["flip"] != list[1]["flip"]);       // the settings count
+  CHECK(list[4]["flip"] != list[2]["flip"]);
+  CHECK(list[6]["flip"] != list[2]["flip"]);  // bytes are another picture, but hardly
+  CHECK(list[6]["flip"].get<double>() ==
+        doctest::Approx(list[2]["flip"].get<double>()).epsilon(0.2));
 
   const std::string csv = read_file(out + "/chart.csv");
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 11);
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 8);
+  CHECK(json::parse(read_file(out + "/best.json")).back()["budget"].is_null());
+  CHECK(json::parse(read_file(out + "/summary.json")).size() == 10);
   CHECK(read_file(out + "/chart.png").starts_with("\x89PNG"));
   CHECK(contains(read_file(out + "/chart.svg"), "</svg>"));
   CHECK(contains(read_file(out + "/index.html"), "</html>"));
@@ -93,7 +101,7 @@ TEST_CASE("chart: writes five files, and goes on from what is there to the same 
   const std::string truth = read_file(out + "/cache/figures.truth.npy");
   const ProgramRun second = run_program(small_chart(out));
   CHECK(second.status == 0);
-  CHECK(second.out.starts_with("went on: 21 of 21 results were there already\n"));
+  CHECK(second.out.starts_with("went on: 15 of 15 results were there already\n"));
   CHECK(json::parse(read_file(out + "/chart.json")) == list);
   CHECK(read_file(out + "/chart.csv") == csv);
   CHECK(read_file(out + "/cache/figures.truth.npy") == truth);
@@ -109,11 +117,11 @@ TEST_CASE("chart: what is missing or damaged is measured again, the rest is kept
   write_file(out + "/cache/figures/two-pass-r1.json", "{");
   const ProgramRun run = run_program(small_chart(out));
   CHECK(run.status == 0);
-  CHECK(run.out.starts_with("went on: 19 of 21 results"));
+  CHECK(run.out.starts_with("went on: 13 of 15 results"));
   CHECK(json::parse(read_file(out + "/chart.json")) == before);
 
   const ProgramRun more = run_program(small_chart(out, {"--rounds", "4"}));
-  CHECK(more.out.starts_with("went on: 11 of 21 results"));  // the truth and the errors
+  CHECK(more.out.starts_with("went on: 8 of 15 results"));  // the truth and the errors
   CHECK(json::parse(read_file(out + "/chart.json"))[0]["rounds"] == 4);
   CHECK_FALSE(contains(run_program(small_chart(out, {"--again"})).out, "went on"));
 }
@@ -149,6 +157,79 @@ TEST_CASE("chart: a scene that changed is measured anew") {
   CHECK(run.out.starts_with("went on: 1 of 3 results"));
 }
 
+TEST_CASE("chart: a changed measure is noticed: what another measured is not taken") {
+  if (!has_gnuplot()) return;
+  const TemporaryDirectory directory;
+  const std::string out = directory.file("chart");
+  const Words words = small_chart(out, {"--rounds", "0"});
+  REQUIRE(run_program(words).status == 0);
+  const std::string before = read_file(out + "/chart.csv");
+  // As if the errors that are kept came from other measures.
+  for (const auto& file : std::filesystem::recursive_directory_iterator{out + "/cache"}) {
+    if (file.path().extension() != ".json") continue;
+    std::string text = read_file(file.path().string());
+    const std::size_t hash = text.find("measures 0x");
+    REQUIRE(hash != text.npos);
+    char& digit = text[hash + 11];
+    digit = digit == '0' ? '1' : '0';
+    const std::size_t flip = text.find("\"flip\": 0.");
+    if (flip != text.npos) text[flip + 10] = '9';
+    write_file(file.path().string(), text);
+  }
+  const ProgramRun run = run_program(words);
+  CHECK(run.status == 0);
+  CHECK_FALSE(contains(run.out, "went on"));
+  CHECK(read_file(out + "/chart.csv") == before);
+}
+
+TEST_CASE("chart: two at once into one folder both succeed, and leave whole files") {
+  if (!has_gnuplot()) return;
+  const TemporaryDirectory directory;
+  const std::string out = directory.file("new/chart");
+  const Words words{"chart",  "--scenes", "figures",   "--methods", "pinhole", "--quick",
+                    "--size", "48x32",    "--samples", "128",       "-o",      out};
+  auto other = std::async(std::launch::async, [&] { return run_program(words); });
+  const ProgramRun one = run_program(words), two = other.get();
+  for (const ProgramRun& run : {one, two}) {
+    CHECK(run.status == 0);
+    CHECK(run.err == "");
+  }
+  CHECK(listing_of(out) == kFiles);
+  CHECK(listing_of(out + "/cache") == Words{"figures", "figures.truth.json", "figures.truth.npy"});
+  CHECK(contains(read_file(out + "/chart.svg"), "</svg>"));
+  CHECK(run_program(words).out.starts_with("went on: 3 of 3"));
+}
+
+TEST_CASE("chart: without rounds there are errors and no times, for random scenes too") {
+  if (!has_gnuplot()) return;
+  const TemporaryDirectory directory;
+  const std::string out = directory.file("chart");
+  const Words words{"chart",     "--scenes", "random:3..4", "--methods", "two-pass", "--quick",
+                    "--size",    "48x32",    "--samples",   "128",       "--rounds", "0",
+                    "--threads", "2",        "-o",          out};
+  const ProgramRun run = run_program(words);
+  CHECK(run.status == 0);
+  CHECK(run.err == "");
+  CHECK(contains(run.out, "FLIP over 2 scenes"));
+  CHECK(listing_of(out) == Words{"best.csv", "best.json", "cache", "chart.csv", "chart.json",
+                                 "index.html", "summary.csv", "summary.json", "summary.png",
+                                 "summary.svg"});
+  const json list = json::parse(read_file(out + "/chart.json"));
+  REQUIRE(list.size() == 14);  // the pinhole is always there
+  CHECK(list[0]["scene"] == "random:3");
+  CHECK(list[0]["method"] == "pinhole");
+  CHECK(list[13]["scene"] == "random:4");
+  for (const json& point : list) {
+    for (const char* name : {"median_ms", "pinhole_frames", "filter_ms", "on_front"}) {
+      CHECK(point[name].is_null());
+    }
+    CHECK(point["rounds"] == 0);
+  }
+  CHECK(json::parse(read_file(out + "/summary.json"))[0]["scenes"] == 2);
+  CHECK(std::filesystem::exists(out + "/cache/random-3/pinhole.json"));
+  CHECK(run_program(words).out.starts_with("went on: 16 of 16"));
+}
+
 TEST_CASE("chart: bad input is refused before anything is there") {
   check_refused_chart({"--scenes", "no-such-scene"}, {"no-such-scene", "cube-room"}, 1);
   check_refused_chart({"--scenes", "figures,,cube-room"}, {"--scenes", "a comma between"});
@@ -159,7 +240,9 @@ TEST_CASE("chart: bad input is refused before anything is there") {
   check_refused_chart({"--methods", ""}, {"--methods"});
   check_refused_chart({"--samples", "127"}, {"--samples '127'", "multiple of 16"});
   check_refused_chart({"--samples", "130"}, {"--samples '130'", "multiple of 16"});
-  check_refused_chart({"--rounds", "0"}, {"--rounds '0'", "1 to 100"});
+  check_refused_chart({"--rounds", "101"}, {"--rounds '101'", "0 to 100"});
+  check_refused_chart({"--scenes", "random:9..3"}, {"--scenes 'random:9..3'", "random:64..127"});
+  check_refused_chart({"--scenes", "figures,random:two"}, {"random:two"}, 1);
   check_refused_chart({"figures"}, {"unexpected argument 'figures'"});
   const TemporaryDirectory directory;
   check_refused(directory, {"chart", "--size", "0x64", "-o", directory.file("out")}, 2,

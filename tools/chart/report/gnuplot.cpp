@@ -1,4 +1,4 @@
-#include "tools/chart/gnuplot.h"
+#include "tools/chart/report/gnuplot.h"
 
 #include <stdexcept>
 

@@ -1,0 +1,150 @@
+#include "tools/chart/report/page_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/bench/timing.h"
+#include "tools/chart/report/page_parts.h"
+#include "tools/cli/option_values.h"
+
+namespace softfocus {
+namespace {
+
+constexpr int kFlipPlaces = 4, kRatioPlaces = 2;
+
+std::string ms_cell(double ms) { return number_cell(ms, ms_text(ms)); }
+
+std::string error_cells(const ChartErrors& errors) {
+  std::string cells = number_cell(errors.psnr_db, 2) + number_cell(errors.ssim, 4) +
+                      number_cell(errors.flip, kFlipPlaces);
+  for (const double flip : errors.flip_by_region) cells += number_cell(flip, kFlipPlaces);
+  cells += number_cell(errors.hdr_flip, kFlipPlaces);
+  for (const double flip : errors.hdr_flip_by_region) cells += number_cell(flip, kFlipPlaces);
+  return cells;
+}
+
+std::string point_row(const ChartPanel& panel, const ChartPoint& point) {
+  const std::vector<double>& filter_ms = point.times.filter_ms;
+  const auto rounds = static_cast<double>(point.times.frame_ms.size());
+  return std::string{point.on_front ? "<tr class=\"best\">" : "<tr>"} +
+         word_cell(html_text(panel.scene)) + word_cell(method_link(panel, point)) +
+         word_cell(html_text(settings_text(point.entry))) + ms_cell(point.median_ms) +
+         number_cell(point.pinhole_frames, kRatioPlaces) +
+         ms_cell(filter_ms.empty() ? kNotTimed : spread_of(filter_ms).median) +
+         error_cells(point.errors) + number_cell(rounds, 0) + "</tr>\n";
+}
+
+std::string floor_row(const ChartPanel& panel) {
+  const std::string none = number_cell(kNotTimed, "");
+  return "<tr>" + word_cell(html_text(panel.scene)) + word_cell("noise of the truth") +
+         word_cell("half its " + std::to_string(panel.truth_samples) + " samples against half") +
+         none + none + none + error_cells(panel.noise_floor) + none + "</tr>\n";
+}
+
+const ChartPanel& panel_of(const std::vector<ChartPanel>& panels, const std::string& scene) {
+  return *std::find_if(panels.begin(), panels.end(),
+                       [&](const ChartPanel& panel) { return panel.scene == scene; });
+}
+
+std::string over_cells(const OverScenes& of, int places) {
+  return number_cell(of.median, places) + number_cell(of.p90, places) +
+         number_cell(of.worst, places);
+}
+
+}  // namespace
+
+std::string points_table(const std::vector<ChartPanel>& panels) {
+  std::string rows;
+  for (const ChartPanel& panel : panels) {
+    for (const ChartPoint& point : panel.points) rows += point_row(panel, point);
+    rows += floor_row(panel);
+  }
+  return table_of("results",
+                  table_head({{"scene", true},
+                              {"method", true},
+                              {"settings", true},
+                              {"frame, ms"},
+                              {"pinhole frames"},
+                              {"filter, ms"},
+                              {"PSNR, dB"},
+                              {"SSIM"},
+                              {"FLIP"},
+                              {"silhouette"},
+                              {"near"},
+                              {"focus"},
+                              {"far"},
+                              {"HDR-FLIP"},
+                              {"silhouette"},
+                              {"near"},
+                              {"focus"},
+                              {"far"},
+                              {"rounds"}}),
+                  rows);
+}
+
+std::string best_table(const std::vector<ChartPanel>& panels,
+                       const std::vector<BestForBudget>& best) {
+  std::string rows;
+  for (const BestForBudget& of : best) {
+    const RankedError& ranked = kRankedErrors[of.ranked];
+    const ChartPanel& panel = panel_of(panels, of.scene);
+    if (of.ranked == 0) {
+      rows += "<tr>" + word_cell(html_text(of.scene)) +
+              (std::isfinite(of.budget) ? number_cell(of.budget, short_number(of.budget))
+                                        : "<td data-n=\"1e9\">any</td>");
+    }
+    rows += word_cell(method_link(panel, *of.point)) +
+            word_cell(html_text(settings_text(of.point->entry))) +
+            number_cell(of.point->errors.*ranked.value, kFlipPlaces) +
+            number_cell(of.point->pinhole_frames, kRatioPlaces);
+    if (of.ranked + 1 == kRankedErrors.size()) rows += "</tr>\n";
+  }
+  return table_of("best",
+                  table_head({{"scene", true},
+                              {"budget, pinhole frames"},
+                              {"least FLIP", true},
+                              {"settings", true},
+                              {"FLIP"},
+                              {"pinhole frames"},
+                              {"least HDR-FLIP", true},
+                              {"settings", true},
+                              {"HDR-FLIP"},
+                              {"pinhole frames"}}),
+                  rows);
+}
+
+std::string summary_table(const std::vector<SummaryRow>& summary) {
+  std::string rows;
+  for (const SummaryRow& row : summary) {
+    rows +=
+        std::string{row.settings == kBestSetting ? "<tr class=\"best\">" : "<tr>"} +
+        word_cell(html_text(row.method)) + word_cell(html_text(row.settings)) +
+        number_cell(row.scenes, 0) + number_cell(row.pinhole_frames.median, kRatioPlaces) +
+        over_cells(row.ratios[0], kRatioPlaces) + word_cell(html_text(row.ratios[0].worst_scene)) +
+        over_cells(row.errors[0], kFlipPlaces) + word_cell(html_text(row.errors[0].worst_scene)) +
+        over_cells(row.ratios[1], kRatioPlaces) + over_cells(row.errors[1], kFlipPlaces) +
+        "</tr>\n";
+  }
+  return table_of("summary",
+                  table_head({{"method", true},
+                              {"settings", true},
+                              {"scenes"},
+                              {"pinhole frames"},
+                              {"FLIP ratio: median"},
+                              {"90 %"},
+                              {"worst"},
+                              {"on", true},
+                              {"FLIP: median"},
+                              {"90 %"},
+                              {"worst"},
+                              {"on", true},
+                              {"HDR-FLIP ratio: median"},
+                              {"90 %"},
+                              {"worst"},
+                              {"HDR-FLIP: median"},
+                              {"90 %"},
+                              {"worst"}}),
+                  rows);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,134 @@
+#include "tools/chart/report/summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/bench/timing.h"
+
+namespace softfocus {
+namespace {
+
+/// Stands for an error of 0 where the truth has no noise either.
+constexpr double kLeastError = 1e-6;
+
+struct Contender {
+  const ChartPanel* panel;
+  const ChartPoint* point;
+};
+
+/// What all scenes' points of one contender have in common: auto's choices differ.
+ChartEntry without_choice(ChartEntry entry) {
+  entry.chosen.clear();
+  return entry;
+}
+
+double seen_error(const ChartPanel& panel, const ChartPoint& point, double ChartErrors::*error) {
+  return std::max({point.errors.*error, panel.noise_floor.*error, kLeastError});
+}
+
+/// Over the least error within the contender's time. NaN without times.
+double ratio_of(const Contender& of, double ChartErrors::*error) {
+  if (std::isnan(of.point->median_ms)) return kNotTimed;
+  const double own = seen_error(*of.panel, *of.point, error);
+  double least = own;
+  for (const ChartPoint& other : of.panel->points) {
+    if (other.median_ms <= of.point->median_ms) {
+      least = std::min(least, seen_error(*of.panel, other, error));
+    }
+  }
+  return own / least;
+}
+
+SummaryRow row_of(std::string method, std::string settings,
+                  const std::vector<Contender>& contenders) {
+  SummaryRow row{.method = std::move(method),
+                 .settings = std::move(settings),
+                 .scenes = static_cast<int>(contenders.size())};
+  const auto over = [&](const auto& number_of) {
+    std::vector<SceneNumber> numbers;
+    for (const Contender& of : contenders) numbers.push_back({number_of(of), of.panel->scene});
+    return over_scenes(numbers);
+  };
+  row.pinhole_frames = over([](const Contender& of) { return of.point->pinhole_frames; });
+  for (std::size_t i = 0; i < kRankedErrors.size(); ++i) {
+    double ChartErrors::*const error = kRankedErrors[i].value;
+    row.ratios[i] = over([&](const Contender& of) { return ratio_of(of, error); });
+    row.errors[i] = over([&](const Contender& of) { return of.point->errors.*error; });
+  }
+  return row;
+}
+
+/// The entries of all panels, each once, those of a series one after the other.
+std::vector<ChartEntry> entries_of(const std::vector<ChartPanel>& panels) {
+  std::vector<ChartEntry> entries;
+  for (const ChartPanel& panel : panels) {
+    for (const ChartPoint& point : panel.points) {
+      const std::string id = entry_id(point.entry);
+      const bool is_there =
+          std::any_of(entries.begin(), entries.end(),
+                      [&](const ChartEntry& other) { return entry_id(other) == id; });
+      if (!is_there) entries.push_back(without_choice(point.entry));
+    }
+  }
+  return entries;
+}
+
+template <class Wanted>
+std::vector<Contender> contenders_of(const std::vector<ChartPanel>& panels, const Wanted& wanted) {
+  std::vector<Contender> contenders;
+  for (const ChartPanel& panel : panels) {
+    for (const ChartPoint& point : panel.points) {
+      if (wanted(point)) contenders.push_back({&panel, &point});
+    }
+  }
+  return contenders;
+}
+
+}  // namespace
+
+OverScenes over_scenes(std::span<const SceneNumber> numbers) {
+  std::vector<double> sorted;
+  OverScenes result;
+  for (const SceneNumber& of : numbers) {
+    if (!std::isfinite(of.number)) return {};
+    sorted.push_back(of.number);
+    if (std::isnan(result.worst) || of.number > result.worst) {
+      result.worst = of.number;
+      result.worst_scene = of.scene;
+    }
+  }
+  if (sorted.empty()) return {};
+  result.median = spread_of(sorted).median;
+  std::sort(sorted.begin(), sorted.end());
+  // The rank in whole numbers: 0.9 * 10 would be above 9.
+  result.p90 = sorted[(9 * sorted.size() + 9) / 10 - 1];
+  return result;
+}
+
+std::vector<SummaryRow> summary_of(const std::vector<ChartPanel>& panels) {
+  std::vector<SummaryRow> rows;
+  const std::vector<ChartEntry> entries = entries_of(panels);
+  std::vector<std::string> done;
+  for (const ChartEntry& first : entries) {
+    const std::string series = series_name(first);
+    if (std::find(done.begin(), done.end(), series) != done.end()) continue;
+    done.push_back(series);
+    const std::size_t before = rows.size();
+    for (const ChartEntry& entry : entries) {
+      if (series_name(entry) != series) continue;
+      const std::string id = entry_id(entry);
+      rows.push_back(row_of(series, setting_within_series(entry),
+                            contenders_of(panels, [&](const ChartPoint& point) {
+                              return entry_id(point.entry) == id;
+                            })));
+    }
+    if (rows.size() - before < 2) continue;
+    rows.push_back(row_of(series, std::string{kBestSetting},
+                          contenders_of(panels, [&](const ChartPoint& point) {
+                            return point.best_setting && series_name(point.entry) == series;
+                          })));
+  }
+  return rows;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,45 @@
+#pragma once
+// Each contender over all scenes, so that no scene decides.
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/chart/point.h"
+
+namespace softfocus {
+
+/// A number a scene, in three. NaN where there is no number.
+struct OverScenes {
+  double median = kNotTimed;
+  double p90 = kNotTimed;  ///< nine tenths of the scenes, rounded up, have at most this
+  double worst = kNotTimed;
+  std::string worst_scene{};  ///< the first with the largest
+};
+
+struct SummaryRow {
+  std::string method;    ///< or its series: "two-pass, d3d11"
+  std::string settings;  ///< "max-coc 16"; kBestSetting: on each scene its best
+  int scenes = 0;        ///< on which it can run
+  OverScenes pinhole_frames{};
+  /// By kRankedErrors: its error over the least that any contender has in its time or less. Errors
+  /// below the noise of the truth count as that noise.
+  std::array<OverScenes, kRankedErrors.size()> ratios{};
+  std::array<OverScenes, kRankedErrors.size()> errors{};
+};
+
+inline constexpr std::string_view kBestSetting = "best setting";
+
+/// A row for each contender, in the order of the first panel that has it, each series followed by
+/// its best setting if it has several. Needs settled panels.
+std::vector<SummaryRow> summary_of(const std::vector<ChartPanel>& panels);
+
+/// One of a scene's numbers.
+struct SceneNumber {
+  double number;
+  std::string scene;
+};
+OverScenes over_scenes(std::span<const SceneNumber> numbers);
+
+}  // namespace softfocus

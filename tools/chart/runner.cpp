@@ -1,0 +1,142 @@
+#include "tools/chart/runner.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "raster/numbers/profile.h"
+
+namespace softfocus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double, std::milli>(end - start).count();
+}
+
+}  // namespace
+
+bool can_run(const ChartScene& scene, const ChartEntry& entry) {
+  if (entry.arithmetic == Arithmetic::floats) return true;
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
+  return fixed_settings_error({.coc = scene.coc, .max_coc_px = max_coc_px}) == nullptr;
+}
+
+ChartRunner::ChartRunner(const ChartScene& scene, ThreadPool& pool)
+    : scene_(scene), views_(accumulation_input(scene, kSampleCounts.back())), pool_(pool) {
+  const int width = scene.pinhole.width, height = scene.pinhole.height;
+  drawn_ = make_image(Format::rgba16f, width, height);
+  result_ = make_image(Format::rgba16f, width, height);
+}
+
+RunTime ChartRunner::run(const ChartEntry& entry) {
+  if (entry.max_error) return choose(*entry.max_error);
+  return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
+}
+
+RunTime ChartRunner::run_warm(const ChartEntry& entry) {
+  warm_up(entry);
+  return run(entry);
+}
+
+PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
+  const auto found = prepared_.find(profile);
+  if (found != prepared_.end()) return found->second;
+  return prepared_.emplace(profile, prepare_scene(scene_.scene, *find_profile(profile), pool_))
+      .first->second;
+}
+
+void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
+  apply(filter, {drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
+}
+
+// What belongs to a lens is made once, as it would be for many frames.
+const FixedTable& ChartRunner::table_for(float max_coc_px) {
+  const auto found = tables_.find(max_coc_px);
+  if (found != tables_.end()) return found->second;
+  const fixed::Lens lens = fixed_lens({.coc = scene_.coc, .max_coc_px = max_coc_px});
+  return tables_.emplace(max_coc_px, fixed_table(half_table(lens))).first->second;
+}
+
+void ChartRunner::filter_drawn(const ChartEntry& entry, const Profile& profile) {
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
+  if (entry.arithmetic == Arithmetic::fixed_8) {
+    two_pass_bytes(drawn_, table_for(max_coc_px), result_, pool_);
+  } else {
+    filter_drawn(*entry.filter, max_coc_px, profile);
+  }
+}
+
+RunTime ChartRunner::filter(const ChartEntry& entry) {
+  const Profile profile = *find_profile(entry.profile);
+  PreparedScene& prepared = prepared_for(entry.profile);
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  filter_drawn(entry, profile);
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
+// The memory is made once, as it would be for many frames.
+void ChartRunner::add_views(int first, int last) {
+  if (!buffer_) {
+    buffer_ = make_accumulation_buffer(views_, pool_);
+    sums_ = make_sample_sums(drawn_.width, drawn_.height);
+  }
+  if (first == 0) clear_sums(sums_);
+  add_lens_views(*buffer_, views_, first, last, sums_, pool_);
+}
+
+void ChartRunner::add_all_views(int samples) {
+  for (int first = 0; first < samples; first += kLensViewGroup) {
+    add_views(first, std::min(first + kLensViewGroup, samples));
+  }
+  store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
+}
+
+RunTime ChartRunner::accumulate(int samples) {
+  const Clock::time_point start = Clock::now();
+  add_all_views(samples);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+// The sharp picture is copied, as the pinhole's contender copies it.
+void ChartRunner::carry_out(const AutoMethod& choice) {
+  if (choice.samples > 0) return add_all_views(choice.samples);
+  const Method& filter = *find_method(is_sharp(choice) ? kPinhole : choice.method);
+  filter_drawn(filter, choice.radius_px, views_.profile);
+}
+
+AutoMethod ChartRunner::chosen_for(double max_error) {
+  return auto_method(scene_traits(drawn_, scene_.coc, pool_), {max_error},
+                     {{}, triangle_count(scene_.scene)});
+}
+
+RunTime ChartRunner::choose(double max_error) {
+  PreparedScene& prepared = prepared_for("ieee");
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  const AutoMethod choice = chosen_for(max_error);
+  carry_out(choice);
+  const Clock::time_point end = Clock::now();
+  chosen_ = setting_text(choice);
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
+// Of an accumulation the first group of pictures is enough.
+void ChartRunner::warm_up(const ChartEntry& entry) {
+  int samples = entry.samples;
+  if (entry.max_error) {
+    draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
+    const AutoMethod choice = chosen_for(*entry.max_error);
+    samples = choice.samples;
+    if (samples == 0) carry_out(choice);
+  } else if (entry.filter != nullptr) {
+    filter(entry);
+  }
+  if (samples > 0) add_views(0, std::min(samples, kLensViewGroup));
+}
+
+}  // namespace softfocus

@@ -1,0 +1,66 @@
+#pragma once
+// The drawing of each contender's picture, again and again in the same memory.
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "dof/auto/auto_method.h"
+#include "tools/chart/scene.h"
+#include "tools/chart/settings.h"
+
+namespace softfocus {
+
+/// Milliseconds of one run. auto's choosing counts as filtering.
+struct RunTime {
+  double frame_ms = 0.0;
+  std::optional<double> filter_ms;  ///< none if nothing was filtered
+};
+
+/// Whether the contender's arithmetic can hold the scene's lens.
+bool can_run(const ChartScene& scene, const ChartEntry& entry);
+
+/// Makes contenders' pictures again and again in the same memory.
+class ChartRunner {
+ public:
+  /// The scene must outlive it.
+  ChartRunner(const ChartScene& scene, ThreadPool& pool);
+
+  /// Draws a whole frame, by a filter, from the lens's points or by what auto chooses.
+  RunTime run(const ChartEntry& entry);
+  /// The same, after a run without a clock: the contender before has filled the caches with its
+  /// own.
+  RunTime run_warm(const ChartEntry& entry);
+
+  /// Of the last run.
+  const Image& result() const { return result_; }
+  /// What auto chose last, in words.
+  const std::string& chosen() const { return chosen_; }
+
+ private:
+  RunTime filter(const ChartEntry& entry);
+  RunTime accumulate(int samples);
+  RunTime choose(double max_error);
+  AutoMethod chosen_for(double max_error);
+  PreparedScene& prepared_for(const std::string& profile);
+  void filter_drawn(const Method& filter, float max_coc_px, const Profile& profile);
+  void filter_drawn(const ChartEntry& entry, const Profile& profile);
+  const FixedTable& table_for(float max_coc_px);
+  void add_views(int first, int last);
+  void warm_up(const ChartEntry& entry);
+  void add_all_views(int samples);
+  void carry_out(const AutoMethod& choice);
+
+  const ChartScene& scene_;
+  LensViewInput views_;  // with as many points of the lens as anything here takes
+  ThreadPool& pool_;
+  std::map<std::string, PreparedScene> prepared_;  // by profile
+  std::map<float, FixedTable> tables_;             // by radius
+  std::optional<AccumulationBuffer> buffer_;
+  SampleSums sums_;
+  Image drawn_;
+  Image result_;
+  std::string chosen_;
+};
+
+}  // namespace softfocus
