@@ -7,7 +7,7 @@
 namespace softfocus {
 
 /// The longer side of the pictures in the page, at most.
-inline constexpr int kPagePicturePx = 205;
+inline constexpr int kPagePicturePx = 171;
 
 /// Errors of a picture.
 ChartErrors measure_picture(const Image& picture, const Image& truth, const Image& labels,

@@ -54,7 +54,7 @@ std::vector<PicturedPoint> pictured_points(const std::vector<ChartPanel>& panels
   for (std::size_t i = 0; i < panels.size(); ++i) {
     for (std::size_t k = 0; k < panels[i].points.size(); ++k) {
       const ChartPoint& point = panels[i].points[k];
-      if (rule == Pictured::all || point.on_front || is_best_of_method(point)) {
+      if (rule == Pictured::all || is_best_of_method(point)) {
         points.push_back({i, k});
       }
     }
@@ -74,9 +74,7 @@ std::size_t expected_pictures(std::size_t scenes, std::size_t points_a_scene, st
 std::string pictured_text(const std::vector<ChartPanel>& panels) {
   switch (rule_for(panels)) {
     case Pictured::all: return "Every row of the table leads to its pictures.";
-    case Pictured::best:
-      return "Pictures are of every method at its best setting on each scene, and of what is best "
-             "for its time.";
+    case Pictured::best: return "Pictures are of every method at its best setting on each scene.";
     case Pictured::worst: break;
   }
   return "Pictures are of every method at its best setting, on the scene where its FLIP is "

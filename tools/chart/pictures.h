@@ -20,8 +20,8 @@ struct PicturedPoint {
   std::size_t point;
 };
 
-/// All points; of too many, on each scene every method at its best setting and the front; of too
-/// many scenes, every method at its best setting, on the scene with its largest FLIP. In the order
+/// All points; of too many, on each scene every method at its best setting; of too many scenes,
+/// every method at its best setting, on the scene with its largest FLIP. In the order
 /// of scenes and points. Needs settled panels.
 std::vector<PicturedPoint> pictured_points(const std::vector<ChartPanel>& panels);
 
