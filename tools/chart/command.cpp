@@ -38,7 +38,7 @@ constexpr std::size_t kLargestPlot = std::size_t{1} << 28;
 /// A new empty file, so that two charts into one directory do not draw into the same.
 std::filesystem::path scratch_file(const std::filesystem::path& directory) {
   for (int attempt = 0;; ++attempt) {
-    const std::filesystem::path file =
+    std::filesystem::path file =
         directory / ("plot-" + std::to_string(process_number()) + "-" + std::to_string(attempt));
     const int descriptor = create_file(file);
     if (descriptor >= 0) {

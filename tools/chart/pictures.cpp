@@ -38,6 +38,7 @@ std::vector<PicturedPoint> worst_of_methods(const std::vector<ChartPanel>& panel
     }
   }
   std::vector<PicturedPoint> points;
+  points.reserve(worst.size());
   for (const auto& [method, point] : worst) points.push_back(point);
   std::sort(points.begin(), points.end(), [](const PicturedPoint& a, const PicturedPoint& b) {
     return a.panel != b.panel ? a.panel < b.panel : a.point < b.point;

@@ -75,7 +75,9 @@ std::vector<std::string> scene_names(const std::string& text) {
       continue;
     }
     for (std::uint64_t i = 0; i <= range->last - range->first; ++i) {
-      add_once("--scenes", text, std::string{kRandom} + std::to_string(range->first + i), names);
+      std::string seed{kRandom};
+      seed += std::to_string(range->first + i);
+      add_once("--scenes", text, seed, names);
     }
   }
   return names;

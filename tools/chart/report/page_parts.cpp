@@ -67,7 +67,7 @@ std::string element_id(const ChartPanel& panel, const ChartPoint& point) {
 }
 
 std::string method_link(const ChartPanel& panel, const ChartPoint& point) {
-  const std::string name = html_text(point.entry.method);
+  std::string name = html_text(point.entry.method);
   if (point.pictures.empty()) return name;
   return "<a href=\"#" + element_id(panel, point) + "\">" + name + "</a>";
 }

@@ -104,7 +104,7 @@ std::string panel_script(std::size_t index, const ChartPanel& panel, const Shown
     if (lines.empty()) continue;
     const std::string name = block + std::to_string(i);
     data += name + " << END\n" + lines + "END\n";
-    plots += ", " + name + series_style(shown.series[i], i) + " notitle";
+    plots.append(", ").append(name).append(series_style(shown.series[i], i)).append(" notitle");
   }
   return data + margins(panel_box(index, layout), layout.size) + "set title " +
          gnuplot_quoted(panel.scene) + " offset 0,-0.4\nset xrange " + range_text(ms) +

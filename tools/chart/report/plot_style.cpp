@@ -35,7 +35,7 @@ std::string log_tics() {
   for (int power = -5; power <= 6; ++power) {
     for (const int digit : {1, 2, 5}) {
       const std::string number = short_number(digit * std::pow(10.0, power));
-      list += (list.empty() ? "'" : ", '") + number + "' " + number;
+      list.append(list.empty() ? "'" : ", '").append(number).append("' ").append(number);
     }
   }
   return "(" + list + ")";

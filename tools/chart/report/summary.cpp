@@ -46,6 +46,7 @@ SummaryRow row_of(std::string method, std::string settings,
                  .scenes = static_cast<int>(contenders.size())};
   const auto over = [&](const auto& number_of) {
     std::vector<SceneNumber> numbers;
+    numbers.reserve(contenders.size());
     for (const Contender& of : contenders) numbers.push_back({number_of(of), of.panel->scene});
     return over_scenes(numbers);
   };

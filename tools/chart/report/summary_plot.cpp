@@ -47,7 +47,8 @@ std::string ratio_panel(std::size_t index, const RatioPanel& panel,
     }
     const std::string name = "$s" + std::to_string(index) + "_" + std::to_string(i);
     data += name + " << END\n" + lines + "END\n";
-    plots += (plots.empty() ? "plot " : ", ") + name + series_style(series[i], i) + " notitle";
+    plots.append(plots.empty() ? "plot " : ", ").append(name);
+    plots.append(series_style(series[i], i)).append(" notitle");
   }
   const std::string title = std::string{panel.name} +
                             " over the scenes: " + std::string{kRankedErrors[panel.ranked].title};
