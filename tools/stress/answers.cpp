@@ -1,0 +1,103 @@
+#include "tools/stress/answers.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "dof/auto/auto_method.h"
+#include "scenes/lens_views/accumulation.h"
+
+namespace softfocus {
+namespace {
+
+/// The truth's points of the lens follow all that a method can take, so that no method is right
+/// by taking the same. Blocks of a power of two are even wherever they begin (lens_points.h).
+constexpr int kFirstTruthView = 4096;
+static_assert(kFirstTruthView > kSampleCounts.back());
+
+constexpr std::string_view kViewsMethod = "accumulation", kChoosingMethod = "auto";
+
+LensViewInput views_input(const StressFrame& frame, int samples) {
+  const StressScene& scene = *frame.scene;
+  return {.scene = scene.scene,
+          .camera = scene.camera,
+          .frame = 0.0,
+          .pinhole = frame.sharp,
+          .focus_m = scene.focus_m,
+          .aperture_radius_m = scene.aperture_m,
+          .sampling = {.samples = samples},
+          .profile = Profile{},
+          .progress = {}};
+}
+
+Image filtered(const Method& method, const StressFrame& frame, float max_coc_px, ThreadPool& pool) {
+  DofSettings settings = frame.settings;
+  settings.max_coc_px = max_coc_px;
+  return apply(method, {frame.sharp, settings, Profile{}}, pool);
+}
+
+/// What auto chooses by itself, with no goal but its own.
+Image chosen_picture(const StressFrame& frame, ThreadPool& pool) {
+  const AutoMethod choice = auto_method(scene_traits(frame.sharp, frame.settings.coc, pool), {},
+                                        {{}, triangle_count(frame.scene->scene)});
+  if (choice.samples > 0) return accumulation(views_input(frame, choice.samples), pool).picture;
+  if (is_sharp(choice)) return frame.sharp;
+  return filtered(*find_method(choice.method), frame, choice.radius_px, pool);
+}
+
+Image method_picture(const std::string& method, const StressFrame& frame, ThreadPool& pool) {
+  if (method == kViewsMethod) return accumulation(views_input(frame, kStressSamples), pool).picture;
+  if (method == kChoosingMethod) return chosen_picture(frame, pool);
+  return filtered(*find_method(method), frame, frame.settings.max_coc_px, pool);
+}
+
+}  // namespace
+
+std::vector<std::string> stress_methods() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.emplace_back(method.name);
+  names.emplace_back(kViewsMethod);
+  names.emplace_back(kChoosingMethod);
+  return names;
+}
+
+std::optional<std::vector<Image>> method_pictures(const std::string& method,
+                                                  const StressTrial& trial, ThreadPool& pool) {
+  std::vector<Image> pictures;
+  for (const StressFrame& frame : trial.frames) {
+    if (find_method(method) == nullptr && !frame.scene) return std::nullopt;
+    pictures.push_back(method_picture(method, frame, pool));
+  }
+  return pictures;
+}
+
+StressTruth make_stress_truth(const StressTrial& trial, int views, ThreadPool& pool) {
+  StressTruth truth;
+  for (const StressFrame& frame : trial.frames) {
+    if (views == 0) {
+      truth.pictures.push_back(frame.truth);
+      continue;
+    }
+    assert(views % (2 * kSampleGroup) == 0);
+    const LensViewInput input = views_input(frame, kFirstTruthView + views);
+    AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
+    SampleSums sums = make_sample_sums(frame.sharp.width, frame.sharp.height);
+    const auto add = [&](int begin, int end) {
+      for (int i = begin; i < end; i += kLensViewGroup) {
+        add_lens_views(buffer, input, kFirstTruthView + i,
+                       kFirstTruthView + std::min(i + kLensViewGroup, end), sums, pool);
+      }
+    };
+    const auto mean_of = [&](const SampleSums& of) {
+      return mean_picture(of, frame.sharp, Profile{}, pool);
+    };
+    add(0, views / 2);
+    const SampleSums first = sums;
+    add(views / 2, views);
+    truth.first_half.push_back(mean_of(first));
+    truth.second_half.push_back(mean_of(later_samples(first, sums)));
+    truth.pictures.push_back(mean_of(sums));
+  }
+  return truth;
+}
+
+}  // namespace softfocus

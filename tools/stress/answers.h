@@ -1,0 +1,31 @@
+#pragma once
+// The answers to a trial: the lens's own, and each method's.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/stress/stress_case.h"
+
+namespace softfocus {
+
+/// Views that the method `accumulation` gets.
+inline constexpr int kStressSamples = 64;
+
+/// The filters of dof/dof.h, accumulation, and auto.
+std::vector<std::string> stress_methods();
+
+/// A method's pictures, or nothing if it needs a scene and the trial is made as a picture.
+std::optional<std::vector<Image>> method_pictures(const std::string& method,
+                                                  const StressTrial& trial, ThreadPool& pool);
+
+/// The truth of each frame, and where views make it that of either half of them.
+struct StressTruth {
+  std::vector<Image> pictures;
+  std::vector<Image> first_half, second_half;  ///< empty where the truth is calculated
+};
+
+/// `views` is even.
+StressTruth make_stress_truth(const StressTrial& trial, int views, ThreadPool& pool);
+
+}  // namespace softfocus

@@ -1,0 +1,70 @@
+// softfocus stress: where each method fails, on cases with a known answer.
+
+#include <iostream>
+#include <memory>
+
+#include "tools/chart/record.h"
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/files/whole_file.h"
+#include "tools/stress/findings.h"
+#include "tools/stress/stress_page.h"
+#include "tools/stress/stress_report.h"
+
+namespace softfocus {
+namespace {
+
+void make_cache(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory / "cache", error);
+  if (error) {
+    throw FileError("cannot make the directory '" + directory.string() + "': " + error.message() +
+                    "; give -o a place that can be written to");
+  }
+  // So that nothing is measured in vain.
+  for (const char* name : {"stress.csv", "stress.json", "index.html"}) {
+    check_writable(directory / name);
+  }
+}
+
+void write_atlas_file(const std::filesystem::path& file, std::string_view text) {
+  WholeFile whole{file};
+  whole.write(text);
+  whole.commit();
+}
+
+int stress(const StressOptions& options) {
+  make_cache(options.directory);
+  ThreadPool pool{options.pool.threads, options.pool.isa};
+  const StressFindings findings = measure_stress(options, pool);
+  const Json json = stress_json(findings);
+  write_json(options.directory / "stress.json", json);
+  write_atlas_file(options.directory / "stress.csv", stress_csv(findings));
+  write_atlas_file(options.directory / "index.html", stress_page(findings, options));
+  if (options.json) {
+    std::cout << json_text(json, 1) << '\n';
+    return kDone;
+  }
+  if (findings.kept > 0) {
+    std::cout << "went on: " << findings.kept << " of " << findings.all
+              << " values were there already\n";
+  }
+  std::cout << stress_summary(findings) << "written to "
+            << (options.directory / "index.html").string() << '\n';
+  return kDone;
+}
+
+}  // namespace
+
+Command add_stress_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "stress",
+                                 "Measure where each method fails, on cases with known answers");
+  const auto options = std::make_shared<StressOptions>();
+  add_stress_options(*parser, *options);
+  return {parser, [options] {
+            complete(*options);
+            return stress(*options);
+          }};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,52 @@
+#pragma once
+// What `stress` found: values by case, method and severity, and pictures to look at.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/stress/stress_case.h"
+#include "tools/stress/stress_options.h"
+
+namespace softfocus {
+
+/// PNG in base64, of the telling severity.
+struct StressPictures {
+  std::string picture;
+  std::string error;  ///< the map of FLIP
+};
+
+/// A method on a case.
+struct StressCurve {
+  std::string method;
+  bool can_run = false;        ///< false: the case is a picture, and the method needs a scene
+  std::vector<double> values{};  ///< one a severity, of 6 digits; not finite where all is spoilt
+  StressPictures pictures{};
+};
+
+struct StressResult {
+  StressCase of;
+  std::vector<double> severities;
+  /// Of the truth's one half against the other, one a severity; empty where it is calculated.
+  std::vector<double> noise_floor;
+  int views = 0;
+  double shown = 0.0;  ///< the severity of the pictures
+  std::string sharp, truth;
+  std::vector<StressCurve> curves;
+};
+
+struct StressFindings {
+  std::vector<StressResult> results;  ///< in the order of stress_cases()
+  int kept = 0;                       ///< values that were there already
+  int all = 0;
+};
+
+inline bool holds(const StressCase& of, double value) { return value <= of.limit; }
+
+/// The index of the mildest severity that does not hold.
+std::optional<std::size_t> first_failure(const StressResult& result, const StressCurve& curve);
+
+/// Measures what `options.directory` does not hold yet, and keeps it there.
+StressFindings measure_stress(const StressOptions& options, ThreadPool& pool);
+
+}  // namespace softfocus

@@ -1,0 +1,88 @@
+#include "tools/stress/stress_options.h"
+
+#include <algorithm>
+
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
+#include "tools/stress/answers.h"
+
+namespace softfocus {
+namespace {
+
+constexpr int kSmallestStress_px = 64, kLargestStress_px = 1024, kSizeStep = 16;
+constexpr int kUsualStress_px = 256, kQuickStress_px = 128;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const StressCase& of : stress_cases()) names.emplace_back(of.name);
+  return names;
+}
+
+/// The parts of "a,b,c", each known and there once.
+std::vector<std::string> known_names(const std::string& option, const std::string& text,
+                                     const std::vector<std::string>& known) {
+  std::vector<std::string> names;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    std::string name = text.substr(start, end - start);
+    start = end + 1;
+    if (name.empty()) {
+      throw UsageError(option + " '" + text + "': give names with a comma between two");
+    }
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      throw UsageError(option + " '" + text + "': '" + name + "' stands there twice");
+    }
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw UsageError(option + " '" + name + "': there are " + joined(known));
+    }
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_stress_options(CLI::App& parser, StressOptions& options) {
+  add_value(parser, "-o,--output", "DIR", "Where the atlas and what was measured go; required",
+            [&options](const std::string& text) { options.directory = text; });
+  add_value(parser, "--methods", "A,B,...", "Methods (default: all filters, accumulation, auto)",
+            [&options](const std::string& text) {
+              options.methods = known_names("--methods", text, stress_methods());
+            });
+  add_value(parser, "--cases", "A,B,...", "Cases (default: all)",
+            [&options](const std::string& text) {
+              options.cases = known_names("--cases", text, case_names());
+            });
+  add_value(parser, "--size", "N",
+            "Width and height of the pictures, a multiple of 16 from 64 to 1024 (default: 256; 128 "
+            "with --quick); circles larger than a quarter of it are left out",
+            [&options](const std::string& text) {
+              constexpr std::string_view kWanted = "a multiple of 16 from 64 to 1024";
+              options.size_px =
+                  parse_whole("--size", text, kSmallestStress_px, kLargestStress_px, kWanted);
+              if (options.size_px % kSizeStep != 0) {
+                throw UsageError("--size '" + text + "': give " + std::string{kWanted});
+              }
+            });
+  add_flag(parser, "--quick", "Small pictures, three severities a case: under a minute",
+           options.quick);
+  add_flag(parser, "--json", "Print what stress.json holds, and nothing else", options.json);
+  add_pool_options(parser, options.pool, "the results are the same");
+}
+
+void complete(StressOptions& options) {
+  if (options.directory.empty()) {
+    throw UsageError("-o is missing; give a directory for the atlas, such as -o atlas");
+  }
+  if (options.size_px == 0) options.size_px = options.quick ? kQuickStress_px : kUsualStress_px;
+  if (options.methods.empty()) options.methods = stress_methods();
+  if (options.cases.empty()) options.cases = case_names();
+}
+
+}  // namespace softfocus

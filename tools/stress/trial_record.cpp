@@ -1,0 +1,107 @@
+#include "tools/stress/trial_record.h"
+
+#include <array>
+#include <cstdio>
+#include <limits>
+
+#include "tools/chart/record.h"
+#include "tools/golden/hashes.h"
+#include "tools/stress/answers.h"
+
+namespace softfocus {
+namespace {
+
+/// Every bit of a number, readable.
+std::string all_digits(double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text.data();
+}
+
+bool has_hash(const Json* entry, const std::string& hash) {
+  if (entry == nullptr || !entry->is_object()) return false;
+  const Json* const of = entry->find("hash");
+  return of != nullptr && of->is_text() && of->text() == hash;
+}
+
+}  // namespace
+
+std::string hashes_of(std::span<const Image> pictures) {
+  std::string text;
+  for (const Image& picture : pictures) text += hash_text(hash_image(picture));
+  return text;
+}
+
+std::string trial_key(const StressCase& of, double severity, const StressTrial& trial, int views,
+                      ThreadPool& pool) {
+  // They change with all of a scene that the sharp picture does not show.
+  constexpr int kProbeViews = 16;
+  std::string key = "softfocus " SOFTFOCUS_VERSION "; revision " + std::to_string(kStressRevision) +
+                    "; " + std::string{of.name} + " at " + all_digits(severity) + "; views " +
+                    std::to_string(views);
+  for (const StressFrame& frame : trial.frames) {
+    const DofSettings& settings = frame.settings;
+    key += "; size " + std::to_string(frame.sharp.height) + ", " +
+           hash_text(hash_image(frame.sharp)) + ", at infinity " +
+           all_digits(double{settings.coc.radius_at_infinity_px}) + " px, focus " +
+           all_digits(double{settings.coc.focus_m}) + " m, max-coc " +
+           all_digits(double{settings.max_coc_px}) + " px";
+    if (frame.truth.width > 0) key += ", truth " + hash_text(hash_image(frame.truth));
+  }
+  if (views == 0) return key;
+  return key + "; first views " + hashes_of(make_stress_truth(trial, kProbeViews, pool).pictures);
+}
+
+TrialRecord::TrialRecord(std::filesystem::path file, const std::string& key)
+    : file_(std::move(file)), json_{{"key", key}} {
+  auto kept = read_json(file_);
+  if (!kept) return;
+  const Json* const kept_key = kept->find("key");
+  if (kept_key != nullptr && kept_key->is_text() && kept_key->text() == key) {
+    json_ = std::move(*kept);
+  }
+}
+
+const Json* TrialRecord::find(const std::string& entry, const std::string& hash,
+                              const std::string& name) const {
+  const Json* const found = json_.find(entry);
+  return has_hash(found, hash) ? found->find(name) : nullptr;
+}
+
+std::optional<double> TrialRecord::number(const std::string& entry, const std::string& hash,
+                                          const std::string& name) const {
+  const Json* const found = find(entry, hash, name);
+  if (found == nullptr) return std::nullopt;
+  if (found->is_null()) return std::numeric_limits<double>::infinity();
+  try {
+    return found->number();
+  } catch (const JsonError&) {
+    return std::nullopt;  // damaged: it is measured again
+  }
+}
+
+std::optional<std::string> TrialRecord::text(const std::string& entry, const std::string& hash,
+                                             const std::string& name) const {
+  const Json* const found = find(entry, hash, name);
+  if (found == nullptr || !found->is_text()) return std::nullopt;
+  return found->text();
+}
+
+void TrialRecord::keep(const std::string& entry, const std::string& hash, const std::string& name,
+                       Json value) {
+  Json& of = json_[entry];
+  if (!has_hash(&of, hash)) {
+    of = Json::object();
+    of["hash"] = hash;
+  }
+  of[name] = std::move(value);
+  changed_ = true;
+}
+
+void TrialRecord::save() {
+  if (!changed_) return;
+  write_json(file_, json_);
+  changed_ = false;
+}
+
+}  // namespace softfocus
