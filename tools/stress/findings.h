@@ -19,7 +19,7 @@ struct StressPictures {
 /// A method on a case.
 struct StressCurve {
   std::string method;
-  bool can_run = false;        ///< false: the case is a picture, and the method needs a scene
+  bool can_run = false;          ///< false: the case is a picture, and the method needs a scene
   std::vector<double> values{};  ///< one a severity, of 6 digits; not finite where all is spoilt
   StressPictures pictures{};
 };

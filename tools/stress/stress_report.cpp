@@ -1,5 +1,6 @@
 #include "tools/stress/stress_report.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/cli/option_values.h"
@@ -59,7 +60,9 @@ std::string failing_text(const StressResult& result, const StressCurve& curve) {
   std::size_t last = curve.values.size() - 1;
   while (holds(result.of, curve.values[last])) --last;
   const bool to_the_end = last == curve.values.size() - 1;
-  if (*first == 0 && to_the_end) return "all";
+  const bool all_fail = std::none_of(curve.values.begin(), curve.values.end(),
+                                     [&](double value) { return holds(result.of, value); });
+  if (all_fail) return "all";
   const std::string from = short_number(result.severities[*first]);
   if (to_the_end) return "from " + from;
   if (last == *first) return "at " + from;
