@@ -39,15 +39,16 @@ td a:hover, td a:focus-visible { text-decoration: underline; }
 .w2 { background: #f6a45c; color: #3b1c00; } .w3 { background: #d6493a; color: #ffffff; }
 .w4 { background: #7d1420; color: #ffffff; } .none { color: var(--faint); }
 .key span { padding: .1rem .5rem; margin-right: .3rem; }
-.methods { display: grid; grid-template-columns: repeat(auto-fill, minmax(330px, 1fr)); gap: 1rem; }
+.methods { display: grid; grid-template-columns: repeat(auto-fill, minmax(430px, 1fr)); gap: 1rem; }
 .method { border: 1px solid var(--line); padding: .7rem; }
 .method:target { outline: 3px solid var(--link); }
 .method p { margin: 0 0 .4rem; color: var(--faint); font-size: .85rem; }
 .row { display: flex; flex-wrap: wrap; gap: .5rem; margin-bottom: .5rem; }
 figure { margin: 0; width: min-content; }
 figcaption { color: var(--faint); font-size: .8rem; }
-img { display: block; width: 148px; image-rendering: pixelated; }
-.curve { display: block; width: 100%; max-width: 360px; }
+img, .truth { display: block; width: 128px; height: 128px; outline: 1px solid var(--line);
+  image-rendering: pixelated; }
+.curve { display: block; width: 100%; max-width: 430px; }
 text { fill: var(--faint); font: 11px system-ui, sans-serif; }
 .axis { stroke: var(--faint); fill: none; } .grid { stroke: var(--line); }
 .limit { stroke: var(--limit); stroke-width: 1.5; stroke-dasharray: 5 3; }
@@ -128,12 +129,29 @@ std::string atlas_figure(const std::string& png, const std::string& alt,
          "</figcaption></figure>";
 }
 
+/// The truth once in the page, for all methods of the case to show.
+std::string shared_truth(const StressResult& result) {
+  return "<svg width=\"0\" height=\"0\" aria-hidden=\"true\"><defs><image id=\"truth-" +
+         std::string{result.of.name} +
+         "\" width=\"128\" height=\"128\" href=\"data:image/png;base64," + result.truth +
+         "\"/></defs></svg>\n";
+}
+
+std::string truth_again(const StressResult& result) {
+  return "<figure><svg class=\"truth\" viewBox=\"0 0 128 128\" role=\"img\" aria-label=\"The "
+         "truth\"><use "
+         "href=\"#truth-" +
+         std::string{result.of.name} + "\"/></svg><figcaption>the truth</figcaption></figure>";
+}
+
 std::string method_section(const StressResult& result, const StressCurve& curve) {
   const std::string on = curve.method + " on " + std::string{result.of.name};
   return "<section class=\"method\" id=\"" + cell_id(result, curve) + "\"><h3>" +
-         html_text(curve.method) + ": " + failing_text(result, curve) + "</h3>\n" +
-         curve_svg(result, curve) + "<div class=\"row\">" +
+         html_text(curve.method) + (first_failure(result, curve) ? " fails: " : " ") +
+         failing_text(result, curve) + "</h3>\n" + curve_svg(result, curve) +
+         "<div class=\"row\">" +
          atlas_figure(curve.pictures.picture, "Picture by " + on, "the picture") +
+         truth_again(result) +
          atlas_figure(curve.pictures.error, "Map of the FLIP error of " + on, "its error") +
          "</div></section>\n";
 }
@@ -156,7 +174,7 @@ std::string case_section(const StressResult& result) {
           atlas_figure(
               result.truth, "The truth of " + name,
               "the truth at " + std::string{of.parameter.name} + " " + short_number(result.shown)) +
-          "</div>\n" + curve_backdrop(result) + "<div class=\"methods\">\n";
+          "</div>\n" + shared_truth(result) + curve_backdrop(result) + "<div class=\"methods\">\n";
   for (const StressCurve& curve : result.curves) {
     if (curve.can_run) html += method_section(result, curve);
   }

@@ -66,6 +66,7 @@ std::string failing_text(const StressResult& result, const StressCurve& curve) {
   const std::string from = short_number(result.severities[*first]);
   if (to_the_end) return "from " + from;
   if (last == *first) return "at " + from;
+  if (*first == 0) return "up to " + short_number(result.severities[last]);
   return from + " to " + short_number(result.severities[last]);
 }
 

@@ -18,8 +18,8 @@ std::string stress_csv(const StressFindings& findings);
 /// A line a method: how many cases hold throughout, and from where on the others do not.
 std::string stress_summary(const StressFindings& findings);
 
-/// "holds", "all", or from the mildest failure to the most severe one: "from 8", "8 to 16", "at 8".
-/// Some between them may hold.
+/// "holds", "all", or from the mildest failure to the most severe one, between which some may hold:
+/// "from 8", "up to 8", "8 to 16", "at 8".
 std::string failing_text(const StressResult& result, const StressCurve& curve);
 
 }  // namespace softfocus
