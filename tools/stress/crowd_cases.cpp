@@ -21,9 +21,12 @@ StressTrial make_fence(double width, int size, ThreadPool& pool) {
   const double radius = size / 16.0;
   Scene scene = flat_scene();
   const auto wall = add_pattern(scene, "checker", 32, {0.9f, 0.8f, 0.6f}, {0.3f, 0.4f, 0.5f});
-  add_backdrop(scene, size, kStressFocus_m, glm::vec3{1.0f}, wall);
-  for (double x = -2.0 * std::ceil(radius / width) * width; x < size + radius; x += 2.0 * width) {
-    add_rectangle(scene, size, {x, -1.0 * size, x + width, 2.0 * size}, kStressNear_m,
+  add_backdrop(scene, size, kStressFocusM, glm::vec3{1.0f}, wall);
+  const int before = static_cast<int>(std::ceil(radius / width));
+  const int after = static_cast<int>(std::ceil((size + radius) / (2.0 * width)));
+  for (int bar = -before; bar < after; ++bar) {
+    const double x = 2.0 * width * bar;
+    add_rectangle(scene, size, {x, -1.0 * size, x + width, 2.0 * size}, kStressNearM,
                   glm::vec3{0.02f});
   }
   return single(drawn_frame(std::move(scene), radius, radius, size, pool));
@@ -35,7 +38,7 @@ StressTrial make_foliage(double radius, int size, ThreadPool& pool) {
   Scene scene = flat_scene();
   const auto board = add_pattern(scene, "checker", 16, {0.7f, 0.5f, 0.4f}, {0.2f, 0.2f, 0.3f});
   add_backdrop(scene, size, 40.0, {0.8f, 0.9f, 1.0f});
-  add_rectangle(scene, size, {-1.0 * size, 0.6 * size, 2.0 * size, 2.0 * size}, kStressFocus_m,
+  add_rectangle(scene, size, {-1.0 * size, 0.6 * size, 2.0 * size, 2.0 * size}, kStressFocusM,
                 glm::vec3{1.0f}, board, {12, 6});
   RandomSequence random{11};
   for (int i = 0; i < 160; ++i) {
@@ -76,12 +79,12 @@ StressTrial make_cut_circles(double ratio, int size, ThreadPool& pool) {
   const double unit = size / 256.0, filter_px = size / 32.0;
   Scene scene = flat_scene();
   const auto wall = add_pattern(scene, "checker", 8, {0.9f, 0.9f, 0.7f}, {0.1f, 0.2f, 0.5f});
-  add_backdrop(scene, size, kStressFar_m, glm::vec3{1.0f}, wall);
-  add_rectangle(scene, size, {90 * unit, 60 * unit, 170 * unit, 200 * unit}, kStressFocus_m,
+  add_backdrop(scene, size, kStressFarM, glm::vec3{1.0f}, wall);
+  add_rectangle(scene, size, {90 * unit, 60 * unit, 170 * unit, 200 * unit}, kStressFocusM,
                 {0.2f, 0.6f, 0.2f}, wall);
   add_rectangle(scene, size, {20 * unit, 120 * unit, 70 * unit, 2.0 * size}, 4.0 / 3.0,
                 {0.8f, 0.1f, 0.1f});
-  add_rectangle(scene, size, {200 * unit, 40 * unit, 208 * unit, 48 * unit}, kStressFar_m - 0.01,
+  add_rectangle(scene, size, {200 * unit, 40 * unit, 208 * unit, 48 * unit}, kStressFarM - 0.01,
                 glm::vec3{20.0f});
   // At both depths the circle is half the one at infinity.
   StressFrame frame =

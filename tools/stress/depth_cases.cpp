@@ -25,10 +25,10 @@ double noise_at(int x, int y) {
 StressTrial make_rough_focus(double radius, int size, ThreadPool& /*pool*/) {
   const double at_infinity = size / 4.0;
   StressFrame frame;
-  frame.settings = uncut_settings(at_infinity, kStressFocus_m, size / 16.0);
+  frame.settings = uncut_settings(at_infinity, kStressFocusM, size / 16.0);
   frame.sharp = grey_picture_of(size, noise_at, [&](int x, int y) {
     const double sign = (hash_of_place(y, x) >> 7) % 2 == 0 ? 1.0 : -1.0;
-    return depth_of_radius(sign * radius, at_infinity, kStressFocus_m);
+    return depth_of_radius(sign * radius, at_infinity, kStressFocusM);
   });
   frame.truth = frame.sharp;
   return single(std::move(frame));
@@ -48,7 +48,8 @@ double mean_change(const StressAnswer& answer) {
 double patch_reach(int size) { return size / 16.0; }
 
 bool is_in_patch(int x, int y, double side, int size) {
-  const double left = size / 2 - std::floor(side / 2.0);
+  const int middle = size / 2;
+  const double left = middle - std::floor(side / 2.0);
   return x >= left && y >= left && x < left + side && y < left + side;
 }
 
@@ -56,10 +57,10 @@ bool is_in_patch(int x, int y, double side, int size) {
 StressTrial patch_trial(double side, int size, double depth_m) {
   const double reach = patch_reach(size);
   StressFrame frame;
-  frame.settings = uncut_settings(reach, kStressFocus_m, reach);
+  frame.settings = uncut_settings(reach, kStressFocusM, reach);
   frame.sharp = grey_picture_of(
       size, [&](int x, int y) { return is_in_patch(x, y, side, size) ? 1.0 : noise_at(x, y); },
-      [&](int x, int y) { return is_in_patch(x, y, side, size) ? depth_m : kStressFocus_m; });
+      [&](int x, int y) { return is_in_patch(x, y, side, size) ? depth_m : kStressFocusM; });
   frame.truth = frame.sharp;
   return single(std::move(frame));
 }
@@ -99,14 +100,14 @@ double fringe_radius(int size) { return size / 21.0; }
 StressFrame blended_edge(double blend, int size) {
   const double radius = fringe_radius(size), at_infinity = 2.0 * radius;
   StressFrame frame;
-  frame.settings = uncut_settings(at_infinity, kStressFocus_m, radius);
+  frame.settings = uncut_settings(at_infinity, kStressFocusM, radius);
   const auto of_wall = [&](int x) {
     const double from_edge = x + 0.5 - size / 2.0;
     if (blend == 0.0) return from_edge > 0.0 ? 1.0 : 0.0;
     return std::clamp(from_edge / blend + 0.5, 0.0, 1.0);
   };
-  const double near_m = depth_of_radius(-radius, at_infinity, kStressFocus_m);
-  const double far_m = depth_of_radius(radius, at_infinity, kStressFocus_m);
+  const double near_m = depth_of_radius(-radius, at_infinity, kStressFocusM);
+  const double far_m = depth_of_radius(radius, at_infinity, kStressFocusM);
   frame.sharp = grey_picture_of(
       size, [&](int x, int) { return 1.0 - 0.9 * of_wall(x); },
       [&](int x, int) { return near_m + (far_m - near_m) * of_wall(x); });

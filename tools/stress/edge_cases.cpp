@@ -24,8 +24,8 @@ PixelBox left_half(int size) { return {-1.0 * size, -1.0 * size, size / 2.0, 2.0
 /// A sharp half before a blurred wall. Both are of one colour: nothing may change.
 StressTrial sharp_before_wall(double radius, int size, ThreadPool& pool, float near, float far) {
   Scene scene = flat_scene();
-  add_backdrop(scene, size, kStressFar_m, grey(far));
-  add_rectangle(scene, size, left_half(size), kStressFocus_m, grey(near));
+  add_backdrop(scene, size, kStressFarM, grey(far));
+  add_rectangle(scene, size, left_half(size), kStressFocusM, grey(near));
   StressFrame frame = drawn_frame(std::move(scene), 2.0 * radius, radius, size, pool);
   frame.truth = frame.sharp;
   return single(std::move(frame));
@@ -58,13 +58,13 @@ double leaked_on_far(const StressAnswer& answer) {
 /// A blurred bright half before a sharp dark wall.
 StressTrial make_near_edge(double radius, int size, ThreadPool& pool) {
   Scene scene = flat_scene();
-  add_backdrop(scene, size, kStressFocus_m, grey(kDark));
-  add_rectangle(scene, size, left_half(size), kStressNear_m, grey(kBright));
+  add_backdrop(scene, size, kStressFocusM, grey(kDark));
+  add_rectangle(scene, size, left_half(size), kStressNearM, grey(kBright));
   StressFrame frame = drawn_frame(std::move(scene), radius, radius, size, pool);
   frame.truth = grey_picture_of(
       size,
       [&](int x, int) { return kDark + kContrast * disc_left_of((size / 2.0 - x - 0.5) / radius); },
-      [](int, int) { return kStressNear_m; });
+      [](int, int) { return kStressNearM; });
   return single(std::move(frame));
 }
 
@@ -78,12 +78,12 @@ double edge_spread_error(const StressAnswer& answer) {
          kContrast;
 }
 
-constexpr int kStripe_px = 4;
+constexpr int kStripePx = 4;
 constexpr float kStripeDark = 0.2f, kStripeBright = 0.8f, kBarGrey = 0.5f;
 
 double radius_of_bar(int size) { return size / 16.0; }
 
-float stripe_at(int y) { return y / kStripe_px % 2 == 0 ? kStripeDark : kStripeBright; }
+float stripe_at(int y) { return y / kStripePx % 2 == 0 ? kStripeDark : kStripeBright; }
 
 /// The part of the lens that a bar from `left` to `right` covers, at a column's middle.
 double bar_cover(int x, double left, double right, double radius) {
@@ -100,12 +100,12 @@ StressTrial make_partial_occlusion(double width, int size, ThreadPool& pool) {
   const double radius = radius_of_bar(size);
   const auto [left, right] = bar_columns(width, size);
   Scene scene = flat_scene();
-  add_backdrop(scene, size, kStressFocus_m + 0.001, grey(kStripeDark));
-  for (int y = kStripe_px; y < size; y += 2 * kStripe_px) {
-    add_rectangle(scene, size, {-1.0 * size, 1.0 * y, 2.0 * size, 1.0 * (y + kStripe_px)},
-                  kStressFocus_m, grey(kStripeBright));
+  add_backdrop(scene, size, kStressFocusM + 0.001, grey(kStripeDark));
+  for (int y = kStripePx; y < size; y += 2 * kStripePx) {
+    add_rectangle(scene, size, {-1.0 * size, 1.0 * y, 2.0 * size, 1.0 * (y + kStripePx)},
+                  kStressFocusM, grey(kStripeBright));
   }
-  add_rectangle(scene, size, {1.0 * left, -1.0 * size, 1.0 * right, 2.0 * size}, kStressNear_m,
+  add_rectangle(scene, size, {1.0 * left, -1.0 * size, 1.0 * right, 2.0 * size}, kStressNearM,
                 grey(kBarGrey));
   StressFrame frame = drawn_frame(std::move(scene), radius, radius, size, pool);
   const PixelRange bar = bar_columns(width, size);
@@ -115,7 +115,7 @@ StressTrial make_partial_occlusion(double width, int size, ThreadPool& pool) {
         const double cover = bar_cover(x, bar.begin, bar.end, radius);
         return cover * kBarGrey + (1.0 - cover) * stripe_at(y);
       },
-      [](int, int) { return kStressNear_m; });
+      [](int, int) { return kStressNearM; });
   return single(std::move(frame));
 }
 
@@ -141,28 +141,25 @@ double shown_through_error(const StressAnswer& answer) {
   return rms_difference(stripe_contrasts(answer.result[0]), stripe_contrasts(answer.truth[0]), bar);
 }
 
-constexpr int kLamp_px = 5;
+constexpr int kLampPx = 5;
 constexpr double kLampLight = 100.0, kLampGround = 0.05;
 
 /// A far lamp just beside a sharp edge, which cuts its circle in two.
 StressTrial make_lamp_at_edge(double radius, int size, ThreadPool& pool) {
-  const double left = size / 2.0, top = size / 2.0 - kLamp_px / 2;
+  const int left = size / 2, top = size / 2 - kLampPx / 2;
   Scene scene = flat_scene();
-  add_backdrop(scene, size, kStressFar_m, grey(kLampGround));
-  add_rectangle(scene, size, {left, top, left + kLamp_px, top + kLamp_px}, kStressFar_m - 0.01,
+  add_backdrop(scene, size, kStressFarM, grey(kLampGround));
+  add_rectangle(scene, size, pixel_square(left, top, kLampPx), kStressFarM - 0.01,
                 grey(static_cast<float>(kLampLight)));
-  add_rectangle(scene, size, left_half(size), kStressFocus_m, grey(kLampGround));
+  add_rectangle(scene, size, left_half(size), kStressFocusM, grey(kLampGround));
   StressFrame frame = drawn_frame(std::move(scene), 2.0 * radius, radius, size, pool);
   frame.truth = grey_picture_of(
       size,
       [&](int x, int y) {
-        double light = 0.0;
-        for (int i = 0; x >= size / 2 && i < kLamp_px * kLamp_px; ++i) {
-          light += disc_light(x, y, left + i % kLamp_px + 0.5, top + i / kLamp_px + 0.5, radius);
-        }
+        const double light = x < left ? 0.0 : square_light(x, y, left, top, kLampPx, radius);
         return kLampGround + light * (kLampLight - kLampGround);
       },
-      [](int, int) { return kStressFar_m; });
+      [](int, int) { return kStressFarM; });
   return single(std::move(frame));
 }
 
@@ -177,7 +174,7 @@ double lamp_light(const Image& picture, PixelRange columns) {
 
 double lamp_light_on_sharp(const StressAnswer& answer) {
   return std::fabs(lamp_light(answer.result[0], {0, answer.truth[0].width / 2})) /
-         (kLamp_px * kLamp_px * (kLampLight - kLampGround));
+         (kLampPx * kLampPx * (kLampLight - kLampGround));
 }
 
 double lamp_light_lost(const StressAnswer& answer) {

@@ -23,14 +23,14 @@ StressTrial make_point(double radius, int size, ThreadPool& /*pool*/) {
   const double light = 0.5 * std::numbers::pi * radius * radius;
   const int middle = size / 2;
   StressFrame frame;
-  frame.settings = uncut_settings(2.0 * radius, kStressFocus_m, radius);
+  frame.settings = uncut_settings(2.0 * radius, kStressFocusM, radius);
   frame.sharp = grey_picture_of(
       size, [&](int x, int y) { return x == middle && y == middle ? light : 0.0; },
-      [](int, int) { return kStressFar_m; });
+      [](int, int) { return kStressFarM; });
   frame.truth = grey_picture_of(
       size,
       [&](int x, int y) { return light * disc_light(x, y, middle + 0.5, middle + 0.5, radius); },
-      [](int, int) { return kStressFar_m; });
+      [](int, int) { return kStressFarM; });
   return single(std::move(frame));
 }
 
@@ -49,32 +49,30 @@ double point_deviation(const StressAnswer& answer) {
 
 /// Within four fifths of the radius: the rim has a case of its own.
 double point_unevenness(const StressAnswer& answer) {
-  const double middle = answer.truth[0].width / 2 + 0.5;
+  const int pixel = answer.truth[0].width / 2;
+  const double middle = pixel + 0.5;
   return unevenness(answer.result[0], middle, middle, 0.8 * answer.severity);
 }
 
-constexpr int kHighlight_px = 5;
+constexpr int kHighlightPx = 5;
 constexpr double kHighlightGround = 0.1;
 
 /// A lamp of 5x5 pixels before grey, both blurred alike.
 StressTrial make_highlight(double brightness, int size, ThreadPool& pool) {
-  const double radius = size / 16.0, left = size / 2 - kHighlight_px / 2;
+  const double radius = size / 16.0;
+  const int left = size / 2 - kHighlightPx / 2;
   Scene scene = flat_scene();
-  add_backdrop(scene, size, kStressFar_m, glm::vec3{static_cast<float>(kHighlightGround)});
-  add_rectangle(scene, size, {left, left, left + kHighlight_px, left + kHighlight_px},
-                kStressFar_m - 0.01, glm::vec3{static_cast<float>(brightness)});
+  add_backdrop(scene, size, kStressFarM, glm::vec3{static_cast<float>(kHighlightGround)});
+  add_rectangle(scene, size, pixel_square(left, left, kHighlightPx), kStressFarM - 0.01,
+                glm::vec3{static_cast<float>(brightness)});
   StressFrame frame = drawn_frame(std::move(scene), 2.0 * radius, radius, size, pool);
   frame.truth = grey_picture_of(
       size,
       [&](int x, int y) {
-        double light = 0.0;
-        for (int i = 0; i < kHighlight_px * kHighlight_px; ++i) {
-          light += disc_light(x, y, left + i % kHighlight_px + 0.5, left + i / kHighlight_px + 0.5,
-                              radius);
-        }
+        const double light = square_light(x, y, left, left, kHighlightPx, radius);
         return kHighlightGround + light * (brightness - kHighlightGround);
       },
-      [](int, int) { return kStressFar_m; });
+      [](int, int) { return kStressFarM; });
   return single(std::move(frame));
 }
 
@@ -89,7 +87,7 @@ double above_ground(const Image& picture) {
 /// Not energy(), which takes NaN for black. The shape counts too: a lamp left as it is has all of
 /// its light, but where it should not be.
 double highlight_error(const StressAnswer& answer) {
-  const double lamp = kHighlight_px * kHighlight_px * (answer.severity - kHighlightGround);
+  const double lamp = kHighlightPx * kHighlightPx * (answer.severity - kHighlightGround);
   return std::fabs(above_ground(answer.result[0]) - above_ground(answer.truth[0])) / lamp;
 }
 
@@ -114,7 +112,7 @@ StressTrial make_night(double brightness, int size, ThreadPool& pool) {
   for (int i = 0; i < 3; ++i) {
     const double left = (20.0 + 80.0 * i) * unit;
     add_rectangle(scene, size, {left, (90.0 + 30.0 * i) * unit, left + 48.0 * unit, 2.0 * size},
-                  kStressFocus_m, glm::vec3{1.0f}, board);
+                  kStressFocusM, glm::vec3{1.0f}, board);
   }
   return single(drawn_frame(std::move(scene), radius, radius, size, pool));
 }

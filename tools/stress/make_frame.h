@@ -14,9 +14,9 @@
 namespace softfocus {
 
 /// The focus, and the depths at which a circle is half and all of the one at infinity.
-inline constexpr double kStressFocus_m = 2.0;
-inline constexpr double kStressFar_m = 4.0;
-inline constexpr double kStressNear_m = 1.0;
+inline constexpr double kStressFocusM = 2.0;
+inline constexpr double kStressFarM = 4.0;
+inline constexpr double kStressNearM = 1.0;
 
 /// `texel_at(x, y)` gives red, green, blue and the depth in metres.
 template <class TexelAt>
@@ -50,6 +50,11 @@ struct PixelBox {
   double left, top, right, bottom;
 };
 
+/// A square of pixels.
+inline PixelBox pixel_square(int left, int top, int side) {
+  return {1.0 * left, 1.0 * top, 1.0 * (left + side), 1.0 * (top + side)};
+}
+
 /// An empty scene, seen from the origin.
 Scene flat_scene();
 
@@ -68,7 +73,7 @@ std::uint32_t add_pattern(Scene& scene, std::string_view pattern, int cells, glm
 
 /// Draws a scene as methods get it. `largest_px`: the circles are not cut up to that radius.
 StressFrame drawn_frame(Scene scene, double radius_at_infinity_px, double largest_px, int size_px,
-                        ThreadPool& pool, double focus_m = kStressFocus_m);
+                        ThreadPool& pool, double focus_m = kStressFocusM);
 
 /// A trial of one frame.
 StressTrial single(StressFrame frame);

@@ -22,15 +22,15 @@ Scene moving_scene(int size) {
   Scene scene = flat_scene();
   const auto wall = add_pattern(scene, "checker", 16, {0.5f, 0.5f, 0.4f}, {0.1f, 0.1f, 0.2f});
   const auto board = add_pattern(scene, "checker", 4, {0.7f, 0.4f, 0.2f}, {0.2f, 0.3f, 0.5f});
-  add_backdrop(scene, size, kStressFar_m, glm::vec3{1.0f}, wall);
-  add_rectangle(scene, size, {60 * unit, 90 * unit, 200 * unit, 170 * unit}, kStressFocus_m,
+  add_backdrop(scene, size, kStressFarM, glm::vec3{1.0f}, wall);
+  add_rectangle(scene, size, {60 * unit, 90 * unit, 200 * unit, 170 * unit}, kStressFocusM,
                 glm::vec3{1.0f}, board);
   RandomSequence random{5};
   for (int i = 0; i < 12; ++i) {
     const double x = next_between(random, 10.0, 240.0) * unit;
     const double y = next_between(random, 10.0, 240.0) * unit;
     const double side = std::max(4.0, 5.0 * unit);
-    add_rectangle(scene, size, {x, y, x + side, y + side}, i % 3 == 0 ? 1.2 : kStressFar_m - 0.1,
+    add_rectangle(scene, size, {x, y, x + side, y + side}, i % 3 == 0 ? 1.2 : kStressFarM - 0.1,
                   glm::vec3{30.0f, 25.0f, 18.0f});
   }
   add_rectangle(scene, size, {20 * unit, -1.0 * size, 36 * unit, 2.0 * size}, 1.1,
@@ -48,7 +48,7 @@ StressTrial make_camera_motion(double step_px, int size, ThreadPool& pool) {
     Scene scene = moving_scene(size);
     // The picture's height at the focus, by a rectangle that has it.
     const double metres =
-        scene.objects.front().scale.y / (3.0 * size) * (kStressFocus_m / kStressFar_m) * moved_px;
+        scene.objects.front().scale.y / (3.0 * size) * (kStressFocusM / kStressFarM) * moved_px;
     scene.camera.position.x += metres;
     scene.camera.target.x += metres;
     trial.frames.push_back(drawn_frame(std::move(scene), radius, radius, size, pool));
@@ -62,7 +62,7 @@ StressTrial make_focus_motion(double per_cent, int size, ThreadPool& pool) {
   StressTrial trial;
   for (const double factor : {1.0, 1.0 + per_cent / 100.0}) {
     trial.frames.push_back(drawn_frame(moving_scene(size), radius / factor, 1.1 * radius, size,
-                                       pool, kStressFocus_m * factor));
+                                       pool, kStressFocusM * factor));
   }
   return trial;
 }
@@ -79,10 +79,10 @@ StressTrial make_two_sizes(double radius, int size, ThreadPool& pool) {
     const double unit = side / 256.0;
     Scene scene = flat_scene();
     const auto wall = add_pattern(scene, "checker", 8, {0.9f, 0.9f, 0.7f}, {0.1f, 0.2f, 0.5f});
-    add_backdrop(scene, side, kStressFar_m, glm::vec3{1.0f}, wall);
+    add_backdrop(scene, side, kStressFarM, glm::vec3{1.0f}, wall);
     add_rectangle(scene, side, {96 * unit, 64 * unit, 160 * unit, 192 * unit}, 4.0 / 3.0,
                   {0.8f, 0.1f, 0.1f});
-    add_rectangle(scene, side, {192 * unit, 48 * unit, 208 * unit, 64 * unit}, kStressFar_m - 0.01,
+    add_rectangle(scene, side, {192 * unit, 48 * unit, 208 * unit, 64 * unit}, kStressFarM - 0.01,
                   glm::vec3{10.0f});
     // The radius is the far wall's and the near thing's.
     trial.frames.push_back(

@@ -33,15 +33,15 @@ double anywhere(const StressAnswer& answer) {
 
 /// One colour at depths of all circles up to that radius, in patches of 8x8 pixels.
 StressTrial make_constant(double radius, int size, ThreadPool& /*pool*/) {
-  constexpr int kPatch_px = 8;
+  constexpr int kPatchPx = 8;
   StressFrame frame;
-  frame.settings = uncut_settings(2.0 * radius, kStressFocus_m, radius);
+  frame.settings = uncut_settings(2.0 * radius, kStressFocusM, radius);
   frame.sharp = grey_picture_of(
       size, [](int, int) { return 0.5; },
       [&](int x, int y) {
-        const auto bits = mix_bits(hash_of_place(x / kPatch_px, y / kPatch_px) + 1);
+        const auto bits = mix_bits(hash_of_place(x / kPatchPx, y / kPatchPx) + 1);
         return depth_of_radius(radius * (2.0 * unit_interval(bits) - 1.0), 2.0 * radius,
-                               kStressFocus_m);
+                               kStressFocusM);
       });
   frame.truth = frame.sharp;
   return single(std::move(frame));
@@ -50,9 +50,9 @@ StressTrial make_constant(double radius, int size, ThreadPool& /*pool*/) {
 /// One colour at one depth: only the borders can go wrong.
 StressTrial make_border(double radius, int size, ThreadPool& /*pool*/) {
   StressFrame frame;
-  frame.settings = uncut_settings(2.0 * radius, kStressFocus_m, radius);
+  frame.settings = uncut_settings(2.0 * radius, kStressFocusM, radius);
   frame.sharp = grey_picture_of(
-      size, [](int, int) { return 0.5; }, [](int, int) { return kStressFar_m; });
+      size, [](int, int) { return 0.5; }, [](int, int) { return kStressFarM; });
   frame.truth = frame.sharp;
   return single(std::move(frame));
 }
@@ -62,19 +62,19 @@ constexpr double kStripLight = 10.0, kStripGround = 0.1;
 /// A bright strip along the left border. How it goes on outside is open, so that the truth is
 /// right for the other half alone, which it does not reach.
 StressTrial make_strip(double radius, int size, ThreadPool& /*pool*/) {
-  constexpr int kStrip_px = 4;
+  constexpr int kStripPx = 4;
   StressFrame frame;
-  frame.settings = uncut_settings(2.0 * radius, kStressFocus_m, radius);
+  frame.settings = uncut_settings(2.0 * radius, kStressFocusM, radius);
   frame.sharp = grey_picture_of(
-      size, [](int x, int) { return x < kStrip_px ? kStripLight : kStripGround; },
-      [](int, int) { return kStressFar_m; });
+      size, [](int x, int) { return x < kStripPx ? kStripLight : kStripGround; },
+      [](int, int) { return kStressFarM; });
   frame.truth = grey_picture_of(
       size,
       [&](int x, int) {
-        const double from_left = disc_left_of((kStrip_px - x - 0.5) / radius);
+        const double from_left = disc_left_of((kStripPx - x - 0.5) / radius);
         return kStripGround + (kStripLight - kStripGround) * from_left;
       },
-      [](int, int) { return kStressFar_m; });
+      [](int, int) { return kStressFarM; });
   return single(std::move(frame));
 }
 
@@ -85,17 +85,17 @@ double repeated(const StressAnswer& answer) {
 
 /// A line in the upper half, dots in the lower one.
 bool is_thin(int x, int y, int size) {
-  constexpr int kApart_px = 8;
-  return x == size / 2 && (y < size / 2 || y % kApart_px == 0);
+  constexpr int kApartPx = 8;
+  return x == size / 2 && (y < size / 2 || y % kApartPx == 0);
 }
 
 /// A sharp white line and dots of one pixel before blurred black.
 StressTrial make_sharp_line(double radius, int size, ThreadPool& /*pool*/) {
   StressFrame frame;
-  frame.settings = uncut_settings(2.0 * radius, kStressFocus_m, radius);
+  frame.settings = uncut_settings(2.0 * radius, kStressFocusM, radius);
   frame.sharp = grey_picture_of(
       size, [&](int x, int y) { return is_thin(x, y, size) ? 1.0 : 0.0; },
-      [&](int x, int y) { return is_thin(x, y, size) ? kStressFocus_m : kStressFar_m; });
+      [&](int x, int y) { return is_thin(x, y, size) ? kStressFocusM : kStressFarM; });
   frame.truth = frame.sharp;
   return single(std::move(frame));
 }
@@ -116,17 +116,18 @@ double largest_thin_loss(const StressAnswer& answer) {
 StressTrial make_blurred_line(double radius, int size, ThreadPool& /*pool*/) {
   const double light = radius * std::numbers::pi / 4.0;  // the profile's peak is one half
   StressFrame frame;
-  frame.settings = uncut_settings(2.0 * radius, kStressFocus_m, radius);
+  frame.settings = uncut_settings(2.0 * radius, kStressFocusM, radius);
   frame.sharp = grey_picture_of(
       size, [&](int x, int) { return x == size / 2 ? light : 0.0; },
-      [](int, int) { return kStressFar_m; });
+      [](int, int) { return kStressFarM; });
   frame.truth = grey_picture_of(
       size,
       [&](int x, int) {
-        const double from = (x - size / 2 - 0.5) / radius, to = (x - size / 2 + 0.5) / radius;
+        const int from_line = x - size / 2;
+        const double from = (from_line - 0.5) / radius, to = (from_line + 0.5) / radius;
         return light * (disc_left_of(to) - disc_left_of(from));
       },
-      [](int, int) { return kStressFar_m; });
+      [](int, int) { return kStressFarM; });
   return single(std::move(frame));
 }
 

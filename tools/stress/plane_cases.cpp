@@ -68,6 +68,7 @@ StressFrame wave_frame(const Slope& plane, double focus_m, double levels_per_m) 
   frame.sharp = grey_picture_of(
       size, [&](int x, int) { return kWaveMean + kWaveHeight * wave_at(x + 0.5, size); }, depth);
   std::vector<double> heights;
+  heights.reserve(static_cast<std::size_t>(size));
   for (int y = 0; y < size; ++y) {
     heights.push_back(mean_over_lens(plane, y + 0.5,
                                      [&](double offset, double) { return wave_at(offset, size); }));
@@ -85,12 +86,12 @@ StressFrame wave_frame(const Slope& plane, double focus_m, double levels_per_m) 
 constexpr double kGentle = 1 / 8.0;
 
 StressTrial make_grazing(double slope, int size, ThreadPool& /*pool*/) {
-  return single(wave_frame({slope, size}, kStressFocus_m, 0.0));
+  return single(wave_frame({slope, size}, kStressFocusM, 0.0));
 }
 
 /// The gentle slope near by with all that halves tell, and the same slope otherwise.
 StressTrial beside_the_best(StressFrame other, int size) {
-  StressTrial trial = single(wave_frame({kGentle, size}, kStressFocus_m, 0.0));
+  StressTrial trial = single(wave_frame({kGentle, size}, kStressFocusM, 0.0));
   trial.frames.push_back(std::move(other));
   return trial;
 }
@@ -101,9 +102,9 @@ StressTrial make_distant(double distance_m, int size, ThreadPool& /*pool*/) {
 
 /// Depths of so many bits, evenly from 0 to 4 m.
 StressTrial make_few_bits(double bits, int size, ThreadPool& /*pool*/) {
-  constexpr double kRange_m = 4.0;
-  const double levels_per_m = (std::exp2(bits) - 1.0) / kRange_m;
-  return beside_the_best(wave_frame({kGentle, size}, kStressFocus_m, levels_per_m), size);
+  constexpr double kRangeM = 4.0;
+  const double levels_per_m = (std::exp2(bits) - 1.0) / kRangeM;
+  return beside_the_best(wave_frame({kGentle, size}, kStressFocusM, levels_per_m), size);
 }
 
 /// Rows whose circles lie within the picture.
@@ -137,12 +138,13 @@ double rounding_bands(const StressAnswer& answer) {
 StressTrial make_ramp(double slope, int size, ThreadPool& /*pool*/) {
   const Slope plane{slope, size};
   StressFrame frame;
-  frame.settings = uncut_settings(plane.at_infinity_px(), kStressFocus_m, plane.largest_px());
+  frame.settings = uncut_settings(plane.at_infinity_px(), kStressFocusM, plane.largest_px());
   const auto ramp = [&](double x, double y) { return 0.1 + 0.4 * (x + y) / size; };
-  const auto depth = [&](int, int y) { return plane.depth_m(y + 0.5, kStressFocus_m); };
+  const auto depth = [&](int, int y) { return plane.depth_m(y + 0.5, kStressFocusM); };
   frame.sharp = grey_picture_of(
       size, [&](int x, int y) { return ramp(x + 0.5, y + 0.5); }, depth);
   std::vector<double> rows;
+  rows.reserve(static_cast<std::size_t>(size));
   for (int y = 0; y < size; ++y) {
     rows.push_back(mean_over_lens(plane, y + 0.5, [](double, double met) { return met; }));
   }

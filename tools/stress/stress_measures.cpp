@@ -120,4 +120,14 @@ double disc_light(int x, int y, double centre_x_px, double centre_y_px, double r
          (std::numbers::pi * radius_px * radius_px);
 }
 
+double square_light(int x, int y, int left, int top, int side, double radius_px) {
+  double light = 0.0;
+  for (int v = top; v < top + side; ++v) {
+    for (int u = left; u < left + side; ++u) {
+      light += disc_light(x, y, u + 0.5, v + 0.5, radius_px);
+    }
+  }
+  return light;
+}
+
 }  // namespace softfocus

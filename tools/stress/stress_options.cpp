@@ -9,8 +9,8 @@
 namespace softfocus {
 namespace {
 
-constexpr int kSmallestStress_px = 64, kLargestStress_px = 1024, kSizeStep = 16;
-constexpr int kUsualStress_px = 256, kQuickStress_px = 128;
+constexpr int kSmallestStressPx = 64, kLargestStressPx = 1024, kSizeStep = 16;
+constexpr int kUsualStressPx = 256, kQuickStressPx = 128;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string list;
@@ -24,6 +24,20 @@ std::vector<std::string> case_names() {
   return names;
 }
 
+/// Throws UsageError if a part of `text` is empty, there already, or unknown.
+void check_name(const std::string& option, const std::string& text, const std::string& name,
+                const std::vector<std::string>& before, const std::vector<std::string>& known) {
+  if (name.empty()) {
+    throw UsageError(option + " '" + text + "': give names with a comma between two");
+  }
+  if (std::find(before.begin(), before.end(), name) != before.end()) {
+    throw UsageError(option + " '" + text + "': '" + name + "' stands there twice");
+  }
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    throw UsageError(option + " '" + name + "': there are " + joined(known));
+  }
+}
+
 /// The parts of "a,b,c", each known and there once.
 std::vector<std::string> known_names(const std::string& option, const std::string& text,
                                      const std::vector<std::string>& known) {
@@ -32,15 +46,7 @@ std::vector<std::string> known_names(const std::string& option, const std::strin
     const std::size_t end = std::min(text.find(',', start), text.size());
     std::string name = text.substr(start, end - start);
     start = end + 1;
-    if (name.empty()) {
-      throw UsageError(option + " '" + text + "': give names with a comma between two");
-    }
-    if (std::find(names.begin(), names.end(), name) != names.end()) {
-      throw UsageError(option + " '" + text + "': '" + name + "' stands there twice");
-    }
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw UsageError(option + " '" + name + "': there are " + joined(known));
-    }
+    check_name(option, text, name, names, known);
     names.push_back(std::move(name));
   }
   return names;
@@ -65,7 +71,7 @@ void add_stress_options(CLI::App& parser, StressOptions& options) {
             [&options](const std::string& text) {
               constexpr std::string_view kWanted = "a multiple of 16 from 64 to 1024";
               options.size_px =
-                  parse_whole("--size", text, kSmallestStress_px, kLargestStress_px, kWanted);
+                  parse_whole("--size", text, kSmallestStressPx, kLargestStressPx, kWanted);
               if (options.size_px % kSizeStep != 0) {
                 throw UsageError("--size '" + text + "': give " + std::string{kWanted});
               }
@@ -80,7 +86,7 @@ void complete(StressOptions& options) {
   if (options.directory.empty()) {
     throw UsageError("-o is missing; give a directory for the atlas, such as -o atlas");
   }
-  if (options.size_px == 0) options.size_px = options.quick ? kQuickStress_px : kUsualStress_px;
+  if (options.size_px == 0) options.size_px = options.quick ? kQuickStressPx : kUsualStressPx;
   if (options.methods.empty()) options.methods = stress_methods();
   if (options.cases.empty()) options.cases = case_names();
 }

@@ -14,7 +14,7 @@ namespace softfocus {
 namespace {
 
 /// The side of the pictures in the page, at most.
-constexpr int kStressPage_px = 128;
+constexpr int kStressPagePx = 128;
 
 Image brightened(const Image& picture, double gain) {
   Image bright = make_image(Format::rgba16f, picture.width, picture.height);
@@ -29,7 +29,7 @@ Image brightened(const Image& picture, double gain) {
 }
 
 int stress_factor(const Image& picture) {
-  return reduction_factor(picture.width, picture.height, kStressPage_px);
+  return reduction_factor(picture.width, picture.height, kStressPagePx);
 }
 
 }  // namespace
