@@ -51,7 +51,6 @@ class TrialWork {
   TrialWork(StressWork& work, const CaseGroup& group, std::size_t index)
       : work_(work),
         group_(group),
-        index_(index),
         severity_(first().severities[index]),
         trial_(first().of.make(severity_, work.options.size_px, work.pool)),
         record_(work.options.directory / "cache" /
@@ -153,7 +152,6 @@ class TrialWork {
 
   StressWork& work_;
   const CaseGroup& group_;
-  std::size_t index_;
   double severity_;
   StressTrial trial_;
   TrialRecord record_;
