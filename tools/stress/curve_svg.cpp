@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/chart/page.h"
+#include "tools/chart/report/page_parts.h"
 #include "tools/cli/option_values.h"
 
 namespace softfocus {

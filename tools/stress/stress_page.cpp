@@ -6,7 +6,7 @@
 #include <limits>
 #include <string_view>
 
-#include "tools/chart/page.h"
+#include "tools/chart/report/page_parts.h"
 #include "tools/cli/option_values.h"
 #include "tools/stress/curve_svg.h"
 #include "tools/stress/stress_report.h"
