@@ -1,5 +1,6 @@
 // softfocus bench: how long a frame takes here, and on a GL driver in turn.
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -7,41 +8,17 @@
 #include "dof/fixed_pictures/fixed_two_pass.h"
 #include "scenes/draw/draw_scene.h"
 #include "tools/bench/options.h"
+#include "tools/bench/our_frame.h"
 #include "tools/bench/paired_runs.h"
 #include "tools/bench/repeated_on_gl.h"
 #include "tools/bench/report.h"
+#include "tools/bench/timing.h"
 #include "tools/bench/work.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/progress.h"
 
 namespace softfocus {
 namespace {
-
-/// Our contender: the work, and what its stages leave.
-struct OurFrame {
-  const BenchWork& work;
-  ThreadPool& pool;
-  std::optional<PreparedScene> scene;  // as the driver has it: with its textures in place
-  Image drawn;
-  Image filtered;
-};
-
-void draw(OurFrame& frame) {
-  const BenchWork& work = frame.work;
-  if (!frame.scene) frame.scene = prepare_scene(*work.scene, work.profile, frame.pool);
-  if (frame.drawn.bytes.empty()) {
-    frame.drawn = make_image(Format::rgba16f, work.size.width, work.size.height);
-  }
-  draw_scene(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
-}
-
-void filter(OurFrame& frame) {
-  const BenchWork& work = frame.work;
-  const Image& scene = work.scene ? frame.drawn : work.picture;
-  Image& filtered = frame.filtered;  // one memory for all frames
-  if (filtered.bytes.empty()) filtered = make_image(scene.format, scene.width, scene.height);
-  apply(*work.method, {scene, work.settings, work.profile}, filtered, frame.pool);
-}
 
 // The stages of one contender, by what it does to draw and to filter and how it ends:
 // a frame is both without a pause between.
@@ -53,6 +30,70 @@ std::vector<TimedStage> stages_of(const BenchWork& work, Draw draws, Filter filt
   return {{"raster", [=] { draws(), finishes(); }}, dof, {"frame", [=] {
                                                             draws(), filters(), finishes();
                                                           }}};
+}
+
+// The driver's: drawing, then the filter and the frame of each of its shader's forms.
+std::vector<TimedStage> stages_of(const BenchWork& work, RepeatedOnGl& on_gl) {
+  const std::size_t forms = on_gl.forms().size();
+  const auto finish = [&] { on_gl.finish(); };
+  const auto draws = [&] { on_gl.draw(); };
+  if (forms == 0) {
+    return stages_of(
+        work, draws, [] {}, finish);
+  }
+  std::vector<TimedStage> stages;
+  for (std::size_t form = 0; form < forms; ++form) {
+    std::vector<TimedStage> of_form = stages_of(
+        work, draws, [&on_gl, form] { on_gl.filter(form); }, finish);
+    if (form > 0 && work.scene) of_form.erase(of_form.begin());  // drawn already
+    stages.insert(stages.end(), of_form.begin(), of_form.end());
+  }
+  return stages;
+}
+
+// Of the driver's times keeps those of the form whose filter took less, and notes both.
+void keep_faster_form(BenchRecord& record, const std::vector<std::string>& forms) {
+  if (forms.empty()) return;
+  std::vector<StageSamples>& all = record.samples.peers;
+  const std::size_t first = record.work.scene ? 1 : 0;  // after drawing
+  const std::size_t stages = (all.size() - first) / forms.size();
+  std::size_t fastest = 0;
+  for (std::size_t form = 0; form < forms.size(); ++form) {
+    const double median_ms = spread_of(all[first + form * stages].ms).median;
+    record.peer->shaders.push_back({forms[form], median_ms});
+    if (median_ms < record.peer->shaders[fastest].filter_ms) fastest = form;
+  }
+  record.peer->shader = forms[fastest];
+  const auto at = [&](std::size_t stage) {
+    return all.begin() + static_cast<std::ptrdiff_t>(stage);
+  };
+  std::vector<StageSamples> kept{at(0), at(first)};
+  const std::size_t begin = first + fastest * stages;
+  kept.insert(kept.end(), at(begin), at(begin + stages));
+  all = std::move(kept);
+}
+
+bool same_pictures(const RepeatedOnGl& on_gl, const Image& ours) {
+  const std::size_t forms = std::max<std::size_t>(on_gl.forms().size(), 1);
+  for (std::size_t form = 0; form < forms; ++form) {
+    if (!equal(on_gl.picture(form), ours)) return false;
+  }
+  return true;
+}
+
+// Why a driver's picture has other bits than ours, and what shows more.
+std::string why_different(const Driver& driver, const BenchWork& work) {
+  const std::string name{driver.name}, profile{driver.profile};
+  if (profile.empty()) {
+    return "the profile of " + name + " is not known; softfocus probe --driver " + name +
+           " finds it";
+  }
+  if (work.profile != find_profile(profile)) {
+    return name + " rounds as profile " + profile + ", not as " + work.profile_name +
+           "; --profile " + profile + " gives its bits";
+  }
+  return profile + " should give its bits; softfocus crosscheck --driver " + name +
+         " shows what differs";
 }
 
 void print(const BenchRecord& record) {
@@ -83,7 +124,7 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
                                        }}};
   const std::vector<TimedStage> floats{
       {"dof", [&] {
-         apply(*work.method, {picture, work.settings, work.profile}, theirs, pool);
+         apply(*work.method.filter, {picture, work.settings, work.profile}, theirs, pool);
        }}};
   warm_up(fixed);
   warm_up(floats);
@@ -107,14 +148,12 @@ int bench(const BenchOptions& options) {
   }
 
   std::unique_ptr<RepeatedOnGl> on_gl;
-  std::vector<TimedStage> peers;
   if (options.versus != nullptr) {
     on_gl = std::make_unique<RepeatedOnGl>(*options.versus, work, options.pool.threads);
-    peers = stages_of(
-        work, [&] { on_gl->draw(); }, [&] { on_gl->filter(); }, [&] { on_gl->finish(); });
   }
+  const std::vector<TimedStage> peers = on_gl ? stages_of(work, *on_gl) : std::vector<TimedStage>{};
   ThreadPool pool{options.pool.threads, options.pool.isa};
-  OurFrame frame{work, pool, {}, {}, {}};
+  OurFrame frame{work, pool};
   const std::vector<TimedStage> ours = stages_of(
       work, [&] { draw(frame); }, [&] { filter(frame); }, [] {});
 
@@ -124,9 +163,12 @@ int bench(const BenchOptions& options) {
   std::optional<BenchPeer> peer;
   if (on_gl) {
     peer = {std::string{options.versus->name}, on_gl->renderer(),
-            equal(on_gl->picture(), frame.filtered)};
+            same_pictures(*on_gl, frame.filtered)};
+    if (!peer->equal) peer->difference = why_different(*options.versus, work);
   }
-  const BenchRecord record{options, work, time_in_pairs(ours, peers, options.runs, show_run), peer};
+  BenchRecord record{options, work,         time_in_pairs(ours, peers, options.runs, show_run),
+                     peer,    frame.choice, frame.samples};
+  if (on_gl) keep_faster_form(record, on_gl->forms());
   progress.clear();
   print(record);
   return kDone;

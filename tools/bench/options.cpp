@@ -2,7 +2,7 @@
 
 #include "scenes/make/sphere_field.h"
 #include "tools/cli/errors.h"
-#include "tools/options/method_options.h"
+#include "tools/gl/shaders.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -14,6 +14,33 @@ constexpr int kMostRuns = 1000;
 /// A drawn and a filtered picture, one between (8 bytes a pixel each) and depth (4), for
 /// each of the two contenders; two pictures read back and compared.
 constexpr std::uint64_t kBenchBytesPerPixel = 72;
+
+/// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and its
+/// depth.
+constexpr std::uint64_t kLensSumBytesPerPixel = 2 * 32 + 12;
+
+/// What the method needs of the options beside it.
+void check_method(BenchOptions& options, const CLI::App& parser) {
+  const MethodChoice& method = options.method;
+  const std::string name{method.name()};
+  check_auto_options(parser, method);
+  check_arithmetic(options.arithmetic, name, options.versus != nullptr);
+  if (method.of_scene != nullptr) {
+    complete_sampling(options.sampling, parser);
+  } else if (!method.is_auto()) {
+    refuse_sampling_options(parser, name);
+  }
+  if (options.image && method.filter == nullptr) {
+    throw UsageError("--image and --method " + name + " exclude each other: the method " +
+                     (method.is_auto() ? "may draw" : "draws") +
+                     " the scene; give a SCENE or --triangles N");
+  }
+  if (options.versus != nullptr && name != "pinhole" && !has_shader(name)) {
+    throw UsageError("--vs and --method " + name +
+                     " exclude each other: only two-pass and one-pass have a shader for a driver; "
+                     "--method pinhole compares drawing alone");
+  }
+}
 
 void add_subject_options(CLI::App& parser, BenchOptions& options) {
   add_optional_argument(parser, "SCENE", "A scene or a file, as render takes it", options.scene);
@@ -41,6 +68,8 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_arithmetic_option(parser, options.arithmetic);
   add_lens_options(parser, options.lens);
   add_max_coc_option(parser, options.max_coc_px);
+  add_sampling_options(parser, options.sampling);
+  add_auto_options(parser, options.goal);
   add_profile_option(parser, options.profile, options.profile_name);
   add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--runs", "N", "Times that each is run and timed, 10 to 1000 (default: 15)",
@@ -65,8 +94,10 @@ void complete(BenchOptions& options, const CLI::App& parser) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;
-  check_arithmetic(options.arithmetic, options.method->name, options.versus != nullptr);
-  check_memory(options.image ? "--image" : "--size", options.size, kBenchBytesPerPixel);
+  check_method(options, parser);
+  check_memory(
+      options.image ? "--image" : "--size", options.size,
+      kBenchBytesPerPixel + (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0));
 }
 
 }  // namespace softfocus

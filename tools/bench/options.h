@@ -13,6 +13,7 @@
 #include "tools/cli/parser.h"
 #include "tools/gl/driver.h"
 #include "tools/options/lens_options.h"
+#include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -25,8 +26,10 @@ struct BenchOptions {
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
   double frame = 0.0;
-  const Method* method = find_method("two-pass");
+  MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;
+  Sampling sampling;  ///< of a method that draws the scene
+  AutoGoal goal;      ///< of auto
   LensOptions lens;
   std::optional<float> max_coc_px;
   Profile profile;

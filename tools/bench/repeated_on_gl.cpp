@@ -14,8 +14,8 @@ struct RepeatedOnGl::State {
   Shaders shaders{};
   std::optional<GlScene> scene{};  // with `drawn`
   GlTarget drawn{};
-  GlTexture uploaded{};  // else
-  std::optional<GlFilter> method{};
+  GlTexture uploaded{};           // else
+  std::vector<GlFilter> forms{};  // as in kFilterForms; none: nothing is filtered
 };
 
 RepeatedOnGl::RepeatedOnGl(const Driver& driver, const BenchWork& work, int threads) {
@@ -29,9 +29,10 @@ RepeatedOnGl::RepeatedOnGl(const Driver& driver, const BenchWork& work, int thre
     } else {
       state.uploaded = upload(work.picture);
     }
-    if (work.method->name != "pinhole") {
-      state.method = make_filter(state.context, state.shaders, work.method->name, work.settings,
-                                 width, height);
+    if (work.method.name() == "pinhole") return;
+    for (const FilterForm form : kFilterForms) {
+      state.forms.push_back(make_filter(state.context, state.shaders, work.method.name(), form,
+                                        work.settings, width, height));
     }
   });
 }
@@ -47,18 +48,26 @@ void RepeatedOnGl::draw() {
          [&] { state_->scene->draw(state_->work.view, state_->work.frame, state_->drawn); });
 }
 
-void RepeatedOnGl::filter() {
-  if (!state_->method) return;
+void RepeatedOnGl::finish() { glFinish(); }
+
+std::vector<std::string> RepeatedOnGl::forms() const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < state_->forms.size(); ++i) {
+    names.emplace_back(form_name(kFilterForms[i]));
+  }
+  return names;
+}
+
+void RepeatedOnGl::filter(std::size_t form) {
   naming(state_->driver, [&] {
-    run_filter(*state_->method, state_->work.scene ? state_->drawn.colour[0] : state_->uploaded);
+    run_filter(state_->forms[form],
+               state_->work.scene ? state_->drawn.colour[0] : state_->uploaded);
   });
 }
 
-void RepeatedOnGl::finish() { glFinish(); }
-
-Image RepeatedOnGl::picture() const {
+Image RepeatedOnGl::picture(std::size_t form) const {
   return naming(state_->driver, [&] {
-    if (state_->method) return read_colour(state_->method->targets.back(), 0);
+    if (!state_->forms.empty()) return read_colour(state_->forms[form].targets.back(), 0);
     return state_->work.scene ? read_colour(state_->drawn, 0) : state_->work.picture;
   });
 }

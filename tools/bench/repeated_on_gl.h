@@ -3,8 +3,10 @@
 // `bench --vs` times. Uploads, links and allocates when it is made, and reads back only when
 // asked for the picture.
 
+#include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "raster/images/image.h"
 #include "tools/bench/work.h"
@@ -23,11 +25,18 @@ class RepeatedOnGl {
   std::string renderer() const;
 
   void draw();    ///< the scene; needs one
-  void filter();  ///< what was drawn, or the work's picture; nothing for the pinhole method
   void finish();  ///< waits until all of it is done: glFinish
 
-  /// What the last filter() made.
-  Image picture() const;
+  /// The forms that the method's shader has on drivers (tools/gl/filter_on_gl.h): "brute-force" and
+  /// "tiled". None for the pinhole method, which filters nothing.
+  std::vector<std::string> forms() const;
+
+  /// Filters what was drawn, or the work's picture.
+  void filter(std::size_t form);
+
+  /// What the last filter() of that form made. Without forms: what was drawn, or the work's
+  /// picture.
+  Image picture(std::size_t form) const;
 
  private:
   struct State;

@@ -37,23 +37,44 @@ Spread ratio_of(const BenchRecord& record, std::size_t stage) {
   return spread_of(pair_ratios(record.samples.ours[stage].ms, record.samples.peers[stage].ms));
 }
 
+// ", max-coc 16", ", 256 samples", ": two-pass, radius 8".
+std::string setting_of(const BenchRecord& record) {
+  if (record.choice) return ": " + setting_text(*record.choice);
+  if (record.work.method.of_scene != nullptr)
+    return ", " + std::to_string(record.samples_taken) + " samples";
+  return ", max-coc " + short_number(static_cast<double>(record.work.settings.max_coc_px));
+}
+
+// "llvmpipe with the faster shader, tiled: brute-force 129.0 ms, tiled 50.12 ms"
+std::string shaders_text(const BenchPeer& peer) {
+  std::string text = peer.driver + " with the faster shader, " + peer.shader + ": ";
+  for (const BenchPeer::ShaderForm& form : peer.shaders) {
+    text += (&form == peer.shaders.data() ? "" : ", ") + form.name + ' ' +
+            milliseconds_text(form.filter_ms) + " ms";
+  }
+  return text;
+}
+
 std::string heading(const BenchRecord& record) {
   const BenchWork& work = record.work;
   const PoolOptions& pool = record.options.pool;
   std::string text = work.name + ", ";
   if (work.scene) text += std::to_string(triangle_count(*work.scene)) + " triangles, ";
-  text += size_text(work.size) + ", " + std::string{work.method->name} +
+  text += size_text(work.size) + ", " + std::string{work.method.name()} +
           (record.options.arithmetic == Arithmetic::floats
                ? ""
                : " " + std::string{arithmetic_name(record.options.arithmetic)}) +
-          ", max-coc " + short_number(static_cast<double>(work.settings.max_coc_px)) + "\n";
+          setting_of(record) + "\n";
   text += "profile " + work.profile_name + ", " + std::to_string(pool.threads) +
           (pool.threads == 1 ? " thread, " : " threads, ") + std::string{isa_name(pool.isa)} +
           ", " + std::to_string(record.options.runs) + " runs, " +
           cpu_name().value_or("a CPU without a name") + "\n";
   if (record.peer) {
-    text += "against " + record.peer->renderer + ": the pictures " +
-            (record.peer->equal ? "are equal to the bit" : "differ") + "\n";
+    const BenchPeer& peer = *record.peer;
+    text += "against " + peer.renderer + ": the pictures " +
+            (peer.equal ? "are equal to the bit" : "differ") +
+            (peer.difference.empty() ? "" : "; " + peer.difference) + "\n";
+    if (!peer.shaders.empty()) text += shaders_text(peer) + "\n";
   }
   return text;
 }
@@ -109,9 +130,11 @@ std::string bench_json(const BenchRecord& record) {
             {"scene", work.name},
             {"triangles", nullptr},
             {"size", size_text(work.size)},
-            {"method", work.method->name},
+            {"method", work.method.name()},
             {"arithmetic", arithmetic_name(record.options.arithmetic)},
-            {"max_coc", work.settings.max_coc_px},
+            {"max_coc", nullptr},
+            {"samples", nullptr},
+            {"chosen", nullptr},
             {"profile", work.profile_name},
             {"threads", pool.threads},
             {"isa", isa_name(pool.isa)},
@@ -123,17 +146,28 @@ std::string bench_json(const BenchRecord& record) {
             {"ratio", nullptr},
             {"ratio_min", nullptr},
             {"ratio_max", nullptr},
-            {"equal", nullptr}};
+            {"equal", nullptr},
+            {"difference", nullptr}};
+  if (work.method.filter != nullptr) json["max_coc"] = work.settings.max_coc_px;
+  if (record.samples_taken > 0) json["samples"] = record.samples_taken;
+  if (record.choice) json["chosen"] = setting_text(*record.choice);
   if (work.scene) json["triangles"] = triangle_count(*work.scene);
   if (const auto cpu = cpu_name()) json["cpu"] = *cpu;
   if (record.peer) {
     json["peer"] = {{"driver", record.peer->driver},
                     {"renderer", record.peer->renderer},
+                    {"shader", nullptr},
+                    {"shaders", Json::array()},
                     {"stages", stages_json(record.samples.peers)}};
+    for (const BenchPeer::ShaderForm& form : record.peer->shaders) {
+      json["peer"]["shaders"].push_back({{"name", form.name}, {"dof_median_ms", form.filter_ms}});
+    }
+    if (!record.peer->shader.empty()) json["peer"]["shader"] = record.peer->shader;
     json["ratio"] = ratio_json(record, &Spread::median);
     json["ratio_min"] = ratio_json(record, &Spread::min);
     json["ratio_max"] = ratio_json(record, &Spread::max);
     json["equal"] = record.peer->equal;
+    if (!record.peer->difference.empty()) json["difference"] = record.peer->difference;
   }
   // Neither a driver's words nor a file's name need be UTF-8, but JSON must be.
   return json_text(json, 2) + "\n";

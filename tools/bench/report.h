@@ -5,15 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "dof/auto/auto_method.h"
 #include "tools/bench/paired_runs.h"
 #include "tools/bench/work.h"
 
 namespace softfocus {
 
 struct BenchPeer {
-  std::string driver;    ///< its name on the command line
-  std::string renderer;  ///< GL_RENDERER and GL_VERSION
-  bool equal = false;    ///< its picture has the bits of ours
+  std::string driver;        ///< its name on the command line
+  std::string renderer;      ///< GL_RENDERER and GL_VERSION
+  bool equal = false;        ///< its picture has the bits of ours
+  std::string difference{};  ///< why not, and what shows more; may be empty
+
+  /// A form of the filter's shader, and the median of its times.
+  struct ShaderForm {
+    std::string name;
+    double filter_ms;
+  };
+  std::vector<ShaderForm> shaders{};  ///< none if nothing is filtered, or not by a driver
+  std::string shader{};               ///< the fastest: the one that the peer's times are of
 };
 
 struct BenchRecord {
@@ -21,6 +31,8 @@ struct BenchRecord {
   const BenchWork& work;
   PairedSamples samples;
   std::optional<BenchPeer> peer;
+  std::optional<AutoMethod> choice{};  ///< of auto
+  int samples_taken = 0;               ///< by a method that draws the scene
 };
 
 std::string bench_text(const BenchRecord& record);

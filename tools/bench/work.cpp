@@ -25,17 +25,17 @@ FilmedFrom picture_lens(std::optional<float> max_coc_px, int height_px) {
   return made;
 }
 
-DofSettings chosen_settings(const BenchOptions& options, const FilmedFrom& from,
-                            const std::string& name) {
-  DofSettings settings;
+void set_lens(BenchWork& work, const BenchOptions& options, const FilmedFrom& from) {
+  DofSettings& settings = work.settings;
   settings.max_coc_px = used_max_coc_px(options.max_coc_px, from.lens, options.size.height);
-  if (options.method->name == "pinhole") return settings;  // minds no lens
+  if (work.method.name() == "pinhole") return;  // minds no lens
   const ThinLens lens = overruled(from.lens.lens, options.lens);
-  check_lens(lens, options.lens, name);
-  settings.coc = checked_pixel_coc(lens, from.fov_y_degrees, options.size.height,
-                                   options.lens.coc_scale.value_or(from.lens.coc_scale));
+  check_lens(lens, options.lens, work.name);
+  const double coc_scale = options.lens.coc_scale.value_or(from.lens.coc_scale);
+  settings.coc = checked_pixel_coc(lens, from.fov_y_degrees, options.size.height, coc_scale);
+  work.focus_m = lens.focus_m;
+  work.aperture_radius_m = aperture_radius_m(lens, coc_scale);
   check_arithmetic(options.arithmetic, settings);
-  return settings;
 }
 
 Scene chosen_scene(const BenchOptions& options) {
@@ -54,18 +54,21 @@ BenchWork make_work(const BenchOptions& options) {
   work.frame = options.frame;
   work.size = options.size;
   work.method = options.method;
+  work.largest_radius_px = options.max_coc_px;
+  work.sampling = options.sampling;
+  work.goal = options.goal;
   work.profile = options.profile;
   work.profile_name = options.profile_name;
   if (options.image) {
     work.name = "picture";
-    work.settings = chosen_settings(options, picture_lens(options.max_coc_px, height), work.name);
+    set_lens(work, options, picture_lens(options.max_coc_px, height));
     work.picture = bench_picture(width, height);
     return work;
   }
   const Scene& scene = work.scene.emplace(chosen_scene(options));
   print_scene_warnings(scene.warnings, false);
   work.name = scene.name;
-  work.settings = chosen_settings(options, {scene.lens, scene.camera.fov_y_degrees}, work.name);
+  set_lens(work, options, {scene.lens, scene.camera.fov_y_degrees});
   work.view = camera_matrices(scene.camera, work.frame, width, height);
   return work;
 }

@@ -19,8 +19,13 @@ struct BenchWork {
   CameraMatrices view{};
   double frame = 0.0;
   PictureSize size;
-  const Method* method = nullptr;
-  DofSettings settings;
+  MethodChoice method;
+  DofSettings settings;                    ///< of auto without max_coc_px
+  std::optional<float> largest_radius_px;  ///< as given: what auto must keep to
+  Sampling sampling;
+  AutoGoal goal;
+  double focus_m = 0.0;  ///< with the aperture, for methods that draw the scene
+  double aperture_radius_m = 0.0;
   Profile profile;
   std::string profile_name;
 };

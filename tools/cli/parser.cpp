@@ -139,7 +139,8 @@ void add_optional_argument(CLI::App& parser, const std::string& name, const std:
 }
 
 bool is_given(const CLI::App& parser, const std::string& option) {
-  return parser.count(option) != 0;
+  const CLI::Option* found = parser.get_option_no_throw(option);
+  return found != nullptr && found->count() != 0;
 }
 
 }  // namespace softfocus

@@ -61,7 +61,8 @@ void add_argument(CLI::App& parser, const std::string& name, const std::string& 
 void add_optional_argument(CLI::App& parser, const std::string& name, const std::string& help,
                            std::string& value);
 
-/// Whether an option, by one of its names, is on the command line that was parsed.
+/// Whether an option, by one of its names, is on the command line that was parsed; false for one
+/// that the command does not have.
 bool is_given(const CLI::App& parser, const std::string& option);
 
 }  // namespace softfocus

@@ -35,8 +35,9 @@ RepeatedOnGl::RepeatedOnGl(const Driver&, const BenchWork&, int) { refuse(); }
 RepeatedOnGl::~RepeatedOnGl() = default;
 std::string RepeatedOnGl::renderer() const { refuse(); }
 void RepeatedOnGl::draw() { refuse(); }
-void RepeatedOnGl::filter() { refuse(); }
 void RepeatedOnGl::finish() { refuse(); }
-Image RepeatedOnGl::picture() const { refuse(); }
+std::vector<std::string> RepeatedOnGl::forms() const { refuse(); }
+void RepeatedOnGl::filter(std::size_t) { refuse(); }
+Image RepeatedOnGl::picture(std::size_t) const { refuse(); }
 
 }  // namespace softfocus

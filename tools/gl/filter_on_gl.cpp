@@ -1,6 +1,7 @@
 #include "tools/gl/filter_on_gl.h"
 
 #include <array>
+#include <cmath>
 
 #include "dof/one_pass/one_pass.h"
 #include "dof/weights.h"
@@ -30,19 +31,56 @@ Image ring_tap_image(const std::vector<RingTap>& taps) {
   return image;
 }
 
+// How many tiles away the largest circle can come from: tile_reach.frag's gap_px().
+int farthest_tiles(float max_coc_px, int tile_px) {
+  return max_coc_px > 1.0f
+             ? static_cast<int>(std::ceil((max_coc_px - 1.0f) / static_cast<float>(tile_px)))
+             : 0;
+}
+
+GlTileReach make_tile_reach(const GlContext& context, const Shaders& shaders,
+                            const DofSettings& settings, bool diagonal, int width, int height,
+                            int tile_px) {
+  const int columns = (width + tile_px - 1) / tile_px, rows = (height + tile_px - 1) / tile_px;
+  GlTileReach tiles{tile_px, link_program(context, shaders, "fullscreen.vert", "tile_rows.frag"),
+                    link_program(context, shaders, "fullscreen.vert", "tile_reach.frag"),
+                    make_target(std::array{Format::r32f}, columns, height, false),
+                    make_target(std::array{Format::rgba32f}, columns, rows, false)};
+  set_settings(tiles.rows_program, settings);
+  set_uniform(tiles.rows_program, "tile_px", tile_px);
+  set_uniform(tiles.reach_program, "tile_px", tile_px);
+  set_uniform(tiles.reach_program, "farthest", farthest_tiles(settings.max_coc_px, tile_px));
+  set_uniform(tiles.reach_program, "diagonal", diagonal ? 1 : 0);
+  return tiles;
+}
+
+void find_reach(const GlTileReach& tiles, const GlTexture& scene) {
+  set_texture(tiles.rows_program, "source", 0, scene);
+  draw_fullscreen(tiles.rows, tiles.rows_program);
+  set_texture(tiles.reach_program, "row_radius", 0, tiles.rows.colour[0]);
+  draw_fullscreen(tiles.reach, tiles.reach_program);
+}
+
+std::string_view fragment_shader(bool rings, FilterForm form) {
+  if (form == FilterForm::tiled) return rings ? "one_pass_tiled.frag" : "two_pass_tiled.frag";
+  return rings ? "one_pass.frag" : "two_pass.frag";
+}
+
 }  // namespace
 
-bool has_shader(std::string_view method) { return method == "two-pass" || method == "one-pass"; }
+std::string_view form_name(FilterForm form) {
+  return form == FilterForm::tiled ? "tiled" : "brute-force";
+}
 
 GlFilter make_filter(const GlContext& context, const Shaders& shaders, std::string_view method,
-                     const DofSettings& settings, int width, int height) {
+                     FilterForm form, const DofSettings& settings, int width, int height,
+                     int tile_px) {
   if (!has_shader(method)) {
     throw DriverError("the method " + std::string(method) + " has no shader");
   }
   const bool rings = method == "one-pass";
   GlFilter filter;
-  filter.program =
-      link_program(context, shaders, "fullscreen.vert", rings ? "one_pass.frag" : "two_pass.frag");
+  filter.program = link_program(context, shaders, "fullscreen.vert", fragment_shader(rings, form));
   set_settings(filter.program, settings);
   int taps = tap_count(settings.max_coc_px);
   if (rings) {
@@ -51,13 +89,21 @@ GlFilter make_filter(const GlContext& context, const Shaders& shaders, std::stri
     taps = static_cast<int>(ring.size());
   }
   set_uniform(filter.program, "taps", taps);
+  set_uniform(filter.program, "tile_px", tile_px);
   for (int pass = 0; pass < (rings ? 1 : 2); ++pass) {
     filter.targets.push_back(make_target(std::array{Format::rgba16f}, width, height, false));
+  }
+  if (form == FilterForm::tiled) {
+    filter.tiles = make_tile_reach(context, shaders, settings, rings, width, height, tile_px);
   }
   return filter;
 }
 
 void run_filter(const GlFilter& filter, const GlTexture& scene) {
+  if (filter.tiles) {
+    find_reach(*filter.tiles, scene);
+    set_texture(filter.program, "tile_reach", 2, filter.tiles->reach.colour[0]);
+  }
   const GlTexture* source = &scene;
   if (filter.ring_taps != 0) set_texture(filter.program, "ring_taps", 1, filter.ring_taps);
   glm::ivec2 direction{1, 0};  // of two-pass; one-pass has none
@@ -72,7 +118,8 @@ void run_filter(const GlFilter& filter, const GlTexture& scene) {
 
 GlTarget filter_on_gl(const GlContext& context, const Shaders& shaders, std::string_view method,
                       const DofSettings& settings, const GlTexture& scene, int width, int height) {
-  GlFilter filter = make_filter(context, shaders, method, settings, width, height);
+  GlFilter filter =
+      make_filter(context, shaders, method, FilterForm::brute_force, settings, width, height);
   run_filter(filter, scene);
   return std::move(filter.targets.back());
 }

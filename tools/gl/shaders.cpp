@@ -57,6 +57,8 @@ std::string expanded(const Shaders& shaders, std::string_view name, int depth) {
 
 }  // namespace
 
+bool has_shader(std::string_view method) { return method == "two-pass" || method == "one-pass"; }
+
 Shaders read_shaders(const std::filesystem::path& folder) {
   Shaders shaders;
   bool any = false;

@@ -18,6 +18,9 @@ struct Shader {
 /// Every shader, by name. Defined in a file that the build makes.
 const std::vector<Shader>& built_in_shaders();
 
+/// The methods that have a shader: two-pass and one-pass; pinhole needs none.
+bool has_shader(std::string_view method);
+
 /// Where shaders are taken from: the user's, by name, and then the built-in ones.
 struct Shaders {
   std::map<std::string, std::string, std::less<>> own;

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "raster/lanes/isa.h"
@@ -48,6 +49,22 @@ void check_stages(const json& stages, const Words& names) {
 
 const Words kAllStages{"raster", "dof", "frame"};
 
+// Of a shader's two forms the one that took less is the peer.
+void check_faster_form(const json& result, bool filters) {
+  const json& shaders = result["peer"]["shaders"];
+  CHECK(shaders.size() == (filters ? 2 : 0));
+  CHECK(result["peer"]["shader"].is_null() == !filters);
+  if (!filters) return;
+  CHECK(shaders[0]["name"] == "brute-force");
+  CHECK(shaders[1]["name"] == "tiled");
+  const double brute_force_ms = shaders[0]["dof_median_ms"], tiled_ms = shaders[1]["dof_median_ms"];
+  CHECK(result["peer"]["shader"] == (tiled_ms < brute_force_ms ? "tiled" : "brute-force"));
+  for (const json& stage : result["peer"]["stages"]) {
+    if (stage["name"] != "dof") continue;
+    CHECK(stage["median_ms"] == std::min(brute_force_ms, tiled_ms));
+  }
+}
+
 void check_versus(const std::string& driver) {
   if (!has_driver(driver)) return;
   for (const char* method : {"two-pass", "one-pass", "pinhole"}) {
@@ -65,6 +82,8 @@ void check_versus(const std::string& driver) {
       CHECK(result["ratio"][stage] <= result["ratio_max"][stage]);
     }
     CHECK(result["equal"] == true);
+    CHECK(result["difference"].is_null());
+    check_faster_form(result, method != std::string{"pinhole"});
   }
 }
 
@@ -157,12 +176,39 @@ TEST_CASE("bench: --vs of a picture compares the filter alone") {
     CHECK(result["ratio"]["dof"] > 0.0);
     check_stages(result["peer"]["stages"], {"dof"});
     CHECK(result["equal"] == true);
+    check_faster_form(result, method != std::string{"pinhole"});
   }
 }
 
-TEST_CASE("bench: pictures that differ are said to") {
+TEST_CASE("bench: pictures that differ are said to, and which profile would make them equal") {
   if (!has_driver("llvmpipe")) return;
-  CHECK(benched(kSpheres, {"--vs", "llvmpipe", "--profile", "ieee"})["equal"] == false);
+  const json result = benched(kSpheres, {"--vs", "llvmpipe", "--profile", "ieee"});
+  CHECK(result["equal"] == false);
+  const std::string profile = profile_of("llvmpipe");
+  CHECK(result["difference"] == "llvmpipe rounds as profile " + profile +
+                                    ", not as ieee; --profile " + profile + " gives its bits");
+}
+
+TEST_CASE("bench: auto is timed with its choice, which is told") {
+  const json sharp = benched(kScene, {"--method", "auto", "--coc-scale", "0"});
+  CHECK(sharp["method"] == "auto");
+  CHECK(sharp["chosen"] == "pinhole");
+  CHECK(sharp["max_coc"].is_null());
+  check_stages(sharp["stages"], kAllStages);
+  const ProgramRun run = run_program({"bench", "figures", "--size", "64x64", "--runs", "10",
+                                      "--method", "auto", "--max-time", "0"});
+  CHECK(run.status == 0);
+  CHECK(contains(run.out, ", 64x64, auto: "));
+}
+
+TEST_CASE("bench: methods that draw the scene are timed, and their samples are told") {
+  const json result = benched(kScene, {"--method", "accumulation", "--samples", "3"});
+  CHECK(result["method"] == "accumulation");
+  CHECK(result["samples"] == 3);
+  CHECK(result["max_coc"].is_null());
+  CHECK(result["chosen"].is_null());
+  check_stages(result["stages"], kAllStages);
+  CHECK(benched(kScene, {"--method", "accumulation", "--until", "1000"})["samples"] == 16);
 }
 
 TEST_CASE("bench: the text of a comparison names the driver and says whether the bits agree") {
@@ -173,6 +219,9 @@ TEST_CASE("bench: the text of a comparison names the driver and says whether the
   CHECK(contains(run.out, "\nagainst llvmpipe ("));
   CHECK(contains(run.out, ": the pictures are equal to the bit\n"));
   CHECK(contains(run.out, "llvmpipe / ours"));
+  CHECK(contains(run.out, "\nllvmpipe with the faster shader, "));
+  CHECK(contains(run.out, ": brute-force "));
+  CHECK(contains(run.out, " ms, tiled "));
 }
 
 TEST_CASE("bench: a driver that is not there is told in one line, with status 1") {
@@ -213,6 +262,14 @@ TEST_CASE("bench: bad options are refused with what would be right") {
   refused({"figures", "--max-coc", "2000"}, {"--max-coc"});
   refused({"figures", "--vs", "voodoo"}, {"--vs 'voodoo'", "llvmpipe, llvmpipe-sse41, softpipe"});
   refused({"figures", "--focal-length", "3000"}, {"--focal-length 3000 mm"});
+  refused({"figures", "--vs", "llvmpipe", "--method", "disc-layers"},
+          {"--vs and --method disc-layers", "two-pass and one-pass", "--method pinhole"});
+  refused({"figures", "--vs", "llvmpipe", "--method", "auto"}, {"--vs and --method auto"});
+  refused({"--image", "64x64", "--method", "auto"}, {"--image and --method auto", "SCENE"});
+  refused({"--image", "64x64", "--method", "accumulation"}, {"--image and --method accumulation"});
+  refused({"figures", "--samples", "4"}, {"--samples", "two-pass", "accumulation"});
+  refused({"figures", "--method", "auto", "--samples", "4"}, {"--samples", "auto"});
+  refused({"figures", "--max-error", "0.1"}, {"--max-error", "--method auto"});
   refused({"figures", "cube-room"}, {"unexpected argument 'cube-room'"});
   refused({"no-such-scene"}, {"no-such-scene"}, 1);
 }
@@ -220,11 +277,30 @@ TEST_CASE("bench: bad options are refused with what would be right") {
 TEST_CASE("bench: the help names every option") {
   const ProgramRun run = run_program({"bench", "--help"});
   CHECK(run.status == 0);
-  for (const char* option :
-       {"SCENE", "--triangles N", "--image WxH", "--size WxH", "--frame N", "--scene-path DIR",
-        "--method NAME", "--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
-        "--max-coc PIXELS", "--profile NAME", "--threads N", "--isa NAME", "--runs N",
-        "--vs DRIVER", "--json"}) {
+  for (const char* option : {"SCENE",
+                             "--triangles N",
+                             "--image WxH",
+                             "--size WxH",
+                             "--frame N",
+                             "--scene-path DIR",
+                             "--method NAME",
+                             "--focus METRES",
+                             "--focal-length MM",
+                             "--f-number N",
+                             "--coc-scale S",
+                             "--max-coc PIXELS",
+                             "--samples N",
+                             "--jitter",
+                             "--until ERROR",
+                             "--aperture-blades N",
+                             "--max-error E",
+                             "--max-time MS",
+                             "--profile NAME",
+                             "--threads N",
+                             "--isa NAME",
+                             "--runs N",
+                             "--vs DRIVER",
+                             "--json"}) {
     CAPTURE(option);
     CHECK(contains(run.out, std::string{"  "} + option));
   }

@@ -42,8 +42,9 @@ void check_all_equal(const std::string& driver) {
     stages.insert(entry["stage"]);
   }
   const std::set<std::string> all{
-      "store", "bilinear-rgba16f", "bilinear-rgba8", "mipmap", "coverage", "depth", "attributes",
-      "scene", "two-pass",         "one-pass",       "frame"};
+      "store", "bilinear-rgba16f", "bilinear-rgba8", "mipmap",   "coverage",
+      "depth", "attributes",       "scene",          "two-pass", "one-pass",
+      "frame", "two-pass-tiled",   "one-pass-tiled"};
   CHECK(stages == all);
 }
 
@@ -147,6 +148,11 @@ TEST_CASE("crosscheck: another order of operations in a shader is caught" *
                       "here + d * direction");
   check_shader_caught("one-pass/random-64x64-radius4", "one_pass.frag", "int i = 0; i < taps; ++i",
                       "int i = taps - 1; i >= 0; --i");
+  // A tile's reach without its neighbours', or without those across its corners.
+  check_shader_caught("two-pass-tiled/islands-60x40-tiles5", "tile_reach.frag", "dx <= farthest",
+                      "dx <= 0");
+  check_shader_caught("one-pass-tiled/islands-60x40-tiles5", "tile_reach.frag", "!diagonal && ",
+                      "");
   check_shader_caught("scene/figures-128x96-frame7", "lighting.glsl",
                       "(a.x * b.x + a.y * b.y) + a.z * b.z", "a.x * b.x + (a.y * b.y + a.z * b.z)");
   check_shader_caught("frame/figures-128x96-frame7-two-pass", "weights.glsl",

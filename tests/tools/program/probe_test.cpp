@@ -159,7 +159,10 @@ TEST_CASE("render: --gl and --profile exclude each other") {
 TEST_CASE("shaders: lists them, and writes them out whole") {
   const ProgramRun list = run_program({"shaders"});
   CHECK(list.status == 0);
-  CHECK(contains(list.out, "two_pass.frag\n"));
+  for (const char* name : {"two_pass.frag\n", "two_pass_tiled.frag\n", "one_pass.frag\n",
+                           "one_pass_tiled.frag\n", "tile_rows.frag\n", "tile_reach.frag\n"}) {
+    CHECK(contains(list.out, name));
+  }
   CHECK(contains(list.out, "surface.vert\n"));
   const TemporaryDirectory directory;
   CHECK(run_program({"shaders", "-o", directory.path()}).status == 0);

@@ -1,0 +1,68 @@
+#include "tools/bench/our_frame.h"
+
+#include "scenes/lens_views/take_samples.h"
+
+namespace softfocus {
+namespace {
+
+void apply_filter(OurFrame& frame, const Method& method, const DofSettings& settings) {
+  const BenchWork& work = frame.work;
+  const Image& scene = work.scene ? frame.drawn : work.picture;
+  Image& filtered = frame.filtered;  // one memory for all frames
+  if (filtered.bytes.empty()) filtered = make_image(scene.format, scene.width, scene.height);
+  apply(method, {scene, settings, work.profile}, filtered, frame.pool);
+}
+
+void sample_lens(OurFrame& frame, const LensViewMethod& method, const Sampling& sampling) {
+  const BenchWork& work = frame.work;
+  const LensViewInput input{
+      *work.scene, work.view,    work.frame, frame.drawn, work.focus_m, work.aperture_radius_m,
+      sampling,    work.profile, {},         nullptr};
+  SampledPicture sampled;
+  if (method.render == accumulation) {
+    // As accumulation() does it, but with textures decoded once for all frames.
+    if (!frame.views) frame.views = make_accumulation_buffer(input, frame.pool);
+    const auto add_samples = [&](int begin, int end, SampleSums& sums) {
+      add_lens_views(*frame.views, input, begin, end, sums, frame.pool);
+    };
+    sampled = take_samples(input, add_samples, kLensViewGroup, frame.pool);
+  } else {
+    sampled = method.render(input, frame.pool);
+  }
+  frame.samples = sampled.samples;
+  frame.filtered = std::move(sampled.picture);
+}
+
+}  // namespace
+
+void draw(OurFrame& frame) {
+  const BenchWork& work = frame.work;
+  if (!frame.scene) frame.scene = prepare_scene(*work.scene, work.profile, frame.pool);
+  if (frame.drawn.bytes.empty()) {
+    frame.drawn = make_image(Format::rgba16f, work.size.width, work.size.height);
+  }
+  draw_scene(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
+}
+
+void filter(OurFrame& frame) {
+  const BenchWork& work = frame.work;
+  MethodChoice method = work.method;
+  DofSettings settings = work.settings;
+  Sampling sampling = work.sampling;
+  if (method.is_auto()) {
+    const SceneTraits traits = scene_traits(frame.drawn, settings.coc, frame.pool);
+    const AutoMethod choice =
+        auto_method(traits, work.goal, {work.largest_radius_px, triangle_count(*work.scene)});
+    method = {find_method(choice.method), find_lens_view_method(choice.method)};
+    settings.max_coc_px = choice.radius_px;
+    if (method.of_scene != nullptr) sampling.samples = choice.samples;
+    frame.choice = choice;
+  }
+  if (method.of_scene != nullptr) {
+    sample_lens(frame, *method.of_scene, sampling);
+  } else {
+    apply_filter(frame, *method.filter, settings);
+  }
+}
+
+}  // namespace softfocus

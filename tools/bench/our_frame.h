@@ -1,0 +1,33 @@
+#pragma once
+// Our contender: a frame drawn and given its depth of field again and again.
+
+#include <optional>
+
+#include "dof/auto/auto_method.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/lens_views/accumulation.h"
+#include "tools/bench/work.h"
+
+namespace softfocus {
+
+/// The work, and what its stages leave for the next frame: memory, and what a driver has in place
+/// as well (decoded textures).
+struct OurFrame {
+  const BenchWork& work;
+  ThreadPool& pool;
+  std::optional<PreparedScene> scene{};
+  std::optional<AccumulationBuffer> views{};
+  Image drawn{};
+  Image filtered{};
+  std::optional<AutoMethod> choice{};  ///< of auto
+  int samples = 0;                     ///< taken by a method that draws the scene
+};
+
+/// Draws the scene; needs one.
+void draw(OurFrame& frame);
+
+/// Gives depth of field to what was drawn, or to the work's picture. Auto looks at the picture and
+/// chooses each time.
+void filter(OurFrame& frame);
+
+}  // namespace softfocus
