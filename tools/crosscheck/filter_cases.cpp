@@ -99,7 +99,8 @@ void add_filter_cases(const char* method, FilterForm form, std::vector<Case>& ca
   const std::string stage = std::string{method} + (tiled ? "-tiled" : "");
   const auto add = [&](const std::string& name, bool quick, bool slow_too, const FilterCase& what) {
     cases.push_back(
-        {stage, name, quick && (!tiled || what.width < 64), slow_too,
+        {stage, name, quick && (!tiled || what.picture == TestPicture::islands || what.width == 1),
+         slow_too,
          [=](const Bench& bench, Tally& tally) { filter_both(bench, tally, method, form, what); }});
   };
   for (const int radius : {1, 4, 16, 64}) {
