@@ -18,10 +18,10 @@ namespace softfocus {
 /// sampler2D ring_taps, 256 a row: dx, dy, distance.
 ///
 /// The tiled forms give the same bits, in less time where much is in focus or at large radii: two
-/// small passes find how far the taps of each tile must go. With int tile_px = 64 and tiles of
-/// W / 64 x H / 64, rounded up: "tile_rows.frag" is drawn into R32F, W / 64 wide and as high as the
-/// picture, with the uniforms of a filter; "tile_reach.frag" into RGBA32F of W / 64 x H / 64, with
-/// sampler2D row_radius, int farthest = ceil((max_coc_px - 1) / 64), at least 0, and bool diagonal,
+/// small passes find how far the taps of each tile must go. With int tile_px = 32 and tiles of
+/// W / 32 x H / 32, rounded up: "tile_rows.frag" is drawn into R32F, W / 32 wide and as high as the
+/// picture, with the uniforms of a filter; "tile_reach.frag" into RGBA32F of W / 32 x H / 32, with
+/// sampler2D row_radius, int farthest = ceil((max_coc_px - 1) / 32), at least 0, and bool diagonal,
 /// true for one_pass. Then "two_pass_tiled.frag" and "one_pass_tiled.frag" are drawn as the
 /// plain ones, with the reach in sampler2D tile_reach.
 std::string_view shader_text(std::string_view name);

