@@ -69,7 +69,7 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_lens_options(parser, options.lens);
   add_max_coc_option(parser, options.max_coc_px);
   add_sampling_options(parser, options.sampling);
-  add_auto_options(parser, options.goal);
+  add_auto_options(parser, options.goal, options.verify);
   add_profile_option(parser, options.profile, options.profile_name);
   add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--runs", "N", "Times that each is run and timed, 10 to 1000 (default: 15)",

@@ -30,6 +30,7 @@ struct BenchOptions {
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;  ///< of a method that draws the scene
   AutoGoal goal;      ///< of auto
+  Verify verify = Verify::in_doubt;
   LensOptions lens;
   std::optional<float> max_coc_px;
   Profile profile;

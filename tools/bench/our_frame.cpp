@@ -1,5 +1,6 @@
 #include "tools/bench/our_frame.h"
 
+#include "scenes/auto/auto_picture.h"
 #include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
@@ -13,11 +14,28 @@ void apply_filter(OurFrame& frame, const Method& method, const DofSettings& sett
   apply(method, {scene, settings, work.profile}, filtered, frame.pool);
 }
 
-void sample_lens(OurFrame& frame, const LensViewMethod& method, const Sampling& sampling) {
+LensViewInput views_input(OurFrame& frame, const Sampling& sampling) {
   const BenchWork& work = frame.work;
-  const LensViewInput input{
-      *work.scene, work.view,    work.frame, frame.drawn, work.focus_m, work.aperture_radius_m,
-      sampling,    work.profile, {},         nullptr};
+  return {*work.scene, work.view,    work.frame, frame.drawn, work.focus_m, work.aperture_radius_m,
+          sampling,    work.profile, {},         nullptr};
+}
+
+// As `render` has it, checks included.
+void choose_and_filter(OurFrame& frame) {
+  const BenchWork& work = frame.work;
+  const LensViewInput views = views_input(frame, work.sampling);
+  AutoPicture found = auto_picture({.views = views,
+                                    .settings = work.settings,
+                                    .goal = work.goal,
+                                    .limits = {work.largest_radius_px, triangle_count(*work.scene)},
+                                    .verify = work.verify},
+                                   frame.pool);
+  frame.filtered = std::move(found.picture);
+  frame.choice = std::move(found.choice);
+}
+
+void sample_lens(OurFrame& frame, const LensViewMethod& method, const Sampling& sampling) {
+  const LensViewInput input = views_input(frame, sampling);
   SampledPicture sampled;
   if (method.render == accumulation) {
     // As accumulation() does it, but with textures decoded once for all frames.
@@ -46,22 +64,12 @@ void draw(OurFrame& frame) {
 
 void filter(OurFrame& frame) {
   const BenchWork& work = frame.work;
-  MethodChoice method = work.method;
-  DofSettings settings = work.settings;
-  Sampling sampling = work.sampling;
-  if (method.is_auto()) {
-    const SceneTraits traits = scene_traits(frame.drawn, settings.coc, frame.pool);
-    const AutoMethod choice =
-        auto_method(traits, work.goal, {work.largest_radius_px, triangle_count(*work.scene)});
-    method = {find_method(choice.method), find_lens_view_method(choice.method)};
-    settings.max_coc_px = choice.radius_px;
-    if (method.of_scene != nullptr) sampling.samples = choice.samples;
-    frame.choice = choice;
-  }
+  const MethodChoice& method = work.method;
+  if (method.is_auto()) return choose_and_filter(frame);
   if (method.of_scene != nullptr) {
-    sample_lens(frame, *method.of_scene, sampling);
+    sample_lens(frame, *method.of_scene, work.sampling);
   } else {
-    apply_filter(frame, *method.filter, settings);
+    apply_filter(frame, *method.filter, work.settings);
   }
 }
 

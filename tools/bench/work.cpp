@@ -57,6 +57,7 @@ BenchWork make_work(const BenchOptions& options) {
   work.largest_radius_px = options.max_coc_px;
   work.sampling = options.sampling;
   work.goal = options.goal;
+  work.verify = options.verify;
   work.profile = options.profile;
   work.profile_name = options.profile_name;
   if (options.image) {

@@ -24,6 +24,7 @@ struct BenchWork {
   std::optional<float> largest_radius_px;  ///< as given: what auto must keep to
   Sampling sampling;
   AutoGoal goal;
+  Verify verify = Verify::in_doubt;
   double focus_m = 0.0;  ///< with the aperture, for methods that draw the scene
   double aperture_radius_m = 0.0;
   Profile profile;

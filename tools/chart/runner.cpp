@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "raster/numbers/profile.h"
+#include "scenes/auto/auto_picture.h"
 
 namespace softfocus {
 namespace {
@@ -101,27 +103,28 @@ RunTime ChartRunner::accumulate(int samples) {
   return {ms_between(start, Clock::now()), std::nullopt};
 }
 
-// The sharp picture is copied, as the pinhole's contender copies it.
-void ChartRunner::carry_out(const AutoMethod& choice) {
-  if (choice.samples > 0) return add_all_views(choice.samples);
-  const Method& filter = *find_method(is_sharp(choice) ? kPinhole : choice.method);
-  filter_drawn(filter, choice.radius_px, views_.profile);
-}
-
-AutoMethod ChartRunner::chosen_for(double max_error) {
+AutoMethod ChartRunner::predicted_for(double max_error) {
   return auto_method(scene_traits(drawn_, scene_.coc, pool_), {max_error},
                      {{}, triangle_count(scene_.scene)});
 }
 
+// As `render` has it: a doubtful choice is checked, which takes its time.
 RunTime ChartRunner::choose(double max_error) {
   PreparedScene& prepared = prepared_for("ieee");
   const Clock::time_point start = Clock::now();
   draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
   const Clock::time_point drawn = Clock::now();
-  const AutoMethod choice = chosen_for(max_error);
-  carry_out(choice);
+  LensViewInput views = views_;
+  views.prepared = &prepared;
+  AutoPicture found = auto_picture({.views = views,
+                                    .settings = {.coc = scene_.coc},
+                                    .goal = {max_error},
+                                    .limits = {{}, triangle_count(scene_.scene)}},
+                                   pool_);
   const Clock::time_point end = Clock::now();
-  chosen_ = setting_text(choice);
+  prepared_.erase("ieee");  // moved from, perhaps
+  result_ = std::move(found.picture);
+  chosen_ = setting_text(found.choice);
   return {ms_between(start, end), ms_between(drawn, end)};
 }
 
@@ -130,9 +133,11 @@ void ChartRunner::warm_up(const ChartEntry& entry) {
   int samples = entry.samples;
   if (entry.max_error) {
     draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
-    const AutoMethod choice = chosen_for(*entry.max_error);
+    const AutoMethod choice = predicted_for(*entry.max_error);
     samples = choice.samples;
-    if (samples == 0) carry_out(choice);
+    if (samples == 0) {
+      filter_drawn(*find_method(choice.method), choice.radius_px, views_.profile);
+    }
   } else if (entry.filter != nullptr) {
     filter(entry);
   }

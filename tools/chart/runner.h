@@ -41,7 +41,7 @@ class ChartRunner {
   RunTime filter(const ChartEntry& entry);
   RunTime accumulate(int samples);
   RunTime choose(double max_error);
-  AutoMethod chosen_for(double max_error);
+  AutoMethod predicted_for(double max_error);
   PreparedScene& prepared_for(const std::string& profile);
   void filter_drawn(const Method& filter, float max_coc_px, const Profile& profile);
   void filter_drawn(const ChartEntry& entry, const Profile& profile);
@@ -49,7 +49,6 @@ class ChartRunner {
   void add_views(int first, int last);
   void warm_up(const ChartEntry& entry);
   void add_all_views(int samples);
-  void carry_out(const AutoMethod& choice);
 
   const ChartScene& scene_;
   LensViewInput views_;  // with as many points of the lens as anything here takes

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "dof/auto/auto_method.h"
+#include "scenes/auto/auto_picture.h"
 #include "scenes/lens_views/accumulation.h"
 
 namespace softfocus {
@@ -37,11 +37,13 @@ Image filtered(const Method& method, const StressFrame& frame, float max_coc_px,
 
 /// What auto chooses by itself, with no goal but its own.
 Image chosen_picture(const StressFrame& frame, ThreadPool& pool) {
-  const AutoMethod choice = auto_method(scene_traits(frame.sharp, frame.settings.coc, pool), {},
-                                        {{}, triangle_count(frame.scene->scene)});
-  if (choice.samples > 0) return accumulation(views_input(frame, choice.samples), pool).picture;
-  if (is_sharp(choice)) return frame.sharp;
-  return filtered(*find_method(choice.method), frame, choice.radius_px, pool);
+  const LensViewInput views = views_input(frame, 1);
+  return auto_picture({.views = views,
+                       .settings = frame.settings,
+                       .goal = {},
+                       .limits = {{}, triangle_count(frame.scene->scene)}},
+                      pool)
+      .picture;
 }
 
 Image method_picture(const std::string& method, const StressFrame& frame, ThreadPool& pool) {

@@ -64,7 +64,7 @@ class TrialWork {
       if (const auto pictures = method_pictures(method, trial_, work_.pool)) {
         measure_method(method, *pictures);
       }
-      work_.left.done(1.0);
+      work_.left.done(method, 1.0);
     }
     if (first().views > 0) measure_noise();
     if (severity_ == first().shown) keep_truth_pictures();
@@ -202,11 +202,12 @@ StressFindings measure_stress(const StressOptions& options, ThreadPool& pool) {
   const std::vector<CaseGroup> groups = case_groups(results);
   std::size_t trials = 0;
   for (const CaseGroup& group : groups) trials += results[group.front()].severities.size();
-  StressWork work{options,
-                  pool,
-                  {std::move(results), 0, 0},
-                  {},
-                  TimeLeft{static_cast<double>(trials * options.methods.size())}};
+  StressWork work{options, pool, {std::move(results), 0, 0}, {}, TimeLeft{}};
+  // Views of the lens take about as long as fifty filters.
+  for (const std::string& method : options.methods) {
+    work.left.plan(method, static_cast<double>(trials),
+                   find_method(method) != nullptr ? 1.0 : 50.0);
+  }
   for (const CaseGroup& group : groups) {
     const std::size_t count = work.findings.results[group.front()].severities.size();
     for (std::size_t i = 0; i < count; ++i) TrialWork{work, group, i}.run();

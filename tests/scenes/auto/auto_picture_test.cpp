@@ -123,7 +123,7 @@ TEST_CASE("auto picture: an error that nothing reaches is said to be missed") {
 }
 
 TEST_CASE("auto picture: a check is due unless the prediction is far within the limit") {
-  AutoMethod choice{.method = "two-pass", .predicted_error = 0.011, .traits = {}};
+  AutoMethod choice{.method = "two-pass", .predicted_error = 0.0115, .traits = {}};
   CHECK(is_in_doubt(choice, {.max_error = 0.02}));
   CHECK_FALSE(is_in_doubt(choice, {.max_error = 0.05}));
   choice.meets_goal = false;
