@@ -18,11 +18,16 @@ namespace {
 // limit missed it (docs/auto.md).
 constexpr double kDoubt = 1.75;
 constexpr int kFirstViews = 64, kMostViews = 512;
+// The views that a picture is held against follow all that it can be made of. Blocks of a power
+// of two are even wherever they begin (lens_points.h).
+const int kFirstCheckedView = kSampleCounts.back();
+// The halves of fewer views tell too little: these are held against other views.
+constexpr int kFewestByHalves = 64;
 // Filters that are tried before views of the lens are taken.
 constexpr int kMostFilters = 4;
 // The FLIP of the mean of all views is at most this times that of their two halves. Of twelve
-// scenes, against 2,048 views: .26 to .74 for 16 views, .31 to .66 for 32 to 256.
-double halves_to_whole(int views) { return views < 32 ? 0.75 : 0.62; }
+// scenes, against 2,048 views: .31 to .61 for 64 to 256 views.
+constexpr double kHalvesToWhole = 0.62;
 
 std::string number_text(double value) {
   std::array<char, 32> text{};
@@ -43,14 +48,14 @@ class Work {
       AutoPicture result = draw(choice);
       if (!is_checked(choice)) return result;
       if (choice.samples > 0) return result;  // its own halves have told
-      check(result);
+      result.measured_error = check(result.picture, result.choice);
       if (result.choice.meets_goal || !step_up(result, choice)) return result;
     }
   }
 
  private:
   static LensViewInput with_all_samples(LensViewInput views) {
-    views.sampling.samples = kSampleCounts.back();
+    views.sampling.samples = kFirstCheckedView + kMostViews;
     return views;
   }
 
@@ -95,14 +100,26 @@ class Work {
     return mean_picture(sums, views_.pinhole, views_.profile, pool_);
   }
 
-  void add_views(SampleSums& sums, int until, std::span<const int> tiles) {
+  /// Views from `first` on; of the picture only the tiles, if there are any.
+  void add_views(SampleSums& sums, int until, int first = 0, std::span<const int> tiles = {}) {
     while (sums.count < until) {
       // As take_samples() has it, for the same bits.
       const int step = sums.count < kLensViewGroup ? kSampleGroup : kLensViewGroup;
-      add_lens_views(buffer(), views_, sums.count, std::min(sums.count + step, until), sums, pool_,
-                     tiles);
+      const int end = std::min(sums.count + step, until);
+      add_lens_views(buffer(), views_, first + sums.count, first + end, sums, pool_, tiles);
       if (views_.progress && tiles.empty()) views_.progress(sums.count);
     }
+  }
+
+  AutoMethod with_twice_the_samples(const AutoMethod& choice) const {
+    const std::vector<AutoMethod> choices = open_choices(traits_, input_.limits);
+    const auto twice = std::find_if(choices.begin(), choices.end(), [&](const AutoMethod& other) {
+      return other.samples == 2 * choice.samples;
+    });
+    assert(twice != choices.end());  // kSampleCounts doubles
+    AutoMethod found = *twice;
+    found.reason = choice.reason;
+    return found;
   }
 
   AutoPicture draw_views(AutoMethod choice) {
@@ -110,21 +127,19 @@ class Work {
     SampleSums sums = make_sample_sums(views_.pinhole.width, views_.pinhole.height);
     AutoPicture result;
     // Halves of whole groups, so that they have the bits of fewer samples.
-    if (is_checked(choice)) choice.samples = std::max(choice.samples, 2 * kSampleGroup);
-    if (choice.samples >= 2 * kSampleGroup) add_views(sums, choice.samples / 2, {});
+    if (is_checked(choice) && choice.samples < 2 * kSampleGroup) {
+      choice = with_twice_the_samples(choice);
+    }
+    if (choice.samples >= 2 * kSampleGroup) add_views(sums, choice.samples / 2);
     for (;;) {
       const SampleSums half = sums;
-      add_views(sums, choice.samples, {});
+      add_views(sums, choice.samples);
       if (!is_checked(choice)) break;
-      tell(AutoStage::checking);
-      const PixelMap flip =
-          flip_map(mean_of(half), mean_of(later_samples(half, sums)), clamped_tone(), pool_);
-      result.measured_error = halves_to_whole(sums.count) * mean(flip);
-      choice.meets_goal = *result.measured_error <= input_.goal.max_error;
-      choice.reason += "; its halves show an error of " + number_text(*result.measured_error);
+      result.measured_error = choice.samples < kFewestByHalves ? check(mean_of(sums), choice)
+                                                               : check_halves(half, sums, choice);
       if (choice.meets_goal || choice.samples >= kSampleCounts.back()) break;
+      choice = with_twice_the_samples(choice);
       choice.reason += ", so its samples were doubled";
-      choice.samples *= 2;
       ++rejected_;
       tell(AutoStage::sampling);
     }
@@ -134,6 +149,16 @@ class Work {
     return result;
   }
 
+  double check_halves(const SampleSums& half, const SampleSums& sums, AutoMethod& choice) {
+    tell(AutoStage::checking);
+    const PixelMap flip =
+        flip_map(mean_of(half), mean_of(later_samples(half, sums)), clamped_tone(), pool_);
+    const double error = kHalvesToWhole * mean(flip);
+    choice.meets_goal = error <= input_.goal.max_error;
+    choice.reason += "; its halves show an error of " + number_text(error);
+    return error;
+  }
+
   // Begins the truth of the sampled tiles.
   void take_tiles() {
     // What a lens would do, about: the most accurate of the filters that cut no circle.
@@ -141,37 +166,37 @@ class Work {
     sample_ = sample_tiles(views_.pinhole, guess, kCheckedTiles, pool_);
     for (const SampledTile& of : sample_.tiles) tiles_.push_back(of.tile);
     checked_ = make_sample_sums(views_.pinhole.width, views_.pinhole.height);
-    add_views(checked_, kFirstViews / 2, tiles_);
+    add_views(checked_, kFirstViews / 2, kFirstCheckedView, tiles_);
     double_views();
   }
 
   void double_views() {
     const SampleSums half = checked_;
-    add_views(checked_, 2 * half.count, tiles_);
+    add_views(checked_, 2 * half.count, kFirstCheckedView, tiles_);
     const Estimate noise =
         flip_of_tiles(sample_, mean_of(half), mean_of(later_samples(half, checked_)), pool_);
-    noise_ = halves_to_whole(checked_.count) * noise.mean;
+    noise_ = kHalvesToWhole * noise.mean;
     truth_ = mean_of(checked_);
   }
 
   // The noise of the views adds to what is measured. So what is measured within the limit is
   // within it, and what is beyond it by less than the noise wants more views.
-  void check(AutoPicture& result) {
+  double check(const Image& picture, AutoMethod& choice) {
     tell(AutoStage::checking);
     if (sample_.tiles.empty()) take_tiles();
     const double limit = input_.goal.max_error;
-    Estimate error = flip_of_tiles(sample_, truth_, result.picture, pool_);
+    Estimate error = flip_of_tiles(sample_, truth_, picture, pool_);
     while (error.mean + error.standard_error > limit && error.mean - noise_ <= limit &&
            checked_.count < kMostViews) {
       double_views();
-      error = flip_of_tiles(sample_, truth_, result.picture, pool_);
+      error = flip_of_tiles(sample_, truth_, picture, pool_);
     }
-    result.measured_error = error.mean + error.standard_error;
-    AutoMethod& choice = result.choice;
-    choice.meets_goal = *result.measured_error <= limit;
+    const double measured = error.mean + error.standard_error;
+    choice.meets_goal = measured <= limit;
     choice.reason += "; " + std::to_string(sample_.tiles.size()) + " tiles held against " +
                      std::to_string(checked_.count) + " views of the lens show an error of " +
-                     number_text(*result.measured_error);
+                     number_text(measured);
+    return measured;
   }
 
   // The next dearer choice that should do, if there is one.

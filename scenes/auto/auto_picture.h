@@ -42,8 +42,8 @@ bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal);
 
 /// A filter's picture is checked on kCheckedTiles tiles, against 64 views of the lens or more. If
 /// it misses the limit, the next dearer choice that should meet it is taken. An accumulation is
-/// checked by its halves, and its samples doubled. The same bits on every machine, and the bits
-/// that the method gives by its own name.
+/// checked in the same way, from 64 samples on by its halves, and its samples doubled. The same
+/// bits on every machine, and the bits that the method gives by its own name.
 AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool);
 
 inline constexpr int kCheckedTiles = 24;

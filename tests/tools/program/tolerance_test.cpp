@@ -42,13 +42,13 @@ TEST_CASE("compare: a limit that is kept is status 0, one that is broken 1") {
     const char *option, *kept, *broken;
   };
   // 3 half-ULPs from 0.5 are 3 * 2^-11 = 0.00146484; alpha counts for --max-ulps alone.
-  for (const auto& [option, kept, broken] : {Case{"--max-ulps", "8", "7"},
-                                             {"--max-error", "0.00146485", "0.00146484"},
-                                             {"--max-flip", "0.01", "0"}}) {
-    CAPTURE(option);
-    CHECK(files.compared({option, kept}).status == 0);
-    CHECK(files.compared({option, broken}).status == 1);
-    CHECK(run_program({"compare", files.a, files.a, option, "0"}).status == 0);
+  for (const Case& limit : {Case{"--max-ulps", "8", "7"},
+                            {"--max-error", "0.00146485", "0.00146484"},
+                            {"--max-flip", "0.01", "0"}}) {
+    CAPTURE(limit.option);
+    CHECK(files.compared({limit.option, limit.kept}).status == 0);
+    CHECK(files.compared({limit.option, limit.broken}).status == 1);
+    CHECK(run_program({"compare", files.a, files.a, limit.option, "0"}).status == 0);
   }
   CHECK(files.compared({"--max-ulps", "8", "--max-error", "0.1"}).status == 0);
   CHECK(files.compared({"--max-ulps", "7", "--max-error", "0.1"}).status == 1);
