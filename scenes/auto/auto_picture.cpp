@@ -17,7 +17,7 @@ namespace {
 // Of 307 choices on pictures that the fit had not seen, none with a prediction so far within the
 // limit missed it (docs/auto.md).
 constexpr double kDoubt = 1.75;
-constexpr int kFirstViews = 64, kMostViews = 512;
+constexpr int kFirstViews = 16, kMostViews = 512;
 // The views that a picture is held against follow all that it can be made of. Blocks of a power
 // of two are even wherever they begin (lens_points.h).
 const int kFirstCheckedView = kSampleCounts.back();
@@ -184,6 +184,8 @@ class Work {
   double check(const Image& picture, AutoMethod& choice) {
     tell(AutoStage::checking);
     if (sample_.tiles.empty()) take_tiles();
+    // As many views have their ghosts in about the same places.
+    while (checked_.count < 4 * choice.samples) double_views();
     const double limit = input_.goal.max_error;
     Estimate error = flip_of_tiles(sample_, truth_, picture, pool_);
     while (error.mean + error.standard_error > limit && error.mean - noise_ <= limit &&
@@ -218,7 +220,7 @@ class Work {
     }
     // No prediction is within the limit: views of the lens get there by doubling.
     for (std::size_t i = choices.size(); next == nullptr && i-- > 0;) {
-      if (choices[i].samples > 0 && choices[i].samples <= kFirstViews) next = &choices[i];
+      if (choices[i].samples > 0 && choices[i].samples <= kFewestByHalves) next = &choices[i];
     }
     if (next == nullptr) return false;
     const std::string why = result.choice.reason + ", so " + setting_text(*next) + " was taken";

@@ -40,7 +40,7 @@ struct AutoPicture {
 /// Whether a check is due: the prediction times kDoubt is beyond the limit.
 bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal);
 
-/// A filter's picture is checked on kCheckedTiles tiles, against 64 views of the lens or more. If
+/// A filter's picture is checked on kCheckedTiles tiles, against 16 views of the lens or more. If
 /// it misses the limit, the next dearer choice that should meet it is taken. An accumulation is
 /// checked in the same way, from 64 samples on by its halves, and its samples doubled. The same
 /// bits on every machine, and the bits that the method gives by its own name.

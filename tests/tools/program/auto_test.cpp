@@ -51,8 +51,8 @@ TEST_CASE("auto: the bytes are those of the method that it says it chose") {
       CAPTURE(scene);
       CAPTURE(error);
       const TemporaryDirectory directory;
-      const auto run =
-          render_at(scene, directory.file("a.npy"), "128x128", auto_with({"--max-error", error}));
+      const auto run = render_at(scene, directory.file("a.npy"), "128x128",
+                                 auto_with({"--max-error", error, "--no-verify"}));
       REQUIRE(run.status == 0);
       const auto json = nlohmann::json::parse(run.out);
       CHECK(json["method"] == "auto");
@@ -71,7 +71,7 @@ TEST_CASE("auto: the bytes are those of the method that it says it chose") {
 
 TEST_CASE("auto: the same choice and bytes for any number of threads and on every vector unit" *
           doctest::test_suite("threads")) {
-  const Words options = auto_with({"--max-error", "0.05", "--coc-scale", "4"});
+  const Words options = auto_with({"--max-error", "0.05", "--coc-scale", "4", "--no-verify"});
   const auto with = [&](const Words& more) {
     Words words = options;
     words.insert(words.end(), more.begin(), more.end());
