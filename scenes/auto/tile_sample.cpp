@@ -7,6 +7,7 @@
 #include "dof/measure/flip.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
+#include "raster/pipeline/draw_call.h"
 #include "raster/pipeline/state.h"
 
 namespace softfocus {

@@ -46,6 +46,7 @@ inline ProgramRun run_program(const std::vector<std::string>& arguments,
   std::vector<std::string> words{SOFTFOCUS_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 

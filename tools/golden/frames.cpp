@@ -42,6 +42,14 @@ DofSettings settings_for(const Scene& scene, int height) {
   return settings;
 }
 
+std::string entry_name(std::string_view scene, std::string_view method, const std::string& where) {
+  std::string name{scene};
+  name += ' ';
+  name += method;
+  name += where;
+  return name;
+}
+
 LensViewInput seen_from_lens(const Scene& scene, const CameraMatrices& view, const Image& picture,
                              const Sampling& sampling, const Profile& profile) {
   const double scale = scene.lens.coc_scale * kRows / picture.height;
@@ -65,13 +73,14 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
   const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
   const std::string where = " ieee " + std::to_string(width) + 'x' + std::to_string(height);
   std::vector<NamedHash> hashes;
+  hashes.reserve(kFewMethods.size() + 1);
   for (const std::string_view method : kFewMethods) {
-    hashes.push_back({std::string{name} + ' ' + std::string{method} + where,
+    hashes.push_back({entry_name(name, method, where),
                       hash_image(apply(*find_method(method), {picture, settings, profile}, pool))});
   }
   const LensViewInput from_lens = seen_from_lens(scene, view, picture, {.samples = 5}, profile);
-  hashes.push_back({std::string{name} + " accumulation" + where,
-                    hash_image(accumulation(from_lens, pool).picture)});
+  hashes.push_back(
+      {entry_name(name, "accumulation", where), hash_image(accumulation(from_lens, pool).picture)});
   return hashes;
 }
 
@@ -102,18 +111,18 @@ std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
         const std::string where = ' ' + std::string{known.name} + ' ' + std::to_string(width) +
                                   'x' + std::to_string(height);
         for (const Method& method : methods()) {
-          hashes.push_back({name + ' ' + std::string{method.name} + where,
+          hashes.push_back({entry_name(name, method.name, where),
                             hash_image(apply(method, {picture, settings, profile}, pool))});
         }
         for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
           Image filtered = make_image(picture.format, width, height);
           two_pass_in(arithmetic, {picture, settings, profile}, filtered, pool);
-          hashes.push_back({name + " two-pass-" + std::string{arithmetic_name(arithmetic)} + where,
-                            hash_image(filtered)});
+          const std::string method = "two-pass-" + std::string{arithmetic_name(arithmetic)};
+          hashes.push_back({entry_name(name, method, where), hash_image(filtered)});
         }
         const LensViewInput from_lens = seen_from_lens(scene, view, picture, sampling, profile);
-        hashes.push_back(
-            {name + " accumulation" + where, hash_image(accumulation(from_lens, pool).picture)});
+        hashes.push_back({entry_name(name, "accumulation", where),
+                          hash_image(accumulation(from_lens, pool).picture)});
       }
     }
   }

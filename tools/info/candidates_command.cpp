@@ -12,6 +12,7 @@
 
 #include "dof/auto/auto_method.h"
 #include "dof/auto/candidates.h"
+#include "dof/dof.h"
 #include "dof/measure/measures.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
@@ -66,8 +67,8 @@ Subject make_subject(const CandidatesOptions& options, ThreadPool& pool) {
 }
 
 double mean_flip(const Image& truth, const Image& picture, ThreadPool& pool) {
-  static const ToneTable kTone = clamped_tone();
-  return mean(flip_map(truth, picture, kTone, pool));
+  static const ToneTable tone = clamped_tone();
+  return mean(flip_map(truth, picture, tone, pool));
 }
 
 /// What --measure finds: the mean FLIP of each choice, in their order.

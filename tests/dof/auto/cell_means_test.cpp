@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "raster/images/texel.h"
@@ -56,7 +55,8 @@ TEST_CASE("cell means: the oracle's bits, of any size, on any threads and vector
             const CellMean expected = oracle(image, column, row);
             const CellMean& found =
                 means.cells[static_cast<std::size_t>(row * means.columns + column)];
-            CHECK(std::memcmp(&found, &expected, sizeof expected) == 0);
+            CHECK(found.colour == expected.colour);
+            CHECK(found.radius_px == expected.radius_px);
           }
         }
       }

@@ -7,7 +7,7 @@
 
 #include "dof/measure/flip.h"
 #include "raster/images/texel.h"
-#include "raster/pipeline/state.h"
+#include "raster/pipeline/draw_call.h"
 
 using namespace softfocus;
 using doctest::Approx;
