@@ -86,6 +86,7 @@ TEST_CASE("chart record: times come back to the points whose pictures are the sa
   const auto points = test::chart_panel("figures").points;
   save_times(points, "key", file);
   std::vector<ChartPoint> kept;
+  kept.reserve(points.size());
   for (const ChartPoint& point : points) kept.push_back(bare(point));
   load_times(kept, "another", file);
   CHECK(kept[0].times.frame_ms.empty());

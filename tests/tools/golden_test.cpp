@@ -16,11 +16,11 @@ namespace {
 
 // Making a scene's textures takes longer than drawing it small: each is made once.
 const std::vector<GoldenScene>& scenes() {
-  static const std::vector<GoldenScene> kScenes = [] {
+  static const std::vector<GoldenScene> loaded = [] {
     ThreadPool pool(1);
     return load_golden_scenes(pool);
   }();
-  return kScenes;
+  return loaded;
 }
 
 std::vector<NamedHash> frames(std::string_view profile, int threads) {

@@ -22,12 +22,12 @@ constexpr std::uint64_t kChartBytesPerPixel = 320;
 
 std::vector<std::string> known_methods(const std::string& text) {
   const std::vector<std::string> known = chart_methods();
-  const std::vector<std::string> wanted = listed_names("--methods", text);
+  std::vector<std::string> wanted = listed_names("--methods", text);
   for (const std::string& name : wanted) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     std::string list;
-    for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
-    throw UsageError("--methods '" + name + "': there are " + list);
+    for (const std::string& one : known) list.append(list.empty() ? "" : ", ").append(one);
+    throw UsageError(std::string{"--methods '"}.append(name).append("': there are ").append(list));
   }
   return wanted;
 }

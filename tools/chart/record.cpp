@@ -22,10 +22,10 @@ struct FlipMembers {
   std::array<double, kRegions> ChartErrors::*by_region;
 };
 const std::array<FlipMembers, 2>& flips() {
-  static const std::array<FlipMembers, 2> kFlips{
+  static const std::array<FlipMembers, 2> members{
       FlipMembers{"flip", &ChartErrors::flip, &ChartErrors::flip_by_region},
       FlipMembers{"hdr_flip", &ChartErrors::hdr_flip, &ChartErrors::hdr_flip_by_region}};
-  return kFlips;
+  return members;
 }
 
 std::string region_key(const FlipMembers& of, Region region) {

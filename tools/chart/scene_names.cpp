@@ -59,7 +59,8 @@ std::vector<std::string> listed_names(const std::string& option, const std::stri
     const std::string name = text.substr(start, end - start);
     start = end + 1;
     if (name.empty()) {
-      throw UsageError(option + " '" + text + "': give names with a comma between two");
+      throw UsageError(std::string{option}.append(" '").append(text).append(
+          "': give names with a comma between two"));
     }
     add_once(option, text, name, names);
   }

@@ -13,8 +13,8 @@ constexpr std::string_view kAccumulation = "accumulation", kAuto = "auto", kTwoP
 /// Of every filter, so that no filter is held against another at a larger radius. Radii are
 /// --max-coc for a picture 1024 rows high, scaled with the height as those of scenes are.
 const std::vector<double>& radii_at_1024(bool quick) {
-  static const std::vector<double> kAll{8, 16, 32, 64}, kQuick{16, 64};
-  return quick ? kQuick : kAll;
+  static const std::vector<double> all{8, 16, 32, 64}, few{16, 64};
+  return quick ? few : all;
 }
 
 struct SettingsOfMethod {
@@ -28,7 +28,7 @@ struct SettingsOfMethod {
 };
 
 const std::vector<SettingsOfMethod>& table() {
-  static const std::vector<SettingsOfMethod> kTable{
+  static const std::vector<SettingsOfMethod> settings{
       {.method = kPinhole, .radii = false},
       {.method = kTwoPass, .profiles = {"ieee", "d3d11"}},
       {.method = kAccumulation,
@@ -44,7 +44,7 @@ const std::vector<SettingsOfMethod>& table() {
       // Of every other method.
       {.method = ""},
   };
-  return kTable;
+  return settings;
 }
 
 const SettingsOfMethod& settings_of(std::string_view method) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <utility>
 
 #include "tools/cli/errors.h"
 
@@ -31,7 +32,7 @@ void check_rest(const CLI::App& program) {
 /// CLI11's own complaints in this program's words: an option without its value, a
 /// missing argument.
 std::string reworded(const CLI::ParseError& error) {
-  const std::string message = error.what();
+  std::string message = error.what();
   if (error.get_name() == "ArgumentMismatch") {
     return message.substr(0, message.find(':')) + " needs a value; --help says which";
   }
@@ -45,7 +46,7 @@ std::string reworded(const CLI::ParseError& error) {
 
 std::shared_ptr<CLI::App> make_program(const std::string& name, const std::string& version,
                                        const std::string& help) {
-  const auto program = std::make_shared<CLI::App>(help, name);
+  auto program = std::make_shared<CLI::App>(help, name);
   program->set_version_flag("--version", name + " " + version);
   program->require_subcommand(0, 1);
   program->get_formatter()->column_width(26);
@@ -125,7 +126,8 @@ void add_repeatable_value(CLI::App& parser, const std::string& name, const std::
 void add_value_list(CLI::App& parser, const std::string& name, const std::string& type,
                     const std::string& help,
                     std::function<void(const std::vector<std::string>&)> take) {
-  parser.add_option_function<std::vector<std::string>>(name, take, help)->type_name(type);
+  parser.add_option_function<std::vector<std::string>>(name, std::move(take), help)
+      ->type_name(type);
 }
 
 void add_argument(CLI::App& parser, const std::string& name, const std::string& help,

@@ -59,7 +59,7 @@ std::string altered_profile(const TemporaryDirectory& directory, const std::stri
   const std::string line = key + " = " + value;
   REQUIRE(!text.substr(begin, end - begin).starts_with(line));
   text.replace(begin, end - begin, line);
-  const std::string name = directory.file("altered.toml");
+  std::string name = directory.file("altered.toml");
   write_file(name, text);
   return name;
 }

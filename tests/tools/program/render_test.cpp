@@ -119,7 +119,10 @@ TEST_CASE("render: every lens and filter option changes the picture") {
   using Options = std::map<std::string, std::string>;
   const auto rendered_with = [](const Options& options) {
     Words words;
-    for (const auto& [name, value] : options) words.push_back(name + "=" + value);
+    for (const auto& [name, value] : options) {
+      words.push_back(name);
+      words.back().append("=").append(value);
+    }
     return rendered("figures", words);
   };
   // Larger circles than so small a picture has by itself, and some past the limit.

@@ -103,7 +103,7 @@ std::string panel_script(std::size_t index, const ChartPanel& panel, const Shown
     }
     if (lines.empty()) continue;
     const std::string name = block + std::to_string(i);
-    data += name + " << END\n" + lines + "END\n";
+    data.append(name).append(" << END\n").append(lines).append("END\n");
     plots.append(", ").append(name).append(series_style(shown.series[i], i)).append(" notitle");
   }
   return data + margins(panel_box(index, layout), layout.size) + "set title " +

@@ -46,7 +46,7 @@ std::string ratio_panel(std::size_t index, const RatioPanel& panel,
       lines += short_number(row.pinhole_frames.median) + " " + short_number(ratio) + "\n";
     }
     const std::string name = "$s" + std::to_string(index) + "_" + std::to_string(i);
-    data += name + " << END\n" + lines + "END\n";
+    data.append(name).append(" << END\n").append(lines).append("END\n");
     plots.append(plots.empty() ? "plot " : ", ").append(name);
     plots.append(series_style(series[i], i)).append(" notitle");
   }
