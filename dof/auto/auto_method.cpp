@@ -17,12 +17,6 @@ constexpr float kSharpBelow = 0.5f;
 /// Times within this factor count as equal: the prediction is no better.
 constexpr double kAsFast = 1.05;
 
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
-
 std::string percent_text(double share) {
   const double percent = 100.0 * share;
   return percent > 0.0 && percent < 1.0 ? "less than 1 %"
@@ -145,6 +139,12 @@ AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const Au
   }
   return goal.max_time_ms ? most_accurate_within(choices, *goal.max_time_ms)
                           : cheapest_within(choices, goal.max_error);
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 bool is_sharp(const AutoMethod& choice) { return choice.method == "pinhole"; }

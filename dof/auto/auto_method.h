@@ -50,6 +50,9 @@ std::vector<AutoMethod> open_choices(const SceneTraits& traits, const AutoLimits
 /// Whether the method's picture is the pinhole's, to the bit.
 bool is_sharp(const AutoMethod& choice);
 
+/// Three digits, as the reasons have their numbers.
+std::string number_text(double value);
+
 /// "two-pass, radius 8", "accumulation, 64 samples", "pinhole".
 std::string setting_text(const AutoMethod& choice);
 

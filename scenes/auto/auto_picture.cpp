@@ -1,9 +1,7 @@
 #include "scenes/auto/auto_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -28,12 +26,6 @@ constexpr int kMostFilters = 4;
 // The FLIP of the mean of all views is at most this times that of their two halves. Of twelve
 // scenes, against 2,048 views: .31 to .61 for 64 to 256 views.
 constexpr double kHalvesToWhole = 0.62;
-
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
 
 class Work {
  public:

@@ -51,7 +51,8 @@ std::vector<std::string> values_after(const std::string& text, const std::string
 TEST_CASE("chart page: every link leads to a place in it, and every id is there once") {
   const std::string html = page();
   const auto links = values_after(html, "href=\"#"), ids = values_after(html, " id=\"");
-  // Of 8 points, and of 2 scenes' budgets of which each has the best by two errors.
+  // One for each of 8 points. Each budget of the 2 scenes has two: the best by FLIP and by
+  // HDR-FLIP.
   CHECK(links.size() == 8 + 2 * 2 * (kBudgets.size() + 1));
   for (const std::string& link : links) {
     CAPTURE(link);

@@ -73,7 +73,7 @@ std::string plotted(const PlotScript& script, const char* terminal, const ChartO
   return bytes;
 }
 
-/// Draws NAME.png and NAME.svg, and returns the latter's text.
+/// Draws NAME.png and NAME.svg. Returns the text of the SVG.
 std::string write_plots(const PlotScript& script, const std::string& name,
                         const ChartOptions& options) {
   write_text(options.directory / (name + ".png"), plotted(script, "pngcairo", options));

@@ -7,9 +7,8 @@
 
 namespace softfocus {
 
-/// The names of "a,b,c", of which "random:8..11" stands for random:8, random:9, random:10 and
-/// random:11. Throws UsageError for an empty name, one that stands there twice, or a range that
-/// is none.
+/// The names of "a,b,c". "random:8..11" stands for random:8, random:9, random:10 and random:11.
+/// Throws UsageError for an empty name, a name given twice, or a malformed range.
 std::vector<std::string> scene_names(const std::string& text);
 
 /// The parts of "a,b,c". Throws UsageError for an empty or a repeated one.

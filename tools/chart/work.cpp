@@ -234,7 +234,7 @@ ChartPanel measure_scene(Work& work, const std::string& given_name) {
   return panel;
 }
 
-/// The points of a scene of which no pictures are kept.
+/// The points of a scene that have no pictures in the cache.
 std::vector<ChartPoint*> without_pictures(Work& work, ChartPanel& panel,
                                           const std::vector<ChartPoint*>& wanted) {
   std::vector<ChartPoint*> missing;

@@ -137,7 +137,8 @@ Image auto_drawn(const Scene& scene, const CameraMatrices& view, const Image& pi
   };
   const auto begin_stage = [&](AutoStage stage) {
     end_stage();
-    static constexpr std::array kStageNames{"choosing", "filtering", "sampling the lens", "checking"};
+    static constexpr std::array kStageNames{"choosing", "filtering", "sampling the lens",
+                                            "checking"};
     progress.show(kStageNames[static_cast<std::size_t>(stage)]);
     stage_ms = stage == AutoStage::choosing   ? &ms.choose
                : stage == AutoStage::checking ? &ms.check

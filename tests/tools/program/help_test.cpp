@@ -75,10 +75,9 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
     CHECK(std::count(run.out.begin(), run.out.end(), '\n') ==
           static_cast<std::ptrdiff_t>(names.size()));
   };
-  lists("scenes",
-        {"bright-edges", "clutter", "cube-room", "dunes", "figures", "foliage", "grazing-floor",
-         "interior", "lattice", "near-fence", "night-lights", "portrait", "sphere-world",
-         "random:SEED"});
+  lists("scenes", {"bright-edges", "clutter", "cube-room", "dunes", "figures", "foliage",
+                   "grazing-floor", "interior", "lattice", "near-fence", "night-lights", "portrait",
+                   "sphere-world", "random:SEED"});
   lists("methods",
         {"pinhole", "two-pass", "two-pass-single", "one-pass", "scatter", "scatter-sorted",
          "layers", "diffusion", "ring-bucket", "circular-1", "circular-2", "post-process",

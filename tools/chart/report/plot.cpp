@@ -24,7 +24,7 @@ struct Layout {
   PlotSize size;
 };
 
-/// Which error a plot shows, and of which series.
+/// The error that a plot shows, and its series.
 struct Shown {
   double ChartErrors::*error;
   std::vector<std::string> series;
