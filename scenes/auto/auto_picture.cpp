@@ -15,6 +15,8 @@ namespace {
 // Of 307 choices on pictures that the fit had not seen, none with a prediction so far within the
 // limit missed it (docs/auto.md).
 constexpr double kDoubt = 1.75;
+// The fit has pictures of 512 and 1024 rows. For 256 rows predictions are low, by up to twice.
+constexpr int kFewestFittedRows = 512;
 constexpr int kFirstViews = 16, kMostViews = 512;
 // The views that a picture is held against follow all that it can be made of. Blocks of a power
 // of two are even wherever they begin (lens_points.h).
@@ -237,7 +239,8 @@ class Work {
 }  // namespace
 
 bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal) {
-  return !choice.meets_goal || choice.predicted_error * kDoubt > goal.max_error;
+  return !choice.meets_goal || choice.traits.height < kFewestFittedRows ||
+         choice.predicted_error * kDoubt > goal.max_error;
 }
 
 AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool) {

@@ -37,7 +37,8 @@ struct AutoPicture {
   int rejected = 0;  ///< choices that were drawn, checked and found to miss the limit
 };
 
-/// Whether a check is due: the prediction times kDoubt is beyond the limit.
+/// Whether a check is due: the prediction times kDoubt is beyond the limit, or the picture has
+/// fewer rows than those of the fit.
 bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal);
 
 /// A filter's picture is checked on kCheckedTiles tiles, against 16 views of the lens or more. If

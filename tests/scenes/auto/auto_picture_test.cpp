@@ -128,9 +128,12 @@ TEST_CASE("auto picture: an error that nothing reaches is said to be missed" *
 }
 
 TEST_CASE("auto picture: a check is due unless the prediction is far within the limit") {
-  AutoMethod choice{.method = "two-pass", .predicted_error = 0.0115, .traits = {}};
+  AutoMethod choice{.method = "two-pass", .predicted_error = 0.0115, .traits = {.height = 512}};
   CHECK(is_in_doubt(choice, {.max_error = 0.02}));
   CHECK_FALSE(is_in_doubt(choice, {.max_error = 0.05}));
+  choice.traits.height = 511;  // smaller than any picture of the fit
+  CHECK(is_in_doubt(choice, {.max_error = 0.05}));
+  choice.traits.height = 512;
   choice.meets_goal = false;
   CHECK(is_in_doubt(choice, {.max_error = 0.05}));
 }
