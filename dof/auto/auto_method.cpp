@@ -26,7 +26,7 @@ std::string percent_text(double share) {
 AutoMethod with_predictions(const Candidate& candidate, const SceneTraits& traits,
                             const AutoLimits& limits) {
   AutoMethod choice{.method = candidate.method, .traits = traits};
-  choice.candidate = static_cast<std::size_t>(&candidate - candidates().data());
+  choice.candidate = static_cast<std::size_t>(&candidate - limits.table.data());
   if (candidate.radius >= 0) {
     // No filter does otherwise with a radius that no circle reaches.
     choice.radius_px = std::min(kFilterRadiiPx[static_cast<std::size_t>(candidate.radius)],
@@ -121,7 +121,7 @@ AutoMethod most_accurate_within(const std::vector<AutoMethod>& choices, double m
 
 std::vector<AutoMethod> open_choices(const SceneTraits& traits, const AutoLimits& limits) {
   std::vector<AutoMethod> choices;
-  for (const Candidate& candidate : candidates()) {
+  for (const Candidate& candidate : limits.table) {
     AutoMethod choice = with_predictions(candidate, traits, limits);
     if (is_open(candidate, choice, traits, limits)) choices.push_back(std::move(choice));
   }

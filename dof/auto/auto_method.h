@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "dof/auto/candidates.h"
 #include "dof/auto/scene_traits.h"
 
 namespace softfocus {
@@ -22,6 +24,8 @@ struct AutoGoal {
 struct AutoLimits {
   std::optional<float> max_radius_px;  ///< filters cut circles to no more than this
   std::size_t triangles = 0;           ///< of the scene, to predict the time to draw it again
+  /// The table to choose from, its lines those of candidates().
+  std::span<const Candidate> table = candidates();
 };
 
 /// A method of dof/dof.h with a radius, or of scenes/lens_views/lens_view_method.h with a number

@@ -3,6 +3,7 @@
 #include "dof/auto/cell_means.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
@@ -15,17 +16,23 @@ namespace {
 
 constexpr float kLargestHalf = 65504.0f;
 
-/// Sums down the columns of pixels: planes of red, green, blue and radius.
+/// Sums down the columns of pixels: planes of red, green, blue and radius; and the brightest.
 struct ColumnSums {
   std::size_t width;
-  std::vector<float> values = std::vector<float>(4 * width);
+  std::vector<float> values = std::vector<float>(5 * width);
 };
 
 void add_pixel(const std::uint16_t* texel, const PixelCoc& coc, std::size_t x, ColumnSums& sums) {
+  float largest = 0.0f;
   for (std::size_t i = 0; i < 3; ++i) {
-    sums.values[i * sums.width + x] += trait_light(half_to_float(texel[i]));
+    const float light = trait_light(half_to_float(texel[i]));
+    sums.values[i * sums.width + x] += light;
+    largest = std::max(largest, light);
   }
-  sums.values[3 * sums.width + x] += signed_trait_radius(coc, half_to_float(texel[3]));
+  const float radius_px = signed_trait_radius(coc, half_to_float(texel[3]));
+  sums.values[3 * sums.width + x] += radius_px;
+  float& brightest = sums.values[4 * sums.width + x];
+  if (std::fabs(radius_px) >= 0.5f) brightest = std::max(brightest, largest);
 }
 
 void add_row(const Image& picture, int y, const PixelCoc& coc, Isa isa, ColumnSums& sums) {
@@ -43,7 +50,12 @@ CellMean mean_of_columns(const ColumnSums& sums, std::size_t begin, std::size_t 
     for (std::size_t x = begin; x < end; ++x) totals[i] += sums.values[i * sums.width + x];
   }
   const auto pixels = static_cast<float>(end - begin) * static_cast<float>(rows);
-  return {{totals[0] / pixels, totals[1] / pixels, totals[2] / pixels}, totals[3] / pixels};
+  float brightest = 0.0f;
+  for (std::size_t x = begin; x < end; ++x) {
+    brightest = std::max(brightest, sums.values[4 * sums.width + x]);
+  }
+  return {
+      {totals[0] / pixels, totals[1] / pixels, totals[2] / pixels}, totals[3] / pixels, brightest};
 }
 
 }  // namespace
@@ -87,21 +99,26 @@ SOFTFOCUS_INLINE Floats light_of(Bits half) {
   return select(value > 0.0f, cut, splat(0.0f));
 }
 
-/// Adds a row's whole vectors to the sums, four planes of `width`. Returns how many pixels it
+/// Adds a row's whole vectors to the sums, five planes of `width`. Returns how many pixels it
 /// has added.
 int add_to_columns(const std::uint16_t* row, int width, const PixelCoc& coc, float* sums) {
   int x = 0;
   for (; x + kLanes <= width; x += kLanes) {
     const auto texels = load_half_texels(row + 4 * x);
     float* const to = sums + x;
-    store(to, load(to) + light_of(texels.r));
-    store(to + width, load(to + width) + light_of(texels.g));
-    store(to + 2 * width, load(to + 2 * width) + light_of(texels.b));
+    const Floats r = light_of(texels.r), g = light_of(texels.g), b = light_of(texels.b);
+    store(to, load(to) + r);
+    store(to + width, load(to + width) + g);
+    store(to + 2 * width, load(to + 2 * width) + b);
     const Floats depth_m = half_to_float(texels.a);
     const Floats radius = coc.radius_at_infinity_px * (depth_m - coc.focus_m) / depth_m;
     const Floats most = splat(kLargestTraitRadiusPx);
     const Floats cut = select(radius < most, radius, most);
-    store(to + 3 * width, load(to + 3 * width) + select(cut < -most, -most, cut));
+    const Floats signed_radius = select(cut < -most, -most, cut);
+    store(to + 3 * width, load(to + 3 * width) + signed_radius);
+    const Mask is_blurred = absolute(signed_radius) >= 0.5f;
+    const Floats light = select(is_blurred, larger(larger(r, g), b), splat(0.0f));
+    store(to + 4 * width, larger(load(to + 4 * width), light));
   }
   return x;
 }

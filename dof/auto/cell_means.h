@@ -1,7 +1,7 @@
 #pragma once
 // The means of a picture's cells of 8x8 pixels: colour in linear light and radius of the circle
-// of confusion. A lamp of a pixel, which a sparse sample of pixels would miss, is in the mean of
-// its cell with all of its light.
+// of confusion; and the brightest that is out of focus. A lamp of a pixel, which a sparse sample of
+// pixels would miss, is in the mean of its cell with all of its light.
 
 #include <array>
 #include <vector>
@@ -18,6 +18,7 @@ inline constexpr float kLargestTraitRadiusPx = 1024.0f;
 struct CellMean {
   std::array<float, 3> colour{};  ///< linear, 0 to 65504
   float radius_px = 0.0f;         ///< signed, negative nearer than the focus
+  float brightest = 0.0f;         ///< channel of the pixels with a radius of half a pixel or more
 };
 
 struct CellMeans {

@@ -20,8 +20,9 @@ constexpr int kPointsAcross = 40;
 constexpr std::array kRingsPx{1, 2, 4, 8, 16, 32, 64};
 // sqrt(1/2) D, rounded: taps on the diagonals.
 constexpr std::array kDiagonalsPx{1, 1, 3, 6, 11, 23, 45};
-// Rings from here on see the means of cells, nearer ones pixels.
-constexpr std::size_t kFirstRingOfCells = 4;
+// Rings from here on see the means of cells, nearer ones those of as many pixels as their radius
+// has, made on the spot.
+constexpr std::size_t kFirstRingOfCells = 3;
 constexpr float kHalfAPixel = 0.5f;
 constexpr float kSquareRootOfPi = 1.7724539f;
 constexpr float kGhostsSeenPx = 3.0f;  // ghosts so far apart are seen in full
@@ -119,6 +120,21 @@ const std::uint16_t* texel_at(const Sight& sight, int x, int y) {
   return row<std::uint16_t>(sight.picture, y).data() + 4 * x;
 }
 
+Point mean_of_square(const Sight& sight, int left, int top, int size) {
+  Point sum{};
+  for (int y = top; y < top + size; ++y) {
+    for (int x = left; x < left + size; ++x) {
+      const Point one = point_of(sight, texel_at(sight, x, y));
+      for (std::size_t i = 0; i < 3; ++i) sum.colour[i] += one.colour[i];
+      sum.radius_px += one.radius_px;
+    }
+  }
+  const float scale = 1.0f / static_cast<float>(size * size);
+  for (float& channel : sum.colour) channel *= scale;
+  sum.radius_px *= scale;
+  return sum;
+}
+
 struct Taps {
   std::array<Tap, 4 * kRingsPx.size()> all;
   std::size_t count = 0;
@@ -151,6 +167,9 @@ void add_tap(const Point& p, const Point& q, std::size_t ring, Taps& taps) {
 /// they lie far apart, and most of the time goes into waiting for them.
 struct Places {
   const std::uint16_t* centre;
+  /// Of the taps near by: where the squares of pixels begin that are their means, and the texel
+  /// there.
+  std::array<std::array<int, 2>, 4 * kFirstRingOfCells> corners;
   std::array<const std::uint16_t*, 4 * kFirstRingOfCells> texels;
   std::array<const CellMean*, 4 * (kRingsPx.size() - kFirstRingOfCells)> cells;
 };
@@ -162,7 +181,7 @@ const CellMean* cell_at(const Sight& sight, int x, int y) {
 }
 
 Places places_around(const Sight& sight, int x, int y, std::uint32_t hash) {
-  Places places{texel_at(sight, x, y), {}, {}};
+  Places places{texel_at(sight, x, y), {}, {}, {}};
   __builtin_prefetch(places.centre);
   for (std::size_t ring = 0; ring < sight.rings; ++ring) {
     const bool axes = (hash >> ring & 1u) != 0;
@@ -172,7 +191,9 @@ Places places_around(const Sight& sight, int x, int y, std::uint32_t hash) {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const int to_x = x + steps[i][0], to_y = y + steps[i][1];
       if (ring < kFirstRingOfCells) {
-        places.texels[4 * ring + i] = texel_at(sight, to_x, to_y);
+        const int half = kRingsPx[ring] / 2;
+        places.corners[4 * ring + i] = {to_x - half, to_y - half};
+        places.texels[4 * ring + i] = texel_at(sight, to_x - half, to_y - half);
         __builtin_prefetch(places.texels[4 * ring + i]);
       } else {
         places.cells[4 * (ring - kFirstRingOfCells) + i] = cell_at(sight, to_x, to_y);
@@ -183,7 +204,11 @@ Places places_around(const Sight& sight, int x, int y, std::uint32_t hash) {
 }
 
 Point tap_at(const Sight& sight, const Places& places, std::size_t tap) {
-  if (tap < 4 * kFirstRingOfCells) return point_of(sight, places.texels[tap]);
+  if (tap < 4) return point_of(sight, places.texels[tap]);
+  if (tap < 4 * kFirstRingOfCells) {
+    const auto [x, y] = places.corners[tap];
+    return mean_of_square(sight, x, y, kRingsPx[tap / 4]);
+  }
   const CellMean& cell = *places.cells[tap - 4 * kFirstRingOfCells];
   return {cell.colour, cell.radius_px};
 }
@@ -334,6 +359,9 @@ SceneTraits scene_traits(const Image& pinhole, const PixelCoc& coc, ThreadPool& 
   const auto mean = [points = static_cast<double>(columns) * rows](double sum) {
     return static_cast<float>(sum / points);
   };
+  for (const CellMean& cell : cells.cells) {
+    traits.brightest = std::max(traits.brightest, cell.brightest);
+  }
   traits.blurred_share = mean(sums.blurred_share);
   traits.blur = mean(sums.blur);
   for (std::size_t i = 0; i < kFilterRadiiPx.size(); ++i) {

@@ -3,8 +3,9 @@
 //
 // The ranges are of every pixel, the rest of 1,600 points on a grid, each moved within
 // its cell as a hash of its place says. Around a point p lie four taps q in each of the rings
-// of radius D = 1, 2, 4, ... 64 pixels, along the axes or the diagonals. From ring 16 on a tap is
-// the mean of 8x8 pixels (cell_means.h), so that small lights are not missed. With r the signed
+// of radius D = 1, 2, 4, ... 64 pixels, along the axes or the diagonals. A tap is the mean of
+// min(D, 8) x min(D, 8) pixels, so that small lights are not missed: up to ring 8 the taps of a
+// ring cover nearly all of it. With r the signed
 // radius of the circle of confusion in pixels, negative nearer than the focus, and C the colour
 // in linear light, not cut:
 //
@@ -55,6 +56,8 @@ struct SceneTraits {
   float farthest_px = 0.0f;    ///< the greatest, exactly
   float blurred_share = 0.0f;  ///< points with |r| of half a pixel or more, 0 to 1
   float blur = 0.0f;           ///< F(|m - C|): what is lost without any blur
+  /// The brightest channel of all pixels that are out of focus by half a pixel or more, linear.
+  float brightest = 0.0f;
   std::array<RadiusTraits, kFilterRadiiPx.size()> by_radius{};
   /// E(d / sqrt(N) min(1, g / 3)), what is left of the ghosts of N samples once the eye has
   /// blurred them: d is the root of the mean square of |C_q - m| over a point's circle,

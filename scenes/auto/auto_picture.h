@@ -37,14 +37,15 @@ struct AutoPicture {
   int rejected = 0;  ///< choices that were drawn, checked and found to miss the limit
 };
 
-/// Whether a check is due: the prediction times kDoubt is beyond the limit, or the picture has
-/// fewer rows than those of the fit.
+/// Whether a check is due: the prediction times kDoubt is beyond the limit, something out of focus
+/// is brighter than 1, or the picture has fewer rows than those of the fit.
 bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal);
 
 /// A filter's picture is checked on kCheckedTiles tiles, against 16 views of the lens or more. If
 /// it misses the limit, the next dearer choice that should meet it is taken. An accumulation is
-/// checked in the same way, from 64 samples on by its halves, and its samples doubled. The same
-/// bits on every machine, and the bits that the method gives by its own name.
+/// checked in the same way, against four times its views (from 128 samples on 512 views, or twice
+/// its own), and its samples doubled. The same bits on every machine, and the bits that the method
+/// gives by its own name.
 AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool);
 
 inline constexpr int kCheckedTiles = 24;

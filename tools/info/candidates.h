@@ -7,7 +7,8 @@
 
 namespace softfocus {
 
-/// {nearest_px, farthest_px, blurred_share, blur, ghosts, blurred, lost, near_edges, far_edges}.
+/// {nearest_px, farthest_px, blurred_share, blur, brightest, ghosts, blurred, lost, near_edges,
+/// far_edges}.
 Json traits_json(const SceneTraits& traits);
 
 /// "disc-layers:32", "accumulation:64", "pinhole": the line of auto's table, whatever the largest

@@ -14,12 +14,14 @@
 #include "dof/auto/candidates.h"
 #include "dof/dof.h"
 #include "dof/measure/measures.h"
+#include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/info/candidate_table.h"
 #include "tools/info/candidates.h"
 #include "tools/options/lens_options.h"
 #include "tools/options/run_options.h"
@@ -34,6 +36,8 @@ struct CandidatesOptions {
   double frame = 0.0;
   LensOptions lens;
   std::optional<int> measured_samples;  ///< of the truth
+  std::vector<double> errors_asked;     ///< for which auto chooses
+  std::filesystem::path table;          ///< in place of auto's own, if not empty
   bool json = false;
   PoolOptions pool;
 };
@@ -66,6 +70,18 @@ Subject make_subject(const CandidatesOptions& options, ThreadPool& pool) {
   return subject;
 }
 
+LensViewInput views_of(const Subject& subject, int samples) {
+  return {.scene = subject.scene,
+          .camera = subject.view,
+          .frame = subject.frame,
+          .pinhole = subject.pinhole,
+          .focus_m = subject.lens.focus_m,
+          .aperture_radius_m = subject.aperture_m,
+          .sampling = {.samples = samples},
+          .profile = Profile{},
+          .progress = {}};
+}
+
 double mean_flip(const Image& truth, const Image& picture, ThreadPool& pool) {
   static const ToneTable tone = clamped_tone();
   return mean(flip_map(truth, picture, tone, pool));
@@ -81,15 +97,7 @@ struct Measured {
 // is measured against the truth once it is there.
 Measured measure(const Subject& subject, std::span<const AutoMethod> choices, int samples,
                  ThreadPool& pool) {
-  const LensViewInput input{.scene = subject.scene,
-                            .camera = subject.view,
-                            .frame = subject.frame,
-                            .pinhole = subject.pinhole,
-                            .focus_m = subject.lens.focus_m,
-                            .aperture_radius_m = subject.aperture_m,
-                            .sampling = {.samples = samples},
-                            .profile = Profile{},
-                            .progress = {}};
+  const LensViewInput input = views_of(subject, samples);
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
   SampleSums sums = make_sample_sums(subject.pinhole.width, subject.pinhole.height);
   std::vector<std::pair<int, Image>> on_the_way;
@@ -153,18 +161,56 @@ void print_table(std::span<const AutoMethod> choices, const std::optional<Measur
   }
 }
 
+/// What auto takes for an error, checks and all.
+struct Taken {
+  double error_asked;
+  AutoMethod choice;
+  std::optional<double> measured_error;
+};
+
+std::vector<Taken> take(const Subject& subject, std::span<const double> errors_asked,
+                        const AutoLimits& limits, ThreadPool& pool) {
+  std::vector<Taken> taken;
+  for (const double error : errors_asked) {
+    AutoPicture found = auto_picture({.views = views_of(subject, 1),
+                                      .settings = {.coc = subject.coc},
+                                      .goal = {.max_error = error},
+                                      .limits = limits},
+                                     pool);
+    taken.push_back({error, std::move(found.choice), found.measured_error});
+  }
+  return taken;
+}
+
+Json taken_json(const Taken& taken) {
+  return {{"max_error", taken.error_asked},
+          {"candidate", candidate_id(taken.choice)},
+          {"predicted_error", taken.choice.predicted_error},
+          {"measured_error", taken.measured_error ? Json{*taken.measured_error} : Json{nullptr}},
+          {"meets_goal", taken.choice.meets_goal},
+          {"reason", taken.choice.reason}};
+}
+
 int list_candidates(const CandidatesOptions& options) {
+  std::vector<Candidate> table;
+  if (!options.table.empty()) table = read_candidate_table(options.table);
   ThreadPool pool{options.pool.threads, options.pool.isa};
   const Subject subject = make_subject(options, pool);
   const SceneTraits traits = scene_traits(subject.pinhole, subject.coc, pool);
-  const std::vector<AutoMethod> choices =
-      open_choices(traits, {.max_radius_px = {}, .triangles = triangle_count(subject.scene)});
+  AutoLimits limits{.max_radius_px = {}, .triangles = triangle_count(subject.scene)};
+  if (!table.empty()) limits.table = table;
+  const std::vector<AutoMethod> choices = open_choices(traits, limits);
+  const std::vector<Taken> taken = take(subject, options.errors_asked, limits, pool);
   std::optional<Measured> measured;
   if (options.measured_samples) {
     measured = measure(subject, choices, *options.measured_samples, pool);
   }
   if (!options.json) {
     print_table(choices, measured);
+    for (const Taken& of : taken) {
+      std::cout << "for " << short_number(of.error_asked) << ": " << setting_text(of.choice) << ": "
+                << of.choice.reason << '\n';
+    }
     return kDone;
   }
   Json json{{"scene", subject.scene.name},     {"title", subject.scene.title},
@@ -180,6 +226,10 @@ int list_candidates(const CandidatesOptions& options) {
     json["candidates"].push_back(
         candidate_json(choices[i], measured ? std::optional{measured->flips[i]} : std::nullopt));
   }
+  if (!taken.empty()) {
+    json["choices"] = Json::array();
+    for (const Taken& of : taken) json["choices"].push_back(taken_json(of));
+  }
   std::cout << json_text(json) << '\n';
   return kDone;
 }
@@ -187,24 +237,13 @@ int list_candidates(const CandidatesOptions& options) {
 }  // namespace
 
 std::string candidate_id(const AutoMethod& choice) {
-  const Candidate& candidate = candidates()[choice.candidate];
-  std::string id{candidate.method};
-  if (candidate.radius >= 0) {
-    const float radius_px = kFilterRadiiPx[static_cast<std::size_t>(candidate.radius)];
-    id += ':' + std::to_string(static_cast<int>(radius_px));
-  }
-  if (candidate.samples >= 0) {
-    id += ':' + std::to_string(kSampleCounts[static_cast<std::size_t>(candidate.samples)]);
-  }
-  return id;
+  return candidate_id(candidates()[choice.candidate]);
 }
 
 Json traits_json(const SceneTraits& traits) {
-  Json json{{"nearest_px", traits.nearest_px},
-            {"farthest_px", traits.farthest_px},
-            {"blurred_share", traits.blurred_share},
-            {"blur", traits.blur},
-            {"ghosts", traits.ghosts}};
+  Json json{{"nearest_px", traits.nearest_px},       {"farthest_px", traits.farthest_px},
+            {"blurred_share", traits.blurred_share}, {"blur", traits.blur},
+            {"brightest", traits.brightest},         {"ghosts", traits.ghosts}};
   for (const RadiusTraits& of : traits.by_radius) {
     json["blurred"].push_back(of.blurred);
     json["lost"].push_back(of.lost);
@@ -234,6 +273,17 @@ Command add_candidates_command(CLI::App& program) {
               }
               options->measured_samples = samples;
             });
+  add_repeatable_value(
+      *parser, "--choose", "E",
+      "Also what auto takes for this mean FLIP, checks and all; may be repeated",
+      [options](const std::string& text) {
+        options->errors_asked.push_back(parse_number("--choose", text, 0.0, 1.0,
+                                                     "a mean FLIP from 0 to 1, such as "
+                                                     "0.02"));
+      });
+  add_value(*parser, "--table", "FILE",
+            "Coefficients in place of auto's own: JSON, {\"two-pass:8\": [seven numbers], ...}",
+            [options](const std::string& text) { options->table = text; });
   add_flag(*parser, "--json", "Print JSON", options->json);
   add_pool_options(*parser, options->pool, "what is printed");
   return {parser, [options] { return list_candidates(*options); }};

@@ -11,7 +11,7 @@ using namespace softfocus;
 
 namespace {
 
-constexpr AutoLimits kNoLimits{};
+const AutoLimits kNoLimits{};
 
 // A picture with large circles everywhere, of which a part reaches over edges.
 SceneTraits blurred_traits(float strength) {

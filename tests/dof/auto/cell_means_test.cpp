@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "raster/images/texel.h"
@@ -25,7 +26,11 @@ CellMean oracle(const Image& image, int column, int row) {
     for (int y = row * kCellPx; y < y_end; ++y) {
       const glm::vec4 texel = load_texel<Format::rgba16f>(image, x, y);
       for (int i = 0; i < 3; ++i) sum.colour[static_cast<std::size_t>(i)] += trait_light(texel[i]);
-      sum.radius_px += signed_trait_radius(kCoc, texel.w);
+      const float radius_px = signed_trait_radius(kCoc, texel.w);
+      sum.radius_px += radius_px;
+      for (int i = 0; i < 3 && std::abs(radius_px) >= 0.5f; ++i) {
+        mean.brightest = std::max(mean.brightest, trait_light(texel[i]));
+      }
       ++pixels;
     }
     for (std::size_t i = 0; i < 3; ++i) mean.colour[i] += sum.colour[i];
@@ -57,6 +62,7 @@ TEST_CASE("cell means: the oracle's bits, of any size, on any threads and vector
                 means.cells[static_cast<std::size_t>(row * means.columns + column)];
             CHECK(found.colour == expected.colour);
             CHECK(found.radius_px == expected.radius_px);
+            CHECK(found.brightest == expected.brightest);
           }
         }
       }
@@ -74,4 +80,5 @@ TEST_CASE("cell means: a lamp of one pixel is there with all of its light") {
   CHECK(lamp.colour[0] == 10.0f);
   CHECK(lamp.colour[1] == 1.0f);
   CHECK(lamp.radius_px == 6.0f);
+  CHECK(lamp.brightest == 640.0f);
 }

@@ -136,7 +136,7 @@ TEST_CASE("scene traits: the same bits for any number of threads and on every ve
         ThreadPool pool{threads, isa};
         const SceneTraits traits = scene_traits(image, kCoc, pool);
         static_assert(sizeof traits ==
-                      sizeof(float) * (6 + 4 * kFilterRadiiPx.size() + kSampleCounts.size()));
+                      sizeof(float) * (7 + 4 * kFilterRadiiPx.size() + kSampleCounts.size()));
         CHECK(std::memcmp(&traits, &expected, sizeof traits) == 0);
       }
     }

@@ -2,12 +2,18 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include "dof/auto/candidates.h"
 #include "dof/measure/difference.h"
 #include "dof/measure/flip.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/load/load_scene.h"
+#include "tests/support/run_program.h"
 
 using namespace softfocus;
 
@@ -17,10 +23,10 @@ constexpr int kSize = 128;
 
 // A scene as auto gets it. Stays where it is: the views refer to it.
 struct Subject {
-  Subject(const char* name, ThreadPool& pool)
+  Subject(const std::string& name, ThreadPool& pool, int size = kSize)
       : scene(load_scene(name, scene_search_path({}))),
-        camera(camera_matrices(scene.camera, 0.0, kSize, kSize)),
-        pinhole(draw_scene(scene, camera, 0.0, kSize, kSize, Profile{}, pool)),
+        camera(camera_matrices(scene.camera, 0.0, size, size)),
+        pinhole(draw_scene(scene, camera, 0.0, size, size, Profile{}, pool)),
         views{.scene = scene,
               .camera = camera,
               .pinhole = pinhole,
@@ -30,7 +36,7 @@ struct Subject {
               .profile = Profile{},
               .progress = {}} {
     settings.coc =
-        pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, kSize, scene.lens.coc_scale);
+        pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, size, scene.lens.coc_scale);
   }
 
   AutoInput input(double max_error, Verify verify) const {
@@ -58,6 +64,26 @@ struct Subject {
   DofSettings settings;
 };
 
+// Lamps of a pixel or two of 512 far behind the focus, on a dark wall.
+void write_lamps(const std::filesystem::path& file, int count, double light, double size) {
+  std::ofstream to(file);
+  to << "background = [0.004, 0.006, 0.014]\n"
+        "[camera]\nposition = [0, 0, 0]\ntarget = [0, 0, -1]\nfov_degrees = 40\n"
+        "[lens]\nfocal_length_mm = 50\nf_number = 3.5\nfocus_m = 1\nmax_coc_px = 64\n"
+        "[material.wall]\nlit = false\ndiffuse = [0.02, 0.02, 0.02]\n"
+        "[material.lamp]\nlit = false\ndiffuse = ["
+     << light << ", " << light << ", " << light
+     << "]\n[[object]]\nshape = \"cube\"\nsize = 1\nmaterial = \"wall\"\n"
+        "position = [0, 0, -11]\nscale = [30, 30, 0.1]\n";
+  for (int i = 0; i < count; ++i) {
+    // A lattice of rank 1, even but not regular.
+    const double x = (i + 0.5) / count, y = std::fmod(0.618034 * i, 1.0);
+    to << "[[object]]\nshape = \"cube\"\nsize = 1\nmaterial = \"lamp\"\nposition = ["
+       << 6.8 * x - 3.4 << ", " << 6.8 * y - 3.4 << ", -10]\nscale = [" << size << ", " << size
+       << ", 0.01]\n";
+  }
+}
+
 bool are_equal(const Image& a, const Image& b) { return compare_images(a, b).differing == 0; }
 
 }  // namespace
@@ -75,6 +101,29 @@ TEST_CASE("auto picture: what is checked keeps to the error that was asked" *
       REQUIRE(found.measured_error);
       CHECK(found.choice.meets_goal);
       CHECK(*found.measured_error <= limit);
+      CHECK(subject.error_of(found.picture, pool) <= 1.1 * limit);
+    }
+  }
+}
+
+TEST_CASE("auto picture: lamps of a pixel or two are not missed, at the size of the fit" *
+          doctest::test_suite("long")) {
+  ThreadPool pool{2};
+  const TemporaryDirectory directory;
+  struct Lamps {
+    double light, size;
+  };
+  for (const Lamps lamps : {Lamps{1000.0, 0.015}, Lamps{100.0, 0.03}}) {
+    const std::filesystem::path file = directory.file("lamps.toml");
+    write_lamps(file, 130, lamps.light, lamps.size);
+    const Subject subject{file.string(), pool, 512};
+    for (const double limit : {0.05, 0.02}) {
+      const AutoPicture found = auto_picture(subject.input(limit, Verify::in_doubt), pool);
+      CAPTURE(lamps.light);
+      CAPTURE(limit);
+      CAPTURE(found.choice.reason);
+      CHECK(found.measured_error);
+      CHECK(found.choice.meets_goal);
       CHECK(subject.error_of(found.picture, pool) <= 1.1 * limit);
     }
   }
@@ -134,6 +183,10 @@ TEST_CASE("auto picture: a check is due unless the prediction is far within the 
   choice.traits.height = 511;  // smaller than any picture of the fit
   CHECK(is_in_doubt(choice, {.max_error = 0.05}));
   choice.traits.height = 512;
+  choice.traits.brightest = 1.5f;  // a highlight out of focus
+  CHECK(is_in_doubt(choice, {.max_error = 0.05}));
+  choice.traits.brightest = 1.0f;
+  CHECK_FALSE(is_in_doubt(choice, {.max_error = 0.05}));
   choice.meets_goal = false;
   CHECK(is_in_doubt(choice, {.max_error = 0.05}));
 }

@@ -1,0 +1,19 @@
+#pragma once
+// Auto's table with other coefficients than its own, for those who fit anew.
+
+#include <filesystem>
+#include <vector>
+
+#include "dof/auto/candidates.h"
+
+namespace softfocus {
+
+/// "disc-layers:32", "accumulation:64", "pinhole": a line of auto's table.
+std::string candidate_id(const Candidate& candidate);
+
+/// candidates() with the coefficients of a JSON file, {"two-pass:8": [always, fine, blurred, lost,
+/// near_edges, far_edges, ghosts], ...}. A line that the file lacks keeps its own. Throws
+/// UsageError that names the file and the line.
+std::vector<Candidate> read_candidate_table(const std::filesystem::path& file);
+
+}  // namespace softfocus
