@@ -8,8 +8,8 @@ set(order
   dof/fixed_pictures dof/method.cpp dof/measure dof/auto
   scenes/scene.h scenes/make scenes/random scenes/load scenes/draw scenes/lens_views scenes/auto scenes/scenes.h
   tools/cli tools/files tools/gl tools/options tools/info tools/render tools/compare tools/bench
-  tools/golden tools/chart tools/chart/report tools/chart/command.cpp tools/stress tools/crosscheck
-  tools/boards tools)
+  tools/golden tools/report tools/chart tools/chart/report tools/chart/command.cpp tools/stress
+  tools/crosscheck tools/boards tools)
 
 # place_of(PATH VARIABLE): the number of its entry, or -1.
 function(place_of path variable)

@@ -131,4 +131,8 @@ PixelMap flip_map(const Image& reference, const Image& test, const ToneTable& to
   return map;
 }
 
+double mean_flip(const Image& reference, const Image& test, ThreadPool& pool) {
+  return mean(flip_map(reference, test, clamped_tone(), pool));
+}
+
 }  // namespace softfocus

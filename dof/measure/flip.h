@@ -26,4 +26,7 @@ inline constexpr double kUsualPixelsPerDegree = 67.02064327658226;
 PixelMap flip_map(const Image& reference, const Image& test, const ToneTable& tone,
                   ThreadPool& pool, double pixels_per_degree = kUsualPixelsPerDegree);
 
+/// The picture's FLIP, of clamped light: that of measure_pictures().
+double mean_flip(const Image& reference, const Image& test, ThreadPool& pool);
+
 }  // namespace softfocus

@@ -160,8 +160,8 @@ TEST_CASE("stress: no method is right by taking the truth's own points of the le
   const auto answer = method_pictures("accumulation", trial, pool);
   REQUIRE(answer);
   CHECK_FALSE(equal(truth.pictures[0], (*answer)[0]));
-  CHECK(mean_flip(truth.pictures[0], (*answer)[0], pool) > 0.0);
-  CHECK(mean_flip(truth.first_half[0], truth.second_half[0], pool) < 0.1);
+  CHECK(answer_flip(truth.pictures[0], (*answer)[0], pool) > 0.0);
+  CHECK(answer_flip(truth.first_half[0], truth.second_half[0], pool) < 0.1);
 }
 
 TEST_CASE("stress: methods that draw the scene have no answer to a picture") {

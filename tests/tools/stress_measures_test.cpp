@@ -93,7 +93,7 @@ TEST_CASE("stress: pixels that are no number are counted, and make FLIP infinite
   });
   CHECK(spoilt_pixels(right) == 0);
   CHECK(spoilt_pixels(wrong) == 2);
-  CHECK(mean_flip(right, right, pool) == 0.0);
-  CHECK(std::isinf(mean_flip(right, wrong, pool)));
-  CHECK(std::isinf(mean_hdr_flip(right, wrong, pool)));
+  CHECK(answer_flip(right, right, pool) == 0.0);
+  CHECK(std::isinf(answer_flip(right, wrong, pool)));
+  CHECK(std::isinf(answer_hdr_flip(right, wrong, pool)));
 }

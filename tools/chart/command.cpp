@@ -11,7 +11,6 @@
 #include "tools/chart/key.h"
 #include "tools/chart/options.h"
 #include "tools/chart/pictures.h"
-#include "tools/chart/record.h"
 #include "tools/chart/report/gnuplot.h"
 #include "tools/chart/report/numbers.h"
 #include "tools/chart/report/page.h"
@@ -23,15 +22,10 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/files/whole_file.h"
+#include "tools/report/report_files.h"
 
 namespace softfocus {
 namespace {
-
-void write_text(const std::filesystem::path& file, std::string_view text) {
-  WholeFile whole{file};
-  whole.write(text);
-  whole.commit();
-}
 
 constexpr std::size_t kLargestPlot = std::size_t{1} << 28;
 

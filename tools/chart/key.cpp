@@ -1,15 +1,14 @@
 #include "tools/chart/key.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
-#include "raster/numbers/hash.h"
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/load_scene.h"
 #include "tools/chart/measure.h"
 #include "tools/cli/machine.h"
+#include "tools/cli/option_values.h"
 #include "tools/golden/hashes.h"
+#include "tools/report/specimen.h"
 
 namespace softfocus {
 namespace {
@@ -19,17 +18,10 @@ constexpr int kProbeSamples = 8;
 
 constexpr std::size_t kLargestSceneFile = std::size_t{1} << 30;
 
-std::uint64_t hash_bytes(const std::string& bytes) {
+std::uint64_t hash_bytes(std::string_view bytes) {
   Hash hash;
-  for (const char byte : bytes) add_to_hash(hash, static_cast<std::uint8_t>(byte));
+  add_text(hash, bytes);
   return hash.value;
-}
-
-/// Every bit of a double, readable.
-std::string exact(double value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
 }
 
 }  // namespace
@@ -40,12 +32,12 @@ std::string truth_key(const ChartScene& scene, const std::string& file_bytes, in
   const ThinLens& lens = scene.lens;
   return "softfocus " SOFTFOCUS_VERSION "; scene " + scene.scene.name + "; file " +
          hash_text(hash_bytes(file_bytes)) + "; size " +
-         size_text({scene.pinhole.width, scene.pinhole.height}) + "; frame " + exact(scene.frame) +
-         "; focus " + exact(lens.focus_m) + " m; focal length " + exact(lens.focal_length_mm) +
-         " mm; f/" + exact(lens.f_number) + "; aperture " + exact(scene.aperture_m) +
-         " m; samples " + std::to_string(samples) + "; pinhole " +
-         hash_text(hash_image(scene.pinhole)) + "; first samples " + hash_text(hash_image(probe)) +
-         "; measures " + hash_text(measures);
+         size_text({scene.pinhole.width, scene.pinhole.height}) + "; frame " +
+         exact_number(scene.frame) + "; focus " + exact_number(lens.focus_m) + " m; focal length " +
+         exact_number(lens.focal_length_mm) + " mm; f/" + exact_number(lens.f_number) +
+         "; aperture " + exact_number(scene.aperture_m) + " m; samples " + std::to_string(samples) +
+         "; pinhole " + hash_text(hash_image(scene.pinhole)) + "; first samples " +
+         hash_text(hash_image(probe)) + "; measures " + hash_text(measures);
 }
 
 std::string point_key(const std::string& truth_key, const Image& truth) {

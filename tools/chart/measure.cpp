@@ -1,15 +1,13 @@
 #include "tools/chart/measure.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "dof/measure/heat_map.h"
 #include "dof/measure/regions.h"
-#include "raster/images/texel.h"
-#include "raster/numbers/hash.h"
-#include "tools/chart/worst_crop.h"
 #include "tools/files/base64.h"
 #include "tools/files/image_file.h"
+#include "tools/report/specimen.h"
+#include "tools/report/worst_crop.h"
 
 namespace softfocus {
 namespace {
@@ -25,43 +23,8 @@ int crop_side(const Image& picture) {
 
 int page_factor(int width, int height) { return reduction_factor(width, height, kPagePicturePx); }
 
-struct TestPair {
-  Image truth;
-  Image picture;
-};
-
 /// Circles of up to some 8 pixels.
-constexpr PixelCoc kTestCoc{.radius_at_infinity_px = 4.0f, .focus_m = 2.0f};
-
-/// Stripes, lights and three depths; the picture is the truth with every fifth pixel's light
-/// changed and a corner that is wrong. Whole numbers and their quotients alone: no function that
-/// a library computes in its own way.
-TestPair test_pair() {
-  constexpr int kWidth = 56, kHeight = 40;
-  TestPair pair{make_image(Format::rgba16f, kWidth, kHeight),
-                make_image(Format::rgba16f, kWidth, kHeight)};
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const float depth_m = x < 18 ? 1.0f : x < 36 ? 2.0f : 6.0f;
-      const bool is_lamp = x % 13 == 5 && y % 11 == 4;
-      const auto light = is_lamp ? 8.0f : static_cast<float>((3 * x + 5 * y) % 17) / 16.0f;
-      const glm::vec4 texel{light, light / 2.0f, 1.0f - light / 8.0f, depth_m};
-      store_texel<Format::rgba16f>(pair.truth, x, y, texel, {});
-      const float wrong = (x + 3 * y) % 5 == 0 ? 0.75f : x > 44 && y < 9 ? 0.25f : 1.0f;
-      store_texel<Format::rgba16f>(pair.picture, x, y, texel * glm::vec4{wrong, wrong, wrong, 1.0f},
-                                   {});
-    }
-  }
-  return pair;
-}
-
-void add_number(Hash& hash, double number) {
-  add_to_hash(hash, std::bit_cast<std::uint64_t>(number));
-}
-
-void add_text(Hash& hash, const std::string& text) {
-  for (const char byte : text) add_to_hash(hash, static_cast<std::uint8_t>(byte));
-}
+constexpr PixelCoc kSpecimenCoc{.radius_at_infinity_px = 4.0f, .focus_m = 2.0f};
 
 }  // namespace
 
@@ -100,8 +63,8 @@ void add_point_pictures(ChartPoint& point, const Image& picture, const Image& tr
 }
 
 std::uint64_t measures_hash(ThreadPool& pool) {
-  const TestPair pair = test_pair();
-  const Image labels = label_regions(pair.truth, kTestCoc);
+  const SpecimenPair pair = specimen_pair();
+  const Image labels = label_regions(pair.truth, kSpecimenCoc);
   const ChartErrors errors = measure_picture(pair.picture, pair.truth, labels, pool);
   ChartPoint point;
   add_point_pictures(point, pair.picture, pair.truth, pool);

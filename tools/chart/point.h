@@ -10,6 +10,7 @@
 
 #include "dof/measure/measures.h"
 #include "tools/chart/settings.h"
+#include "tools/report/worst_crop.h"
 
 namespace softfocus {
 
@@ -42,13 +43,6 @@ inline constexpr std::array kRankedErrors{
 struct ChartTimes {
   std::vector<double> frame_ms;
   std::vector<double> filter_ms;
-};
-
-/// A square part of a picture.
-struct Crop {
-  int x = 0;
-  int y = 0;
-  int side = 0;
 };
 
 /// PNG files in base64, for a page that needs no other file.

@@ -1,12 +1,10 @@
 #include "tools/chart/record.h"
 
 #include <cmath>
-#include <fstream>
+#include <optional>
 
-#include "tools/cli/errors.h"
-#include "tools/files/json.h"
-#include "tools/files/whole_file.h"
 #include "tools/golden/hashes.h"
+#include "tools/report/report_files.h"
 
 namespace softfocus {
 namespace {
@@ -42,32 +40,6 @@ std::optional<Json> kept_for(const ChartPoint& point, const std::string& key,
 }
 
 }  // namespace
-
-void make_directory(const std::filesystem::path& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  // Another chart may have made it in the meantime.
-  std::error_code no_directory;
-  if (error && !std::filesystem::is_directory(directory, no_directory)) {
-    throw FileError("cannot make the directory '" + directory.string() + "': " + error.message() +
-                    "; give -o a place that can be written to");
-  }
-}
-
-void write_json(const std::filesystem::path& file, const Json& json) {
-  WholeFile whole{file};
-  // A file's name need not be UTF-8, but JSON must be.
-  whole.write(json_text(json, 1) + "\n");
-  whole.commit();
-}
-
-std::optional<Json> read_json(const std::filesystem::path& file) {
-  std::ifstream stream{file, std::ios::binary};
-  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
-  auto json = parse_json(text);
-  if (json && !json->is_object()) json.reset();
-  return json;
-}
 
 Json errors_json(const ChartErrors& errors) {
   Json json{{"psnr_db", number_or_null(errors.psnr_db)}, {"ssim", errors.ssim}};

@@ -2,22 +2,12 @@
 // What `chart` keeps in files to go on with later, as JSON.
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "tools/chart/point.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
-
-/// Makes a directory and those above it. Throws FileError.
-void make_directory(const std::filesystem::path& directory);
-
-/// Writes it whole or not at all. Throws FileError.
-void write_json(const std::filesystem::path& file, const Json& json);
-
-/// What a file holds, if it is there and is JSON.
-std::optional<Json> read_json(const std::filesystem::path& file);
 
 /// {psnr_db, ssim, flip, flip_silhouette, flip_near, flip_focus, flip_far, hdr_flip,
 /// hdr_flip_silhouette, hdr_flip_near, hdr_flip_focus, hdr_flip_far}. An infinite PSNR and a

@@ -10,6 +10,7 @@
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
 #include "tools/golden/hashes.h"
+#include "tools/report/report_files.h"
 
 namespace softfocus {
 namespace {

@@ -41,7 +41,8 @@ void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& direct
 }
 
 void add_size(CLI::App& parser, PictureSize& size) {
-  add_value(parser, "--size", "WxH", "Width and height in pixels (default: 1024x1024)",
+  add_value(parser, "--size", "WxH",
+            "Width and height in pixels (default: 1024x1024)",
             [&size](const std::string& text) { size = parse_size("--size", text); });
 }
 
@@ -105,6 +106,12 @@ Pixel parse_pixel(std::string_view option, const std::string& text) {
 std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string exact_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
   return text;
 }
 

@@ -52,6 +52,9 @@ Pixel parse_pixel(std::string_view option, const std::string& text);
 /// `value` as short as it can be told from its neighbours by eye: at most 6 digits.
 std::string short_number(double value);
 
+/// Every bit of `value`, readable: 17 digits.
+std::string exact_number(double value);
+
 /// "a, b, c" of things that have a name.
 template <class Range>
 std::string names_of(const Range& things) {

@@ -13,7 +13,7 @@
 #include "dof/auto/auto_method.h"
 #include "dof/auto/candidates.h"
 #include "dof/dof.h"
-#include "dof/measure/measures.h"
+#include "dof/measure/flip.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
@@ -80,11 +80,6 @@ LensViewInput views_of(const Subject& subject, int samples) {
           .sampling = {.samples = samples},
           .profile = Profile{},
           .progress = {}};
-}
-
-double mean_flip(const Image& truth, const Image& picture, ThreadPool& pool) {
-  static const ToneTable tone = clamped_tone();
-  return mean(flip_map(truth, picture, tone, pool));
 }
 
 /// What --measure finds: the mean FLIP of each choice, in their order.

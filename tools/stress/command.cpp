@@ -3,10 +3,9 @@
 #include <iostream>
 #include <memory>
 
-#include "tools/chart/record.h"
 #include "tools/cli/commands.h"
-#include "tools/cli/errors.h"
 #include "tools/files/whole_file.h"
+#include "tools/report/report_files.h"
 #include "tools/stress/findings.h"
 #include "tools/stress/stress_page.h"
 #include "tools/stress/stress_report.h"
@@ -14,33 +13,18 @@
 namespace softfocus {
 namespace {
 
-void make_cache(const std::filesystem::path& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory / "cache", error);
-  if (error) {
-    throw FileError("cannot make the directory '" + directory.string() + "': " + error.message() +
-                    "; give -o a place that can be written to");
-  }
+int stress(const StressOptions& options) {
+  make_directory(options.directory / "cache");
   // So that nothing is measured in vain.
   for (const char* name : {"stress.csv", "stress.json", "index.html"}) {
-    check_writable(directory / name);
+    check_writable(options.directory / name);
   }
-}
-
-void write_atlas_file(const std::filesystem::path& file, std::string_view text) {
-  WholeFile whole{file};
-  whole.write(text);
-  whole.commit();
-}
-
-int stress(const StressOptions& options) {
-  make_cache(options.directory);
   ThreadPool pool{options.pool.threads, options.pool.isa};
   const StressFindings findings = measure_stress(options, pool);
   const Json json = stress_json(findings);
   write_json(options.directory / "stress.json", json);
-  write_atlas_file(options.directory / "stress.csv", stress_csv(findings));
-  write_atlas_file(options.directory / "index.html", stress_page(findings, options));
+  write_text(options.directory / "stress.csv", stress_csv(findings));
+  write_text(options.directory / "index.html", stress_page(findings, options));
   if (options.json) {
     std::cout << json_text(json, 1) << '\n';
     return kDone;

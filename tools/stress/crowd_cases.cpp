@@ -94,7 +94,7 @@ StressTrial make_cut_circles(double ratio, int size, ThreadPool& pool) {
 }
 
 double crowd_error(const StressAnswer& answer) {
-  return mean_flip(answer.truth[0], answer.result[0], answer.pool);
+  return answer_flip(answer.truth[0], answer.result[0], answer.pool);
 }
 
 constexpr std::string_view kFlip = "mean FLIP", kFlipUnit = "0 to 1";

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/chart/report/page_parts.h"
 #include "tools/cli/option_values.h"
+#include "tools/report/html.h"
 
 namespace softfocus {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "tools/chart/time_left.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/progress.h"
+#include "tools/report/time_left.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/stress_pictures.h"
 #include "tools/stress/trial_record.h"

@@ -118,7 +118,7 @@ StressTrial make_night(double brightness, int size, ThreadPool& pool) {
 }
 
 double night_error(const StressAnswer& answer) {
-  return mean_hdr_flip(answer.truth[0], answer.result[0], answer.pool);
+  return answer_hdr_flip(answer.truth[0], answer.result[0], answer.pool);
 }
 
 constexpr StressParameter kPointRadius{"radius", "px"};

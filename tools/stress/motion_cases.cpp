@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "raster/numbers/random_bits.h"
-#include "tools/chart/worst_crop.h"
+#include "tools/report/worst_crop.h"
 #include "tools/stress/make_frame.h"
 #include "tools/stress/stress_measures.h"
 
@@ -93,7 +93,7 @@ StressTrial make_two_sizes(double radius, int size, ThreadPool& pool) {
 
 double size_error(const StressAnswer& answer) {
   if (spoilt_pixels(answer.result[0]) > 0) return INFINITY;
-  return mean_flip(reduced(answer.result[0], 2), answer.result[1], answer.pool);
+  return answer_flip(reduced(answer.result[0], 2), answer.result[1], answer.pool);
 }
 
 constexpr std::string_view kFalseChange = "mean false change";

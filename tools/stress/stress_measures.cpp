@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "dof/measure/flicker.h"
+#include "dof/measure/flip.h"
 #include "dof/measure/hdr_flip.h"
 #include "dof/measure/point_image.h"
 #include "raster/images/texel.h"
@@ -94,13 +95,13 @@ int spoilt_pixels(const Image& picture) {
   return spoilt;
 }
 
-double mean_flip(const Image& truth, const Image& result, ThreadPool& pool) {
+double answer_flip(const Image& truth, const Image& result, ThreadPool& pool) {
   // FLIP takes NaN for black.
   if (spoilt_pixels(result) > 0) return std::numeric_limits<double>::infinity();
-  return mean(flip_map(truth, result, clamped_tone(), pool));
+  return mean_flip(truth, result, pool);
 }
 
-double mean_hdr_flip(const Image& truth, const Image& result, ThreadPool& pool) {
+double answer_hdr_flip(const Image& truth, const Image& result, ThreadPool& pool) {
   if (spoilt_pixels(result) > 0) return std::numeric_limits<double>::infinity();
   return mean(hdr_flip_map(truth, result, pool));
 }

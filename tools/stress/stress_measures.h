@@ -46,8 +46,8 @@ double unevenness(const Image& picture, double centre_x_px, double centre_y_px, 
 int spoilt_pixels(const Image& picture);
 
 /// Mean FLIP, and HDR-FLIP, of a picture against the truth. Infinity if a pixel is spoilt.
-double mean_flip(const Image& truth, const Image& result, ThreadPool& pool);
-double mean_hdr_flip(const Image& truth, const Image& result, ThreadPool& pool);
+double answer_flip(const Image& truth, const Image& result, ThreadPool& pool);
+double answer_hdr_flip(const Image& truth, const Image& result, ThreadPool& pool);
 
 /// The mean of |change - true change| over the mean of |true change|, sRGB-encoded: flicker() in
 /// units of the change that there should be.

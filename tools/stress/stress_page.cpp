@@ -6,8 +6,8 @@
 #include <limits>
 #include <string_view>
 
-#include "tools/chart/report/page_parts.h"
 #include "tools/cli/option_values.h"
+#include "tools/report/html.h"
 #include "tools/stress/curve_svg.h"
 #include "tools/stress/stress_report.h"
 

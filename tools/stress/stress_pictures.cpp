@@ -5,9 +5,9 @@
 #include "dof/measure/flip.h"
 #include "dof/measure/heat_map.h"
 #include "raster/images/texel.h"
-#include "tools/chart/worst_crop.h"
 #include "tools/files/base64.h"
 #include "tools/files/image_file.h"
+#include "tools/report/worst_crop.h"
 #include "tools/stress/stress_measures.h"
 
 namespace softfocus {

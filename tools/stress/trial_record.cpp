@@ -1,22 +1,14 @@
 #include "tools/stress/trial_record.h"
 
-#include <array>
-#include <cstdio>
 #include <limits>
 
-#include "tools/chart/record.h"
+#include "tools/cli/option_values.h"
 #include "tools/golden/hashes.h"
+#include "tools/report/report_files.h"
 #include "tools/stress/answers.h"
 
 namespace softfocus {
 namespace {
-
-/// Every bit of a number, readable.
-std::string all_digits(double value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
-}
 
 bool has_hash(const Json* entry, const std::string& hash) {
   if (entry == nullptr || !entry->is_object()) return false;
@@ -37,15 +29,15 @@ std::string trial_key(const StressCase& of, double severity, const StressTrial& 
   // They change with all of a scene that the sharp picture does not show.
   constexpr int kProbeViews = 16;
   std::string key = "softfocus " SOFTFOCUS_VERSION "; revision " + std::to_string(kStressRevision) +
-                    "; " + std::string{of.name} + " at " + all_digits(severity) + "; views " +
+                    "; " + std::string{of.name} + " at " + exact_number(severity) + "; views " +
                     std::to_string(views);
   for (const StressFrame& frame : trial.frames) {
     const DofSettings& settings = frame.settings;
     key += "; size " + std::to_string(frame.sharp.height) + ", " +
            hash_text(hash_image(frame.sharp)) + ", at infinity " +
-           all_digits(double{settings.coc.radius_at_infinity_px}) + " px, focus " +
-           all_digits(double{settings.coc.focus_m}) + " m, max-coc " +
-           all_digits(double{settings.max_coc_px}) + " px";
+           exact_number(double{settings.coc.radius_at_infinity_px}) + " px, focus " +
+           exact_number(double{settings.coc.focus_m}) + " m, max-coc " +
+           exact_number(double{settings.max_coc_px}) + " px";
     if (frame.truth.width > 0) key += ", truth " + hash_text(hash_image(frame.truth));
   }
   if (views == 0) return key;

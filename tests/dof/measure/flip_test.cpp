@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "dof/measure/flip_filters.h"
+#include "dof/measure/measures.h"
 #include "dof/measure/opponent.h"
 #include "tests/support/flip_oracle.h"
 #include "tests/support/measure_pictures.h"
@@ -68,6 +69,14 @@ TEST_CASE("FLIP of two greys, of two colours and in the dark is the equations'")
         Approx(0.986662275195759).epsilon(1e-6));
   CHECK(plain_flip(plain_grey(24, 24, 0.0f), plain_grey(24, 24, 0x1p-9f)) ==
         Approx(0.08561643944000483).epsilon(1e-6));
+}
+
+TEST_CASE("FLIP of a picture is its map's mean, and what all measures together say") {
+  ThreadPool pool{2};
+  const Image a = grey_picture(40, 30, [](int x, int y) { return 0.1 * ((x + y) % 7); }),
+              b = grey_picture(40, 30, [](int x, int y) { return 0.1 * ((x * y) % 5); });
+  CHECK(mean_flip(a, b, pool) == mean(flip(a, b)));
+  CHECK(mean_flip(a, b, pool) == measure_pictures(a, b, nullptr, {}, pool).whole.flip);
 }
 
 TEST_CASE("FLIP is symmetric and within 0 to 1") {

@@ -4,10 +4,11 @@
 #include <cmath>
 
 #include "tools/chart/pictures.h"
-#include "tools/chart/report/page_parts.h"
 #include "tools/chart/report/page_style.h"
 #include "tools/chart/report/page_tables.h"
+#include "tools/chart/report/point_links.h"
 #include "tools/chart/report/summary_plot.h"
+#include "tools/report/html.h"
 
 namespace softfocus {
 namespace {

@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "tools/bench/timing.h"
-#include "tools/chart/report/page_parts.h"
+#include "tools/chart/report/point_links.h"
 #include "tools/cli/option_values.h"
+#include "tools/report/html.h"
 
 namespace softfocus {
 namespace {

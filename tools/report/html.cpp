@@ -1,4 +1,4 @@
-#include "tools/chart/report/page_parts.h"
+#include "tools/report/html.h"
 
 #include <array>
 #include <cmath>
@@ -60,21 +60,6 @@ std::string plot_image(std::string_view svg, const std::string& alt) {
   return "<div class=\"scroll\"><img class=\"chart\" alt=\"" + html_text(alt) +
          "\" src=\"data:image/svg+xml;base64," + base64(std::as_bytes(std::span{svg})) +
          "\"></div>\n";
-}
-
-std::string element_id(const ChartPanel& panel, const ChartPoint& point) {
-  return html_text(panel.scene + "-" + entry_id(point.entry));
-}
-
-std::string method_link(const ChartPanel& panel, const ChartPoint& point) {
-  std::string name = html_text(point.entry.method);
-  if (point.pictures.empty()) return name;
-  return "<a href=\"#" + element_id(panel, point) + "\">" + name + "</a>";
-}
-
-std::string full_name(const ChartPoint& point) {
-  const std::string settings = settings_text(point.entry);
-  return point.entry.method + (settings.empty() ? "" : ", " + settings);
 }
 
 }  // namespace softfocus

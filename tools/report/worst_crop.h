@@ -3,9 +3,15 @@
 
 #include "dof/measure/pixel_map.h"
 #include "raster/images/image.h"
-#include "tools/chart/point.h"
 
 namespace softfocus {
+
+/// A square part of a picture.
+struct Crop {
+  int x = 0;
+  int y = 0;
+  int side = 0;
+};
 
 /// The square with the largest sum of values; of equal ones the first in reading order. `side`
 /// is at most the map's width and height.

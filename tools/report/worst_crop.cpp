@@ -1,4 +1,4 @@
-#include "tools/chart/worst_crop.h"
+#include "tools/report/worst_crop.h"
 
 #include <algorithm>
 #include <cassert>

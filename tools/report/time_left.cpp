@@ -1,4 +1,4 @@
-#include "tools/chart/time_left.h"
+#include "tools/report/time_left.h"
 
 #include <algorithm>
 #include <chrono>

@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/chart/point.h"
-
 namespace softfocus {
 
 /// Text as HTML takes it, in quotes too.
@@ -36,14 +34,5 @@ std::string table_of(const std::string& id, const std::string& head, const std::
 
 /// A plot (the text of an SVG file), as wide as the page; narrow screens scroll it.
 std::string plot_image(std::string_view svg, const std::string& alt);
-
-/// The point's place in the page.
-std::string element_id(const ChartPanel& panel, const ChartPoint& point);
-
-/// The method's name, leading to the point's pictures if it has some.
-std::string method_link(const ChartPanel& panel, const ChartPoint& point);
-
-/// "two-pass, max-coc 16".
-std::string full_name(const ChartPoint& point);
 
 }  // namespace softfocus
