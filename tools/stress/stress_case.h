@@ -88,8 +88,4 @@ double shown_severity(const StressCase& of, std::span<const double> severities);
 /// Whether two cases are measured on the same pictures.
 bool same_trials(const StressCase& a, const StressCase& b);
 
-/// Counts up whenever a trial, a truth or a measure changes, so that kept values are not used
-/// for another.
-inline constexpr int kStressRevision = 1;
-
 }  // namespace softfocus

@@ -5,7 +5,9 @@
 #include "tools/cli/option_values.h"
 #include "tools/golden/hashes.h"
 #include "tools/report/report_files.h"
+#include "tools/report/specimen.h"
 #include "tools/stress/answers.h"
+#include "tools/stress/stress_pictures.h"
 
 namespace softfocus {
 namespace {
@@ -14,6 +16,25 @@ bool has_hash(const Json* entry, const std::string& hash) {
   if (entry == nullptr || !entry->is_object()) return false;
   const Json* const of = entry->find("hash");
   return of != nullptr && of->is_text() && of->text() == hash;
+}
+
+/// What the measures of all cases on these pictures, and the page's pictures, give for a wrong
+/// answer: it differs whenever one of them has changed.
+std::uint64_t case_measures_hash(const StressCase& of, const StressAnswer& right) {
+  std::vector<Image> wrong;
+  for (const Image& picture : right.truth) wrong.push_back(with_wrong_pixels(picture));
+  const StressAnswer answer{right.trial, right.severity, right.truth, wrong, right.pool};
+  Hash hash;
+  add_number(hash, of.measure(answer));
+  for (const StressCase& other : stress_cases()) {
+    if (other.name != of.name && same_trials(of, other)) add_number(hash, other.measure(answer));
+  }
+  const SpecimenPair pair = specimen_pair();
+  const double gain = display_gain(pair.truth);
+  add_number(hash, gain);
+  add_text(hash, stress_picture(pair.picture, gain));
+  add_text(hash, stress_error_picture(pair.truth, pair.picture, gain, right.pool));
+  return hash.value;
 }
 
 }  // namespace
@@ -28,9 +49,8 @@ std::string trial_key(const StressCase& of, double severity, const StressTrial& 
                       ThreadPool& pool) {
   // They change with all of a scene that the sharp picture does not show.
   constexpr int kProbeViews = 16;
-  std::string key = "softfocus " SOFTFOCUS_VERSION "; revision " + std::to_string(kStressRevision) +
-                    "; " + std::string{of.name} + " at " + exact_number(severity) + "; views " +
-                    std::to_string(views);
+  std::string key = "softfocus " SOFTFOCUS_VERSION "; " + std::string{of.name} + " at " +
+                    exact_number(severity) + "; views " + std::to_string(views);
   for (const StressFrame& frame : trial.frames) {
     const DofSettings& settings = frame.settings;
     key += "; size " + std::to_string(frame.sharp.height) + ", " +
@@ -40,8 +60,11 @@ std::string trial_key(const StressCase& of, double severity, const StressTrial& 
            exact_number(double{settings.max_coc_px}) + " px";
     if (frame.truth.width > 0) key += ", truth " + hash_text(hash_image(frame.truth));
   }
-  if (views == 0) return key;
-  return key + "; first views " + hashes_of(make_stress_truth(trial, kProbeViews, pool).pictures);
+  const std::vector<Image> truth =
+      make_stress_truth(trial, views == 0 ? 0 : kProbeViews, pool).pictures;
+  if (views > 0) key += "; first views " + hashes_of(truth);
+  return key + "; measures " +
+         hash_text(case_measures_hash(of, {trial, severity, truth, {}, pool}));
 }
 
 TrialRecord::TrialRecord(std::filesystem::path file, const std::string& key)
