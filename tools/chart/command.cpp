@@ -21,6 +21,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
+#include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/report/report_files.h"
 
@@ -151,22 +152,30 @@ void print_summary(const std::vector<ChartPanel>& panels) {
   }
 }
 
-int chart(const ChartOptions& options) {
-  check_scenes(options);
-  check_gnuplot();
-  make_directory(options.directory / "cache");
-  // So that nothing is measured in vain.
+/// All that a chart writes but its cache.
+std::vector<std::filesystem::path> output_files(const std::filesystem::path& directory) {
+  std::vector<std::filesystem::path> files{directory / "index.html"};
   for (const char* name : {"chart", "best", "summary"}) {
     for (const char* ending : {".csv", ".json"}) {
-      check_writable(options.directory / (std::string{name} + ending));
+      files.push_back(directory / (std::string{name} + ending));
     }
   }
   for (const char* name : {"chart", "chart-hdr-flip", "summary"}) {
     for (const char* ending : {".svg", ".png"}) {
-      check_writable(options.directory / (std::string{name} + ending));
+      files.push_back(directory / (std::string{name} + ending));
     }
   }
-  check_writable(options.directory / "index.html");
+  return files;
+}
+
+int chart(const ChartOptions& options) {
+  const std::vector<std::filesystem::path> outputs = output_files(options.directory);
+  const std::vector<ReadFile> inputs = check_scenes(options);
+  for (const auto& file : outputs) check_not_read("-o", file, inputs);
+  check_gnuplot();
+  make_directory(options.directory / "cache");
+  // So that nothing is measured in vain.
+  for (const auto& file : outputs) check_writable(file);
   ThreadPool pool{options.pool.threads, options.pool.isa};
   const ChartFindings findings = measure_chart(options, pool);
   write_chart(findings.panels, options);

@@ -10,8 +10,9 @@
 
 namespace softfocus {
 
-void check_scenes(const ChartOptions& options) {
+std::vector<ReadFile> check_scenes(const ChartOptions& options) {
   std::vector<std::string> names;
+  std::vector<ReadFile> files;
   for (const std::string& name : options.scenes) {
     const Scene scene = load_scene(name, scene_search_path(options.scene_path));
     check_lens(scene.lens.lens, {}, name);
@@ -20,7 +21,10 @@ void check_scenes(const ChartOptions& options) {
                        " too; chart them one by one");
     }
     names.push_back(scene.name);
+    for (const auto& file : scene.files)
+      files.push_back({file, "a file of the scene " + scene.name});
   }
+  return files;
 }
 
 ChartScene load_chart_scene(const std::string& name, const ChartOptions& options,

@@ -2,10 +2,12 @@
 // A scene as all contenders get it.
 
 #include <string>
+#include <vector>
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
 #include "tools/chart/options.h"
+#include "tools/files/same_file.h"
 
 namespace softfocus {
 
@@ -20,9 +22,10 @@ struct ChartScene {
   Image labels;             ///< label_regions() of it
 };
 
-/// Loads all scenes, so that a wrong one is reported before hours of work. Throws SceneError, and
-/// UsageError for an impossible lens or two scenes of one name.
-void check_scenes(const ChartOptions& options);
+/// Loads all scenes, so that a wrong one is reported before hours of work, and returns the files
+/// that they were read from. Throws SceneError, and UsageError for an impossible lens or two
+/// scenes of one name.
+std::vector<ReadFile> check_scenes(const ChartOptions& options);
 
 /// Loads and draws a scene. Throws SceneError, and UsageError for an impossible lens.
 ChartScene load_chart_scene(const std::string& name, const ChartOptions& options, ThreadPool& pool);

@@ -261,6 +261,28 @@ TEST_CASE("chart: two scenes of one name are refused") {
       2, {"--scenes", "called mine too"});
 }
 
+TEST_CASE("chart: writes over no file of its scenes, not by a link either") {
+  const TemporaryDirectory directory;
+  REQUIRE(run_program(render("figures", directory.file("chart.png"))).status == 0);
+  write_file(directory.file("m.mtl"), "newmtl red\nKd 1 0 0\nmap_Kd chart.png\n");
+  write_file(directory.file("m.obj"),
+             "mtllib m.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Words words{"chart", "--scenes", "figures," + directory.file("m.obj"), "--quick", "-o"};
+  const auto refused_into = [&](const std::string& output, const Words& named) {
+    Words all = words;
+    all.push_back(output);
+    check_refused(directory, all, 2, named);
+  };
+  const std::string texture = read_file(directory.file("chart.png"));
+  refused_into(directory.path(), {"-o '" + directory.file("chart.png") + "'",
+                                  "would write over a file of the scene m"});
+  const TemporaryDirectory elsewhere;
+  std::filesystem::create_hard_link(directory.file("m.mtl"), elsewhere.file("best.csv"));
+  refused_into(elsewhere.path(), {"-o '" + elsewhere.file("best.csv") + "'", "m.mtl"});
+  CHECK(elsewhere.listing() == Words{"best.csv"});
+  CHECK(read_file(directory.file("chart.png")) == texture);
+}
+
 TEST_CASE("chart: a place that cannot be written to is told before anything is measured") {
   if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
