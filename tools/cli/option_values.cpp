@@ -28,6 +28,11 @@ std::optional<int> whole(std::string_view text) {
 
 }  // namespace
 
+void add_scene_argument(CLI::App& parser, std::string& scene) {
+  add_argument(parser, "SCENE",
+               "Name of a scene (softfocus scenes), random:SEED, a .toml or an .obj file", scene);
+}
+
 void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories) {
   add_repeatable_value(
       parser, "--scene-path", "DIR", "Directory to look for scenes in first; may be repeated",
@@ -42,7 +47,7 @@ void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& direct
 
 void add_size(CLI::App& parser, PictureSize& size) {
   add_value(parser, "--size", "WxH",
-            "Width and height in pixels (default: 1024x1024)",
+            "Width and height in pixels (default: " + size_text(size) + ")",
             [&size](const std::string& text) { size = parse_size("--size", text); });
 }
 

@@ -23,6 +23,9 @@ struct Pixel {
   int y = 0;
 };
 
+/// Adds SCENE, as load_scene() takes it.
+void add_scene_argument(CLI::App& parser, std::string& scene);
+
 /// Adds --scene-path, which may be repeated: directories that must exist.
 void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories);
 

@@ -252,8 +252,7 @@ Command add_candidates_command(CLI::App& program) {
   CLI::App* parser = add_command(program, "candidates",
                                  "List what --method auto chooses from: predicted time and error");
   const auto options = std::make_shared<CandidatesOptions>();
-  add_argument(*parser, "SCENE", "A scene's name, random:SEED, a .toml or an .obj file",
-               options->scene);
+  add_scene_argument(*parser, options->scene);
   add_scene_path(*parser, options->scene_path);
   add_size(*parser, options->size);
   add_frame(*parser, options->frame);
@@ -280,7 +279,7 @@ Command add_candidates_command(CLI::App& program) {
             "Coefficients in place of auto's own: JSON, {\"two-pass:8\": [seven numbers], ...}",
             [options](const std::string& text) { options->table = text; });
   add_flag(*parser, "--json", "Print JSON", options->json);
-  add_pool_options(*parser, options->pool, "what is printed");
+  add_pool_options(*parser, options->pool, "what is printed is the same");
   return {parser, [options] { return list_candidates(*options); }};
 }
 

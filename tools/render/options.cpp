@@ -106,8 +106,7 @@ constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
 }  // namespace
 
 void add_render_options(CLI::App& parser, RenderOptions& options) {
-  add_argument(parser, "SCENE", "Name of a scene (softfocus scenes), a .toml or an .obj file",
-               options.scene);
+  add_scene_argument(parser, options.scene);
   add_picture_options(parser, options);
   add_scene_options(parser, options);
   add_method_options(parser, options);
