@@ -181,7 +181,7 @@ Json taken_json(const Taken& taken) {
   return {{"max_error", taken.error_asked},
           {"candidate", candidate_id(taken.choice)},
           {"predicted_error", taken.choice.predicted_error},
-          {"measured_error", taken.measured_error ? Json{*taken.measured_error} : Json{nullptr}},
+          {"measured_error", taken.measured_error ? Json(*taken.measured_error) : Json(nullptr)},
           {"meets_goal", taken.choice.meets_goal},
           {"reason", taken.choice.reason}};
 }

@@ -1,5 +1,7 @@
 // candidates from end to end.
 
+#include <fstream>
+
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 
@@ -79,6 +81,36 @@ TEST_CASE("candidates: --measure gives the error that render and compare give") 
   CHECK(entry_of(list, "accumulation:64")["flip"].is_null());
 }
 
+TEST_CASE("candidates: --choose tells what auto takes, with the coefficients of a table too") {
+  const TemporaryDirectory directory;
+  const std::string table = directory.file("table.json");
+  const auto taken = [&](const Words& more) {
+    Words words{"--choose", "0.3", "--choose", "0.05", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return measured(words)["choices"];
+  };
+  const json own = taken({});
+  REQUIRE(own.size() == 2);
+  CHECK(own[0]["max_error"] == 0.3);
+  CHECK(own[0]["meets_goal"] == true);
+  CHECK(own[0]["measured_error"] <= 0.3);
+  CHECK(own[1]["measured_error"] <= 0.05);
+  CHECK(own[1]["candidate"] != "pinhole");
+  // Its own table, by which nothing but 2,048 views is ever good enough.
+  json dear;
+  const json list = measured({"--json"});
+  for (const json& entry : list["candidates"]) {
+    dear[entry["candidate"].get<std::string>()] = json::array({9, 0, 0, 0, 0, 0, 0});
+  }
+  dear["accumulation:2048"] = json::array({0, 0, 0, 0, 0, 0, 0});
+  std::ofstream(table) << dear;
+  const json other = taken({"--table", table});
+  for (const json& choice : other) {
+    CHECK(choice["candidate"] == "accumulation:2048");
+    CHECK(choice["predicted_error"] == 0.0);
+  }
+}
+
 TEST_CASE("candidates: the same for any number of threads and every vector unit") {
   const json one = measured({"--measure", "32", "--json", "--threads", "1", "--isa", "scalar"});
   CHECK(measured({"--measure", "32", "--json", "--threads", "3"}) == one);
@@ -96,6 +128,19 @@ TEST_CASE("candidates: bad input is refused in one line") {
     refused(candidates_of("figures", {"--measure", samples}), 2,
             {"--measure '" + std::string{samples} + "'", "a multiple of 16 from 32 to 65536"});
   }
+  refused(candidates_of("figures", {"--choose", "2"}), 2, {"--choose '2'", "from 0 to 1"});
+  const std::string table = directory.file("table.json");
+  refused(candidates_of("figures", {"--table", table}), 1, {table});
+  const auto refused_table = [&](const char* text, const Words& named) {
+    std::ofstream(table) << text;
+    refused(candidates_of("figures", {"--table", table}), 2, named);
+  };
+  refused_table("[1, 2]", {table, "no JSON object"});
+  refused_table(R"({"two-pass:9": [0, 0, 0, 0, 0, 0, 0]})",
+                {table, "two-pass:9", "lists its lines"});
+  refused_table(R"({"two-pass:8": [0, 0, 0, 0, 0, 0]})", {table, "two-pass:8", "seven numbers"});
+  refused_table(R"({"two-pass:8": [0, 0, 0, 0, 0, 0, -1]})", {"two-pass:8", "seven numbers"});
+  refused_table(R"({"two-pass:8": "none"})", {"two-pass:8", "seven numbers"});
   refused({"candidates"}, 2, {"SCENE is missing"});
   refused(candidates_of("no-such-scene", {}), 1, {"no-such-scene", "cube-room"});
   refused(candidates_of("figures", {"--focus", "0.01"}), 2, {"--focus"});
