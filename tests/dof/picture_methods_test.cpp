@@ -294,6 +294,23 @@ TEST_CASE("every method stays within range for the largest circles on a small pi
   }
 }
 
+TEST_CASE("a method whose circles render does not cut leaves smaller ones as they are") {
+  ThreadPool pool(2);
+  Image scene = random_scene_image(60, 50, 8);
+  set_depth(scene,
+            [](int x, int y) { return 1.2f + 0.05f * static_cast<float>((x + 2 * y) % 97); });
+  const auto by_limit = [&](const char* name, float max_coc) {
+    return filtered(name, scene, settings(9.0f, max_coc), pool);
+  };
+  for (const char* name : {"diffusion", "disc-layers"}) {
+    CHECK(find_method(name)->any_radius_costs_the_same);
+    CHECK(equal(by_limit(name, 16.0f), by_limit(name, 64.0f)));
+  }
+  // Its widest picture is made for the limit: a larger one is not free.
+  CHECK_FALSE(find_method("post-process")->any_radius_costs_the_same);
+  CHECK_FALSE(equal(by_limit("post-process", 16.0f), by_limit("post-process", 64.0f)));
+}
+
 TEST_CASE("no method spreads a NaN, and an infinite colour counts as the largest half") {
   ThreadPool pool(2);
   for (const Claims& claims : kClaims) {
