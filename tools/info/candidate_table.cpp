@@ -61,10 +61,13 @@ std::vector<Candidate> read_candidate_table(const std::filesystem::path& file) {
       return candidate_id(candidate) == id;
     });
     if (line == table.end()) {
-      throw UsageError(name + ": auto's table has no '" + id +
-                       "'; `softfocus candidates SCENE --json` lists its lines");
+      throw UsageError(std::string{name}
+                           .append(": auto's table has no '")
+                           .append(id)
+                           .append("'; `softfocus candidates SCENE --json` lists its lines"));
     }
-    line->error = model_of(json->values()[i], name + ": '" + id + "'");
+    line->error =
+        model_of(json->values()[i], std::string{name}.append(": '").append(id).append("'"));
   }
   return table;
 }
