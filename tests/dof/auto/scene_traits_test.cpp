@@ -3,8 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 
 #include "dof/auto/depth_range.h"
@@ -135,9 +136,8 @@ TEST_CASE("scene traits: the same bits for any number of threads and on every ve
       for (const int threads : {1, 3}) {
         ThreadPool pool{threads, isa};
         const SceneTraits traits = scene_traits(image, kCoc, pool);
-        static_assert(sizeof traits ==
-                      sizeof(float) * (7 + 4 * kFilterRadiiPx.size() + kSampleCounts.size()));
-        CHECK(std::memcmp(&traits, &expected, sizeof traits) == 0);
+        using Bits = std::array<std::uint32_t, sizeof(SceneTraits) / sizeof(std::uint32_t)>;
+        CHECK(std::bit_cast<Bits>(traits) == std::bit_cast<Bits>(expected));
       }
     }
   }
