@@ -34,14 +34,14 @@ Posed posed(const StressCase& of, double severity, ThreadPool& pool) {
 
 /// All cases, made once for the tests that follow.
 const std::vector<Posed>& posed_cases(ThreadPool& pool) {
-  static const std::vector<Posed> posed = [&] {
+  static const std::vector<Posed> cases = [&] {
     std::vector<Posed> all;
     for (const StressCase& of : stress_cases()) {
       all.push_back(posed(of, shown_severity(of, severities_of(of, kSize, false)), pool));
     }
     return all;
   }();
-  return posed;
+  return cases;
 }
 
 double measured(const Posed& made, const std::vector<Image>& result, ThreadPool& pool) {
