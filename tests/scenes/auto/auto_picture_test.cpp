@@ -166,7 +166,7 @@ TEST_CASE("auto picture: never checked, it is what is predicted; by time it neve
 TEST_CASE("auto picture: an error that nothing reaches is said to be missed" *
           doctest::test_suite("long")) {
   ThreadPool pool{2};
-  const Subject subject{"figures", pool};
+  const Subject subject{"cube-room", pool};  // few triangles: thousands of views are drawn
   const AutoPicture found = auto_picture(subject.input(1e-6, Verify::in_doubt), pool);
   CHECK_FALSE(found.choice.meets_goal);
   REQUIRE(found.measured_error);

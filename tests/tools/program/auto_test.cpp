@@ -164,8 +164,9 @@ TEST_CASE("auto: an error that nothing keeps to is told, and the picture is ther
           doctest::test_suite("long")) {
   const TemporaryDirectory directory;
   const auto run_with = [&](Words more) {
-    more.insert(more.begin(), {"--max-error", "0"});
-    return run_program(render("figures", directory.file("a.npy"), auto_with(more)));
+    // Few triangles: thousands of views are drawn.
+    more.insert(more.begin(), {"--max-error", "0", "--coc-scale", "6"});
+    return run_program(render("cube-room", directory.file("a.npy"), auto_with(more)));
   };
   const ProgramRun run = run_with({});
   CHECK(run.status == 0);
