@@ -293,7 +293,8 @@ TEST_CASE("chart: a place that cannot be written to is told before anything is m
 
 TEST_CASE("chart: without gnuplot the package is named") {
   const TemporaryDirectory directory;
-  const std::string path = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
+  const char* const found = std::getenv("PATH");
+  const std::string path = found != nullptr ? found : "";
   ::setenv("PATH", directory.path().c_str(), 1);
   check_refused(directory, small_chart(directory.file("out")), 1, {"gnuplot-nox"});
   ::setenv("PATH", path.c_str(), 1);
