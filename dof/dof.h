@@ -5,6 +5,7 @@
 // The bits of a result depend on the input alone: not on threads, vector unit, compiler,
 // or the flags and the floating-point mode of the program around it.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -22,6 +23,9 @@ struct Image;
 
 inline constexpr float kLargestMaxCoc = 1024.0f;
 
+/// Layers behind the first that a method may read.
+inline constexpr std::size_t kMostBehind = 3;
+
 /// What every method is told about the lens and the filter.
 struct DofSettings {
   PixelCoc coc;
@@ -31,6 +35,8 @@ struct DofSettings {
   /// How readily a background gives its colour to what lies before it, 0 or more: the factor
   /// of the leakage weight (dof/weights.h), per pixel of the receiver's radius.
   float leak = 1.0f;
+  /// The share, 0 to 1, of one-pass's work that importance-ordered spends.
+  float budget = 0.25f;
 };
 
 /// A picture and how to blur it.
@@ -40,6 +46,16 @@ struct DofInput {
   ConstImageView scene;
   DofSettings settings;
   Profile profile;  ///< the rounding of the result's halves
+  /// The number of the object that each pixel shows, row by row from the top, or empty if that
+  /// is not known.
+  std::span<const std::uint16_t> objects = {};
+  /// What lies behind the surface that each pixel shows: the next surface, the one after it, and so
+  /// on, as pictures like `scene`, up to kMostBehind; or empty if that is not known. Where nothing
+  /// lies behind, a picture repeats the background.
+  std::span<const ConstImageView> behind = {};
+  /// Signed radii in pixels, row by row from the top, in place of those that the lens gives, or
+  /// empty. Only methods that take_radii read them.
+  std::span<const float> radii_px = {};
 };
 
 /// A depth-of-field method: an entry of the table in method.cpp.
@@ -52,6 +68,12 @@ struct Method {
   /// Whether a larger max_coc_px costs nothing and leaves smaller circles as they are: then no
   /// circle need be cut.
   bool any_radius_costs_the_same = false;
+  /// Whether it makes use of DofInput::objects.
+  bool reads_objects = false;
+  /// How many layers it works from: with more than 1 it makes use of DofInput::behind.
+  std::size_t layers = 1;
+  /// Whether it makes use of DofInput::radii_px.
+  bool takes_radii = false;
 };
 
 std::span<const Method> methods();

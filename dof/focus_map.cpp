@@ -72,7 +72,7 @@ void pass_band(const DofInput& input, const ImageView& result, Isa isa, int band
       const int x = first * kCellWidth;
       const int count = std::min(i * kCellWidth, result.width) - x;
       SOFTFOCUS_KERNEL(isa, pass_pixels)
-      (from + 4 * x, to + 4 * x, count, write_past_caches(result));
+      (from + 4 * x, to + 4 * x, count, input.profile.half_store, write_past_caches(result));
     }
   }
 }
@@ -150,19 +150,21 @@ namespace {
 /// The colour of a pixel that gathers only itself: it is cut to what a half holds.
 SOFTFOCUS_INLINE Bits passed_colour(Bits half) {
   const Bits cut = half - select((half & 0x7FFFu) == kHalfInfinity, splat(1u), splat(0u));
-  return stored_depth(cut);
+  return stored_depth(cut, HalfRounding::nearest_even);
 }
 
-SOFTFOCUS_INLINE void pass_vector(const std::uint16_t* from, std::uint16_t* to) {
+SOFTFOCUS_INLINE void pass_vector(const std::uint16_t* from, std::uint16_t* to,
+                                  HalfRounding rounding) {
   const HalfTexels texels = load_half_texels(from);
   store_half_texels(to, {passed_colour(texels.r), passed_colour(texels.g), passed_colour(texels.b),
-                         stored_depth(texels.a)});
+                         stored_depth(texels.a, rounding)});
 }
 
 }  // namespace
 
 /// Writes pixels that gather only themselves.
-void pass_pixels(const std::uint16_t* from, std::uint16_t* to, int count, bool past_caches) {
+void pass_pixels(const std::uint16_t* from, std::uint16_t* to, int count, HalfRounding rounding,
+                 bool past_caches) {
   int at = 0;
   for (; at + kLanes <= count; at += kLanes, from += 4 * kLanes, to += 4 * kLanes) {
     // Only infinities and NaN are changed, and they are rare.
@@ -173,7 +175,7 @@ void pass_pixels(const std::uint16_t* from, std::uint16_t* to, int count, bool p
     const Mask special = ((first & 0x7C00u) == 0x7C00u) | ((first & 0x7C000000u) == 0x7C000000u) |
                          ((second & 0x7C00u) == 0x7C00u) | ((second & 0x7C000000u) == 0x7C000000u);
     if (any(special)) {
-      pass_vector(from, to);
+      pass_vector(from, to, rounding);
     } else if (past_caches) {
       stream_texel_words(to, words);
     } else {
@@ -184,7 +186,7 @@ void pass_pixels(const std::uint16_t* from, std::uint16_t* to, int count, bool p
     const std::size_t bytes = 4 * sizeof *from * static_cast<std::size_t>(count - at);
     std::uint16_t last[4 * kLanes] = {}, passed[4 * kLanes];
     std::memcpy(last, from, bytes);
-    pass_vector(last, passed);
+    pass_vector(last, passed, rounding);
     std::memcpy(to, passed, bytes);
   }
   if (past_caches) finish_streaming();

@@ -6,13 +6,21 @@
 #include <cstdlib>
 #include <limits>
 
+#include "dof/circular/circular.h"
 #include "dof/disc_layers/disc_layers.h"
-#include "dof/methods/circular_separable.h"
+#include "dof/disc_layers/layered.h"
+#include "dof/methods/anisotropic_diffusion.h"
 #include "dof/methods/diffusion.h"
+#include "dof/methods/generalised_diffusion.h"
+#include "dof/methods/importance_ordered.h"
 #include "dof/methods/pinhole.h"
 #include "dof/methods/post_process.h"
-#include "dof/methods/ring_bucket.h"
+#include "dof/mipmap/mipmap.h"
+#include "dof/object_layers/object_layers.h"
 #include "dof/one_pass/one_pass.h"
+#include "dof/ray_distribution/ray_distribution.h"
+#include "dof/ring_bucket/ring_bucket.h"
+#include "dof/scatter/layers.h"
 #include "dof/scatter/scatter.h"
 #include "dof/two_pass/two_pass.h"
 #include "raster/images/image.h"
@@ -31,14 +39,30 @@ constexpr std::array kMethods{
            two_pass_single},
     Method{"one-pass", "one gather over rings: round and slower, the thesis 5.1", kColourAndDepth,
            one_pass},
+    Method{"importance-ordered",
+           "one-pass where it shows most, the rest roughly, after Fearing 1995", kColourAndDepth,
+           importance_ordered},
     Method{"scatter", "every pixel spread over its disc, after Potmesil and Chakravarty 1981",
            kColourAndDepth, scatter_unsorted},
     Method{"scatter-sorted", "scatter in slabs of depth, one over the other", kColourAndDepth,
            scatter_sorted},
-    Method{"layers", "near, focus and far, each blurred by itself, after Scofield 1992",
+    Method{"layers", "near, middle and far, each blurred by itself, after Scofield 1992",
            kColourAndDepth, layers},
+    Method{"ray-distribution-buffer",
+           "the nearest thing through each point of the lens, after Shinya 1994", kColourAndDepth,
+           ray_distribution},
     Method{"diffusion", "colour flows like heat, after Kass, Lefohn and Owens 2006",
            kColourAndDepth, diffusion, true},
+    Method{
+        .name = "generalised-diffusion",
+        .summary = "blurred as the user asks, by radii of his own, after Kosloff and Barsky 2007",
+        .needs = kColourAndDepth,
+        .filter = generalised_diffusion,
+        .any_radius_costs_the_same = true,
+        .takes_radii = true},
+    Method{"anisotropic-diffusion",
+           "heat again, step by step, after Bertalmio, Fort and Sanchez-Crespo 2004",
+           kColourAndDepth, anisotropic_diffusion},
     Method{"ring-bucket", "rings at half resolution, the near field apart, after Abadie 2018",
            kColourAndDepth, ring_bucket},
     Method{"circular-1", "a disc of one complex Gaussian, separable, after Garcia 2017",
@@ -46,8 +70,19 @@ constexpr std::array kMethods{
     Method{"circular-2", "circular-1 with two complex Gaussians", kColourAndDepth, circular_two},
     Method{"disc-layers", "layers of equal circles, each a disc, the nearer over the farther",
            kColourAndDepth, disc_layers, true},
+    Method{.name = "layered",
+           .summary = "disc-layers that sees what lies behind, after Lee 2009 and Franke 2018",
+           .needs = "colour and depth of several layers",
+           .filter = layered,
+           .any_radius_costs_the_same = true,
+           .layers = 2},
+    Method{"object-identification",
+           "disc-layers that cut no object and go on behind others, after Barsky et al. 2005",
+           kColourAndDepth, object_layers, true, true},
     Method{"post-process", "blended from four sharpnesses, after Hammon 2007", kColourAndDepth,
            post_process},
+    Method{"mipmap", "blended from levels of a pyramid, after Lee, Kim and Choi 2009",
+           kColourAndDepth, mipmap, true},
 };
 
 }  // namespace
@@ -79,12 +114,33 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
   if (std::abs(scene.stride_bytes) < row_bytes || std::abs(result.stride_bytes) < row_bytes) {
     return "a stride is shorter than a row";
   }
+  const auto pixels =
+      static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
+  if (!input.objects.empty() && input.objects.size() != pixels) {
+    return "there is not one object number for each pixel";
+  }
+  if (input.behind.size() > kMostBehind) return "there are more than 3 layers behind the first";
+  for (const ConstImageView& layer : input.behind) {
+    if (layer.texels == nullptr) return "there is no memory";
+    if (layer.format != scene.format || layer.width != scene.width ||
+        layer.height != scene.height) {
+      return "a layer has not the scene's size and format";
+    }
+    if (std::abs(layer.stride_bytes) < row_bytes) return "a stride is shorter than a row";
+  }
+  if (!input.radii_px.empty() && input.radii_px.size() != pixels) {
+    return "there is not one radius for each pixel";
+  }
+  for (const float radius_px : input.radii_px) {
+    if (!std::isfinite(radius_px)) return "a radius is not finite";
+  }
   if (!(settings.max_coc_px >= 0.0f && settings.max_coc_px <= kLargestMaxCoc)) {
     return "max_coc_px is not from 0 to 1024";
   }
   if (!(settings.leak >= 0.0f && settings.leak <= std::numeric_limits<float>::max())) {
     return "leak is not 0 or more";
   }
+  if (!(settings.budget >= 0.0f && settings.budget <= 1.0f)) return "budget is not from 0 to 1";
   if (!std::isfinite(settings.coc.radius_at_infinity_px) || !(settings.coc.focus_m > 0.0f)) {
     return "the circle of confusion has no finite radius or no focus above 0";
   }

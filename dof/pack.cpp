@@ -166,10 +166,11 @@ SOFTFOCUS_INLINE void pack_vectors(const PackRow& row, int width, std::uint16_t*
 }  // namespace
 
 void pack_row(const PackRow& row, int width, HalfRounding rounding, std::uint16_t* to) {
-  if (rounding == HalfRounding::nearest_even) {
-    pack_vectors<HalfRounding::nearest_even>(row, width, to);
-  } else {
-    pack_vectors<HalfRounding::toward_zero>(row, width, to);
+  using enum HalfRounding;
+  switch (rounding) {
+    case nearest_even: return pack_vectors<nearest_even>(row, width, to);
+    case toward_zero: return pack_vectors<toward_zero>(row, width, to);
+    case swiftshader: return pack_vectors<swiftshader>(row, width, to);
   }
 }
 

@@ -34,7 +34,7 @@ Planes make_planes(int count, int width, int height) {
   planes.height = height;
   planes.stride = plane_stride(width);
   planes.plane = planes.stride * height;
-  planes.values.reset(new float[static_cast<std::size_t>(count * planes.plane)]);
+  planes.values = make_row_memory<float>(static_cast<std::size_t>(count * planes.plane));
   return planes;
 }
 
@@ -46,24 +46,28 @@ SplitTexel split_texel(const DofInput& input, int x, int y) {
           near ? -magnitude : magnitude};
 }
 
-Planes split_picture(const DofInput& input, ThreadPool& pool) {
+void split_picture_row(const DofInput& input, int y, float* to, std::ptrdiff_t plane, int padded,
+                       Isa isa) {
   const ConstImageView& scene = input.scene;
-  Planes planes = make_planes(4, scene.width, scene.height);
-  pool.for_each(scene.height, [&](int y) {
-    float* to = plane_row(planes, 0, y);
-    if (pool.isa() != Isa::scalar) {
-      SOFTFOCUS_KERNEL(pool.isa(), split_row)
-      (input.settings, row<std::uint16_t>(scene, y).data(), scene.width,
-       static_cast<int>(planes.stride), to, planes.plane);
-      return;
-    }
-    for (int x = 0; x < planes.stride; ++x) {
-      const SplitTexel texel = split_texel(input, std::min(x, scene.width - 1), y);
-      to[x] = texel.r;
-      to[planes.plane + x] = texel.g;
-      to[2 * planes.plane + x] = texel.b;
-      to[3 * planes.plane + x] = texel.radius_px;
-    }
+  if (isa != Isa::scalar) {
+    SOFTFOCUS_KERNEL(isa, split_row)
+    (input.settings, row<std::uint16_t>(scene, y).data(), scene.width, padded, to, plane);
+    return;
+  }
+  for (int x = 0; x < padded; ++x) {
+    const SplitTexel texel = split_texel(input, std::min(x, scene.width - 1), y);
+    to[x] = texel.r;
+    to[plane + x] = texel.g;
+    to[2 * plane + x] = texel.b;
+    to[3 * plane + x] = texel.radius_px;
+  }
+}
+
+Planes split_picture(const DofInput& input, ThreadPool& pool) {
+  Planes planes = make_planes(4, input.scene.width, input.scene.height);
+  pool.for_each(planes.height, [&](int y) {
+    split_picture_row(input, y, plane_row(planes, 0, y), planes.plane,
+                      static_cast<int>(planes.stride), pool.isa());
   });
   return planes;
 }
@@ -115,7 +119,7 @@ SOFTFOCUS_INLINE void merge_rows(const std::uint16_t* scene, const float* r, con
     const HalfTexels texels{float_to_half<rounding>(clamp_to_half(load(r + x))),
                             float_to_half<rounding>(clamp_to_half(load(g + x))),
                             float_to_half<rounding>(clamp_to_half(load(b + x))),
-                            stored_depth(load_repeating(scene, x, width).a)};
+                            stored_depth(load_repeating(scene, x, width).a, rounding)};
     if (x + kLanes <= width) {
       store_half_texels(to + 4 * x, texels);
     } else {
@@ -143,10 +147,11 @@ void split_row(const DofSettings& settings, const std::uint16_t* from, int width
 /// A row of RGBA16F from its planes and the scene's depth.
 void merge_row(const std::uint16_t* scene, const float* r, const float* g, const float* b,
                int width, HalfRounding rounding, std::uint16_t* to) {
-  if (rounding == HalfRounding::nearest_even) {
-    merge_rows<HalfRounding::nearest_even>(scene, r, g, b, width, to);
-  } else {
-    merge_rows<HalfRounding::toward_zero>(scene, r, g, b, width, to);
+  using enum HalfRounding;
+  switch (rounding) {
+    case nearest_even: return merge_rows<nearest_even>(scene, r, g, b, width, to);
+    case toward_zero: return merge_rows<toward_zero>(scene, r, g, b, width, to);
+    case swiftshader: return merge_rows<swiftshader>(scene, r, g, b, width, to);
   }
 }
 

@@ -5,22 +5,22 @@
 // through sums that reach far.
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "dof/dof.h"
+#include "raster/images/image.h"
 #include "raster/lanes/isa.h"
 
 namespace softfocus {
 
-/// Planes of rows of floats. A row ends at a whole vector of the widest unit: methods may
-/// read and write the values between `width` and `stride`, which mean nothing.
+/// Planes of rows of floats. A row begins and ends at a whole vector of the widest unit: methods
+/// may read and write the values between `width` and `stride`, which mean nothing.
 struct Planes {
   int width = 0;
   int height = 0;
   std::ptrdiff_t stride = 0;  ///< floats from row to row
   std::ptrdiff_t plane = 0;   ///< floats from plane to plane
-  std::unique_ptr<float[]> values;
+  RowMemory<float> values;
 };
 
 /// Floats from row to row for rows of `width`: a multiple of kMostLanes.
@@ -48,6 +48,11 @@ SplitTexel split_texel(const DofInput& input, int x, int y);
 /// Four planes of all pixels' split_texel(): red, green, blue, radius. The last pixel of a
 /// row repeats up to the stride.
 Planes split_picture(const DofInput& input, ThreadPool& pool);
+
+/// Row `y` of them: `padded` pixels, whole vectors of the widest unit. The last pixel of
+/// the row repeats. Planes are `plane` floats apart.
+void split_picture_row(const DofInput& input, int y, float* to, std::ptrdiff_t plane, int padded,
+                       Isa isa);
 
 /// Stores a row: colours, cut to what a half holds, and the scene's depth in alpha. Needs
 /// whole vectors of the unit in `r`, `g` and `b`.

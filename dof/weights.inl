@@ -42,8 +42,9 @@ SOFTFOCUS_INLINE Floats signed_radius(const DofSettings& settings, Floats depth_
 }
 
 /// The half that store_texel writes for a depth that load_texel read: there is one NaN.
-SOFTFOCUS_INLINE Bits stored_depth(Bits half) {
-  return select((half & 0x7FFFu) > kHalfInfinity, splat(std::uint32_t{kHalfNan}), half);
+SOFTFOCUS_INLINE Bits stored_depth(Bits half, HalfRounding rounding) {
+  const std::uint32_t largest = largest_kept_half(rounding);
+  return select((half & 0x7FFFu) > largest, splat(std::uint32_t{kHalfNan}), half);
 }
 
 /// The two sums of a gather.

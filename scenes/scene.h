@@ -53,6 +53,13 @@ struct Material {
   int shininess = 32;  ///< a whole number, 1 to 1024: a power by multiplication is exact
   std::optional<std::uint32_t> texture;  ///< multiplies ambient and diffuse; index into textures
   Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
+  float opacity = 1.0f;  ///< 0 to 1: the share of what is behind that the surface hides
+  /// Its red multiplies `opacity`; index into textures (see make/opacity_texture.h).
+  std::optional<std::uint32_t> opacity_texture;
+  Sampler opacity_sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
+  /// The surface is there where opacity_texture is 1/2 or more, nowhere else, and `opacity` alone
+  /// says how much it hides. Loaders choose this where all texels are 0 or 1.
+  bool cut_out = false;
   bool two_sided = false;  ///< drawn from both sides, lit on the side that is seen
   bool lit = true;         ///< false: the diffuse colour (times texture) as it is
 };

@@ -16,7 +16,7 @@ namespace softfocus {
 struct ErrorModel {
   float always = 0.0f;      ///< the error of a good picture
   float fine = 0.0f;        ///< of `blurred` for the least radius
-  float blurred = 0.0f;     ///< of blurred; of the pinhole of blur
+  float blurred = 0.0f;     ///< of blurred; without a radius, of blur
   float lost = 0.0f;        ///< of lost
   float near_edges = 0.0f;  ///< of near_edges
   float far_edges = 0.0f;   ///< of far_edges
@@ -33,7 +33,7 @@ struct CostModel {
 /// One line of the table.
 struct Candidate {
   std::string_view method;  ///< its name in dof/dof.h or scenes/lens_views/lens_view_method.h
-  int radius = -1;          ///< index into kFilterRadiiPx; -1: no filter
+  int radius = -1;          ///< index into kFilterRadiiPx; -1: takes none
   int samples = -1;         ///< index into kSampleCounts; -1: no lens views
   ErrorModel error;
   CostModel cost;

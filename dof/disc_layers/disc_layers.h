@@ -13,8 +13,17 @@
 // and `out` is divided by the opacity reached, 1 - T at the end. The denominator leaves out
 // everything that is hidden by something nearer, so in a layer behind, the visible parts of a
 // disc stand for the whole. A surface that runs through layers is nowhere seen through, since
-// its shares add to one in any order. A background goes on behind the soft edge of a near
-// thing, by its nearest visible parts. The picture's edges repeat outwards.
+// its shares add to one in any order. The picture's edges repeat outwards.
+//
+// A pixel near the outline of something before the focus hides something: c' of shares m', as
+// disc_hidden.h guesses it. It counts so:
+//
+//   rungs in focus and behind it   m' c' stands in place of m c
+//   rungs before the focus         m c + m' c' over (m and farther) + m'
+//
+// Before the focus it counts in its own rungs alone. Counted in nearer ones as well, it would
+// shine through a near thing that itself runs through several. It counts as no nearer than
+// sqrt(48) pixels, the largest rung of level 0.
 //
 // Circles of 8 pixels and more are blurred at half resolution, of 16 and more at a quarter,
 // and so on: a level for each doubling. The way down averages shares, and colours weighed by
@@ -22,25 +31,50 @@
 // larger ones: one picture goes before the smaller near layers, one behind the smaller far
 // ones.
 //
-// Cost: about ten operations a pixel and rung, a quarter of that at each further level. Tiles
-// leave out rungs that have nothing near them.
+// Highlights, small lights far brighter than what lies around them, are taken out of the picture
+// before all that (disc_highlights.h). Each is drawn at full resolution, as a disc of its pixel's
+// own radius and of its light e over the disc's area. At a place it is seen by
 //
-// Known failures: hidden things are not known, only continued, so texture behind a soft edge
-// is smeared, and a surface goes on no farther than a circle's radius behind it; a circle
-// between two rungs is two discs, not one of the radius between.
+//   gain = sum over its two rungs of m_k min(1, T_k B_k(1) / B_k(m_k and farther))
+//
+// T_k over the part of the disc that nearer rungs leave open: shares of one surface hide nothing
+// of each other. The limit of 1 keeps light from growing beside something sharp. Highlights are
+// added after the division by the opacity.
+//
+// Cost: about ten operations a pixel and rung, a quarter of that at each further level. Tiles
+// leave out rungs that have nothing near them. Highlights cost one look at every pixel, and
+// 12 r additions for each that is found. What is hidden costs one look, and a few dozen
+// operations for each pixel that hides something.
+//
+// Known failures: what is hidden is a guess, the colours at the outline drawn inwards, so texture
+// becomes streaks; two near layers behind each other are apart only if the farther is smaller than
+// 8 pixels; but for highlights, a circle between two rungs is two discs, not one of the radius
+// between, and from 8 pixels on its rim is about a level's pixel soft.
 
 #include <vector>
 
+#include "dof/disc_layers/disc_hidden.h"
 #include "dof/disc_layers/disc_ladder.h"
 #include "dof/dof.h"
 
 namespace softfocus {
+
+/// What near things hide, from a picture without its highlights. Without vectors it defines all of
+/// HiddenPicture::picture, as an oracle does.
+using FindHidden = HiddenPicture (*)(const DofInput& input, ThreadPool& pool);
 
 /// A Method's apply (dof.h).
 void disc_layers(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The oracle of disc_layers(), and its scalar form: pixel by pixel. Equal to the bit.
 void disc_layers_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool);
+
+/// That of blur_discs().
+void blur_discs_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool,
+                       FindHidden find);
+
+/// disc_layers() with another way to find it.
+void blur_discs(const DofInput& input, const ImageView& result, ThreadPool& pool, FindHidden find);
 
 /// The ladder up to the largest radius of the settings.
 std::vector<LevelRungs> disc_ladder_of(const DofInput& input);

@@ -6,8 +6,11 @@
 #include <cstdlib>
 #include <vector>
 
+#include "dof/disc_layers/disc_highlights.h"
 #include "dof/disc_layers/disc_ladder.h"
 #include "dof/disc_layers/disc_layers.h"
+#include "dof/disc_layers/disc_levels.h"
+#include "dof/disc_layers/lit_discs.h"
 #include "dof/picture_planes.h"
 
 namespace softfocus {
@@ -21,8 +24,9 @@ enum class Side { near, far };
 
 struct Level {
   int width, height;
-  std::array<std::vector<Pixel>, 2> sides;  // before and behind the focus; equal in level 0
+  std::array<std::vector<Pixel>, 2> sides;  // before the focus, and behind it with what is hidden
   std::array<std::vector<Seen>, 2> seen;
+  std::vector<std::vector<float>> gains;  // of each of DiscHighlights::rungs
 
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) *
@@ -31,16 +35,24 @@ struct Level {
   }
 };
 
-Level picture_level(const DofInput& input) {
-  Level level{input.scene.width, input.scene.height, {}, {}};
-  for (int y = 0; y < level.height; ++y) {
-    for (int x = 0; x < level.width; ++x) {
-      const SplitTexel texel = split_texel(input, x, y);
+std::vector<Pixel> picture_side(const DofInput& input, const ConstImageView& scene) {
+  DofInput of = input;
+  of.scene = scene;
+  std::vector<Pixel> side;
+  for (int y = 0; y < scene.height; ++y) {
+    for (int x = 0; x < scene.width; ++x) {
+      const SplitTexel texel = split_texel(of, x, y);
       const float square = texel.radius_px * texel.radius_px;
-      const Pixel pixel{texel.r, texel.g, texel.b, 1.0f, texel.radius_px < 0.0f ? -square : square};
-      for (std::vector<Pixel>& side : level.sides) side.push_back(pixel);
+      side.push_back({texel.r, texel.g, texel.b, 1.0f, texel.radius_px < 0.0f ? -square : square});
     }
   }
+  return side;
+}
+
+Level picture_level(const DofInput& input, const HiddenPicture& hidden) {
+  Level level{input.scene.width, input.scene.height, {}, {}, {}};
+  level.sides[0] = picture_side(input, input.scene);
+  level.sides[1] = hidden.empty() ? level.sides[0] : picture_side(input, hidden.picture);
   return level;
 }
 
@@ -66,7 +78,7 @@ Pixel halved(const Level& from, std::size_t side, float sign, RungStep beyond, f
 }
 
 Level halve(const Level& from, bool whole, RungStep beyond, float least) {
-  Level level{(from.width + 1) / 2, (from.height + 1) / 2, {}, {}};
+  Level level{(from.width + 1) / 2, (from.height + 1) / 2, {}, {}, {}};
   for (std::size_t side = 0; side < 2; ++side) {
     for (int y = 0; y < level.height; ++y) {
       for (int x = 0; x < level.width; ++x) {
@@ -103,6 +115,7 @@ struct Shares {
 struct Layers {
   std::vector<LevelRungs> ladder;
   std::vector<Level> levels;
+  DiscHighlights highlights;
 
   RungStep step_after(std::size_t level, std::size_t rung) const {
     const LevelRungs& rungs = ladder[level];
@@ -123,69 +136,149 @@ struct Layers {
             side == Side::near ? 1.0f - pixel[kWeight] * ended : pixel[kWeight] * begun};
   }
 
-  void add_rung(std::size_t number, Side side, std::size_t rung, int x, int y, Seen& seen) const {
+  float sum_of(std::size_t number, Side side, std::size_t rung, int x, int y,
+               std::size_t channel) const {
     const Level& level = levels[number];
     const std::vector<Pixel>& pixels = level.sides[side == Side::near ? 0 : 1];
-    const std::vector<LadderSpan>& spans = ladder[number].rungs[rung].spans;
-    const auto sum_of = [&](std::size_t channel) {
-      return disc_sum(spans, x, y, [&](int px, int py) {
-        const Pixel& pixel = pixels[level.at(px, py)];
-        const Shares of = shares(number, side, rung, pixel);
-        return channel == kSquare ? of.seen : pixel[channel] * of.own;
-      });
-    };
-    const float own = sum_of(kWeight);
+    return disc_sum(ladder[number].rungs[rung].spans, x, y, [&](int px, int py) {
+      const Pixel& pixel = pixels[level.at(px, py)];
+      const Shares of = shares(number, side, rung, pixel);
+      const Pixel& behind = level.sides[1][level.at(px, py)];
+      if (number == 0 && side == Side::near && behind[kSquare] != pixel[kSquare]) {
+        Pixel moved = behind;
+        moved[kSquare] = std::max(moved[kSquare], kLeastHidden);
+        const Shares of_hidden = shares(number, side, rung, moved);
+        return channel == kSquare ? of.seen + of_hidden.own
+                                  : pixel[channel] * of.own + behind[channel] * of_hidden.own;
+      }
+      return channel == kSquare ? of.seen : pixel[channel] * of.own;
+    });
+  }
+
+  void add_rung(std::size_t number, Side side, std::size_t rung, int x, int y, Seen& seen) const {
+    const float own = sum_of(number, side, rung, x, y, kWeight);
     if (own == 0.0f) return;
-    const float scale = seen[3] / sum_of(kSquare);
-    for (std::size_t c = 0; c < 3; ++c) seen[c] += sum_of(c) * scale;
+    const float scale = seen[3] / sum_of(number, side, rung, x, y, kSquare);
+    for (std::size_t c = 0; c < 3; ++c) {
+      seen[c] += sum_of(number, side, rung, x, y, c) * scale;
+    }
     seen[3] = std::max(seen[3] - own * scale, 0.0f);
   }
 
-  // What is seen of one side of a level at a pixel of the level before.
-  Seen enlarged(std::size_t number, std::size_t side, int x, int y) const {
-    const Level& level = levels[number];
-    const std::vector<Seen>& seen = level.seen[side];
+  // How much of a rung's highlights is seen behind what is seen so far.
+  float gain_of(std::size_t number, Side side, std::size_t rung, int x, int y,
+                const Seen& seen) const {
+    const float open = seen[3] * ladder[number].rungs[rung].area;
+    if (!(open > 0.0f)) return 0.0f;
+    const float most = most_gain(number, side == Side::near ? 0 : 1);
+    return open / std::max(sum_of(number, side, rung, x, y, kSquare), open * (1.0f / most));
+  }
+
+  void set_own_gains(std::size_t level, Side side, std::size_t rung, int x, int y,
+                     const Seen& seen) {
+    for (std::size_t i = 0; i < highlights.rungs.size(); ++i) {
+      const LitRung& lit = highlights.rungs[i];
+      if (lit.level != level || lit.number != rung || lit.side != (side == Side::near ? 0 : 1)) {
+        continue;
+      }
+      levels[level].gains[i][levels[level].at(x, y)] = gain_of(level, side, rung, x, y, seen);
+    }
+  }
+
+  void set_larger_gains(std::size_t number, Side side, int x, int y, float open) {
+    Level& level = levels[number];
+    for (std::size_t i = 0; i < highlights.rungs.size(); ++i) {
+      const LitRung& lit = highlights.rungs[i];
+      if (lit.level <= number || lit.side != (side == Side::near ? 0 : 1)) continue;
+      const Level& next = levels[number + 1];
+      const float gain = enlarged(next, x, y, [&](std::size_t at) { return next.gains[i][at]; });
+      level.gains[i][level.at(x, y)] =
+          side == Side::near ? gain : std::min(open * gain, most_gain(number, 1));
+    }
+  }
+
+  // A value of a level at a pixel of the level before.
+  template <class ValueAt>
+  static float enlarged(const Level& level, int x, int y, const ValueAt& value_at) {
     const int other_y = y / 2 + (y % 2 == 0 ? -1 : 1);
-    const auto row = [&](int at, std::size_t c) {
-      return 0.75f * seen[level.at(at, y / 2)][c] + 0.25f * seen[level.at(at, other_y)][c];
+    const auto row = [&](int at) {
+      return 0.75f * value_at(level.at(at, y / 2)) + 0.25f * value_at(level.at(at, other_y));
     };
+    return 0.75f * row(x / 2) + 0.25f * row(x / 2 + (x % 2 == 0 ? -1 : 1));
+  }
+  Seen enlarged_seen(std::size_t number, std::size_t side, int x, int y) const {
+    const Level& level = levels[number];
     Seen result;
     for (std::size_t c = 0; c < 4; ++c) {
-      result[c] = 0.75f * row(x / 2, c) + 0.25f * row(x / 2 + (x % 2 == 0 ? -1 : 1), c);
+      result[c] = enlarged(level, x, y, [&](std::size_t at) { return level.seen[side][at][c]; });
     }
     return result;
   }
 
-  void add_near(std::size_t level, int x, int y, Seen& seen) const {
+  void add_near(std::size_t level, int x, int y, Seen& seen) {
+    set_larger_gains(level, Side::near, x, y, 1.0f);
     for (std::size_t i = ladder[level].rungs.size(); i-- > (level == 0 ? 1u : 0u);) {
+      set_own_gains(level, Side::near, i, x, y, seen);
       add_rung(level, Side::near, i, x, y, seen);
     }
   }
-  void add_far(std::size_t level, int x, int y, Seen& seen) const {
+  void add_far(std::size_t level, int x, int y, Seen& seen) {
     for (std::size_t i = level == 0 ? 1 : 0; i < ladder[level].rungs.size(); ++i) {
+      set_own_gains(level, Side::far, i, x, y, seen);
       add_rung(level, Side::far, i, x, y, seen);
     }
+    set_larger_gains(level, Side::far, x, y, seen[3]);
     if (level + 1 == levels.size()) return;
-    const Seen behind = enlarged(level + 1, 1, x, y);
+    const Seen behind = enlarged_seen(level + 1, 1, x, y);
     const float open = seen[3];
     for (std::size_t c = 0; c < 3; ++c) seen[c] += open * behind[c];
     seen[3] = open * behind[3];
   }
   Seen nothing_before(std::size_t level, int x, int y) const {
-    return level + 1 < levels.size() ? enlarged(level + 1, 0, x, y) : Seen{0.0f, 0.0f, 0.0f, 1.0f};
+    return level + 1 < levels.size() ? enlarged_seen(level + 1, 0, x, y)
+                                     : Seen{0.0f, 0.0f, 0.0f, 1.0f};
+  }
+
+  void make_room_for_gains() {
+    for (Level& level : levels) {
+      level.gains.assign(highlights.rungs.size(), std::vector<float>(level.sides[0].size()));
+    }
+  }
+
+  void add_lights(int x, int y, Seen& seen) const {
+    for (std::size_t c = 0; c < 3; ++c) seen[c] += lit_at(x, y, c);
+  }
+  float lit_at(int x, int y, std::size_t channel) const {
+    float sum = 0.0f;
+    for (std::size_t i = 0; i < highlights.rungs.size(); ++i) {
+      float light[3];
+      light_at(highlights, highlights.rungs[i], x, y, light);
+      sum += levels[0].gains[i][levels[0].at(x, y)] * light[channel];
+    }
+    return sum;
   }
 };
 
 }  // namespace
 
 void disc_layers_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  blur_discs_oracle(input, result, pool,
+                    [](const DofInput& rest, ThreadPool&) { return find_hidden_oracle(rest); });
+}
+
+void blur_discs_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool,
+                       FindHidden find) {
   Layers layers;
   layers.ladder = disc_ladder_of(input);
-  layers.levels.push_back(picture_level(input));
+  layers.highlights = find_highlights(input, layers.ladder, pool);
+  DofInput rest = input;
+  if (layers.highlights.rest.width != 0) rest.scene = layers.highlights.rest;
+  layers.levels.push_back(picture_level(rest, find(rest, pool)));
   for (std::size_t i = 1; i < layers.ladder.size(); ++i) {
     layers.levels.push_back(halve(layers.levels[i - 1], i == 1, layers.ladder[i - 1].beyond,
                                   layers.ladder[i].rungs[0].square));
   }
+  layers.make_room_for_gains();
   for (std::size_t i = layers.levels.size(); i-- > 1;) {
     Level& level = layers.levels[i];
     const std::size_t pixels = level.sides[0].size();
@@ -210,6 +303,7 @@ void disc_layers_oracle(const DofInput& input, const ImageView& result, ThreadPo
       layers.add_far(0, x, y, seen);
       const float scale = 1.0f / (1.0f - seen[3]);
       for (std::size_t c = 0; c < 3; ++c) seen[c] *= scale;
+      layers.add_lights(x, y, seen);
       store_span(input, result, x, y, 1, &seen[0], &seen[1], &seen[2], Isa::scalar);
     }
   });

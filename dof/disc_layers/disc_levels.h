@@ -3,13 +3,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "dof/disc_layers/disc_hidden.h"
 #include "dof/disc_layers/disc_ladder.h"
 #include "dof/dof.h"
+#include "raster/images/image.h"
 
 namespace softfocus {
+
+/// Pixels of RGBA16F in a line of the cache.
+inline constexpr int kTexelsOfLine = 8;
 
 /// Largest size of a tile in pixels.
 inline constexpr int kDiscTileWidth = 64;
@@ -18,8 +22,17 @@ inline constexpr int kDiscTileHeight = 32;
 inline constexpr int kDiscMargin = 8;
 /// Rows above and below a tile that any disc reaches, and one more.
 inline constexpr int kDiscApron = 8;
-/// A block of 8x8 pixels knows which rungs are in it.
-inline constexpr int kDiscBlock = 8;
+/// A tile with all that discs reach around it.
+inline constexpr int kDiscTileRow = kDiscTileWidth + 2 * kDiscMargin;
+inline constexpr int kDiscTileRows = kDiscTileHeight + 2 * kDiscApron;
+
+/// A part of a tile.
+inline constexpr int kDiscColumn = 16;
+struct DiscPart {
+  int row, rows;
+  int column, columns;  ///< kDiscColumn pixels wide
+};
+inline constexpr DiscPart kWholeTile{0, kDiscTileHeight, 0, kDiscTileWidth / kDiscColumn};
 
 /// Channels of a pixel: red, green and blue times weight; weight, the share of the pixel that
 /// is there; the square of its radius. In level 0 the squares of radii before the focus are
@@ -31,6 +44,10 @@ struct DiscRow {
 
 /// What is seen of a pixel: red, green, blue and the transmittance.
 inline constexpr int kDiscTransmitted = 3;
+/// What is seen of the layers so far in a tile.
+struct DiscTile {
+  alignas(kRowAlignment) float channel[4][kDiscTileHeight][kDiscTileWidth];
+};
 
 /// Planes of a level. A row has a margin at either end, and then room for a whole tile.
 struct DiscPlanes {
@@ -61,18 +78,45 @@ DiscRow disc_row(const DiscLevel& level, int side, int x, int y);
 /// Their memory is one piece, so that the allocator keeps it from frame to frame.
 struct DiscLevels {
   std::vector<DiscLevel> levels;
-  std::unique_ptr<float[]> memory;
+  RowMemory<float> memory;
 };
-/// Levels for the rungs of a ladder. `seen` is left to be filled.
-DiscLevels make_disc_levels(const DofInput& input, const std::vector<LevelRungs>& ladder,
-                            ThreadPool& pool);
+/// Levels for the rungs of a ladder. Behind the focus they show what near things hide. `seen` is
+/// left to be filled.
+DiscLevels make_disc_levels(const DofInput& input, const HiddenPicture& hidden,
+                            const std::vector<LevelRungs>& ladder, ThreadPool& pool);
 
 /// `count` pixels of a row of the picture from `x` on as level 0: red, green, blue and signed
 /// square, `channel` floats apart. The picture's edges repeat outwards.
 void split_disc_row(const DofInput& input, int x, int y, int count, float* to,
                     std::ptrdiff_t channel, Isa isa);
 
+/// Asks for a part of a row of RGBA16F, which will be needed soon: rows of a tile are too far apart
+/// for the CPU to foresee.
+inline void fetch_texels(const ConstImageView& picture, int x, int y, int count) {
+  const std::byte* row = picture.texels + y * picture.stride_bytes;
+  const int end = x + count < picture.width ? x + count : picture.width;
+  for (int at = x > 0 ? x : 0; at < end; at += kTexelsOfLine) {
+    __builtin_prefetch(row + bytes_per_texel(Format::rgba16f) * static_cast<std::size_t>(at));
+  }
+}
+
+/// Something hidden counts as no nearer than the largest rung of level 0.
+inline constexpr float kLeastHidden = -48.0f;
+
+/// A picture's copy.
+Image copy_of(const ConstImageView& picture, ThreadPool& pool);
+
 /// The rungs of one side whose pixels may reach into a rectangle of a level.
 std::uint32_t rungs_near(const DiscLevel& level, int side, int x, int y, int width, int height);
+
+/// Those that may reach into a tile, by rows and by columns of blocks.
+struct DiscRungBlocks {
+  int row, rows;  ///< the first, and how many
+  int column, columns;
+  std::uint32_t of_row[kDiscTileHeight / kDiscBlock + 2];
+  std::uint32_t of_column[kDiscTileWidth / kDiscBlock + 2];
+};
+DiscRungBlocks rung_blocks_near(const DiscLevel& level, int side, int x, int y, int width,
+                                int height);
 
 }  // namespace softfocus

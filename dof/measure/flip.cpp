@@ -21,7 +21,7 @@ struct OpponentStrip {
   PixelMap y, cx, cz;
 };
 
-OpponentStrip opponent_strip(const Image& image, const ToneTable& tone, const Strip& strip) {
+OpponentStrip opponent_strip(const Image& image, const ToneTable& tone, const RowStrip& strip) {
   OpponentStrip maps{strip_map(image.width, strip), strip_map(image.width, strip),
                      strip_map(image.width, strip)};
   for (int y = 0; y < maps.y.height; ++y) {
@@ -42,7 +42,7 @@ OpponentStrip opponent_strip(const Image& image, const ToneTable& tone, const St
   return maps;
 }
 
-PixelMap filtered(const PixelMap& map, const Strip& strip, const FilterTaps& taps) {
+PixelMap filtered(const PixelMap& map, const RowStrip& strip, const FilterTaps& taps) {
   return filtered_down(filtered_along(map, strip, taps), strip, taps);
 }
 
@@ -63,7 +63,7 @@ struct SeenStrip {
   PixelMap edges, points;
 };
 
-SeenStrip seen_strip(const Image& image, const ToneTable& tone, const Strip& strip,
+SeenStrip seen_strip(const Image& image, const ToneTable& tone, const RowStrip& strip,
                      const FlipFilters& filters) {
   OpponentStrip maps = opponent_strip(image, tone, strip);
   SeenStrip seen;
@@ -116,7 +116,7 @@ PixelMap flip_map(const Image& reference, const Image& test, const ToneTable& to
   const double largest =
       std::pow(hyab(to_hunt_lab({0.0, 1.0, 0.0}), to_hunt_lab({0.0, 0.0, 1.0})), kColourPower);
   PixelMap map = make_pixel_map(reference.width, reference.height);
-  for_each_strip(reference.height, filters.margin, pool, [&](const Strip& strip) {
+  for_each_strip(reference.height, filters.margin, pool, [&](const RowStrip& strip) {
     const SeenStrip one = seen_strip(reference, tone, strip, filters);
     const SeenStrip other = seen_strip(test, tone, strip, filters);
     const auto start =

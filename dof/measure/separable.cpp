@@ -27,28 +27,28 @@ FilterTaps gaussian_taps(double sigma_px, int radius) {
 }
 
 void for_each_strip(int height, int margin, ThreadPool& pool,
-                    const std::function<void(const Strip&)>& body) {
+                    const std::function<void(const RowStrip&)>& body) {
   pool.for_each((height + kStripRows - 1) / kStripRows, [&](int i) {
     const int first = i * kStripRows;
     body({first, std::min(kStripRows, height - first), margin});
   });
 }
 
-PixelMap strip_map(int width, const Strip& strip) {
+PixelMap strip_map(int width, const RowStrip& strip) {
   return make_pixel_map(width + 2 * strip.margin, strip.rows + 2 * strip.margin);
 }
 
-int picture_row(const Strip& strip, int strip_row, int picture_height) {
+int picture_row(const RowStrip& strip, int strip_row, int picture_height) {
   return std::clamp(strip.first_row + strip_row - strip.margin, 0, picture_height - 1);
 }
 
-std::span<double> between_margins(PixelMap& map, const Strip& strip, int strip_row) {
+std::span<double> between_margins(PixelMap& map, const RowStrip& strip, int strip_row) {
   const auto margin = static_cast<std::size_t>(strip.margin);
   const auto whole = row(map, strip_row);
   return whole.subspan(margin, whole.size() - 2 * margin);
 }
 
-void fill_margins(PixelMap& map, const Strip& strip) {
+void fill_margins(PixelMap& map, const RowStrip& strip) {
   for (int y = 0; y < map.height; ++y) {
     const auto inner = between_margins(map, strip, y);
     const auto whole = row(map, y);
@@ -57,7 +57,7 @@ void fill_margins(PixelMap& map, const Strip& strip) {
   }
 }
 
-PixelMap filtered_along(const PixelMap& map, const Strip& strip, const FilterTaps& taps) {
+PixelMap filtered_along(const PixelMap& map, const RowStrip& strip, const FilterTaps& taps) {
   assert(taps.radius() <= strip.margin);
   PixelMap result = make_pixel_map(map.width - 2 * strip.margin, map.height);
   const auto width = static_cast<std::size_t>(result.width);
@@ -71,7 +71,7 @@ PixelMap filtered_along(const PixelMap& map, const Strip& strip, const FilterTap
   return result;
 }
 
-PixelMap filtered_down(const PixelMap& map, const Strip& strip, const FilterTaps& taps) {
+PixelMap filtered_down(const PixelMap& map, const RowStrip& strip, const FilterTaps& taps) {
   assert(taps.radius() <= strip.margin);
   PixelMap result = make_pixel_map(map.width, strip.rows);
   for (int y = 0; y < result.height; ++y) {

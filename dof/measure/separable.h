@@ -21,7 +21,7 @@ struct FilterTaps {
 FilterTaps gaussian_taps(double sigma_px, int radius);
 
 /// Where a strip lies, and how far the filter reads past it on all sides.
-struct Strip {
+struct RowStrip {
   int first_row;
   int rows;
   int margin;
@@ -29,25 +29,25 @@ struct Strip {
 
 /// Cuts a picture into strips and runs `body` for each, on any thread.
 void for_each_strip(int height, int margin, ThreadPool& pool,
-                    const std::function<void(const Strip&)>& body);
+                    const std::function<void(const RowStrip&)>& body);
 
 /// An empty map for a strip with its margins.
-PixelMap strip_map(int width, const Strip& strip);
+PixelMap strip_map(int width, const RowStrip& strip);
 
 /// Row `strip_row` of a strip's map, 0 being the top one of the margin, as the row of the
 /// picture it shows: beyond the border, the border's.
-int picture_row(const Strip& strip, int strip_row, int picture_height);
+int picture_row(const RowStrip& strip, int strip_row, int picture_height);
 
 /// The part of a strip map's row that lies in the picture.
-std::span<double> between_margins(PixelMap& map, const Strip& strip, int strip_row);
+std::span<double> between_margins(PixelMap& map, const RowStrip& strip, int strip_row);
 
 /// Repeats the first and last value of each row in the left and right margin.
-void fill_margins(PixelMap& map, const Strip& strip);
+void fill_margins(PixelMap& map, const RowStrip& strip);
 
 /// A strip's map filtered along its rows, without the left and right margin.
-PixelMap filtered_along(const PixelMap& map, const Strip& strip, const FilterTaps& taps);
+PixelMap filtered_along(const PixelMap& map, const RowStrip& strip, const FilterTaps& taps);
 
 /// That map filtered along its columns, without the margin above and below.
-PixelMap filtered_down(const PixelMap& map, const Strip& strip, const FilterTaps& taps);
+PixelMap filtered_down(const PixelMap& map, const RowStrip& strip, const FilterTaps& taps);
 
 }  // namespace softfocus

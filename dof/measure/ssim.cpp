@@ -12,7 +12,7 @@ constexpr double kSigma = 1.5;
 constexpr double kC1 = 0.01 * 0.01;
 constexpr double kC2 = 0.03 * 0.03;
 
-PixelMap luma(const Image& image, const ToneTable& tone, const Strip& strip) {
+PixelMap luma(const Image& image, const ToneTable& tone, const RowStrip& strip) {
   PixelMap map = strip_map(image.width, strip);
   for (int y = 0; y < map.height; ++y) {
     const auto texels = row<std::uint16_t>(image, picture_row(strip, y, image.height));
@@ -41,7 +41,7 @@ PixelMap ssim_map(const Image& a, const Image& b, const ToneTable& tone, ThreadP
   assert(a.width == b.width && a.height == b.height);
   PixelMap map = make_pixel_map(a.width, a.height);
   const FilterTaps window = gaussian_taps(kSigma, kRadius);
-  for_each_strip(a.height, kRadius, pool, [&](const Strip& strip) {
+  for_each_strip(a.height, kRadius, pool, [&](const RowStrip& strip) {
     const auto windowed = [&](const PixelMap& values) {
       return filtered_down(filtered_along(values, strip, window), strip, window);
     };

@@ -10,7 +10,7 @@
 
 #include "dof/focus_map.h"
 #include "dof/weights.h"
-#include "raster/passes/fullscreen_pass.h"
+#include "raster/images/texel.h"
 #include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
@@ -37,58 +37,39 @@ std::vector<RingTap> ring_taps(float radius_px) {
   return taps;
 }
 
-// --- oracle: as a fragment shader would be written ---
-
-void one_pass_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool) {
-  const ConstImageView& scene = input.scene;
-  const auto fetch = [&](int x, int y) {
-    return load_texel<Format::rgba16f>(scene, std::clamp(x, 0, scene.width - 1),
-                                       std::clamp(y, 0, scene.height - 1));
-  };
-  const auto neighbour = [&](int x, int y) {
-    const glm::vec4 texel = fetch(x, y);
-    return filter_texel(input.settings, glm::vec3{texel.x, texel.y, texel.z}, texel.w);
-  };
-  const std::vector<RingTap> taps = ring_taps(input.settings.max_coc_px);
-  fullscreen_pass<Format::rgba16f>(result, input.profile, pool, [&](int x, int y) {
-    const FilterTexel centre = neighbour(x, y);
-    const float receiver_leakage = leakage(centre.radius_px, input.settings.leak);
-    Gather gather = begin_gather(centre);
-    for (const RingTap& tap : taps) {
-      add_neighbour(gather, neighbour(x + tap.dx, y + tap.dy), tap.distance_px, receiver_leakage);
-    }
-    return glm::vec4{resolve(gather), fetch(x, y).w};
-  });
-}
-
 // --- scalar: bands of rows, each pixel's radius and intensity computed once ---
 
 namespace {
 
 constexpr int kBandRows = 32;
 
-// Rows y_begin - margin to y_end + margin - 1 as filter texels, and `margin` texels on either
-// side. The picture's edge repeats outwards.
+struct Area {
+  int x_begin, y_begin, x_end, y_end;
+};
+
+// The pixels of an area as filter texels, and `margin` more on every side. The picture's edge
+// repeats outwards.
 struct Band {
+  Area area;
   int margin;
-  int y_begin;
   int stride;
   std::vector<FilterTexel> texels;
 
   const FilterTexel* at(int x, int y) const {
-    return &texels[static_cast<std::size_t>((y - y_begin + margin) * stride + x + margin)];
+    return &texels[static_cast<std::size_t>((y - area.y_begin + margin) * stride + x -
+                                            area.x_begin + margin)];
   }
 };
 
-Band fill_band(const DofInput& input, int y_begin, int y_end, int margin) {
+Band fill_band(const DofInput& input, const Area& area, int margin) {
   const ConstImageView& scene = input.scene;
-  Band band{margin, y_begin, scene.width + 2 * margin, {}};
-  const int rows = y_end - y_begin + 2 * margin;
+  Band band{area, margin, area.x_end - area.x_begin + 2 * margin, {}};
+  const int rows = area.y_end - area.y_begin + 2 * margin;
   band.texels.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(band.stride));
   std::size_t next = 0;
-  for (int y = y_begin - margin; y < y_end + margin; ++y) {
+  for (int y = area.y_begin - margin; y < area.y_end + margin; ++y) {
     const int inside_y = std::clamp(y, 0, scene.height - 1);
-    for (int x = -margin; x < scene.width + margin; ++x) {
+    for (int x = area.x_begin - margin; x < area.x_end + margin; ++x) {
       const glm::vec4 texel =
           load_texel<Format::rgba16f>(scene, std::clamp(x, 0, scene.width - 1), inside_y);
       band.texels[next++] =
@@ -98,29 +79,53 @@ Band fill_band(const DofInput& input, int y_begin, int y_end, int margin) {
   return band;
 }
 
+// No tap goes farther than the margin.
+void filter_area(const DofInput& input, const ImageView& result, const Area& area,
+                 std::span<const RingTap> taps, int margin) {
+  const Band band = fill_band(input, area, margin);
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    for (int x = area.x_begin; x < area.x_end; ++x) {
+      const FilterTexel* centre = band.at(x, y);
+      const float receiver_leakage = leakage(centre->radius_px, input.settings.leak);
+      Gather gather = begin_gather(*centre);
+      for (const RingTap& tap : taps) {
+        add_neighbour(gather, *(centre + tap.dy * band.stride + tap.dx), tap.distance_px,
+                      receiver_leakage);
+      }
+      const float depth = load_texel<Format::rgba16f>(input.scene, x, y).w;
+      store_texel<Format::rgba16f>(result, x, y, glm::vec4{resolve(gather), depth}, input.profile);
+    }
+  }
+}
+
 void one_pass_scalar(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   const ConstImageView& scene = input.scene;
   const float radius = largest_filter_radius(input, pool);
   const std::vector<RingTap> taps = ring_taps(radius);
-
   pool.for_each((scene.height + kBandRows - 1) / kBandRows, [&](int number) {
-    const int y_begin = number * kBandRows;
-    const int y_end = std::min(y_begin + kBandRows, scene.height);
-    const Band band = fill_band(input, y_begin, y_end, tap_count(radius));
-    for (int y = y_begin; y < y_end; ++y) {
-      for (int x = 0; x < scene.width; ++x) {
-        const FilterTexel* centre = band.at(x, y);
-        const float receiver_leakage = leakage(centre->radius_px, input.settings.leak);
-        Gather gather = begin_gather(*centre);
-        for (const RingTap& tap : taps) {
-          add_neighbour(gather, *(centre + tap.dy * band.stride + tap.dx), tap.distance_px,
-                        receiver_leakage);
-        }
-        const float depth = load_texel<Format::rgba16f>(scene, x, y).w;
-        store_texel<Format::rgba16f>(result, x, y, glm::vec4{resolve(gather), depth},
-                                     input.profile);
-      }
-    }
+    const int y = number * kBandRows;
+    const Area area{0, y, scene.width, std::min(y + kBandRows, scene.height)};
+    filter_area(input, result, area, taps, tap_count(radius));
+  });
+}
+
+Area area_of(const OnePassBlock& block, const ConstImageView& scene) {
+  const int x = block.column * kBlockWidth, y = block.row * kBlockHeight;
+  return {x, y, std::min(x + kBlockWidth, scene.width), std::min(y + kBlockHeight, scene.height)};
+}
+
+void blocks_scalar(const DofInput& input, std::span<const OnePassBlock> blocks, int farthest,
+                   const ImageView& result, ThreadPool& pool) {
+  const std::vector<RingTap> taps = ring_taps(static_cast<float>(farthest + 1));
+  pool.for_each(static_cast<int>(blocks.size()), [&](int number) {
+    const OnePassBlock& block = blocks[static_cast<std::size_t>(number)];
+    // Rings in order: a tap in a ring past this one is farther than the reach.
+    const auto end = std::partition_point(taps.begin(), taps.end(), [&](const RingTap& tap) {
+      return static_cast<int>(tap.distance_px + 0.5f) <= block.reach + 1;
+    });
+    const auto count = static_cast<std::size_t>(end - taps.begin());
+    filter_area(input, result, area_of(block, input.scene), std::span{taps}.first(count),
+                block.reach + 1);
   });
 }
 
@@ -173,13 +178,20 @@ constexpr int kTileHeight = 2 * kCellHeight;
 // Tiles add whole rings; the last ring goes farther than the reach by this.
 constexpr int kRingExcess = 1;
 
-// The cells of a tile that need the filter, and how far their taps go.
+// The parts of a tile that need the filter, and how far their taps go. They begin at whole
+// vectors of the tile.
 struct TileTask {
-  struct Cell {
-    int column, row, reach;
+  struct Part {
+    Area area;
+    int reach;
   };
-  std::vector<Cell> cells;
+  std::vector<Part> parts;
   int reach = 0;
+
+  void add(const Area& area, int part_reach) {
+    parts.push_back({area, part_reach});
+    reach = std::max(reach, part_reach);
+  }
 };
 
 // How far the taps of a cell must go: the farthest reach of pixels that reach it.
@@ -201,26 +213,38 @@ int reach_of_cell(const FocusMap& map, int column, int row, int farthest) {
 }
 
 // Costliest tiles first, so that threads end together.
-std::vector<TileTask> plan_tiles(const FocusMap& map, int farthest) {
-  constexpr int kColumns = kTileWidth / kCellWidth, kRows = kTileHeight / kCellHeight;
-  const int across = (map.columns + kColumns - 1) / kColumns;
-  const int down = (map.rows + kRows - 1) / kRows;
-  std::vector<TileTask> tasks;
-  for (int tile = 0; tile < across * down; ++tile) {
-    TileTask task;
-    for (int i = 0; i < kColumns * kRows; ++i) {
-      const int column = tile % across * kColumns + i % kColumns;
-      const int row = tile / across * kRows + i / kColumns;
-      if (column >= map.columns || row >= map.rows) continue;
-      const int reach = reach_of_cell(map, column, row, farthest);
-      if (reach > 0) task.cells.push_back({column, row, reach});
-      task.reach = std::max(task.reach, reach);
-    }
-    if (task.reach > 0) tasks.push_back(std::move(task));
-  }
+void sort_by_cost(std::vector<TileTask>& tasks) {
+  std::erase_if(tasks, [](const TileTask& task) { return task.reach == 0; });
   std::stable_sort(tasks.begin(), tasks.end(),
                    [](const TileTask& a, const TileTask& b) { return a.reach > b.reach; });
-  return tasks;
+}
+
+std::vector<TileTask> tiles_of(const ConstImageView& scene) {
+  const int across = (scene.width + kTileWidth - 1) / kTileWidth;
+  const int down = (scene.height + kTileHeight - 1) / kTileHeight;
+  return std::vector<TileTask>(static_cast<std::size_t>(across * down));
+}
+
+TileTask& tile_of(std::vector<TileTask>& tiles, const ConstImageView& scene, int x, int y) {
+  const int across = (scene.width + kTileWidth - 1) / kTileWidth;
+  return tiles[static_cast<std::size_t>(y / kTileHeight * across + x / kTileWidth)];
+}
+
+std::vector<TileTask> plan_tiles(const ConstImageView& scene, const FocusMap& map, int farthest) {
+  std::vector<TileTask> tiles = tiles_of(scene);
+  for (int row = 0; row < map.rows; ++row) {
+    for (int column = 0; column < map.columns; ++column) {
+      const int reach = reach_of_cell(map, column, row, farthest);
+      if (reach == 0) continue;
+      const int x = column * kCellWidth, y = row * kCellHeight;
+      tile_of(tiles, scene, x, y)
+          .add({x, y, std::min(x + kCellWidth, scene.width),
+                std::min(y + kCellHeight, scene.height)},
+               reach);
+    }
+  }
+  sort_by_cost(tiles);
+  return tiles;
 }
 
 // The taps of the farthest reach; smaller reaches need the first `count_of_reach` of them.
@@ -266,8 +290,9 @@ void filter_tile(const TileFilter& filter, const TileTask& task, const ImageView
                  Memory& memory) {
   const ConstImageView& scene = filter.input.scene;
   const DofSettings& settings = filter.input.settings;
-  const int x_begin = task.cells.front().column * kCellWidth / kTileWidth * kTileWidth;
-  const int y_begin = task.cells.front().row * kCellHeight / kTileHeight * kTileHeight;
+  const Area& first = task.parts.front().area;
+  const int x_begin = first.x_begin / kTileWidth * kTileWidth;
+  const int y_begin = first.y_begin / kTileHeight * kTileHeight;
   const int y_end = std::min(y_begin + kTileHeight, scene.height);
   const int stride = filter.taps.stride;
   const int margin = task.reach + kRingExcess;
@@ -278,29 +303,26 @@ void filter_tile(const TileFilter& filter, const TileTask& task, const ImageView
     (planes, settings, source.data(), scene.width, x_begin - filter.halo, stride,
      static_cast<std::ptrdiff_t>(y - y_begin + margin) * stride);
   }
-  for (const TileTask::Cell& cell : task.cells) {
-    const int x = cell.column * kCellWidth;
-    const int cell_end = std::min((cell.row + 1) * kCellHeight, scene.height);
-    for (int y = cell.row * kCellHeight; y < cell_end; y += 2) {
-      TileRows rows{x, std::min(x + kCellWidth, scene.width), scene.width, {}, {}};
-      for (int i = 0; i < 2 && y + i < cell_end; ++i) {
+  for (const TileTask::Part& part : task.parts) {
+    const Area& area = part.area;
+    for (int y = area.y_begin; y < area.y_end; y += 2) {
+      TileRows rows{area.x_begin, area.x_end, scene.width, {}, {}};
+      for (int i = 0; i < 2 && y + i < area.y_end; ++i) {
         rows.from[i] = row<std::uint16_t>(scene, y + i).data();
         rows.to[i] = row<std::uint16_t>(result, y + i).data();
       }
-      const auto place =
-          static_cast<std::ptrdiff_t>(y - y_begin + margin) * stride + filter.halo + (x - x_begin);
+      const auto place = static_cast<std::ptrdiff_t>(y - y_begin + margin) * stride + filter.halo +
+                         (area.x_begin - x_begin);
       SOFTFOCUS_KERNEL(filter.isa, filter_tile_rows)
       (planes, place, filter.taps.taps.data(),
-       filter.taps.count_of_reach[static_cast<std::size_t>(cell.reach)], settings,
+       filter.taps.count_of_reach[static_cast<std::size_t>(part.reach)], settings,
        filter.input.profile.half_store, rows);
     }
   }
 }
 
-void one_pass_lanes(const DofInput& input, const ImageView& result, ThreadPool& pool) {
-  const FocusMap map = pass_in_focus(input, result, pool);
-  const int farthest = tap_count(*std::max_element(map.largest_px.begin(), map.largest_px.end()));
-  const std::vector<TileTask> tasks = plan_tiles(map, farthest);
+void filter_tiles(const DofInput& input, const std::vector<TileTask>& tasks, int farthest,
+                  const ImageView& result, ThreadPool& pool) {
   if (tasks.empty()) return;
   const int lanes = SOFTFOCUS_KERNEL(pool.isa(), kLanes);
   const int halo = (farthest + kRingExcess + lanes - 1) / lanes * lanes;
@@ -314,6 +336,12 @@ void one_pass_lanes(const DofInput& input, const ImageView& result, ThreadPool& 
   });
 }
 
+void one_pass_lanes(const DofInput& input, const ImageView& result, ThreadPool& pool) {
+  const FocusMap map = pass_in_focus(input, result, pool);
+  const int farthest = tap_count(*std::max_element(map.largest_px.begin(), map.largest_px.end()));
+  filter_tiles(input, plan_tiles(input.scene, map, farthest), farthest, result, pool);
+}
+
 }  // namespace
 
 void one_pass(const DofInput& input, const ImageView& result, ThreadPool& pool) {
@@ -322,6 +350,20 @@ void one_pass(const DofInput& input, const ImageView& result, ThreadPool& pool) 
   } else {
     one_pass_lanes(input, result, pool);
   }
+}
+
+void one_pass_blocks(const DofInput& input, std::span<const OnePassBlock> blocks,
+                     const ImageView& result, ThreadPool& pool) {
+  int farthest = 0;
+  for (const OnePassBlock& block : blocks) farthest = std::max(farthest, block.reach);
+  if (pool.isa() == Isa::scalar) return blocks_scalar(input, blocks, farthest, result, pool);
+  std::vector<TileTask> tiles = tiles_of(input.scene);
+  for (const OnePassBlock& block : blocks) {
+    const Area area = area_of(block, input.scene);
+    tile_of(tiles, input.scene, area.x_begin, area.y_begin).add(area, block.reach);
+  }
+  sort_by_cost(tiles);
+  filter_tiles(input, tiles, farthest, result, pool);
 }
 
 }  // namespace softfocus
@@ -374,7 +416,7 @@ void store_filtered(const Sums& sums, const std::uint16_t* from, std::uint16_t* 
                     int width) {
   const HalfColour colour = resolve<rounding>(sums);
   const HalfTexels texels{colour.r, colour.g, colour.b,
-                          stored_depth(load_repeating(from, x, width).a)};
+                          stored_depth(load_repeating(from, x, width).a, rounding)};
   if (x + kLanes <= width) return store_half_texels(to + 4 * x, texels);
   std::uint16_t last[4 * kLanes];
   store_half_texels(last, texels);
@@ -444,10 +486,12 @@ void fill_tile_row(const TilePlanes& planes, const DofSettings& settings, const 
 /// Filters two rows, of which the upper begins at `at` of the planes.
 void filter_tile_rows(const TilePlanes& planes, std::ptrdiff_t at, const TileTap* taps, int count,
                       const DofSettings& settings, HalfRounding rounding, const TileRows& rows) {
-  if (rounding == HalfRounding::nearest_even) {
-    filter_rows<HalfRounding::nearest_even>(planes, at, taps, count, settings.leak, rows);
-  } else {
-    filter_rows<HalfRounding::toward_zero>(planes, at, taps, count, settings.leak, rows);
+  using enum HalfRounding;
+  switch (rounding) {
+    case nearest_even:
+      return filter_rows<nearest_even>(planes, at, taps, count, settings.leak, rows);
+    case toward_zero: return filter_rows<toward_zero>(planes, at, taps, count, settings.leak, rows);
+    case swiftshader: return filter_rows<swiftshader>(planes, at, taps, count, settings.leak, rows);
   }
 }
 

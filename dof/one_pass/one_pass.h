@@ -14,6 +14,7 @@
 // Known failures: circles larger than max_coc are cut; a foreground hides what its blur should
 // let through (no partial occlusion).
 
+#include <span>
 #include <vector>
 
 #include "dof/dof.h"
@@ -32,6 +33,20 @@ std::vector<RingTap> ring_taps(float radius_px);
 
 /// The filter. Its cost grows with the square of the largest radius in the picture.
 void one_pass(const DofInput& input, const ImageView& result, ThreadPool& pool);
+
+/// Blocks of pixels that can be filtered by themselves. A vector of the widest unit is a row.
+inline constexpr int kBlockWidth = 16;
+inline constexpr int kBlockHeight = 8;
+
+struct OnePassBlock {
+  int column, row;  ///< of blocks
+  int reach;        ///< 1 or more: how far its taps must go, tap_count() of what reaches it
+};
+
+/// one_pass() of some blocks, each listed once; other pixels stay. The work grows with the
+/// square of a block's reach.
+void one_pass_blocks(const DofInput& input, std::span<const OnePassBlock> blocks,
+                     const ImageView& result, ThreadPool& pool);
 
 /// The oracle, equal to the bit: every tap is fetched from the picture, up to max_coc.
 void one_pass_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool);

@@ -33,10 +33,9 @@ constexpr std::array kSlabBegins{0.5f,  1.5f,  3.0f,   6.0f,   12.0f, 24.0f,
                                  48.0f, 96.0f, 192.0f, 384.0f, 768.0f};
 constexpr int kSlabs = 2 * static_cast<int>(kSlabBegins.size()) + 1;
 
-// The slab's number, the nearest first. No two of the three layers have neighbouring numbers.
+// The slab's number, the nearest first.
 int slab_of(SlabRule rule, float radius_px) {
   if (rule == SlabRule::one) return 0;
-  if (rule == SlabRule::layers) return radius_px < -0.5f ? 0 : radius_px > 0.5f ? 4 : 2;
   const float magnitude = std::fabs(radius_px);
   int steps = 0;
   for (const float begin : kSlabBegins) steps += magnitude > begin ? 1 : 0;
@@ -44,9 +43,7 @@ int slab_of(SlabRule rule, float radius_px) {
   return radius_px < 0.0f ? focus - steps : focus + steps;
 }
 
-int slab_count(SlabRule rule) {
-  return rule == SlabRule::one ? 1 : rule == SlabRule::layers ? 5 : kSlabs;
-}
+int slab_count(SlabRule rule) { return rule == SlabRule::one ? 1 : kSlabs; }
 
 // Red, green, blue and weight.
 using Light = std::array<std::uint64_t, 4>;
@@ -280,9 +277,6 @@ void scatter_unsorted(const DofInput& input, const ImageView& result, ThreadPool
 void scatter_sorted(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   scatter_in_slabs(input, result, SlabRule::doubling, pool);
 }
-void layers(const DofInput& input, const ImageView& result, ThreadPool& pool) {
-  scatter_in_slabs(input, result, SlabRule::layers, pool);
-}
 
 }  // namespace softfocus
 
@@ -290,19 +284,7 @@ void layers(const DofInput& input, const ImageView& result, ThreadPool& pool) {
 
 namespace {
 
-using FourFloats [[gnu::vector_size(16)]] = float;
-using FourDoubles [[gnu::vector_size(32)]] = double;
-using FourSums [[gnu::vector_size(32)]] = std::uint64_t;
-
-// A number below 2^51 plus this has the rounded number in its low bits.
-inline constexpr double kRoundingPlace = 0x1.8p52;
-
-SOFTFOCUS_INLINE void add_sums(std::uint64_t* at, const FourSums& change) {
-  FourSums sums;
-  std::memcpy(&sums, at, sizeof sums);
-  sums += change;
-  std::memcpy(at, &sums, sizeof sums);
-}
+#include "dof/scatter/scatter_spans.inl"
 
 }  // namespace
 
@@ -314,20 +296,7 @@ void scatter_row(const float* light, const std::uint16_t* disc, const std::uint8
   for (int x = 0; x < count; ++x) {
     const DiscSpan span = spans[disc[x]];
     if (span.whole < -1) continue;
-    FourFloats values;
-    std::memcpy(&values, light + 4 * x, sizeof values);
-    const FourDoubles exact = __builtin_convertvector(values, FourDoubles);
-    const FourDoubles none = {};
-    const FourSums zero = (FourSums)(none + kRoundingPlace);
-    const FourSums all = (FourSums)(exact + kRoundingPlace) - zero;
-    const FourSums end = (FourSums)(exact * (0.125 * span.eighths) + kRoundingPlace) - zero;
-    std::uint64_t* at = differences + slab[x] * slab_stride + 4 * x;
-    std::uint64_t* left = at - 4 * (span.whole + 1);
-    std::uint64_t* right = at + 4 * (span.whole + 1);
-    add_sums(left, end);
-    add_sums(left + 4, all - end);
-    add_sums(right, end - all);
-    add_sums(right + 4, -end);
+    add_span(differences + slab[x] * slab_stride + 4 * x, light + 4 * x, span);
   }
 }
 

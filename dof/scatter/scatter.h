@@ -10,20 +10,11 @@
 //                   the nearest to the farthest:
 //                   a'_k = min(1, a_k / (1 - a'_(k-1)));  out = sum T_k a'_k C_k / sum T_k a'_k
 //                   T_k is the product of 1 - a' of all nearer slabs
-//   layers          the same in three layers: near, focus and far
 //
 // The slabs of scatter-sorted end at |r| = 1/2, 3/2, 3, 6, 12, ... pixels on either side of
 // the focus. A surface that runs through depth lies in neighbouring slabs: their opacities are
 // shares of one whole, which add (hence a'). Only slabs that do not touch are independent, as
 // "over" supposes.
-//
-// layers, after Scofield 1992 and Real-Time Rendering (4th edition, 12.4), splits by depth,
-// blurs each layer by itself as premultiplied colour with its coverage as alpha, and
-// composites near over focus over far, divided by the opacity reached:
-//   near: r < -1/2;  focus: |r| <= 1/2, not blurred;  far: r > 1/2    (pixels)
-// The sources blur a layer by one radius, which would blur a floor the same all along; here
-// every pixel has its own disc. Light that a layer hides is missing from the next; the
-// division fills the gap with its blurred surroundings.
 //
 // Discs come in quarters of a pixel of radius. In a row of pixels a disc is a span as wide as
 // its area there, in eighths of a pixel to either side: coverage falls off softly at the
@@ -39,21 +30,18 @@
 // Known failures. scatter: blurred things shine over sharp ones before them and the reverse,
 // by their weights alone. scatter-sorted: light hidden by a foreground is missing behind its
 // blurred edge, where the nearest visible neighbours fill in; two surfaces in neighbouring
-// slabs count as one. layers: within a layer nothing hides anything, so a far thing shines
-// over the edge of a less far one; where a surface passes from one layer to the next, a
-// little of its background shows through the seam.
+// slabs count as one.
 
 #include "dof/dof.h"
 
 namespace softfocus {
 
-/// Three Methods' apply (dof.h).
+/// Two Methods' apply (dof.h).
 void scatter_unsorted(const DofInput& input, const ImageView& result, ThreadPool& pool);
 void scatter_sorted(const DofInput& input, const ImageView& result, ThreadPool& pool);
-void layers(const DofInput& input, const ImageView& result, ThreadPool& pool);
 
-/// How depth is cut: not at all, into three layers, or into slabs.
-enum class SlabRule { one, layers, doubling };
+/// How depth is cut: not at all, or into slabs.
+enum class SlabRule { one, doubling };
 void scatter_in_slabs(const DofInput& input, const ImageView& result, SlabRule rule,
                       ThreadPool& pool);
 

@@ -19,7 +19,7 @@ double mean_half_width(double radius, int dy) {
 
 }  // namespace
 
-ScatterDiscs make_discs(float largest_px) {
+ScatterDiscs make_discs(float largest_px, std::span<const std::uint8_t> used) {
   ScatterDiscs discs;
   discs.count = disc_of(largest_px) + 1;
   discs.reach = static_cast<int>(std::ceil(0.25 * (discs.count - 1) + 0.5)) - 1;
@@ -30,7 +30,7 @@ ScatterDiscs make_discs(float largest_px) {
   discs.weights.assign(count, 1.0f);
   for (std::size_t disc = 0; disc < count; ++disc) {
     discs.spans[disc] = {0, 0};
-    if (disc <= 2) continue;
+    if (disc <= 2 || (!used.empty() && used[disc] == 0)) continue;
     const double radius = 0.25 * static_cast<double>(disc);
     std::int64_t eighths = 0;
     for (int dy = 0; dy <= discs.reach; ++dy) {

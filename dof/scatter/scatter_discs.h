@@ -2,6 +2,7 @@
 // The discs of scatter.h, as spans.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace softfocus {
@@ -22,8 +23,9 @@ struct ScatterDiscs {
   std::vector<float> weights;   ///< each disc's 1 / sum of its coverages
 };
 
-/// Discs up to a radius, 0 to kLargestMaxCoc.
-ScatterDiscs make_discs(float largest_px);
+/// Discs up to a radius, 0 to kLargestMaxCoc. With `used` only those of the discs that it has a 1
+/// for; the others reach no row but their own.
+ScatterDiscs make_discs(float largest_px, std::span<const std::uint8_t> used = {});
 
 /// The number of the disc for a radius, which may be negative.
 inline int disc_of(float radius_px) {

@@ -335,9 +335,11 @@ SOFTFOCUS_INLINE void store_part(const GatherNodes& nodes, int node, Floats r, F
 /// Makes nodes `at` to `at` + kLanes - 1 of the line along x from kLanes rows. Unless `column`
 /// is negative, the pixels lie in the strip itself, in that vector of columns: then the lines
 /// along y get their radius, intensity and depth too.
-SOFTFOCUS_INLINE void load_block(const Strip& strip, const DofSettings& settings,
+SOFTFOCUS_INLINE void load_block(const Strip& strip, const StripFilter& filter,
                                  const std::uint16_t* const* rows, int x, int at, int column,
                                  int node) {
+  // What the first pass makes of a depth matters to the second if it is stored between them.
+  const bool stored_between = filter.between == Between::half;
   Floats r[kLanes], g[kLanes], b[kLanes], radius[kLanes], light[kLanes];
   NodeExtent across = no_extent(), down = no_extent();
   for (int i = 0; i < kLanes; ++i) {
@@ -348,14 +350,18 @@ SOFTFOCUS_INLINE void load_block(const Strip& strip, const DofSettings& settings
     r[i] = half_to_float(texels.r);
     g[i] = half_to_float(texels.g);
     b[i] = half_to_float(texels.b);
-    radius[i] = signed_radius(settings, half_to_float(texels.a));
+    radius[i] = signed_radius(filter.settings, half_to_float(texels.a));
     light[i] = intensity(absolute(radius[i]));
     widen(across, radius[i]);
     if (column >= 0) {
       const int to = column * strip.capacity + node + i;
-      store(strip.down.part + to * 4 * kLanes, radius[i]);
+      const Bits depth = stored_depth(texels.a, filter.rounding);
+      // An infinity that became NaN keeps its radius, but is not beyond the focus.
+      Mask lost = splat(0);
+      if (stored_between) lost = depth != texels.a;
+      store(strip.down.part + to * 4 * kLanes, select(lost, absolute(radius[i]), radius[i]));
       store(strip.down.whole + to * 4 * kLanes, light[i]);
-      store(strip.depths + to * kLanes, stored_depth(texels.a));
+      store(strip.depths + to * kLanes, depth);
     }
   }
   transpose(r);
@@ -387,12 +393,15 @@ SOFTFOCUS_INLINE GatherNodes nodes_from(const GatherNodes& nodes, int node) {
 
 void gather(const StripFilter& filter, const GatherNodes& line, int count, int reach,
             std::uint32_t* gathered) {
-  if (filter.rounding == HalfRounding::nearest_even) {
-    gather_line<HalfResults<HalfRounding::nearest_even> >(line, count, reach, filter.settings.leak,
-                                                          gathered);
-  } else {
-    gather_line<HalfResults<HalfRounding::toward_zero> >(line, count, reach, filter.settings.leak,
-                                                         gathered);
+  using enum HalfRounding;
+  const float leak = filter.settings.leak;
+  switch (filter.rounding) {
+    case nearest_even:
+      return gather_line<HalfResults<nearest_even> >(line, count, reach, leak, gathered);
+    case toward_zero:
+      return gather_line<HalfResults<toward_zero> >(line, count, reach, leak, gathered);
+    case swiftshader:
+      return gather_line<HalfResults<swiftshader> >(line, count, reach, leak, gathered);
   }
 }
 
@@ -439,7 +448,7 @@ void filter_across(const Strip& strip, const StripFilter& filter, const std::uin
   const int length = strip.halo + strip.columns + strip.halo;
   for (int at = 0; at < length; at += kLanes) {
     const bool inside = at >= strip.halo && at < strip.halo + strip.columns;
-    load_block(strip, filter.settings, rows, strip.x_begin - strip.halo + at, at,
+    load_block(strip, filter, rows, strip.x_begin - strip.halo + at, at,
                inside ? (at - strip.halo) / kLanes : -1, node);
   }
   const GatherNodes line = nodes_from(strip.across, strip.halo);

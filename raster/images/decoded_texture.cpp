@@ -9,6 +9,7 @@
 #include "raster/images/texel.h"
 #include "raster/images/unorm8_filter.h"
 #include "raster/numbers/lerp.h"
+#include "raster/numbers/srgb.h"
 
 namespace softfocus {
 namespace {
@@ -17,9 +18,10 @@ bool is_8_bit(Format format) {
   return bytes_per_texel(format) == static_cast<std::size_t>(channel_count(format));
 }
 
-// Whether texels keep values from 0 to 255, to be filtered in integers. llvmpipe does so with
-// most samplers.
-bool stay_bytes(Format format, const Profile& profile) {
+// Whether texels keep whole numbers, which are scaled after they are filtered. llvmpipe filters
+// them in integers with most samplers.
+bool stay_whole(Format format, const Profile& profile) {
+  if (profile.texture_unit == TextureUnit::swiftshader) return is_8_bit(format);
   const bool may_be =
       profile.texture_unit == TextureUnit::llvmpipe || has_integer_filter(format, profile);
   return may_be && (format == Format::r8 || format == Format::rgba8);
@@ -50,6 +52,24 @@ Codes codes_as_they_are() {
   for (std::size_t code = 0; code < 256; ++code) codes.colour[code] = static_cast<float>(code);
   codes.alpha = codes.colour;
   return codes;
+}
+
+Codes codes_in_65280ths(Format format) {
+  Codes codes{};
+  for (std::size_t code = 0; code < 256; ++code) {
+    codes.alpha[code] = static_cast<float>(256 * code);
+    codes.colour[code] =
+        format == Format::srgb8
+            ? static_cast<float>(srgb8_in_65280ths(static_cast<std::uint8_t>(code)))
+            : codes.alpha[code];
+  }
+  return codes;
+}
+
+Codes codes_for(Format format, bool are_whole, const Profile& profile) {
+  if (!are_whole) return decode_codes(format, profile);
+  return profile.texture_unit == TextureUnit::swiftshader ? codes_in_65280ths(format)
+                                                          : codes_as_they_are();
 }
 
 void decode_8_bit(const Image& image, const Codes& codes, float* to) {
@@ -116,11 +136,8 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile) {
   decoded.texels.resize(floats);
 
   const Format format = texture.levels[0].format;
-  decoded.are_bytes = stay_bytes(format, profile);
-  Codes codes{};
-  if (is_8_bit(format)) {
-    codes = decoded.are_bytes ? codes_as_they_are() : decode_codes(format, profile);
-  }
+  decoded.are_whole = stay_whole(format, profile);
+  const Codes codes = is_8_bit(format) ? codes_for(format, decoded.are_whole, profile) : Codes{};
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
     float* to = decoded.texels.data() + decoded.starts[i];
     if (is_8_bit(format)) {
@@ -139,7 +156,7 @@ LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sam
   const bool fused = profile.lerp == Contraction::fused;
   if (profile.texture_unit == TextureUnit::standard) {
     if (fused) return LaneArithmetic::by_sample;
-    if (texture.are_bytes) return LaneArithmetic::standard_integers;
+    if (texture.are_whole) return LaneArithmetic::standard_integers;
     if (sampler.filter != Filter::nearest && has_integer_filter(format, profile)) {
       return LaneArithmetic::by_sample;  // halves' sums do not fit in a float
     }
@@ -149,8 +166,11 @@ LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sam
   // Texels of 32 bits may be subnormal. Only sample() flushes them.
   const bool flushes_texels = format == Format::r32f || format == Format::rgba32f;
   if (profile.denormals == Denormals::keep || flushes_texels) return LaneArithmetic::by_sample;
+  if (profile.texture_unit == TextureUnit::swiftshader) {
+    return fused ? LaneArithmetic::by_sample : LaneArithmetic::swiftshader;
+  }
   const auto in_floats = fused ? LaneArithmetic::llvmpipe_fused : LaneArithmetic::llvmpipe_unfused;
-  if (sampler.filter == Filter::nearest || !texture.are_bytes) return in_floats;
+  if (sampler.filter == Filter::nearest || !texture.are_whole) return in_floats;
   return is_filtered_in_integers(format, sampler) ? LaneArithmetic::llvmpipe_integers
                                                   : LaneArithmetic::by_sample;
 }

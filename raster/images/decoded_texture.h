@@ -26,13 +26,13 @@ struct DecodedAxis {
 struct DecodedTexture {
   const Texture* source = nullptr;  ///< must outlive this
   int level_count = 0;
-  /// Whether texels keep values from 0 to 255, to be filtered in integers. to_linear() comes
-  /// after the filter then.
-  bool are_bytes = false;
+  /// Whether texels keep whole numbers: 0 to 255 to be filtered in integers, for SwiftShader 0 to
+  /// 65280. to_linear() comes after the filter then.
+  bool are_whole = false;
   DecodedAxis u, v;
   /// Where each level's texels start in `texels`, in floats. Rows lie without gaps.
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
-  /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_bytes` says. Empty
+  /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_whole` says. Empty
   /// if only sample() will do: for softpipe, more than kMaxDecodedLevels levels, or 2^31 floats.
   std::vector<float, RowAllocator<float>> texels;
 };
@@ -49,6 +49,7 @@ enum class LaneArithmetic : std::uint8_t {
   llvmpipe_fused,     ///< llvmpipe's float filter
   llvmpipe_unfused,   ///< llvmpipe's float filter, unfused
   llvmpipe_integers,  ///< llvmpipe's filter in 8-bit integers
+  swiftshader,        ///< SwiftShader's filter, in floats
 };
 
 /// The arithmetic for a texture that was decoded for `profile`. It stays the same in a draw.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <new>
 #include <span>
 #include <vector>
@@ -28,6 +29,21 @@ struct RowAllocator {
   }
   bool operator==(const RowAllocator&) const = default;
 };
+
+struct RowDelete {
+  void operator()(void* memory) const {
+    ::operator delete (memory, std::align_val_t{kRowAlignment});
+  }
+};
+/// Numbers from such a boundary on.
+template <class T>
+using RowMemory = std::unique_ptr<T[], RowDelete>;
+
+/// `count` numbers, not initialised.
+template <class T>
+RowMemory<T> make_row_memory(std::size_t count) {
+  return RowMemory<T>(RowAllocator<T>{}.allocate(count));
+}
 
 struct Image {
   Format format = Format::rgba16f;

@@ -14,7 +14,7 @@ namespace softfocus {
 /// The standard unit and llvmpipe take half of log2_linear of the larger squared length in
 /// texels; length 0 gives the most negative lod. softpipe takes log2_by_table of the largest of
 /// |du| * width and |dv| * height, with the difference along x from the lower row of the 2x2
-/// block of pixels.
+/// block of pixels. SwiftShader takes log2_of_root_by_bits of the larger squared length.
 float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y,
                       const Profile& profile);
 
@@ -26,6 +26,11 @@ float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_p
 /// compute the level so; a shader can do it bit for bit (floatBitsToInt). Subnormals count as
 /// e = -127, and 0 gives -127. Needs x >= 0.
 float log2_linear(float x);
+
+/// Half of the binary logarithm, as SwiftShader computes it: x * x read as an integer is a
+/// logarithm, straight between powers of two, in 2^-23ths. The square makes the line straight
+/// between powers of the root of two of x. Up to 0.0215 too small. Needs x >= 0.
+float log2_of_root_by_bits(float x);
 
 /// Binary logarithm as softpipe computes it: the exponent plus the logarithm of the mantissa,
 /// which is first rounded to a multiple of 1/256, to nearest, ties up. Zero and subnormals have

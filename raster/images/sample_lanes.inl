@@ -18,21 +18,59 @@ struct SamplePoints {
 
 inline constexpr int kMostSampled = 8;  // vectors at once
 
-/// level_of_detail() of the standard unit and llvmpipe.
-SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, Floats du_dx,
-                                              Floats dv_dx, Floats du_dy, Floats dv_dy) {
+/// The larger squared length of two differences, in texels.
+SOFTFOCUS_INLINE Floats largest_square(const DecodedTexture& texture, Floats du_dx, Floats dv_dx,
+                                       Floats du_dy, Floats dv_dy) {
   const float width = static_cast<float>(texture.source->levels.front().width);
   const float height = static_cast<float>(texture.source->levels.front().height);
   const Floats s_x = du_dx * width;
   const Floats t_x = dv_dx * height;
   const Floats s_y = du_dy * width;
   const Floats t_y = dv_dy * height;
-  const Bits bits = as_bits(larger(s_x * s_x + t_x * t_x, s_y * s_y + t_y * t_y));
+  return larger(s_x * s_x + t_x * t_x, s_y * s_y + t_y * t_y);
+}
+
+/// level_of_detail() of the standard unit and llvmpipe.
+SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, Floats du_dx,
+                                              Floats dv_dx, Floats du_dy, Floats dv_dy) {
+  const Bits bits = as_bits(largest_square(texture, du_dx, dv_dx, du_dy, dv_dy));
   const Floats mantissa = as_floats((bits & 0x007FFFFFu) | 0x3F800000u);
   return 0.5f * (to_floats(as_ints(bits >> 23 & 0xFFu) - 128) + mantissa);
 }
 
+/// level_of_detail() itself, lane by lane.
+[[gnu::noinline]] inline void level_of_detail_by_lane(const DecodedTexture& texture,
+                                                      const Profile& profile, Floats du_dx,
+                                                      Floats dv_dx, Floats du_dy, Floats dv_dy,
+                                                      Floats& lod) {
+  for (int i = 0; i < kLanes; ++i) {
+    lod[i] = level_of_detail(*texture.source, {du_dx[i], dv_dx[i]}, {du_dy[i], dv_dy[i]}, profile);
+  }
+}
+
+/// level_of_detail() of any profile.
+SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, const Profile& profile,
+                                              Floats du_dx, Floats dv_dx, Floats du_dy,
+                                              Floats dv_dy) {
+  if (profile.texture_unit == TextureUnit::swiftshader) {
+    const Floats square = largest_square(texture, du_dx, dv_dx, du_dy, dv_dy);
+    return (to_floats(as_ints(as_bits(square * square))) - 0x1.FCp+29f) * 0x1p-25f;
+  }
+  if (profile.texture_unit != TextureUnit::softpipe) {
+    return level_of_detail_lanes(texture, du_dx, dv_dx, du_dy, dv_dy);
+  }
+  Floats lod;
+  level_of_detail_by_lane(texture, profile, du_dx, dv_dx, du_dy, dv_dy, lod);
+  return lod;
+}
+
 #include "raster/images/taps_lanes.inl"
+
+SOFTFOCUS_INLINE constexpr bool is_llvmpipe(LaneArithmetic arithmetic) {
+  return arithmetic == LaneArithmetic::llvmpipe_fused ||
+         arithmetic == LaneArithmetic::llvmpipe_unfused ||
+         arithmetic == LaneArithmetic::llvmpipe_integers;
+}
 
 // --- texels, four floats each, of kLanes / 4 pixels ---
 //
@@ -64,7 +102,7 @@ SOFTFOCUS_INLINE Floats load_texels(const float* texels, const std::int32_t* off
 
 /// The scalar samplers' lerp.
 ///
-/// llvmpipe's flushes subnormals; here it need not, as none occur:
+/// llvmpipe's and SwiftShader's flush subnormals; here it need not, as none occur:
 /// - Texels of 8 and 16 bits are multiples of 2^-35 (the cubic's least value is 2^-11.7, with 24
 ///   bits).
 /// - Positions are multiples of 2^-25, as half a texel was subtracted: from 1/4 on the minuend is
@@ -158,6 +196,8 @@ SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine
   if constexpr (!two_levels) return colour;
   const Floats next = filter_level<arithmetic, neighbours, group>(texels, coarse);
   const Floats weight = spread<group>(next_weight);
+  if constexpr (arithmetic == LaneArithmetic::swiftshader)
+    return mix_levels<arithmetic>(colour, next, weight);
   // With a weight of 0 the sum would change infinities, NaN and -0.
   return select(weight > 0.0f, mix_levels<arithmetic>(colour, next, weight), colour);
 }
@@ -176,12 +216,6 @@ template <LaneArithmetic arithmetic, bool neighbours, bool two_levels>
 }
 
 // --- a texture ---
-
-SOFTFOCUS_INLINE constexpr bool is_llvmpipe(LaneArithmetic arithmetic) {
-  return arithmetic == LaneArithmetic::llvmpipe_fused ||
-         arithmetic == LaneArithmetic::llvmpipe_unfused ||
-         arithmetic == LaneArithmetic::llvmpipe_integers;
-}
 
 // The same for all levels.
 struct PlaceLanes {
@@ -204,10 +238,23 @@ template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE TapLanes taps(const AxisLanes& axis) {
   if constexpr (arithmetic == LaneArithmetic::llvmpipe_integers) {
     return unorm8_taps(axis);
+  } else if constexpr (arithmetic == LaneArithmetic::swiftshader) {
+    return swiftshader_taps(axis);
   } else if constexpr (is_llvmpipe(arithmetic)) {
     return llvmpipe_taps(axis);
   } else {
     return standard_taps(axis, arithmetic != LaneArithmetic::standard);
+  }
+}
+
+template <LaneArithmetic arithmetic>
+SOFTFOCUS_INLINE Ints nearest_texel(const AxisLanes& axis, bool of_bytes) {
+  if constexpr (arithmetic == LaneArithmetic::swiftshader) {
+    return of_bytes ? swiftshader_nearest_byte(axis) : swiftshader_nearest(axis);
+  } else if constexpr (is_llvmpipe(arithmetic)) {
+    return llvmpipe_nearest(axis);
+  } else {
+    return standard_nearest(axis);
   }
 }
 
@@ -235,11 +282,10 @@ SOFTFOCUS_INLINE void find_fetch(const PlaceLanes& place, Ints level, FetchLanes
 
 template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE RgbLanes sample_nearest(const PlaceLanes& place, Ints level) {
-  constexpr bool kLlvmpipe = is_llvmpipe(arithmetic);
   const AxisLanes along_u = axis_u(place, level);
   const AxisLanes along_v = axis_v(place, level);
-  const Ints x = kLlvmpipe ? llvmpipe_nearest(along_u) : standard_nearest(along_u);
-  const Ints y = kLlvmpipe ? llvmpipe_nearest(along_v) : standard_nearest(along_v);
+  const Ints x = nearest_texel<arithmetic>(along_u, place.texture.are_whole);
+  const Ints y = nearest_texel<arithmetic>(along_v, place.texture.are_whole);
   alignas(64) std::int32_t offsets[kLanes];
   store(offsets, row_offset(place.texture, level, along_u.size, y) + (x << 2));
   const float* texels = place.texture.texels.data();
@@ -263,6 +309,8 @@ SOFTFOCUS_INLINE LevelLanes choose_levels(Floats lod, int last, bool trilinear) 
       levels.next_weight = floor(levels.next_weight * 256.0f) * (1.0f / 256.0f);
     }
     return levels;
+  } else if constexpr (arithmetic == LaneArithmetic::swiftshader) {
+    return choose_swiftshader_levels(lod, last, trilinear);
   } else {
     return choose_standard_levels(lod, last, trilinear, arithmetic != LaneArithmetic::standard);
   }
@@ -273,7 +321,9 @@ SOFTFOCUS_INLINE void plan_linear(const PlaceLanes& place, const LevelLanes& lev
                                   SamplePlan& plan) {
   const Mask mixed = levels.next_weight > 0.0f;
   plan.next_weight = levels.next_weight;
-  plan.two_levels = any(mixed);
+  plan.two_levels = arithmetic == LaneArithmetic::swiftshader
+                        ? place.sampler.filter == Filter::trilinear
+                        : any(mixed) != 0;
   plan.by_lane = false;
   find_fetch<arithmetic>(place, levels.first, plan.fine);
   // Neighbouring pixels mostly read the same texels: prefetching for every fourth is enough.
@@ -283,7 +333,8 @@ SOFTFOCUS_INLINE void plan_linear(const PlaceLanes& place, const LevelLanes& lev
   }
   if (!plan.two_levels) return;
   if constexpr (arithmetic == LaneArithmetic::llvmpipe_fused ||
-                arithmetic == LaneArithmetic::llvmpipe_unfused) {
+                arithmetic == LaneArithmetic::llvmpipe_unfused ||
+                arithmetic == LaneArithmetic::swiftshader) {
     plan.by_lane = any((levels.next_weight < 0x1p-16f) & mixed);
   }
   const Ints next = smaller(levels.first + 1, splat(place.texture.level_count - 1));
@@ -321,13 +372,15 @@ SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, R
   }
 }
 
-/// Decodes mixed bytes that kept values from 0 to 255, as fetch_texel() decodes texels.
+/// Decodes mixed texels that kept whole numbers, as fetch_texel() decodes texels.
 template <LaneArithmetic arithmetic>
 SOFTFOCUS_INLINE Floats to_linear(const DecodedTexture& texture, Floats value) {
   if constexpr (arithmetic == LaneArithmetic::standard_integers) {
     return value / 255.0f;
+  } else if constexpr (arithmetic == LaneArithmetic::swiftshader) {
+    return texture.are_whole ? value * (1.0f / 65280.0f) : value;
   } else if constexpr (is_llvmpipe(arithmetic)) {
-    return texture.are_bytes ? value * (1.0f / 255.0f) : value;
+    return texture.are_whole ? value * (1.0f / 255.0f) : value;
   } else {
     return value;
   }
@@ -342,7 +395,7 @@ template <LaneArithmetic arithmetic>
   std::array<SamplePlan, kMostSampled> plans;
   for (int i = 0; i < count; ++i) {
     PlaceLanes place{texture, sampler, load(points.u + i * kLanes), load(points.v + i * kLanes)};
-    if constexpr (is_llvmpipe(arithmetic)) {
+    if constexpr (is_llvmpipe(arithmetic) || arithmetic == LaneArithmetic::swiftshader) {
       place.u = select(absolute(place.u) < 0x1p-126f, splat(0.0f), place.u);
       place.v = select(absolute(place.v) < 0x1p-126f, splat(0.0f), place.v);
     } else {
@@ -396,5 +449,7 @@ SOFTFOCUS_INLINE void sample_lanes(const DecodedTexture& texture, const Sampler&
       return sample_batch<llvmpipe_unfused>(texture, sampler, profile, points, count, colours);
     case llvmpipe_integers:
       return sample_batch<llvmpipe_integers>(texture, sampler, profile, points, count, colours);
+    case swiftshader:
+      return sample_batch<swiftshader>(texture, sampler, profile, points, count, colours);
   }
 }

@@ -8,6 +8,7 @@
 #include "raster/images/integer_filter.h"
 #include "raster/images/llvmpipe_sampler.h"
 #include "raster/images/softpipe_sampler.h"
+#include "raster/images/swiftshader_sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/lerp.h"
 
@@ -87,6 +88,7 @@ glm::vec4 sample(const Texture& texture, const Sampler& sampler, glm::vec2 uv, f
   switch (profile.texture_unit) {
     case TextureUnit::llvmpipe: return sample_llvmpipe(texture, sampler, uv, lod, profile);
     case TextureUnit::softpipe: return sample_softpipe(texture, sampler, uv, lod, profile);
+    case TextureUnit::swiftshader: return sample_swiftshader(texture, sampler, uv, lod, profile);
     case TextureUnit::standard: break;
   }
   const auto last = static_cast<float>(texture.levels.size() - 1);

@@ -1,5 +1,6 @@
 // Which texels of which levels lanes read, and their weights: the addresses of sampler.cpp,
-// llvmpipe_sampler.cpp and unorm8_filter.cpp, to the bit. A part of sample_lanes.inl.
+// llvmpipe_sampler.cpp, unorm8_filter.cpp and swiftshader_sampler.cpp, to the bit. A part of
+// sample_lanes.inl.
 //
 // For any coordinate and lod, NaN too, the texels lie in the texture.
 
@@ -17,6 +18,8 @@ SOFTFOCUS_INLINE auto look_up(const std::array<Number, kMaxDecodedLevels>& table
   return select(index > 7, (Lanes)_mm256_permutevar8x32_epi32((__m256i)high, (__m256i)index),
                 (Lanes)_mm256_permutevar8x32_epi32((__m256i)low, (__m256i)index));
 #else
+  // Neighbouring pixels mostly have one level.
+  if (all(index == spread<0>(index))) return splat(table[static_cast<std::size_t>(index[0])]);
   Lanes values;
   for (int i = 0; i < kLanes; ++i) values[i] = table[static_cast<std::size_t>(index[i])];
   return values;
@@ -48,6 +51,14 @@ SOFTFOCUS_INLINE LevelLanes choose_llvmpipe_levels(Floats lod, int last, bool tr
   const Floats base = floor(used);
   const Ints level = truncate(base);
   return {smaller(level, end), select(level < end, used - base, splat(0.0f))};
+}
+
+SOFTFOCUS_INLINE LevelLanes choose_swiftshader_levels(Floats lod, int last, bool trilinear) {
+  const Floats used = select(lod >= 0x1p-126f, smaller(lod, splat(1000.0f)), splat(0.0f));
+  const Ints end = splat(last);
+  if (!trilinear) return {smaller(truncate(nearest(used)), end), splat(0.0f)};
+  const Floats base = floor(used);
+  return {smaller(truncate(base), end), smaller(used - base, splat(1.0f - 0x1p-24f))};
 }
 
 // --- which texels along an axis ---
@@ -173,6 +184,41 @@ SOFTFOCUS_INLINE Ints llvmpipe_nearest(const AxisLanes& axis) {
     return smaller(larger(truncate_to_int(scaled), splat(0)), size - 1);
   }
   return smaller(truncate(mirror(axis.coordinate) * axis.size), size - 1);
+}
+
+SOFTFOCUS_INLINE Floats swiftshader_coordinate(const AxisLanes& axis) {
+  const Floats u = axis.coordinate;
+  const Floats most = splat(1.0f - 0x1p-24f);
+  if (axis.wrap == Wrap::clamp_to_edge) return smaller(larger(u, splat(0.0f)), most);
+  if (axis.wrap == Wrap::repeat) return smaller(u - floor(u), most);
+  return smaller(absolute(u - 2.0f * nearest(u * 0.5f)), most);
+}
+
+SOFTFOCUS_INLINE TapLanes swiftshader_taps(const AxisLanes& axis) {
+  const Ints last = truncate(axis.size) - 1;
+  const Floats position = swiftshader_coordinate(axis) * axis.size - 0.5f;
+  const Floats base = floor(position);
+  const Ints first = truncate(base);
+  const bool repeats = axis.wrap == Wrap::repeat;
+  return {select(first < 0, repeats ? last : splat(0), first),
+          select(first < last, first + 1, repeats ? splat(0) : last), position - base};
+}
+
+SOFTFOCUS_INLINE Ints swiftshader_nearest(const AxisLanes& axis) {
+  return truncate(swiftshader_coordinate(axis) * axis.size);
+}
+
+SOFTFOCUS_INLINE Ints swiftshader_nearest_byte(const AxisLanes& axis) {
+  const Ints size = truncate(axis.size);
+  if (axis.wrap == Wrap::clamp_to_edge) {
+    const Floats inside = smaller(larger(axis.coordinate, splat(0.0f)), splat(65535.0f / 65536.0f));
+    return truncate(inside * 65536.0f) * size >> 16;
+  }
+  Ints position = truncate_to_int(axis.coordinate * 65536.0f);
+  if (axis.wrap == Wrap::mirrored_repeat) {
+    position = select((position & 0x10000) != 0, ~position, position);
+  }
+  return (position & 0xFFFF) * size >> 16;
 }
 
 // Taps of unorm8_filter.cpp, which repeat or clamp; weights are multiples of 1/256.

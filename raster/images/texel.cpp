@@ -38,6 +38,9 @@ glm::vec4 fetch_texel(const Image& image, int x, int y, const Profile& profile) 
   if (image.format == Format::r8) return {unorm8_by_reciprocal(v[0]), 0.0f, 0.0f, 1.0f};
   const auto decode = [&](std::uint8_t encoded) {
     if (image.format == Format::rgba8) return unorm8_by_reciprocal(encoded);
+    if (profile.texture_unit == TextureUnit::swiftshader) {
+      return static_cast<float>(srgb8_in_65280ths(encoded)) * (1.0f / 65280.0f);
+    }
     return profile.texture_unit == TextureUnit::llvmpipe
                ? srgb8_to_linear_by_cubic(encoded, profile.lerp)
                : srgb8_to_linear_decimal(encoded);

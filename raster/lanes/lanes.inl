@@ -74,10 +74,20 @@ SOFTFOCUS_INLINE Floats as_floats(Bits v) { return (Floats)v; }
 SOFTFOCUS_INLINE Ints as_ints(Bits v) { return (Ints)v; }
 SOFTFOCUS_INLINE Ints as_ints(Floats v) { return (Ints)v; }
 
+#if defined(__wasm_simd128__)
+// `?:` would compare the mask with 0 once more.
+SOFTFOCUS_INLINE Floats select(Mask mask, Floats yes, Floats no) {
+  return (Floats)wasm_v128_bitselect((v128_t)yes, (v128_t)no, (v128_t)mask);
+}
+SOFTFOCUS_INLINE Ints select(Mask mask, Ints yes, Ints no) {
+  return (Ints)wasm_v128_bitselect((v128_t)yes, (v128_t)no, (v128_t)mask);
+}
+#else
 SOFTFOCUS_INLINE Floats select(Mask mask, Floats yes, Floats no) { return mask ? yes : no; }
 SOFTFOCUS_INLINE Ints select(Mask mask, Ints yes, Ints no) { return mask ? yes : no; }
+#endif
 SOFTFOCUS_INLINE Bits select(Mask mask, Bits yes, Bits no) {
-  return as_bits(mask ? as_ints(yes) : as_ints(no));
+  return as_bits(select(mask, as_ints(yes), as_ints(no)));
 }
 
 /// Bit i is set if lane i is.
@@ -88,15 +98,17 @@ SOFTFOCUS_INLINE unsigned lane_bits(Mask mask) {
   return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
 #elif defined(__SSE2__)
   return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
+#elif defined(__wasm_simd128__)
+  return wasm_i32x4_bitmask((v128_t)mask);
 #else
   unsigned bits = 0;
   for (int i = 0; i < kLanes; ++i) bits |= (mask[i] != 0 ? 1u : 0u) << i;
   return bits;
 #endif
 }
-/// Bit i is set if lane i is negative. On x86 it takes no comparison.
+/// Bit i is set if lane i is negative. On x86 and in WebAssembly it takes no comparison.
 SOFTFOCUS_INLINE unsigned sign_bits(Ints v) {
-#if SOFTFOCUS_LANES == 16 || SOFTFOCUS_LANES == 8 || defined(__SSE2__)
+#if SOFTFOCUS_LANES == 16 || SOFTFOCUS_LANES == 8 || defined(__SSE2__) || defined(__wasm_simd128__)
   return lane_bits(v);
 #else
   return lane_bits(v < 0);
@@ -131,6 +143,8 @@ SOFTFOCUS_INLINE Floats smaller(Floats a, Floats b) {
   return (Floats)_mm256_min_ps((__m256)a, (__m256)b);
 #elif defined(__SSE2__)
   return (Floats)_mm_min_ps((__m128)a, (__m128)b);
+#elif defined(__wasm_simd128__)
+  return (Floats)wasm_f32x4_pmin((v128_t)b, (v128_t)a);
 #else
   return a < b ? a : b;
 #endif
@@ -142,6 +156,8 @@ SOFTFOCUS_INLINE Floats larger(Floats a, Floats b) {
   return (Floats)_mm256_max_ps((__m256)a, (__m256)b);
 #elif defined(__SSE2__)
   return (Floats)_mm_max_ps((__m128)a, (__m128)b);
+#elif defined(__wasm_simd128__)
+  return (Floats)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
 #else
   return a > b ? a : b;
 #endif
@@ -157,6 +173,8 @@ SOFTFOCUS_INLINE Ints multiply_add_pairs(Ints a, Ints b) {
   return (Ints)_mm256_madd_epi16((__m256i)a, (__m256i)b);
 #elif defined(__SSE2__)
   return (Ints)_mm_madd_epi16((__m128i)a, (__m128i)b);
+#elif defined(__wasm_simd128__)
+  return (Ints)wasm_i32x4_dot_i16x8((v128_t)a, (v128_t)b);
 #else
   return (a << 16 >> 16) * (b << 16 >> 16) + (a >> 16) * (b >> 16);
 #endif
@@ -173,6 +191,8 @@ SOFTFOCUS_INLINE Floats square_root(Floats v) {
   return (Floats)_mm256_sqrt_ps((__m256)v);
 #elif defined(__SSE2__)
   return (Floats)_mm_sqrt_ps((__m128)v);
+#elif defined(__wasm_simd128__)
+  return (Floats)wasm_f32x4_sqrt((v128_t)v);
 #else
   for (int i = 0; i < kLanes; ++i) v[i] = std::sqrt(v[i]);
   return v;
@@ -200,6 +220,8 @@ SOFTFOCUS_INLINE Floats nearest(Floats v) {
                                             _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+#elif defined(__wasm_simd128__)
+  return (Floats)wasm_f32x4_nearest((v128_t)v);
 #else
   // Floats from 2^23 on are whole. The sign is put back for the sake of -0.
   const Bits sign = as_bits(v) & 0x80000000u;
@@ -214,6 +236,8 @@ SOFTFOCUS_INLINE Floats floor(Floats v) {
                                             _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_round_ps((__m256)v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#elif defined(__wasm_simd128__)
+  return (Floats)wasm_f32x4_floor((v128_t)v);
 #else
   const Floats whole = nearest(v);
   return whole - select(whole > v, splat(1.0f), splat(0.0f));
@@ -228,6 +252,9 @@ SOFTFOCUS_INLINE Ints truncate_to_int(Floats v) {
   return (Ints)_mm256_cvttps_epi32((__m256)v);
 #elif defined(__SSE2__)
   return (Ints)_mm_cvttps_epi32((__m128)v);
+#elif defined(__wasm_simd128__)
+  const Ints nearest_that_fits = (Ints)wasm_i32x4_trunc_sat_f32x4((v128_t)v);
+  return select(v < 0x1p31f, nearest_that_fits, splat(INT32_MIN));
 #else
   const Mask fits = (v >= -0x1p31f) & (v < 0x1p31f);
   return select(fits, truncate(select(fits, v, splat(0.0f))), splat(INT32_MIN));
@@ -254,6 +281,9 @@ SOFTFOCUS_INLINE Floats pick(Floats v, Ints index) {
   return (Floats)_mm512_permutexvar_ps((__m512i)index, (__m512)v);
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_permutevar8x32_ps((__m256)v, (__m256i)index);
+#elif defined(__wasm_simd128__)
+  const Bits bytes = as_bits(index) * 0x04040404u + 0x03020100u;
+  return (Floats)wasm_i8x16_swizzle((v128_t)v, (v128_t)bytes);
 #else
   return Floats{v[index[0]], v[index[1]], v[index[2]], v[index[3]]};
 #endif
@@ -271,6 +301,11 @@ SOFTFOCUS_INLINE Ints gather(const std::int32_t* base, Ints index, Mask mask) {
 #elif SOFTFOCUS_LANES == 8
   return (Ints)_mm256_mask_i32gather_epi32(_mm256_setzero_si256(), base, (__m256i)index,
                                            (__m256i)mask, 4);
+#elif defined(__wasm_simd128__)
+  // The others read base[0]: cheaper than a jump a lane. WebAssembly can read any address below
+  // the memory's end, 0 too.
+  const Ints safe = index & mask;
+  return Ints{base[safe[0]], base[safe[1]], base[safe[2]], base[safe[3]]} & mask;
 #else
   Ints v{};
   for (int i = 0; i < kLanes; ++i) {
@@ -286,6 +321,10 @@ SOFTFOCUS_INLINE Floats gather(const float* base, Ints index, Mask mask) {
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_mask_i32gather_ps(_mm256_setzero_ps(), base, (__m256i)index, (__m256)mask,
                                           4);
+#elif defined(__wasm_simd128__)
+  const Ints safe = index & mask;
+  const Floats v{base[safe[0]], base[safe[1]], base[safe[2]], base[safe[3]]};
+  return as_floats(as_bits(v) & as_bits(mask));
 #else
   Floats v{};
   for (int i = 0; i < kLanes; ++i) {
@@ -345,6 +384,14 @@ SOFTFOCUS_INLINE Ints compress(Ints v, Compression kept) {
 }
 #else
 using Compression = Ints;  // which lane comes to each place
+#if SOFTFOCUS_LANES == 4
+// By the mask's bits.
+alignas(16) inline constexpr std::int32_t kKeptLanes[16][4] = {
+    {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {2, 0, 0, 0}, {0, 2, 0, 0},
+    {1, 2, 0, 0}, {0, 1, 2, 0}, {3, 0, 0, 0}, {0, 3, 0, 0}, {1, 3, 0, 0}, {0, 1, 3, 0},
+    {2, 3, 0, 0}, {0, 2, 3, 0}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+SOFTFOCUS_INLINE Compression compression(Mask mask) { return load(kKeptLanes[lane_bits(mask)]); }
+#else
 SOFTFOCUS_INLINE Compression compression(Mask mask) {
   Ints kept{};
   int count = 0;
@@ -353,6 +400,7 @@ SOFTFOCUS_INLINE Compression compression(Mask mask) {
   }
   return kept;
 }
+#endif
 SOFTFOCUS_INLINE Floats compress(Floats v, Compression kept) { return pick(v, kept); }
 SOFTFOCUS_INLINE Ints compress(Ints v, Compression kept) { return (Ints)pick((Floats)v, kept); }
 #endif
@@ -482,14 +530,28 @@ SOFTFOCUS_INLINE Floats load_halves(const std::uint16_t* from) {
   return (Floats)_mm512_maskz_cvtph_ps(0xFFFF, _mm256_loadu_si256((const __m256i*)from));
 #elif SOFTFOCUS_LANES == 8
   return (Floats)_mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)from));
+#elif defined(__wasm_simd128__)
+  return half_to_float((Bits)wasm_u32x4_load16x4(from));
 #else
   return half_to_float(Bits{from[0], from[1], from[2], from[3]});
 #endif
 }
 
+/// swiftshader_half().
+SOFTFOCUS_INLINE Bits swiftshader_half(Floats value) {
+  const Bits sign = as_bits(value) >> 16 & 0x8000u;
+  const Bits magnitude = as_bits(value) & 0x7FFFFFFFu;
+  const Mask subnormal = magnitude < 0x38800000u;
+  const Floats small = select(subnormal, as_floats(magnitude), splat(0.0f));
+  const Bits base = select(subnormal, as_bits(truncate(small * 0x1p37f)), magnitude - (112u << 23));
+  const Bits half = (base + 0xFFFu + (base >> 13 & 1u)) >> 13;
+  return select(half > kHalfInfinity, splat(std::uint32_t{kHalfNan}), sign | half);
+}
+
 /// float_to_half().
 template <HalfRounding rounding>
 SOFTFOCUS_INLINE Bits float_to_half(Floats value) {
+  if constexpr (rounding == HalfRounding::swiftshader) return swiftshader_half(value);
 #if SOFTFOCUS_LANES >= 8
   constexpr int kRounding =
       rounding == HalfRounding::nearest_even ? _MM_FROUND_TO_NEAREST_INT : _MM_FROUND_TO_ZERO;

@@ -21,6 +21,8 @@ enum class HalfRounding : std::uint8_t {
   nearest_even,
   /// To the one nearer zero; past 65504 to 65504, infinity stays (D3D11.3 3.2.2).
   toward_zero,
+  /// As SwiftShader: to nearest even, but see swiftshader_half().
+  swiftshader,
 };
 
 inline constexpr std::uint16_t kHalfLargest = 0x7BFF;  // 65504
@@ -42,10 +44,35 @@ constexpr float half_to_float(std::uint16_t half) {
   return std::bit_cast<float>(sign | std::bit_cast<std::uint32_t>(scaled));
 }
 
+/// HalfRounding::swiftshader of a float's bits. It differs from nearest_even in two ways:
+///
+/// - A subnormal half comes from a multiple of 2^-37, to which the float is cut first. So what
+///   lies just above the middle of two halves counts as the middle.
+/// - Past 65568 the sum runs beyond infinity's bits: a NaN. So does infinity.
+constexpr std::uint16_t swiftshader_half(std::uint32_t bits) {
+  const std::uint32_t magnitude = bits & 0x7FFFFFFFu;
+  // 13 bits more than the half has, 10 of them the mantissa's first.
+  std::uint32_t base = magnitude - (112u << 23);
+  if (magnitude < 0x38800000u) {
+    const std::uint32_t significand = (magnitude & 0x7FFFFFu) | 0x800000u;
+    const std::uint32_t cut = 113 - (magnitude >> 23);
+    base = cut < 24 ? significand >> cut : 0;
+  }
+  const std::uint32_t half = (base + 0xFFFu + (base >> 13 & 1u)) >> 13;
+  return static_cast<std::uint16_t>(half > kHalfInfinity ? kHalfNan
+                                                         : (bits >> 16 & 0x8000u) | half);
+}
+
+/// The largest half that float_to_half() gives back of what half_to_float() made of it.
+constexpr std::uint16_t largest_kept_half(HalfRounding rounding) {
+  return rounding == HalfRounding::swiftshader ? kHalfLargest : kHalfInfinity;
+}
+
 /// The half that stores `value`. Any NaN becomes 0x7E00: processors differ in the sign
 /// and the payload of the NaN that, say, infinity minus infinity gives.
 constexpr std::uint16_t float_to_half(float value, HalfRounding rounding) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
+  if (rounding == HalfRounding::swiftshader) return swiftshader_half(bits);
   const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000u);
   const std::uint32_t magnitude = bits & 0x7FFFFFFFu;
   if (magnitude > 0x7F800000u) return kHalfNan;

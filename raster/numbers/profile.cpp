@@ -32,6 +32,14 @@ constexpr Profile kSoftpipe{.half_store = HalfRounding::toward_zero,
                             .coverage = Coverage::scanlines,
                             .attributes = AttributeSetup::planes_by_quad};
 
+// Probed in a page, by WebGL2; docs/exactness.md has what it does not describe.
+constexpr Profile kSwiftShader{.half_store = HalfRounding::swiftshader,
+                               .unorm_store = UnormRounding::nearest_even,
+                               .denormals = Denormals::flush,
+                               .texture_unit = TextureUnit::swiftshader,
+                               .guard_band = 4.0f,
+                               .subpixel_bits = 4};
+
 constexpr std::array kProfiles{
     NamedProfile{"ieee",
                  "IEEE 754 throughout: stores round to nearest even, float weights, nothing fused",
@@ -45,6 +53,8 @@ constexpr std::array kProfiles{
                  llvmpipe(Contraction::unfused)},
     NamedProfile{"softpipe", "Mesa 22.3 softpipe: float spans, float textures, nothing fused",
                  kSoftpipe},
+    NamedProfile{"swiftshader", "SwiftShader through ANGLE, a browser's software GPU: nearly",
+                 kSwiftShader},
 };
 
 }  // namespace

@@ -39,6 +39,8 @@ enum class TextureUnit : std::uint8_t {
   llvmpipe,
   /// Mesa 22.3 softpipe: everything in floats, its own wrapping.
   softpipe,
+  /// SwiftShader: everything in floats, bytes scaled last, its own wrapping.
+  swiftshader,
 };
 
 /// Which pixels a triangle covers.

@@ -38,6 +38,20 @@ std::array<float, 256> decimal_decoding_table() {
   return values;
 }
 
+std::array<std::uint16_t, 256> table_of_65280ths() {
+  std::array<std::uint16_t, 256> values{};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const float code = static_cast<float>(k) / 255.0f;
+    const float base = (code + 0.055f) / 1.055f;
+    const float linear = code <= 0.04045f
+                             ? code / 12.92f
+                             : static_cast<float>(exact_math::pow(static_cast<double>(base),
+                                                                  static_cast<double>(2.4f)));
+    values[k] = static_cast<std::uint16_t>(linear * 65280.0f + 0.5f);
+  }
+  return values;
+}
+
 // Where one code gives way to the next, half-way between codes: the least floats that are not
 // below the curve.
 std::array<float, 255> encoding_thresholds() {
@@ -59,6 +73,11 @@ float srgb8_to_linear(std::uint8_t encoded) {
 
 float srgb8_to_linear_decimal(std::uint8_t encoded) {
   static const std::array<float, 256> table = decimal_decoding_table();
+  return table[encoded];
+}
+
+std::uint16_t srgb8_in_65280ths(std::uint8_t encoded) {
+  static const std::array<std::uint16_t, 256> table = table_of_65280ths();
   return table[encoded];
 }
 

@@ -15,6 +15,10 @@ float srgb8_to_linear(std::uint8_t encoded);
 /// beside the nearest.
 float srgb8_to_linear_decimal(std::uint8_t encoded);
 
+/// The same in 65280ths: SwiftShader's table, computed in binary32. To nearest, but 149 is one
+/// more.
+std::uint16_t srgb8_in_65280ths(std::uint8_t encoded);
+
 /// The same by llvmpipe's cubic, up to 1.2e-3 off: encoded / (12.6 * 255) up to 15, above
 /// it (k0 + k2 x^2) + x (k1 + k3 x^2) with x = encoded.
 float srgb8_to_linear_by_cubic(std::uint8_t encoded, Contraction contraction);

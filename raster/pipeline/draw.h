@@ -109,6 +109,13 @@ inline float clamped_depth(float depth, const Profile& profile) {
   return depth <= 1.0f ? std::max(depth, 0.0f) : 1.0f;
 }
 
+template <class Draw>
+bool passes_tests(const Draw& draw, int x, int y, float depth, bool front_facing) {
+  return has_layers(draw.targets)
+             ? reaches_layers(draw.targets, x, y, depth)
+             : depth_stencil_test(draw.state, draw.targets, x, y, depth, front_facing);
+}
+
 template <class Interpolator, class Draw, std::size_t N>
 void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpolator& interpolator,
                     int x, int y) {
@@ -117,10 +124,7 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
   const float depth = clamped_depth(values.depth, draw.profile);
   const bool front = triangle.setup.front_facing;
   // If the stage cannot discard a fragment, the tests come before it.
-  if (!FragmentStage::kDiscards &&
-      !depth_stencil_test(draw.state, draw.targets, x, y, depth, front)) {
-    return;
-  }
+  if (!FragmentStage::kDiscards && !passes_tests(draw, x, y, depth, front)) return;
   Fragment<N> fragment{.x = x,
                        .y = y,
                        .depth = depth,
@@ -143,8 +147,11 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
     }
   }
   const auto output = draw.fragment_stage(fragment);
-  if (FragmentStage::kDiscards &&
-      (output.discard || !depth_stencil_test(draw.state, draw.targets, x, y, depth, front))) {
+  if (FragmentStage::kDiscards && (output.discard || !passes_tests(draw, x, y, depth, front))) {
+    return;
+  }
+  if (has_layers(draw.targets)) {
+    insert_into_layers(draw.targets, x, y, depth, output.colour[0], draw.profile);
     return;
   }
   for (std::size_t i = 0; i < output.colour.size(); ++i) {
@@ -223,6 +230,7 @@ void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_
   assert(indices.size() % 3 == 0);
   assert(pass.profile.coverage == Coverage::edge_functions ||
          pass.profile.attributes != AttributeSetup::exact_barycentric);
+  assert(!has_layers(pass.targets) || can_peel(pass.targets, state));
   using Recorded = draw_detail::Recorded<VertexStage, FragmentStage, N>;
 
   const Rectangle target = target_area(pass.targets);

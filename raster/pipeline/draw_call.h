@@ -41,6 +41,7 @@ struct ScalarSteps {
 
 struct VertexStore;
 struct LaneChunk;
+struct LaneTriangle;
 struct VisibilityTile;
 struct VisibleRun;
 
@@ -55,8 +56,13 @@ struct LaneSteps {
   void (*assemble)(const void* recorded, std::uint32_t number, LaneChunk& chunk);
   /// Runs the vertex stage over the vertices of triangles that are drawn.
   void (*shade_vertices)(const void* recorded, std::uint32_t begin, std::uint32_t end);
-  /// Shades the pixels of a tile that show a run of the draw's triangles.
-  void (*shade_seen)(const void* recorded, const VisibilityTile& tile, const VisibleRun& run);
+  /// Shades the pixels of a tile's layer that show a run of the draw's triangles.
+  void (*shade_seen)(const void* recorded, const VisibilityTile& tile, std::size_t layer,
+                     const VisibleRun& run);
+  /// Of some pixels of a part of a block, a bit a lane, those whose fragments are not discarded.
+  /// Pixel (x, y) is the part's first. Null if the fragment stage discards nothing.
+  unsigned (*keep)(const void* recorded, const LaneTriangle& triangle, int x, int y,
+                   unsigned pixels);
 };
 
 struct DrawCall {

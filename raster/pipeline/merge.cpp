@@ -47,7 +47,55 @@ glm::vec4 clamp_to_unit(glm::vec4 v) {
   return v;
 }
 
+float& depth_at(const LayerTarget& layer, int x, int y) {
+  return row<float>(*layer.depth, y)[static_cast<std::size_t>(x)];
+}
+
+// The four halves of a texel.
+std::uint16_t* texel_at(const LayerTarget& layer, int x, int y) {
+  return row<std::uint16_t>(*layer.colour, y).data() + 4 * x;
+}
+
 }  // namespace
+
+std::size_t layer_count(const RenderTargets& targets) {
+  std::size_t count = 1;
+  while (count < kMaxLayers && targets.behind[count - 1].colour != nullptr) ++count;
+  return count;
+}
+
+bool can_peel(const RenderTargets& targets, const DrawState& state) {
+  for (std::size_t i = 0; i < layer_count(targets); ++i) {
+    const LayerTarget layer = layer_target(targets, i);
+    if (layer.colour == nullptr || layer.colour->format != Format::rgba16f) return false;
+    if (layer.depth == nullptr) return false;
+  }
+  const bool one_colour = std::all_of(targets.colour.begin() + 1, targets.colour.end(),
+                                      [](const Image* image) { return image == nullptr; });
+  const ColourState& colour = state.colour[0];
+  return one_colour && targets.stencil == nullptr && state.depth &&
+         state.depth->test == Compare::less && state.depth->write && !colour.blend &&
+         colour.write == std::array{true, true, true, true};
+}
+
+bool reaches_layers(const RenderTargets& targets, int x, int y, float depth) {
+  return depth < depth_at(layer_target(targets, layer_count(targets) - 1), x, y);
+}
+
+void insert_into_layers(const RenderTargets& targets, int x, int y, float depth, glm::vec4 colour,
+                        const Profile& profile) {
+  std::size_t place = layer_count(targets) - 1;
+  LayerTarget layer = layer_target(targets, place);
+  for (; place > 0; --place) {
+    const LayerTarget before = layer_target(targets, place - 1);
+    if (!(depth < depth_at(before, x, y))) break;
+    depth_at(layer, x, y) = depth_at(before, x, y);
+    std::copy_n(texel_at(before, x, y), 4, texel_at(layer, x, y));
+    layer = before;
+  }
+  depth_at(layer, x, y) = depth;
+  store_texel(*layer.colour, x, y, colour, profile);
+}
 
 std::uint8_t apply(StencilOp op, const StencilFace& face, std::uint8_t stored) {
   switch (op) {

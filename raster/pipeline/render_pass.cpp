@@ -21,12 +21,24 @@ auto* first_texel(AnyImage& image, const Rectangle& area) {
          static_cast<std::size_t>(area.x_begin) * kTexelBytes;
 }
 
-void clear_colours(const RenderPass& pass, const Rectangle& area) {
-  if (!pass.clear_colour) return;
-  for (Image* image : pass.targets.colour) {
-    if (image == nullptr) continue;
-    clear_image(*image, area.x_begin, area.y_begin, area.x_end, area.y_end, *pass.clear_colour,
-                pass.profile);
+void clear_area(const RenderPass& pass, Image* image, const Rectangle& area, glm::vec4 value) {
+  if (image == nullptr) return;
+  clear_image(*image, area.x_begin, area.y_begin, area.x_end, area.y_end, value, pass.profile);
+}
+
+void clear_targets(const RenderPass& pass, const Rectangle& area) {
+  const RenderTargets& targets = pass.targets;
+  if (pass.clear_colour) {
+    for (Image* image : targets.colour) clear_area(pass, image, area, *pass.clear_colour);
+    for (const LayerTarget& layer : targets.behind) {
+      clear_area(pass, layer.colour, area, *pass.clear_colour);
+    }
+  }
+  if (pass.clear_depth) {
+    clear_area(pass, targets.depth, area, glm::vec4{*pass.clear_depth});
+    for (const LayerTarget& layer : targets.behind) {
+      clear_area(pass, layer.depth, area, glm::vec4{*pass.clear_depth});
+    }
   }
 }
 
@@ -62,7 +74,7 @@ class TileDrawing {
       forget_seen(tile);
     }
     const auto first_id = static_cast<std::int32_t>(tile.triangles.size()) + 1;
-    rasterize_lanes(pass_.isa, *item.lane_chunk, item.bins, item.draw->depth, pass_.profile, tile);
+    rasterize_lanes(pass_.isa, *item.lane_chunk, item.bins, *item.draw, pass_.profile, tile);
     const auto end_id = static_cast<std::int32_t>(tile.triangles.size()) + 1;
     if (!tile.runs.empty() && tile.runs.back().draw == item.draw) {
       tile.runs.back().end_id = end_id;
@@ -74,16 +86,16 @@ class TileDrawing {
   void begin_lanes() {
     has_begun_ = true;
     if (!memory_) memory_.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
-    begin_tile(*memory_, area_, *pass_.targets.depth,
-               is_cleared_ ? std::nullopt : pass_.clear_depth);
-    if (texels_ != nullptr) {
-      memory_->texels = texels_;
-      memory_->stride_bytes = kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
-    } else {
-      Image& target = *pass_.targets.colour[0];
-      memory_->texels = first_texel(target, area_);
-      memory_->stride_bytes = target.stride_bytes;
+    begin_tile(*memory_, area_, pass_.targets, is_cleared_ ? std::nullopt : pass_.clear_depth);
+    for (std::size_t i = 0; i < memory_->layers; ++i) {
+      Image& target = *layer_target(pass_.targets, i).colour;
+      memory_->layer(i).texels = first_texel(target, area_);
+      memory_->layer(i).stride_bytes = target.stride_bytes;
     }
+    if (texels_ == nullptr) return;
+    memory_->front.texels = texels_;
+    memory_->front.stride_bytes =
+        kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
   }
 
   void shade() {
@@ -97,18 +109,14 @@ class TileDrawing {
   void leave_lanes(bool needs_depth) {
     if (!has_begun_) return;
     shade();
-    if (needs_depth) end_tile(*memory_, *pass_.targets.depth);
+    if (needs_depth) end_tile(*memory_, pass_.targets);
     has_begun_ = false;
   }
 
   void clear() {
     if (is_cleared_) return;
     is_cleared_ = true;
-    clear_colours(pass_, area_);
-    if (pass_.clear_depth && pass_.targets.depth != nullptr) {
-      clear_image(*pass_.targets.depth, area_.x_begin, area_.y_begin, area_.x_end, area_.y_end,
-                  glm::vec4{*pass_.clear_depth}, pass_.profile);
-    }
+    clear_targets(pass_, area_);
   }
 
   const RenderPass& pass_;
@@ -121,6 +129,8 @@ class TileDrawing {
 
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                std::byte* texels) {
+  assert(!has_layers(pass.targets) ||
+         pass.clear_colour.has_value() == pass.clear_depth.has_value());
   TileDrawing drawing{pass, tile_area(lists, tile), memory, texels};
   const std::span<const TileWork> work = work_of_tile(lists, tile);
   for (std::size_t i = 0; i < work.size(); ++i) {
@@ -148,7 +158,7 @@ void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMem
 
 void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                      std::byte* texels) {
-  assert(pass.clear_colour && pass.clear_depth);
+  assert(pass.clear_colour && pass.clear_depth && !has_layers(pass.targets));
   const std::span<const TileWork> work = work_of_tile(lists, tile);
   const bool in_lanes = std::all_of(work.begin(), work.end(), [](const TileWork& item) {
     return item.draw->lane_steps != nullptr;

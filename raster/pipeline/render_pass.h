@@ -6,7 +6,8 @@
 //   3. for draws in lanes, the vertices of the triangles that are left
 //   4. tiles: fragments
 // Within a pixel, fragments merge in the order of submission. So the result depends neither on
-// tiles nor on threads.
+// tiles nor on threads. With targets.behind a pass peels (RenderTargets): it gives the nearest
+// fragments of each pixel, in the same four loops.
 //
 //   RenderPass pass{.targets = {.colour = {&picture}, .depth = &depth}, .profile = profile};
 //   draw(pass, state, indices, vertex_count, vertex_stage, fragment_stage);   // draw.h
@@ -34,6 +35,7 @@ struct RenderPass {
   RenderTargets targets;
   Profile profile;
   /// finish() clears the targets to these before it draws. Without them targets keep their texels.
+  /// A pass that peels has both or none.
   std::optional<glm::vec4> clear_colour = {};
   std::optional<float> clear_depth = {};
   /// Whether depths are wanted after finish(). If not, the depth buffer may hold anything then.

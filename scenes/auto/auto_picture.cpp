@@ -7,13 +7,15 @@
 
 #include "dof/measure/flip.h"
 #include "scenes/auto/tile_sample.h"
+#include "scenes/draw/object_numbers.h"
 #include "scenes/lens_views/accumulation.h"
+#include "scenes/lens_views/few_lens_points.h"
 
 namespace softfocus {
 namespace {
 
-// Of 35 choices so far within the limit, on named scenes and random:0 to 63 that a fit was made
-// without, the most had 0.49 times the error asked (tools/calibrate-auto validate).
+// Of 40 choices so far within the limit, on named scenes and random:0 to 63 that a fit was made
+// without, the most had 0.69 times the error asked (tools/calibrate-auto validate).
 constexpr double kDoubt = 1.75;
 // The fit has pictures of 512 and 1024 rows. For 256 rows predictions are low, by up to twice.
 constexpr int kFewestFittedRows = 512;
@@ -78,15 +80,9 @@ class Work {
     AutoPicture result;
     result.choice = choice;
     result.max_coc_px = choice.radius_px;
-    result.picture = filtered(choice.method, choice.radius_px);
+    result.picture = picture_of(choice, views_, input_.settings, pool_);
     result.rejected = rejected_;
     return result;
-  }
-
-  Image filtered(std::string_view method, float radius_px) {
-    DofSettings settings = input_.settings;
-    settings.max_coc_px = radius_px;
-    return apply(*find_method(method), {views_.pinhole, settings, views_.profile}, pool_);
   }
 
   AccumulationBuffer& buffer() {
@@ -109,6 +105,16 @@ class Work {
     }
   }
 
+  /// The sums of accumulation() with so many samples. `sums` are those of half as many, or none:
+  /// a set made for its number has nothing in common with another.
+  void take_views(SampleSums& sums, int samples) {
+    if (sums.count <= kMostFewLensPoints) clear_sums(sums);
+    std::vector<glm::dvec2> sequence =
+        std::exchange(buffer().points, lens_points_for(views_.sampling.aperture, samples));
+    add_views(sums, samples);
+    buffer().points = std::move(sequence);
+  }
+
   AutoMethod with_twice_the_samples(const AutoMethod& choice) const {
     const std::vector<AutoMethod> choices = open_choices(traits_, input_.limits);
     const auto twice = std::find_if(choices.begin(), choices.end(), [&](const AutoMethod& other) {
@@ -125,7 +131,7 @@ class Work {
     SampleSums sums = make_sample_sums(views_.pinhole.width, views_.pinhole.height);
     AutoPicture result;
     for (;;) {
-      add_views(sums, choice.samples);
+      take_views(sums, choice.samples);
       if (!is_checked(choice)) break;
       result.measured_error = check(mean_of(sums), choice);
       if (choice.meets_goal || choice.samples >= kSampleCounts.back()) break;
@@ -143,7 +149,10 @@ class Work {
   // Begins the truth of the sampled tiles.
   void take_tiles() {
     // What a lens would do, about: the most accurate of the filters that cut no circle.
-    const Image guess = filtered("disc-layers", std::min(largest_px(traits_), kLargestMaxCoc));
+    const AutoMethod discs{.method = "disc-layers",
+                           .radius_px = std::min(largest_px(traits_), kLargestMaxCoc),
+                           .traits = {}};
+    const Image guess = picture_of(discs, views_, input_.settings, pool_);
     sample_ = sample_tiles(views_.pinhole, guess, kCheckedTiles, pool_);
     for (const SampledTile& of : sample_.tiles) tiles_.push_back(of.tile);
     checked_ = make_sample_sums(views_.pinhole.width, views_.pinhole.height);
@@ -229,6 +238,21 @@ class Work {
 bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal) {
   return !choice.meets_goal || choice.traits.height < kFewestFittedRows ||
          choice.traits.brightest > kHighlight || choice.predicted_error * kDoubt > goal.max_error;
+}
+
+Image picture_of(const AutoMethod& choice, const LensViewInput& views, DofSettings settings,
+                 ThreadPool& pool) {
+  assert(choice.samples == 0);
+  if (const LensViewMethod* of_scene = find_lens_view_method(choice.method)) {
+    return of_scene->render(views, pool).picture;
+  }
+  const Method& filter = *find_method(choice.method);
+  settings.max_coc_px = choice.radius_px;
+  const Image& pinhole = views.pinhole;
+  const std::vector<std::uint16_t> objects =
+      object_numbers_for(filter, views.scene, views.camera, views.frame, pinhole.width,
+                         pinhole.height, views.profile, pool);
+  return apply(filter, {pinhole, settings, views.profile, objects}, pool);
 }
 
 AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool) {

@@ -2,6 +2,7 @@
 // From a scene to draw calls.
 
 #include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 #include "raster/images/decoded_texture.h"
@@ -29,18 +30,39 @@ struct PreparedScene {
   std::vector<DecodedTexture> textures;  ///< decoded, for drawing in lanes
   RenderPass pass;
   Image depth;
+  std::vector<Image> depths_behind;  ///< of the layers behind the first
 };
 
 /// The scene must outlive the result. `pool` is the one that will draw.
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);
 
+/// For record_surfaces() alone, which reads no textures but those of cut-outs.
+PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, ThreadPool& pool);
+
 /// As above, into an RGBA16F picture.
 void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool);
+
+/// The nearest surfaces of each pixel, by depth peeling: `picture` as draw_scene() has it,
+/// behind[0] the next surface, and so on. The background is all that lies behind the last surface,
+/// again and again. Up to kMaxLayers - 1 behind, of the picture's size and format.
+void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                 Image& picture, std::span<Image> behind, ThreadPool& pool);
+
+/// As above, `layers` new pictures, 1 to kMaxLayers, the nearest first.
+std::vector<Image> draw_layers(const Scene& scene, const CameraMatrices& camera, double frame,
+                               int width, int height, std::size_t layers, const Profile& profile,
+                               ThreadPool& pool);
 
 /// Records the clearing and the draws of a frame into a pass, which has its targets, and the
 /// profile and isa of prepare_scene(). Depths are not kept.
 void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                   RenderPass& pass);
+
+/// Records the draws of a frame, without the clearing, with materials of the caller's in place of
+/// the scene's: one for each object, unlit and without texture. The same pixels, at the same
+/// depths: what is cut out stays so. The materials must outlive finish().
+void record_surfaces(const PreparedScene& prepared, std::span<const Material> of_objects,
+                     const CameraMatrices& camera, double frame, RenderPass& pass);
 
 }  // namespace softfocus

@@ -1,6 +1,10 @@
 // The fragment stage of a lit, perhaps textured surface: linear colour, and the depth in
 // metres in alpha. Beside scenes/draw/surface_stages.h. Defined or not: TEXTURED, SPECULAR,
-// TWO_SIDED.
+// TWO_SIDED, CUT_OUT, PEELED.
+//
+// PEELED, after Everitt 2001: a fragment is discarded unless it lies behind the one that `layer_before` has. Depth alone
+// cannot say so where several fragments have the same; the number of the triangle, counted over the
+// frame, then gives the order of submission.
 in float depth_m;
 in vec3 front_base;
 #ifdef SPECULAR
@@ -12,12 +16,24 @@ in vec3 back_base;
 in vec3 back_specular;
 #endif
 #endif
-#ifdef TEXTURED
+#if defined(TEXTURED) || defined(CUT_OUT)
 in vec2 uv;
+#endif
+#ifdef TEXTURED
 uniform sampler2D surface_texture;
 #endif
+#ifdef CUT_OUT
+uniform sampler2D opacity_texture;
+#endif
 
+#ifdef PEELED
+uniform sampler2D layer_before;  // depth and number of its fragments' triangles
+flat in int triangle;            // number in the frame
+layout(location = 0) out vec4 colour_and_depth;
+layout(location = 1) out vec4 peeled;  // likewise of this layer
+#else
 out vec4 colour_and_depth;
+#endif
 
 void main() {
   precise vec3 colour = front_base;
@@ -33,6 +49,16 @@ void main() {
 #else
   colour += front_specular;
 #endif
+#endif
+#ifdef CUT_OUT
+  // Last: a texture is sampled with its neighbours in the quad.
+  if (texture(opacity_texture, uv).r < 0.5) discard;
+#endif
+#ifdef PEELED
+  vec2 before = texelFetch(layer_before, ivec2(gl_FragCoord.xy), 0).rg;
+  if (gl_FragCoord.z < before.r) discard;
+  if (gl_FragCoord.z == before.r && float(triangle) <= before.g) discard;
+  peeled = vec4(gl_FragCoord.z, float(triangle), 0.0, 0.0);
 #endif
   colour_and_depth = vec4(colour, depth_m < 65504.0 ? depth_m : 65504.0);
 }

@@ -1,5 +1,5 @@
 // The vertex stage of a lit, perhaps textured surface. Beside scenes/draw/surface_stages.h.
-// Defined or not: TEXTURED, SPECULAR, TWO_SIDED.
+// Defined or not: TEXTURED, SPECULAR, TWO_SIDED, CUT_OUT, PEELED.
 #include "lighting.glsl"
 
 layout(location = 0) in vec3 mesh_position;
@@ -22,7 +22,11 @@ out vec3 back_base;
 out vec3 back_specular;
 #endif
 #endif
-#ifdef TEXTURED
+#ifdef PEELED
+uniform int first_triangle;  // of the draw, in the frame
+flat out int triangle;       // vertices are not shared
+#endif
+#if defined(TEXTURED) || defined(CUT_OUT)
 out vec2 uv;
 #endif
 
@@ -56,7 +60,10 @@ void main() {
   back_specular = back.specular;
 #endif
 #endif
-#ifdef TEXTURED
+#if defined(TEXTURED) || defined(CUT_OUT)
   uv = mesh_uv;
+#endif
+#ifdef PEELED
+  triangle = first_triangle + gl_VertexID / 3;
 #endif
 }

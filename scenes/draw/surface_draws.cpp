@@ -31,9 +31,14 @@ SurfaceDraw surface_draw(const Scene& scene, const Object& object, const CameraM
   draw.state.cull = material.two_sided ? Cull::none : Cull::back;
   if (determinant(to_world) < 0.0) draw.state.front_face = FrontFace::clockwise;
   if (material.texture && !mesh.uvs.empty()) draw.texture = &scene.textures[*material.texture];
+  if (material.cut_out && material.opacity_texture && !mesh.uvs.empty()) {
+    draw.opacity = &scene.textures[*material.opacity_texture];
+    draw.opacity_sampler = material.opacity_sampler;
+  }
   draw.variant = {.textured = draw.texture != nullptr,
                   .specular = material.lit && material.specular != glm::vec3{0.0f},
-                  .two_sided = material.two_sided};
+                  .two_sided = material.two_sided,
+                  .cut_out = draw.opacity != nullptr};
   draw.input = {&mesh,
                 &material,
                 scene.lights,

@@ -15,6 +15,8 @@ struct SurfaceDraw {
   DrawState state;
   SurfaceVertexInput input;
   const Texture* texture;  ///< none if the variant is not textured
+  const Texture* opacity;  ///< none if the variant is not cut out
+  Sampler opacity_sampler;
   SurfaceVariant variant;  ///< the features of the material
 };
 

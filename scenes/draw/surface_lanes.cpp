@@ -21,19 +21,34 @@ namespace softfocus {
 
 template <SurfaceVariant variant>
 SurfaceLaneStages<variant> surface_lane_stages(Isa isa) {
-  return {SOFTFOCUS_KERNEL(isa, place_surface_vertices<variant>),
-          SOFTFOCUS_KERNEL(isa, shade_surface_vertices<variant>),
-          SOFTFOCUS_KERNEL(isa, shade_surface_fragments<variant>)};
+  SurfaceLaneStages<variant> stages{SOFTFOCUS_KERNEL(isa, place_surface_vertices<variant>),
+                                    SOFTFOCUS_KERNEL(isa, shade_surface_vertices<variant>),
+                                    SOFTFOCUS_KERNEL(isa, shade_surface_fragments<variant>)};
+  if constexpr (variant.cut_out) {
+    stages.keep_fragments = SOFTFOCUS_KERNEL(isa, keep_surface_fragments<variant>);
+  }
+  return stages;
 }
 
-template SurfaceLaneStages<SurfaceVariant{false, false, false}> surface_lane_stages(Isa);
-template SurfaceLaneStages<SurfaceVariant{false, false, true}> surface_lane_stages(Isa);
-template SurfaceLaneStages<SurfaceVariant{false, true, false}> surface_lane_stages(Isa);
-template SurfaceLaneStages<SurfaceVariant{false, true, true}> surface_lane_stages(Isa);
-template SurfaceLaneStages<SurfaceVariant{true, false, false}> surface_lane_stages(Isa);
-template SurfaceLaneStages<SurfaceVariant{true, false, true}> surface_lane_stages(Isa);
-template SurfaceLaneStages<SurfaceVariant{true, true, false}> surface_lane_stages(Isa);
-template SurfaceLaneStages<SurfaceVariant{true, true, true}> surface_lane_stages(Isa);
+#define SOFTFOCUS_SURFACE_VARIANT(...) \
+  template SurfaceLaneStages<SurfaceVariant{__VA_ARGS__}> surface_lane_stages(Isa);
+SOFTFOCUS_SURFACE_VARIANT(false, false, false, false)
+SOFTFOCUS_SURFACE_VARIANT(false, false, true, false)
+SOFTFOCUS_SURFACE_VARIANT(false, true, false, false)
+SOFTFOCUS_SURFACE_VARIANT(false, true, true, false)
+SOFTFOCUS_SURFACE_VARIANT(true, false, false, false)
+SOFTFOCUS_SURFACE_VARIANT(true, false, true, false)
+SOFTFOCUS_SURFACE_VARIANT(true, true, false, false)
+SOFTFOCUS_SURFACE_VARIANT(true, true, true, false)
+SOFTFOCUS_SURFACE_VARIANT(false, false, false, true)
+SOFTFOCUS_SURFACE_VARIANT(false, false, true, true)
+SOFTFOCUS_SURFACE_VARIANT(false, true, false, true)
+SOFTFOCUS_SURFACE_VARIANT(false, true, true, true)
+SOFTFOCUS_SURFACE_VARIANT(true, false, false, true)
+SOFTFOCUS_SURFACE_VARIANT(true, false, true, true)
+SOFTFOCUS_SURFACE_VARIANT(true, true, false, true)
+SOFTFOCUS_SURFACE_VARIANT(true, true, true, true)
+#undef SOFTFOCUS_SURFACE_VARIANT
 
 }  // namespace softfocus
 
@@ -50,7 +65,7 @@ template SurfaceLaneStages<SurfaceVariant{true, true, true}> surface_lane_stages
 namespace {
 
 // What all variants have room for.
-inline constexpr std::size_t kMostVaryings = surface_layout({true, true, true}).count;
+inline constexpr std::size_t kMostVaryings = surface_layout({true, true, true, true}).count;
 
 // --- vertices ---
 
@@ -149,7 +164,7 @@ struct SurfaceVertexLanes {
       }
       normal = {-normal.x, -normal.y, -normal.z};
     }
-    if (variant.textured) {
+    if (has_uvs(variant)) {
       const float* first = &input.mesh->uvs[0].x;
       varyings[layout.texture] = gather(first, index * 2, ~Mask{});
       varyings[layout.texture + 1] = gather(first + 1, index * 2, ~Mask{});
@@ -180,7 +195,8 @@ struct SurfaceFragmentLanes {
       const std::size_t v = kLayout.texture + 1;
       put(kU, in.varying(u));
       put(kV, in.varying(v));
-      put(kLod, level_of_detail_lanes(*texture, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
+      put(kLod,
+          level_of_detail_lanes(*texture, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
     }
     if constexpr (variant.specular) {
       const Vec3Lanes highlight = side(in, 3);
@@ -234,6 +250,30 @@ struct SurfaceFragmentLanes {
   }
 };
 
+template <SurfaceVariant variant>
+struct SurfaceHoles {
+  static constexpr SurfaceLayout kLayout = surface_layout(variant);
+  static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
+  const DecodedTexture& opacity;
+  const Sampler& sampler;
+  const Profile& profile;
+
+  template <class Quads>
+  SOFTFOCUS_INLINE Mask keeps(const Quads& in) const {
+    const std::size_t u = kLayout.texture;
+    const std::size_t v = kLayout.texture + 1;
+    alignas(64) std::array<std::array<float, kLanes>, 3> place;
+    store(place[0].data(), in.varying(u));
+    store(place[1].data(), in.varying(v));
+    store(place[2].data(),
+          level_of_detail_lanes(opacity, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
+    RgbLanes texels;
+    sample_lanes(opacity, sampler, profile, {place[0].data(), place[1].data(), place[2].data()}, 1,
+                 &texels);
+    return ~(texels.r < kLeastOpacity);
+  }
+};
+
 }  // namespace
 
 template <SurfaceVariant variant>
@@ -246,11 +286,22 @@ void shade_surface_vertices(const SurfaceVertexStage<variant>& stage, const Vert
   shade_vertices(SurfaceVertexLanes{stage.input, variant}, job);
 }
 
+// A cut-out has the varyings and colours of the surface without holes, and perhaps u and v after
+// them: both share their code.
 template <SurfaceVariant variant>
 void shade_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
                              const VisibilityTile& tile, const VisibleRun& run) {
-  shade_fragments(SurfaceFragmentLanes<variant>{stage.decoded, stage.sampler, stage.profile}, job,
+  constexpr SurfaceVariant kWhole{variant.textured, variant.specular, variant.two_sided};
+  shade_fragments(SurfaceFragmentLanes<kWhole>{stage.decoded, stage.sampler, stage.profile}, job,
                   tile, run);
+}
+
+template <SurfaceVariant variant>
+unsigned keep_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
+                                const LaneTriangle& triangle, int x, int y, unsigned pixels) {
+  return keep_fragments(
+      SurfaceHoles<variant>{*stage.decoded_opacity, stage.opacity_sampler, stage.profile}, job,
+      triangle, x, y, pixels);
 }
 
 #endif

@@ -26,7 +26,13 @@ struct SurfaceVariant {
   bool textured = false;
   bool specular = false;
   bool two_sided = false;
+  bool cut_out = false;
 };
+
+constexpr bool has_uvs(SurfaceVariant variant) { return variant.textured || variant.cut_out; }
+
+/// A cut-out surface is there where its opacity, as sampled, is this or more.
+inline constexpr float kLeastOpacity = 0.5f;
 
 /// Where each varying lies: depth, base colour, then what the variant has.
 struct SurfaceLayout {
@@ -34,7 +40,7 @@ struct SurfaceLayout {
   static constexpr std::size_t kFront = 1;
   std::size_t side_size;  ///< base colour, and highlight if there is one
   std::size_t back;       ///< the back's base colour, if it is lit by itself
-  std::size_t texture;    ///< u and v, if there are such
+  std::size_t texture;    ///< u and v, if there are such: last, whatever reads them
   std::size_t count;
 };
 
@@ -42,7 +48,7 @@ constexpr SurfaceLayout surface_layout(SurfaceVariant variant) {
   const std::size_t side_size = variant.specular ? 6 : 3;
   const std::size_t back = SurfaceLayout::kFront + side_size;
   const std::size_t texture = back + (variant.two_sided ? side_size : 0);
-  return {side_size, back, texture, texture + (variant.textured ? 2 : 0)};
+  return {side_size, back, texture, texture + (has_uvs(variant) ? 2 : 0)};
 }
 
 /// What the vertex stage reads; matrices are rounded to binary32 once a draw.
@@ -86,7 +92,7 @@ struct SurfaceVertexStage {
     };
     light_side(normal, kLayout.kFront);
     if constexpr (variant.two_sided) light_side(-normal, kLayout.back);
-    if constexpr (variant.textured) {
+    if constexpr (has_uvs(variant)) {
       output.varyings[kLayout.texture] = input.mesh->uvs[index].x;
       output.varyings[kLayout.texture + 1] = input.mesh->uvs[index].y;
     }
@@ -97,31 +103,40 @@ struct SurfaceVertexStage {
 template <SurfaceVariant variant>
 struct SurfaceFragmentStage {
   static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  static constexpr bool kDiscards = false;
-  static constexpr bool kNeedsDerivatives = variant.textured;
+  static constexpr bool kDiscards = variant.cut_out;
+  static constexpr bool kNeedsDerivatives = has_uvs(variant);
   static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
 
   const Texture* texture;
   Sampler sampler;
   Profile profile;
-  const DecodedTexture* decoded = nullptr;  ///< of `texture`, for the form in lanes
+  const Texture* opacity = nullptr;  ///< of a cut-out
+  Sampler opacity_sampler = {};
+  // For the form in lanes.
+  const DecodedTexture* decoded = nullptr;
+  const DecodedTexture* decoded_opacity = nullptr;
 
   FragmentOutput<1> operator()(const Fragment<kLayout.count>& in) const {
+    if constexpr (variant.cut_out) {
+      if (texel(*opacity, opacity_sampler, in).x < kLeastOpacity) return {{}, true};
+    }
     const std::size_t side = variant.two_sided && !in.front_facing ? kLayout.back : kLayout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
     if constexpr (variant.textured) {
-      const std::size_t u = kLayout.texture;
-      const std::size_t v = kLayout.texture + 1;
-      const float lod =
-          level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
-      const glm::vec4 texel =
-          sample(*texture, sampler, {in.varyings[u], in.varyings[v]}, lod, profile);
-      colour *= glm::vec3{texel.x, texel.y, texel.z};
+      colour *= glm::vec3{texel(*texture, sampler, in)};
     }
     if constexpr (variant.specular) {
       colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
     }
     return {{glm::vec4{colour, alpha_depth(in.varyings[kLayout.kDepth])}}, false};
+  }
+
+ private:
+  glm::vec4 texel(const Texture& of, const Sampler& by, const Fragment<kLayout.count>& in) const {
+    const std::size_t u = kLayout.texture;
+    const std::size_t v = kLayout.texture + 1;
+    const float lod = level_of_detail(of, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
+    return sample(of, by, {in.varyings[u], in.varyings[v]}, lod, profile);
   }
 };
 

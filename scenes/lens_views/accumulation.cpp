@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "raster/threads/scratch_shelf.h"
+#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/take_samples.h"
 
@@ -45,10 +46,16 @@ void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const 
 
 SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
+  buffer.points = view_points(input.sampling);
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
     add_lens_views(buffer, input, begin, end, sums, pool);
   };
   return take_samples(input, add_samples, kLensViewGroup, pool);
+}
+
+std::vector<glm::dvec2> view_points(const Sampling& sampling) {
+  return sampling.until ? lens_points(sampling.aperture, sampling.samples)
+                        : lens_points_for(sampling.aperture, sampling.samples);
 }
 
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool) {
@@ -64,10 +71,10 @@ AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPo
           {}};
 }
 
-void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
-                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles) {
+void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
+                     ThreadPool& pool) {
   const auto count = static_cast<std::size_t>(end - begin);
-  assert(begin % kSampleGroup == 0 && end - begin <= kLensViewGroup);
+  assert(end - begin <= kLensViewGroup);
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
   for (std::size_t i = buffer.passes.size(); i < count; ++i) {
     RenderPass& pass = buffer.passes.emplace_back();
@@ -88,6 +95,15 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
     record_scene(buffer.prepared, camera, input.frame, passes[i]);
   });
   sort_into_tiles(passes, tile_lists, pool);
+}
+
+void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
+                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles) {
+  assert(begin % kSampleGroup == 0);
+  sort_lens_views(buffer, input, begin, end, pool);
+  const auto count = static_cast<std::size_t>(end - begin);
+  const std::vector<RenderPass>& passes = buffer.passes;
+  const std::vector<TileLists>& tile_lists = buffer.tile_lists;
   ScratchShelf<TileSamples> shelf;
   const int drawn = tiles.empty() ? tile_count(tile_lists[0]) : static_cast<int>(tiles.size());
   pool.for_each(drawn, [&](int number) {
@@ -105,7 +121,7 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
     }
     shelf.put_back(std::move(samples));
   });
-  for (RenderPass& pass : passes) pass.draws.clear();
+  for (RenderPass& pass : buffer.passes) pass.draws.clear();
   sums.count += end - begin;
 }
 

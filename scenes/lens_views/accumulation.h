@@ -12,15 +12,19 @@
 
 namespace softfocus {
 
-/// Each lens view is drawn in RGBA16F, as the pinhole's picture is, by the lens_camera() of a
-/// point of lens_points(). One sample without jitter is the pinhole's picture. At few samples
+/// Each lens view is drawn in RGBA16F, as the pinhole's picture is, by the lens_camera() of one of
+/// the view_points(). One sample without jitter is the pinhole's picture. At few samples
 /// a thing out of focus is a handful of sharp ghosts.
 SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool);
+
+/// The points of accumulation(): a set made for their number (few_lens_points.h), or, where they
+/// are many or `until` may stop at any, the sequence lens_points().
+std::vector<glm::dvec2> view_points(const Sampling& sampling);
 
 /// Made once for many pictures of one scene: the points of the lens, the prepared scene, and
 /// memory for a group of lens views.
 struct AccumulationBuffer {
-  std::vector<glm::dvec2> points;   ///< of the lens, in radii of the aperture
+  std::vector<glm::dvec2> points;   ///< of the lens, in radii of the aperture: may be replaced
   std::vector<glm::dvec2> offsets;  ///< of the pixels
   PreparedScene prepared;
   /// The targets of every lens view, which keep nothing.
@@ -29,12 +33,17 @@ struct AccumulationBuffer {
   std::vector<TileLists> tile_lists;  ///< of the passes
 };
 
-/// For up to `input.sampling.samples` points. The scene must outlive it.
+/// With lens_points() for up to `input.sampling.samples` views. The scene must outlive it.
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool);
 
 /// Lens views that are drawn together. More take more memory for vertices and triangles, and
 /// fetch the sums less often.
 inline constexpr int kLensViewGroup = 2 * kSampleGroup;
+
+/// Records the samples `begin` to `end` - 1, at most kLensViewGroup, in as many of the buffer's
+/// passes, and sorts them into its tile lists. The caller draws the tiles, and clears the passes.
+void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
+                     ThreadPool& pool);
 
 /// Draws the samples `begin` to `end` - 1 and adds them to the sums. They are at most
 /// kLensViewGroup, and `begin` is a multiple of kSampleGroup. All are drawn in one tile before

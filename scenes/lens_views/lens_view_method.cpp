@@ -2,8 +2,10 @@
 
 #include <array>
 
+#include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/ray_traced.h"
+#include "scenes/surface_splatting/surface_splatting.h"
 
 namespace softfocus {
 namespace {
@@ -16,8 +18,21 @@ const std::array kMethods{
                    kScene,
                    {},
                    accumulation},
+    LensViewMethod{"filtered-views",
+                   "few views, each spread over its part of the lens, and averaged",
+                   kScene,
+                   {},
+                   filtered_views,
+                   true,
+                   kFilteredViews},
     LensViewMethod{"ray-traced", "the mean of rays through the lens, after Cook et al. 1984",
                    kScene, ray_traced_missing(), ray_traced},
+    LensViewMethod{"surface-splatting",
+                   "surfaces as Gaussian points, after Krivanek, Zara and Bouatouch 2003",
+                   kScene,
+                   {},
+                   surface_splatting,
+                   false},
 };
 
 }  // namespace

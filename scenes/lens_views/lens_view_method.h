@@ -1,6 +1,6 @@
 #pragma once
-// The table of methods that draw lens views: pictures of the scene from many points of the
-// lens. Their mean, over enough points, is the ground truth for the filters of dof/dof.h. A
+// The table of methods that draw the scene: most draw lens views, pictures from many points of
+// the lens, whose mean, over enough points, is the ground truth for the filters of dof/dof.h. A
 // method is one entry: adding one touches its own file, the table and a test.
 
 #include <functional>
@@ -63,6 +63,10 @@ struct LensViewMethod {
   std::string_view missing;
   /// The same bits for any number of threads. Throws std::runtime_error if a library fails.
   SampledPicture (*render)(const LensViewInput& input, ThreadPool& pool);
+  /// Whether it takes notice of LensViewInput::sampling.
+  bool samples_lens = true;
+  /// Sampling::samples where none are given.
+  int usual_samples = Sampling{}.samples;
 };
 
 std::span<const LensViewMethod> lens_view_methods();

@@ -1,5 +1,6 @@
 #include "scenes/lens_views/ray_geometry.h"
 
+#include <algorithm>
 #include <array>
 
 #include "raster/images/level_of_detail.h"
@@ -62,8 +63,9 @@ glm::dvec2 weights_on_plane(const std::array<glm::dvec3, 3>& v, const LensRay& r
   return {dot(to_origin, p) * scale, dot(ray.direction, q) * scale};
 }
 
-glm::vec3 texel_at(const RayMesh& mesh, const Corners& corners, const RayHit& hit,
-                   const BlockRays& block, const Profile& profile) {
+glm::vec3 texel_at(const RayMesh& mesh, const Texture& texture, const Sampler& sampler,
+                   const RayHit& hit, const BlockRays& block, const Profile& profile) {
+  const Corners corners = corners_of(mesh, hit.triangle);
   const auto& all = mesh.draw.input.mesh->uvs;
   const std::array<glm::vec2, 3> uvs{all[corners[0]], all[corners[1]], all[corners[2]]};
   std::array<glm::dvec3, 3> positions;
@@ -73,11 +75,10 @@ glm::vec3 texel_at(const RayMesh& mesh, const Corners& corners, const RayHit& hi
     return blend(uvs, static_cast<float>(weights.x), static_cast<float>(weights.y));
   };
   const glm::vec2 corner = uv_on_plane(block.corner);
-  const Texture& texture = *mesh.draw.texture;
   const float lod = level_of_detail(texture, uv_on_plane(block.right) - corner,
                                     uv_on_plane(block.below) - corner, profile);
   const glm::vec2 uv = blend(uvs, hit.weight_1, hit.weight_2);
-  return glm::vec3{sample(texture, mesh.draw.input.material->sampler, uv, lod, profile)};
+  return glm::vec3{sample(texture, sampler, uv, lod, profile)};
 }
 
 }  // namespace
@@ -113,27 +114,82 @@ bool meets_front(const RayMesh& mesh, std::uint32_t triangle, const LensRay& ray
   return counter_clockwise == (mesh.draw.state.front_face == FrontFace::counter_clockwise);
 }
 
-glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, glm::vec3 eye, const LensRay& ray,
-                    const BlockRays& block, const Profile& profile) {
+namespace {
+
+glm::vec3 highlight_at(const RayMesh& mesh, std::uint32_t vertex, bool back, glm::vec3 eye) {
+  const glm::vec3 normal = back ? -mesh.normals[vertex] : mesh.normals[vertex];
+  const SurfaceVertexInput& input = mesh.draw.input;
+  return light_point(*input.material, input.ambient_light, input.lights, mesh.world[vertex], normal,
+                     normalize(eye - mesh.world[vertex]))
+      .specular;
+}
+
+/// `highlight` gives a vertex's.
+template <class Highlight>
+glm::vec3 shade(const RayMesh& mesh, const RayHit& hit, bool back, const BlockRays& block,
+                const Profile& profile, const Highlight& highlight) {
   const Corners corners = corners_of(mesh, hit.triangle);
-  const bool back = mesh.draw.variant.two_sided && !meets_front(mesh, hit.triangle, ray);
   const auto& base = mesh.base[back ? 1 : 0];
   glm::vec3 colour = blend<glm::vec3>({base[corners[0]], base[corners[1]], base[corners[2]]},
                                       hit.weight_1, hit.weight_2);
-  if (mesh.draw.variant.textured) colour *= texel_at(mesh, corners, hit, block, profile);
+  if (mesh.draw.variant.textured) {
+    colour *=
+        texel_at(mesh, *mesh.draw.texture, mesh.draw.input.material->sampler, hit, block, profile);
+  }
   if (mesh.draw.variant.specular) {
-    std::array<glm::vec3, 3> specular;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t vertex = corners[i];
-      const glm::vec3 normal = back ? -mesh.normals[vertex] : mesh.normals[vertex];
-      const SurfaceVertexInput& input = mesh.draw.input;
-      specular[i] = light_point(*input.material, input.ambient_light, input.lights,
-                                mesh.world[vertex], normal, normalize(eye - mesh.world[vertex]))
-                        .specular;
-    }
-    colour += blend(specular, hit.weight_1, hit.weight_2);
+    colour +=
+        blend<glm::vec3>({highlight(corners[0]), highlight(corners[1]), highlight(corners[2])},
+                         hit.weight_1, hit.weight_2);
   }
   return colour;
+}
+
+}  // namespace
+
+glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, glm::vec3 eye, const LensRay& ray,
+                    const BlockRays& block, const Profile& profile) {
+  const bool back = mesh.draw.variant.two_sided && !meets_front(mesh, hit.triangle, ray);
+  return shade(mesh, hit, back, block, profile,
+               [&](std::uint32_t vertex) { return highlight_at(mesh, vertex, back, eye); });
+}
+
+SpecularLight highlights_from(const RayMesh& mesh, glm::vec3 eye) {
+  SpecularLight highlights;
+  if (!mesh.draw.variant.specular) return highlights;
+  const auto vertices = static_cast<std::uint32_t>(mesh.world.size());
+  for (int side = 0; side < (mesh.draw.variant.two_sided ? 2 : 1); ++side) {
+    for (std::uint32_t i = 0; i < vertices; ++i) {
+      highlights.side[side].push_back(highlight_at(mesh, i, side == 1, eye));
+    }
+  }
+  return highlights;
+}
+
+glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, bool back,
+                    const SpecularLight& highlights, const BlockRays& block,
+                    const Profile& profile) {
+  const auto& side = highlights.side[back ? 1 : 0];
+  return shade(mesh, hit, back, block, profile, [&](std::uint32_t vertex) { return side[vertex]; });
+}
+
+bool is_cut_out(const RayMesh& mesh, const RayHit& hit, const BlockRays& block,
+                const Profile& profile) {
+  const SurfaceDraw& draw = mesh.draw;
+  return draw.variant.cut_out &&
+         texel_at(mesh, *draw.opacity, draw.opacity_sampler, hit, block, profile).x < kLeastOpacity;
+}
+
+RayHit hit_in_triangle(const RayMesh& mesh, std::uint32_t triangle, const LensRay& ray) {
+  const glm::dvec2 on_plane = weights_on_plane(corner_positions(mesh, triangle), ray);
+  const double weight_1 = on_plane.x > 0.0 ? std::min(on_plane.x, 1.0) : 0.0;
+  const double weight_2 = on_plane.y > 0.0 ? std::min(on_plane.y, 1.0 - weight_1) : 0.0;
+  return {triangle, static_cast<float>(weight_1), static_cast<float>(weight_2)};
+}
+
+std::array<glm::dvec3, 3> corner_positions(const RayMesh& mesh, std::uint32_t triangle) {
+  const Corners corners = corners_of(mesh, triangle);
+  return {glm::dvec3{mesh.positions[corners[0]]}, glm::dvec3{mesh.positions[corners[1]]},
+          glm::dvec3{mesh.positions[corners[2]]}};
 }
 
 }  // namespace softfocus

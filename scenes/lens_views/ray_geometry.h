@@ -2,6 +2,7 @@
 // The scene's triangles as rays meet them, in the pinhole camera's space: x right, y up,
 // the camera at the origin looking along -z.
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -61,5 +62,26 @@ struct BlockRays {
 };
 glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, glm::vec3 eye, const LensRay& ray,
                     const BlockRays& block, const Profile& profile);
+
+/// The vertices' highlights as one eye sees them, front and back, for surfaces that have some.
+struct SpecularLight {
+  std::vector<glm::vec3> side[2];
+};
+SpecularLight highlights_from(const RayMesh& mesh, glm::vec3 eye);
+
+/// shade_hit() with the highlights known, of the front or the back.
+glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, bool back,
+                    const SpecularLight& highlights, const BlockRays& block,
+                    const Profile& profile);
+
+/// Whether a place lies in a hole of a cut-out surface. The opacity is sampled as textures are.
+bool is_cut_out(const RayMesh& mesh, const RayHit& hit, const BlockRays& block,
+                const Profile& profile);
+
+/// Where a ray meets the triangle's plane, moved into the triangle if it lies outside.
+RayHit hit_in_triangle(const RayMesh& mesh, std::uint32_t triangle, const LensRay& ray);
+
+/// The triangle's corners in camera space.
+std::array<glm::dvec3, 3> corner_positions(const RayMesh& mesh, std::uint32_t triangle);
 
 }  // namespace softfocus

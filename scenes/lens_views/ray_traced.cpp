@@ -40,15 +40,33 @@ void check(const Device& device) {
                            (error == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
 }
 
-/// Lets rays through the backs of surfaces that are drawn from the front only.
-void skip_backs(const RTCFilterFunctionNArguments* arguments) {
+#if RTC_VERSION_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+#else
+using QueryContext = RTCIntersectContext;
+#endif
+
+/// A ray on its way. The context comes first: filters get a pointer to it.
+struct Query {
+  QueryContext context;
+  const BlockRays& block;
+  const Profile& profile;
+};
+
+/// Lets rays through holes, and through the backs of surfaces that are drawn from the front only.
+void skip_unseen(const RTCFilterFunctionNArguments* arguments) {
   if (arguments->N != 1 || arguments->valid[0] == 0) return;
   const auto& mesh = *static_cast<const RayMesh*>(arguments->geometryUserPtr);
+  const auto& query = *reinterpret_cast<const Query*>(arguments->context);
+  RTCHitN* const hit = arguments->hit;
+  const RayHit place{RTCHitN_primID(hit, 1, 0), RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)};
+  if (is_cut_out(mesh, place, query.block, query.profile)) arguments->valid[0] = 0;
+  if (mesh.draw.state.cull != Cull::back) return;
   RTCRayN* const ray = arguments->ray;
   const LensRay lens_ray{
       {RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0)},
       {RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)}};
-  if (!meets_front(mesh, RTCHitN_primID(arguments->hit, 1, 0), lens_ray)) arguments->valid[0] = 0;
+  if (!meets_front(mesh, place.triangle, lens_ray)) arguments->valid[0] = 0;
 }
 
 struct TracedScene {
@@ -68,8 +86,8 @@ void add_mesh(TracedScene& traced, RayMesh& mesh) {
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              indices.data(), 0, 3 * sizeof(std::uint32_t), indices.size() / 3);
   rtcSetGeometryUserData(geometry.get(), &mesh);
-  if (mesh.draw.state.cull == Cull::back) {
-    rtcSetGeometryIntersectFilterFunction(geometry.get(), skip_backs);
+  if (mesh.draw.state.cull == Cull::back || mesh.draw.variant.cut_out) {
+    rtcSetGeometryIntersectFilterFunction(geometry.get(), skip_unseen);
   }
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(traced.tree.get(), geometry.get());
@@ -90,7 +108,8 @@ TracedScene traced_scene(const LensViewInput& input) {
   return traced;
 }
 
-RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const Camera& camera) {
+RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const BlockRays& block,
+                    const Camera& camera, const Profile& profile) {
   RTCRayHit hit{};
   hit.ray.org_x = static_cast<float>(lens_ray.origin.x);
   hit.ray.org_y = static_cast<float>(lens_ray.origin.y);
@@ -102,12 +121,16 @@ RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const Ca
   hit.ray.tfar = static_cast<float>(camera.far_m);
   hit.ray.mask = std::numeric_limits<unsigned>::max();
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  Query query{{}, block, profile};
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(traced.tree.get(), &hit);
+  rtcInitRayQueryContext(&query.context);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &query.context;
+  rtcIntersect1(traced.tree.get(), &hit, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(traced.tree.get(), &context, &hit);
+  rtcInitIntersectContext(&query.context);
+  rtcIntersect1(traced.tree.get(), &query.context, &hit);
 #endif
   return hit;
 }
@@ -134,11 +157,11 @@ glm::vec3 trace(const Tracer& tracer, int x, int y, std::uint32_t sample) {
     return lens_ray(tracer.camera, point, pixel_x + offset.x, pixel_y + offset.y);
   };
   const LensRay ray = ray_through(x, y);
-  const RTCRayHit hit = intersect(tracer.traced, ray, input.scene.camera);
-  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return input.scene.background;
   const int left = x & ~1, top = y & ~1;
   const BlockRays block{ray_through(left, top), ray_through(left + 1, top),
                         ray_through(left, top + 1)};
+  const RTCRayHit hit = intersect(tracer.traced, ray, block, input.scene.camera, input.profile);
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return input.scene.background;
   return shade_hit(tracer.traced.meshes[hit.hit.geomID], {hit.hit.primID, hit.hit.u, hit.hit.v},
                    tracer.eyes[sample], ray, block, input.profile);
 }

@@ -131,25 +131,44 @@ SampleSums later_samples(const SampleSums& first, const SampleSums& all) {
   return later;
 }
 
-double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool) {
-  assert(first_half.count > 0 && 2 * first_half.count == all.count);
-  // Rows first, then their sums in order: the same bits for any number of threads.
-  std::vector<double> squares(static_cast<std::size_t>(all.height));
-  pool.for_each(all.height, [&](int y) {
+namespace {
+
+// Of what difference(x, y, colour) gives. Rows first, then their sums in order: the same bits for
+// any number of threads.
+template <class Difference>
+double rms_of(int width, int height, const Difference& difference, ThreadPool& pool) {
+  std::vector<double> squares(static_cast<std::size_t>(height));
+  pool.for_each(height, [&](int y) {
     double sum = 0.0;
-    for (int x = 0; x < all.width; ++x) {
-      const double* half = sums_at(first_half, x, y);
-      const double* whole = sums_at(all, x, y);
+    for (int x = 0; x < width; ++x) {
       for (int c = 0; c < 3; ++c) {
-        const double difference = (2.0 * half[c] - whole[c]) / first_half.count;
-        sum += difference * difference;
+        const double apart = difference(x, y, c);
+        sum += apart * apart;
       }
     }
     squares[static_cast<std::size_t>(y)] = sum;
   });
   double total = 0.0;
   for (const double of_row : squares) total += of_row;
-  return std::sqrt(total / (3.0 * all.width * all.height));
+  return std::sqrt(total / (3.0 * width * height));
+}
+
+}  // namespace
+
+double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool) {
+  assert(first_half.count > 0 && 2 * first_half.count == all.count);
+  const auto difference = [&](int x, int y, int c) {
+    return (2.0 * sums_at(first_half, x, y)[c] - sums_at(all, x, y)[c]) / first_half.count;
+  };
+  return rms_of(all.width, all.height, difference, pool);
+}
+
+double rms_between(const SampleSums& a, const SampleSums& b, ThreadPool& pool) {
+  assert(a.count > 0 && b.count > 0 && a.totals.size() == b.totals.size());
+  const auto difference = [&](int x, int y, int c) {
+    return sums_at(a, x, y)[c] / a.count - sums_at(b, x, y)[c] / b.count;
+  };
+  return rms_of(a.width, a.height, difference, pool);
 }
 
 }  // namespace softfocus
@@ -203,9 +222,13 @@ int store_means_rounded(const double* totals, int samples, const std::uint16_t* 
 /// store_mean() for whole vectors of a row. Returns how many halves it has stored.
 int store_means(const double* totals, int samples, HalfRounding rounding,
                 const std::uint16_t* depth, int halves, std::uint16_t* to) {
-  return rounding == HalfRounding::nearest_even
-             ? store_means_rounded<HalfRounding::nearest_even>(totals, samples, depth, halves, to)
-             : store_means_rounded<HalfRounding::toward_zero>(totals, samples, depth, halves, to);
+  using enum HalfRounding;
+  switch (rounding) {
+    case nearest_even: return store_means_rounded<nearest_even>(totals, samples, depth, halves, to);
+    case toward_zero: return store_means_rounded<toward_zero>(totals, samples, depth, halves, to);
+    case swiftshader: break;
+  }
+  return store_means_rounded<swiftshader>(totals, samples, depth, halves, to);
 }
 
 #endif

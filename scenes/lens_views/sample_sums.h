@@ -64,6 +64,9 @@ SampleSums later_samples(const SampleSums& first, const SampleSums& all);
 /// half of the samples.
 double half_set_rms(const SampleSums& first_half, const SampleSums& all, ThreadPool& pool);
 
+/// The root of the mean square, over pixels and colours, of the difference of two means.
+double rms_between(const SampleSums& a, const SampleSums& b, ThreadPool& pool);
+
 /// add_rows() without vectors, of `halves` halves.
 void add_row_scalar(std::span<const std::uint16_t* const> rows, int halves, double* totals);
 

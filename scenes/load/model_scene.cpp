@@ -139,6 +139,7 @@ void add_model(Scene& scene, ObjModel model, const Object& placement,
     for (Texture& texture : model.textures) scene.textures.push_back(std::move(texture));
     for (Material& own : model.materials) {
       if (own.texture) *own.texture += first_texture;
+      if (own.opacity_texture) *own.opacity_texture += first_texture;
       scene.materials.push_back(std::move(own));
     }
   }

@@ -7,6 +7,7 @@
 
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/texture_file.h"
+#include "scenes/make/opacity_texture.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <tiny_obj_loader.h>
@@ -46,15 +47,15 @@ bool is_picture(const std::filesystem::path& file) {
   return std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
 }
 
-// The index of the texture that a material names, loaded once.
+// The index of a texture that a material names, loaded once.
 std::optional<std::uint32_t> texture_index(const std::filesystem::path& library,
-                                           const tinyobj::material_t& from,
+                                           const std::string& material, const std::string& written,
                                            MtlMaterials& materials) {
   const auto warn = [&](const std::string& reason) {
-    materials.warnings.push_back(library.string() + ": material " + from.name + ": texture " +
-                                 from.diffuse_texname + " " + reason);
+    materials.warnings.push_back(library.string() + ": material " + material + ": texture " +
+                                 written + " " + reason);
   };
-  const std::filesystem::path file = find_texture(library, from.diffuse_texname);
+  const std::filesystem::path file = find_texture(library, written);
   if (file.empty()) {
     warn("is missing");
     return std::nullopt;
@@ -72,6 +73,26 @@ std::optional<std::uint32_t> texture_index(const std::filesystem::path& library,
   return entry->second;
 }
 
+Wrap wrap_of(const tinyobj::texture_option_t& options) {
+  return options.clamp ? Wrap::clamp_to_edge : Wrap::repeat;
+}
+
+void add_opacity(const std::filesystem::path& library, const tinyobj::material_t& from,
+                 MtlMaterials& materials, Material& material) {
+  material.opacity = from.dissolve >= 0.0f ? std::min(from.dissolve, 1.0f) : 0.0f;
+  if (from.alpha_texname.empty()) return;
+  const auto picture = texture_index(library, from.name, from.alpha_texname, materials);
+  if (!picture) return;
+  const auto [entry, is_new] = materials.opacity_of_texture.emplace(
+      *picture, static_cast<std::uint32_t>(materials.textures.size()));
+  if (is_new) {
+    materials.textures.push_back(make_opacity_texture(materials.textures[*picture].levels[0]));
+  }
+  material.opacity_texture = entry->second;
+  material.cut_out = is_cut_out(materials.textures[entry->second]);
+  material.opacity_sampler.wrap_u = material.opacity_sampler.wrap_v = wrap_of(from.alpha_texopt);
+}
+
 Material make_material(const std::filesystem::path& library, const tinyobj::material_t& from,
                        MtlMaterials& materials) {
   constexpr glm::vec3 kBlack{0.0f};
@@ -81,10 +102,8 @@ Material make_material(const std::filesystem::path& library, const tinyobj::mate
   material.two_sided = true;
   material.diffuse = reflectance(from.diffuse);
   if (!from.diffuse_texname.empty()) {
-    material.texture = texture_index(library, from, materials);
-    if (from.diffuse_texopt.clamp) {
-      material.sampler.wrap_u = material.sampler.wrap_v = Wrap::clamp_to_edge;
-    }
+    material.texture = texture_index(library, from.name, from.diffuse_texname, materials);
+    material.sampler.wrap_u = material.sampler.wrap_v = wrap_of(from.diffuse_texopt);
     if (material.texture && material.diffuse == kBlack) material.diffuse = kWhite;
     if (!material.texture) material.diffuse = neutral_grey().diffuse;
   }
@@ -95,7 +114,17 @@ Material make_material(const std::filesystem::path& library, const tinyobj::mate
   material.specular = reflectance(from.specular);
   const float shininess = from.shininess >= 1.0f ? std::min(from.shininess, 1024.0f) : 1.0f;
   material.shininess = static_cast<int>(shininess + 0.5f);
+  add_opacity(library, from, materials, material);
   return material;
+}
+
+// `d -halo 0.5`, less opaque towards the outline, as `d 0.5`: tinyobjloader takes it for d 0.
+std::string without_halos(std::string text) {
+  constexpr std::string_view kHalo = "d -halo ";
+  for (std::size_t at = 0; (at = text.find(kHalo, at)) != text.npos; ++at) {
+    text.replace(at, kHalo.size(), "d ");
+  }
+  return text;
 }
 
 }  // namespace
@@ -110,7 +139,7 @@ Material neutral_grey() {
 }
 
 void load_mtl(const std::filesystem::path& library, MtlMaterials& materials) {
-  std::istringstream text(read_file_bytes(library, kMaxMtlBytes));
+  std::istringstream text(without_halos(read_file_bytes(library, kMaxMtlBytes)));
   materials.files.push_back(library);
   std::map<std::string, int> index_of_name;
   std::vector<tinyobj::material_t> read;

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <unordered_map>
 
-#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/load/file_bytes.h"
+#include "scenes/load/first_come_numbers.h"
 #include "scenes/load/mtl_file.h"
+#include "scenes/load/obj_faces.h"
 #include "scenes/load/obj_text.h"
 #include "scenes/load/scene_error.h"
 #include "scenes/make/polygon.h"
@@ -25,33 +24,6 @@ struct Triangle {
   std::uint32_t face = 0;
   glm::dvec3 area_normal{0.0};  // its length is twice the area
 };
-
-// Numbers things in the order in which they come. Nothing ever goes through the hash
-// map in its own order, which differs between libraries.
-class FirstComeNumbers {
- public:
-  using Key = std::array<std::uint32_t, 3>;
-  /// The key's number, and whether it is new.
-  std::pair<std::uint32_t, bool> number(const Key& key) {
-    const auto [entry, is_new] = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size()));
-    return {entry->second, is_new};
-  }
-
- private:
-  struct Mix {
-    std::size_t operator()(const Key& key) const {
-      const std::uint64_t low = static_cast<std::uint64_t>(key[0]) << 32 | key[1];
-      return static_cast<std::size_t>(mix_bits(mix_bits(low) + key[2]));
-    }
-  };
-  std::unordered_map<Key, std::uint32_t, Mix> numbers_;
-};
-
-FirstComeNumbers::Key bits_of(glm::vec3 p) {
-  // 0 + -0 is 0: the two are one place.
-  return {std::bit_cast<std::uint32_t>(p.x + 0.0f), std::bit_cast<std::uint32_t>(p.y + 0.0f),
-          std::bit_cast<std::uint32_t>(p.z + 0.0f)};
-}
 
 FirstComeNumbers::Key key_of(const ObjCorner& corner) {
   return {static_cast<std::uint32_t>(corner.position), static_cast<std::uint32_t>(corner.uv),
@@ -101,10 +73,38 @@ std::vector<Triangle> make_triangles(const ObjText& obj) {
   return triangles;
 }
 
+// Faces whose normals are made need neighbours that are wound alike: else the sums cancel.
+void turn_alike(const ObjText& obj, const std::vector<std::uint32_t>& place_of,
+                std::vector<Triangle>& triangles) {
+  std::vector<std::size_t> without_normals;
+  std::vector<std::array<std::uint32_t, 3>> places;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto& corners = triangles[i].corners;
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](const ObjCorner& corner) { return has_normal(obj, corner); })) {
+      continue;
+    }
+    without_normals.push_back(i);
+    auto& of_triangle = places.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      of_triangle[k] = place_of[static_cast<std::size_t>(corners[k].position)];
+    }
+  }
+  const std::vector<bool> turned = triangles_to_turn(places);
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    if (!turned[i]) continue;
+    Triangle& triangle = triangles[without_normals[i]];
+    std::swap(triangle.corners[1], triangle.corners[2]);
+    triangle.area_normal = -triangle.area_normal;
+  }
+}
+
 // Gives every corner a normal: the one given, the mean over the triangles that meet at
 // its place in its smoothing group (weighted by area), or its triangle's own. Returns
 // the normals that the corners then refer to.
-std::vector<glm::vec3> complete_normals(const ObjText& obj, std::vector<Triangle>& triangles) {
+std::vector<glm::vec3> complete_normals(const ObjText& obj,
+                                        const std::vector<std::uint32_t>& place_of,
+                                        std::vector<Triangle>& triangles) {
   std::vector<glm::vec3> all_normals;
   for (const glm::vec3& normal : obj.normals) {
     all_normals.emplace_back(normalize(glm::dvec3{normal}));
@@ -114,11 +114,6 @@ std::vector<glm::vec3> complete_normals(const ObjText& obj, std::vector<Triangle
     return obj.has_smoothing_groups ? obj.faces[triangle.face].smoothing_group : 1;
   };
 
-  FirstComeNumbers places;
-  std::vector<std::uint32_t> place_of;
-  for (const glm::vec3& position : obj.positions) {
-    place_of.push_back(places.number(bits_of(position)).first);
-  }
   FirstComeNumbers sums;
   std::vector<glm::dvec3> sum_of;
   const auto sum_number = [&](const Triangle& triangle, const ObjCorner& corner) {
@@ -241,10 +236,14 @@ void check_size(const std::vector<Triangle>& triangles, const ObjText& obj,
 }  // namespace
 
 ObjModel load_obj_model(const std::filesystem::path& file) {
-  const ObjText obj = parse_obj_text(read_file_bytes(file, kMaxObjBytes), file.string());
+  ObjText obj = parse_obj_text(read_file_bytes(file, kMaxObjBytes), file.string());
+  const std::vector<std::uint32_t> place_of = number_places(obj);
+  const std::size_t face_count = obj.faces.size();
+  const std::size_t doubled = drop_doubled_faces(obj, place_of);
   std::vector<Triangle> triangles = make_triangles(obj);
   check_size(triangles, obj, file);
-  const std::vector<glm::vec3> all_normals = complete_normals(obj, triangles);
+  turn_alike(obj, place_of, triangles);
+  const std::vector<glm::vec3> all_normals = complete_normals(obj, place_of, triangles);
 
   MtlMaterials library;
   load_libraries(obj, file, library);
@@ -253,6 +252,12 @@ ObjModel load_obj_model(const std::filesystem::path& file) {
   model.textures = std::move(library.textures);
   model.files = std::move(library.files);
   model.files.push_back(file);
+  for (const std::string& warning : obj.warnings) model.warnings.push_back(printable(warning));
+  if (doubled > 0) {
+    model.warnings.push_back(printable(file.string()) + ": " + std::to_string(doubled) + " of " +
+                             std::to_string(face_count) +
+                             " faces are there before, perhaps reversed; each is drawn once");
+  }
   for (const std::string& warning : library.warnings) {
     model.warnings.push_back(printable(warning));
   }

@@ -28,10 +28,15 @@ struct ObjModel {
 /// Reads a model, its materials and their textures. Throws SceneError for a file that
 /// is missing or no OBJ, a number that is none, an index out of range (with the line),
 /// a model without a face, and a texture that is there and cannot be read. A missing
-/// material library, material or texture is a warning, and neutral grey stands in.
+/// material library, material or texture is a warning, and neutral grey stands in. So is
+/// what parse_obj_text() tolerates.
+///
+/// A face whose corners lie where another's do, in the same or the reverse order, is left out; a
+/// warning counts them. The first one of the file stays, with its material.
 ///
 /// Polygons become triangles. Missing normals are made: of a smooth surface, or as the
-/// smoothing groups say where there are any. A face whose winding opposes the normals
+/// smoothing groups say where there are any. Faces without normals are turned to fit
+/// their neighbours (triangles_to_turn()). A face whose winding opposes the normals
 /// given for it is turned round. v of the texture coordinates, which OBJ counts
 /// upwards, is flipped.
 ObjModel load_obj_model(const std::filesystem::path& file);

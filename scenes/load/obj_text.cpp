@@ -35,24 +35,26 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(kBlanks) + 1);
 }
 
-// The numbers of a v, vt or vn line: at least `least`, further ones up to `most` where
-// they are there.
-void read_numbers(const Place& place, std::string_view line, int least, int most, float* numbers) {
-  for (int i = 0; i < most; ++i) {
+[[noreturn]] void fail_as_number(const Place& place, std::string_view word, int read, int needed) {
+  fail(place, word.empty() ? "has " + std::to_string(read) + " numbers; " + std::to_string(needed) +
+                                 " would be right"
+                           : "\"" + std::string(word.substr(0, 40)) + "\" is no number");
+}
+
+// The numbers of a v or vn line.
+glm::vec3 read_vector(const Place& place, std::string_view line) {
+  glm::vec3 vector{0.0f};
+  for (int i = 0; i < 3; ++i) {
     const std::string_view word = next_word(line);
-    if (word.empty() && i >= least) return;
     const auto number = decimal_to_float(word);
-    if (!number) {
-      fail(place, word.empty() ? "has " + std::to_string(i) + " numbers; " + std::to_string(least) +
-                                     " would be right"
-                               : "\"" + std::string(word.substr(0, 40)) + "\" is no number");
-    }
+    if (!number) fail_as_number(place, word, i, 3);
     if (!(std::fabs(*number) <= kLargestCoordinate)) {
       fail(place, std::string(word.substr(0, 40)) +
                       " is out of range; a number from -1e9 to 1e9 would be right");
     }
-    numbers[i] = *number;
+    vector[i] = *number;
   }
+  return vector;
 }
 
 // One index of a corner such as 7/-1/3; `count` is how many there are so far, from
@@ -86,6 +88,41 @@ ObjCorner read_corner(const Place& place, std::string_view word, const ObjText& 
   const std::string_view normal = word.substr(second + 1);
   if (!normal.empty()) corner.normal = read_index(place, normal, obj.normals.size(), "normal");
   return corner;
+}
+
+// A kind of thing that is tolerated, and the line of the first.
+struct Tolerated {
+  std::size_t count = 0;
+  std::size_t first_line = 0;
+};
+
+void tolerate(Tolerated& kind, const Place& place) {
+  if (kind.count++ == 0) kind.first_line = place.line;
+}
+
+void warn(ObjText& obj, const Place& place, const Tolerated& kind, const char* one,
+          const char* many) {
+  if (kind.count == 0) return;
+  obj.warnings.push_back(
+      place.file + ":" + std::to_string(kind.first_line) + ": " +
+      (kind.count == 1 ? one : std::to_string(kind.count) + many + ", the first in this line"));
+}
+
+// u, and v where it is there.
+glm::vec2 read_uv(const Place& place, std::string_view line, Tolerated& out_of_range) {
+  glm::vec2 uv{0.0f};
+  for (int i = 0; i < 2; ++i) {
+    const std::string_view word = next_word(line);
+    if (word.empty() && i > 0) break;
+    const auto number = decimal_to_float(word);
+    if (!number) fail_as_number(place, word, i, 1);
+    if (!(std::fabs(*number) <= kLargestCoordinate)) {
+      tolerate(out_of_range, place);
+      return glm::vec2{0.0f};
+    }
+    uv[i] = *number;
+  }
+  return uv;
 }
 
 void check_index(const Place& place, std::int32_t index, std::size_t count, const char* what) {
@@ -128,6 +165,7 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
   ObjText obj;
   FaceState state;
   std::vector<std::size_t> face_lines;
+  Tolerated short_faces, wild_uvs, missing_uvs;
   std::string joined;
   std::size_t lines_read = 0;
   while (!text.empty()) {
@@ -135,17 +173,11 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
     std::string_view line = next_line(text, joined, lines_read);
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
-      float p[3];
-      read_numbers(place, line, 3, 3, p);
-      obj.positions.emplace_back(p[0], p[1], p[2]);
+      obj.positions.push_back(read_vector(place, line));
     } else if (keyword == "vt") {
-      float uv[2] = {0.0f, 0.0f};
-      read_numbers(place, line, 1, 2, uv);
-      obj.uvs.emplace_back(uv[0], uv[1]);
+      obj.uvs.push_back(read_uv(place, line, wild_uvs));
     } else if (keyword == "vn") {
-      float n[3];
-      read_numbers(place, line, 3, 3, n);
-      obj.normals.emplace_back(n[0], n[1], n[2]);
+      obj.normals.push_back(read_vector(place, line));
     } else if (keyword == "f") {
       ObjFace face{static_cast<std::uint32_t>(obj.corners.size()), 0, state.material,
                    state.smoothing_group};
@@ -157,8 +189,9 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
         obj.corners.push_back(read_corner(place, word, obj));
       }
       if (face.corner_count < 3) {
-        fail(place, "the face has " + std::to_string(face.corner_count) +
-                        " corners; 3 or more would be right");
+        tolerate(short_faces, place);
+        obj.corners.resize(face.first_corner);
+        continue;
       }
       obj.faces.push_back(face);
       face_lines.push_back(place.line);
@@ -181,15 +214,29 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
   for (std::size_t i = 0; i < obj.faces.size(); ++i) {
     place.line = face_lines[i];
     for (std::uint32_t k = 0; k < obj.faces[i].corner_count; ++k) {
-      const ObjCorner& corner = obj.corners[obj.faces[i].first_corner + k];
+      ObjCorner& corner = obj.corners[obj.faces[i].first_corner + k];
       check_index(place, corner.position, obj.positions.size(), "position");
-      check_index(place, corner.uv, obj.uvs.size(), "texture coordinate");
+      if (corner.uv >= 0 && static_cast<std::size_t>(corner.uv) >= obj.uvs.size()) {
+        tolerate(missing_uvs, place);
+        corner.uv = -1;
+      }
       check_index(place, corner.normal, obj.normals.size(), "normal");
     }
+  }
+  if (obj.faces.empty() && short_faces.count > 0) {
+    place.line = short_faces.first_line;
+    fail(place,
+         "the face has fewer than 3 corners, as all have; a face of 3 or more would be right");
   }
   if (obj.faces.empty()) {
     throw SceneError(file + ": has no face; an OBJ model with `v` and `f` lines would be right");
   }
+  warn(obj, place, short_faces, "a face has fewer than 3 corners and is left out",
+       " faces have fewer than 3 corners and are left out");
+  warn(obj, place, wild_uvs, "a texture coordinate is out of range; 0 stands in",
+       " texture coordinates are out of range; 0 stands in");
+  warn(obj, place, missing_uvs, "a corner's texture coordinate is not there; it gets none",
+       " corners' texture coordinates are not there; they get none");
   return obj;
 }
 

@@ -38,6 +38,7 @@ struct ObjText {
   std::vector<std::string> material_names;  ///< in the order of first use
   std::vector<std::string> libraries;       ///< what follows each mtllib
   bool has_smoothing_groups = false;        ///< whether there is any `s`
+  std::vector<std::string> warnings;        ///< what was left out, a line a kind, counted
 };
 
 inline constexpr std::uint32_t kMaxFaceCorners = 1024;
@@ -46,9 +47,14 @@ inline constexpr std::uint32_t kMaxFaceCorners = 1024;
 inline constexpr float kLargestCoordinate = 1e9f;
 
 /// Understands v, vt, vn, f, s, usemtl, mtllib and lines continued by a backslash, and
-/// passes over the rest (groups, lines, curves). `file` is for complaints. Throws
-/// SceneError for what is not text, a number that is none or not finite, an index out
-/// of range, a face of too many corners, and a file without a face.
+/// passes over the rest (groups, lines, curves). `file` is for complaints. Exporters write
+/// some things that do no harm. A warning counts them:
+///   a face of fewer than 3 corners                   is left out
+///   a texture coordinate that is not finite, or past kLargestCoordinate   is 0
+///   a corner whose texture coordinate is not there   has none
+/// Throws SceneError for what is not text, a number that is none, a position or normal
+/// that is not finite, another index out of range, a face of too many corners, and a file
+/// without a face.
 ObjText parse_obj_text(std::string_view text, const std::string& file);
 
 }  // namespace softfocus

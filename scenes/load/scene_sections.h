@@ -23,6 +23,8 @@ struct NamedSurfaces {
   };
   std::map<std::string, NamedTexture> textures;
   std::map<std::string, std::uint32_t> materials;
+  /// The opacity that was made of a texture, by numbers of the scene's textures.
+  std::map<std::uint32_t, std::uint32_t> opacity_of_texture;
 };
 
 /// Reads the [texture.NAME] and [material.NAME] tables into the scene.

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "scenes/load/texture_file.h"
+#include "scenes/make/opacity_texture.h"
 #include "scenes/make/procedural_texture.h"
 
 namespace softfocus {
@@ -56,7 +57,39 @@ Texture read_texture(Section& section, const std::filesystem::path& directory, S
   return load_texture(scene.files.back());
 }
 
-Material read_material(Section& section, const std::string& name, const NamedSurfaces& surfaces) {
+NamedSurfaces::NamedTexture texture_named(Section& section, std::string_view key,
+                                          const NamedSurfaces& surfaces) {
+  const std::string texture = read_text(section, key, "");
+  const auto found = surfaces.textures.find(texture);
+  if (found == surfaces.textures.end()) {
+    fail_at(section, key,
+            "there is no texture \"" + texture + "\"; a table [texture." + texture +
+                "] would be right");
+  }
+  return found->second;
+}
+
+void read_opacity(Section& section, NamedSurfaces& surfaces, Scene& scene, Material& material) {
+  material.opacity = static_cast<float>(read_number(section, "opacity", 1.0, {0.0, 1.0}));
+  if (!has_key(section, "opacity_texture")) {
+    if (has_key(section, "cut_out")) {
+      fail_at(section, "cut_out", "nothing says where; an `opacity_texture` would");
+    }
+    return;
+  }
+  const auto named = texture_named(section, "opacity_texture", surfaces);
+  const auto [entry, is_new] = surfaces.opacity_of_texture.emplace(
+      named.index, static_cast<std::uint32_t>(scene.textures.size()));
+  if (is_new) {
+    scene.textures.push_back(make_opacity_texture(scene.textures[named.index].levels[0]));
+  }
+  material.opacity_texture = entry->second;
+  material.opacity_sampler = named.sampler;
+  material.cut_out = read_flag(section, "cut_out", is_cut_out(scene.textures[entry->second]));
+}
+
+Material read_material(Section& section, const std::string& name, NamedSurfaces& surfaces,
+                       Scene& scene) {
   // No surface reflects more than it gets, but a lamp is an unlit one, and a mirror's highlight
   // is as bright as the lamp.
   constexpr double kLargest = 1000.0;
@@ -69,16 +102,11 @@ Material read_material(Section& section, const std::string& name, const NamedSur
   material.two_sided = read_flag(section, "two_sided", material.two_sided);
   material.lit = read_flag(section, "lit", material.lit);
   if (has_key(section, "texture")) {
-    const std::string texture = read_text(section, "texture", "");
-    const auto found = surfaces.textures.find(texture);
-    if (found == surfaces.textures.end()) {
-      fail_at(section, "texture",
-              "there is no texture \"" + texture + "\"; a table [texture." + texture +
-                  "] would be right");
-    }
-    material.texture = found->second.index;
-    material.sampler = found->second.sampler;
+    const auto named = texture_named(section, "texture", surfaces);
+    material.texture = named.index;
+    material.sampler = named.sampler;
   }
+  read_opacity(section, surfaces, scene, material);
   return material;
 }
 
@@ -104,7 +132,7 @@ NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory
     scene.textures.push_back(std::move(texture));
   }
   for (auto& [name, section] : read_named_sections(top, "material")) {
-    Material material = read_material(section, name, surfaces);
+    Material material = read_material(section, name, surfaces, scene);
     finish_section(section);
     surfaces.materials[name] = static_cast<std::uint32_t>(scene.materials.size());
     scene.materials.push_back(std::move(material));

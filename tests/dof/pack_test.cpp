@@ -82,7 +82,7 @@ TEST_CASE("pack takes every type of channel in every order on every vector unit"
     for (const ChannelType type : kTypes) {
       for (const Order order : kOrders) {
         for (const HalfRounding rounding :
-             {HalfRounding::nearest_even, HalfRounding::toward_zero}) {
+             {HalfRounding::nearest_even, HalfRounding::toward_zero, HalfRounding::swiftshader}) {
           const Colours colours = make_colours(type, order, 99);
           std::vector<std::uint16_t> picture(4 * kWidth * kHeight, 0xBEEF);
           pack(colours.view, {depths.data(), 4, 4 * kWidth}, rounding,

@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "scenes/load/mtl_file.h"
 #include "scenes/load/obj_text.h"
 #include "tests/support/mesh_checks.h"
 #include "tests/support/scene_test_files.h"
@@ -101,8 +100,6 @@ TEST_CASE("comments, groups and what else there may be are passed over") {
 TEST_CASE("a complaint about the text names the file, the line and what would be right") {
   CHECK(complaint(triangle_with("f 1 2 4\n")) ==
         "a.obj:4: the face refers to position 4; the file has 3");
-  CHECK(complaint(triangle_with("f 1/1 2 3\n")) ==
-        "a.obj:4: the face refers to texture coordinate 1; the file has 0");
   CHECK(complaint(triangle_with("f 1//9 2 3\n")) ==
         "a.obj:4: the face refers to normal 9; the file has 0");
   CHECK(complaint(triangle_with("f 1 2 0\n")) ==
@@ -115,8 +112,6 @@ TEST_CASE("a complaint about the text names the file, the line and what would be
         "from -1 backwards, would be right");
   CHECK(contains(complaint(triangle_with("f 1 2 x\n")), "a.obj:4: \"x\" is no index"));
   CHECK(contains(complaint(triangle_with("f 1 2 3.5\n")), "a.obj:4: \"3.5\" is no index"));
-  CHECK(complaint(triangle_with("f 1 2\n")) ==
-        "a.obj:4: the face has 2 corners; 3 or more would be right");
   CHECK(complaint("v 0 0 0\nv 1 nan 0\n") ==
         "a.obj:2: nan is out of range; a number from -1e9 to 1e9 would be right");
   CHECK(contains(complaint("v 0 0 inf\n"), "a.obj:1: inf is out of range"));
@@ -125,6 +120,41 @@ TEST_CASE("a complaint about the text names the file, the line and what would be
   CHECK(complaint("v 0 0\n") == "a.obj:1: has 2 numbers; 3 would be right");
   CHECK(complaint("v 0 zero 0\n") == "a.obj:1: \"zero\" is no number");
   CHECK(complaint("vt\n") == "a.obj:1: has 0 numbers; 1 would be right");
+}
+
+TEST_CASE("a face of one or two corners is left out with a warning") {
+  const ObjText obj = parse(triangle_with("f 1\nf 1 2 3\nf 2 3\nf 3 1 2\n"));
+  REQUIRE(obj.faces.size() == 2);
+  CHECK(obj.corners.size() == 6);
+  CHECK(obj.corners[obj.faces[1].first_corner].position == 2);
+  REQUIRE(obj.warnings.size() == 1);
+  CHECK(obj.warnings[0] ==
+        "a.obj:4: 2 faces have fewer than 3 corners and are left out, the first in this line");
+  CHECK(parse(triangle_with("f 1 2 3\nf 1\n")).warnings.at(0) ==
+        "a.obj:5: a face has fewer than 3 corners and is left out");
+  CHECK(complaint(triangle_with("f 1 2\n")) ==
+        "a.obj:4: the face has fewer than 3 corners, as all have; a face of 3 or more would be "
+        "right");
+}
+
+TEST_CASE("a texture coordinate out of range is 0, with a warning") {
+  const ObjText obj =
+      parse(triangle_with("vt 3443870976 0.5\nvt 0.5 nan\nvt 0.25 1e9\nf 1/1 2/2 3/3\n"));
+  CHECK(obj.uvs[0] == glm::vec2{0.0f});
+  CHECK(obj.uvs[1] == glm::vec2{0.0f});
+  CHECK(obj.uvs[2] == glm::vec2{0.25f, 1e9f});
+  REQUIRE(obj.warnings.size() == 1);
+  CHECK(obj.warnings[0] ==
+        "a.obj:4: 2 texture coordinates are out of range; 0 stands in, the first in this line");
+}
+
+TEST_CASE("a corner whose texture coordinate is not there has none, with a warning") {
+  const ObjText obj = parse(triangle_with("vt 0.5 0.5\nf 1/1 2/2 3/9\n"));
+  CHECK(obj.corners[0].uv == 0);
+  CHECK(obj.corners[1].uv == -1);
+  CHECK(obj.corners[2].uv == -1);
+  REQUIRE(obj.warnings.size() == 1);
+  CHECK(contains(obj.warnings[0], "a.obj:5: 2 corners' texture coordinates are not there"));
 }
 
 TEST_CASE("a complaint counts the lines that a backslash joins") {
@@ -247,7 +277,8 @@ TEST_CASE("a normal of length 0 is made anew") {
 }
 
 TEST_CASE("two sides that cancel each have a normal of their own") {
-  const Mesh mesh = load(triangle_with("f 1 2 3\nf 3 2 1\n")).parts[0].mesh;
+  // Two triangles that touch in one corner.
+  const Mesh mesh = load(triangle_with("v -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 5 4\n")).parts[0].mesh;
   CHECK(normal_length_error(mesh) < 1e-6);
   CHECK(normal_agreement(mesh) == doctest::Approx(1.0));
 }
@@ -266,8 +297,6 @@ TEST_CASE("triangles without area are left out, and a model of nothing else is r
                  "no face has an area"));
 }
 
-// --- the materials --------------------------------------------------------------------
-
 TEST_CASE("a model without a library is neutral grey, with no complaint") {
   const ObjModel model = load(kCube);
   CHECK(model.materials[model.parts[0].material].diffuse == glm::vec3{0.5f});
@@ -275,113 +304,16 @@ TEST_CASE("a model without a library is neutral grey, with no complaint") {
 }
 
 TEST_CASE("a model is split by material, in the order of first use") {
-  const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl blue\nf 1 2 3\nusemtl red\n"
-                                            "f 2 3 1\nusemtl blue\nf 3 1 2\n"),
-                              "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+  const ObjModel model =
+      load(triangle_with("v 0 0 1\nmtllib a.mtl\nusemtl blue\nf 1 2 3\nusemtl red\n"
+                         "f 2 3 4\nusemtl blue\nf 3 1 4\n"),
+           "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
   REQUIRE(model.parts.size() == 2);
   CHECK(model.materials[model.parts[0].material].name == "blue");
   CHECK(model.materials[model.parts[0].material].diffuse == glm::vec3{0.0f, 0.0f, 1.0f});
   CHECK(model.parts[0].mesh.indices.size() == 6);
   CHECK(model.materials[model.parts[1].material].name == "red");
   CHECK(model.parts[1].mesh.indices.size() == 3);
-}
-
-TEST_CASE("Ka, Kd, Ks and Ns are read, Ns as a whole number") {
-  const ObjModel model =
-      load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-           "newmtl a\nKa 0.1 0.2 0.3\nKd 0.4 0.5 0.6\nKs 0.7 0.8 0.9\nNs 96.6\nd 0.5\nillum 2\n");
-  const Material& material = model.materials[model.parts[0].material];
-  CHECK(material.ambient == glm::vec3{0.1f, 0.2f, 0.3f});
-  CHECK(material.diffuse == glm::vec3{0.4f, 0.5f, 0.6f});
-  CHECK(material.specular == glm::vec3{0.7f, 0.8f, 0.9f});
-  CHECK(material.shininess == 97);
-  CHECK(material.two_sided);
-}
-
-TEST_CASE("Ns is kept from 1 to 1024") {
-  for (const auto& [written, kept] : {std::pair{"-5", 1}, {"0", 1}, {"1e9", 1024}, {"nan", 1}}) {
-    const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                std::string("newmtl a\nKd 1 1 1\nNs ") + written + "\n");
-    CHECK(model.materials[0].shininess == kept);
-  }
-}
-
-TEST_CASE("a Ka that is black or white means nothing") {
-  for (const char* ka : {"", "Ka 0 0 0\n", "Ka 1 1 1\n"}) {
-    const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                std::string("newmtl a\nKd 0.4 0.5 0.6\n") + ka);
-    CHECK(model.materials[0].ambient == glm::vec3{0.4f, 0.5f, 0.6f});
-  }
-}
-
-TEST_CASE("a texture is loaded once, however many materials have it") {
-  const ObjModel model =
-      load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"),
-           "newmtl a\nKd 1 1 1\nmap_Kd wood.png\nnewmtl b\nKd 1 1 1\nmap_Kd ./wood.png\n");
-  CHECK(model.textures.size() == 1);
-  CHECK(model.materials[0].texture == 0u);
-  CHECK(model.materials[1].texture == 0u);
-}
-
-TEST_CASE("a texture is found by its last part, and a black Kd does not hide it") {
-  const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                              "newmtl a\nKd 0 0 0\nmap_Kd C:\\Users\\me\\wood.png\n");
-  CHECK(model.textures.size() == 1);
-  CHECK(model.materials[0].diffuse == glm::vec3{1.0f});
-  CHECK(model.warnings.empty());
-}
-
-TEST_CASE("a clamped texture is clamped") {
-  const ObjModel model = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                              "newmtl a\nKd 1 1 1\nmap_Kd -clamp on wood.png\n");
-  CHECK(model.materials[0].sampler.wrap_u == Wrap::clamp_to_edge);
-}
-
-TEST_CASE("a missing library, material or texture is a warning, and grey stands in") {
-  const ObjModel without_library = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"));
-  REQUIRE(without_library.warnings.size() == 2);
-  CHECK(contains(without_library.warnings[0], "material library a.mtl is missing"));
-  CHECK(contains(without_library.warnings[1], "material a is not defined"));
-  CHECK(without_library.materials[without_library.parts[0].material].diffuse == glm::vec3{0.5f});
-
-  const ObjModel without_texture = load(triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                        "newmtl a\nKd 1 0 0\nmap_Kd stone.png\n");
-  REQUIRE(without_texture.warnings.size() == 1);
-  CHECK(contains(without_texture.warnings[0], "a.mtl: material a: texture stone.png is missing"));
-  CHECK_FALSE(without_texture.materials[0].texture);
-  CHECK(without_texture.materials[0].diffuse == glm::vec3{0.5f});
-}
-
-TEST_CASE("a texture in another format is left out with a warning") {
-  const TemporaryDirectory directory;
-  write_file(directory.file("a.obj"), triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"));
-  write_file(directory.file("a.mtl"), "newmtl a\nKd 1 0 0\nmap_Kd old.tga\n");
-  write_file(directory.file("old.tga"), "anything");
-  const ObjModel model = load_obj_model(directory.file("a.obj"));
-  REQUIRE(model.warnings.size() == 1);
-  CHECK(contains(model.warnings[0], "neither PNG nor JPEG"));
-}
-
-TEST_CASE("a texture that is there and damaged is an error") {
-  const TemporaryDirectory directory;
-  write_file(directory.file("a.obj"), triangle_with("mtllib a.mtl\nusemtl a\nf 1 2 3\n"));
-  write_file(directory.file("a.mtl"), "newmtl a\nKd 1 0 0\nmap_Kd wood.png\n");
-  write_file(directory.file("wood.png"), png_bytes(32, 32).substr(0, 60));
-  CHECK(contains(scene_error_of([&] { load_obj_model(directory.file("a.obj")); }), "wood.png: "));
-}
-
-TEST_CASE("a library's name may have blanks, and there may be several libraries") {
-  const TemporaryDirectory directory;
-  write_file(directory.file("my colours.mtl"), "newmtl a\nKd 1 0 0\n");
-  write_file(directory.file("b.mtl"), "newmtl b\nKd 0 1 0\n");
-  write_file(directory.file("a.obj"),
-             triangle_with("mtllib my colours.mtl\nmtllib b.mtl none.mtl\nusemtl a\nf 1 2 3\n"
-                           "usemtl b\nf 1 2 3\n"));
-  const ObjModel model = load_obj_model(directory.file("a.obj"));
-  CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
-  CHECK(model.materials[1].diffuse == glm::vec3{0.0f, 1.0f, 0.0f});
-  REQUIRE(model.warnings.size() == 1);
-  CHECK(contains(model.warnings[0], "none.mtl"));
 }
 
 TEST_CASE("a model of 100,000 triangles keeps its triangles and shares its vertices") {

@@ -161,6 +161,36 @@ sway_phase = 0.25
   CHECK(read(object("shape = \"cube\"\nscale = 2\n")).objects[0].scale == glm::dvec3{2.0});
 }
 
+TEST_CASE("a material may have an opacity, and a texture for it") {
+  const Scene scene = read(
+      "[texture.holes]\nkind = \"dots\"\nwrap = \"clamp_to_edge\"\n"
+      "colours = [[1, 1, 1], [0, 0, 0]]\n"
+      "[material.a]\n[material.b]\nopacity = 0.25\nopacity_texture = \"holes\"\n"
+      "[material.c]\nopacity_texture = \"holes\"\n"
+      "[material.d]\nopacity_texture = \"holes\"\ncut_out = true\n");
+  REQUIRE(scene.textures.size() == 2);
+  CHECK(scene.materials[0].opacity == 1.0f);
+  CHECK_FALSE(scene.materials[0].opacity_texture);
+  CHECK(scene.materials[1].opacity == 0.25f);
+  CHECK(scene.materials[1].opacity_texture == 1u);
+  CHECK(scene.materials[1].opacity_sampler.wrap_u == Wrap::clamp_to_edge);
+  CHECK(scene.materials[2].opacity_texture == 1u);
+  CHECK_FALSE(scene.materials[2].cut_out);  // its dots have soft edges
+  CHECK(scene.materials[3].cut_out);
+}
+
+TEST_CASE("an opacity texture of 0 and 1 alone makes a cut-out, unless the scene says otherwise") {
+  const TemporaryDirectory directory;
+  write_file(directory.file("mask.png"), mask_bytes());
+  write_file(directory.file("a.toml"),
+             "[texture.mask]\nfile = \"mask.png\"\n[material.a]\nopacity_texture = \"mask\"\n"
+             "[material.b]\nopacity_texture = \"mask\"\ncut_out = false\n[[object]]\n"
+             "shape = \"cube\"\nmaterial = \"a\"\n");
+  const Scene scene = read_scene_file(directory.file("a.toml"));
+  CHECK(scene.materials[0].cut_out);
+  CHECK_FALSE(scene.materials[1].cut_out);
+}
+
 TEST_CASE("an object may be inside out, and its texture repeat") {
   const Scene scene =
       read(object("shape = \"plane\"\ninside_out = true\ntexture_repeat = [3, 4]\n"));
@@ -332,6 +362,16 @@ TEST_CASE("a shape that is missing or unknown is an error that names those there
   CHECK(contains(complaint("[material.m]\n[[scatter]]\nshape = \"model\"\n"),
                  "scatter.shape: a model cannot be used here"));
   CHECK(contains(complaint(object("shape = \"model\"\n")), "object.file: is missing"));
+}
+
+TEST_CASE("an opacity is 0 to 1, and its texture is there") {
+  CHECK(contains(complaint("[material.m]\nopacity = 1.5\n"), "a.toml:2: material.m.opacity: "));
+  CHECK(contains(complaint("[material.m]\nopacity = \"glass\"\n"), "material.m.opacity: "));
+  CHECK(complaint("[material.m]\ncut_out = true\n") ==
+        "a.toml:2: material.m.cut_out: nothing says where; an `opacity_texture` would");
+  CHECK(complaint("[material.m]\nopacity_texture = \"leaf\"\n") ==
+        "a.toml:2: material.m.opacity_texture: there is no texture \"leaf\"; a table "
+        "[texture.leaf] would be right");
 }
 
 TEST_CASE("a texture is made by formula or read from a file") {

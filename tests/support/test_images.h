@@ -2,6 +2,7 @@
 // Pictures made by rule for the tests.
 
 #include <cstdint>
+#include <utility>
 
 #include "dof/measure/difference.h"
 #include "raster/images/image.h"
@@ -21,6 +22,19 @@ inline Image random_scene_image(int width, int height, std::uint64_t seed) {
       Random patch{seed * 1000 + static_cast<std::uint64_t>(y / 8 * 1000 + x / 8)};
       const float depth = 0.5f + 8.0f * patch.unit();
       store_texel(image, x, y, {random.unit(), random.unit(), random.unit(), depth}, {});
+    }
+  }
+  return image;
+}
+
+/// A picture of one grey and one depth, a pair, at each place.
+template <class GreyAndDepth>
+Image grey_depth_picture(int width, int height, const GreyAndDepth& grey_and_depth) {
+  Image image = make_image(Format::rgba16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::pair<float, float> at = grey_and_depth(x, y);
+      store_texel(image, x, y, {at.first, at.first, at.first, at.second}, {});
     }
   }
   return image;

@@ -22,10 +22,11 @@ std::vector<std::string> texts(const std::string& method, int height_px, bool qu
 
 }  // namespace
 
-TEST_CASE("chart settings: every filter of the table has some, and accumulation, and auto") {
+TEST_CASE("chart settings: every method has some, but those that take rays") {
   const auto names = chart_methods();
-  CHECK(names.size() == methods().size() + 2);
+  CHECK(names.size() == methods().size() + 4);
   CHECK(names[methods().size()] == "accumulation");
+  CHECK(names[methods().size() + 1] == "filtered-views");
   CHECK(names.back() == "auto");
   for (const Method& method : methods()) {
     CAPTURE(method.name);
@@ -56,6 +57,7 @@ TEST_CASE("chart settings: no two entries have an id in common") {
   CHECK(ids.contains("two-pass-r16-d3d11"));
   CHECK(ids.contains("two-pass-r16-fixed-8"));
   CHECK(ids.contains("accumulation-s8"));
+  CHECK(ids.contains("filtered-views-s8"));
   CHECK(ids.contains("auto-e0.02"));
   CHECK(ids.contains("pinhole"));
 }
@@ -110,6 +112,16 @@ TEST_CASE("chart settings: accumulation takes 8 to 64 samples and draws the scen
   CHECK(texts("accumulation", 1024, false) ==
         std::vector<std::string>{"8 samples", "16 samples", "32 samples", "64 samples"});
   CHECK(chart_entries("accumulation", 1024, false).front().filter == nullptr);
+}
+
+TEST_CASE("chart settings: surface-splatting draws the scene in one go, without settings") {
+  const auto entries = chart_entries("surface-splatting", 1024, false);
+  REQUIRE(entries.size() == 1);
+  CHECK(entries[0].filter == nullptr);
+  CHECK(entries[0].of_scene == find_lens_view_method("surface-splatting"));
+  CHECK(entry_id(entries[0]) == "surface-splatting");
+  CHECK(settings_text(entries[0]).empty());
+  CHECK(json_text(settings_json(entries[0])) == "{}");
 }
 
 TEST_CASE("chart settings: auto takes errors, and says what it chose once it has") {

@@ -16,8 +16,9 @@ constexpr int kMostRuns = 1000;
 constexpr std::uint64_t kBenchBytesPerPixel = 72;
 
 /// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and its
-/// depth.
+/// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kLensSumBytesPerPixel = 2 * 32 + 12;
+constexpr std::uint64_t kFilteredViewsBytesPerPixel = 8 * 8;
 
 /// What the method needs of the options beside it.
 void check_method(BenchOptions& options, const CLI::App& parser) {
@@ -25,8 +26,8 @@ void check_method(BenchOptions& options, const CLI::App& parser) {
   const std::string name{method.name()};
   check_auto_options(parser, method);
   check_arithmetic(options.arithmetic, name, options.versus != nullptr);
-  if (method.of_scene != nullptr) {
-    complete_sampling(options.sampling, parser);
+  if (method.of_scene != nullptr && method.of_scene->samples_lens) {
+    complete_sampling(options.sampling, *method.of_scene, parser);
   } else if (!method.is_auto()) {
     refuse_sampling_options(parser, name);
   }
@@ -95,9 +96,10 @@ void complete(BenchOptions& options, const CLI::App& parser) {
   }
   if (options.image) options.size = *options.image;
   check_method(options, parser);
-  check_memory(
-      options.image ? "--image" : "--size", options.size,
-      kBenchBytesPerPixel + (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0));
+  check_memory(options.image ? "--image" : "--size", options.size,
+               kBenchBytesPerPixel +
+                   (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0) +
+                   (options.method.name() == "filtered-views" ? kFilteredViewsBytesPerPixel : 0));
 }
 
 }  // namespace softfocus

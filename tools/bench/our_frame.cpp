@@ -1,6 +1,7 @@
 #include "tools/bench/our_frame.h"
 
 #include "scenes/auto/auto_picture.h"
+#include "scenes/draw/object_numbers.h"
 #include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
@@ -11,7 +12,8 @@ void apply_filter(OurFrame& frame, const Method& method, const DofSettings& sett
   const Image& scene = work.scene ? frame.drawn : work.picture;
   Image& filtered = frame.filtered;  // one memory for all frames
   if (filtered.bytes.empty()) filtered = make_image(scene.format, scene.width, scene.height);
-  apply(method, {scene, settings, work.profile}, filtered, frame.pool);
+  const std::vector<ConstImageView> behind{frame.behind.begin(), frame.behind.end()};
+  apply(method, {scene, settings, work.profile, frame.objects, behind}, filtered, frame.pool);
 }
 
 LensViewInput views_input(OurFrame& frame, const Sampling& sampling) {
@@ -40,10 +42,16 @@ void sample_lens(OurFrame& frame, const LensViewMethod& method, const Sampling& 
   if (method.render == accumulation) {
     // As accumulation() does it, but with textures decoded once for all frames.
     if (!frame.views) frame.views = make_accumulation_buffer(input, frame.pool);
+    frame.views->points = view_points(sampling);
     const auto add_samples = [&](int begin, int end, SampleSums& sums) {
       add_lens_views(*frame.views, input, begin, end, sums, frame.pool);
     };
     sampled = take_samples(input, add_samples, kLensViewGroup, frame.pool);
+  } else if (method.name == "filtered-views") {
+    if (!frame.filtered_views) {
+      frame.filtered_views = make_filtered_views_buffer(input, frame.pool);
+    }
+    sampled = filtered_views(*frame.filtered_views, input, frame.pool);
   } else {
     sampled = method.render(input, frame.pool);
   }
@@ -59,7 +67,15 @@ void draw(OurFrame& frame) {
   if (frame.drawn.bytes.empty()) {
     frame.drawn = make_image(Format::rgba16f, work.size.width, work.size.height);
   }
-  draw_scene(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
+  const std::size_t layers = work.method.filter != nullptr ? work.method.filter->layers : 1;
+  while (frame.behind.size() + 1 < layers) {
+    frame.behind.push_back(make_image(Format::rgba16f, work.size.width, work.size.height));
+  }
+  draw_layers(*frame.scene, work.view, work.frame, frame.drawn, frame.behind, frame.pool);
+  if (work.method.filter != nullptr) {
+    frame.objects = object_numbers_for(*work.method.filter, *work.scene, work.view, work.frame,
+                                       work.size.width, work.size.height, work.profile, frame.pool);
+  }
 }
 
 void filter(OurFrame& frame) {

@@ -1,10 +1,13 @@
 #pragma once
 // Our contender: a frame drawn and given its depth of field again and again.
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "dof/auto/auto_method.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
 #include "tools/bench/work.h"
 
@@ -17,13 +20,16 @@ struct OurFrame {
   ThreadPool& pool;
   std::optional<PreparedScene> scene{};
   std::optional<AccumulationBuffer> views{};
+  std::optional<FilteredViewsBuffer> filtered_views{};
   Image drawn{};
+  std::vector<Image> behind{};           ///< the layers behind it, if the method reads them
+  std::vector<std::uint16_t> objects{};  ///< the drawn objects' numbers, if the method reads them
   Image filtered{};
   std::optional<AutoMethod> choice{};  ///< of auto
   int samples = 0;                     ///< taken by a method that draws the scene
 };
 
-/// Draws the scene; needs one.
+/// Draws the scene, with the objects' numbers if the method reads them; needs one.
 void draw(OurFrame& frame);
 
 /// Gives depth of field to what was drawn, or to the work's picture. Auto looks at the picture and

@@ -42,7 +42,8 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
             "all that have a file)",
             [&options](const std::string& text) { options.scenes = scene_names(text); });
   add_value(parser, "--methods", "A,B,...",
-            "Methods beside the pinhole (default: all filters, accumulation, auto)",
+            "Methods beside the pinhole (default: all filters, accumulation, filtered-views, "
+            "surface-splatting, auto)",
             [&options](const std::string& text) { options.methods = known_methods(text); });
   add_value(
       parser, "--size", "WxH",

@@ -6,6 +6,7 @@
 
 #include "raster/numbers/profile.h"
 #include "scenes/auto/auto_picture.h"
+#include "scenes/draw/object_numbers.h"
 
 namespace softfocus {
 namespace {
@@ -33,6 +34,8 @@ ChartRunner::ChartRunner(const ChartScene& scene, ThreadPool& pool)
 
 RunTime ChartRunner::run(const ChartEntry& entry) {
   if (entry.max_error) return choose(*entry.max_error);
+  if (entry.of_scene != nullptr) return draw_otherwise(*entry.of_scene);
+  if (entry.method == kOfFilteredViews) return filter_views(entry.samples);
   return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
 }
 
@@ -49,7 +52,9 @@ PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
 }
 
 void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
-  apply(filter, {drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile}, result_, pool_);
+  const std::vector<ConstImageView> behind{behind_.begin(), behind_.end()};
+  apply(filter, {drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile, objects_, behind},
+        result_, pool_);
 }
 
 // What belongs to a lens is made once, as it would be for many frames.
@@ -72,8 +77,14 @@ void ChartRunner::filter_drawn(const ChartEntry& entry, const Profile& profile) 
 RunTime ChartRunner::filter(const ChartEntry& entry) {
   const Profile profile = *find_profile(entry.profile);
   PreparedScene& prepared = prepared_for(entry.profile);
+  behind_.resize(entry.filter->layers - 1);
+  for (Image& layer : behind_) {
+    if (layer.bytes.empty()) layer = make_image(Format::rgba16f, drawn_.width, drawn_.height);
+  }
   const Clock::time_point start = Clock::now();
-  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  draw_layers(prepared, scene_.view, scene_.frame, drawn_, behind_, pool_);
+  objects_ = object_numbers_for(*entry.filter, scene_.scene, scene_.view, scene_.frame,
+                                drawn_.width, drawn_.height, profile, pool_);
   const Clock::time_point drawn = Clock::now();
   filter_drawn(entry, profile);
   const Clock::time_point end = Clock::now();
@@ -81,16 +92,23 @@ RunTime ChartRunner::filter(const ChartEntry& entry) {
 }
 
 // The memory is made once, as it would be for many frames.
-void ChartRunner::add_views(int first, int last) {
+AccumulationBuffer& ChartRunner::buffer() {
   if (!buffer_) {
     buffer_ = make_accumulation_buffer(views_, pool_);
-    sums_ = make_sample_sums(drawn_.width, drawn_.height);
+    if (sums_.totals.empty()) sums_ = make_sample_sums(drawn_.width, drawn_.height);
   }
-  if (first == 0) clear_sums(sums_);
-  add_lens_views(*buffer_, views_, first, last, sums_, pool_);
+  return *buffer_;
 }
 
+void ChartRunner::add_views(int first, int last) {
+  AccumulationBuffer& views = buffer();
+  if (first == 0) clear_sums(sums_);
+  add_lens_views(views, views_, first, last, sums_, pool_);
+}
+
+// As accumulation() has it.
 void ChartRunner::add_all_views(int samples) {
+  buffer().points = view_points({.samples = samples});
   for (int first = 0; first < samples; first += kLensViewGroup) {
     add_views(first, std::min(first + kLensViewGroup, samples));
   }
@@ -101,6 +119,27 @@ RunTime ChartRunner::accumulate(int samples) {
   const Clock::time_point start = Clock::now();
   add_all_views(samples);
   return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+RunTime ChartRunner::filter_views(int samples) {
+  if (!filtered_) filtered_ = make_filtered_views_buffer(views_, pool_);
+  if (sums_.totals.empty()) sums_ = make_sample_sums(drawn_.width, drawn_.height);
+  const Clock::time_point start = Clock::now();
+  clear_sums(sums_);
+  set_views(*filtered_, views_, samples);
+  add_filtered_views(*filtered_, views_, sums_, pool_);
+  store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+// The sharp picture tells such a method what is seen, so its drawing counts.
+RunTime ChartRunner::draw_otherwise(const LensViewMethod& method) {
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  result_ = method.render(views_, pool_).picture;
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
 }
 
 AutoMethod ChartRunner::predicted_for(double max_error) {
@@ -140,8 +179,15 @@ void ChartRunner::warm_up(const ChartEntry& entry) {
     }
   } else if (entry.filter != nullptr) {
     filter(entry);
+  } else if (entry.of_scene != nullptr) {
+    draw_otherwise(*entry.of_scene);
+  } else if (entry.method == kOfFilteredViews) {
+    filter_views(std::min(samples, kFilteredViews));
+    return;
   }
-  if (samples > 0) add_views(0, std::min(samples, kLensViewGroup));
+  if (samples == 0) return;
+  buffer().points = view_points({.samples = samples});
+  add_views(0, std::min(samples, kLensViewGroup));
 }
 
 }  // namespace softfocus

@@ -1,11 +1,14 @@
 #pragma once
 // The drawing of each contender's picture, again and again in the same memory.
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dof/auto/auto_method.h"
+#include "scenes/filtered_views/filtered_views.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/settings.h"
 
@@ -40,12 +43,15 @@ class ChartRunner {
  private:
   RunTime filter(const ChartEntry& entry);
   RunTime accumulate(int samples);
+  RunTime filter_views(int samples);
+  RunTime draw_otherwise(const LensViewMethod& method);
   RunTime choose(double max_error);
   AutoMethod predicted_for(double max_error);
   PreparedScene& prepared_for(const std::string& profile);
   void filter_drawn(const Method& filter, float max_coc_px, const Profile& profile);
   void filter_drawn(const ChartEntry& entry, const Profile& profile);
   const FixedTable& table_for(float max_coc_px);
+  AccumulationBuffer& buffer();
   void add_views(int first, int last);
   void warm_up(const ChartEntry& entry);
   void add_all_views(int samples);
@@ -56,8 +62,11 @@ class ChartRunner {
   std::map<std::string, PreparedScene> prepared_;  // by profile
   std::map<float, FixedTable> tables_;             // by radius
   std::optional<AccumulationBuffer> buffer_;
+  std::optional<FilteredViewsBuffer> filtered_;
   SampleSums sums_;
   Image drawn_;
+  std::vector<Image> behind_;           ///< as many layers as the method reads
+  std::vector<std::uint16_t> objects_;  // of the filter drawn last, if it reads them
   Image result_;
   std::string chosen_;
 };

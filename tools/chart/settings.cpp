@@ -36,6 +36,11 @@ const std::vector<SettingsOfMethod>& table() {
        .profiles = {},
        .samples = {8, 16, 32, 64},
        .quick_samples = {8, 32}},
+      {.method = kOfFilteredViews,
+       .radii = false,
+       .profiles = {},
+       .samples = {4, 8, 16, 32},
+       .quick_samples = {8}},
       {.method = kAuto,
        .radii = false,
        .profiles = {},
@@ -59,6 +64,10 @@ std::vector<std::string> chart_methods() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.emplace_back(method.name);
   names.emplace_back(kAccumulation);
+  names.emplace_back(kOfFilteredViews);
+  for (const LensViewMethod& method : lens_view_methods()) {
+    if (!method.samples_lens) names.emplace_back(method.name);
+  }
   names.emplace_back(kAuto);
   return names;
 }
@@ -67,6 +76,10 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
   const SettingsOfMethod& of = settings_of(method);
   std::vector<ChartEntry> entries;
   const Method* const filter = find_method(method);
+  const LensViewMethod* const of_scene = find_lens_view_method(method);
+  if (of_scene != nullptr && !of_scene->samples_lens) {
+    return {{.method = method, .of_scene = of_scene}};
+  }
   for (const int samples : quick ? of.quick_samples : of.samples) {
     entries.push_back({.method = method, .samples = samples});
   }
@@ -96,6 +109,7 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
 
 Json settings_json(const ChartEntry& entry) {
   if (entry.max_error) return {{"max_error", *entry.max_error}, {"chosen", entry.chosen}};
+  if (entry.of_scene != nullptr) return Json::object();
   if (entry.filter == nullptr) return {{"samples", entry.samples}};
   Json json = Json::object();
   if (entry.max_coc_px) json["max_coc_px"] = *entry.max_coc_px;
@@ -118,6 +132,7 @@ std::string settings_text(const ChartEntry& entry) {
 
 std::string setting_within_series(const ChartEntry& entry) {
   if (entry.max_error) return "max-error " + short_number(*entry.max_error);
+  if (entry.of_scene != nullptr) return "";
   if (entry.filter == nullptr) return std::to_string(entry.samples) + " samples";
   return entry.max_coc_px ? "max-coc " + short_number(double{*entry.max_coc_px}) : "";
 }
@@ -125,6 +140,7 @@ std::string setting_within_series(const ChartEntry& entry) {
 std::string entry_id(const ChartEntry& entry) {
   std::string id = entry.method;
   if (entry.max_error) return id + "-e" + short_number(*entry.max_error);
+  if (entry.of_scene != nullptr) return id;
   if (entry.filter == nullptr) return id + "-s" + std::to_string(entry.samples);
   if (entry.max_coc_px) id += "-r" + short_number(double{*entry.max_coc_px});
   if (entry.profile != "ieee") id += "-" + entry.profile;

@@ -8,6 +8,7 @@
 
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
@@ -15,8 +16,11 @@ namespace softfocus {
 /// One contender: a method with its settings. Settings without effect on it are left out.
 struct ChartEntry {
   std::string method;
-  const Method* filter = nullptr;  ///< null: the accumulation of `samples` pictures, or auto
-  std::string profile = "ieee";    ///< a known profile
+  /// Null: accumulation or filtered-views of `samples` pictures, auto, or another method that
+  /// needs the scene.
+  const Method* filter = nullptr;
+  const LensViewMethod* of_scene = nullptr;  ///< which takes no samples
+  std::string profile = "ieee";              ///< a known profile
   std::optional<float> max_coc_px{};
   Arithmetic arithmetic = Arithmetic::floats;  ///< of two-pass
   int samples = 0;
@@ -25,8 +29,11 @@ struct ChartEntry {
 };
 
 inline constexpr std::string_view kPinhole = "pinhole";
+inline constexpr std::string_view kOfFilteredViews = "filtered-views";
 
-/// The names that --methods takes: every filter of dof/dof.h, accumulation and auto.
+/// The names that --methods takes: every filter of dof/dof.h, accumulation,
+/// filtered-views, what
+/// draws the scene in one go, and auto.
 std::vector<std::string> chart_methods();
 
 /// The settings of one method for pictures of that height; fewer if `quick`. Integers have radii
@@ -34,7 +41,7 @@ std::vector<std::string> chart_methods();
 std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, bool quick);
 
 /// {"max_coc_px": 16, "profile": "ieee"}, {"max_coc_px": 16, "profile": "ieee", "arithmetic":
-/// "fixed-8"}, {"samples": 32} or {"max_error": 0.02, "chosen": "disc-layers, radius 16"}.
+/// "fixed-8"}, {"samples": 32}, {} or {"max_error": 0.02, "chosen": "disc-layers, radius 16"}.
 Json settings_json(const ChartEntry& entry);
 
 /// "max-coc 16, d3d11", "32 samples", "max-error 0.02: disc-layers, radius 16"; the profile

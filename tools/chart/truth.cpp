@@ -23,7 +23,8 @@ std::filesystem::path with_ending(const std::filesystem::path& file, const char*
 
 ChartTruth make_truth(const ChartScene& scene, int samples,
                       const std::function<void(int)>& on_samples, ThreadPool& pool) {
-  // Half of the samples must end a group, or the bits would differ from accumulation()'s.
+  // Half of the samples must end a group, or the bits would differ from accumulation()'s with
+  // `until`.
   assert(samples % kTruthSampleStep == 0);
   const LensViewInput input = accumulation_input(scene, samples);
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);

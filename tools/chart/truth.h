@@ -12,7 +12,7 @@
 namespace softfocus {
 
 struct ChartTruth {
-  Image picture;  ///< accumulation() of all samples, to the bit
+  Image picture;  ///< the mean of the first views of lens_points()
   /// The first half of the samples against the second. The picture is the mean of both: its mean
   /// square error is a fourth of their mean square difference.
   ChartErrors noise_floor;

@@ -24,11 +24,12 @@ constexpr std::size_t kRoundsOfLong = 3;
 
 /// Guesses of how long work takes, in drawings of a pinhole's picture. They count until the first
 /// of its kind is done.
-constexpr double kLoadGuess = 20.0, kFilterGuess = 6.0, kAutoGuess = 60.0, kMeasureGuess = 200.0,
-                 kPicturesGuess = 80.0;
+constexpr double kLoadGuess = 20.0, kFilterGuess = 6.0, kAutoGuess = 60.0, kSceneGuess = 60.0,
+                 kMeasureGuess = 200.0, kPicturesGuess = 80.0;
 
 double run_guess(const ChartEntry& entry) {
   if (entry.max_error) return kAutoGuess;
+  if (entry.of_scene != nullptr) return kSceneGuess;
   return entry.filter != nullptr ? kFilterGuess : static_cast<double>(entry.samples);
 }
 

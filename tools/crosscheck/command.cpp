@@ -60,6 +60,7 @@ std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
     }
   }
   std::vector<DriverWork> work;
+  work.reserve(chosen.size());
   for (const Driver* driver : chosen) work.push_back({driver, profile_for(*driver, options), 0});
   if (matching_cases(options.cases, false, false) == 0) {
     throw UsageError("--case '" + options.cases +
@@ -157,11 +158,29 @@ void print_summary(const Count& count, const CrosscheckOptions& options) {
   std::cout << '\n';
 }
 
+// Makes the folder if it is not there, and checks that pictures can be written into it.
+void prepare_folder(const std::filesystem::path& folder) {
+  std::error_code error, unknown;
+  std::filesystem::create_directories(folder, error);
+  // Another process may have made it in the meantime.
+  if (!std::filesystem::is_directory(folder, unknown)) {
+    throw UsageError("--diff: cannot make the folder '" + folder.string() + "'" +
+                     (error ? ": " + error.message() : "") + "; give another place");
+  }
+  try {
+    check_writable(folder / "picture.png");
+  } catch (const FileError& unwritable) {
+    throw UsageError(std::string("--diff: ") + unwritable.what());
+  }
+}
+
 int crosscheck(const CrosscheckOptions& options) {
   Json entries = Json::array();
   Count count;
   bool complete = true;
-  for (const DriverWork& work : planned_work(options)) {
+  const std::vector<DriverWork> planned = planned_work(options);
+  if (!options.pictures.empty()) prepare_folder(options.pictures);
+  for (const DriverWork& work : planned) {
     count.planned += work.cases;
     std::string error;
     if (work.cases == 0) {
@@ -205,33 +224,6 @@ int crosscheck(const CrosscheckOptions& options) {
   return complete && count.failed == 0 ? kEqual : kIncomplete;
 }
 
-// A folder that pictures can be written into.
-std::filesystem::path checked_folder(const std::string& text) {
-  std::error_code unknown;
-  if (!std::filesystem::is_directory(text, unknown)) {
-    throw UsageError("--diff '" + text + "': there is no such folder");
-  }
-  const std::filesystem::path folder{text};
-  try {
-    check_writable(folder / "picture.png");
-  } catch (const FileError& error) {
-    throw UsageError(std::string("--diff: ") + error.what());
-  }
-  return folder;
-}
-
-Shaders checked_shaders(const std::string& text) {
-  std::error_code unknown;
-  if (!std::filesystem::is_directory(text, unknown)) {
-    throw UsageError("--shaders '" + text + "': there is no such folder");
-  }
-  try {
-    return read_shaders(text);
-  } catch (const std::runtime_error& error) {
-    throw UsageError(std::string("--shaders: ") + error.what());
-  }
-}
-
 }  // namespace
 
 Command add_crosscheck_command(CLI::App& program) {
@@ -239,7 +231,7 @@ Command add_crosscheck_command(CLI::App& program) {
                                  "Compare the emulation with GL drivers, value by "
                                  "value; status 0 equal, 1 different, 2 error");
   const auto options = std::make_shared<CrosscheckOptions>();
-  add_driver_option(*parser, "Driver to compare with, may be repeated (default: Mesa's three)",
+  add_driver_option(*parser, "Driver to compare with, may be repeated (default: Mesa's four)",
                     [options](const Driver& driver) {
                       auto& chosen = options->drivers;
                       if (std::find(chosen.begin(), chosen.end(), &driver) == chosen.end()) {
@@ -250,11 +242,13 @@ Command add_crosscheck_command(CLI::App& program) {
                      [options](const ChosenProfile& chosen) { options->profile = chosen; });
   add_value(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
             [options](const std::string& text) { options->cases = text; });
-  add_value(*parser, "--shaders", "DIR",
-            "Shaders there take the place of those of the same name (see softfocus shaders)",
-            [options](const std::string& text) { options->shaders = checked_shaders(text); });
-  add_value(*parser, "--diff", "DIR", "Write a picture there for each case that differs",
-            [options](const std::string& text) { options->pictures = checked_folder(text); });
+  add_shaders_option(*parser, options->shaders);
+  add_value(*parser, "--diff", "DIR",
+            "Write there a picture and both sides' values of each case that differs",
+            [options](const std::string& text) {
+              if (text.empty()) throw UsageError("--diff '': give the name of a folder");
+              options->pictures = text;
+            });
   add_flag(*parser, "--quick", "A representative part, under a minute", options->quick);
   add_flag(*parser, "--json", "Print JSON", options->json);
   return {parser, [options] { return crosscheck(*options); }};

@@ -24,7 +24,7 @@ int matching_cases(const std::string&, bool, bool) { refuse(); }
 Probe probe_driver(const Driver&) { refuse(); }
 
 struct FrameOnGl::State {};
-FrameOnGl::FrameOnGl(const Driver&) { refuse(); }
+FrameOnGl::FrameOnGl(const Driver&, Shaders) { refuse(); }
 FrameOnGl::~FrameOnGl() = default;
 std::string FrameOnGl::renderer() const { refuse(); }
 Image FrameOnGl::draw(const Scene&, const CameraMatrices&, double, int, int) { refuse(); }

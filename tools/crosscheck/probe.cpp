@@ -20,7 +20,7 @@ namespace {
 struct Laboratory {
   const GlContext& gl;
   Shaders shaders;
-  ThreadPool pool{hardware_threads()};
+  ThreadPool& pool;
   std::vector<Case> cases = crosscheck_cases();
 };
 
@@ -35,7 +35,7 @@ Tally run(Laboratory& lab, const std::vector<std::string>& names, const Profile&
   return tally;
 }
 
-struct Candidate {
+struct ProfileCandidate {
   std::string name;
   Profile profile;
 };
@@ -46,12 +46,12 @@ std::string out_of(const Tally& tally) {
 
 // Takes the candidate under which the least differs from the driver; the first of equals.
 ProbeFinding choose(Laboratory& lab, const std::string& question,
-                    const std::vector<std::string>& cases, const std::vector<Candidate>& candidates,
-                    Profile& profile) {
+                    const std::vector<std::string>& cases,
+                    const std::vector<ProfileCandidate>& candidates, Profile& profile) {
   ProbeFinding finding{question, "", ""};
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   std::string rest;
-  for (const Candidate& candidate : candidates) {
+  for (const ProfileCandidate& candidate : candidates) {
     const Tally tally = run(lab, cases, candidate.profile);
     if (tally.differing < least) {
       least = tally.differing;
@@ -67,9 +67,9 @@ ProbeFinding choose(Laboratory& lab, const std::string& question,
 
 // `profile` with a member set to each of some values.
 template <class Value>
-std::vector<Candidate> variants(const Profile& profile, Value Profile::*member,
-                                const std::vector<std::pair<Value, const char*>>& values) {
-  std::vector<Candidate> candidates;
+std::vector<ProfileCandidate> variants(const Profile& profile, Value Profile::*member,
+                                       const std::vector<std::pair<Value, const char*>>& values) {
+  std::vector<ProfileCandidate> candidates;
   for (const auto& [value, name] : values) {
     candidates.push_back({name, profile});
     candidates.back().profile.*member = value;
@@ -77,8 +77,8 @@ std::vector<Candidate> variants(const Profile& profile, Value Profile::*member,
   return candidates;
 }
 
-std::vector<Candidate> texture_candidates(const Profile& profile) {
-  std::vector<Candidate> candidates;
+std::vector<ProfileCandidate> texture_candidates(const Profile& profile) {
+  std::vector<ProfileCandidate> candidates;
   const auto add = [&](const char* name, TextureUnit unit, BilinearWeights weights,
                        Contraction lerp) -> Profile& {
     candidates.push_back({name, profile});
@@ -97,11 +97,12 @@ std::vector<Candidate> texture_candidates(const Profile& profile) {
   add("llvmpipe, unfused", TextureUnit::llvmpipe, BilinearWeights::binary32, unfused);
   add("llvmpipe, fused", TextureUnit::llvmpipe, BilinearWeights::binary32, fused);
   add("softpipe, unfused", TextureUnit::softpipe, BilinearWeights::binary32, unfused);
+  add("SwiftShader, unfused", TextureUnit::swiftshader, BilinearWeights::binary32, unfused);
   return candidates;
 }
 
-std::vector<Candidate> coverage_candidates(const Profile& profile) {
-  std::vector<Candidate> candidates;
+std::vector<ProfileCandidate> coverage_candidates(const Profile& profile) {
+  std::vector<ProfileCandidate> candidates;
   for (const int bits : {8, 7, 6, 5, 4}) {
     for (const FillRule rule : {FillRule::upper_left, FillRule::lower_left}) {
       candidates.push_back({std::to_string(bits) + " subpixel bits, " +
@@ -117,9 +118,9 @@ std::vector<Candidate> coverage_candidates(const Profile& profile) {
   return candidates;
 }
 
-std::vector<Candidate> attribute_candidates(const Profile& profile) {
+std::vector<ProfileCandidate> attribute_candidates(const Profile& profile) {
   if (profile.coverage == Coverage::scanlines) return {{"planes by quad", profile}};
-  std::vector<Candidate> candidates;
+  std::vector<ProfileCandidate> candidates;
   for (const Contraction viewport : {Contraction::unfused, Contraction::fused}) {
     const auto add = [&](const std::string& name, AttributeSetup setup, Contraction interpolation) {
       const char* window = viewport == Contraction::fused ? ", fused viewport" : "";
@@ -135,8 +136,8 @@ std::vector<Candidate> attribute_candidates(const Profile& profile) {
   return candidates;
 }
 
-std::vector<Candidate> clipping_candidates(const Profile& profile) {
-  std::vector<Candidate> candidates;
+std::vector<ProfileCandidate> clipping_candidates(const Profile& profile) {
+  std::vector<ProfileCandidate> candidates;
   for (const Clipping clipping : {Clipping::standard, Clipping::mesa}) {
     for (const float guard_band : {1.0f, 2.0f, 4.0f, 8.0f, 16.0f}) {
       candidates.push_back({std::string(clipping == Clipping::standard ? "plain" : "as Mesa") +
@@ -264,8 +265,7 @@ ProbeFinding weight_table(Laboratory& lab) {
 }
 
 // "NVIDIA H200/PCIe/SSE2" -> "nvidia-h200-pcie-sse2"
-std::string profile_name(const Driver& driver, const std::string& renderer) {
-  if (is_software(driver)) return std::string(driver.name) + "-probed";
+std::string profile_name(const std::string& renderer) {
   std::string name;
   for (const char c : renderer) {
     const auto letter = static_cast<unsigned char>(c);
@@ -281,14 +281,22 @@ std::string profile_name(const Driver& driver, const std::string& renderer) {
 
 }  // namespace
 
+// A browser's one driver is open already.
+#ifndef __EMSCRIPTEN__
 Probe probe_driver(const Driver& driver) {
   const GlContext gl{driver};
-  Laboratory lab{gl, {}};
+  ThreadPool pool{hardware_threads()};
+  return probe_context(gl, is_software(driver) ? std::string(driver.name) + "-probed" : "", pool);
+}
+#endif
+
+Probe probe_context(const GlContext& gl, const std::string& name, ThreadPool& pool) {
+  Laboratory lab{gl, {}, pool};
   Probe probe;
   probe.renderer = gl.renderer() + ", OpenGL " + gl.version();
   Profile& profile = probe.profile.profile;
   const auto ask = [&](const std::string& question, const std::vector<std::string>& cases,
-                       const std::vector<Candidate>& candidates) {
+                       const std::vector<ProfileCandidate>& candidates) {
     probe.findings.push_back(choose(lab, question, cases, candidates, profile));
   };
   using P = Profile;
@@ -299,7 +307,8 @@ Probe probe_driver(const Driver& driver) {
   ask("floats stored as halves", {"store/rgba16f-around-every-half"},
       variants(profile, &P::half_store,
                {{HalfRounding::nearest_even, "nearest even"},
-                {HalfRounding::toward_zero, "toward zero"}}));
+                {HalfRounding::toward_zero, "toward zero"},
+                {HalfRounding::swiftshader, "as SwiftShader"}}));
   ask("floats stored as bytes", {"store/rgba8-around-every-byte", "store/rgba8-random"},
       variants(
           profile, &P::unorm_store,
@@ -319,7 +328,7 @@ Probe probe_driver(const Driver& driver) {
   ask("clipping", {"coverage/across-edges-4000", "attributes/across-edges"},
       clipping_candidates(profile));
 
-  probe.profile.name = profile_name(driver, gl.renderer());
+  probe.profile.name = name.empty() ? profile_name(gl.renderer()) : name;
   probe.profile.summary = probe.renderer;
   return probe;
 }

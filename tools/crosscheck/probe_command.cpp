@@ -7,7 +7,6 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/crosscheck/probe.h"
-#include "tools/files/profile_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/options/run_options.h"
 
@@ -28,12 +27,7 @@ int probe(const ProbeOptions& options) {
   } catch (const DriverError& error) {
     throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
   }
-  std::string heading = "Probed by softfocus " SOFTFOCUS_VERSION " on " + probed.renderer +
-                        "\nFor --profile FILE. What the answers rest on:\n";
-  for (const ProbeFinding& finding : probed.findings) {
-    heading += "- " + finding.question + ": " + finding.answer + " (" + finding.evidence + ")\n";
-  }
-  const std::string text = profile_text(probed.profile, heading);
+  const std::string text = probe_text(probed);
   if (options.output.empty()) {
     std::cout << text;
   } else {

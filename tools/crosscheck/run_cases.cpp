@@ -21,15 +21,22 @@ std::vector<Case> chosen_cases(const std::string& pattern, bool quick, bool slow
   return chosen;
 }
 
+// Of a case, without the ending.
 std::filesystem::path picture_name(const CrosscheckWork& work, const std::string& stage,
                                    const std::string& name) {
-  return work.pictures / (std::string(work.driver.name) + '.' + stage + '.' + name + ".png");
+  return work.pictures / (std::string(work.driver.name) + '.' + stage + '.' + name);
 }
 
-void write_picture(const Tally& tally, const std::filesystem::path& name) {
-  WholeFile file{name};
-  file.write(encode_png(side_by_side(tally)));
-  file.commit();
+// The three get their names together, when nothing can fail but the naming.
+void write_pictures(const Tally& tally, const std::filesystem::path& name) {
+  const auto ending = [&](const char* text) { return std::filesystem::path{name} += text; };
+  WholeFile picture{ending(".png")}, driver{ending(".driver.npy")}, ours{ending(".emulation.npy")};
+  picture.write(encode_png(side_by_side(tally)));
+  driver.write(encode_npy(tally.driver));
+  ours.write(encode_npy(tally.emulated));
+  picture.commit();
+  driver.commit();
+  ours.commit();
 }
 
 Json line_of(const Case& one, const Tally& tally, bool has_picture, const std::string& error) {
@@ -61,7 +68,7 @@ CaseResult result_of(const Json& line, const CrosscheckWork& work) {
   result.max_ulp = static_cast<std::uint32_t>(line.at("max_ulp").integer());
   result.error = line.at("error").text();
   if (line.at("has_picture").boolean()) {
-    result.picture = picture_name(work, result.stage, result.name).string();
+    result.picture = picture_name(work, result.stage, result.name).string() + ".png";
   }
   if (const Json* first = line.find("first")) {
     const auto whole = [&](const char* name) {
@@ -90,7 +97,7 @@ void compare_all(const CrosscheckWork& work, const SendLine& send) {
     try {
       one.run(bench, tally);
       if (tally.differing != 0 && !work.pictures.empty()) {
-        write_picture(tally, picture_name(work, one.stage, one.name));
+        write_pictures(tally, picture_name(work, one.stage, one.name));
         has_picture = true;
       }
     } catch (const std::exception& refused) {
@@ -101,16 +108,6 @@ void compare_all(const CrosscheckWork& work, const SendLine& send) {
 }
 
 }  // namespace
-
-std::vector<Case> crosscheck_cases() {
-  std::vector<Case> cases;
-  add_store_cases(cases);
-  add_texture_cases(cases);
-  add_triangle_cases(cases);
-  add_scene_cases(cases);
-  add_filter_cases(cases);
-  return cases;
-}
 
 DriverRun run_cases(const CrosscheckWork& work,
                     const std::function<void(const CaseResult&)>& report) {

@@ -32,7 +32,8 @@ struct CrosscheckWork {
   Shaders shaders;
   std::string cases = "*";  ///< a pattern for "stage/name"
   bool quick = false;
-  std::filesystem::path pictures;  ///< where to write what differs; empty: nowhere
+  /// Where to write what differs: the picture, and both sides' values. Empty: nowhere.
+  std::filesystem::path pictures;
   int threads = 1;
 };
 

@@ -13,12 +13,45 @@
 namespace softfocus {
 namespace {
 
+constexpr std::string_view kTies = "ties";
+
+// Triangles of which many lie at one depth over each other, in two objects of one mesh: their order
+// is that of submission.
+Scene tied_triangles() {
+  Scene scene;
+  scene.name = kTies;
+  scene.camera = {.position = {0, 0, 0}, .target = {0, 0, -1}, .near_m = 0.5, .far_m = 50};
+  RandomNumbers random{5};
+  Mesh mesh;
+  for (int i = 0; i < 3 * 200; ++i) {
+    const float depth_m = 2.0f + 0.5f * static_cast<float>(i / 3 % 3);
+    mesh.positions.push_back({random.between(-2.0f, 2.0f), random.between(-2.0f, 2.0f), -depth_m});
+    mesh.normals.push_back({random.between(-0.5f, 0.5f), random.between(-0.5f, 0.5f), 0.7f});
+    mesh.indices.push_back(static_cast<std::uint32_t>(i));
+  }
+  scene.meshes.push_back(std::move(mesh));
+  scene.lights.push_back({LightKind::directional, {0.3f, 0.4f, 1.0f}, glm::vec3{1.0f}});
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    Material material;
+    material.diffuse = i == 0 ? glm::vec3{0.9f, 0.3f, 0.2f} : glm::vec3{0.2f, 0.4f, 0.9f};
+    material.two_sided = true;
+    scene.materials.push_back(material);
+    Object object;
+    object.material = i;
+    scene.objects.push_back(object);
+  }
+  return scene;
+}
+
 // Making a scene's textures takes longer than drawing it small: each is loaded once.
 const Scene& loaded(const std::string& name) {
   static std::map<std::string, Scene> scenes;
   auto found = scenes.find(name);
   if (found == scenes.end()) {
-    found = scenes.emplace(name, load_scene(name, scene_search_path({}))).first;
+    found = scenes
+                .emplace(name,
+                         name == kTies ? tied_triangles() : load_scene(name, scene_search_path({})))
+                .first;
   }
   return found->second;
 }
@@ -58,14 +91,46 @@ void scene_both(const Bench& bench, Tally& tally, const SceneCase& what) {
                apply(*find_method(what.method), {emulated, settings, bench.profile}, bench.pool));
 }
 
+constexpr std::size_t kPeeledLayers = 3;
+
+void layers_both(const Bench& bench, Tally& tally, const SceneCase& what) {
+  const Scene& scene = loaded(what.scene);
+  const CameraMatrices view = camera_matrices(scene.camera, what.frame, what.width, what.height);
+  GlScene on_gl{bench.gl, bench.shaders, scene};
+  const std::vector<Image> drawn =
+      on_gl.draw_layers(view, what.frame, what.width, what.height, kPeeledLayers);
+  const std::vector<Image> emulated = draw_layers(scene, view, what.frame, what.width, what.height,
+                                                  kPeeledLayers, bench.profile, bench.pool);
+  for (std::size_t i = 0; i < kPeeledLayers; ++i) add_pictures(tally, drawn[i], emulated[i]);
+}
+
+std::string size_and_frame(const SceneCase& what) {
+  std::string name = what.scene + '-' + std::to_string(what.width) + 'x' +
+                     std::to_string(what.height) + "-frame" +
+                     std::to_string(static_cast<int>(what.frame));
+  std::replace(name.begin(), name.end(), ':', '-');  // a file of --diff has this name
+  return name;
+}
+
 }  // namespace
+
+void add_peel_cases(std::vector<Case>& cases) {
+  const auto add = [&](const SceneCase& what, bool quick, bool slow_too) {
+    cases.push_back(
+        {"peel", size_and_frame(what), quick, slow_too,
+         [what](const Bench& bench, Tally& tally) { layers_both(bench, tally, what); }});
+  };
+  for (const char* scene : {"ties", "sphere-world", "near-fence", "foliage", "lattice", "interior",
+                            "canopy", "random:6", "random:20"}) {
+    add({scene, 128, 96, 7}, true, true);
+    add({scene, 512, 512, 7}, false, false);
+  }
+  add({"clutter", 333, 517, 31}, false, false);
+}
 
 void add_scene_cases(std::vector<Case>& cases) {
   const auto add = [&](const SceneCase& what, bool quick, bool slow_too) {
-    std::string name = what.scene + '-' + std::to_string(what.width) + 'x' +
-                       std::to_string(what.height) + "-frame" +
-                       std::to_string(static_cast<int>(what.frame));
-    std::replace(name.begin(), name.end(), ':', '-');  // a file of --diff has this name
+    std::string name = size_and_frame(what);
     if (what.method != nullptr) name += std::string("-") + what.method;
     cases.push_back({what.method == nullptr ? "scene" : "frame", name, quick, slow_too,
                      [what](const Bench& bench, Tally& tally) { scene_both(bench, tally, what); }});
@@ -85,9 +150,9 @@ void add_scene_cases(std::vector<Case>& cases) {
       add({scene, 512, 512, 100, method}, false, false);
     }
   }
-  for (const char* scene : {"bright-edges", "clutter", "dunes", "foliage", "grazing-floor",
-                            "interior", "lattice", "near-fence", "night-lights", "portrait",
-                            "random:1", "random:6", "random:20", "random:48"}) {
+  for (const char* scene : {"bright-edges", "canopy", "clutter", "dunes", "foliage",
+                            "grazing-floor", "interior", "lattice", "near-fence", "night-lights",
+                            "portrait", "random:1", "random:6", "random:20", "random:48"}) {
     add({scene, 128, 96, 7, nullptr}, true, true);
     add({scene, 512, 512, 7, nullptr}, false, false);
     add({scene, 512, 512, 7, "two-pass"}, false, false);

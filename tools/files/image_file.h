@@ -34,6 +34,8 @@ struct Picture {
 Bytes encode(const Image& image, FileFormat format);
 Bytes encode_png(const Image& image);
 Bytes encode_pfm(const Image& image);
+/// Takes every format, value by value as it is: (height, width, channels) of bytes, halves or
+/// binary32. decode_npy() reads halves and binary32 of 3 or 4 channels.
 Bytes encode_npy(const Image& image);
 
 /// The way back. Throws FileError with what is wrong, the file itself unnamed.

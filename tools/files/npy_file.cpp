@@ -137,24 +137,41 @@ Header take_header(std::span<const std::byte>& rest) {
 }  // namespace
 
 Bytes encode_npy(const Image& image) {
-  std::string header = "{'descr': '<f2', 'fortran_order': False, 'shape': (" +
-                       std::to_string(image.height) + ", " + std::to_string(image.width) +
-                       ", 4), }";
+  const int channels = channel_count(image.format);
+  const std::size_t value_bytes =
+      bytes_per_texel(image.format) / static_cast<std::size_t>(channels);
+  const char* const type = value_bytes == 1 ? "|u1" : value_bytes == 2 ? "<f2" : "<f4";
+  std::string header = std::string{"{'descr': '"} + type + "', 'fortran_order': False, 'shape': (" +
+                       std::to_string(image.height) + ", " + std::to_string(image.width) + ", " +
+                       std::to_string(channels) + "), }";
   const std::size_t before = kMagic.size() + 4;
   const std::size_t end = (before + header.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
   header.append(end - before - header.size() - 1, ' ');
   header.push_back('\n');
 
   Bytes bytes;
-  bytes.reserve(end +
-                8 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  bytes.reserve(end + bytes_per_texel(image.format) * static_cast<std::size_t>(image.width) *
+                          static_cast<std::size_t>(image.height));
   for (const char c : kMagic) bytes.push_back(static_cast<std::byte>(c));
   append_little_endian(bytes, std::uint16_t{1});  // version 1.0
   append_little_endian(bytes, static_cast<std::uint16_t>(header.size()));
   for (const char c : header) bytes.push_back(static_cast<std::byte>(c));
   for (int y = 0; y < image.height; ++y) {
-    for (const std::uint16_t half : row<std::uint16_t>(image, y)) {
-      append_little_endian(bytes, half);
+    switch (value_bytes) {
+      case 1:
+        for (const std::uint8_t value : row<std::uint8_t>(image, y)) {
+          append_little_endian(bytes, value);
+        }
+        break;
+      case 2:
+        for (const std::uint16_t half : row<std::uint16_t>(image, y)) {
+          append_little_endian(bytes, half);
+        }
+        break;
+      default:
+        for (const float value : row<float>(image, y)) {
+          append_little_endian(bytes, std::bit_cast<std::uint32_t>(value));
+        }
     }
   }
   return bytes;

@@ -23,10 +23,11 @@ struct ChoiceKey {
   std::string_view meaning;
 };
 
-constexpr std::array<std::string_view, 2> kHalfWords{"nearest-even", "toward-zero"};
+constexpr std::array<std::string_view, 3> kHalfWords{"nearest-even", "toward-zero", "swiftshader"};
 constexpr std::array<std::string_view, 2> kUnormWords{"half-up", "nearest-even"};
 constexpr std::array<std::string_view, 2> kDenormalWords{"keep", "flush"};
-constexpr std::array<std::string_view, 3> kTextureWords{"plain", "llvmpipe", "softpipe"};
+constexpr std::array<std::string_view, 4> kTextureWords{"plain", "llvmpipe", "softpipe",
+                                                        "swiftshader"};
 constexpr std::array<std::string_view, 2> kWeightWords{"binary32", "fixed-8"};
 constexpr std::array<std::string_view, 2> kFilterWords{"floats", "integers"};
 constexpr std::array<std::string_view, 2> kFusedWords{"unfused", "fused"};

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/gl/lavapipe.h"
+
 namespace softfocus {
 namespace {
 
@@ -39,9 +41,10 @@ bool is_software_renderer(const std::string& renderer) {
 // the user has set would change what a software driver computes, and goes; all but
 // where drivers are found. No shader compiled for another CPU comes out of a cache.
 void set_environment(const Driver& driver, std::optional<int> threads) {
-  static constexpr std::array<std::string_view, 10> kPrefixes{
-      "MESA_",     "GALLIUM_", "GALLIVM_", "LP_",   "DRAW_",
-      "SOFTPIPE_", "NIR_",     "ST_",      "TGSI_", "LIBGL_"};
+  static constexpr std::array<std::string_view, 13> kPrefixes{
+      "MESA_", "GALLIUM_", "GALLIVM_", "LP_",   "DRAW_", "SOFTPIPE_", "NIR_",
+      "ST_",   "TGSI_",    "LIBGL_",   "ZINK_", "LVP_",  "VK_"};
+  const std::string vulkan_files = driver.on_lavapipe ? lavapipe_files() : "";
   std::vector<std::string> names;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
@@ -55,6 +58,12 @@ void set_environment(const Driver& driver, std::optional<int> threads) {
   ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
   ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   ::setenv("GALLIUM_DRIVER", std::string(driver.gallium_driver).c_str(), 1);
+  if (!vulkan_files.empty()) {
+    ::setenv("VK_ICD_FILENAMES", vulkan_files.c_str(), 1);
+    // Mesa's layer that picks a device asks for displays, and libwayland complains if there is
+    // none.
+    ::setenv("NODEVICE_SELECT", "1", 1);
+  }
   if (threads) {
     // Beside the calling one, which then waits; 0: the calling one does it all.
     const int beside = *threads == 1 ? 0 : *threads;
@@ -136,6 +145,7 @@ void GlContext::close() {
 GlContext::GlContext(const Driver& driver, std::optional<int> threads) {
   require_library({"libEGL.so.1"}, "libegl1");
   require_library({"libOpenGL.so.0", "libGL.so.1"}, "libgl1");
+  if (driver.on_lavapipe) require_library({"libvulkan.so.1"}, "libvulkan1");
   if (is_software(driver)) set_environment(driver, threads);
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (is_software(driver)) {

@@ -1,8 +1,11 @@
 #pragma once
-// OpenGL without a display: an EGL context on one driver, current in the thread that
-// made it. No window, no default framebuffer: everything is drawn into textures.
+// OpenGL without a display: a context on one driver, current in the thread that made it, by EGL
+// (context.cpp) or in a browser by WebGL2 (web_context.cpp). No window, no default framebuffer:
+// everything is drawn into textures.
 
+#ifndef __EMSCRIPTEN__
 #include <epoxy/egl.h>
+#endif
 
 #include <optional>
 #include <string>
@@ -16,7 +19,7 @@ class GlContext {
   /// Opens the driver, setting the environment in which it is found: only the first
   /// driver of a process counts. `threads` is for llvmpipe; without it, it takes all of the
   /// machine's. Throws DriverError if there is no EGL, no such driver, or if its
-  /// GL is older than 3.3.
+  /// GL is older than 3.3. In a browser there is one driver, whatever `driver` says.
   explicit GlContext(const Driver& driver, std::optional<int> threads = {});
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -25,19 +28,37 @@ class GlContext {
   const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
   const std::string& version() const { return version_; }    ///< GL_VERSION
 
-  /// What every shader begins with: its version, and a meaning for `precise`, which
-  /// GLSL has from 4.00 on.
+  /// What every shader begins with: its version, the precision that GLSL ES needs, and a meaning
+  /// for `precise`, which GLSL has from 4.00 on.
   const std::string& shader_header() const { return shader_header_; }
 
+  /// Whether varyings can be linear in the window, as WebGL2's need not: without it,
+  /// `noperspective` means nothing to shaders.
+  bool has_linear_varyings() const { return has_linear_varyings_; }
+
+  /// Whether a browser has taken the driver away: nothing works from then on.
+  bool is_lost() const;
+
  private:
+#ifdef __EMSCRIPTEN__
+  int context_ = 0;
+#else
   EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext context_ = EGL_NO_CONTEXT;
+#endif
+  bool has_linear_varyings_ = true;
   std::string renderer_;
   std::string version_;
   std::string shader_header_;
 
+#ifndef __EMSCRIPTEN__
   bool open(EGLDisplay display);
+#endif
   void close();
 };
+
+#ifndef __EMSCRIPTEN__
+inline bool GlContext::is_lost() const { return false; }
+#endif
 
 }  // namespace softfocus

@@ -16,15 +16,17 @@ std::string_view profile_of_llvmpipe() {
 }  // namespace
 
 std::span<const Driver> drivers() {
-  static const std::array kDrivers{
+  static const std::array known{
       Driver{"llvmpipe", "Mesa's software renderer, compiled for this CPU", profile_of_llvmpipe(),
              "llvmpipe", ""},
       Driver{"llvmpipe-sse41", "the same held to SSE4.1, without fused multiply-add",
              "llvmpipe-sse41", "llvmpipe", "sse4.1"},
       Driver{"softpipe", "Mesa's reference renderer, slow", "softpipe", "softpipe", "", true},
+      Driver{"lavapipe", "Mesa's Vulkan driver for the CPU, under OpenGL by zink",
+             profile_of_llvmpipe(), "zink", "", false, true},
       Driver{"gpu", "the first hardware GPU that EGL lists", "", "", ""},
   };
-  return kDrivers;
+  return known;
 }
 
 const Driver* find_driver(std::string_view name) {

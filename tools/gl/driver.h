@@ -25,6 +25,8 @@ struct Driver {
   std::string_view cpu_caps;
   /// Draws so slowly that it gets small pictures only.
   bool slow = false;
+  /// The gallium driver draws by Vulkan, and Vulkan by lavapipe.
+  bool on_lavapipe = false;
 };
 
 inline bool is_software(const Driver& driver) { return !driver.gallium_driver.empty(); }
@@ -39,7 +41,7 @@ auto naming(const Driver& driver, const Work& work) {
   }
 }
 
-/// llvmpipe, llvmpipe-sse41, softpipe, gpu.
+/// llvmpipe, llvmpipe-sse41, softpipe, lavapipe, gpu.
 std::span<const Driver> drivers();
 
 /// The driver of that name, or nullptr.

@@ -11,8 +11,8 @@ struct FrameOnGl::State {
   Shaders shaders;
 };
 
-FrameOnGl::FrameOnGl(const Driver& driver) {
-  naming(driver, [&] { state_.reset(new State{driver, GlContext{driver}, {}}); });
+FrameOnGl::FrameOnGl(const Driver& driver, Shaders shaders) {
+  naming(driver, [&] { state_.reset(new State{driver, GlContext{driver}, std::move(shaders)}); });
 }
 
 FrameOnGl::~FrameOnGl() = default;
@@ -28,6 +28,14 @@ Image FrameOnGl::draw(const Scene& scene, const CameraMatrices& view, double fra
     const GlTarget target = make_scene_target(width, height);
     on_gl.draw(view, frame, target);
     return read_colour(target, 0);
+  });
+}
+
+std::vector<Image> FrameOnGl::draw_layers(const Scene& scene, const CameraMatrices& view,
+                                          double frame, int width, int height, std::size_t layers) {
+  return naming(state_->driver, [&] {
+    GlScene on_gl{state_->context, state_->shaders, scene};
+    return on_gl.draw_layers(view, frame, width, height, layers);
   });
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cassert>
 
+#include "raster/images/texel.h"
+
 namespace softfocus {
 namespace {
 
@@ -90,6 +92,9 @@ void set_parameter(GLenum parameter, GLint value) {
   glTexParameteri(GL_TEXTURE_2D, parameter, value);
 }
 
+// WebGL's, once: a driver that hung, or a browser that needs the GPU.
+constexpr GLenum kContextLost = 0x9242;
+
 void check_error(const char* doing) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;
@@ -97,6 +102,7 @@ void check_error(const char* doing) {
   }
   const char* what = error == GL_OUT_OF_MEMORY                   ? "out of memory"
                      : error == GL_INVALID_FRAMEBUFFER_OPERATION ? "incomplete framebuffer"
+                     : error == kContextLost                     ? "its context is lost"
                      : error == GL_INVALID_VALUE                 ? "invalid value"
                      : error == GL_INVALID_ENUM                  ? "invalid enum"
                                                                  : "invalid operation";
@@ -113,7 +119,45 @@ GlTexture empty_texture(GLenum internal, GLenum layout, GLenum type, int width, 
   return texture;
 }
 
-GLuint compile(GLenum stage, const std::string& source, std::string_view name) {
+// WebGL2 reads bytes and floats in fours, and in one format more of the driver's choice.
+bool can_be_read_as(const PixelFormat& as) {
+  if (!kIsWebGl || (as.layout == GL_RGBA && as.type != GL_HALF_FLOAT)) return true;
+  GLint layout = 0, type = 0;
+  glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_FORMAT, &layout);
+  glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_TYPE, &type);
+  return static_cast<GLenum>(layout) == as.layout && static_cast<GLenum>(type) == as.type;
+}
+
+// Of floats that were halves, or single channels, before they were read: nothing is rounded.
+Image narrowed(const Image& floats, Format format) {
+  Image image = make_image(format, floats.width, floats.height);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      store_texel(image, x, y, load_texel(floats, x, y), {});
+    }
+  }
+  return image;
+}
+
+Image read_bound_framebuffer(Format format, int width, int height) {
+  const PixelFormat as = pixel_format(format);
+  if (!can_be_read_as(as)) {
+    return narrowed(read_bound_framebuffer(Format::rgba32f, width, height), format);
+  }
+  std::vector<std::byte> bytes = room_for(format, width, height);
+  glReadPixels(0, 0, width, height, as.layout, as.type, bytes.data());
+  check_error("reading a picture back");
+  return unpacked(bytes, format, width, height);
+}
+
+GlFramebuffer new_framebuffer() {
+  GLuint name = 0;
+  glGenFramebuffers(1, &name);
+  glBindFramebuffer(GL_FRAMEBUFFER, name);
+  return GlFramebuffer{name};
+}
+
+GLuint compile(GLenum stage, const std::string& source, const std::vector<std::string>& files) {
   const GLuint shader = glCreateShader(stage);
   const char* text = source.c_str();
   glShaderSource(shader, 1, &text, nullptr);
@@ -121,11 +165,10 @@ GLuint compile(GLenum stage, const std::string& source, std::string_view name) {
   GLint good = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
   if (good == GL_TRUE) return shader;
-  std::array<char, 512> log{};
+  std::array<char, 4096> log{};
   glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
   glDeleteShader(shader);
-  const std::string complaint = log.data();
-  throw DriverError(std::string(name) + ": " + complaint.substr(0, complaint.find('\n')));
+  throw DriverError(first_error(log.data(), files));
 }
 
 GLint location(const GlProgram& program, const char* name) {
@@ -164,20 +207,14 @@ void generate_levels(const GlTexture& texture) {
 }
 
 Image read_level(const GlTexture& texture, Format format, int level, int width, int height) {
-  std::vector<std::byte> bytes = room_for(format, width, height);
-  const PixelFormat as = pixel_format(format);
-  bind_for_work(texture);
-  glGetTexImage(GL_TEXTURE_2D, level, as.layout, as.type, bytes.data());
-  check_error("reading a texture back");
-  return unpacked(bytes, format, width, height);
+  const GlFramebuffer framebuffer = new_framebuffer();
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, level);
+  return read_bound_framebuffer(format, width, height);
 }
 
 GlTarget make_target(std::span<const Format> formats, int width, int height, bool with_depth) {
   GlTarget target{width, height, {formats.begin(), formats.end()}, {}, {}, {}};
-  GLuint name = 0;
-  glGenFramebuffers(1, &name);
-  target.framebuffer = GlFramebuffer{name};
-  glBindFramebuffer(GL_FRAMEBUFFER, name);
+  target.framebuffer = new_framebuffer();
   std::vector<GLenum> buffers;
   for (const Format format : formats) {
     const PixelFormat as = pixel_format(format);
@@ -204,22 +241,23 @@ void bind(const GlTarget& target) {
 }
 
 Image read_colour(const GlTarget& target, std::size_t index) {
-  const Format format = target.formats[index];
-  const PixelFormat as = pixel_format(format);
-  std::vector<std::byte> bytes = room_for(format, target.width, target.height);
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
-  glReadPixels(0, 0, target.width, target.height, as.layout, as.type, bytes.data());
-  check_error("reading a picture back");
-  return unpacked(bytes, format, target.width, target.height);
+  return read_bound_framebuffer(target.formats[index], target.width, target.height);
 }
 
-Image read_depth(const GlTarget& target) {
-  std::vector<std::byte> bytes = room_for(Format::r32f, target.width, target.height);
+Image read_depth(const GlContext& context, const GlTarget& target) {
+  const GlProgram program = link_program(context, {}, "fullscreen.vert", "store.frag");
+  const GlTarget copy = make_target(std::array{Format::r32f}, target.width, target.height, false);
+  set_texture(program, "values", 0, target.depth);
+  draw_fullscreen(copy, program);
+  return read_colour(copy, 0);
+}
+
+void wait_for(const GlTarget& target) {
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-  glReadPixels(0, 0, target.width, target.height, GL_DEPTH_COMPONENT, GL_FLOAT, bytes.data());
-  check_error("reading depth back");
-  return unpacked(bytes, Format::r32f, target.width, target.height);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  read_bound_framebuffer(target.formats[0], 1, 1);
 }
 
 GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
@@ -228,8 +266,8 @@ GlProgram link_program(const GlContext& context, const Shaders& shaders, std::st
   GlProgram program{glCreateProgram()};
   for (const auto& [stage, name] :
        {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
-    const GLuint shader =
-        compile(static_cast<GLenum>(stage), header + shader_source(shaders, name), name);
+    const ShaderSource source = shader_source(shaders, name);
+    const GLuint shader = compile(static_cast<GLenum>(stage), header + source.text, source.files);
     glAttachShader(program, shader);
     glDeleteShader(shader);  // with the program
   }

@@ -3,8 +3,6 @@
 // softfocus' images. Nothing here converts a number: what goes up and comes back are
 // the image's own bits.
 
-#include <epoxy/gl.h>
-
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "raster/images/sampler.h"
+#include "tools/gl/api.h"
 #include "tools/gl/context.h"
 #include "tools/gl/shaders.h"
 
@@ -73,7 +72,11 @@ GlTarget make_target(std::span<const Format> formats, int width, int height, boo
 /// Binds the target and its viewport.
 void bind(const GlTarget& target);
 Image read_colour(const GlTarget& target, std::size_t index);
-Image read_depth(const GlTarget& target);
+/// By way of a shader: WebGL2 reads no depth.
+Image read_depth(const GlContext& context, const GlTarget& target);
+/// Returns when all that draws into it has been done: its first pixel is there. A browser's
+/// glFinish() does not wait.
+void wait_for(const GlTarget& target);
 
 /// Compiles and links two of the project's shaders (tools/gl/shaders.h). `defines` come
 /// after the version line. Throws DriverError with the driver's first message.

@@ -73,20 +73,46 @@ GlScene::GlScene(const GlContext& context, const Shaders& shaders, const Scene& 
          make_buffer(GL_ARRAY_BUFFER, uvs), make_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices)});
   }
   for (const Material& material : scene.materials) {
-    if (!material.texture) continue;
-    textures_.emplace(&material, upload(scene.textures[*material.texture], material.sampler));
+    if (material.texture) {
+      textures_.emplace(&material, upload(scene.textures[*material.texture], material.sampler));
+    }
+    if (material.cut_out && material.opacity_texture) {
+      opacities_.emplace(
+          &material, upload(scene.textures[*material.opacity_texture], material.opacity_sampler));
+    }
   }
 }
 
-const GlProgram& GlScene::program(SurfaceVariant variant) {
-  GlProgram& program = programs_[(variant.textured ? 4u : 0u) + (variant.specular ? 2u : 0u) +
-                                 (variant.two_sided ? 1u : 0u)];
+void GlScene::make_unshared_meshes() {
+  if (!unshared_meshes_.empty()) return;
+  for (const softfocus::Mesh& mesh : scene_.meshes) {
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec2> uvs;
+    std::vector<std::uint32_t> indices;
+    for (const std::uint32_t i : mesh.indices) {
+      positions.push_back(mesh.positions[i]);
+      normals.push_back(mesh.normals[i]);
+      uvs.push_back(mesh.uvs.empty() ? glm::vec2{0.0f} : mesh.uvs[i]);
+      indices.push_back(static_cast<std::uint32_t>(indices.size()));
+    }
+    unshared_meshes_.push_back(
+        {make_buffer(GL_ARRAY_BUFFER, positions), make_buffer(GL_ARRAY_BUFFER, normals),
+         make_buffer(GL_ARRAY_BUFFER, uvs), make_buffer(GL_ELEMENT_ARRAY_BUFFER, indices)});
+  }
+}
+
+const GlProgram& GlScene::program(SurfaceVariant variant, bool peeled) {
+  GlProgram& program =
+      programs_[(peeled ? 16u : 0u) + (variant.cut_out ? 8u : 0u) + (variant.textured ? 4u : 0u) +
+                (variant.specular ? 2u : 0u) + (variant.two_sided ? 1u : 0u)];
   if (program != 0) return program;
   std::string defines =
       "#define MAX_LIGHTS " + std::to_string(std::max<std::size_t>(scene_.lights.size(), 1)) + '\n';
   if (variant.textured) defines += "#define TEXTURED\n";
   if (variant.specular) defines += "#define SPECULAR\n";
   if (variant.two_sided) defines += "#define TWO_SIDED\n";
+  if (variant.cut_out) defines += "#define CUT_OUT\n";
+  if (peeled) defines += "#define PEELED\n";
   program = link_program(context_, shaders_, "surface.vert", "surface.frag", defines);
   return program;
 }
@@ -98,13 +124,44 @@ void GlScene::draw(const CameraMatrices& view, double frame, const GlTarget& tar
   glClearDepth(1.0);
   glDepthMask(GL_TRUE);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  draw_surfaces(view, frame, nullptr);
+}
+
+std::vector<Image> GlScene::draw_layers(const CameraMatrices& view, double frame, int width,
+                                        int height, std::size_t layers) {
+  constexpr std::array kFormats{Format::rgba16f, Format::rgba32f};
+  // Before the first layer lies nothing, and behind a pixel without a fragment none is looked for.
+  constexpr glm::vec4 kBeforeAll{-1.0f, 0.0f, 0.0f, 0.0f}, kBehindAll{2.0f, 0.0f, 0.0f, 0.0f};
+  constexpr float kFar = 1.0f;
+  const glm::vec4 clear = clear_colour(scene_);
+  make_unshared_meshes();
+  std::vector<Image> pictures;
+  GlTarget before = make_target(kFormats, width, height, true);
+  bind(before);
+  glClearBufferfv(GL_COLOR, 1, &kBeforeAll.x);
+  for (std::size_t i = 0; i < layers; ++i) {
+    GlTarget target = make_target(kFormats, width, height, true);
+    bind(target);
+    glDepthMask(GL_TRUE);
+    glClearBufferfv(GL_COLOR, 0, &clear.x);
+    glClearBufferfv(GL_COLOR, 1, &kBehindAll.x);
+    glClearBufferfv(GL_DEPTH, 0, &kFar);
+    draw_surfaces(view, frame, &before.colour[1]);
+    pictures.push_back(read_colour(target, 0));
+    before = std::move(target);
+  }
+  return pictures;
+}
+
+void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const GlTexture* before) {
+  int first_triangle = 0;
   // What the draw before has set is not set again.
   const GlProgram* program_set = nullptr;
   const Material* material_set = nullptr;
   const softfocus::Mesh* mesh_set = nullptr;
   for (const SurfaceDraw& surface : surface_draws(scene_, view, frame)) {
     const SurfaceVertexInput& input = surface.input;
-    const GlProgram& used = program(surface.variant);
+    const GlProgram& used = program(surface.variant, before != nullptr);
     set_uniform(used, "to_clip", input.to_clip);
     set_uniform(used, "to_world", input.to_world);
     set_uniform(used, "normal_to_world", input.normal_to_world);
@@ -117,9 +174,18 @@ void GlScene::draw(const CameraMatrices& view, double frame, const GlTarget& tar
       if (surface.variant.textured) {
         set_texture(used, "surface_texture", 0, textures_.at(input.material));
       }
+      if (surface.variant.cut_out) {
+        set_texture(used, "opacity_texture", 1, opacities_.at(input.material));
+      }
+    }
+    if (before != nullptr) {
+      set_texture(used, "layer_before", 2, *before);
+      set_uniform(used, "first_triangle", first_triangle);
+      first_triangle += static_cast<int>(input.mesh->indices.size() / 3);
     }
     if (mesh_set != input.mesh) {
-      const Mesh& mesh = meshes_[static_cast<std::size_t>(input.mesh - scene_.meshes.data())];
+      const std::vector<Mesh>& meshes = before != nullptr ? unshared_meshes_ : meshes_;
+      const Mesh& mesh = meshes[static_cast<std::size_t>(input.mesh - scene_.meshes.data())];
       set_attribute(0, mesh.positions, 3);
       set_attribute(1, mesh.normals, 3);
       set_attribute(2, mesh.uvs, 2);

@@ -1,6 +1,8 @@
 #include "tools/gl/shaders.h"
 
 #include <algorithm>
+#include <charconv>
+#include <set>
 #include <sstream>
 
 #include "scenes/load/file_bytes.h"
@@ -35,24 +37,41 @@ std::string_view included_name(std::string_view line) {
   return rest.substr(0, rest.find('"'));
 }
 
-std::string expanded(const Shaders& shaders, std::string_view name, int depth) {
+// As the user knows it.
+std::string shown_name(const Shaders& shaders, std::string_view name) {
+  return shaders.own.contains(name) ? (shaders.folder / name).string() : std::string{name};
+}
+
+void expand(const Shaders& shaders, std::string_view name, int depth, ShaderSource& source) {
   if (depth > kDeepestInclude) {
-    throw DriverError(std::string(name) + ": includes itself, or one that does");
+    throw DriverError(shown_name(shaders, name) + ": includes itself, or one that does");
   }
+  const std::string file = std::to_string(source.files.size());
+  source.files.push_back(shown_name(shaders, name));
   std::istringstream lines{std::string{text_of(shaders, name)}};
-  std::string result = "#line 1\n";
+  source.text += "#line 1 " + file + '\n';
   int number = 1;
   for (std::string line; std::getline(lines, line); ++number) {
     if (line.ends_with('\r')) line.pop_back();
     const std::string_view included = included_name(line);
     if (included.empty()) {
-      result += line + '\n';
+      source.text += line + '\n';
     } else {
-      result += expanded(shaders, included, depth + 1);
-      result += "#line " + std::to_string(number + 1) + '\n';
+      expand(shaders, included, depth + 1, source);
+      source.text += "#line " + std::to_string(number + 1) + ' ' + file + '\n';
     }
   }
-  return result;
+}
+
+// A name that is nowhere is for shader_source() to refuse.
+void add_with_included(const Shaders& shaders, std::string_view name,
+                       std::set<std::string, std::less<>>& names) {
+  const bool is_there = shaders.own.contains(name) || find_built_in(name) != nullptr;
+  if (!is_there || !names.emplace(name).second) return;
+  std::istringstream lines{std::string{text_of(shaders, name)}};
+  for (std::string line; std::getline(lines, line);) {
+    add_with_included(shaders, included_name(line), names);
+  }
 }
 
 }  // namespace
@@ -60,7 +79,7 @@ std::string expanded(const Shaders& shaders, std::string_view name, int depth) {
 bool has_shader(std::string_view method) { return method == "two-pass" || method == "one-pass"; }
 
 Shaders read_shaders(const std::filesystem::path& folder) {
-  Shaders shaders;
+  Shaders shaders{.own = {}, .folder = folder};
   bool any = false;
   for (const auto& entry : std::filesystem::directory_iterator{folder}) {
     const std::string name = entry.path().filename().string();
@@ -83,8 +102,55 @@ Shaders read_shaders(const std::filesystem::path& folder) {
   return shaders;
 }
 
-std::string shader_source(const Shaders& shaders, std::string_view name) {
-  return expanded(shaders, name, 0);
+ShaderSource shader_source(const Shaders& shaders, std::string_view name) {
+  ShaderSource source;
+  expand(shaders, name, 0, source);
+  return source;
+}
+
+std::string first_error(std::string_view log, const std::vector<std::string>& files) {
+  const auto first_line = [](std::string_view text) { return text.substr(0, text.find('\n')); };
+  std::string_view line = first_line(log);
+  // Warnings may stand before it.
+  for (std::string_view rest = log; !rest.empty();) {
+    const std::string_view next = first_line(rest);
+    if (next.find("error") != next.npos || next.find("ERROR") != next.npos) {
+      line = next;
+      break;
+    }
+    rest.remove_prefix(std::min(rest.size(), next.size() + 1));
+  }
+  std::string_view place = line;
+  if (place.starts_with("ERROR: ")) place.remove_prefix(7);
+  std::size_t file = 0;
+  const auto [end, error] = std::from_chars(place.data(), place.data() + place.size(), file);
+  place.remove_prefix(static_cast<std::size_t>(end - place.data()));
+  const bool has_place = place.starts_with(':') || place.starts_with('(');
+  if (error != std::errc{} || !has_place || file >= files.size()) {
+    return files.front() + ": " + std::string{line};
+  }
+  return files[file] + std::string{place};
+}
+
+std::vector<std::string_view> frame_shaders(std::string_view method) {
+  std::vector<std::string_view> names{"surface.vert", "surface.frag"};
+  if (!has_shader(method)) return names;
+  names.insert(names.end(),
+               {"fullscreen.vert", method == "one-pass" ? "one_pass.frag" : "two_pass.frag"});
+  return names;
+}
+
+bool has_no_part(const Shaders& shaders, const std::vector<std::string_view>& names) {
+  std::set<std::string, std::less<>> used;
+  for (const std::string_view name : names) add_with_included(shaders, name, used);
+  bool differs = false;
+  for (const auto& [name, text] : shaders.own) {
+    const Shader* const ours = find_built_in(name);
+    if (ours != nullptr && ours->source == text) continue;
+    if (used.contains(name)) return false;
+    differs = true;
+  }
+  return differs;
 }
 
 }  // namespace softfocus

@@ -4,9 +4,11 @@
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/surface_splatting/surface_splatting.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {
@@ -15,15 +17,12 @@ namespace {
 constexpr std::array<std::string_view, 3> kScenes{"figures", "cube-room", "sphere-world"};
 
 // These draw what the first three lack: one small frame each, by a few methods.
-constexpr std::array<std::string_view, 14> kMoreScenes{
-    "bright-edges", "clutter",  "dunes",      "foliage",      "grazing-floor",
-    "interior",     "lattice",  "near-fence", "night-lights", "portrait",
-    "random:1",     "random:6", "random:20",  "random:48"};
+constexpr std::array<std::string_view, 15> kMoreScenes{
+    "bright-edges",  "canopy",   "clutter",  "dunes",      "foliage",
+    "grazing-floor", "interior", "lattice",  "near-fence", "night-lights",
+    "portrait",      "random:1", "random:6", "random:20",  "random:48"};
 constexpr std::array<std::string_view, 3> kFewMethods{"pinhole", "two-pass", "disc-layers"};
 
-struct FrameSize {
-  int width, height;
-};
 // Whole tiles, and parts of tiles.
 constexpr std::array kSizes{FrameSize{128, 128}, FrameSize{97, 61}};
 
@@ -64,6 +63,18 @@ LensViewInput seen_from_lens(const Scene& scene, const CameraMatrices& view, con
           {}};
 }
 
+// A fourth is empty in some scenes, and so the same in all profiles.
+constexpr std::size_t kGoldenLayers = 3;
+
+// Adds a line for each layer behind the first.
+void add_layer_hashes(std::string_view scene, const std::vector<Image>& layers,
+                      const std::string& where, std::vector<NamedHash>& hashes) {
+  for (std::size_t i = 1; i < layers.size(); ++i) {
+    hashes.push_back(
+        {entry_name(scene, "layer-" + std::to_string(i + 1), where), hash_image(layers[i])});
+  }
+}
+
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
   const Scene scene = load_scene(name, scene_search_path({}));
   const auto [width, height] = kSizes[1];
@@ -73,7 +84,7 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
   const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
   const std::string where = " ieee " + std::to_string(width) + 'x' + std::to_string(height);
   std::vector<NamedHash> hashes;
-  hashes.reserve(kFewMethods.size() + 1);
+  hashes.reserve(kFewMethods.size() + 1 + kGoldenLayers);
   for (const std::string_view method : kFewMethods) {
     hashes.push_back({entry_name(name, method, where),
                       hash_image(apply(*find_method(method), {picture, settings, profile}, pool))});
@@ -81,10 +92,23 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
   const LensViewInput from_lens = seen_from_lens(scene, view, picture, {.samples = 5}, profile);
   hashes.push_back(
       {entry_name(name, "accumulation", where), hash_image(accumulation(from_lens, pool).picture)});
+  hashes.push_back({entry_name(name, "filtered-views", where),
+                    hash_image(filtered_views(from_lens, pool).picture)});
+  const std::vector<Image> layers =
+      draw_layers(scene, view, kFrame, width, height, kGoldenLayers, profile, pool);
+  add_layer_hashes(name, layers, where, hashes);
   return hashes;
 }
 
 }  // namespace
+
+std::span<const std::string_view> golden_scenes() { return kScenes; }
+
+std::span<const std::string_view> more_golden_scenes() { return kMoreScenes; }
+
+std::span<const FrameSize> golden_sizes(GoldenSet set) {
+  return std::span{kSizes}.subspan(set == GoldenSet::quick ? 1 : 0);
+}
 
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
   std::vector<GoldenScene> scenes(kScenes.size());
@@ -96,45 +120,69 @@ std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
   return scenes;
 }
 
-std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
-                                    std::span<const NamedProfile> profiles, ThreadPool& pool) {
+std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& size,
+                                    const NamedProfile& known, ThreadPool& pool) {
   // A whole group of sums and a part of one.
   const Sampling sampling{.samples = kSampleGroup + 3, .jitter = true, .aperture = {7}};
+  const auto& [name, scene] = golden;
+  const auto [width, height] = size;
+  const Profile& profile = known.profile;
+  const DofSettings settings = settings_for(scene, height);
+  const CameraMatrices view = camera_matrices(scene.camera, kFrame, width, height);
+  const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
+  const std::string where =
+      ' ' + std::string{known.name} + ' ' + std::to_string(width) + 'x' + std::to_string(height);
+  const std::vector<Image> layers =
+      draw_layers(scene, view, kFrame, width, height, kGoldenLayers, profile, pool);
+  const std::vector<ConstImageView> all_behind{layers.begin() + 1, layers.end()};
   std::vector<NamedHash> hashes;
-  for (const auto& [name, scene] : scenes) {
-    for (const auto [width, height] : kSizes) {
-      const DofSettings settings = settings_for(scene, height);
-      const CameraMatrices view = camera_matrices(scene.camera, kFrame, width, height);
-      for (const NamedProfile& known : profiles) {
-        const Profile& profile = known.profile;
-        const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
-        const std::string where = ' ' + std::string{known.name} + ' ' + std::to_string(width) +
-                                  'x' + std::to_string(height);
-        for (const Method& method : methods()) {
-          hashes.push_back({entry_name(name, method.name, where),
-                            hash_image(apply(method, {picture, settings, profile}, pool))});
-        }
-        for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
-          Image filtered = make_image(picture.format, width, height);
-          two_pass_in(arithmetic, {picture, settings, profile}, filtered, pool);
-          const std::string method = "two-pass-" + std::string{arithmetic_name(arithmetic)};
-          hashes.push_back({entry_name(name, method, where), hash_image(filtered)});
-        }
-        const LensViewInput from_lens = seen_from_lens(scene, view, picture, sampling, profile);
-        hashes.push_back({entry_name(name, "accumulation", where),
-                          hash_image(accumulation(from_lens, pool).picture)});
+  for (const Method& method : methods()) {
+    const auto behind = std::span{all_behind}.first(method.layers - 1);
+    hashes.push_back(
+        {entry_name(name, method.name, where),
+         hash_image(apply(
+             method, {.scene = picture, .settings = settings, .profile = profile, .behind = behind},
+             pool))});
+  }
+  add_layer_hashes(name, layers, where, hashes);
+  for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
+    Image filtered = make_image(picture.format, width, height);
+    two_pass_in(arithmetic, {picture, settings, profile}, filtered, pool);
+    const std::string method = "two-pass-" + std::string{arithmetic_name(arithmetic)};
+    hashes.push_back({entry_name(name, method, where), hash_image(filtered)});
+  }
+  const LensViewInput from_lens = seen_from_lens(scene, view, picture, sampling, profile);
+  hashes.push_back(
+      {entry_name(name, "accumulation", where), hash_image(accumulation(from_lens, pool).picture)});
+  hashes.push_back({entry_name(name, "filtered-views", where),
+                    hash_image(filtered_views(from_lens, pool).picture)});
+  hashes.push_back({entry_name(name, "surface-splatting", where),
+                    hash_image(surface_splatting(from_lens, pool).picture)});
+  return hashes;
+}
+
+std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
+                                    std::span<const FrameSize> sizes,
+                                    std::span<const NamedProfile> profiles, ThreadPool& pool) {
+  std::vector<NamedHash> hashes;
+  for (const GoldenScene& scene : scenes) {
+    for (const FrameSize& size : sizes) {
+      for (const NamedProfile& profile : profiles) {
+        const std::vector<NamedHash> more = frame_hashes(scene, size, profile, pool);
+        hashes.insert(hashes.end(), more.begin(), more.end());
       }
     }
   }
   return hashes;
 }
 
-std::vector<NamedHash> more_frame_hashes(ThreadPool& pool) {
-  std::vector<std::vector<NamedHash>> by_scene(kMoreScenes.size());
+std::vector<NamedHash> more_frame_hashes(std::span<const std::string_view> scenes,
+                                         ThreadPool& pool) {
+  std::vector<std::vector<NamedHash>> by_scene(scenes.size());
   pool.for_each(static_cast<int>(by_scene.size()), [&](int i) {
     ThreadPool one(1);
     const auto index = static_cast<std::size_t>(i);
-    by_scene[index] = few_frame_hashes(kMoreScenes[index], one);
+    by_scene[index] = few_frame_hashes(scenes[index], one);
   });
   std::vector<NamedHash> hashes;
   for (const auto& of_scene : by_scene) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "raster/numbers/profile.h"
@@ -26,16 +27,35 @@ struct GoldenScene {
   Scene scene;
 };
 
-/// The thesis's three scenes. Throws SceneError.
+/// The thesis's three scenes, as load_scene() takes them, and loaded. Throws SceneError.
+std::span<const std::string_view> golden_scenes();
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool);
 
-/// "SCENE METHOD PROFILE WIDTHxHEIGHT": every method, at a small size and an odd one.
+/// Which of the golden hashes. `quick` lacks the frames of the larger size, and has profiles other
+/// than ieee on the first scene alone: every operation is left.
+enum class GoldenSet { all, quick };
+
+struct FrameSize {
+  int width, height;
+};
+/// A size of whole tiles, and a smaller one with parts of tiles.
+std::span<const FrameSize> golden_sizes(GoldenSet set = GoldenSet::all);
+
+/// "SCENE METHOD PROFILE WIDTHxHEIGHT": every method.
+std::vector<NamedHash> frame_hashes(const GoldenScene& scene, const FrameSize& size,
+                                    const NamedProfile& profile, ThreadPool& pool);
+
+/// The same for all scenes, at all sizes, under all profiles.
 std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
+                                    std::span<const FrameSize> sizes,
                                     std::span<const NamedProfile> profiles, ThreadPool& pool);
 
-/// The same names, for the other scenes that come along and some random ones: few methods, one
-/// profile, one size.
-std::vector<NamedHash> more_frame_hashes(ThreadPool& pool);
+/// Other scenes that come along and some random ones, as load_scene() takes them.
+std::span<const std::string_view> more_golden_scenes();
+
+/// Names as in frame_hashes(), for scenes such as these: few methods, one profile, one size.
+std::vector<NamedHash> more_frame_hashes(std::span<const std::string_view> scenes,
+                                         ThreadPool& pool);
 
 /// "sampler FILTER FORMAT PROFILE": random textures, every wrap, coordinates and levels
 /// inside and far outside; "mipmaps FORMAT PROFILE": their levels.
@@ -45,10 +65,15 @@ std::vector<NamedHash> sampler_hashes(std::span<const NamedProfile> profiles);
 std::vector<NamedHash> number_hashes();
 
 /// All of the above under every profile.
-std::vector<NamedHash> golden_hashes(ThreadPool& pool);
+std::vector<NamedHash> golden_hashes(ThreadPool& pool, GoldenSet set = GoldenSet::all);
+
+/// The same in parts, for callers that want to stop in between: part 0, 1, ... in the order of
+/// golden_hashes(). A part takes a second at most.
+std::size_t golden_part_count();
+std::vector<NamedHash> golden_part(std::size_t part, ThreadPool& pool);
 
 /// The table: what golden_hashes() must give.
-std::vector<NamedHash> expected_hashes();
+std::vector<NamedHash> expected_hashes(GoldenSet set = GoldenSet::all);
 
 /// One entry of the table and what became of it.
 struct HashCheck {

@@ -155,6 +155,7 @@ std::vector<NamedHash> number_hashes() {
       {"number half decoded", hash_of_decoding()},
       {"number half to nearest even", hash_of_encoding(HalfRounding::nearest_even)},
       {"number half toward zero", hash_of_encoding(HalfRounding::toward_zero)},
+      {"number half as SwiftShader", hash_of_encoding(HalfRounding::swiftshader)},
       {"number unorm8 half up", hash_of_unorm8(UnormRounding::half_up)},
       {"number unorm8 to nearest even", hash_of_unorm8(UnormRounding::nearest_even)},
       {"number srgb8", hash_of_8_bits(srgb8_to_linear, linear_to_srgb8)},

@@ -1,16 +1,23 @@
-// softfocus_selftest: `softfocus selftest` without options and without the rest of the
-// program, for builds that exist only for their hashes.
+// softfocus_selftest [--quick]: `softfocus selftest` without the rest of the program, for builds
+// that exist only for their hashes.
 
 #include <exception>
 #include <iostream>
+#include <string_view>
 
 #include "tools/golden/hashes.h"
 
-int main() {
+int main(int count, char** arguments) {
   using namespace softfocus;
+  const bool is_quick = count == 2 && std::string_view{arguments[1]} == "--quick";
+  if (count > 1 && !is_quick) {
+    std::cerr << "usage: softfocus_selftest [--quick]\n";
+    return 2;
+  }
+  const GoldenSet set = is_quick ? GoldenSet::quick : GoldenSet::all;
   try {
     ThreadPool pool{hardware_threads()};
-    const auto checks = check_hashes(expected_hashes(), golden_hashes(pool));
+    const auto checks = check_hashes(expected_hashes(set), golden_hashes(pool, set));
     const std::string failures = describe_failures(checks);
     if (failures.empty()) {
       std::cout << "pass: " << checks.size() << " hashes are as expected\n";

@@ -17,6 +17,7 @@
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
+#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -88,8 +89,8 @@ struct Measured {
   std::vector<double> flips;
 };
 
-// The views that accumulation averages are the truth's first: each number of samples on the way
-// is measured against the truth once it is there.
+// Beyond kMostFewLensPoints the views that accumulation averages are the truth's first: each such
+// number of samples on the way is measured against the truth once it is there.
 Measured measure(const Subject& subject, std::span<const AutoMethod> choices, int samples,
                  ThreadPool& pool) {
   const LensViewInput input = views_of(subject, samples);
@@ -102,11 +103,17 @@ Measured measure(const Subject& subject, std::span<const AutoMethod> choices, in
     add_lens_views(buffer, input, sums.count, std::min(sums.count + step, samples), sums, pool);
     for (const AutoMethod& choice : choices) {
       if (choice.samples != sums.count || sums.count == samples) continue;
+      if (choice.samples <= kMostFewLensPoints) continue;
       on_the_way.emplace_back(sums.count, mean_picture(sums, subject.pinhole, Profile{}, pool));
     }
     if (sums.count == samples / 2) half = sums;
   }
   const Image truth = mean_picture(sums, subject.pinhole, Profile{}, pool);
+  for (const AutoMethod& choice : choices) {
+    if (choice.samples <= 0 || choice.samples > std::min(kMostFewLensPoints, samples - 1)) continue;
+    on_the_way.emplace_back(choice.samples,
+                            accumulation(views_of(subject, choice.samples), pool).picture);
+  }
   Measured measured;
   measured.noise_floor =
       mean_flip(mean_picture(half, subject.pinhole, Profile{}, pool),
@@ -121,9 +128,7 @@ Measured measure(const Subject& subject, std::span<const AutoMethod> choices, in
                                    : std::numeric_limits<double>::quiet_NaN());
       continue;
     }
-    const DofSettings settings{.coc = subject.coc, .max_coc_px = choice.radius_px};
-    const Image picture =
-        apply(*find_method(choice.method), {subject.pinhole, settings, Profile{}}, pool);
+    const Image picture = picture_of(choice, input, {.coc = subject.coc}, pool);
     measured.flips.push_back(mean_flip(truth, picture, pool));
   }
   return measured;

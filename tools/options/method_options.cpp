@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "scenes/filtered_views/filtered_views.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 
@@ -12,6 +13,15 @@ namespace {
 
 std::string given(Arithmetic arithmetic) {
   return "--arithmetic " + std::string{arithmetic_name(arithmetic)};
+}
+
+std::string names_of_sampling_methods() {
+  std::string names;
+  for (const LensViewMethod& method : lens_view_methods()) {
+    if (!method.samples_lens) continue;
+    names += (names.empty() ? "" : ", ") + std::string{method.name};
+  }
+  return names;
 }
 
 constexpr std::array kSamplingOptions{"--samples", "--jitter", "--until", "--aperture-blades"};
@@ -96,8 +106,10 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings) {
 
 void add_sampling_options(CLI::App& parser, Sampling& sampling) {
   add_value(parser, "--samples", "N",
-            "Of accumulation and ray-traced: points on the lens, 1 to 65536 (default: " +
-                std::to_string(sampling.samples) + ", with --until 65536)",
+            "Of accumulation, filtered-views and ray-traced: points on the lens, 1 to 65536 "
+            "(default: " +
+                std::to_string(sampling.samples) + ", of filtered-views " +
+                std::to_string(kFilteredViews) + ", with --until 65536)",
             [&sampling](const std::string& text) {
               sampling.samples =
                   parse_whole("--samples", text, 1, kMostSamples, "a whole number from 1 to 65536");
@@ -122,15 +134,16 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
             });
 }
 
-void complete_sampling(Sampling& sampling, const CLI::App& parser) {
-  if (sampling.until && !is_given(parser, "--samples")) sampling.samples = kMostSamples;
+void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser) {
+  if (is_given(parser, "--samples")) return;
+  sampling.samples = sampling.until ? kMostSamples : method.usual_samples;
 }
 
 void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
   for (const char* option : kSamplingOptions) {
     if (!is_given(parser, option)) continue;
     throw UsageError(std::string{option} + ": the method " + std::string{method} +
-                     " does not sample the lens; give --method " + names_of(lens_view_methods()));
+                     " does not sample the lens; give --method " + names_of_sampling_methods());
   }
 }
 

@@ -19,6 +19,9 @@ namespace softfocus {
 /// What chooses a method by the scene (dof/auto/auto_method.h).
 inline constexpr std::string_view kAutoMethod = "auto";
 
+/// The method that DofSettings::budget bounds.
+inline constexpr std::string_view kBudgetMethod = "importance-ordered";
+
 /// A method of either table: a filter of the drawn picture or one that draws the scene. Or
 /// neither: the scene shall choose.
 struct MethodChoice {
@@ -54,8 +57,8 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings);
 
 void add_sampling_options(CLI::App& parser, Sampling& sampling);
 
-/// Once all options are read: --until without --samples may take kMostSamples.
-void complete_sampling(Sampling& sampling, const CLI::App& parser);
+/// Once all options are read: without --samples, those of the method; with --until, kMostSamples.
+void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser);
 
 /// Throws UsageError if one of them was given, for a filter does not sample the lens.
 void refuse_sampling_options(const CLI::App& parser, std::string_view method);

@@ -34,6 +34,18 @@ ChosenProfile profile_of(const std::string& text) {
   }
 }
 
+Shaders checked_shaders(const std::string& text) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(text, unknown)) {
+    throw UsageError("--shaders '" + text + "': there is no such folder");
+  }
+  try {
+    return read_shaders(text);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(std::string("--shaders: ") + error.what());
+  }
+}
+
 }  // namespace
 
 void add_pool_options(CLI::App& parser, PoolOptions& options, const std::string& same) {
@@ -63,6 +75,12 @@ void add_driver_option(CLI::App& parser, const std::string& help,
   add_repeatable_value(
       parser, "--driver", "NAME", help,
       [take = std::move(take)](const std::string& name) { take(parse_driver("--driver", name)); });
+}
+
+void add_shaders_option(CLI::App& parser, Shaders& shaders) {
+  add_value(parser, "--shaders", "DIR",
+            "Shaders there take the place of those of the same name (see softfocus shaders)",
+            [&shaders](const std::string& text) { shaders = checked_shaders(text); });
 }
 
 void add_profile_option(CLI::App& parser, const std::string& help,

@@ -1,6 +1,6 @@
 #pragma once
 // What a command runs on, and what it says before it does: --threads and --isa, --driver,
-// --profile, too little memory, what a scene lacks.
+// --shaders, --profile, too little memory, what a scene lacks.
 
 #include <cstdint>
 #include <functional>
@@ -13,6 +13,7 @@
 #include "tools/cli/parser.h"
 #include "tools/files/profile_file.h"
 #include "tools/gl/driver.h"
+#include "tools/gl/shaders.h"
 
 namespace softfocus {
 
@@ -30,6 +31,9 @@ const Driver& parse_driver(std::string_view option, const std::string& text);
 /// Adds --driver, which may be repeated.
 void add_driver_option(CLI::App& parser, const std::string& help,
                        std::function<void(const Driver&)> take);
+
+/// Adds --shaders: a folder of the user's GLSL.
+void add_shaders_option(CLI::App& parser, Shaders& shaders);
 
 /// Adds --profile: the name of a known profile, or a profile's file (a name with a
 /// slash or a dot in it).

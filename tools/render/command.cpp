@@ -1,15 +1,20 @@
 // softfocus render: the way of a frame from a scene's file to a picture's.
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <span>
+#include <vector>
 
+#include "dof/halve.h"
 #include "dof/show.h"
 #include "raster/images/texel.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/draw/object_numbers.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -45,15 +50,22 @@ bool needs_lens(const RenderOptions& options) {
 }
 
 /// The lens as far as it is known before anything is drawn.
-UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene) {
+UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene,
+                     double fov_y_degrees) {
   UsedLens used;
   used.lens = overruled(of_scene.lens, options.lens);
   used.coc_scale = options.lens.coc_scale.value_or(of_scene.coc_scale);
-  used.settings.max_coc_px = used_max_coc_px(options.max_coc_px, of_scene, options.size.height);
+  const auto scale = static_cast<float>(options.supersample);
+  used.settings.max_coc_px = std::min(
+      scale * used_max_coc_px(options.max_coc_px, of_scene, options.size.height), kLargestMaxCoc);
   used.settings.leak = options.leak;
+  used.settings.budget = options.budget;
   if (options.autofocus) {
     used.autofocus_pixel =
         options.autofocus_pixel.value_or(Pixel{options.size.width / 2, options.size.height / 2});
+  } else if (!options.sharp_depths.empty()) {
+    used.sharp_depths = sharp_depths(options.sharp_depths, used.lens, fov_y_degrees,
+                                     drawn_size(options).height, used.coc_scale);
   } else {
     check_lens(used.lens, options.lens, options.scene);
   }
@@ -65,17 +77,34 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
               double fov_y_degrees, ThreadPool& pool) {
   if (used.autofocus_pixel) {
     const auto [x, y] = *used.autofocus_pixel;
-    used.lens.focus_m = load_texel<Format::rgba16f>(scene, x, y).w;
+    const int scale = options.supersample;
+    used.lens.focus_m =
+        load_texel<Format::rgba16f>(scene, x * scale + scale / 2, y * scale + scale / 2).w;
     check_lens(used.lens, options.lens,
                "--autofocus " + std::to_string(x) + "," + std::to_string(y));
   }
   used.settings.coc =
-      checked_pixel_coc(used.lens, fov_y_degrees, options.size.height, used.coc_scale);
-  if (takes_all_circles(options)) {
+      checked_pixel_coc(used.lens, fov_y_degrees, drawn_size(options).height, used.coc_scale);
+  if (!used.sharp_depths.empty()) {
+    used.radii_px = sharp_depths_radii(scene, used.sharp_depths, pool);
+    const float largest = *std::max_element(used.radii_px.begin(), used.radii_px.end());
+    if (takes_all_circles(options)) used.settings.max_coc_px = std::ceil(largest);
+  } else if (takes_all_circles(options)) {
     const CircleSizes sizes = circle_sizes(scene, used.settings.coc, 0.0f, pool);
     used.settings.max_coc_px = std::ceil(sizes.largest_px);
   }
   if (options.show == Show::image) check_arithmetic(options.arithmetic, used.settings);
+}
+
+/// Halves a picture that was made at twice the size, and its lens's lengths in pixels.
+Image halved(const Image& picture, const RenderOptions& options, double fov_y_degrees,
+             std::optional<UsedLens>& used, ThreadPool& pool) {
+  if (used) {
+    used->settings.max_coc_px *= 0.5f;
+    used->settings.coc =
+        checked_pixel_coc(used->lens, fov_y_degrees, options.size.height, used->coc_scale);
+  }
+  return halve(picture, options.profile, pool);
 }
 
 /// The method that draws the scene itself, from many points of the lens.
@@ -176,24 +205,47 @@ Image auto_drawn(const Scene& scene, const CameraMatrices& view, const Image& pi
   return std::move(found.picture);
 }
 
-Image shown_picture(Image scene, const RenderOptions& options, const Method* filter,
-                    const Camera& camera, const DofSettings& settings, FrameOnGl* on_gl,
-                    ThreadPool& pool) {
+/// `objects` and `radii_px` are what the filter reads beside the picture, if it does.
+Image shown_picture(Image scene, std::span<const ConstImageView> behind,
+                    std::span<const std::uint16_t> objects, std::span<const float> radii_px,
+                    const RenderOptions& options, const Method* filter, const Camera& camera,
+                    const DofSettings& settings, FrameOnGl* on_gl, ThreadPool& pool) {
   switch (options.show) {
     case Show::image:
+      if (filter == nullptr) break;
       if (options.arithmetic != Arithmetic::floats) {
         Image result = make_image(scene.format, scene.width, scene.height);
         two_pass_in(options.arithmetic, {scene, settings, options.profile}, result, pool);
         return result;
       }
       return on_gl != nullptr ? on_gl->filter(*filter, settings, scene)
-                              : apply(*filter, {scene, settings, options.profile}, pool);
+                              : apply(*filter,
+                                      {.scene = scene,
+                                       .settings = settings,
+                                       .profile = options.profile,
+                                       .objects = objects,
+                                       .behind = behind,
+                                       .radii_px = radii_px},
+                                      pool);
     case Show::pinhole: return scene;
     case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
     case Show::depth:
       return show_depth(scene, static_cast<float>(camera.near_m), static_cast<float>(camera.far_m));
   }
   return scene;
+}
+
+/// Layers behind the first, each shown as the picture is.
+void write_layers(std::vector<Image>& behind, const RenderOptions& options,
+                  const RenderRecord& record, ThreadPool& pool,
+                  std::vector<std::unique_ptr<WholeFile>>& files) {
+  for (std::size_t i = 0; i < behind.size(); ++i) {
+    const Image shown =
+        shown_picture(std::move(behind[i]), {}, {}, {}, options, nullptr, record.camera,
+                      record.lens ? record.lens->settings : DofSettings{}, nullptr, pool);
+    files.push_back(std::make_unique<WholeFile>(layer_place(options, i + 2)));
+    files.back()->write(encode_with_notes(shown, options.format, notes_of(options, record)));
+  }
 }
 
 int render(const RenderOptions& options) {
@@ -215,20 +267,36 @@ int render(const RenderOptions& options) {
   record.scene_name = scene.name;
   record.scene_title = scene.title;
   record.triangles = triangle_count(scene);
-  if (needs_lens(options)) record.lens = chosen_lens(options, scene.lens);
+  if (needs_lens(options))
+    record.lens = chosen_lens(options, scene.lens, scene.camera.fov_y_degrees);
 
-  const int width = options.size.width, height = options.size.height;
+  const PictureSize drawn_in = drawn_size(options);
+  const int width = drawn_in.width, height = drawn_in.height;
   std::optional<FrameOnGl> on_gl;
-  if (options.gl != nullptr) record.gl_renderer = on_gl.emplace(*options.gl).renderer();
+  if (options.gl != nullptr) {
+    record.gl_renderer = on_gl.emplace(*options.gl, options.shaders).renderer();
+  }
   const CameraMatrices view = camera_matrices(scene.camera, options.frame, width, height);
   record.camera = scene.camera;
   record.camera.position = view.eye;
   std::optional<PreparedScene> prepared;
+  std::vector<Image> behind;
   Image drawn = timed(progress, "drawing", ms.draw, [&] {
-    if (on_gl) return on_gl->draw(scene, view, options.frame, width, height);
+    if (on_gl && layers_of(options) == 1) {
+      return on_gl->draw(scene, view, options.frame, width, height);
+    }
+    if (on_gl) {
+      behind = on_gl->draw_layers(scene, view, options.frame, width, height, layers_of(options));
+      Image picture = std::move(behind.front());
+      behind.erase(behind.begin());
+      return picture;
+    }
     prepared = prepare_scene(scene, options.profile, pool);
     Image picture = make_image(Format::rgba16f, width, height);
-    draw_scene(*prepared, view, options.frame, picture, pool);
+    for (std::size_t i = 1; i < layers_of(options); ++i) {
+      behind.push_back(make_image(Format::rgba16f, width, height));
+    }
+    draw_layers(*prepared, view, options.frame, picture, behind, pool);
     return picture;
   });
 
@@ -245,6 +313,11 @@ int render(const RenderOptions& options) {
   const bool is_auto = options.show == Show::image && options.method.is_auto();
   const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
   if (!from_lens && !is_auto) prepared.reset();
+  std::vector<std::uint16_t> objects;
+  if (options.show == Show::image && record.used.method.filter != nullptr && !on_gl) {
+    objects = object_numbers_for(*record.used.method.filter, scene, view, options.frame, width,
+                                 height, options.profile, pool);
+  }
   const auto make_picture = [&] {
     PreparedScene* const ready = prepared ? &*prepared : nullptr;
     if (is_auto) {
@@ -253,13 +326,23 @@ int render(const RenderOptions& options) {
     if (from_lens) {
       return sampled_picture(scene, view, drawn, ready, options, record, progress, pool);
     }
-    return shown_picture(std::move(drawn), options, record.used.method.filter, scene.camera,
-                         settings, on_gl ? &*on_gl : nullptr, pool);
+    return shown_picture(
+        std::move(drawn), std::vector<ConstImageView>{behind.begin(), behind.end()}, objects,
+        record.lens ? std::span<const float>{record.lens->radii_px} : std::span<const float>{},
+        options, record.used.method.filter, scene.camera, settings, on_gl ? &*on_gl : nullptr,
+        pool);
   };
-  const Image picture =
+  Image picture =
       is_auto ? make_picture()  // which times its stages itself
               : timed(progress, from_lens ? "sampling" : "filtering", ms.filter, make_picture);
 
+  if (options.supersample == 2) {
+    double halve_ms = 0.0;
+    picture = timed(progress, "halving", halve_ms, [&] {
+      return halved(picture, options, scene.camera.fov_y_degrees, record.lens, pool);
+    });
+    ms.filter += halve_ms;
+  }
   progress.clear();
   warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record)});
   auto sidecar = sidecar_place(options);
@@ -274,6 +357,8 @@ int render(const RenderOptions& options) {
     record.picture_hash = hash_image(picture);
     return encode_with_notes(picture, options.format, notes_of(options, record));
   });
+  std::vector<std::unique_ptr<WholeFile>> layer_files;
+  if (options.show != Show::image) write_layers(behind, options, record, pool, layer_files);
   // The files get their names together, when nothing can fail but the naming.
   std::optional<WholeFile> picture_file, sidecar_file, report_file;
   timed(progress, "writing", ms.write, [&] {
@@ -289,6 +374,7 @@ int render(const RenderOptions& options) {
   const std::string report = text_report(options, record);
   if (options.report) report_file.emplace(*options.report).write(report);
   if (picture_file) picture_file->commit();
+  for (const auto& file : layer_files) file->commit();
   if (sidecar_file) sidecar_file->commit();
   if (report_file) report_file->commit();
   progress.clear();

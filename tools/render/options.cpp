@@ -1,9 +1,11 @@
 #include "tools/render/options.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "raster/images/image.h"
+#include "raster/pipeline/merge.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/files/same_file.h"
@@ -39,6 +41,12 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
               options.format = *format;
             });
   add_size(parser, options.size);
+  add_value(
+      parser, "--supersample", "1|2",
+      "Draw and filter at so many times the width and height; 2 makes edges smooth (default: 1)",
+      [&options](const std::string& text) {
+        options.supersample = parse_whole("--supersample", text, 1, 2, "1 or 2");
+      });
   add_value(parser, "--show", "image|pinhole|coc|depth",
             "The picture with depth of field, without, or a grey map (default: image)",
             [&options](const std::string& text) {
@@ -49,6 +57,13 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
                 }
               }
               refuse_name("--show", text, kShowChoices);
+            });
+  add_value(parser, "--layers", "K",
+            "The K nearest surfaces of each pixel, 1 to 4: what layered works from (default: 2); "
+            "with --show pinhole, coc or depth a FILE for each, FILE.layer2 and so on",
+            [&options](const std::string& text) {
+              options.layers = static_cast<std::size_t>(parse_whole(
+                  "--layers", text, 1, static_cast<int>(kMaxLayers), "a number from 1 to 4"));
             });
 }
 
@@ -67,6 +82,7 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
               options.autofocus = true;
               if (text != "centre") options.autofocus_pixel = parse_pixel("--autofocus", text);
             });
+  add_sharp_depths_option(parser, options.sharp_depths);
   add_max_coc_option(parser, options.max_coc_px);
   add_value(parser, "--leak", "A",
             "How readily a background gives its colour to what is before it (default: " +
@@ -74,6 +90,13 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
             [&options](const std::string& text) {
               options.leak = static_cast<float>(
                   parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
+            });
+  add_value(parser, "--budget", "SHARE",
+            "Of importance-ordered: the share of one-pass's work to do, 0 to 1 (default: " +
+                short_number(options.budget) + ")",
+            [&options](const std::string& text) {
+              options.budget = static_cast<float>(
+                  parse_number("--budget", text, 0.0, 1.0, "a share from 0 to 1"));
             });
   add_sampling_options(parser, options.sampling);
   add_auto_options(parser, options.goal, options.verify);
@@ -88,6 +111,7 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
                      });
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
+  add_shaders_option(parser, options.shaders);
   add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
             [&options](const std::string& text) { options.report = text; });
@@ -95,15 +119,106 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
   add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);
 }
 
+// Files of their own, or a method that reads them.
+void check_layers(const RenderOptions& options) {
+  if (!options.layers) return;
+  if (options.show == Show::image) {
+    const Method* filter = options.method.filter;
+    if (filter != nullptr && filter->layers > 1) return;
+    throw UsageError(
+        "--layers: the method " + std::string{options.method.name()} +
+        " looks at the nearest surface alone; give --method layered or --show pinhole");
+  }
+  if (options.output == "-" && *options.layers > 1) {
+    throw UsageError("--layers and -o - exclude each other: each layer is a file; give -o a file");
+  }
+}
+
+void check_gl_options(const RenderOptions& options, const CLI::App& parser) {
+  if (options.gl == nullptr) {
+    if (!is_given(parser, "--shaders")) return;
+    throw UsageError("--shaders: a driver runs them; give --gl DRIVER too");
+  }
+  if (is_given(parser, "--profile")) {
+    throw UsageError("--gl and --profile exclude each other: a driver is what it is");
+  }
+  const std::string method{options.method.name()};
+  if (options.method.of_scene != nullptr) {
+    throw UsageError("--gl and --method " + method +
+                     " exclude each other: it draws in the emulation; give one");
+  }
+  const bool filters = options.show == Show::image && method != "pinhole";
+  if (filters && !has_shader(method)) {
+    throw UsageError("--gl and --method " + method +
+                     " exclude each other: it has no shader; two-pass and one-pass have");
+  }
+  const auto names = frame_shaders(filters ? method : "");
+  if (!has_no_part(options.shaders, names)) return;
+  std::string list;
+  for (const std::string_view name : names) {
+    list += (list.empty() ? "" : ", ") + std::string{name};
+  }
+  throw UsageError("--shaders '" + options.shaders.folder.string() +
+                   "': what differs there from the project's has no part in this picture, which is "
+                   "made by " +
+                   list + " and what they include");
+}
+
+void check_supersample(const RenderOptions& options) {
+  if (options.supersample == 1) return;
+  if (options.show == Show::coc || options.show == Show::depth) {
+    throw UsageError(
+        "--supersample: a map of circles or depths has no mean; give --show image or "
+        "pinhole");
+  }
+  if (options.layers) {
+    throw UsageError(
+        "--supersample and --layers exclude each other: neighbours in a layer may be of "
+        "different surfaces, which have no mean");
+  }
+  if (options.method.is_auto() && options.show == Show::image) {
+    throw UsageError("--supersample and --method auto exclude each other; name a method");
+  }
+  if (options.method.of_scene != nullptr && options.show == Show::image) {
+    throw UsageError(
+        "--supersample and --method " + std::string{options.method.name()} +
+        " exclude each other: its views can look from all over a pixel; give --jitter");
+  }
+  const auto [width, height] = drawn_size(options);
+  if (std::max(width, height) > kMaxImageSize) {
+    throw UsageError("--supersample: " + size_text({width, height}) + " would be drawn, and " +
+                     std::to_string(kMaxImageSize) + " is the most; give a smaller --size");
+  }
+  const float most = kLargestMaxCoc / static_cast<float>(options.supersample);
+  if (options.max_coc_px.value_or(0.0f) > most) {
+    throw UsageError("--supersample: --max-coc is at most " +
+                     std::to_string(static_cast<int>(most)) + " with it");
+  }
+}
+
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
 /// depth (4) and the largest encoding (12).
 constexpr std::uint64_t kRenderBytesPerPixel = 40;
 
-/// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and
-/// its depth.
+/// And for each layer behind the first: a picture and its depth.
+constexpr std::uint64_t kLayerBytesPerPixel = 12;
+
+/// And for a method that draws the scene: two sets of sums (32 bytes each), a picture and its
+/// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
+constexpr std::uint64_t kFilteredBytesPerPixel = kSamplingBytesPerPixel + 8 * 8;
 
 }  // namespace
+
+PictureSize drawn_size(const RenderOptions& options) {
+  return {options.size.width * options.supersample, options.size.height * options.supersample};
+}
+
+std::size_t layers_of(const RenderOptions& options) {
+  const Method* filter = options.method.filter;
+  const bool filters = options.show == Show::image && filter != nullptr;
+  return options.layers.value_or(filters ? filter->layers : 1);
+}
 
 void add_render_options(CLI::App& parser, RenderOptions& options) {
   add_scene_argument(parser, options.scene);
@@ -132,9 +247,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (to_standard_output && is_terminal(kStandardOutput)) {
     throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
   }
-  if (options.gl != nullptr && is_given(parser, "--profile")) {
-    throw UsageError("--gl and --profile exclude each other: a driver is what it is");
-  }
+  check_gl_options(options, parser);
   if (options.report && options.report->empty()) {
     throw UsageError("--report '': give the name of a file");
   }
@@ -153,21 +266,28 @@ void complete(RenderOptions& options, const CLI::App& parser) {
                        "," + std::to_string(height - 1));
     }
   }
+  check_sharp_depths(parser, options.method, options.show == Show::image);
+  if (is_given(parser, "--budget") && options.method.name() != kBudgetMethod) {
+    throw UsageError("--budget: the method " + std::string{options.method.name()} +
+                     " has none; give --method " + std::string{kBudgetMethod});
+  }
+  check_layers(options);
   check_auto_options(parser, options.method);
   check_arithmetic(options.arithmetic, options.method.name(), options.gl != nullptr);
   const bool samples = options.method.of_scene != nullptr;
-  if (samples) {
-    complete_sampling(options.sampling, parser);
+  if (samples && options.method.of_scene->samples_lens) {
+    complete_sampling(options.sampling, *options.method.of_scene, parser);
   } else if (!options.method.is_auto()) {
     refuse_sampling_options(parser, options.method.name());
   }
-  if (samples && options.gl != nullptr) {
-    throw UsageError("--gl and --method " + std::string{options.method.name()} +
-                     " exclude each other: it draws in the emulation; give one");
-  }
+  check_supersample(options);
   const bool may_sample = samples || options.method.is_auto();
-  check_memory("--size", options.size,
-               kRenderBytesPerPixel + (may_sample ? kSamplingBytesPerPixel : 0));
+  const bool may_filter_views = options.method.name() == "filtered-views";
+  check_memory(options.supersample == 1 ? "--size" : "--supersample", drawn_size(options),
+               kRenderBytesPerPixel + (layers_of(options) - 1) * kLayerBytesPerPixel +
+                   (may_filter_views ? kFilteredBytesPerPixel
+                    : may_sample     ? kSamplingBytesPerPixel
+                                     : 0));
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {

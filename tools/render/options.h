@@ -15,9 +15,11 @@
 #include "tools/cli/parser.h"
 #include "tools/files/image_file.h"
 #include "tools/gl/driver.h"
+#include "tools/gl/shaders.h"
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/render/sharp_depths_option.h"
 
 namespace softfocus {
 
@@ -30,11 +32,13 @@ struct RenderOptions {
   FileFormat format = FileFormat::png;
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
+  int supersample = 1;  ///< what is drawn and filtered has so many times the width and height
   double frame = 0.0;
   Profile profile;
   std::string profile_name = "ieee";
   std::filesystem::path profile_file;  ///< empty if the profile is a known one
   const Driver* gl = nullptr;          ///< renders the frame instead of the emulation
+  Shaders shaders;                     ///< of --gl
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;
@@ -43,14 +47,23 @@ struct RenderOptions {
   Verify verify = Verify::in_doubt;
   LensOptions lens;
   bool autofocus = false;
-  std::optional<Pixel> autofocus_pixel;  ///< the picture's centre if none
+  std::optional<Pixel> autofocus_pixel;       ///< the picture's centre if none
+  std::vector<SharpDepthRange> sharp_depths;  ///< in place of a focus, unless empty
   std::optional<float> max_coc_px;
   float leak = DofSettings{}.leak;
+  float budget = DofSettings{}.budget;
   Show show = Show::image;
+  std::optional<std::size_t> layers;  ///< of --layers
   std::optional<std::filesystem::path> report;
   bool json = false;
   bool verbose = false;
 };
+
+/// The size that is drawn.
+PictureSize drawn_size(const RenderOptions& options);
+
+/// How many surfaces of each pixel are drawn: as many as were asked for, or as the method needs.
+std::size_t layers_of(const RenderOptions& options);
 
 void add_render_options(CLI::App& parser, RenderOptions& options);
 

@@ -131,6 +131,10 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += line("Frame", short_number(options.frame));
   text += line("Resolution", std::to_string(options.size.width) + " x " +
                                  std::to_string(options.size.height) + " pixels");
+  if (options.supersample > 1) {
+    text += line("Supersample",
+                 std::to_string(options.supersample) + " x " + std::to_string(options.supersample));
+  }
   text += line("Triangles", std::to_string(record.triangles));
   text += line("Method", std::string{options.method.name()});
   if (options.arithmetic != Arithmetic::floats) {
@@ -145,6 +149,9 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += "\n";
   if (record.lens) {
     text += lens_lines(*record.lens);
+    if (!options.sharp_depths.empty()) {
+      text += line("Sharp depths", ranges_text(options.sharp_depths) + " m");
+    }
     text += record.sampled ? sampling_lines(record.used.sampling, *record.sampled)
                            : filter_lines(*record.lens);
     text += "\n";
@@ -174,6 +181,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"frame", options.frame},
       {"width", options.size.width},
       {"height", options.size.height},
+      {"supersample", options.supersample},
       {"triangles", record.triangles},
       {"method", options.method.name()},
       {"show", name_of(options.show)},
@@ -190,6 +198,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
   if (!record.gl_renderer.empty()) {
     json["profile"] = nullptr;
     json["gl_driver"] = record.gl_renderer;
+    if (!options.shaders.own.empty()) json["shaders"] = options.shaders.folder.string();
   }
   if (record.lens) {
     const UsedLens& used = *record.lens;
@@ -204,6 +213,9 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     if (used.autofocus_pixel) {
       json["lens"]["autofocus_pixel"] = {used.autofocus_pixel->x, used.autofocus_pixel->y};
     }
+  }
+  if (!options.sharp_depths.empty()) {
+    json["sharp_depths_m"] = ranges_json(options.sharp_depths);
   }
   if (record.used.choice) json["choice"] = choice_json(record.used, options.goal);
   if (record.sampled) {

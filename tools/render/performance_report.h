@@ -29,6 +29,8 @@ struct UsedLens {
   double coc_scale = 1.0;
   DofSettings settings;
   std::optional<Pixel> autofocus_pixel;  ///< where the focus was found
+  std::vector<SharpDepths> sharp_depths;
+  std::vector<float> radii_px;  ///< by sharp_depths
 };
 
 /// What was at work: as it was asked for, or as auto chose it.

@@ -25,6 +25,7 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
   if (options.show != Show::image) return nullptr;
   const MethodChoice& method = record.used.method;
   Json json{{"name", method.name()}};
+  if (options.supersample > 1) json["supersample"] = options.supersample;
   if (record.sampled) {
     json["samples"] = record.sampled->samples;
     json["jitter"] = record.used.sampling.jitter;
@@ -32,12 +33,17 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
   } else if (record.lens) {
     json["max_coc_px"] = record.lens->settings.max_coc_px;
     json["leak"] = record.lens->settings.leak;
+    if (method.name() == kBudgetMethod) json["budget"] = record.lens->settings.budget;
     json["arithmetic"] = arithmetic_name(options.arithmetic);
+    if (!options.sharp_depths.empty()) {
+      json["sharp_depths_m"] = ranges_json(options.sharp_depths);
+    }
   }
   if (record.gl_renderer.empty()) {
     json["profile"] = options.profile_name;
   } else {
     json["gl_driver"] = record.gl_renderer;
+    if (!options.shaders.own.empty()) json["shaders"] = options.shaders.folder.string();
   }
   return json;
 }
@@ -48,8 +54,18 @@ void check_outputs(const RenderOptions& options, const Scene& scene) {
   std::vector<ReadFile> inputs;
   for (const auto& file : scene.files) inputs.push_back({file, "a file of the scene"});
   if (!options.profile_file.empty()) inputs.push_back({options.profile_file, "the profile"});
+  for (const auto& [name, text] : options.shaders.own) {
+    inputs.push_back({options.shaders.folder / name, "a shader"});
+  }
   if (options.output != "-") check_not_read("-o", options.output, inputs);
   if (options.report) check_not_read("--report", *options.report, inputs);
+  for (std::size_t layer = 2; options.show != Show::image && layer <= layers_of(options); ++layer) {
+    check_not_read("--layers", layer_place(options, layer), inputs);
+    if (options.report && is_same_file(*options.report, layer_place(options, layer))) {
+      throw UsageError("--report '" + options.report->string() +
+                       "' is where --layers writes a layer; give another name");
+    }
+  }
   if (const auto sidecar = sidecar_place(options)) {
     check_not_read("-o", *sidecar, inputs);
     if (options.report && is_same_file(*options.report, *sidecar)) {
@@ -57,6 +73,14 @@ void check_outputs(const RenderOptions& options, const Scene& scene) {
                        "' is where -o writes the picture's lens; give another name");
     }
   }
+}
+
+std::filesystem::path layer_place(const RenderOptions& options, std::size_t layer) {
+  const std::filesystem::path picture = options.output;
+  std::filesystem::path place = picture;
+  place.replace_filename(picture.stem().string() + ".layer" + std::to_string(layer) +
+                         picture.extension().string());
+  return place;
 }
 
 PictureNotes notes_of(const RenderOptions& options, const RenderRecord& record) {
@@ -101,8 +125,9 @@ std::string cut_warning(const Image& drawn, const RenderOptions& options, const 
   const CircleSizes sizes = circle_sizes(drawn, used.settings.coc, noticeable_px(max_coc_px), pool);
   if (sizes.beyond_limit < kNoticeableShare) return {};
   const float most = most_max_coc_px(options.arithmetic);
-  const float needed = std::min(std::ceil(sizes.largest_px), most);
-  return "--max-coc, " + short_number(static_cast<double>(max_coc_px)) +
+  const auto scale = static_cast<float>(options.supersample);
+  const float needed = std::min(std::ceil(sizes.largest_px / scale), most / scale);
+  return "--max-coc, " + short_number(static_cast<double>(max_coc_px / scale)) +
          " by default, cuts the circles of " +
          short_number(std::round(100.0 * sizes.beyond_limit)) + " % of the picture; --max-coc " +
          short_number(static_cast<double>(needed)) +

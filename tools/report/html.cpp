@@ -58,8 +58,8 @@ std::string table_of(const std::string& id, const std::string& head, const std::
 
 std::string plot_image(std::string_view svg, const std::string& alt) {
   return "<div class=\"scroll\"><img class=\"chart\" alt=\"" + html_text(alt) +
-         "\" src=\"data:image/svg+xml;base64," + base64(std::as_bytes(std::span{svg})) +
-         "\"></div>\n";
+         "\" src=\"data:image/svg+xml;base64," +
+         base64(std::as_bytes(std::span{svg.data(), svg.size()})) + "\"></div>\n";
 }
 
 }  // namespace softfocus

@@ -4,7 +4,10 @@
 #include <cassert>
 
 #include "scenes/auto/auto_picture.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/object_numbers.h"
 #include "scenes/lens_views/accumulation.h"
+#include "scenes/lens_views/lens_view_method.h"
 
 namespace softfocus {
 namespace {
@@ -32,7 +35,20 @@ LensViewInput views_input(const StressFrame& frame, int samples) {
 Image filtered(const Method& method, const StressFrame& frame, float max_coc_px, ThreadPool& pool) {
   DofSettings settings = frame.settings;
   settings.max_coc_px = max_coc_px;
-  return apply(method, {frame.sharp, settings, Profile{}}, pool);
+  std::vector<std::uint16_t> objects;
+  std::vector<Image> layers;
+  if (frame.scene) {
+    const StressScene& scene = *frame.scene;
+    objects = object_numbers_for(method, scene.scene, scene.camera, 0.0, frame.sharp.width,
+                                 frame.sharp.height, Profile{}, pool);
+    if (method.layers > 1) {
+      layers = draw_layers(scene.scene, scene.camera, 0.0, frame.sharp.width, frame.sharp.height,
+                           method.layers, Profile{}, pool);
+    }
+  }
+  std::vector<ConstImageView> behind{layers.begin(), layers.end()};
+  if (!behind.empty()) behind.erase(behind.begin());
+  return apply(method, {frame.sharp, settings, Profile{}, objects, behind}, pool);
 }
 
 /// What auto chooses by itself, with no goal but its own.
@@ -49,6 +65,9 @@ Image chosen_picture(const StressFrame& frame, ThreadPool& pool) {
 Image method_picture(const std::string& method, const StressFrame& frame, ThreadPool& pool) {
   if (method == kViewsMethod) return accumulation(views_input(frame, kStressSamples), pool).picture;
   if (method == kChoosingMethod) return chosen_picture(frame, pool);
+  if (const LensViewMethod* of_scene = find_lens_view_method(method)) {
+    return of_scene->render(views_input(frame, 1), pool).picture;
+  }
   return filtered(*find_method(method), frame, frame.settings.max_coc_px, pool);
 }
 
@@ -58,6 +77,9 @@ std::vector<std::string> stress_methods() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.emplace_back(method.name);
   names.emplace_back(kViewsMethod);
+  for (const LensViewMethod& method : lens_view_methods()) {
+    if (!method.samples_lens) names.emplace_back(method.name);
+  }
   names.emplace_back(kChoosingMethod);
   return names;
 }

@@ -12,7 +12,7 @@ namespace softfocus {
 /// Views that the method `accumulation` gets.
 inline constexpr int kStressSamples = 64;
 
-/// The filters of dof/dof.h, accumulation, and auto.
+/// The filters of dof/dof.h, accumulation, what draws the scene in one go, and auto.
 std::vector<std::string> stress_methods();
 
 /// A method's pictures, or nothing if it needs a scene and the trial is made as a picture.

@@ -57,7 +57,8 @@ std::vector<std::string> known_names(const std::string& option, const std::strin
 void add_stress_options(CLI::App& parser, StressOptions& options) {
   add_value(parser, "-o,--output", "DIR", "Where the atlas and what was measured go; required",
             [&options](const std::string& text) { options.directory = text; });
-  add_value(parser, "--methods", "A,B,...", "Methods (default: all filters, accumulation, auto)",
+  add_value(parser, "--methods", "A,B,...",
+            "Methods (default: all filters, accumulation, surface-splatting, auto)",
             [&options](const std::string& text) {
               options.methods = known_names("--methods", text, stress_methods());
             });

@@ -32,15 +32,20 @@ struct VertexJob {
 struct FragmentJob {
   std::size_t provoking;
   const Profile* profile;
+  std::size_t layer;  ///< of the tile
 };
 
 /// The stages of a draw, compiled for a vector unit (vertex_lanes.inl, shade_lanes.inl).
+/// Fragments are discarded before the depth test, and those that are left are shaded later.
 template <class VertexStage, class FragmentStage>
 struct LaneStages {
   unsigned (*place_vertices)(const VertexStage&, const VertexJob&);
   void (*shade_vertices)(const VertexStage&, const VertexJob&);
   void (*shade_fragments)(const FragmentStage&, const FragmentJob&, const VisibilityTile&,
                           const VisibleRun&);
+  /// Of a stage that discards fragments; see LaneSteps.
+  unsigned (*keep_fragments)(const FragmentStage&, const FragmentJob&, const LaneTriangle&, int x,
+                             int y, unsigned pixels) = nullptr;
 };
 
 /// Whether the kernels can carry out a draw. They leave out draws that need fragments in order
@@ -97,10 +102,24 @@ struct RecordedInLanes {
         });
   }
 
+  FragmentJob fragment_job(std::size_t layer) const {
+    return {provoking_index(draw.state), &draw.profile, layer};
+  }
+
   VertexJob vertex_job(std::uint32_t begin, std::uint32_t end) const {
     return {draw.store, begin, end, draw.target.x_end, draw.target.y_end, &draw.profile};
   }
 };
+
+template <class Recorded>
+unsigned keep(const void* recorded, const LaneTriangle& triangle, int x, int y, unsigned pixels) {
+  const auto& r = *static_cast<const Recorded*>(recorded);
+  return r.stages.keep_fragments(r.fragment_stage, r.fragment_job(0), triangle, x, y, pixels);
+}
+
+template <class Recorded>
+inline constexpr auto kKeep =
+    decltype(Recorded::fragment_stage)::kDiscards ? keep<Recorded> : nullptr;
 
 template <class Recorded>
 inline constexpr LaneSteps kLaneSteps{
@@ -119,11 +138,11 @@ inline constexpr LaneSteps kLaneSteps{
       const auto& r = *static_cast<const Recorded*>(recorded);
       r.stages.shade_vertices(r.vertex_stage, r.vertex_job(begin, end));
     },
-    [](const void* recorded, const VisibilityTile& tile, const VisibleRun& run) {
+    [](const void* recorded, const VisibilityTile& tile, std::size_t layer, const VisibleRun& run) {
       const auto& r = *static_cast<const Recorded*>(recorded);
-      r.stages.shade_fragments(r.fragment_stage, {provoking_index(r.draw.state), &r.draw.profile},
-                               tile, run);
-    }};
+      r.stages.shade_fragments(r.fragment_stage, r.fragment_job(layer), tile, run);
+    },
+    kKeep<Recorded>};
 
 }  // namespace draw_detail
 
@@ -135,6 +154,8 @@ void draw_in_lanes(RenderPass& pass, const DrawState& state, std::span<const std
                    const LaneStages<VertexStage, FragmentStage>& stages) {
   assert(can_draw_in_lanes(pass, state));
   assert(indices.size() % 3 == 0);
+  assert(!has_layers(pass.targets) || can_peel(pass.targets, state));
+  assert(FragmentStage::kDiscards == (stages.keep_fragments != nullptr));
   using Recorded = draw_detail::RecordedInLanes<VertexStage, FragmentStage>;
   const draw_detail::LaneDraw draw{
       state, pass.profile, pass.isa, target_area(pass.targets), indices, {}};

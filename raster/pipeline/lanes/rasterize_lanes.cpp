@@ -15,14 +15,16 @@
 namespace softfocus {
 
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
-                     const DepthState& state, const Profile& profile, VisibilityTile& tile) {
-  SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, state, profile, tile);
+                     const DrawCall& draw, const Profile& profile, VisibilityTile& tile) {
+  SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, draw, profile, tile);
 }
 
 void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile) {
   Image row = make_image(Format::rgba16f, kBlockSize, 1);
   clear_image(row, 0, 0, kBlockSize, 1, value, profile);
-  SOFTFOCUS_KERNEL(isa, set_unseen)(tile, row.bytes.data());
+  for (std::size_t i = 0; i < tile.layers; ++i) {
+    SOFTFOCUS_KERNEL(isa, set_unseen)(tile, tile.layer(i), row.bytes.data());
+  }
 }
 
 }  // namespace softfocus
@@ -53,35 +55,95 @@ SOFTFOCUS_INLINE Floats clamped_depth(Floats depth) {
   return select(depth <= 1.0f, select(depth < 0.0f, splat(0.0f), depth), splat(1.0f));
 }
 
-/// A triangle's depths in a tile, and their test.
-template <Compare test, bool kPlanes>
-struct DepthWriter {
-  const DepthState& state;
-  VisibilityTile& tile;
-  std::int32_t id;
+/// A triangle's depths.
+template <bool kPlanes>
+struct TriangleDepths {
   Contraction contraction;
   Floats z0, z1, z2;
   Floats inverse_area;
 
-  // Tests the covered lanes of a part of a block. Lane 0 is pixel (x, y).
-  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
-    Floats depth;
-    if constexpr (kPlanes) {
-      const Floats column = to_floats(x + lane_x());
-      const Floats line = to_floats(y + lane_y());
-      if (contraction == Contraction::fused) {
-        depth = fused_multiply_add(z2, line, fused_multiply_add(z1, column, z0));
-      } else {
-        depth = z2 * line + (z1 * column + z0);
-      }
-    } else {
-      depth = (z0 + (e1 * inverse_area) * z1) + (e2 * inverse_area) * z2;
+  // Of a part of a block. Lane 0 is pixel (x, y).
+  SOFTFOCUS_INLINE Floats at(int x, int y, Floats e1, Floats e2) const {
+    if constexpr (!kPlanes) {
+      return clamped_depth((z0 + (e1 * inverse_area) * z1) + (e2 * inverse_area) * z2);
     }
-    depth = clamped_depth(depth);
-    const Floats stored = load(&tile.depth[at]);
-    const Mask seen = covered & passes(test, depth, stored);
-    if (state.write) store(&tile.depth[at], select(seen, depth, stored));
-    store(&tile.ids[at], select(seen, splat(id), load(&tile.ids[at])));
+    const Floats column = to_floats(x + lane_x());
+    const Floats line = to_floats(y + lane_y());
+    if (contraction == Contraction::fused) {
+      return clamped_depth(fused_multiply_add(z2, line, fused_multiply_add(z1, column, z0)));
+    }
+    return clamped_depth(z2 * line + (z1 * column + z0));
+  }
+};
+
+// Those of the fragments that the stage does not discard.
+SOFTFOCUS_INLINE Mask kept(const DrawCall& draw, const LaneTriangle& triangle, int x, int y,
+                           Mask fragments) {
+  const unsigned bits =
+      draw.lane_steps->keep(draw.recorded.get(), triangle, x, y, lane_bits(fragments));
+  return (splat(static_cast<std::int32_t>(bits)) >> lane_numbers() & 1) != 0;
+}
+
+// A writer tests the covered lanes of a part of a block, and keeps the triangle's id where it is
+// seen.
+
+/// For a tile of one layer.
+template <Compare test, bool kPlanes, bool kDiscards>
+struct DepthWriter {
+  const DrawCall& draw;
+  const LaneTriangle& triangle;
+  VisibilityTile& tile;
+  std::int32_t id;
+  TriangleDepths<kPlanes> depths;
+
+  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
+    const Floats depth = depths.at(x, y, e1, e2);
+    TileLayer& front = tile.front;
+    const Floats stored = load(&front.depth[at]);
+    Mask seen = covered & passes(test, depth, stored);
+    if constexpr (kDiscards) {
+      // The test first: it costs less, and a fragment is discarded whatever the test says.
+      if (!any(seen)) return;
+      seen = kept(draw, triangle, x, y, seen);
+    }
+    if (draw.depth.write) store(&front.depth[at], select(seen, depth, stored));
+    store(&front.ids[at], select(seen, splat(id), load(&front.ids[at])));
+  }
+};
+
+/// For a tile of kLayers: as insert_into_layers(), from the farthest layer to the nearest.
+template <std::size_t kLayers, bool kPlanes>
+struct LayerWriter {
+  const DrawCall& draw;
+  const LaneTriangle& triangle;
+  VisibilityTile& tile;
+  std::int32_t id;
+  TriangleDepths<kPlanes> depths;
+
+  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
+    const Floats depth = depths.at(x, y, e1, e2);
+    Floats stored = load(&tile.layer(kLayers - 1).depth[at]);
+    Mask nearer = covered & (depth < stored);
+    if (!any(nearer)) return;
+    if (draw.lane_steps->keep != nullptr) {
+      covered = nearer = kept(draw, triangle, x, y, nearer);
+    }
+#pragma GCC unroll 3
+    for (std::size_t i = kLayers - 1; i > 0; --i) {
+      TileLayer& layer = tile.layer(i);
+      const TileLayer& before = tile.layer(i - 1);
+      const Floats stored_before = load(&before.depth[at]);
+      const Mask nearer_than_before = covered & (depth < stored_before);
+      store(&layer.depth[at],
+            select(nearer_than_before, stored_before, select(nearer, depth, stored)));
+      store(&layer.ids[at], select(nearer_than_before, load(&before.ids[at]),
+                                   select(nearer, splat(id), load(&layer.ids[at]))));
+      stored = stored_before;
+      nearer = nearer_than_before;
+    }
+    if (!any(nearer)) return;
+    store(&tile.front.depth[at], select(nearer, depth, stored));
+    store(&tile.front.ids[at], select(nearer, splat(id), load(&tile.front.ids[at])));
   }
 };
 
@@ -200,8 +262,8 @@ void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& w
   }
 }
 
-template <Compare test, bool kPlanes>
-void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+template <class Writer>
+void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
                    const Profile& profile, VisibilityTile& tile) {
   // Triangles were written long ago, perhaps by another thread.
   constexpr std::size_t kAhead = 6;
@@ -216,14 +278,12 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Dept
     __builtin_prefetch(ahead + 64);
     const LaneTriangle& t = chunk.triangles[bins[i].triangle];
     tile.triangles.push_back(&t);
-    DepthWriter<test, kPlanes> writer{state,
-                                      tile,
-                                      static_cast<std::int32_t>(tile.triangles.size()),
-                                      profile.interpolation,
-                                      splat(t.depth[0]),
-                                      splat(t.depth[1]),
-                                      splat(t.depth[2]),
-                                      splat(t.inverse_area)};
+    Writer writer{draw,
+                  t,
+                  tile,
+                  static_cast<std::int32_t>(tile.triangles.size()),
+                  {profile.interpolation, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]),
+                   splat(t.inverse_area)}};
     if (t.large == nullptr) {
       rasterize_small(t, tile, writer);
     } else if (t.large->fits_doubles) {
@@ -234,33 +294,60 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Dept
   }
 }
 
-template <Compare test>
-void rasterize_test(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+template <Compare test, bool kDiscards>
+void rasterize_test(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
                     const Profile& profile, VisibilityTile& tile) {
   if (profile.attributes == AttributeSetup::planes_from_origin) {
-    rasterize_all<test, true>(chunk, bins, state, profile, tile);
+    rasterize_all<DepthWriter<test, true, kDiscards> >(chunk, bins, draw, profile, tile);
   } else {
-    rasterize_all<test, false>(chunk, bins, state, profile, tile);
+    rasterize_all<DepthWriter<test, false, kDiscards> >(chunk, bins, draw, profile, tile);
+  }
+}
+
+template <Compare test>
+void rasterize_test(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
+                    const Profile& profile, VisibilityTile& tile) {
+  if (draw.lane_steps->keep != nullptr) {
+    rasterize_test<test, true>(chunk, bins, draw, profile, tile);
+  } else {
+    rasterize_test<test, false>(chunk, bins, draw, profile, tile);
+  }
+}
+
+template <std::size_t kLayers>
+void rasterize_layers(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
+                      const Profile& profile, VisibilityTile& tile) {
+  if (profile.attributes == AttributeSetup::planes_from_origin) {
+    rasterize_all<LayerWriter<kLayers, true> >(chunk, bins, draw, profile, tile);
+  } else {
+    rasterize_all<LayerWriter<kLayers, false> >(chunk, bins, draw, profile, tile);
   }
 }
 
 }  // namespace
 
-void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DepthState& state,
+void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
                const Profile& profile, VisibilityTile& tile) {
-  switch (state.test) {
-    case Compare::never: return rasterize_test<Compare::never>(chunk, bins, state, profile, tile);
-    case Compare::less: return rasterize_test<Compare::less>(chunk, bins, state, profile, tile);
-    case Compare::equal: return rasterize_test<Compare::equal>(chunk, bins, state, profile, tile);
+  static_assert(kMaxLayers == 4);
+  switch (tile.layers) {
+    case 2: return rasterize_layers<2>(chunk, bins, draw, profile, tile);
+    case 3: return rasterize_layers<3>(chunk, bins, draw, profile, tile);
+    case 4: return rasterize_layers<4>(chunk, bins, draw, profile, tile);
+    default: break;
+  }
+  switch (draw.depth.test) {
+    case Compare::never: return rasterize_test<Compare::never>(chunk, bins, draw, profile, tile);
+    case Compare::less: return rasterize_test<Compare::less>(chunk, bins, draw, profile, tile);
+    case Compare::equal: return rasterize_test<Compare::equal>(chunk, bins, draw, profile, tile);
     case Compare::less_equal:
-      return rasterize_test<Compare::less_equal>(chunk, bins, state, profile, tile);
+      return rasterize_test<Compare::less_equal>(chunk, bins, draw, profile, tile);
     case Compare::greater:
-      return rasterize_test<Compare::greater>(chunk, bins, state, profile, tile);
+      return rasterize_test<Compare::greater>(chunk, bins, draw, profile, tile);
     case Compare::not_equal:
-      return rasterize_test<Compare::not_equal>(chunk, bins, state, profile, tile);
+      return rasterize_test<Compare::not_equal>(chunk, bins, draw, profile, tile);
     case Compare::greater_equal:
-      return rasterize_test<Compare::greater_equal>(chunk, bins, state, profile, tile);
-    case Compare::always: return rasterize_test<Compare::always>(chunk, bins, state, profile, tile);
+      return rasterize_test<Compare::greater_equal>(chunk, bins, draw, profile, tile);
+    case Compare::always: return rasterize_test<Compare::always>(chunk, bins, draw, profile, tile);
   }
 }
 
@@ -279,18 +366,18 @@ SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
 }  // namespace
 
 // `texels`: a row of a block, four halves a texel.
-void set_unseen(const VisibilityTile& tile, const std::byte* texels) {
+void set_unseen(const VisibilityTile& tile, const TileLayer& layer, const std::byte* texels) {
   constexpr std::size_t kTexelBytes = 8;
   const int width = tile.area.x_end - tile.area.x_begin;
   const int height = tile.area.y_end - tile.area.y_begin;
   for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
-    const Ints ids = load(&tile.ids[place]);
+    const Ints ids = load(&layer.ids[place]);
     const unsigned unseen = lane_bits(ids == 0);
     const int left = tile_x(place), top = tile_y(place);
     if (unseen == kAllLaneBits && left + kPartColumns <= width && top + kPartRows <= height) {
-      std::byte* to = tile.texels + static_cast<std::size_t>(top) * tile.stride_bytes +
+      std::byte* to = layer.texels + static_cast<std::size_t>(top) * layer.stride_bytes +
                       static_cast<std::size_t>(left) * kTexelBytes;
-      for (int row = 0; row < kPartRows; ++row, to += tile.stride_bytes) {
+      for (int row = 0; row < kPartRows; ++row, to += layer.stride_bytes) {
         std::memcpy(to, texels, kPartColumns * kTexelBytes);
       }
       continue;
@@ -299,7 +386,7 @@ void set_unseen(const VisibilityTile& tile, const std::byte* texels) {
       const int lane = __builtin_ctz(rest);
       const int x = left + lane_x(lane), y = top + lane_y(lane);
       if (x >= width || y >= height) continue;
-      std::memcpy(tile.texels + static_cast<std::size_t>(y) * tile.stride_bytes +
+      std::memcpy(layer.texels + static_cast<std::size_t>(y) * layer.stride_bytes +
                       static_cast<std::size_t>(x) * kTexelBytes,
                   texels, kTexelBytes);
     }

@@ -6,18 +6,20 @@
 
 #include "raster/lanes/isa.h"
 #include "raster/numbers/profile.h"
+#include "raster/pipeline/draw_call.h"
 #include "raster/pipeline/lanes/lane_chunk.h"
 #include "raster/pipeline/lanes/visibility_tile.h"
-#include "raster/pipeline/state.h"
 
 namespace softfocus {
 
 /// Depth-tests the listed triangles of a chunk against a tile, in order, and puts their ids
-/// where they are seen. Needs an isa with vectors.
+/// where they are seen and not discarded; in a tile of several layers, into the layers, of which
+/// those that lie behind move back. Needs an isa with vectors, and for layers a test for less that
+/// writes.
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
-                     const DepthState& state, const Profile& profile, VisibilityTile& tile);
+                     const DrawCall& draw, const Profile& profile, VisibilityTile& tile);
 
-/// Sets the pixels of a tile that show no triangle. Needs an isa with vectors.
+/// Sets the pixels of a tile's layers that show nothing. Needs an isa with vectors.
 void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile);
 
 }  // namespace softfocus

@@ -123,9 +123,9 @@ SOFTFOCUS_INLINE std::uint32_t quad_entry(const VisibleRun& run, std::int32_t id
 }
 
 // Lists the quads of the vector that begins with `quad`. Returns the new count.
-SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& run, int quad,
+SOFTFOCUS_INLINE int list_quads(const TileLayer& layer, const VisibleRun& run, int quad,
                                 Mask in_area, std::uint32_t* entries, int count) {
-  const std::int32_t* first_id = &tile.ids[static_cast<std::size_t>(quad * kQuadPixels)];
+  const std::int32_t* first_id = &layer.ids[static_cast<std::size_t>(quad * kQuadPixels)];
   const Ints ids = load(first_id);
   const unsigned seen = lane_bits((ids >= run.first_id) & (ids < run.end_id) & in_area);
   if (seen == 0) return count;
@@ -152,8 +152,8 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
 }
 
 // Not inlined: one copy for all stages.
-[[gnu::noinline]] inline void list_seen(const VisibilityTile& tile, const VisibleRun& run,
-                                        SeenQuads& seen) {
+[[gnu::noinline]] inline void list_seen(const VisibilityTile& tile, const TileLayer& layer,
+                                        const VisibleRun& run, SeenQuads& seen) {
   int x_begin = tile.area.x_end, y_begin = tile.area.y_end;
   int x_end = tile.area.x_begin, y_end = tile.area.y_begin;
   for (std::int32_t id = run.first_id; id < run.end_id; ++id) {
@@ -176,7 +176,7 @@ SOFTFOCUS_INLINE int list_quads(const VisibilityTile& tile, const VisibleRun& ru
         const int top = y + part * kPartColumns / kBlockSize * kPartRows;
         const Mask in_area = (left + lane_x() < x_end) & (top + lane_y() < y_end);
         const int quad = static_cast<int>(place_of_pixel(left, top)) / kQuadPixels;
-        count = list_quads(tile, run, quad, in_area, seen.entries.data(), count);
+        count = list_quads(layer, run, quad, in_area, seen.entries.data(), count);
       }
     }
   }
@@ -199,16 +199,21 @@ SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
   }
 }
 
+template <HalfRounding rounding>
+SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour) {
+  return {float_to_half<rounding>(colour[0]), float_to_half<rounding>(colour[1]),
+          float_to_half<rounding>(colour[2]), float_to_half<rounding>(colour[3])};
+}
+
 SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
                                            HalfRounding rounding) {
-  if (rounding == HalfRounding::nearest_even) {
-    constexpr auto kNearest = HalfRounding::nearest_even;
-    return {float_to_half<kNearest>(colour[0]), float_to_half<kNearest>(colour[1]),
-            float_to_half<kNearest>(colour[2]), float_to_half<kNearest>(colour[3])};
+  using enum HalfRounding;
+  switch (rounding) {
+    case nearest_even: return to_half_texels<nearest_even>(colour);
+    case toward_zero: return to_half_texels<toward_zero>(colour);
+    case swiftshader: break;
   }
-  constexpr auto kCut = HalfRounding::toward_zero;
-  return {float_to_half<kCut>(colour[0]), float_to_half<kCut>(colour[1]),
-          float_to_half<kCut>(colour[2]), float_to_half<kCut>(colour[3])};
+  return to_half_texels<swiftshader>(colour);
 }
 
 // The second step. Not inlined: all interpolators share it.
@@ -220,7 +225,7 @@ template <class Stage>
   batch.fill_up();
   std::array<std::array<Floats, 4>, 8> colours;
   stage.shade(batch, colours.data());
-  std::byte* first = tile.texels;
+  std::byte* first = tile.layer(job.layer).texels;
   for (int vector = 0; vector < batch.vectors(); ++vector) {
     alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
     store_half_texels(halves.data(), to_half_texels(colours[static_cast<std::size_t>(vector)],
@@ -238,13 +243,14 @@ template <class Stage>
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
+  const TileLayer& layer = tile.layer(job.layer);
   SeenQuads seen;
-  list_seen(tile, run, seen);
+  list_seen(tile, layer, run, seen);
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
-  const auto stride = static_cast<std::int32_t>(tile.stride_bytes);
-  const std::byte* first = tile.texels;
-  const bool in_picture = tile.stride_bytes > kTileSize * sizeof(std::uint64_t);
+  const auto stride = static_cast<std::int32_t>(layer.stride_bytes);
+  const std::byte* first = layer.texels;
+  const bool in_picture = layer.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
 
   FragmentBatch<Stage::kInputs> batch;
@@ -284,6 +290,35 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     if (!batch.has_room()) shade_batch(stage, job, tile, batch);
   }
   shade_batch(stage, job, tile, batch);
+}
+
+// A stage that discards has, beside kInterpolation,
+//     template <class Quads> Mask keeps(const Quads&) const
+template <class Interpolator, class Stage>
+unsigned keep_of_part(const Stage& stage, const FragmentJob& job, const LaneTriangle& triangle,
+                      int x, int y, unsigned pixels) {
+  QuadTriangles of_quads;
+  of_quads.fill(&triangle);
+  Interpolator interpolator{};
+  interpolator.load(of_quads, job.provoking);
+  const QuadFragments<Interpolator> fragments{
+      interpolator, interpolator.weights(x + lane_x(), y + lane_y()), of_quads};
+  return lane_bits(stage.keeps(fragments)) & pixels;
+}
+
+template <class Stage>
+unsigned keep_fragments(const Stage& stage, const FragmentJob& job, const LaneTriangle& triangle,
+                        int x, int y, unsigned pixels) {
+  if (job.profile->attributes == AttributeSetup::exact_barycentric) {
+    return keep_of_part<BarycentricLanes<Stage::kInterpolation>>(stage, job, triangle, x, y,
+                                                                 pixels);
+  }
+  if (job.profile->interpolation == Contraction::fused) {
+    return keep_of_part<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, triangle,
+                                                                               x, y, pixels);
+  }
+  return keep_of_part<PlaneLanes<Stage::kInterpolation, Contraction::unfused>>(stage, job, triangle,
+                                                                               x, y, pixels);
 }
 
 template <class Stage>

@@ -5,12 +5,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "raster/images/image.h"
 #include "raster/pipeline/draw_call.h"
 #include "raster/pipeline/lanes/lane_chunk.h"
+#include "raster/pipeline/merge.h"
 #include "raster/pipeline/state.h"
 
 namespace softfocus {
@@ -38,26 +40,39 @@ struct VisibleRun {
   std::int32_t end_id;
 };
 
-struct VisibilityTile {
-  Rectangle area;  ///< in the target; x_begin and y_begin are multiples of kTileSize
+/// Depths, and the number of the triangle that each pixel shows, from 1 on. 0: none, so it is to
+/// be cleared. In a pass that peels, -1 - i: what layer i showed before this tile began.
+struct TileLayer {
+  alignas(64) std::array<float, kTilePixels> depth;
+  alignas(64) std::array<std::int32_t, kTilePixels> ids;
   /// Where shaded pixels go, RGBA16F: the upper left one.
   std::byte* texels;
   std::size_t stride_bytes;
-  alignas(64) std::array<float, kTilePixels> depth;
-  alignas(64) std::array<std::int32_t, kTilePixels> ids;  ///< from 1 on; 0: none
-  std::vector<const LaneTriangle*> triangles;             ///< by id - 1
-  std::vector<VisibleRun> runs;
 };
 
-/// Begins a tile that shows nothing, at `clear_depth` or, without one, at the buffer's depths.
-void begin_tile(VisibilityTile& tile, const Rectangle& area, const Image& depth,
+/// What is shaded next.
+struct VisibilityTile {
+  Rectangle area;  ///< in the target; x_begin and y_begin are multiples of kTileSize
+  std::size_t layers = 1;
+  TileLayer front;
+  std::unique_ptr<std::array<TileLayer, kMaxLayers - 1>> behind;  ///< made on first use
+  std::vector<const LaneTriangle*> triangles;                     ///< by id - 1
+  std::vector<VisibleRun> runs;
+
+  TileLayer& layer(std::size_t i) { return i == 0 ? front : (*behind)[i - 1]; }
+  const TileLayer& layer(std::size_t i) const { return i == 0 ? front : (*behind)[i - 1]; }
+};
+
+/// Begins a tile that shows nothing, at `clear_depth` or, without one, at the buffers' depths.
+/// `texels` of its layers are left to be set.
+void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets& targets,
                 std::optional<float> clear_depth);
-/// Shades what the tile shows, draw by draw.
+/// Shades what the tile shows, the farthest layer first, draw by draw.
 void shade_tile(const VisibilityTile& tile);
 /// Forgets the triangles and keeps the depths.
 void forget_seen(VisibilityTile& tile);
-/// Writes the tile's depths to the buffer.
-void end_tile(const VisibilityTile& tile, Image& depth);
+/// Writes the tile's depths to the buffers.
+void end_tile(const VisibilityTile& tile, const RenderTargets& targets);
 
 /// Up to this id, an id fits beside a quad's number and pixels in 32 bits (shade_lanes.inl).
 inline constexpr std::size_t kMostVisible = (std::size_t{1} << 18) - 1;

@@ -60,8 +60,8 @@ std::vector<SceneFrame> scene_frames() {
 }
 
 const std::vector<SceneFrame>& frames() {
-  static const std::vector<SceneFrame> kFrames = scene_frames();
-  return kFrames;
+  static const std::vector<SceneFrame> made = scene_frames();
+  return made;
 }
 
 Picture3<double> exact_result(const SceneFrame& frame, const Lens& lens) {
@@ -163,13 +163,16 @@ void check_lenses(std::uint32_t radius_px,
 
 }  // namespace
 
-TEST_CASE("fixed point: small circles are within 55 dB and 2 levels of binary64") {
+TEST_CASE("fixed point: small circles are within 55 dB and 2 levels of binary64" *
+          doctest::test_suite("long")) {
   for (const std::uint32_t radius : {1u, 2u, 4u, 8u}) check_lenses(radius, lenses);
 }
-TEST_CASE("fixed point: circles of radius 16 are within 55 dB and 2 levels of binary64") {
+TEST_CASE("fixed point: circles of radius 16 are within 55 dB and 2 levels of binary64" *
+          doctest::test_suite("long")) {
   check_lenses(16, lenses);
 }
-TEST_CASE("fixed point: circles of radius 32 are within 55 dB and 2 levels of binary64") {
+TEST_CASE("fixed point: circles of radius 32 are within 55 dB and 2 levels of binary64" *
+          doctest::test_suite("long")) {
   check_lenses(32, lenses);
 }
 

@@ -1,4 +1,4 @@
-// The texture units of Mesa's drivers, where they part from the plain one.
+// The texture units of drivers, where they part from the plain one.
 
 #include <doctest/doctest.h>
 
@@ -11,6 +11,7 @@
 
 #include "raster/images/llvmpipe_sampler.h"
 #include "raster/images/softpipe_sampler.h"
+#include "raster/images/swiftshader_sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/float_to_int.h"
 #include "raster/numbers/lerp.h"
@@ -91,9 +92,11 @@ TEST_CASE("no coordinate leads a driver's unit outside the texture") {
           if (i % 3 == 0) u = random.between(-2.0f, 2.0f);
           const Taps a = llvmpipe_taps(u, size, base_size, wrap);
           const Taps b = softpipe_taps(u, size, wrap);
+          const Taps c = swiftshader_taps(u, size, wrap);
           for (const int index :
-               {a.first, a.second, b.first, b.second, llvmpipe_nearest(u, size, base_size, wrap),
-                softpipe_nearest(u, size, wrap)}) {
+               {a.first, a.second, b.first, b.second, c.first, c.second,
+                llvmpipe_nearest(u, size, base_size, wrap), softpipe_nearest(u, size, wrap),
+                swiftshader_nearest(u, size, wrap), swiftshader_nearest_byte(u, size, wrap)}) {
             outside += index < 0 || index >= size;
           }
         }

@@ -46,6 +46,25 @@ TEST_CASE("log2_linear is the exact straight line, rounded once") {
   CHECK(wrong == 0);
 }
 
+TEST_CASE("log2_of_root_by_bits is exact at powers of two and lies up to 0.0216 below") {
+  for (int k = -62; k <= 63; ++k)
+    CHECK(log2_of_root_by_bits(std::ldexp(1.0f, k)) == 0.5f * static_cast<float>(k));
+  test::Random random{38};
+  double lowest = 0.0;
+  double highest = -1.0;
+  for (int i = 0; i < 100'000; ++i) {
+    const float x = std::ldexp(random.between(1.0f, 2.0f), random.whole(-62, 62));
+    const double error =
+        static_cast<double>(log2_of_root_by_bits(x)) - 0.5 * std::log2(static_cast<double>(x));
+    lowest = std::min(lowest, error);
+    highest = std::max(highest, error);
+  }
+  // The integer is rounded to 24 bits of up to 2^30: 2^5 of 2^23ths, and a quarter of it.
+  CHECK(lowest > -0.0861 / 4 - 0x1p-19);
+  CHECK(lowest < -0.0215);
+  CHECK(highest <= 0x1p-19);
+}
+
 TEST_CASE("log2_by_table is the logarithm of the value rounded to 9 bits") {
   test::Random random{37};
   int wrong = 0;

@@ -303,7 +303,8 @@ namespace {
 
 // A channel of a decoded texel as a fetch gives it.
 float linear(const DecodedTexture& decoded, const Profile& profile, float value) {
-  if (!decoded.are_bytes) return value;
+  if (!decoded.are_whole) return value;
+  if (profile.texture_unit == TextureUnit::swiftshader) return value * (1.0f / 65280.0f);
   return profile.texture_unit == TextureUnit::standard ? value / 255.0f : value * (1.0f / 255.0f);
 }
 

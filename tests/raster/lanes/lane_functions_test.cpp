@@ -142,6 +142,9 @@ TEST_CASE("lanes round floats of all kinds to the scalar form's half") {
       check_all<std::uint32_t>(
           isa, floats, SOFTFOCUS_KERNEL(isa, lanes_to_half_toward_zero),
           [](float value) { return float_to_half(value, HalfRounding::toward_zero); }, kEqual);
+      check_all<std::uint32_t>(
+          isa, floats, SOFTFOCUS_KERNEL(isa, lanes_to_half_swiftshader),
+          [](float value) { return float_to_half(value, HalfRounding::swiftshader); }, kEqual);
     }
   }
 }
@@ -349,6 +352,9 @@ void lanes_to_half_nearest(const float* a, std::uint32_t* to) {
 }
 void lanes_to_half_toward_zero(const float* a, std::uint32_t* to) {
   store(to, float_to_half<HalfRounding::toward_zero>(load(a)));
+}
+void lanes_to_half_swiftshader(const float* a, std::uint32_t* to) {
+  store(to, float_to_half<HalfRounding::swiftshader>(load(a)));
 }
 
 void lanes_floor(const float* a, float* to) { store(to, floor(load(a))); }

@@ -22,6 +22,7 @@ namespace {
 
 constexpr HalfRounding kNearest = HalfRounding::nearest_even;
 constexpr HalfRounding kTruncate = HalfRounding::toward_zero;
+constexpr HalfRounding kSwiftshader = HalfRounding::swiftshader;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 bool is_nan_half(int half) { return (half & 0x7FFF) > 0x7C00; }
@@ -53,6 +54,33 @@ std::uint16_t encode_by_division(float value, HalfRounding rounding) {
     return static_cast<std::uint16_t>(sign | (rounding == kNearest ? 0x7C00 : 0x7BFF));
   }
   return static_cast<std::uint16_t>(sign | (static_cast<int>(whole) + (exponent + 14) * 1024));
+}
+
+// SwiftShader's: below 2^-14 in steps of 2^-37 first.
+std::uint16_t encode_as_swiftshader(float value) {
+  const int sign = std::signbit(value) ? 0x8000 : 0;
+  const double magnitude = std::fabs(static_cast<double>(value));
+  if (!std::isfinite(value)) return kHalfNan;
+  const int exponent = magnitude < 0x1p-14 ? -14 : std::ilogb(magnitude);
+  double steps = std::ldexp(magnitude, 10 - exponent);
+  if (exponent == -14) steps = std::floor(steps * 8192.0) / 8192.0;
+  double whole = std::floor(steps);
+  const double rest = steps - whole;
+  if (rest > 0.5 || (rest == 0.5 && std::fmod(whole, 2.0) == 1.0)) whole += 1.0;
+  const int half = static_cast<int>(whole) + (exponent + 14) * 1024;
+  return static_cast<std::uint16_t>(half > kHalfInfinity ? kHalfNan : sign | half);
+}
+
+// Wrong halves among the floats from `first` on, as bits, every `step`, of either sign.
+int count_unlike_swiftshader(std::uint32_t first, std::uint32_t end, std::uint32_t step) {
+  int wrong = 0;
+  for (std::uint32_t bits = first; bits < end; bits += step) {
+    for (const std::uint32_t sign : {0u, 0x80000000u}) {
+      const auto value = std::bit_cast<float>(sign | bits);
+      wrong += float_to_half(value, kSwiftshader) != encode_as_swiftshader(value);
+    }
+  }
+  return wrong;
 }
 
 // Calls visit(lower, upper, middle) for all neighbouring finite halves of one sign.
@@ -103,6 +131,8 @@ TEST_CASE("every half that is not NaN survives decoding and encoding") {
     const float decoded = half_to_float(static_cast<std::uint16_t>(half));
     wrong += float_to_half(decoded, kNearest) != half;
     wrong += float_to_half(decoded, kTruncate) != half;
+    const bool kept = (half & 0x7FFF) <= largest_kept_half(kSwiftshader);
+    wrong += float_to_half(decoded, kSwiftshader) != (kept ? half : kHalfNan);
   }
   CHECK(wrong == 0);
 }
@@ -167,9 +197,47 @@ TEST_CASE("infinity stays infinity in both roundings") {
   }
 }
 
+TEST_CASE("SwiftShader's subnormals lose what lies below 2^-37 before they are rounded") {
+  CHECK(float_to_half(0x1.8p-24f, kSwiftshader) == 2);       // the middle of 1 and 2
+  CHECK(float_to_half(0x1.4p-23f, kSwiftshader) == 2);       // of 2 and 3
+  CHECK(float_to_half(0x1.4004p-23f, kSwiftshader) == 3);    // 2^-37 above it
+  CHECK(float_to_half(0x1.4003FEp-23f, kSwiftshader) == 2);  // a float less: the middle
+  CHECK(float_to_half(0x1.4003FEp-23f, kNearest) == 3);
+  CHECK(float_to_half(std::nextafter(0x1p-25f, 1.0f), kSwiftshader) == 0);
+  CHECK(float_to_half(-0x1.002p-25f, kSwiftshader) == 0x8001);
+  // Normal halves lose nothing.
+  CHECK(float_to_half(std::nextafter(0x1.002p-14f, 1.0f), kSwiftshader) == 0x0401);
+}
+
+TEST_CASE("SwiftShader stores infinity from 65520 to 65568, and NaN beyond, infinity too") {
+  CHECK(float_to_half(std::nextafter(65520.0f, 0.0f), kSwiftshader) == 0x7BFF);
+  for (const float value : {65520.0f, 65536.0f, 65568.0f}) {
+    CHECK(float_to_half(value, kSwiftshader) == 0x7C00);
+    CHECK(float_to_half(-value, kSwiftshader) == 0xFC00);
+  }
+  for (const float value : {std::nextafter(65568.0f, 1e6f), 1e6f, 3e38f, kInfinity}) {
+    CHECK(float_to_half(value, kSwiftshader) == 0x7E00);
+    CHECK(float_to_half(-value, kSwiftshader) == 0x7E00);
+  }
+}
+
+TEST_CASE("floats all over become the halves of SwiftShader's definition") {
+  CHECK(count_unlike_swiftshader(0, 0x7FFFFFFF, 251) == 0);
+  // Around every multiple of 2^10 floats: a half's middles, and its neighbours, are among them.
+  int wrong = 0;
+  for (std::uint32_t bits = 0x33000000; bits < 0x47900000; bits += 1024) {
+    wrong += count_unlike_swiftshader(bits - 2, bits + 3, 1);
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("so do all that become subnormal halves" * doctest::test_suite("long")) {
+  CHECK(count_unlike_swiftshader(0x32800000, 0x38800000, 1) == 0);
+}
+
 TEST_CASE("any NaN is stored as one, its sign and payload forgotten") {
   for (const std::uint32_t payload : {1u, 0x1FFFu, 0x2000u, 0x400000u, 0x7FFFFFu}) {
-    for (const HalfRounding rounding : {kNearest, kTruncate}) {
+    for (const HalfRounding rounding : {kNearest, kTruncate, kSwiftshader}) {
       CHECK(float_to_half(std::bit_cast<float>(0x7F800000u | payload), rounding) == 0x7E00);
       CHECK(float_to_half(std::bit_cast<float>(0xFF800000u | payload), rounding) == 0x7E00);
     }
@@ -191,7 +259,7 @@ TEST_CASE("the largest subnormal rounds up to the smallest normal half") {
 
 TEST_CASE("zeros and float subnormals are stored as the zero of their sign") {
   for (const float value : {0.0f, std::numeric_limits<float>::denorm_min(), 0x1p-126f, 0x1p-26f}) {
-    for (const HalfRounding rounding : {kNearest, kTruncate}) {
+    for (const HalfRounding rounding : {kNearest, kTruncate, kSwiftshader}) {
       CHECK(float_to_half(value, rounding) == 0x0000);
       CHECK(float_to_half(-value, rounding) == 0x8000);
     }

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/load/load_scene.h"
@@ -25,7 +26,7 @@ Scene built_in(const char* name) { return load_scene(name, scene_search_path({})
 
 TEST_CASE("accumulation: one sample is the pinhole's picture") {
   ThreadPool pool{2};
-  for (const char* name : {"figures", "cube-room", "sphere-world"}) {
+  for (const char* name : {"figures", "cube-room", "sphere-world", "canopy"}) {
     const Drawn drawn = accumulated(built_in(name), {.samples = 1}, 96, 64, pool);
     CHECK(equal(drawn.sampled.picture, drawn.pinhole));
     CHECK(drawn.sampled.samples == 1);
@@ -44,6 +45,15 @@ TEST_CASE("accumulation: what lies in the plane of focus is as sharp as the pinh
   const Scene scene = square_scene(test::kTestLens.focus_m, 0.8);
   const Drawn drawn = sample_scene(scene, "accumulation", {.samples = 64}, 65, 65, pool);
   CHECK(equal(drawn.sampled.picture, drawn.pinhole));
+}
+
+TEST_CASE("accumulation: holes in the plane of focus are as sharp as the pinhole has them") {
+  ThreadPool pool{2};
+  const Scene scene = test::lattice_scene(test::kTestLens.focus_m, 0.8);
+  const Drawn drawn = sample_scene(scene, "accumulation", {.samples = 64}, 65, 65, pool);
+  CHECK(equal(drawn.sampled.picture, drawn.pinhole));
+  CHECK(load_texel(drawn.pinhole, 26, 26).x == 1.0f);
+  CHECK(load_texel(drawn.pinhole, 26, 36).x == 0.0f);
 }
 
 TEST_CASE("accumulation: the same bits for any number of threads and on every vector unit" *
@@ -66,29 +76,34 @@ TEST_CASE("accumulation: the same bits for any number of threads and on every ve
 }
 
 TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes") {
-  const Scene scene = built_in("sphere-world");
   const int width = 150, height = 70;  // parts of tiles
   const Profile profile{};
-  const CameraMatrices pinhole_camera = camera_matrices(scene.camera, 0.0, width, height);
-  const double radius_m = aperture_radius_m(scene.lens.lens, 1.0);
-  for (const int samples : {kSampleGroup, 2 * kLensViewGroup + kSampleGroup + 3}) {
-    ThreadPool pool{2};
-    const Sampling sampling{.samples = samples, .jitter = true};
-    const Drawn drawn = accumulated(scene, sampling, width, height, pool);
+  for (const char* name : {"sphere-world", "canopy"}) {
+    const Scene scene = built_in(name);
+    const CameraMatrices pinhole_camera = camera_matrices(scene.camera, 0.0, width, height);
+    const double radius_m = aperture_radius_m(scene.lens.lens, 1.0);
+    for (const int samples :
+         {kSampleGroup, 2 * kLensViewGroup + kSampleGroup + 3, kMostFewLensPoints + 1}) {
+      ThreadPool pool{2};
+      const Sampling sampling{.samples = samples, .jitter = true};
+      const Drawn drawn = accumulated(scene, sampling, width, height, pool);
 
-    const auto points = lens_points({}, samples);
-    const auto offsets = pixel_offsets(true, samples);
-    SampleSums sums = make_sample_sums(width, height);
-    std::vector<Image> group;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const CameraMatrices camera = lens_camera(pinhole_camera, points[i] * radius_m,
-                                                scene.lens.lens.focus_m, offsets[i], width, height);
-      group.push_back(draw_scene(scene, camera, 0.0, width, height, profile, pool));
-      if (group.size() < kSampleGroup && i + 1 < points.size()) continue;
-      add_pictures(group, sums, pool);
-      group.clear();
+      const auto points = view_points(sampling);
+      CHECK((points == lens_points({}, samples)) == (samples > kMostFewLensPoints));
+      const auto offsets = pixel_offsets(true, samples);
+      SampleSums sums = make_sample_sums(width, height);
+      std::vector<Image> group;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const CameraMatrices camera =
+            lens_camera(pinhole_camera, points[i] * radius_m, scene.lens.lens.focus_m, offsets[i],
+                        width, height);
+        group.push_back(draw_scene(scene, camera, 0.0, width, height, profile, pool));
+        if (group.size() < kSampleGroup && i + 1 < points.size()) continue;
+        add_pictures(group, sums, pool);
+        group.clear();
+      }
+      CHECK(equal(drawn.sampled.picture, mean_picture(sums, drawn.pinhole, profile, pool)));
     }
-    CHECK(equal(drawn.sampled.picture, mean_picture(sums, drawn.pinhole, profile, pool)));
   }
 }
 
@@ -124,8 +139,9 @@ TEST_CASE("accumulation: it stops when the half-sets agree to the error asked fo
   CHECK(samples < 4096);
   CHECK((samples & (samples - 1)) == 0);
   CHECK(stopped.sampled.half_set_rms.value() <= 0.004);
-  CHECK(equal(stopped.sampled.picture,
-              accumulated(scene, {.samples = samples}, 96, 64, pool).sampled.picture));
+  CHECK(
+      equal(stopped.sampled.picture,
+            accumulated(scene, {.samples = samples, .until = 0.0}, 96, 64, pool).sampled.picture));
   const Drawn before = accumulated(scene, {.samples = samples / 2, .until = 0.004}, 96, 64, pool);
   CHECK(before.sampled.half_set_rms.value() > 0.004);
 }

@@ -66,6 +66,16 @@ TEST_CASE("ray-traced: what lies in the plane of focus is as sharp as the pinhol
   CHECK(equal(drawn.sampled.picture, drawn.pinhole));
 }
 
+TEST_CASE("ray-traced: holes in the plane of focus are as sharp as the pinhole has them") {
+  if (is_missing()) return;
+  ThreadPool pool{2};
+  const Scene scene = test::lattice_scene(test::kTestLens.focus_m, 0.8);
+  const Drawn drawn = sample_scene(scene, "ray-traced", {.samples = 16}, 65, 65, pool);
+  CHECK(equal(drawn.sampled.picture, drawn.pinhole));
+  CHECK(load_texel(drawn.pinhole, 26, 26).x == 1.0f);
+  CHECK(load_texel(drawn.pinhole, 26, 36).x == 0.0f);
+}
+
 TEST_CASE("ray-traced: one-sided surfaces are seen from their fronts alone, mirrored ones too") {
   if (is_missing()) return;
   ThreadPool pool{1};
@@ -101,7 +111,7 @@ TEST_CASE("ray-traced: it agrees with accumulation on each scene, and what is le
           doctest::test_suite("long")) {
   if (is_missing()) return;
   ThreadPool pool{2};
-  for (const char* name : {"figures", "cube-room", "sphere-world"}) {
+  for (const char* name : {"figures", "cube-room", "sphere-world", "canopy"}) {
     const Scene scene = load_scene(name, scene_search_path({}));
     const Sampling sampling{.samples = 256};
     const auto by = [&](const char* method) {

@@ -48,6 +48,15 @@ TEST_CASE("bad input: an aperture of 0 points to the pinhole method") {
   check_option_refused({"--f-number", "0"}, {"--f-number 0", "pinhole"});
 }
 
+TEST_CASE("bad input: a budget outside 0 to 1, or of a method that has none") {
+  for (const char* value : {"-0.1", "1.5", "half"}) {
+    check_option_refused({"--method", "importance-ordered", "--budget", value},
+                         {"--budget", value, "0 to 1"});
+  }
+  check_option_refused({"--method", "one-pass", "--budget", "0.5"},
+                       {"--budget", "one-pass", "importance-ordered"});
+}
+
 TEST_CASE("bad input: a focal length longer than the focus distance names both") {
   check_option_refused({"--focal-length", "3000", "--focus", "2"},
                        {"--focal-length 3000 mm", "--focus 2 m", "shorter"});

@@ -90,8 +90,8 @@ TEST_CASE("bad input: a scene whose numbers cannot be") {
 }
 
 TEST_CASE("bad input: an OBJ whose indices are out of range names the file and the line") {
-  for (const std::string face : {"f 1 2 4", "f 1 2 0", "f 1 2 -4", "f 1 2 99999999999999999999",
-                                 "f 1/7 2/7 3/7", "f 1//7 2//7 3//7"}) {
+  for (const std::string face :
+       {"f 1 2 4", "f 1 2 0", "f 1 2 -4", "f 1 2 99999999999999999999", "f 1//7 2//7 3//7"}) {
     check_scene_refused({{"bad.obj", kTriangle + face + "\n"}}, {"bad.obj:4"});
   }
 }
@@ -109,6 +109,13 @@ TEST_CASE("bad input: an OBJ that is empty, truncated or no OBJ at all") {
   check_scene_refused({{"bad.obj", kTriangle + "f 1 2 x\n"}}, {"bad.obj:4"});
   check_scene_refused({{"bad.obj", "v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}}, {"bad.obj:1"});
   check_scene_refused({{"bad.obj", some_png()}}, {"bad.obj"});
+}
+
+TEST_CASE("bad input: an OBJ's harmless faults are no errors") {
+  for (const std::string fault :
+       {"f 1 2\n", "f 3\n", "vt 1e30 nan\nf 1/1 2/1 3/1\n", "f 1/7 2/7 3/7\n", "f 3 2 1\n"}) {
+    check_scene_renders({{"odd.obj", std::string{kTriangle}.append("f 1 2 3\n").append(fault)}});
+  }
 }
 
 TEST_CASE("bad input: degenerate triangles are legal and draw nothing") {

@@ -41,7 +41,8 @@ double flip_of(const Words& method) {
     REQUIRE(run_program(words).status == 0);
     return directory.file(name);
   };
-  const std::string truth = drawn("truth.npy", {"--method", "accumulation", "--samples", "32"});
+  const std::string truth =
+      drawn("truth.npy", {"--method", "accumulation", "--samples", "32", "--until", "1e-9"});
   const ProgramRun run = run_program({"compare", drawn("a.npy", method), truth, "--json"});
   return json::parse(run.out)["flip"];
 }
@@ -71,9 +72,14 @@ TEST_CASE("candidates: --measure gives the error that render and compare give") 
   CHECK(list["truth_samples"] == 32);
   CHECK(list["noise_floor_flip"] > 0.0);
   CHECK(entry_of(list, "pinhole")["flip"] == flip_of({"--method", "pinhole"}));
-  const json& filter = entry_of(list, "disc-layers:4");
-  const std::string radius = filter["max_coc_px"].dump();
-  CHECK(filter["flip"] == flip_of({"--method", "disc-layers", "--max-coc", radius}));
+  // One that needs object numbers too, and one that draws the scene.
+  for (const std::string method : {"disc-layers:4", "object-identification:8"}) {
+    const json& filter = entry_of(list, method);
+    const std::string radius = filter["max_coc_px"].dump();
+    CHECK(filter["flip"] ==
+          flip_of({"--method", method.substr(0, method.find(':')), "--max-coc", radius}));
+  }
+  CHECK(entry_of(list, "surface-splatting")["flip"] == flip_of({"--method", "surface-splatting"}));
   CHECK(entry_of(list, "accumulation:8")["flip"] ==
         flip_of({"--method", "accumulation", "--samples", "8"}));
   // The truth itself and what has more samples than it cannot be measured against it.

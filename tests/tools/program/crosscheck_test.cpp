@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -44,7 +46,7 @@ void check_all_equal(const std::string& driver) {
   const std::set<std::string> all{
       "store", "bilinear-rgba16f", "bilinear-rgba8", "mipmap",   "coverage",
       "depth", "attributes",       "scene",          "two-pass", "one-pass",
-      "frame", "two-pass-tiled",   "one-pass-tiled"};
+      "frame", "two-pass-tiled",   "one-pass-tiled", "peel"};
   CHECK(stages == all);
 }
 
@@ -110,8 +112,12 @@ TEST_CASE("crosscheck: llvmpipe held to SSE4.1 and its profile give the same bit
           doctest::test_suite("long")) {
   check_all_equal("llvmpipe-sse41");
 }
-TEST_CASE("crosscheck: softpipe and its profile give the same bits") {
+TEST_CASE("crosscheck: softpipe and its profile give the same bits" * doctest::test_suite("long")) {
   check_all_equal("softpipe");
+}
+TEST_CASE("crosscheck: lavapipe and its profile, which is llvmpipe's, give the same bits" *
+          doctest::test_suite("long")) {
+  check_all_equal("lavapipe");
 }
 
 TEST_CASE("crosscheck: another rounding, contraction or rule in a profile is caught" *
@@ -163,17 +169,35 @@ TEST_CASE("crosscheck: a difference is told with its pixel, both values and a pi
   if (!has_driver("llvmpipe-sse41")) return;
   const TemporaryDirectory directory;
   const TemporaryDirectory pictures;
+  const std::string folder = pictures.file("made/by it");
   const ProgramRun run = crosscheck("llvmpipe-sse41", "two-pass/lens-*",
-                                    {"--quick", "--diff", pictures.path(), "--profile",
+                                    {"--quick", "--diff", folder, "--profile",
                                      altered_profile(directory, "half_store", "\"nearest-even\"")});
   CHECK(run.status == 1);
   CHECK(contains(run.out, "first at pixel "));
   CHECK(contains(run.out, "driver "));
   CHECK(contains(run.out, ", emulation "));
   CHECK(contains(run.out, "0 of 2 cases equal"));
-  CHECK(pictures.listing() == Words{"llvmpipe-sse41.two-pass.lens-fractional-radius.png",
-                                    "llvmpipe-sse41.two-pass.lens-leak-0.3.png"});
-  CHECK(read_file(pictures.file(pictures.listing().front())).starts_with("\x89PNG"));
+  Words files;
+  for (const std::string name : {"fractional-radius", "leak-0.3"}) {
+    for (const char* ending : {".driver.npy", ".emulation.npy", ".png"}) {
+      files.push_back("llvmpipe-sse41.two-pass.lens-" + name + ending);
+    }
+  }
+  CHECK(std::filesystem::exists(folder));
+  std::vector<std::string> written;
+  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
+    written.push_back(entry.path().filename().string());
+  }
+  std::sort(written.begin(), written.end());
+  CHECK(written == files);
+  CHECK(read_file(folder + '/' + files[2]).starts_with("\x89PNG"));
+  // The values say what the count says.
+  const ProgramRun compared =
+      run_program({"compare", folder + '/' + files[0], folder + '/' + files[1], "--json"});
+  CHECK(compared.status == 1);
+  const auto differing = nlohmann::json::parse(compared.out)["differing"].get<int>();
+  CHECK(contains(run.out, ' ' + std::to_string(differing) + " of 9216"));
 }
 
 TEST_CASE("crosscheck: a shader that the driver refuses fails its cases, and the rest still runs") {
@@ -183,7 +207,8 @@ TEST_CASE("crosscheck: a shader that the driver refuses fails its cases, and the
   const ProgramRun run = crosscheck("llvmpipe", "*/one-pixel", {"--shaders", directory.path()});
   CHECK(run.status == 2);
   CHECK(contains(run.out, "two-pass/one-pixel"));
-  CHECK(contains(run.out, "failed: two_pass.frag: 0:1"));  // the line in the file
+  CHECK(contains(run.out,
+                 "failed: " + directory.file("two_pass.frag") + ":"));  // the line in the file
   CHECK(contains(run.out, "one-pass/one-pixel"));
   CHECK(contains(run.out, "1 failed"));
 }
@@ -214,6 +239,39 @@ TEST_CASE("crosscheck: without an EGL driver that is said in one line") {
   CHECK(is_one_line(probe.err));
 }
 
+// The file by which Vulkan's loader finds lavapipe on Debian.
+std::string lavapipe_file() {
+  for (const char* name : {"lvp_icd.json", "lvp_icd.x86_64.json", "lvp_icd.aarch64.json"}) {
+    std::string file = std::string{"/usr/share/vulkan/icd.d/"} + name;
+    if (std::filesystem::exists(file)) return file;
+  }
+  return {};
+}
+
+TEST_CASE("crosscheck: lavapipe is found in the loader's folders or by the user's variable") {
+  if (!has_driver("lavapipe")) return;
+  const std::string there = lavapipe_file();
+  if (there.empty()) return skip("", "lavapipe is not where Debian has it");
+  const TemporaryDirectory data;
+  const EnvironmentVariable folders{"XDG_DATA_DIRS", data.path().c_str()};
+  const EnvironmentVariable home{"XDG_DATA_HOME", "/nonexistent"};
+  const std::string one = "store/rgba8-around-every-byte";
+  const ProgramRun none = crosscheck("lavapipe", one);
+  CHECK(none.status == 2);
+  CHECK(is_one_line(none.err));
+  CHECK(contains(none.err, "driver lavapipe: no lvp_icd*.json in /nonexistent/vulkan/icd.d, " +
+                               data.path() + "/vulkan/icd.d, "));
+  CHECK(contains(none.err, "; Debian's package mesa-vulkan-drivers has it"));
+  {
+    const EnvironmentVariable named{"VK_ICD_FILENAMES", there.c_str()};
+    CHECK(crosscheck("lavapipe", one).status == 0);
+  }
+  const std::filesystem::path folder = data.file("vulkan/icd.d");
+  std::filesystem::create_directories(folder);
+  write_file((folder / "lvp_icd.other.json").string(), read_file(there));
+  CHECK(crosscheck("lavapipe", one).status == 0);
+}
+
 TEST_CASE("crosscheck: bad options are refused with what would be right") {
   const auto refused = [](const Words& more, std::string_view part) {
     Words words{"crosscheck"};
@@ -225,11 +283,12 @@ TEST_CASE("crosscheck: bad options are refused with what would be right") {
     CHECK(is_one_line(run.err));
     CHECK(contains(run.err, part));
   };
-  refused({"--driver", "voodoo"}, "there are llvmpipe, llvmpipe-sse41, softpipe, gpu");
+  refused({"--driver", "voodoo"}, "there are llvmpipe, llvmpipe-sse41, softpipe, lavapipe, gpu");
   refused({"--driver", "gpu"}, "softfocus probe --driver gpu makes one");
   refused({"--profile", "voodoo"}, "there are ieee, ");
   refused({"--profile", "./none.toml"}, "./none.toml: no such file");
-  refused({"--diff", "/nonexistent"}, "there is no such folder");
+  refused({"--diff", "/dev/null/none"}, "--diff: cannot make the folder '/dev/null/none'");
+  refused({"--diff", ""}, "give the name of a folder");
   refused({"--shaders", "/nonexistent"}, "there is no such folder");
   const TemporaryDirectory empty;
   refused({"--shaders", empty.path()}, "has none of the shaders that softfocus shaders lists");

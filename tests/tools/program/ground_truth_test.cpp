@@ -111,7 +111,7 @@ TEST_CASE("ground truth: bad input") {
     check_refused_render(option, {option[0], "two-pass", "accumulation"});
   }
   check_refused_render(accumulation_with({"--gl", "llvmpipe"}), {"--gl", "accumulation"});
-  check_refused_render({"--method", "raytraced"}, {"'raytraced'", "accumulation, ray-traced"});
+  check_refused_render({"--method", "raytraced"}, {"'raytraced'", "filtered-views, ray-traced"});
 }
 
 TEST_CASE("ground truth: without Embree, ray-traced says how to get it") {

@@ -17,6 +17,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--format png|pfm|npy",
                        "--size WxH",
                        "--show image|pinhole|coc|depth",
+                       "--layers K",
                        "--frame N",
                        "--scene-path DIR",
                        "--method NAME",
@@ -27,6 +28,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--autofocus [X,Y]",
                        "--max-coc PIXELS",
                        "--leak A",
+                       "--budget SHARE",
                        "--samples N",
                        "--jitter",
                        "--until ERROR",
@@ -44,7 +46,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                         "--regions", "--depth FILE", "--focus METRES", "--focal-length MM",
                         "--f-number N", "--coc-scale S", "--fov DEGREES", "--point PIXELS",
                         "--flicker FRAME ...", "--against FRAME ...", "--json"});
-  names_all("selftest", {"--threads N", "--isa NAME", "--json", "--print"});
+  names_all("selftest", {"--threads N", "--isa NAME", "--quick", "--json", "--print"});
   names_all("scenes", {"--scene-path DIR"});
   names_all("methods", {});
   names_all("profiles", {});
@@ -75,14 +77,18 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
     CHECK(std::count(run.out.begin(), run.out.end(), '\n') ==
           static_cast<std::ptrdiff_t>(names.size()));
   };
-  lists("scenes", {"bright-edges", "clutter", "cube-room", "dunes", "figures", "foliage",
+  lists("scenes", {"bright-edges", "canopy", "clutter", "cube-room", "dunes", "figures", "foliage",
                    "grazing-floor", "interior", "lattice", "near-fence", "night-lights", "portrait",
                    "sphere-world", "random:SEED"});
-  lists("methods",
-        {"pinhole", "two-pass", "two-pass-single", "one-pass", "scatter", "scatter-sorted",
-         "layers", "diffusion", "ring-bucket", "circular-1", "circular-2", "post-process",
-         "disc-layers", "accumulation", "ray-traced", "auto"});
-  lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe"});
+  // clang-format off
+  lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "importance-ordered",
+                    "scatter", "scatter-sorted", "layers", "ray-distribution-buffer", "diffusion",
+                    "generalised-diffusion", "anisotropic-diffusion", "ring-bucket", "circular-1",
+                    "circular-2", "disc-layers", "layered", "object-identification",
+                    "post-process", "mipmap", "accumulation", "filtered-views", "ray-traced",
+                    "surface-splatting", "auto"});
+  // clang-format on
+  lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe", "swiftshader"});
 }
 
 TEST_CASE("scenes lists those of --scene-path with their titles") {

@@ -2,7 +2,6 @@
 
 #include "raster/lanes/isa.h"
 
-#include "dof/dof.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 
@@ -10,7 +9,7 @@ using namespace softfocus;
 
 TEST_CASE("selftest passes on every vector unit of this CPU" * doctest::test_suite("long")) {
   for (const Isa isa : available_isas()) {
-    if (isa == widest_isa()) continue;  // selftest_test.cpp
+    if (isa == widest_isa()) continue;  // golden_test.cpp
     CAPTURE(isa_name(isa));
     const ProgramRun run = run_program({"selftest", "--isa", std::string{isa_name(isa)}});
     CHECK(run.status == 0);
@@ -18,19 +17,15 @@ TEST_CASE("selftest passes on every vector unit of this CPU" * doctest::test_sui
   }
 }
 
-TEST_CASE("render: the bytes are the same on every vector unit, by every method" *
-          doctest::test_suite("long")) {
-  for (const Method& entry : methods()) {
-    const std::string method{entry.name};
-    const auto on = [&](Isa isa) {
-      return rendered("sphere-world",
-                      {"--method", method, "--max-coc", "6", "--isa", std::string{isa_name(isa)}});
-    };
-    const std::string scalar = on(Isa::scalar);
-    for (const Isa isa : available_isas()) {
-      CAPTURE(isa_name(isa));
-      CHECK_UNARY(on(isa) == scalar);
-    }
+// Other methods: the selftest above, picture_methods_test.cpp and filter_isa_test.cpp.
+TEST_CASE("render: the bytes are the same on every vector unit") {
+  const auto on = [](Isa isa) {
+    return rendered("cube-room", {"--max-coc", "6", "--isa", std::string{isa_name(isa)}});
+  };
+  const std::string scalar = on(Isa::scalar);
+  for (const Isa isa : available_isas()) {
+    CAPTURE(isa_name(isa));
+    CHECK_UNARY(on(isa) == scalar);
   }
 }
 

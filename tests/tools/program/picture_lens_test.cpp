@@ -215,7 +215,8 @@ TEST_CASE("render: circles that the default cuts are told, with what cuts none")
   CHECK(warned({"--f-number", "0.7", "--max-coc", enough}) == "");
   CHECK(warned({"--f-number", "0.7", "--max-coc", "1"}) == "");  // given, so meant
   CHECK(warned({"--f-number", "16"}) == "");
-  for (const char* method : {"pinhole", "disc-layers", "diffusion", "auto", "accumulation"}) {
+  for (const char* method :
+       {"pinhole", "disc-layers", "diffusion", "generalised-diffusion", "auto", "accumulation"}) {
     CAPTURE(method);
     CHECK_FALSE(contains(warned({"--f-number", "0.7", "--method", method}), "--max-coc"));
   }
@@ -223,8 +224,9 @@ TEST_CASE("render: circles that the default cuts are told, with what cuts none")
   CHECK(warned({"--f-number", "0.7", "--show", "coc"}) == "");
 }
 
-TEST_CASE("render: disc-layers and diffusion take all circles if no --max-coc is given") {
-  for (const std::string method : {"disc-layers", "diffusion"}) {
+TEST_CASE("render: methods of any radius take all circles if no --max-coc is given") {
+  for (const std::string method :
+       {"disc-layers", "diffusion", "generalised-diffusion", "mipmap", "object-identification"}) {
     CAPTURE(method);
     const Words words{"--method", method, "--f-number", "0.7"};
     Words given = words;

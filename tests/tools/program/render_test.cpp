@@ -1,7 +1,11 @@
 #include <map>
 
 #include "dof/dof.h"
+#include "dof/measure/difference.h"
 #include "raster/images/texel.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/object_numbers.h"
+#include "scenes/load/load_scene.h"
 #include "tests/support/cli_render.h"
 
 using namespace softfocus;
@@ -32,6 +36,25 @@ TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads, by every me
     const std::string one = with_threads("1");
     for (const std::string threads : {"2", "3", "8"}) CHECK(with_threads(threads) == one);
   }
+}
+
+TEST_CASE("render: a method that reads object numbers gets those of the scene's objects") {
+  const Scene scene = load_scene("near-fence", scene_search_path({}));
+  const CameraMatrices view = camera_matrices(scene.camera, 0, kWidth, kHeight);
+  ThreadPool pool(2);
+  const Image drawn = draw_scene(scene, view, 0, kWidth, kHeight, {}, pool);
+  const DofSettings settings{
+      .coc = pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, kHeight, scene.lens.coc_scale),
+      .max_coc_px = 16.0f};
+  const std::vector<std::uint16_t> numbers =
+      draw_object_numbers(scene, view, 0, kWidth, kHeight, {}, pool);
+  const Method& method = *find_method("object-identification");
+  const Image with = apply(method, {drawn, settings, {}, numbers}, pool);
+  const Image without = apply(method, {drawn, settings, {}}, pool);
+  CHECK_FALSE(equal(with, without));
+  const Picture picture =
+      rendered_picture("near-fence", {"--method", "object-identification", "--max-coc", "16"});
+  CHECK(equal(picture.image, with));
 }
 
 TEST_CASE("render: the built-in scenes give different pictures, each with something in it") {

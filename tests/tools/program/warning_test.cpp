@@ -8,11 +8,11 @@ using namespace softfocus;
 
 namespace {
 
-// A triangle in five materials that nobody defines.
+// Triangles in five materials that nobody defines.
 std::string model_without_materials() {
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (const char* name : {"a", "b", "c", "d", "e"}) {
-    text += std::string("usemtl ") + name + "\nf 1 2 3\n";
+    text += std::string("v 0 0 ") + std::to_string(name[0]) + "\nusemtl " + name + "\nf 1 2 -1\n";
   }
   return text;
 }

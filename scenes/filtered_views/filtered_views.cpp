@@ -1,0 +1,144 @@
+#include "scenes/filtered_views/filtered_views.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "raster/threads/scratch_shelf.h"
+
+namespace softfocus {
+namespace {
+
+// Views that are held against twice as many.
+constexpr int kFirstViews = 8;
+
+struct TileTask {
+  TileMemory drawing;
+  SpreadMemory spreading;
+};
+
+void draw_tile_of_views(FilteredViewsBuffer& buffer, int tile, std::size_t count,
+                        TileMemory& memory, Isa isa) {
+  for (std::size_t i = 0; i < count; ++i) {
+    ViewTiles& picture = buffer.pictures[i];
+    draw_tile_aside(buffer.views.passes[i], buffer.views.tile_lists[i], tile, memory,
+                    reinterpret_cast<std::byte*>(texels_of_tile(picture, tile)));
+    set_levels(picture, buffer.spread, tile, isa);
+  }
+}
+
+void add_tile_sums(const SpreadMemory& memory, const Rectangle& area, SampleSums& sums) {
+  constexpr std::size_t kPlane = std::size_t{kSpreadTile} * kSpreadTile;
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    const float* from = memory.sums.get() + (y - area.y_begin) * std::ptrdiff_t{kSpreadTile};
+    double* to = sums_at(sums, area.x_begin, y);
+    for (int x = area.x_begin; x < area.x_end; ++x, ++from, to += 4) {
+      to[0] += static_cast<double>(from[0]);
+      to[1] += static_cast<double>(from[kPlane]);
+      to[2] += static_cast<double>(from[2 * kPlane]);
+    }
+  }
+}
+
+void add_group(FilteredViewsBuffer& buffer, const LensViewInput& input, int begin, int end,
+               SampleSums& sums, ThreadPool& pool) {
+  const auto count = static_cast<std::size_t>(end - begin);
+  sort_lens_views(buffer.views, input, begin, end, pool);
+  while (buffer.pictures.size() < count) {
+    buffer.pictures.push_back(make_view_tiles(input.pinhole.width, input.pinhole.height));
+  }
+  std::vector<SpreadSteps> steps;
+  for (int view = begin; view < end; ++view) {
+    steps.push_back(spread_steps(buffer.spread, points_of(buffer.cells, view)));
+  }
+  const TileLists& lists = buffer.views.tile_lists[0];
+  ScratchShelf<TileMemory> drawing;
+  pool.for_each(tile_count(lists), [&](int tile) {
+    TileMemory memory = drawing.take();
+    draw_tile_of_views(buffer, tile, count, memory, pool.isa());
+    drawing.put_back(std::move(memory));
+  });
+  ScratchShelf<SpreadMemory> spreading;
+  pool.for_each(tile_count(lists), [&](int tile) {
+    SpreadMemory memory = spreading.take();
+    if (!memory.sums) memory = make_spread_memory();
+    for (std::size_t i = 0; i < count; ++i) {
+      spread_tile(buffer.pictures[i], steps[i], tile, i == 0, memory, pool.isa());
+    }
+    add_tile_sums(memory, tile_area(lists, tile), sums);
+    spreading.put_back(std::move(memory));
+  });
+  for (RenderPass& pass : buffer.views.passes) pass.draws.clear();
+  sums.count += end - begin;
+}
+
+SampledPicture picture_of_sums(const SampleSums& sums, const LensViewInput& input,
+                               ThreadPool& pool) {
+  return {mean_picture(sums, input.pinhole, input.profile, pool), sums.count, {}};
+}
+
+}  // namespace
+
+PixelCoc coc_of(const LensViewInput& input) {
+  const double px_per_unit = input.camera.eye_to_clip[0][0] * input.pinhole.width / 2.0;
+  return {static_cast<float>(input.aperture_radius_m / input.focus_m * px_per_unit),
+          static_cast<float>(input.focus_m)};
+}
+
+void set_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int views) {
+  buffer.cells = lens_cells(input.sampling.aperture, views, points_of_cell(views));
+  buffer.spread = make_view_spread(coc_of(input), buffer.cells);
+  buffer.views.points = buffer.cells.views;
+  buffer.views.offsets = pixel_offsets(input.sampling.jitter, views);
+}
+
+FilteredViewsBuffer make_filtered_views_buffer(const LensViewInput& input, ThreadPool& pool) {
+  return {make_accumulation_buffer(input, pool), {}, {}, {}};
+}
+
+void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input, SampleSums& sums,
+                        ThreadPool& pool) {
+  const int views = static_cast<int>(buffer.cells.views.size());
+  const bool plain = buffer.cells.per_cell == 1;
+  const int step = plain ? kLensViewGroup : kSampleGroup;
+  for (int begin = 0; begin < views; begin += step) {
+    const int end = std::min(begin + step, views);
+    if (plain) {
+      add_lens_views(buffer.views, input, begin, end, sums, pool);
+    } else {
+      add_group(buffer, input, begin, end, sums, pool);
+    }
+    if (input.progress) input.progress(sums.count);
+  }
+}
+
+SampledPicture filtered_views(const LensViewInput& input, ThreadPool& pool) {
+  FilteredViewsBuffer buffer = make_filtered_views_buffer(input, pool);
+  return filtered_views(buffer, input, pool);
+}
+
+SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,
+                              ThreadPool& pool) {
+  SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
+  const Sampling& sampling = input.sampling;
+  if (!sampling.until) {
+    set_views(buffer, input, sampling.samples);
+    add_filtered_views(buffer, input, sums, pool);
+    return picture_of_sums(sums, input, pool);
+  }
+  SampleSums of_half;
+  std::optional<double> apart;
+  for (int views = std::min(kFirstViews, sampling.samples);;) {
+    set_views(buffer, input, views);
+    clear_sums(sums);
+    add_filtered_views(buffer, input, sums, pool);
+    if (2 * of_half.count == views && of_half.count > 0) apart = rms_between(of_half, sums, pool);
+    if ((apart && *apart <= *sampling.until) || views == sampling.samples) break;
+    of_half = sums;
+    views = std::min(2 * views, sampling.samples);
+  }
+  SampledPicture result = picture_of_sums(sums, input, pool);
+  result.half_set_rms = apart;
+  return result;
+}
+
+}  // namespace softfocus

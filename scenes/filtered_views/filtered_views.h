@@ -1,0 +1,50 @@
+#pragma once
+// Few views, each spread over its cell of the lens (view_spread.h), and averaged: between the
+// filters and the accumulation in time and in error.
+
+#include <vector>
+
+#include "scenes/filtered_views/lens_cells.h"
+#include "scenes/filtered_views/spread_tile.h"
+#include "scenes/lens_views/accumulation.h"
+
+namespace softfocus {
+
+/// Views from as many lens_cells(), each spread over its cell. The means of their
+/// rays are added in binary32 by kSampleGroup, and these sums in binary64. From so many views
+/// on that a cell is one point it is accumulation(), to the bit.
+///
+/// Views made for a number have nothing in common with those for another. So with `until` the
+/// picture is made of 8 views, of 16, of 32, ..., and half_set_rms is how far it is from the one of
+/// half as many.
+SampledPicture filtered_views(const LensViewInput& input, ThreadPool& pool);
+
+/// The views of a picture if no number is given: the most that one group draws.
+inline constexpr int kFilteredViews = kSampleGroup;
+
+/// Made once for many pictures of one scene.
+struct FilteredViewsBuffer {
+  AccumulationBuffer views;
+  LensCells cells;
+  ViewSpread spread;
+  std::vector<ViewTiles> pictures;  ///< of a group
+};
+
+/// Needs set_views(). The scene must outlive it.
+FilteredViewsBuffer make_filtered_views_buffer(const LensViewInput& input, ThreadPool& pool);
+
+/// filtered_views() of the buffer's scene.
+SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,
+                              ThreadPool& pool);
+
+/// Makes the cells for so many views.
+void set_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int views);
+
+/// Draws, spreads and adds all of the buffer's views.
+void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input, SampleSums& sums,
+                        ThreadPool& pool);
+
+/// The circles that the input's lens gives.
+PixelCoc coc_of(const LensViewInput& input);
+
+}  // namespace softfocus

@@ -1,0 +1,36 @@
+#pragma once
+// The lens cut into cells: a view looks from each, and stands for all of it.
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "scenes/lens_views/lens_points.h"
+
+namespace softfocus {
+
+/// Cells of equal area, each as `per_cell` points, in radii of the aperture.
+struct LensCells {
+  std::vector<glm::dvec2> views;   ///< where each cell's view looks from
+  std::vector<glm::dvec2> points;  ///< cell by cell, as offsets from the view
+  int per_cell = 1;
+};
+
+/// The most points that a cell has.
+inline constexpr int kMostCellPoints = 32;
+
+/// Points of a cell for a picture of so many views: the largest power of two that leaves
+/// kMostFewLensPoints in all, at most kMostCellPoints. 1, a cell is its view, where that is below
+/// 8: so few rays in whole pixels leave more noise than they take away.
+int points_of_cell(int views);
+
+/// The views are lens_points_for() their number, and the points those for `views` * `per_cell`,
+/// each given to a view such that no exchange of two brings them nearer to theirs. So both the
+/// views and the points have the lens's middle and size: nothing out of focus moves or changes its
+/// size, whether a view stands for its cell or for itself.
+LensCells lens_cells(ApertureShape shape, int views, int per_cell);
+
+/// The offsets of a cell's points.
+std::span<const glm::dvec2> points_of(const LensCells& cells, int cell);
+
+}  // namespace softfocus

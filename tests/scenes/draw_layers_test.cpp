@@ -1,0 +1,137 @@
+// A scene's layers in lanes against the scalar pipeline, whose layers tests/raster/pipeline holds
+// against an oracle.
+
+#include <doctest/doctest.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "raster/images/texel.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/load/load_scene.h"
+
+using namespace softfocus;
+
+namespace {
+
+constexpr int kAcross = 150, kDown = 97;
+
+std::vector<Image> layers_of(const Scene& scene, std::size_t layers, Isa isa, int threads = 1,
+                             const Profile& profile = {}) {
+  ThreadPool pool{threads, isa};
+  return draw_layers(scene, camera_matrices(scene.camera, 3, kAcross, kDown), 3, kAcross, kDown,
+                     layers, profile, pool);
+}
+
+void check_layers(const std::vector<Image>& a, const std::vector<Image>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    INFO("layer ", i);
+    CHECK(equal(a[i], b[i]));
+  }
+}
+
+// Unlit squares across the axis: in order of submission at these depths, red 1, 2, 3, ...
+Scene squares_at(const std::vector<double>& depths) {
+  Scene scene;
+  scene.camera = {.position = {0, 0, 0}, .target = {0, 0, -1}, .near_m = 0.5, .far_m = 50};
+  Mesh mesh;
+  mesh.positions = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
+  mesh.normals.assign(4, {0, 0, 1});
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  scene.meshes.push_back(mesh);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    Material material;
+    material.lit = false;
+    material.diffuse = glm::vec3{static_cast<float>(i + 1), 0.0f, 0.0f};
+    scene.materials.push_back(material);
+    Object object;
+    object.material = static_cast<std::uint32_t>(i);
+    object.position = {0, 0, -depths[i]};
+    scene.objects.push_back(object);
+  }
+  return scene;
+}
+
+std::vector<float> reds(const std::vector<Image>& layers) {
+  std::vector<float> values;
+  values.reserve(layers.size());
+  for (const Image& layer : layers) values.push_back(load_texel(layer, 70, 40).x);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("layers of scenes: the same on every vector unit and for any number of threads") {
+  for (const char* name : {"sphere-world", "near-fence", "foliage", "random:6"}) {
+    INFO(name);
+    const Scene scene = load_scene(name, scene_search_path({}));
+    for (const std::size_t layers : {2u, 3u, 4u}) {
+      const std::vector<Image> expected = layers_of(scene, layers, Isa::scalar);
+      for (const Isa isa : available_isas()) {
+        INFO("isa ", isa_name(isa), ", ", layers, " layers");
+        check_layers(layers_of(scene, layers, isa, isa == Isa::scalar ? 1 : 3), expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("layers of scenes: the same on every vector unit with a driver's planes") {
+  const Scene scene = load_scene("clutter", scene_search_path({}));
+  const Profile profile = find_profile("llvmpipe").value();
+  const std::vector<Image> expected = layers_of(scene, 3, Isa::scalar, 1, profile);
+  for (const Isa isa : available_isas()) {
+    INFO("isa ", isa_name(isa));
+    check_layers(layers_of(scene, 3, isa, 1, profile), expected);
+  }
+}
+
+TEST_CASE("layers of scenes: the first is draw_scene()'s picture") {
+  const Scene scene = load_scene("foliage", scene_search_path({}));
+  ThreadPool pool{1};
+  const CameraMatrices camera = camera_matrices(scene.camera, 3, kAcross, kDown);
+  CHECK(equal(layers_of(scene, 4, Isa::scalar)[0],
+              draw_scene(scene, camera, 3, kAcross, kDown, {}, pool)));
+}
+
+TEST_CASE("layers of scenes: nearest first, at one depth the first submitted, then background") {
+  for (const Isa isa : available_isas()) {
+    INFO("isa ", isa_name(isa));
+    const std::vector<Image> layers = layers_of(squares_at({4, 2, 3, 2}), 4, isa);
+    CHECK(reds(layers) == std::vector<float>{2, 4, 3, 1});
+    CHECK(load_texel(layers[3], 70, 40).w == 4.0f);
+    CHECK(reds(layers_of(squares_at({5, 6}), 4, isa)) == std::vector<float>{1, 2, 0, 0});
+  }
+}
+
+// Draws in lanes keep what a scalar draw has left, and the other way round.
+TEST_CASE("layers of scenes: draws in lanes and scalar draws mixed in a pass") {
+  const Scene scene = load_scene("foliage", scene_search_path({}));
+  const std::vector<Image> expected = layers_of(scene, 4, Isa::scalar);
+  const CameraMatrices camera = camera_matrices(scene.camera, 3, kAcross, kDown);
+  for (const Isa isa : available_isas()) {
+    INFO("isa ", isa_name(isa));
+    ThreadPool pool{1, isa};
+    std::vector<Image> layers, depths;
+    PreparedScene prepared = prepare_scene(scene, {}, pool);
+    for (int i = 0; i < 4; ++i) {
+      layers.push_back(make_image(Format::rgba16f, kAcross, kDown));
+      depths.push_back(make_image(Format::r32f, kAcross, kDown));
+    }
+    RenderTargets targets;
+    targets.colour[0] = &layers[0];
+    targets.depth = &depths[0];
+    for (std::size_t i = 0; i < 3; ++i) targets.behind[i] = {&layers[i + 1], &depths[i + 1]};
+    // Every third object is drawn fragment by fragment.
+    RenderPass scalar, in_lanes;
+    scalar.targets = in_lanes.targets = targets;
+    in_lanes.isa = isa;
+    record_scene(prepared, camera, 3, scalar);
+    record_scene(prepared, camera, 3, in_lanes);
+    REQUIRE(scalar.draws.size() == in_lanes.draws.size());
+    for (std::size_t i = 0; i < scalar.draws.size(); i += 3) in_lanes.draws[i] = scalar.draws[i];
+    finish(in_lanes, pool);
+    check_layers(layers, expected);
+  }
+}

@@ -1,0 +1,428 @@
+// The simulator's page in a browser, end to end. The pictures' hashes are held against the program.
+//
+//   node browser_test.js FOLDER PROGRAM [SINGLE_FILE]
+//
+// FOLDER is what tools/simulator builds, PROGRAM build/softfocus, SINGLE_FILE the page in one file.
+// Needs playwright-core (NODE_PATH) and Chromium (CHROMIUM, else `chromium`).
+"use strict";
+
+const assert = require("assert");
+const { execFileSync, spawn } = require("child_process");
+const fs = require("fs");
+const os = require("os");
+const path = require("path");
+const { pathToFileURL } = require("url");
+const { chromium } = require("playwright-core");
+
+const [folder, program, single_file] = process.argv.slice(2);
+const work = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-browser-"));
+const kFrameMs = 60000;
+
+const tests = [];
+/** `options` are of the browser's context. A page has loaded and drawn its first frame. */
+const test = (claim, run, options = {}) => tests.push({ claim, run, options });
+
+const text_of = (page, id) => page.locator(`#${id}`).textContent();
+
+/** Waits for the frame that belongs to the settings of now. Its hash. */
+async function drawn(page) {
+  const hash = await page.waitForFunction(() => {
+    const is_busy = document.getElementById("picture").getAttribute("aria-busy") !== "false";
+    const text = document.getElementById("hash-full").textContent;
+    return !is_busy && text.startsWith("0x") && text;
+  }, null, { timeout: kFrameMs });
+  return hash.jsonValue();
+}
+
+/** Waits until the page says in one line what went wrong. The line. */
+async function error_line(page) {
+  await page.waitForSelector("#error:not([hidden])", { timeout: kFrameMs });
+  return text_of(page, "error-text");
+}
+
+/** The hash by the command that the page names for its frame. */
+async function hash_by_program(page) {
+  const words = (await text_of(page, "command")).split(" ");
+  assert.strictEqual(words.shift(), "softfocus", "the page names no command");
+  words[words.indexOf("-o") + 1] = path.join(work, "picture.png");
+  const said = execFileSync(program, words, { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+  return JSON.parse(said).picture_hash;
+}
+
+async function equals_program(page) {
+  assert.strictEqual(await drawn(page), await hash_by_program(page));
+}
+
+async function set_number(page, part, value) {
+  const field = page.locator(`#${part} input[type=text], #${part} input[type=number]`).first();
+  await field.fill(String(value));
+  await field.press("Enter");
+}
+
+/** Presses a key on the picture; the frame after it. */
+async function press(page, key) {
+  await page.locator("#picture").press(key);
+  return drawn(page);
+}
+
+test("the first frame has the program's bits, and the title its speed", async (page) => {
+  await equals_program(page);
+  assert.match(await page.title(), /fps.*ms/);
+});
+
+test("every control changes the picture to the program's for the same settings", async (page) => {
+  const seen = new Set([await drawn(page)]);
+  const changed = async (what) => {
+    const hash = await drawn(page);
+    assert.ok(!seen.has(hash), `${what} changed nothing`);
+    seen.add(hash);
+    assert.strictEqual(hash, await hash_by_program(page), what);
+  };
+  await set_number(page, "focal-length-part", 60);
+  await changed("focal length");
+  await set_number(page, "f-number-part", 1.4);
+  await changed("f-number");
+  await set_number(page, "focus-part", 1.2);
+  await changed("focus distance");
+  await set_number(page, "max-coc-part", 3);
+  await changed("filter size");
+  await set_number(page, "coc-scale-part", 2);
+  await changed("scale of the circles");
+  await page.locator("#method").selectOption("disc-layers");
+  await changed("method");
+  await page.locator("#coc-map").check({ force: true });
+  await changed("map of the circles");
+  await page.locator("input[name=show][value=picture]").check({ force: true });
+  await page.locator("#dof").uncheck();
+  await changed("depth of field off");
+  await page.locator("#dof").check();
+  await page.locator("input[name=size][value='1024x512']").check({ force: true });
+  await changed("resolution 1024x512");
+  await page.locator("input[name=size][value='1024x1024']").check({ force: true });
+  await changed("resolution 1024x1024");
+});
+
+test("a click sets the focus, and reset takes all back", async (page) => {
+  const first = await drawn(page);
+  const box = await page.locator("#picture").boundingBox();
+  await page.mouse.click(box.x + 0.3 * box.width, box.y + 0.75 * box.height);
+  await equals_program(page);
+  assert.match(await text_of(page, "command"), /--autofocus/);
+  assert.notStrictEqual(await drawn(page), first);
+  await page.locator("#reset").click();
+  assert.strictEqual(await drawn(page), first);
+});
+
+test("a link carries the whole state", async (page, { context, address }) => {
+  await page.locator("#scene").selectOption("cube-room");
+  await drawn(page);
+  await set_number(page, "f-number-part", 2.8);
+  await press(page, "ArrowLeft");  // a camera of its own
+  const hash = await drawn(page);
+  await page.waitForFunction(() => /N=2\.8.*camera=/.test(location.hash), null, { timeout: 5000 });
+  const link = await page.evaluate(() => location.hash);
+  const other = await context.newPage();
+  await other.goto(address + link);
+  assert.strictEqual(await drawn(other), hash);
+  await other.close();
+});
+
+test("the keyboard alone reaches the ten controls", async (page) => {
+  const first = await drawn(page);
+  for (const key of ["l", "n", "f", "x", "k", "b", "m", "r"]) {
+    const before = await page.evaluate(() => location.hash);
+    await press(page, key);
+    await page.waitForFunction((old) => location.hash !== old, before, { timeout: 5000 });
+  }
+  assert.strictEqual(await press(page, "0"), first);
+  const [download] = await Promise.all([page.waitForEvent("download"),
+                                        page.locator("#picture").press("p")]);
+  const report = fs.readFileSync(await download.path(), "utf8");
+  assert.match(report, /ms/);
+  await page.locator("#picture").press("q");
+  assert.strictEqual(await page.locator("#quit").getAttribute("aria-pressed"), "true");
+  await page.locator("#picture").press("q");
+  assert.strictEqual(await page.locator("#quit").getAttribute("aria-pressed"), "false");
+});
+
+test("the animation plays, steps and pauses", async (page) => {
+  await page.locator("#scene").selectOption("cube-room");
+  const first = await drawn(page);
+  await page.locator("#step").click();
+  await equals_program(page);
+  assert.notStrictEqual(await drawn(page), first);
+  await page.locator("#play").click();
+  await page.waitForFunction(() => Number(document.getElementById("time").value) > 2, null,
+                             { timeout: kFrameMs });
+  await page.locator("#play").click();
+  await equals_program(page);
+});
+
+test("a model that is dropped is drawn; a broken one is a line, and nothing is lost", async (page) => {
+  const first = await drawn(page);
+  const file = (name, bytes) => ({ name, mimeType: "text/plain", buffer: Buffer.from(bytes) });
+  await page.locator("#files").setInputFiles([file("broken.obj", "v x\n")]);
+  assert.match(await error_line(page), /broken\.obj/);
+  assert.strictEqual(await drawn(page), first);
+  const triangle = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
+  await page.locator("#files").setInputFiles([file("fine.obj", triangle)]);
+  await page.waitForFunction(() => document.getElementById("scene").value === "/own/fine.obj");
+  assert.notStrictEqual(await drawn(page), first);
+});
+
+test("the truth comes nearer, and the methods get their errors", async (page) => {
+  await page.locator("#tab-methods").click();
+  await page.locator("#truth-on").check();
+  await page.waitForFunction(() => /\d/.test(document.getElementById("truth-state").textContent),
+                             null, { timeout: kFrameMs });
+  await page.locator("input[name=show][value=error]").check({ force: true });
+  await page.waitForFunction(() => /FLIP/.test(document.getElementById("truth-state").textContent),
+                             null, { timeout: kFrameMs });
+  assert.ok(await page.locator("#error").isHidden());
+});
+
+test("a failure case is a scene", async (page) => {
+  const first = await drawn(page);
+  await page.locator("#tab-cases").click();
+  await page.locator("#cases button").nth(2).click();
+  assert.notStrictEqual(await drawn(page), first);
+});
+
+test("all golden hashes are the native table's", async (page) => {
+  await page.locator("#tab-hashes").click();
+  await page.locator("#selftest").click();
+  await page.waitForFunction(() => /^All|differ\.$/.test(document.getElementById("selftest-state").textContent),
+                             null, { timeout: 300000 });
+  assert.match(await text_of(page, "selftest-state"), /^All/);
+});
+
+test("a phone's screen holds the page, and a tap sets the focus", async (page) => {
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= 360, `the page is ${wide} px wide`);
+  const first = await drawn(page);
+  await page.locator("#picture").tap({ position: { x: 80, y: 240 } });
+  assert.notStrictEqual(await drawn(page), first);
+}, { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true });
+
+test("memory that is full is a line; nothing is lost, and the next frame is drawn", async (page) => {
+  const first = await drawn(page);
+  const worker = page.workers().find((one) => one.url().endsWith("worker.js"));
+  await worker.evaluate(() => {
+    WebAssembly.Memory.prototype.grow = () => { throw new RangeError("no memory is left"); };
+  });
+  await page.evaluate(() => { location.hash = "scene=figures&size=4096x4096"; });
+  assert.match(await error_line(page), /not enough memory/);
+  await page.locator("input[name=size][value='512x512']").check({ force: true });
+  assert.strictEqual(await drawn(page), first);
+  assert.ok(await page.locator("#error").isHidden());
+});
+
+test("a picture larger than any is a line, and the next frame is drawn", async (page) => {
+  const first = await drawn(page);
+  await page.evaluate(() => { location.hash = "scene=figures&size=16384x16384"; });
+  assert.match(await error_line(page), /not enough memory/);
+  await page.locator("input[name=size][value='512x512']").check({ force: true });
+  assert.strictEqual(await drawn(page), first);
+});
+
+const kGpuMs = 240000;
+
+/** Clicks a button of the panel; what the panel says when it is done. */
+async function gpu_does(page, button, done) {
+  await page.locator(`#${button}`).click();
+  await page.waitForFunction(({ id, words }) => new RegExp(words).test(
+      document.getElementById(id).textContent), done, { timeout: kGpuMs });
+}
+
+test("the GPU draws and filters the frame, and says what differs", async (page) => {
+  await page.locator("#tab-gpu").click();
+  assert.match(await text_of(page, "gpu-support"), /WebGL2 and EXT_color_buffer_float are here/);
+  await gpu_does(page, "gpu-draw", { id: "gpu-differences", words: "Frame: " });
+  assert.match(await text_of(page, "gpu-support"), /SwiftShader/);
+  const said = await text_of(page, "gpu-differences");
+  assert.match(said, /Profile swiftshader/);
+  assert.match(said, /Draw: \d+ of 1048576 values differ/);
+  assert.match(said, /Filter, of the GPU’s sharp picture: all 1048576 values are equal/);
+  assert.match(await text_of(page, "gpu-table"), /Draw.*\d.*Filter.*\d/s);
+  await page.waitForSelector("#gpu-picture:not([hidden])");
+  // The two pictures are alike: what differs are pixels on edges.
+  const means = await page.evaluate(() => ["picture", "gpu-picture"].map((id) => {
+    const place = document.getElementById(id);
+    const canvas = place.matches("canvas") ? place : place.querySelector("canvas");
+    const copy = document.createElement("canvas");
+    copy.width = copy.height = 8;
+    const context = copy.getContext("2d");
+    context.drawImage(canvas, 0, 0, 8, 8);
+    return [...context.getImageData(0, 0, 8, 8).data];
+  }));
+  means[0].forEach((value, i) => assert.ok(Math.abs(value - means[1][i]) <= 8, `part ${i}`));
+});
+
+test("the GPU's profile is found, is swiftshader's, and the program takes it", async (page) => {
+  await page.locator("#tab-gpu").click();
+  await gpu_does(page, "gpu-probe", { id: "gpu-profile", words: "subpixel_bits" });
+  const [download] = await Promise.all([page.waitForEvent("download"),
+                                        page.locator("#gpu-download").click()]);
+  const file = path.join(work, "my-gpu.toml");
+  await download.saveAs(file);
+  const hash_under = (profile) => JSON.parse(execFileSync(program, [
+    "render", "cube-room", "--size", "96x64", "--profile", profile, "--json", "-o",
+    path.join(work, "picture.npy")], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] }))
+      .picture_hash;
+  assert.strictEqual(hash_under(file), hash_under("swiftshader"));
+  const keys = Object.fromEntries([...fs.readFileSync(file, "utf8").matchAll(/^(\w+) = "?([^"#\s]+)/gm)]
+      .map((match) => match.slice(1)));
+  for (const [key, value] of Object.entries({
+    half_store: "swiftshader", unorm_store: "nearest-even", denormals: "flush",
+    texture_unit: "swiftshader", lerp: "unfused", viewport: "unfused", clipping: "plain",
+    coverage: "edge-functions", fill_rule: "upper-left", attributes: "exact-barycentric",
+    subpixel_bits: "4", guard_band: "4" })) {
+    assert.strictEqual(keys[key], value, key);
+  }
+});
+
+/** Starts a worker beside the page's own. */
+async function start_worker(page) {
+  await page.evaluate(() => new Promise((done, fail) => {
+    const worker = new Worker("worker.js");
+    globalThis.ask_worker = (request) => new Promise((answered) => {
+      worker.onmessage = ({ data }) => answered(data.reply);
+      worker.postMessage({ id: 1, request });
+    });
+    worker.onmessage = ({ data }) => (data.ready ? done() : fail(new Error(data.failed)));
+  }));
+  return (request) => page.evaluate((asked) => globalThis.ask_worker(asked), request);
+}
+
+test("the GPU's stores, textures and filters give the module's bits in every quick case", async (page) => {
+  const ask = await start_worker(page);
+  const { cases } = await ask({ do: "gl_crosscheck" });
+  assert.ok(cases.length > 200);
+  for (const { name, quick } of cases) {
+    if (!quick || !/^(store|bilinear|mipmap\/[tn]|two-pass|one-pass)/.test(name)) continue;
+    const reply = await ask({ do: "gl_crosscheck", case: name });
+    assert.strictEqual(reply.error, undefined, name);
+    assert.strictEqual(reply.differing, 0, name);
+    assert.ok(reply.values > 0, name);
+  }
+});
+
+/** What a browser that lacks something runs and is told; the picture's bits are the same. */
+function lacks(claim, script, build, said) {
+  if (!fs.existsSync(path.join(folder, `softfocus-${build}.wasm`))) return;
+  test(claim, async (page) => {
+    const text = await text_of(page, "build");
+    assert.ok(text.startsWith(`Build: ${build}. Not here: `), text);
+    assert.match(text, said);
+    await equals_program(page);
+  }, { script });
+}
+lacks("without shared memory it runs in one thread, and says so",
+      () => { Object.defineProperty(globalThis, "crossOriginIsolated", { value: false }); },
+      "simd", /threads/);
+lacks("without SIMD it runs, and says so", () => {
+  const validate = WebAssembly.validate;
+  WebAssembly.validate = (bytes) => bytes.length !== 43 && validate(bytes);
+}, "plain", /SIMD/);
+lacks("without WebAssembly's exceptions it runs, and says so", () => {
+  const validate = WebAssembly.validate;
+  WebAssembly.validate = (bytes) => bytes.length !== 28 && validate(bytes);
+}, "plain", /exceptions/);
+
+test("without WebGL2 the GPU's panel says so, and the rest works", async (page) => {
+  await page.locator("#tab-gpu").click();
+  assert.match(await text_of(page, "gpu-support"), /This browser has no WebGL2/);
+  for (const id of ["gpu-draw", "gpu-probe", "gpu-crosscheck"]) {
+    assert.ok(await page.locator(`#${id}`).isDisabled(), id);
+  }
+  const ask = await start_worker(page);
+  assert.match((await ask({ do: "gl_open" })).error, /^no WebGL2 here: /);
+  await equals_program(page);
+}, { no_gpu: true });
+
+/** Scripts that a test puts before the worker's. */
+async function prepend_to_worker(context, script) {
+  await context.route("**/worker.js", async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, body: `(${script})();\n${await response.text()}` });
+  });
+}
+
+function serve() {
+  const server = spawn("node", [path.join(__dirname, "../../../tools/page/serve.js"), folder, "0"]);
+  return new Promise((done, fail) => {
+    server.on("exit", () => fail(new Error("serve.js ended")));
+    server.stdout.on("data", (line) => {
+      const found = /http:\S+/.exec(line);
+      if (found) done({ server, address: found[0] });
+    });
+  });
+}
+
+async function run_one(browsers, address, { claim, run, options }) {
+  const { script, no_gpu, ...of_context } = options;
+  const browser = await (no_gpu ? browsers.without_gpu() : browsers.with_gpu());
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...of_context });
+  const faults = [];
+  try {
+    if (script) await prepend_to_worker(context, script);
+    const page = await context.newPage();
+    page.on("pageerror", (error) => faults.push(error.message));
+    await page.goto(address);
+    await drawn(page);
+    await run(page, { context, address });
+    assert.deepStrictEqual(faults, []);
+    console.log(`pass: ${claim}`);
+    return true;
+  } catch (error) {
+    console.log(`FAIL: ${claim}\n  ${String(error.stack ?? error).replaceAll("\n", "\n  ")}`);
+    return false;
+  } finally {
+    await context.close();
+  }
+}
+
+async function main() {
+  const started = [];
+  const started_with = (...words) => {
+    let browser = null;
+    return async () => {
+      if (browser) return browser;
+      browser = await chromium.launch({
+        executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+        args: ["--no-sandbox", ...words],
+      });
+      started.push(browser);
+      return browser;
+    };
+  };
+  const browsers = {
+    with_gpu: started_with("--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
+    without_gpu: started_with("--disable-gpu", "--disable-3d-apis", "--disable-software-rasterizer"),
+  };
+  const { server, address } = await serve();
+  let failed = 0;
+  try {
+    const wanted = process.env.ONLY;
+    for (const one of tests) {
+      if (wanted && !one.claim.includes(wanted)) continue;
+      if (!await run_one(browsers, address, one)) ++failed;
+    }
+    if (single_file && !wanted) {
+      const one = { claim: "one file, opened from disk, has the program's bits", options: {},
+                    run: equals_program };
+      if (!await run_one(browsers, pathToFileURL(path.resolve(single_file)).href, one)) ++failed;
+    }
+  } finally {
+    server.removeAllListeners("exit");
+    server.kill();
+    for (const browser of started) await browser.close();
+    fs.rmSync(work, { recursive: true });
+  }
+  process.exit(failed > 0 ? 1 : 0);
+}
+
+main().catch((error) => {
+  console.error(error);
+  process.exit(1);
+});

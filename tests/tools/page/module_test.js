@@ -1,0 +1,159 @@
+// The module answers with the bits that the program draws: run by node, as
+//
+//   node module_test.js softfocus-NAME.js PROGRAM
+"use strict";
+
+const assert = require("assert");
+const { execFileSync } = require("child_process");
+const fs = require("fs");
+const os = require("os");
+const path = require("path");
+
+const [script, program] = process.argv.slice(2).map((name) => path.resolve(name));
+const kThreads = 2;
+
+async function start_module() {
+  const create = require(script);
+  const module = await create({
+    wasmBinary: fs.readFileSync(script.replace(/js$/, "wasm")),
+    threads: kThreads,
+    mainScriptUrlOrBlob: script,
+  });
+  module.FS.mkdir("/own");
+  const ask = (request) => {
+    const text = typeof request === "string" ? request : JSON.stringify(request);
+    const size = module.lengthBytesUTF8(text) + 1;
+    const place = module._malloc(size);
+    module.stringToUTF8(text, place, size);
+    module._softfocus_request(place);
+    module._free(place);
+    return JSON.parse(module.UTF8ToString(module._softfocus_reply()));
+  };
+  return { module, ask };
+}
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-page-"));
+
+function native_hash(words) {
+  const output = execFileSync(program, ["render", ...words, "-o", path.join(folder, "picture.npy"),
+                                        "--json"], { stdio: ["ignore", "pipe", "ignore"] });
+  return JSON.parse(output).picture_hash;
+}
+
+const kFrames = [
+  { scene: "cube-room", settings: { size: [200, 120] }, words: ["--size", "200x120"] },
+  { scene: "figures", settings: { size: [128, 128], time: 7, method: "disc-layers", f_number: 1.4,
+                                  focus: { at: [0.25, 0.5] } },
+    words: ["--size", "128x128", "--frame", "7", "--method", "disc-layers", "--f-number", "1.4",
+            "--autofocus", "32,64"] },
+  { scene: "sphere-world", settings: { size: [96, 64], max_coc_px: 5, focus: { m: 0.9 },
+                                       focal_length_mm: 35, coc_scale: 2 },
+    words: ["--size", "96x64", "--max-coc", "5", "--focus", "0.9", "--focal-length", "35",
+            "--coc-scale", "2"] },
+  { scene: "random:7", settings: { size: [64, 64], dof: false },
+    words: ["--size", "64x64", "--show", "pinhole"] },
+  { scene: "portrait", settings: { size: [64, 48], show: "coc" },
+    words: ["--size", "64x48", "--show", "coc"] },
+  { scene: "dunes", settings: { size: [64, 48], show: "depth" },
+    words: ["--size", "64x48", "--show", "depth"] },
+  { scene: "lattice", settings: { size: [40, 40], method: "accumulation", samples: 19 },
+    words: ["--size", "40x40", "--method", "accumulation", "--samples", "19"] },
+];
+
+const kTests = {
+  "a frame has the hash that the program gives"({ ask }) {
+    for (const { scene, settings, words } of kFrames) {
+      assert.strictEqual(ask({ do: "open", scene }).error, undefined, scene);
+      const frame = ask({ do: "frame", ...settings });
+      assert.strictEqual(frame.hash, native_hash([scene, ...words]), `${scene} ${words.join(" ")}`);
+      const [width, height] = settings.size;
+      assert.deepStrictEqual([frame.width, frame.height], [width, height]);
+    }
+  },
+
+  "the truth has the hash of accumulation with as many samples of the sequence"({ ask }) {
+    ask({ do: "open", scene: "clutter" });
+    ask({ do: "frame", size: [48, 32] });
+    ask({ do: "truth", views: 20 });
+    const { samples, hash } = ask({ do: "truth", views: 40, hash: true });
+    assert.strictEqual(hash, native_hash(["clutter", "--size", "48x32", "--method", "accumulation",
+                                          "--samples", String(samples), "--until", "1e-9"]));
+  },
+
+  "a scene of one's own is read from below /own"({ module, ask }) {
+    const text = fs.readFileSync(path.join(__dirname, "../../../scenes/figures.toml"));
+    module.FS.writeFile("/own/mine.toml", text);
+    ask({ do: "open", scene: "/own/mine.toml" });
+    const mine = ask({ do: "frame", size: [64, 64] });
+    ask({ do: "open", scene: "figures" });
+    assert.strictEqual(mine.hash, ask({ do: "frame", size: [64, 64] }).hash);
+  },
+
+  "what is wrong is an error, and nothing has changed"({ ask }) {
+    ask({ do: "open", scene: "figures" });
+    const { hash } = ask({ do: "frame", size: [32, 32] });
+    const wrong = [
+      "no JSON", "{}", "[]", "1", '{"do": 1}', { do: "nothing" }, { do: "open", scene: "nowhere" },
+      { do: "open", scene: "/own/nothing.obj" }, { do: "open", case: "nothing" },
+      { do: "frame", size: [0, 1] }, { do: "frame", size: "1x1" }, { do: "frame", method: "none" },
+      { do: "frame", f_number: -1 }, { do: "frame", focus: {} }, { do: "frame", f_number: "2" },
+      { do: "frame", focal_length_mm: 1e9, focus: { m: 1e-9 } },
+      { do: "frame", camera: { position_m: [0, 0, 0], target_m: [0, 0, 0], fov_y_degrees: 40 } },
+      { do: "frame", size: [16384, 16384] },
+      { do: "pixel", x: 99, y: 0 }, { do: "truth", views: -1 }, { do: "selftest" },
+    ];
+    for (const request of wrong) {
+      const reply = ask(request);
+      assert.match(reply.error ?? "", /./, JSON.stringify(request));
+      assert.ok(!reply.error.includes("\n"), reply.error);
+    }
+    assert.strictEqual(ask({ do: "pixel", x: 31, y: 31 }).error, undefined);
+    assert.strictEqual(ask({ do: "frame", size: [32, 32] }).hash, hash);
+  },
+
+  "without WebGL2 the GPU's requests say so, and the rest works"({ ask }) {
+    ask({ do: "open", scene: "figures" });
+    const { hash } = ask({ do: "frame", size: [32, 32] });
+    for (const request of [{ do: "gl_open" }, { do: "gl_probe" }, { do: "gl_crosscheck" },
+                           { do: "gl_frame", size: [32, 32], gl_show: "difference" }]) {
+      assert.match(ask(request).error ?? "", /^no WebGL2 here: /, JSON.stringify(request));
+    }
+    assert.match(ask({ do: "gl_frame", gl_show: "picture" }).error, /no frame of the GPU's yet/);
+    assert.strictEqual(ask({ do: "frame", size: [32, 32] }).hash, hash);
+  },
+
+  "every golden hash is the table's"({ ask }) {
+    let first = 0;
+    for (let total = 1; first < total;) {
+      const reply = ask({ do: "selftest", first, count: 50 });
+      for (const { name, hash, wanted } of reply.results) assert.strictEqual(hash, wanted, name);
+      assert.ok(reply.results.length > 0, `only ${first} of ${reply.total}`);
+      first += reply.results.length;
+      total = reply.total;
+    }
+    assert.ok(first > 800, `only ${first}`);
+  },
+};
+
+async function main() {
+  const page = await start_module();
+  const { threads } = page.ask({ do: "start", threads: script.includes("threads") ? kThreads : 1 });
+  const name = `${path.basename(script)}, ${threads} threads`;
+  for (const [claim, test] of Object.entries(kTests)) {
+    try {
+      test(page);
+      console.log(`pass: ${name}: ${claim}`);
+    } catch (error) {
+      console.log(`FAIL: ${name}: ${claim}\n${error.stack}`);
+      process.exitCode = 1;
+    }
+  }
+}
+
+main().catch((error) => {
+  console.error(error.message);
+  process.exitCode = 1;
+}).finally(() => {
+  fs.rmSync(folder, { recursive: true });
+  process.exit();  // threads would keep node alive
+});

@@ -1,0 +1,271 @@
+// The page's requests, answered natively.
+
+#include <doctest/doctest.h>
+
+#include "dof/measure/flip.h"
+#include "raster/images/texel.h"
+#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/load/load_scene.h"
+#include "tests/support/gl_drivers.h"
+#include "tests/support/run_program.h"
+#include "tools/page/page.h"
+#include "tools/stress/make_frame.h"
+
+using namespace softfocus;
+
+namespace {
+
+Json ask(Page& page, const std::string& request) {
+  const std::optional<Json> reply = parse_json(answer(page, request));
+  REQUIRE(reply);
+  return *reply;
+}
+
+Json ask_well(Page& page, const std::string& request) {
+  Json reply = ask(page, request);
+  const Json* error = reply.find("error");
+  CAPTURE(request);
+  REQUIRE_MESSAGE(error == nullptr, error->text());
+  return reply;
+}
+
+void open(Page& page, const std::string& scene) {
+  ask_well(page, R"({"do":"open","scene":")" + scene + "\"}");
+}
+
+std::string hash_of(Page& page, const std::string& settings) {
+  return ask_well(page, R"({"do":"frame",)" + settings + "}").at("hash").text();
+}
+
+Image two_pass_picture(const Scene& scene, int width, int height) {
+  ThreadPool pool(1);
+  const CameraMatrices view = camera_matrices(scene.camera, 0.0, width, height);
+  DofSettings settings;
+  settings.coc =
+      pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, height, scene.lens.coc_scale);
+  settings.max_coc_px = static_cast<float>(scene.lens.max_coc_px_at_1024 * height / 1024.0);
+  const Image sharp = draw_scene(scene, view, 0.0, width, height, Profile{}, pool);
+  return apply(*find_method("two-pass"), {sharp, settings, Profile{}}, pool);
+}
+
+}  // namespace
+
+TEST_CASE("a frame is the scene's picture, and the screen shows it in sRGB") {
+  Page page;
+  open(page, "figures");
+  const Json reply = ask_well(page, R"({"do":"frame","size":[40,24]})");
+  const Image expected = two_pass_picture(load_scene("figures", scene_search_path({})), 40, 24);
+  CHECK(reply.at("hash").text() == hash_text(hash_image(expected)));
+  REQUIRE(page.pixels.rgba.size() == 40 * 24 * 4);
+  for (const int x : {0, 17, 39}) {
+    const glm::vec4 texel = load_texel<Format::rgba16f>(expected, x, 23);
+    const std::uint8_t* pixel = &page.pixels.rgba[static_cast<std::size_t>(23 * 40 + x) * 4];
+    for (int c = 0; c < 3; ++c) CHECK(pixel[c] == linear_to_srgb8(texel[c]));
+    CHECK(pixel[3] == 255);
+  }
+}
+
+TEST_CASE("a frame is the same drawn anew, from the kept drawing and on more threads") {
+  Page page;
+  open(page, "cube-room");
+  const std::string frame = R"("size":[64,64],"time":3,"f_number":1.2)";
+  const std::string hash = hash_of(page, frame);
+  hash_of(page, R"("size":[64,64],"time":3,"f_number":4)");
+  CHECK(hash_of(page, frame) == hash);
+  ask_well(page, R"({"do":"start","threads":3})");
+  open(page, "cube-room");
+  CHECK(hash_of(page, frame) == hash);
+}
+
+TEST_CASE("a lens alone does not draw anew") {
+  Page page;
+  open(page, "figures");
+  hash_of(page, R"("size":[32,32])");
+  const Drawn* const drawn = page.shown->drawn.get();
+  hash_of(page, R"("size":[32,32],"f_number":5,"method":"one-pass")");
+  CHECK(page.shown->drawn.get() == drawn);
+  hash_of(page, R"("size":[32,32],"time":1)");
+  CHECK(page.shown->drawn.get() != drawn);
+}
+
+TEST_CASE("a coarse frame is the frame of that size, with the radius in its pixels") {
+  Page page;
+  open(page, "figures");
+  const std::string coarse = hash_of(page, R"("size":[64,32],"preview":4,"max_coc_px":12)");
+  CHECK(page.pixels.width == 16);
+  CHECK(coarse == hash_of(page, R"("size":[16,8],"max_coc_px":3)"));
+}
+
+TEST_CASE("the focus at a place is the depth of its pixel") {
+  Page page;
+  open(page, "portrait");
+  const Json reply = ask_well(page, R"({"do":"frame","size":[50,40],"focus":{"at":[0.5,0.99]}})");
+  const Json pixel = ask_well(page, R"({"do":"pixel","x":25,"y":39})");
+  CHECK(reply.at("focus_m").number() == pixel.at("depth_m").number());
+  CHECK(pixel.at("coc_radius_px").number() == 0.0);
+}
+
+TEST_CASE("a moved camera is written into the scene's file") {
+  const TemporaryDirectory folder;
+  Page page;
+  for (const std::string scene : {"figures", "dunes"}) {
+    CAPTURE(scene);
+    open(page, scene);
+    const std::string frame =
+        R"("size":[48,48],"time":5,"f_number":1.7,"focus":{"m":0.8},"camera":)"
+        R"({"position_m":[0.1,0.35,1.2],"target_m":[0,0.05,0.02],"fov_y_degrees":33.3})";
+    const std::string hash = hash_of(page, frame);
+    const std::string text =
+        ask_well(page, R"({"do":"file","name":"scene.toml"})").at("text").text();
+    write_file(folder.file("moved.toml"), text);
+    open(page, folder.file("moved.toml"));
+    CHECK(hash_of(page, R"("size":[48,48],"time":5)") == hash);
+  }
+}
+
+TEST_CASE("a model's file names the model, and draws what was shown") {
+  const TemporaryDirectory folder;
+  write_file(folder.file("thing.obj"),
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  Page page;
+  open(page, folder.file("thing.obj"));
+  const std::string hash = hash_of(page, R"("size":[40,40])");
+  const std::string max_coc = std::to_string(page.shown->lens->settings.max_coc_px);
+  const std::string text = ask_well(page, R"({"do":"file","name":"scene.toml"})").at("text").text();
+  write_file(folder.file("thing.toml"), text);
+  open(page, folder.file("thing.toml"));
+  CHECK(hash_of(page, R"("size":[40,40],"max_coc_px":)" + max_coc) == hash);
+}
+
+TEST_CASE("the truth is accumulation's picture of many views, and its distance the mean FLIP") {
+  Page page;
+  open(page, "clutter");
+  hash_of(page, R"("size":[40,24])");
+  ask_well(page, R"({"do":"truth","views":9})");
+  const Json reply = ask_well(page, R"({"do":"truth","views":290,"hash":true,"show":"truth"})");
+  const auto samples = static_cast<int>(reply.at("samples").integer());
+  CHECK(samples > kMostFewLensPoints);
+  CHECK(reply.at("half_set_rms").number() > 0.0);
+  const Image shown = page.shown->picture;
+  const std::string hash = hash_of(
+      page, R"("size":[40,24],"method":"accumulation","samples":)" + std::to_string(samples));
+  CHECK(reply.at("hash").text() == hash);
+  CHECK(reply.at("flip_mean").number() == mean_flip(page.shown->picture, shown, *page.pool));
+  CHECK(reply.at("width").integer() == 40);
+}
+
+TEST_CASE("another lens begins its truth anew") {
+  Page page;
+  open(page, "clutter");
+  hash_of(page, R"("size":[24,24])");
+  ask_well(page, R"({"do":"truth","views":24})");
+  hash_of(page, R"("size":[24,24],"f_number":9)");
+  CHECK(ask(page, R"({"do":"truth"})").find("error") != nullptr);
+  CHECK(ask_well(page, R"({"do":"truth","views":8})").at("samples").integer() == 8);
+}
+
+TEST_CASE("methods are compared with the truth of the frame") {
+  Page page;
+  open(page, "clutter");
+  hash_of(page, R"("size":[32,32],"max_coc_px":4,"coc_scale":8)");
+  const Json truth = ask_well(page, R"({"do":"truth","views":32})");
+  const Json reply =
+      ask_well(page, R"({"do":"compare_methods","methods":["pinhole","two-pass"],"radii":[4]})");
+  const auto& results = reply.at("results").values();
+  REQUIRE(results.size() == 2);
+  CHECK(results[1].at("flip_mean").number() == truth.at("flip_mean").number());
+  CHECK(results[0].at("flip_mean").number() > results[1].at("flip_mean").number());
+}
+
+TEST_CASE("a case of the atlas has its own circles, and a wider lens larger ones") {
+  Page page;
+  const Json opened = ask_well(page, R"({"do":"open","case":"borders","value":8})");
+  const Json& lens = opened.at("lens");
+  const std::string given = R"("size":[64,64],"focal_length_mm":)" +
+                            json_text(lens.at("focal_length_mm")) + R"(,"f_number":)" +
+                            json_text(lens.at("f_number")) + R"(,"focus":{"m":)" +
+                            json_text(lens.at("focus_m")) + "}";
+  const Json frame = ask_well(page, R"({"do":"frame",)" + given + "}");
+  CHECK(page.shown->lens->settings.coc.radius_at_infinity_px == 16.0f);
+  CHECK(frame.at("largest_coc_px").number() == doctest::Approx(8.0).epsilon(0.01));
+  ask_well(page, R"({"do":"frame","size":[64,64],"f_number":1})");
+  CHECK(page.shown->lens->settings.coc.radius_at_infinity_px == 32.0f);
+  const Json truth = ask_well(page, R"({"do":"truth","views":8})");
+  CHECK(truth.at("done").boolean());
+}
+
+TEST_CASE("every case opens at its telling severity and makes a frame") {
+  Page page;
+  const Json listed = ask_well(page, R"({"do":"scenes"})");
+  for (const Json& known : listed.at("cases").values()) {
+    const std::string name = known.at("name").text();
+    CAPTURE(name);
+    ask_well(page, R"({"do":"open","case":")" + name + "\"}");
+    ask_well(page, R"({"do":"frame","size":[64,64]})");
+  }
+}
+
+TEST_CASE("what is wrong is one line, and the frame stays") {
+  Page page;
+  open(page, "figures");
+  const std::string hash = hash_of(page, R"("size":[16,16])");
+  for (const char* const request :
+       {"", "{", "[]", "{}", R"({"do":7})", R"({"do":"nothing"})",
+        R"({"do":"open","scene":"nowhere"})", R"({"do":"open","case":"borders","value":1e9})",
+        R"({"do":"frame","size":[0,4]})", R"({"do":"frame","size":[4]})",
+        R"({"do":"frame","method":"auto"})", R"({"do":"frame","samples":2.5})",
+        R"({"do":"frame","f_number":0})", R"({"do":"frame","focus":{"at":[2,0]}})",
+        R"({"do":"frame","focal_length_mm":900,"focus":{"m":0.5}})",
+        R"({"do":"pixel","x":16,"y":0})", R"({"do":"truth","show":"error"})",
+        R"({"do":"file","name":"/etc/passwd"})"}) {
+    CAPTURE(request);
+    const Json reply = ask(page, request);
+    REQUIRE(reply.find("error") != nullptr);
+    CHECK(!contains(reply.at("error").text(), "\n"));
+    CHECK(reply.at("error").text() != "");
+  }
+  CHECK(hash_text(page.shown->hash) == hash);
+  CHECK(hash_of(page, R"("size":[16,16])") == hash);
+}
+
+TEST_CASE("the self-test comes in slices of any size") {
+  Page page;
+  const Json some = ask_well(page, R"({"do":"selftest","first":0,"count":3})");
+  const Json next = ask_well(page, R"({"do":"selftest","first":3,"count":2})");
+  CHECK(some.at("results").values().size() == 3);
+  REQUIRE(next.at("results").values().size() == 2);
+  CHECK(next.at("results").at(std::size_t{0}).at("equal").boolean());
+  CHECK(some.at("total").integer() == static_cast<int>(expected_hashes().size()));
+}
+
+TEST_CASE("the GPU's frame is the module's under the driver's profile, stage by stage") {
+  if (!has_driver("llvmpipe")) return;
+  Page page;
+  open(page, "cube-room");
+  const std::string settings = R"({"do":"gl_frame","size":[96,64],"max_coc_px":5,)";
+  CHECK(ask(page, settings + R"("gl_show":"picture"})").find("error") != nullptr);
+  const Json opened = ask_well(page, R"({"do":"gl_open"})");
+  CHECK(opened.at("profile").text().starts_with("llvmpipe"));
+  const Json reply = ask_well(page, settings + R"("gl_show":"difference"})");
+  for (const char* stage : {"draw", "filter", "frame"}) {
+    const Json& differing = reply.at("differing").at(stage);
+    CHECK(differing.at("values").integer() == 0);
+    CHECK(differing.at("of").integer() == 96 * 64 * 4);
+  }
+  CHECK(ask_well(page, R"({"do":"gl_frame","gl_show":"picture"})").at("width").integer() == 96);
+  CHECK(ask(page, settings + R"("gl_show":"all"})").find("error") != nullptr);
+
+  const Json cases = ask_well(page, R"({"do":"gl_crosscheck"})");
+  CHECK(cases.at("cases").values().size() > 200);
+  const Json one = ask_well(page, R"({"do":"gl_crosscheck","case":"store/rgba8-random"})");
+  CHECK(one.at("differing").integer() == 0);
+  CHECK(one.at("values").integer() == 256 * 256 * 4);
+  CHECK(ask(page, R"({"do":"gl_crosscheck","case":"none"})").find("error") != nullptr);
+
+  // A case that is made as a picture has no drawing.
+  const Json list = ask_well(page, R"({"do":"scenes"})").at("cases");
+  ask_well(page, R"({"do":"open","case":")" + list.values()[0].at("name").text() + "\"}");
+  const Json of_case = ask_well(page, R"({"do":"gl_frame","size":[64,64],"gl_show":"difference"})");
+  CHECK(of_case.at("differing").find("draw") == nullptr);
+  CHECK(of_case.at("differing").at("filter").at("values").integer() == 0);
+}

@@ -1,0 +1,239 @@
+// The parts of the simulator's page that need no browser: node page_test.js
+"use strict";
+
+const assert = require("assert");
+const fs = require("fs");
+const os = require("os");
+const path = require("path");
+const { pathToFileURL } = require("url");
+
+// The page's files are modules by where they are used; node asks for a package that says so.
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-page-"));
+const web = path.join(__dirname, "../../../tools/page/web");
+for (const name of fs.readdirSync(web)) fs.copyFileSync(path.join(web, name), path.join(folder, name));
+fs.writeFileSync(path.join(folder, "package.json"), '{"type": "module"}');
+const module_of = (name) => import(pathToFileURL(path.join(folder, name)));
+
+const tests = [];
+const test = (claim, run) => tests.push({ claim, run });
+const near = (a, b, part = 1e-5) => assert.ok(Math.abs(a - b) <= part * Math.abs(b), `${a}, not ${b}`);
+
+test("a link gives the state back", async () => {
+  const { first_side, first_state } = await module_of("state.js");
+  const { link_of, read_link, state_to_open, with_link } = await module_of("link.js");
+  const state = {
+    ...first_state(), scene: "random:18446744073709551615", size: [1024, 512], time: 7,
+    show: "error", editing: 1, divider: 0.25, object_m: 2.5,
+    camera: { position_m: [1, -2.5, 3], target_m: [0, 0.125, 0], fov_y_degrees: 31.5 },
+    photo: { on: true, sensor: "aps-c", lock: true },
+    sides: [{ ...first_side(), dof: false, focus: { m: 1.25 }, max_coc_px: 12, samples: 16 },
+            { ...first_side(), method: "disc-layers", focus: { at: [0.25, 0.75] }, f_number: 5.6 }],
+  };
+  const words = read_link(`#${link_of(state)}`);
+  const opened = state_to_open(words);
+  assert.strictEqual(opened.scene, state.scene);
+  assert.deepStrictEqual(with_link(opened, words), state);
+});
+
+test("a link carries a failure case", async () => {
+  const { first_state } = await module_of("state.js");
+  const { link_of, read_link, state_to_open } = await module_of("link.js");
+  const failure = { name: "near-edge", value: 16 };
+  const words = read_link(link_of({ ...first_state(), scene: null, failure }));
+  assert.deepStrictEqual(state_to_open(words).failure, failure);
+});
+
+test("what a link has wrong stays at its default", async () => {
+  const { first_state } = await module_of("state.js");
+  const { read_link, state_to_open, with_link } = await module_of("link.js");
+  const words = read_link("#scene=%E0%A4%A&size=0x9&f=long&focus=-1&camera=1,2&show=all&divider=3&=&x");
+  assert.deepStrictEqual(with_link(state_to_open(words), words), first_state());
+});
+
+test("the lens has the numbers of `softfocus lens`", async () => {
+  const lens_module = await module_of("lens.js");
+  // softfocus lens --focal-length 50 --f-number 2 --focus 1.5 --at 0.5 8
+  const lens = { focal_length_mm: 50, f_number: 2, focus_m: 1.5 };
+  const film_mm = lens_module.film_height(lens, 40);
+  near(film_mm, 37.6521);
+  near(lens_module.aperture_of(lens), 25);
+  near(lens_module.hyperfocal_distance_m(lens, film_mm / 1024), 34.0455);
+  const { near_m, far_m } = lens_module.sharp_limits_m(lens, film_mm / 1024);
+  near(near_m, 1.43864);
+  near(far_m, 1.56683);
+  near(lens_module.circle_on_film(lens, 0.5), 1.72414);
+  near(lens_module.radius_px(lens, 0.5, 40, 1024, 1), -23.4451);
+  near(lens_module.radius_px(lens, 8, 40, 1024, 1), 9.52459);
+  near(lens_module.field_of_view_degrees(lens, film_mm), 40);
+  assert.strictEqual(lens_module.sharp_limits_m({ ...lens, focus_m: 40 }, film_mm / 1024).far_m, Infinity);
+});
+
+test("a locked lens sees what its sensor takes in", async () => {
+  const { locked_fov_degrees, nearest_stop } = await module_of("photographer.js");
+  const lens = { focal_length_mm: 50, f_number: 2, focus_m: 1e9 };
+  const state = { size: [1024, 512], photo: { on: true, sensor: "full-frame", lock: true } };
+  near(locked_fov_degrees({ ...state, size: [512, 512] }, lens), 26.9915);  // 24 mm at 50 mm
+  near(locked_fov_degrees(state, lens), 20.4079);  // a width of 36 mm leaves 18
+  assert.strictEqual(locked_fov_degrees({ ...state, photo: { ...state.photo, lock: false } }, lens), null);
+  assert.strictEqual(locked_fov_degrees(state, { ...lens, focus_m: 0.01 }), null);
+  assert.strictEqual(nearest_stop(2.05), 2);
+});
+
+test("the camera turns around its target and never over it", async () => {
+  const { arm_length_m, dollied, orbited, panned, walked } = await module_of("camera.js");
+  const camera = { position_m: [0, 1, 4], target_m: [0, 1, 0], fov_y_degrees: 40 };
+  const turned = orbited(camera, Math.PI / 2, 0);
+  assert.deepStrictEqual(turned.target_m, camera.target_m);
+  near(turned.position_m[0], -4);
+  const above = orbited(camera, 0, 9);
+  near(arm_length_m(above), 4);
+  assert.ok(above.position_m[1] < 5 && above.position_m[2] > 0);
+  near(arm_length_m(dollied(camera, 0.5)), 2);
+  assert.deepStrictEqual(walked(camera, 0, 0, 1).position_m, [0, 1, 3]);
+  assert.deepStrictEqual(walked(camera, 1, 0, 0).target_m, [1, 1, 0]);
+  near(panned(camera, 0, 1).target_m[1], 1 + 8 * Math.tan(20 * Math.PI / 180));
+});
+
+test("a command repeats the frame, or there is none", async () => {
+  const { first_side, first_state } = await module_of("state.js");
+  const { command_of } = await module_of("hashes.js");
+  const side = { ...first_side(), focus: { at: [0.5, 1] }, max_coc_px: 24 };
+  assert.strictEqual(
+      command_of({ ...first_state(), time: 3 }, side),
+      "softfocus render figures -o picture.png --json --size 512x512 --frame 3 --method two-pass " +
+      "--autofocus 256,511 --focal-length 50 --f-number 2 --coc-scale 1 --max-coc 24");
+  assert.ok(command_of(first_state(), { ...side, dof: false }).endsWith("--show pinhole"));
+  assert.ok(command_of(first_state(), { ...side, method: "accumulation" }).endsWith("--samples 64"));
+  assert.strictEqual(
+      command_of({ ...first_state(), camera: {} }, side),
+      "softfocus render scene.toml -o picture.png --json --size 512x512 --method two-pass --max-coc 24");
+  assert.strictEqual(command_of({ ...first_state(), camera: {}, scene: "random:1" }, side), null);
+});
+
+test("the error of a picture without depth of field is that of the pinhole", async () => {
+  const { first_side, first_state, frame_request } = await module_of("state.js");
+  const off = { ...first_side(), dof: false };
+  assert.strictEqual(frame_request(first_state(), off, 1).dof, false);
+  const measured = frame_request({ ...first_state(), show: "error" }, off, 1);
+  assert.deepStrictEqual([measured.dof, measured.method, measured.show], [true, "pinhole", "picture"]);
+});
+
+test("of dropped files the scene is opened, else the model", async () => {
+  const { scene_among } = await module_of("own_files.js");
+  assert.strictEqual(scene_among(["a/b.obj", "b.mtl", "c.OBJ"]), "c.OBJ");
+  assert.strictEqual(scene_among(["c.obj", "deep/room.toml"]), "deep/room.toml");
+  assert.strictEqual(scene_among(["a.png"]), undefined);
+});
+
+test("radii are read from a line of text", async () => {
+  const { read_radii } = await module_of("methods_table.js");
+  assert.deepStrictEqual(read_radii("32, 8;8 x -1 2000"), [8, 32]);
+});
+
+/** A worker that answers when it is told to. */
+class FakeWorker {
+  constructor() {
+    FakeWorker.last = this;
+    this.sent = [];
+    this.heard = {};
+  }
+  addEventListener(name, heard) { this.heard[name] = heard; }
+  postMessage(message) { this.sent.push(message); }
+  say(data) { this.heard.message({ data }); }
+  answer(reply) { this.say({ id: this.sent[this.sent.length - 1].id, reply }); }
+}
+
+async function started_engine() {
+  globalThis.Worker = FakeWorker;
+  const { start_engine } = await module_of("engine.js");
+  const failures = [];
+  const engine = start_engine({ on_ready() {}, on_failed: (line) => failures.push(line),
+                                on_restarted() {} });
+  const cancel = new Int32Array(new SharedArrayBuffer(4));
+  FakeWorker.last.say({ ready: true, cancel });
+  return { engine, worker: FakeWorker.last, failures, cancel };
+}
+
+test("a frame overtakes work in the background", async () => {
+  const { engine, worker } = await started_engine();
+  const asked = [engine.ask({ do: "first" }, 2), engine.ask({ do: "background" }, 2),
+                 engine.ask({ do: "frame" }, 0)];
+  worker.answer({});
+  worker.answer({});
+  worker.answer({});
+  await Promise.all(asked);
+  assert.deepStrictEqual(worker.sent.map(({ request }) => request.do), ["first", "frame", "background"]);
+});
+
+test("only what runs in the background is cancelled for a frame", async () => {
+  const { engine, cancel } = await started_engine();
+  engine.ask({ do: "open" }, 1);
+  engine.cancel_background();
+  assert.strictEqual(cancel[0], 0);
+  engine.cancel_running();
+  assert.strictEqual(cancel[0], 1);
+});
+
+test("a worker that fails answers every request with its line", async () => {
+  const { engine, worker, failures } = await started_engine();
+  const asked = [engine.ask({ do: "a" }), engine.ask({ do: "b" })];
+  worker.say({ failed: "no WebAssembly" });
+  for (const { reply } of await Promise.all(asked)) assert.strictEqual(reply.error, "no WebAssembly");
+  assert.deepStrictEqual(failures, ["no WebAssembly"]);
+});
+
+test("of many changes only the newest is drawn", async () => {
+  const { first_state, make_store } = await module_of("state.js");
+  const { make_frames } = await module_of("frames.js");
+  const asked = [];
+  const engine = {
+    ask: (request) => new Promise((done) => asked.push({ request, done })),
+    cancel_background() {}, cancel_running() {},
+  };
+  const store = make_store(first_state());
+  const shown = [];
+  const frames = make_frames({ engine, store, moving: () => false, paint() {}, on_error() {},
+                               on_settled() {},
+                               on_frame: (_, coarse, state) => shown.push(state.time) });
+  const finish = async () => {
+    asked[asked.length - 1].done({ reply: { draw_ms: 1, filter_ms: 1 } });
+    await new Promise(setImmediate);
+  };
+  frames.set_open(true);
+  for (let time = 1; time <= 5; time++) {
+    store.change({ time });
+    frames.want();
+  }
+  await finish();
+  assert.ok(!frames.settled());
+  await finish();
+  assert.deepStrictEqual(shown, [1, 5]);
+  assert.strictEqual(asked.length, 2);
+  assert.ok(frames.settled());
+});
+
+async function main() {
+  let failed = 0;
+  let running = "";
+  // Node ends without a word when nothing is left that a claim could wait for.
+  process.on("exit", (code) => {
+    if (code === 0 && running) {
+      console.log(`FAIL: ${running}: it waits for what never comes`);
+      process.exitCode = 1;
+    }
+  });
+  for (const { claim, run } of tests) {
+    running = claim;
+    try {
+      await run();
+      console.log(`pass: ${claim}`);
+    } catch (error) {
+      failed++;
+      console.log(`FAIL: ${claim}\n${error.stack}`);
+    }
+  }
+  running = "";
+  fs.rmSync(folder, { recursive: true });
+  process.exit(failed ? 1 : 0);
+}
+main();

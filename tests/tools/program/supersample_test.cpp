@@ -1,0 +1,81 @@
+// render --supersample, from end to end.
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "dof/halve.h"
+#include "raster/images/texel.h"
+#include "tests/support/cli_refused.h"
+#include "tools/files/image_file.h"
+
+using namespace softfocus;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+nlohmann::json drawn(const std::string& size, const std::string& output, const Words& more) {
+  Words words{"render", "figures", "--size", size, "-o", output, "--json"};
+  words.insert(words.end(), more.begin(), more.end());
+  const ProgramRun run = run_program(words);
+  REQUIRE(run.status == 0);
+  CHECK(run.err == "");
+  return nlohmann::json::parse(run.out);
+}
+
+double flip(const std::string& a, const std::string& b) {
+  return nlohmann::json::parse(run_program({"compare", a, b, "--json"}).out)["flip"];
+}
+
+}  // namespace
+
+TEST_CASE("render: --supersample 2 halves a picture of twice the size") {
+  const TemporaryDirectory pictures;
+  const std::string ours = pictures.file("ours.npy"), large = pictures.file("large.npy");
+  ThreadPool pool{1};
+  for (const Words& more : {Words{"--autofocus", "20,30"}, Words{"--show", "pinhole"},
+                            Words{"--method", "disc-layers", "--profile", "llvmpipe"}}) {
+    CAPTURE(more.back());
+    Words twice = more;
+    if (more.front() == "--autofocus") twice = {"--autofocus", "41,61", "--max-coc", "10"};
+    Words once = more;
+    once.insert(once.end(), {"--supersample", "2"});
+    if (more.front() == "--autofocus") once.insert(once.end(), {"--max-coc", "5"});
+    const auto report = drawn("64x48", ours, once);
+    CHECK(report["supersample"] == 2);
+    if (more.front() == "--autofocus") CHECK(report["lens"]["max_coc_px"] == 5.0);
+    drawn("128x96", large, twice);
+    const Profile profile = more.back() == "llvmpipe" ? *find_profile("llvmpipe") : Profile{};
+    CHECK(hash_image(read_image_file(ours).image) ==
+          hash_image(halve(read_image_file(large).image, profile, pool)));
+  }
+}
+
+TEST_CASE("render: edges in focus are nearer to those of views from all over a pixel") {
+  const TemporaryDirectory pictures;
+  const std::string truth = pictures.file("truth.npy"), ours = pictures.file("ours.npy");
+  const Words lens{"--coc-scale", "0"};
+  Words with{"--method", "accumulation", "--samples", "256", "--jitter"};
+  with.insert(with.end(), lens.begin(), lens.end());
+  drawn("96x96", truth, with);
+  drawn("96x96", ours, lens);
+  const double jagged = flip(ours, truth);
+  drawn("96x96", ours, {"--coc-scale", "0", "--supersample", "2"});
+  CHECK(flip(ours, truth) < 0.6 * jagged);
+}
+
+TEST_CASE("render: --supersample refuses what has no place in it") {
+  const TemporaryDirectory pictures;
+  const auto refused = [&](Words more, const Words& named) {
+    more.insert(more.begin(), {"render", "figures", "-o", pictures.file("a.npy"), "--supersample"});
+    check_refused(pictures, more, 2, named);
+  };
+  refused({"3"}, {"--supersample '3'", "1 or 2"});
+  refused({"2", "--method", "accumulation"}, {"--supersample", "accumulation", "--jitter"});
+  refused({"2", "--method", "auto"}, {"--supersample", "auto", "name a method"});
+  refused({"2", "--show", "pinhole", "--layers", "2"}, {"--supersample", "--layers"});
+  refused({"2", "--show", "coc"}, {"--supersample", "--show image or pinhole"});
+  refused({"2", "--size", "16384x16384"}, {"--supersample", "32768x32768", "--size"});
+  refused({"2", "--max-coc", "1000"}, {"--supersample", "512"});
+}

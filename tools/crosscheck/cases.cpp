@@ -1,0 +1,18 @@
+#include "tools/crosscheck/cases.h"
+
+#include "tools/gl/api.h"
+
+namespace softfocus {
+
+std::vector<Case> crosscheck_cases() {
+  std::vector<Case> cases;
+  add_store_cases(cases);
+  add_texture_cases(cases);
+  add_triangle_cases(cases);
+  add_scene_cases(cases);
+  if (!kIsWebGl) add_peel_cases(cases);  // not tried there
+  add_filter_cases(cases);
+  return cases;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,80 @@
+// start, about, scenes: what the page runs on, and what there is to show.
+
+#include <algorithm>
+
+#include "scenes/load/load_scene.h"
+#include "tools/page/requests.h"
+
+namespace softfocus {
+namespace {
+
+#ifdef __wasm_simd128__
+constexpr bool kSimd = true;
+#else
+constexpr bool kSimd = SOFTFOCUS_HAS_AVX != 0;
+#endif
+
+constexpr int kMostThreads = 64;
+
+Json cases_json() {
+  Json cases = Json::array();
+  for (const StressCase& known : stress_cases()) {
+    Json values = Json::array();
+    for (const double severity : known.severities) values.push_back(severity);
+    cases.push_back({{"name", known.name},
+                     {"title", known.title},
+                     {"sentence", known.must_hold},
+                     {"parameter", known.parameter.name},
+                     {"unit", known.parameter.unit},
+                     {"values", values},
+                     {"telling", known.telling}});
+  }
+  return cases;
+}
+
+Json methods_json() {
+  Json list = Json::array();
+  for (const Method& method : methods()) {
+    list.push_back({{"name", method.name}, {"summary", method.summary}, {"kind", "filter"}});
+  }
+  for (const LensViewMethod& method : lens_view_methods()) {
+    if (!method.missing.empty()) continue;
+    list.push_back({{"name", method.name}, {"summary", method.summary}, {"kind", "views"}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Json answer_start(Page& page, const Json& request) {
+  int threads = hardware_threads();
+  Isa isa = widest_isa();
+  if (const Json* number = request.find("threads")) {
+    threads = static_cast<int>(checked_number(*number, "threads", 1, kMostThreads));
+  }
+  if (const Json* name = request.find("isa")) isa = find_isa(name->text()).value_or(isa);
+  page.pool.reset();
+  page.gpu_scene.reset();
+  page.pool = std::make_unique<ThreadPool>(threads, isa);
+  page.prepared.reset();
+  page.truth.reset();
+  return {{"threads", page.pool->threads()}, {"isa", isa_name(isa)}};
+}
+
+Json answer_about(Page& page, const Json& /*request*/) {
+  return {{"version", SOFTFOCUS_VERSION},
+          {"isa", isa_name(page.pool->isa())},
+          {"threads", page.pool->threads()},
+          {"simd", kSimd},
+          {"hashes", expected_hashes().size()}};
+}
+
+Json answer_scenes(Page& /*page*/, const Json& /*request*/) {
+  Json scenes = Json::array();
+  for (const SceneListing& scene : list_scenes(scene_search_path({}))) {
+    scenes.push_back({{"name", scene.name}, {"title", scene.title}});
+  }
+  return {{"scenes", scenes}, {"cases", cases_json()}, {"methods", methods_json()}};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,118 @@
+// frame and pixel: the picture, and what it is at a place.
+
+#include <cmath>
+
+#include "dof/circle_sizes.h"
+#include "dof/show.h"
+#include "raster/images/texel.h"
+#include "tools/cli/errors.h"
+#include "tools/page/drawing.h"
+#include "tools/page/requests.h"
+#include "tools/page/screen.h"
+
+namespace softfocus {
+namespace {
+
+Image filtered(const Page& page, const Drawn& drawn, const FrameSettings& settings,
+               const FrameLens& lens) {
+  ThreadPool& pool = *page.pool;
+  if (settings.method.of_scene != nullptr) {
+    if (drawn.scene == nullptr) {
+      throw UsageError("this case is made as a picture: methods that draw the scene have none");
+    }
+    LensViewInput input =
+        lens_view_input(drawn, lens.lens.focus_m, lens.aperture_m, settings.sampling);
+    input.progress = [&page](int) { stop_if_cancelled(page); };
+    return settings.method.of_scene->render(input, pool).picture;
+  }
+  return filtered_picture(drawn, *settings.method.filter, lens.settings, pool);
+}
+
+Image wanted_picture(const Page& page, const Drawn& drawn, const FrameSettings& settings,
+                     const std::optional<FrameLens>& lens) {
+  switch (settings.show) {
+    case Show::image: return filtered(page, drawn, settings, *lens);
+    case Show::pinhole: return drawn.picture;
+    case Show::coc: return show_coc(drawn.picture, lens->settings.coc, lens->settings.max_coc_px);
+    case Show::depth:
+      return show_depth(drawn.picture, static_cast<float>(drawn.camera.near_m),
+                        static_cast<float>(drawn.camera.far_m));
+  }
+  return drawn.picture;
+}
+
+/// The lens in the numbers of the thesis's equations; dof/lens.h has them.
+void add_lens_figures(Json& reply, const FrameLens& used, const Drawn& drawn, ThreadPool& pool) {
+  const ThinLens& lens = used.lens;
+  const double film_mm = film_height_mm(lens, drawn.camera.fov_y_degrees);
+  const double sharp_mm = film_mm / drawn.picture.height;
+  const SharpRange sharp = sharp_range(lens, sharp_mm);
+  const CircleSizes sizes =
+      circle_sizes(drawn.picture, used.settings.coc, used.settings.max_coc_px, pool);
+  reply["focus_m"] = lens.focus_m;
+  reply["focal_length_mm"] = lens.focal_length_mm;
+  reply["f_number"] = lens.f_number;
+  reply["coc_scale"] = used.coc_scale;
+  reply["aperture_mm"] = aperture_mm(lens);
+  reply["image_distance_mm"] = image_distance_mm(lens, lens.focus_m);
+  reply["film_height_mm"] = film_mm;
+  reply["largest_sharp_coc_mm"] = sharp_mm;
+  reply["near_limit_m"] = sharp.near_m;
+  reply["far_limit_m"] = number_or_null(sharp.far_m);  // null: infinity
+  reply["hyperfocal_m"] = hyperfocal_m(lens, sharp_mm);
+  reply["radius_at_infinity_px"] = used.settings.coc.radius_at_infinity_px;
+  reply["largest_coc_px"] = sizes.largest_px;
+  reply["cut_share"] = sizes.beyond_limit;
+  reply["max_coc_px"] = used.settings.max_coc_px;
+}
+
+}  // namespace
+
+Json answer_frame(Page& page, const Json& request) {
+  const FrameSettings settings = read_frame_settings(request);
+  ShownFrame shown{.drawn = drawn_picture(page, settings),
+                   .settings = settings,
+                   .lens = {},
+                   .picture = {},
+                   .flip = {}};
+  stop_if_cancelled(page);
+  const Drawn& drawn = *shown.drawn;
+  const bool needs_lens = settings.show == Show::image || settings.show == Show::coc;
+  if (needs_lens) shown.lens = frame_lens(*page.opened, drawn, settings, *page.pool);
+  const auto start = std::chrono::steady_clock::now();
+  shown.picture = wanted_picture(page, drawn, settings, shown.lens);
+  shown.filter_ms = milliseconds_since(start);
+  if (settings.hash) shown.hash = hash_image(shown.picture);
+  Json reply{{"width", shown.picture.width},
+             {"height", shown.picture.height},
+             {"hash", settings.hash ? Json(hash_text(shown.hash)) : Json(nullptr)},
+             {"draw_ms", drawn.ms},
+             {"filter_ms", shown.filter_ms}};
+  if (shown.lens) add_lens_figures(reply, *shown.lens, drawn, *page.pool);
+  show_on_screen(shown.picture, page.pixels, *page.pool);
+  page.shown = std::move(shown);
+  return reply;
+}
+
+Json answer_pixel(Page& page, const Json& request) {
+  if (!page.shown) throw UsageError("there is no frame yet; the request 'frame' makes one");
+  const ShownFrame& shown = *page.shown;
+  const Image& picture = shown.drawn->picture;
+  const auto x = static_cast<int>(checked_number(request.at("x"), "x", 0, picture.width - 1));
+  const auto y = static_cast<int>(checked_number(request.at("y"), "y", 0, picture.height - 1));
+  const float depth_m = load_texel<Format::rgba16f>(picture, x, y).w;
+  const glm::vec4 colour = load_texel<Format::rgba16f>(shown.picture, x, y);
+  Json reply{{"depth_m", number_or_null(static_cast<double>(depth_m))},
+             {"coc_radius_px", nullptr},
+             {"coc_on_film_mm", nullptr},
+             {"colour_linear", std::array{colour.x, colour.y, colour.z}}};
+  if (shown.lens) {
+    const auto radius_px = static_cast<double>(coc_radius_px(shown.lens->settings.coc, depth_m));
+    reply["coc_radius_px"] = number_or_null(radius_px);
+    reply["coc_on_film_mm"] =
+        number_or_null(coc_on_film_mm(shown.lens->lens, static_cast<double>(depth_m)));
+  }
+  return reply;
+}
+
+}  // namespace softfocus

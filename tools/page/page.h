@@ -1,0 +1,111 @@
+#pragma once
+// The simulator's page: what it has open, and its requests. A request and its reply are JSON;
+// docs/simulator.md lists them. The same code answers natively, for tests, and as WebAssembly.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raster/threads/parallel.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/lens_views/accumulation.h"
+#include "tools/golden/hashes.h"
+#include "tools/page/settings.h"
+#include "tools/stress/stress_case.h"
+
+namespace softfocus {
+
+/// A scene, or a case of `softfocus stress`, whose pictures depend on their size.
+struct Opened {
+  std::string source;  ///< as `softfocus render` takes it; empty for a case
+  Scene scene;         ///< of a case: empty but for the camera and the lens that stand for it
+  std::optional<StressCase> stress_case;
+  double severity = 0.0;
+};
+
+/// A sharp picture, and what was drawn.
+struct Drawn {
+  FrameSettings settings;
+  Camera camera;
+  CameraMatrices view{};
+  Image picture;                     ///< RGBA16F, depth in alpha
+  std::optional<StressTrial> trial;  ///< of a case; else the scene is the opened one
+  const StressFrame* trial_frame = nullptr;
+  const Scene* scene = nullptr;  ///< null for a case that is made as a picture
+  double ms = 0.0;
+};
+
+/// The lens as a frame used it.
+struct FrameLens {
+  ThinLens lens;
+  double coc_scale = 1.0;
+  double aperture_m = 0.0;  ///< its radius, exaggerated by coc_scale
+  DofSettings settings;
+};
+
+/// How far a picture is from the mean of so many views.
+struct KnownFlip {
+  int samples = 0;
+  double flip = 0.0;
+};
+
+/// The picture that was shown last.
+struct ShownFrame {
+  std::shared_ptr<const Drawn> drawn;
+  FrameSettings settings;
+  std::optional<FrameLens> lens;  ///< none where the picture needs none
+  Image picture;
+  std::uint64_t hash = 0;
+  double filter_ms = 0.0;
+  std::optional<KnownFlip> flip;
+};
+
+/// Views of the lens that are taken step by step, of one frame.
+struct Truth {
+  std::shared_ptr<const Drawn> drawn;
+  double focus_m = 0.0, aperture_m = 0.0;
+  std::optional<AccumulationBuffer> buffer;
+  SampleSums sums, first_half;
+  std::optional<double> half_set_rms;
+};
+
+/// The picture on the screen: RGBA, 8 bits, sRGB, opaque.
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+/// The GPU of the page's machine, and the opened scene on it (gpu.cpp).
+struct Gpu;
+struct GpuScene;
+
+struct Page {
+  std::unique_ptr<ThreadPool> pool = std::make_unique<ThreadPool>(1);
+  std::unique_ptr<Opened> opened;
+  std::optional<PreparedScene> prepared;  ///< of the opened scene
+  /// The last pictures drawn, the latest first: one as shown, one coarser.
+  std::array<std::shared_ptr<const Drawn>, 2> drawn;
+  std::optional<ShownFrame> shown;
+  std::optional<Truth> truth;
+  std::vector<NamedHash> golden;  ///< of the self-test, as far as computed
+  std::size_t golden_parts = 0;   ///< that these are of
+  std::shared_ptr<Gpu> gpu;       ///< once the request 'gl_open' or another gl_* has come
+  std::shared_ptr<GpuScene> gpu_scene;
+  Pixels pixels;
+  /// Set from another thread: the request that runs ends soon. Each request clears it first.
+  std::atomic<std::int32_t> cancel{0};
+};
+
+/// Thrown by a request that sees `cancel`.
+struct Cancelled {};
+void stop_if_cancelled(const Page& page);
+
+/// Answers a request's text with the reply's. Never throws: what is wrong is {"error": ...}, and
+/// then the page is as before.
+std::string answer(Page& page, std::string_view request);
+
+}  // namespace softfocus

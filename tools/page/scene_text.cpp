@@ -1,0 +1,137 @@
+#include "tools/page/scene_text.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <sstream>
+
+#include "scenes/load/file_bytes.h"
+#include "scenes/load/load_scene.h"
+#include "tools/cli/errors.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::size_t kLargestText = std::size_t{1} << 24;
+
+struct KeyLine {
+  std::string key, value;
+};
+
+std::string text_of(double value) { return json_text(value); }
+
+template <class Vector>
+std::string text_of(const Vector& v) {
+  // Floats become the doubles that they are.
+  return json_text(std::vector<double>{static_cast<double>(v.x), static_cast<double>(v.y),
+                                       static_cast<double>(v.z)});
+}
+
+std::vector<KeyLine> camera_lines(const Camera& camera) {
+  return {{"position", text_of(camera.position)},
+          {"target", text_of(camera.target)},
+          {"up", text_of(camera.up)},
+          {"fov_degrees", text_of(camera.fov_y_degrees)},
+          {"near_m", text_of(camera.near_m)},
+          {"far_m", text_of(camera.far_m)}};
+}
+
+std::vector<KeyLine> lens_lines(const FrameLens& used) {
+  return {{"focal_length_mm", text_of(used.lens.focal_length_mm)},
+          {"f_number", text_of(used.lens.f_number)},
+          {"focus_m", text_of(used.lens.focus_m)},
+          {"coc_scale", text_of(used.coc_scale)}};
+}
+
+std::string lines_text(const std::vector<KeyLine>& lines) {
+  std::string text;
+  for (const auto& [key, value] : lines) text.append(key).append(" = ").append(value).append("\n");
+  return text;
+}
+
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text.substr(0, text.find_last_not_of(" \t\r") + 1);
+}
+
+int open_brackets(std::string_view line) {
+  line = line.substr(0, line.find('#'));
+  return static_cast<int>(std::count(line.begin(), line.end(), '[') -
+                          std::count(line.begin(), line.end(), ']'));
+}
+
+/// The text with other values in one of its sections, which is added if it is not there.
+std::string with_section(const std::string& text, const std::string& section,
+                         const std::vector<KeyLine>& values) {
+  const auto is_replaced = [&](std::string_view line) {
+    const std::string_view key = trimmed(line.substr(0, line.find('=')));
+    return line.find('=') != line.npos &&
+           std::any_of(values.begin(), values.end(),
+                       [&](const KeyLine& value) { return value.key == key; });
+  };
+  std::istringstream lines{text};
+  std::string result;
+  bool is_inside = false, is_there = false;
+  int depth = 0;  // of an array over several lines that is left out
+  for (std::string line; std::getline(lines, line);) {
+    const std::string_view words = trimmed(line);
+    if (depth > 0) {
+      depth += open_brackets(words);
+      continue;
+    }
+    if (words.starts_with('[')) is_inside = words.starts_with("[" + section + "]");
+    if (is_inside && is_replaced(words)) {
+      depth = open_brackets(words);
+      continue;
+    }
+    result += line + "\n";
+    if (is_inside && words.starts_with('[')) {
+      result += lines_text(values);
+      is_there = true;
+    }
+  }
+  if (!is_there) result += "\n[" + section + "]\n" + lines_text(values);
+  return result;
+}
+
+std::string light_text(const Light& light) {
+  const bool is_point = light.kind == LightKind::point;
+  return "\n[[light]]\n" +
+         lines_text({{"kind", is_point ? R"("point")" : R"("directional")"},
+                     {is_point ? "position" : "direction", text_of(light.position_or_direction)},
+                     {"colour", text_of(light.colour)}});
+}
+
+std::string model_text(const Opened& opened) {
+  const Scene& scene = opened.scene;
+  const std::string name = std::filesystem::path{opened.source}.filename().string();
+  std::string text = lines_text({{"title", json_text(scene.title)},
+                                 {"background", text_of(scene.background)},
+                                 {"ambient_light", text_of(scene.ambient_light)}});
+  for (const Light& light : scene.lights) text += light_text(light);
+  return text + "\n[[object]]\n" + lines_text({{"shape", R"("model")"}, {"file", json_text(name)}});
+}
+
+bool is_model(const std::string& source) {
+  std::string extension = std::filesystem::path{source}.extension().string();
+  for (char& letter : extension) letter = letter >= 'A' && letter <= 'Z' ? letter + 32 : letter;
+  return extension == ".obj";
+}
+
+}  // namespace
+
+std::string scene_text(const Opened& opened, const ShownFrame& shown) {
+  if (opened.stress_case) {
+    throw UsageError("a case has no scene's file: its pictures are made for their size");
+  }
+  if (is_random_scene(opened.source)) {
+    throw UsageError(opened.source + " has no file: its number is all there is to it");
+  }
+  std::string text = is_model(opened.source)
+                         ? model_text(opened)
+                         : read_file_bytes(opened.scene.files.back(), kLargestText);
+  text = with_section(text, "camera", camera_lines(shown.drawn->camera));
+  return shown.lens ? with_section(text, "lens", lens_lines(*shown.lens)) : text;
+}
+
+}  // namespace softfocus

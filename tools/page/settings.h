@@ -1,0 +1,51 @@
+#pragma once
+// What a `frame` request asks for.
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "scenes/lens_views/lens_view_method.h"
+#include "scenes/scene.h"
+#include "tools/cli/option_values.h"
+#include "tools/files/json.h"
+#include "tools/options/lens_options.h"
+#include "tools/options/method_options.h"
+#include "tools/render/options.h"
+
+namespace softfocus {
+
+/// A camera in place of the scene's.
+struct CameraChoice {
+  glm::dvec3 position, target;
+  double fov_y_degrees;
+
+  bool operator==(const CameraChoice&) const = default;
+};
+
+struct FrameSettings {
+  PictureSize size{512, 512};  ///< of the picture that is drawn: already divided by `preview`
+  int preview = 1;             ///< what sizes and radii were divided by
+  double frame = 0.0;          ///< time of the animation
+  std::optional<CameraChoice> camera;
+  Show show = Show::image;
+  MethodChoice method{.filter = find_method("two-pass")};
+  LensOptions lens;
+  std::optional<glm::dvec2> focus_at;  ///< 0 to 1 from the left and from the top
+  std::optional<float> max_coc_px;
+  Sampling sampling{.samples = 64};
+  bool hash = true;  ///< whether the picture's hash is wanted: it takes longer than to show it
+};
+
+/// Throws UsageError or JsonError, each with one line that names the key. Unknown keys are
+/// ignored.
+FrameSettings read_frame_settings(const Json& request);
+
+/// The scene's camera, or that camera in its place. Throws UsageError if nothing can be seen
+/// through it.
+Camera chosen_camera(const Camera& of_scene, const std::optional<CameraChoice>& choice);
+
+/// A number from `least` to `most`: UsageError.
+double checked_number(const Json& value, std::string_view name, double least, double most);
+
+}  // namespace softfocus

@@ -1,0 +1,163 @@
+// truth and compare_methods: the picture that the lens itself makes, view by view, and how far
+// methods are from it.
+
+#include <algorithm>
+#include <bit>
+
+#include "dof/measure/flip.h"
+#include "dof/measure/heat_map.h"
+#include "tools/cli/errors.h"
+#include "tools/page/drawing.h"
+#include "tools/page/requests.h"
+#include "tools/page/screen.h"
+
+namespace softfocus {
+namespace {
+
+constexpr int kMostTruthViews = 4096;
+/// Half-sets of fewer views can agree by chance, as in take_samples.h.
+constexpr int kFirstComparison = 16;
+/// Half-sets that differ by less look the same: below half a level of 8 bits.
+constexpr double kGoodEnough = 0.002;
+
+const ShownFrame& last_frame(const Page& page) {
+  if (!page.shown || !page.shown->lens) {
+    throw UsageError("there is no frame with a lens yet; the request 'frame' makes one");
+  }
+  return *page.shown;
+}
+
+/// A case that has its answer written down needs no views.
+const Image* known_truth(const Drawn& drawn) {
+  const StressFrame* frame = drawn.trial_frame;
+  return frame != nullptr && frame->truth.width > 0 ? &frame->truth : nullptr;
+}
+
+bool is_of(const Truth& truth, const ShownFrame& shown) {
+  return truth.drawn == shown.drawn && truth.focus_m == shown.lens->lens.focus_m &&
+         truth.aperture_m == shown.lens->aperture_m;
+}
+
+Truth begin_truth(const ShownFrame& shown, ThreadPool& pool) {
+  const Drawn& drawn = *shown.drawn;
+  Truth truth;
+  truth.drawn = shown.drawn;
+  truth.focus_m = shown.lens->lens.focus_m;
+  truth.aperture_m = shown.lens->aperture_m;
+  truth.buffer = make_accumulation_buffer(
+      lens_view_input(drawn, truth.focus_m, truth.aperture_m, {.samples = kMostTruthViews}), pool);
+  truth.sums = make_sample_sums(drawn.picture.width, drawn.picture.height);
+  return truth;
+}
+
+/// In the steps of take_samples.h, so that the sums have the bits of `--method accumulation
+/// --until`.
+void add_views(const Page& page, Truth& truth, int views) {
+  const LensViewInput input =
+      lens_view_input(*truth.drawn, truth.focus_m, truth.aperture_m, {.samples = kMostTruthViews});
+  const int wanted = std::min(truth.sums.count + views, kMostTruthViews);
+  while (truth.sums.count < wanted) {
+    stop_if_cancelled(page);
+    const int begin = truth.sums.count;
+    const int step = begin < kFirstComparison ? kSampleGroup : kLensViewGroup;
+    add_lens_views(*truth.buffer, input, begin, begin + step, truth.sums, *page.pool);
+    if (!std::has_single_bit(static_cast<unsigned>(truth.sums.count))) continue;
+    if (truth.sums.count >= kFirstComparison) {
+      truth.half_set_rms = half_set_rms(truth.first_half, truth.sums, *page.pool);
+    }
+    truth.first_half = truth.sums;
+  }
+}
+
+Image mean_of(const Truth& truth, ThreadPool& pool) {
+  return mean_picture(truth.sums, truth.drawn->picture, Profile{}, pool);
+}
+
+/// The truth of the last frame as far as it has come. Throws UsageError if there is none yet.
+Image found_truth(const Page& page, const ShownFrame& shown) {
+  if (const Image* known = known_truth(*shown.drawn)) return *known;
+  if (!page.truth || !is_of(*page.truth, shown) || page.truth->sums.count == 0) {
+    throw UsageError("the truth of this frame has no views yet; give 'views'");
+  }
+  return mean_of(*page.truth, *page.pool);
+}
+
+void show_truth(Page& page, const std::string& what, const Image& truth, const Image& picture) {
+  if (what == "truth") {
+    show_on_screen(truth, page.pixels, *page.pool);
+  } else if (what == "error") {
+    const PixelMap map = flip_map(truth, picture, clamped_tone(), *page.pool);
+    show_on_screen(heat_picture(map), page.pixels, *page.pool);
+  } else {
+    throw UsageError("show '" + what + "': there are truth, error");
+  }
+}
+
+/// FLIP takes as long as a few views: a kept value does until there are a quarter more of them.
+double flip_of_shown(ShownFrame& shown, const Image& truth, int samples, bool done,
+                     ThreadPool& pool) {
+  std::optional<KnownFlip>& known = shown.flip;
+  const bool is_new = !known || known->samples > samples || (done && known->samples < samples) ||
+                      4 * samples > 5 * known->samples;
+  if (is_new) known = {samples, mean_flip(truth, shown.picture, pool)};
+  return known->flip;
+}
+
+}  // namespace
+
+Json answer_truth(Page& page, const Json& request) {
+  const ShownFrame& shown = last_frame(page);
+  const Drawn& drawn = *shown.drawn;
+  const bool is_known = known_truth(drawn) != nullptr;
+  if (const Json* views = request.find("views"); views != nullptr && !is_known) {
+    const auto count = static_cast<int>(checked_number(*views, "views", 1, kMostTruthViews));
+    if (drawn.scene == nullptr) throw UsageError("this case has no scene to look at");
+    if (!page.truth || !is_of(*page.truth, shown)) page.truth = begin_truth(shown, *page.pool);
+    add_views(page, *page.truth, count);
+  }
+  const Image truth = found_truth(page, shown);
+  const int samples = is_known ? 0 : page.truth->sums.count;
+  const std::optional<double> rms = is_known ? 0.0 : page.truth->half_set_rms;
+  const bool done = samples >= kMostTruthViews || (rms && *rms <= kGoodEnough);
+  Json reply{{"samples", samples},
+             {"half_set_rms", rms ? Json(*rms) : Json(nullptr)},
+             {"flip_mean", flip_of_shown(*page.shown, truth, samples, done, *page.pool)},
+             {"done", done}};
+  if (const Json* hash = request.find("hash"); hash != nullptr && hash->boolean()) {
+    reply["hash"] = hash_text(hash_image(truth));
+  }
+  if (const Json* show = request.find("show")) {
+    show_truth(page, show->text(), truth, shown.picture);
+    reply["width"] = truth.width;
+    reply["height"] = truth.height;
+  }
+  return reply;
+}
+
+Json answer_compare_methods(Page& page, const Json& request) {
+  const ShownFrame& shown = last_frame(page);
+  const Image truth = found_truth(page, shown);
+  Json results = Json::array();
+  for (const Json& name : request.at("methods").values()) {
+    const Method* method = find_method(name.text());
+    if (method == nullptr) {
+      throw UsageError("method '" + name.text() + "': there are " + names_of(methods()));
+    }
+    for (const Json& radius : request.at("radii").values()) {
+      stop_if_cancelled(page);
+      DofSettings settings = shown.lens->settings;
+      settings.max_coc_px = static_cast<float>(
+          checked_number(radius, "radii", 0.0, static_cast<double>(kLargestMaxCoc)));
+      const auto start = std::chrono::steady_clock::now();
+      const Image picture = filtered_picture(*shown.drawn, *method, settings, *page.pool);
+      const double ms = milliseconds_since(start);
+      results.push_back({{"method", method->name},
+                         {"radius", settings.max_coc_px},
+                         {"ms", ms},
+                         {"flip_mean", mean_flip(truth, picture, *page.pool)}});
+    }
+  }
+  return {{"results", results}};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,166 @@
+// The panel's controls: each shows a part of the state and changes it.
+
+import { by_id, element } from "./dom.js";
+import { make_number } from "./numbers.js";
+import { kSensors, kStops, locked_fov_degrees, nearest_stop } from "./photographer.js";
+import { kSizes } from "./state.js";
+
+const kSampled = ["accumulation", "filtered-views", "ray-traced"];
+
+function checked_of(name) {
+  return document.querySelector(`input[name="${name}"]:checked`)?.value;
+}
+
+function check(name, value) {
+  for (const input of document.querySelectorAll(`input[name="${name}"]`)) {
+    input.checked = input.value === value;
+  }
+}
+
+/**
+ * `camera()` is the camera in use or null, `move(camera)` sets another; `focus_m()` is the distance
+ * in focus and `max_coc()` the largest circle, as the last frame told them where the state leaves
+ * them open; `object_m()` the diagram's object.
+ */
+export function make_controls({ store, camera, move, focus_m, max_coc, object_m }) {
+  let methods = [];
+  const side = (patch) => store.change_side(patch);
+  const number = (name, control) => make_number(by_id(`${name}-part`), { id: name, ...control });
+
+  const numbers = {
+    "focal-length": number("focal-length", {
+      label: "Focal length", unit: "mm", key: "L", tip: "focal_length", curve: "log",
+      from: 8, to: 600, min: 0.1, max: 1e5, get: () => store.side().focal_length_mm,
+      set: (value) => side({ focal_length_mm: value }),
+    }),
+    "f-number": number("f-number", {
+      label: "f-number", key: "N", tip: "aperture", curve: "log", from: 0.7, to: 64, min: 0.01,
+      max: 1e5, digits: 2, get: () => store.side().f_number,
+      set: (value) => side({ f_number: value }),
+    }),
+    focus: number("focus", {
+      label: "Focus distance", unit: "m", key: "F", tip: "focus", curve: "log", from: 0.1, to: 100,
+      min: 0.001, max: 1e6, get: focus_m, set: (value) => side({ focus: { m: value } }),
+      shown_digits: () => (store.side().focus.at ? 4 : 5),
+    }),
+    "max-coc": number("max-coc", {
+      label: "Filter size", unit: "px", key: "X", tip: "max_coc", curve: "root", from: 0, to: 128,
+      min: 0, max: 1024, digits: 2, get: max_coc, shown_digits: () => 4,
+      set: (value) => side({ max_coc_px: value }),
+    }),
+    "coc-scale": number("coc-scale", {
+      label: "Scale of the circles", unit: "×", key: "K", tip: "coc_scale", curve: "root", from: 0,
+      to: 10, min: 0, max: 1000, digits: 2, get: () => store.side().coc_scale,
+      set: (value) => side({ coc_scale: value }),
+    }),
+    samples: number("samples", {
+      label: "Points of the lens", tip: "samples", values: [1, 4, 16, 64, 256, 1024, 4096], min: 1,
+      max: 4096, get: () => store.side().samples,
+      set: (value) => side({ samples: Math.round(value) }),
+    }),
+    fov: number("fov", {
+      label: "Field of view", unit: "°", tip: "field_of_view", from: 5, to: 120, min: 1, max: 170,
+      get: () => camera()?.fov_y_degrees, shown_digits: () => 4,
+      set: (value) => {
+        const now = camera();
+        if (now) move({ ...now, fov_y_degrees: value });
+      },
+    }),
+    object: number("object", {
+      label: "Object", unit: "m", tip: "object", curve: "log", from: 0.1, to: 1000, min: 0.001,
+      max: 1e6, get: object_m, set: (value) => store.change({ object_m: value }),
+    }),
+  };
+
+  by_id("sensor").append(...kSensors.map(([name, words]) => element("option", { value: name }, words)));
+  by_id("stop").append(...kStops.map((stop) => element("option", { value: stop }, `f/${stop}`)));
+
+  const on_change = (id, take) => by_id(id).addEventListener("change", (event) => take(event.target));
+  on_change("dof", ({ checked }) => side({ dof: checked }));
+  on_change("method", ({ value }) => side({ method: value }));
+  on_change("compare", ({ checked }) => compare(checked));
+  on_change("photo", ({ checked }) => photo({ on: checked }));
+  on_change("sensor", ({ value }) => photo({ sensor: value }));
+  on_change("lock", ({ checked }) => photo({ lock: checked }));
+  on_change("stop", ({ value }) => side({ f_number: Number(value) }));
+  on_change("size", () => store.change({ size: checked_of("size").split("x").map(Number) }));
+  on_change("show", () => store.change({ show: checked_of("show") }));
+  on_change("side-part", () => store.change({ editing: Number(checked_of("editing")) }));
+  by_id("focus-centre").addEventListener("click", () => side({ focus: { at: [0.5, 0.5] } }));
+
+  function photo(patch) {
+    const next = { ...store.get().photo, ...patch };
+    store.change({ photo: next });
+    if (patch.on && next.on) side({ f_number: nearest_stop(store.side().f_number) });
+  }
+
+  /** B begins as a copy of A, so that one change shows alone. */
+  function compare(on) {
+    const { sides } = store.get();
+    const next = on ? [sides[0], sides[1] ?? { ...sides[0] }] : [sides[0]];
+    store.change({ sides: next, editing: on ? 1 : 0 });
+  }
+
+  const is_centre = ({ at }) => Boolean(at) && at[0] === 0.5 && at[1] === 0.5;
+
+  function focus_words(focus) {
+    if (!focus.at) return "or click in the picture";
+    return `follows the ${is_centre(focus) ? "centre" : "clicked place"}`;
+  }
+
+  function update() {
+    const state = store.get();
+    const now = store.side();
+    by_id("dof").checked = now.dof;
+    by_id("method").value = now.method;
+    const method = methods.find(({ name }) => name === now.method);
+    by_id("method-summary").textContent = method?.summary ?? "";
+    by_id("samples-part").hidden = !kSampled.includes(now.method);
+    by_id("compare").checked = state.sides.length > 1;
+    by_id("side-part").hidden = state.sides.length < 2;
+    check("editing", String(state.editing));
+    by_id("photo").checked = state.photo.on;
+    by_id("photo-part").hidden = !state.photo.on;
+    by_id("f-number-part").hidden = state.photo.on;
+    by_id("sensor").value = state.photo.sensor;
+    by_id("lock").checked = state.photo.lock;
+    by_id("stop").value = String(nearest_stop(now.f_number));
+    check("size", state.size.join("x"));
+    check("show", state.show);
+    const locked = locked_fov_degrees(state, { ...now, focus_m: focus_m() }) !== null;
+    for (const input of by_id("fov-part").querySelectorAll("input")) {
+      input.disabled = locked || !camera();
+    }
+    by_id("focus-centre").setAttribute("aria-pressed", String(is_centre(now.focus)));
+    by_id("focus-how").textContent = focus_words(now.focus);
+    for (const name of Object.keys(numbers)) numbers[name].update();
+  }
+
+  return {
+    update,
+    compare,
+    nudge(name, steps) {
+      if (name !== "f-number" || !store.get().photo.on) {
+        numbers[name].nudge(steps);
+        return;
+      }
+      const at = kStops.indexOf(nearest_stop(store.side().f_number));
+      side({ f_number: kStops[Math.min(kStops.length - 1, Math.max(0, at + steps))] });
+    },
+    next_size() {
+      const at = kSizes.findIndex((size) => size.join() === store.get().size.join());
+      store.change({ size: kSizes[(at + 1) % kSizes.length] });
+    },
+    set_methods(list) {
+      methods = list;
+      const group = (label, kind) => {
+        const options = list.filter((method) => method.kind === kind)
+            .map(({ name, summary }) => element("option", { value: name, title: summary }, name));
+        return element("optgroup", { label }, ...options);
+      };
+      by_id("method").replaceChildren(group("Filters of the picture", "filter"),
+                                      group("From the scene", "views"));
+      update();
+    },
+  };
+}

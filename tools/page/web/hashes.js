@@ -1,0 +1,135 @@
+// The frame's hash, the command and the file that give the same bits, and all golden hashes
+// against the table that every machine must match.
+
+import { announce, by_id, copy_text, element, save_text, show_error } from "./dom.js";
+import { kBackground } from "./engine.js";
+
+const kSlice = 8;  // golden hashes a request
+
+/** Whether only a scene's file can say what the command line cannot: a camera, a model of one's own. */
+function needs_file(state) {
+  return Boolean(state.camera) || state.scene.startsWith("/own/");
+}
+
+function lens_words(state, side) {
+  const pixel = side.focus.at?.map((part, axis) => Math.min(
+      state.size[axis] - 1, Math.floor(part * state.size[axis])));
+  return [pixel ? `--autofocus ${pixel.join(",")}` : `--focus ${side.focus.m}`,
+          `--focal-length ${side.focal_length_mm}`, `--f-number ${side.f_number}`,
+          `--coc-scale ${side.coc_scale}`];
+}
+
+/** The command whose --json tells the same picture_hash, or null if there is none. */
+export function command_of(state, side) {
+  if (state.failure || (state.camera && state.scene.startsWith("random:"))) return null;
+  const show = state.show === "coc" || state.show === "depth" ? state.show
+      : side.dof ? "image" : "pinhole";
+  const file = needs_file(state);
+  const words = ["softfocus render", file ? "scene.toml" : state.scene, "-o picture.png --json",
+                 `--size ${state.size.join("x")}`];
+  if (state.time !== 0) words.push(`--frame ${state.time}`);
+  if (show !== "image") words.push(`--show ${show}`);
+  if (show === "image") words.push(`--method ${side.method}`);
+  if (show === "image" || show === "coc") {
+    if (!file) words.push(...lens_words(state, side));
+    const sampled = show === "image" && ["accumulation", "ray-traced"].includes(side.method);
+    const splats = show === "image" && side.method === "surface-splatting";
+    if (side.max_coc_px !== null && !sampled && !splats) words.push(`--max-coc ${side.max_coc_px}`);
+    if (sampled) words.push(`--samples ${side.samples}`);
+  }
+  return words.join(" ");
+}
+
+function command_note(state, command) {
+  if (state.failure) return "No command draws a case alone; softfocus stress draws them all.";
+  if (!command) return "No command has the moved camera of a random scene.";
+  if (!needs_file(state)) return "This command’s picture_hash is the same.";
+  return "This command’s picture_hash is the same, with the scene’s file that is saved here" +
+         (state.scene.startsWith("/own/") ? ", beside your own files." : ".");
+}
+
+export function show_hash(reply, state, side) {
+  const command = reply.hash ? command_of(state, side) : null;
+  by_id("hash").textContent = reply.hash ?? "–";
+  by_id("hash-full").textContent = reply.hash ?? "–";
+  by_id("command").textContent = command ?? "";
+  by_id("command-note").textContent = reply.hash ? command_note(state, command)
+                                                 : "A moving or coarse picture has no hash.";
+  by_id("copy-command").disabled = !command;
+  by_id("save-scene").disabled = Boolean(state.failure) || state.scene.startsWith("random:");
+}
+
+async function save_scene(engine) {
+  const { reply } = await engine.ask({ do: "file", name: "scene.toml" });
+  if (reply.error) show_error(reply.error);
+  else save_text("scene.toml", reply.text, "application/toml");
+}
+
+export function start_hashes({ engine }) {
+  const button = by_id("selftest");
+  const progress = by_id("selftest-progress");
+  const state = by_id("selftest-state");
+  const table = by_id("selftest-table");
+  let running = false;
+
+  function row_of({ name, hash, wanted }) {
+    return element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, hash),
+                   element("td", {}, wanted ?? "none"));
+  }
+
+  async function compare() {
+    running = true;
+    button.textContent = "Stop";
+    progress.hidden = false;
+    table.hidden = true;
+    const body = element("tbody");
+    const head = ["Hash of", "here", "wanted"].map((word) => element("th", { scope: "col" }, word));
+    table.replaceChildren(element("thead", {}, element("tr", {}, ...head)), body);
+    let first = 0;
+    let total = 1;
+    let differing = 0;
+    while (running && first < total) {
+      const { reply } = await engine.ask({ do: "selftest", first, count: kSlice }, kBackground);
+      if (reply.cancelled) continue;
+      if (reply.error) {
+        state.textContent = reply.error;
+        break;
+      }
+      if (reply.results.length === 0) break;
+      total = reply.total;
+      first += reply.results.length;
+      for (const result of reply.results) {
+        if (result.equal) continue;
+        differing++;
+        table.hidden = false;
+        body.append(row_of(result));
+      }
+      progress.value = first / total;
+      state.textContent = `${first} of ${total}, ${differing === 0 ? "all equal so far"
+                                                                  : `${differing} differ`}`;
+    }
+    if (running && first === total) {
+      state.textContent = differing === 0 ? `All ${total} hashes are equal to the native ones.`
+                                          : `${differing} of ${total} hashes differ.`;
+    }
+    announce(state.textContent);
+    running = false;
+    progress.hidden = true;
+    button.textContent = "Compare all golden hashes";
+  }
+
+  by_id("save-scene").addEventListener("click", () => save_scene(engine));
+  button.addEventListener("click", () => {
+    if (running) running = false;
+    else compare();
+  });
+  by_id("copy-command").addEventListener("click", async () => {
+    const copied = await copy_text(by_id("command").textContent);
+    announce(copied ? "The command is copied." : "The browser does not allow copying.");
+    if (copied) {
+      const word = by_id("copy-command");
+      word.textContent = "Copied";
+      setTimeout(() => { word.textContent = "Command"; }, 1500);
+    }
+  });
+}

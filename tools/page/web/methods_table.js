@@ -1,0 +1,104 @@
+// The table of methods and radii: time and error of each, one measurement after the other.
+
+import { announce, by_id, element } from "./dom.js";
+import { kBackground } from "./engine.js";
+import { ms_text } from "./units.js";
+
+/** Radii from a line of text, at most six; empty if it says none. */
+export function read_radii(text) {
+  const radii = text.split(/[\s,;]+/).map(Number).filter((x) => x > 0 && x <= 1024);
+  return [...new Set(radii)].sort((a, b) => a - b).slice(0, 6);
+}
+
+/** `choose(method, radius)` is called for a pressed cell. */
+export function make_methods_table({ engine, methods, truth, choose, settled }) {
+  const table = by_id("methods-table");
+  const button = by_id("measure");
+  const state = by_id("measure-state");
+  const results = new Map();  // "method radius" -> reply
+  let radii = [];
+  let run = 0;  // the number of the run; another number stops an older one
+
+  function cells_of(name, radius) {
+    const result = results.get(`${name} ${radius}`);
+    if (!result) return [element("td", {}, "–"), element("td", {}, "–")];
+    if (result.error) return [element("td", { colspan: 2, title: result.error }, "not here")];
+    const best = Math.min(...[...results.values()].map((x) => x.flip_mean ?? Infinity));
+    const press = element("button", { type: "button", class: "cell",
+                                      "aria-label": `Use ${name} with radius ${radius}` },
+                          result.flip_mean.toFixed(3));
+    press.addEventListener("click", () => choose(name, radius));
+    const error = element("td", result.flip_mean <= best ? { class: "best" } : {}, press);
+    error.style.setProperty("--part", `${Math.min(100, 300 * result.flip_mean)}%`);
+    return [element("td", {}, ms_text(result.ms)), error];
+  }
+
+  function draw() {
+    const head = element("tr", {}, element("th", { scope: "col", rowspan: 2 }, "Method"));
+    const units = element("tr");
+    for (const radius of radii) {
+      head.append(element("th", { scope: "colgroup", colspan: 2 }, `${radius} px`));
+      units.append(element("th", { scope: "col" }, "ms"), element("th", { scope: "col" }, "FLIP"));
+    }
+    const body = element("tbody");
+    for (const { name, summary } of methods) {
+      const row = element("tr", {}, element("th", { scope: "row", title: summary }, name));
+      for (const radius of radii) row.append(...cells_of(name, radius));
+      body.append(row);
+    }
+    table.replaceChildren(element("thead", {}, head, units), body);
+  }
+
+  function stop(words) {
+    run++;
+    button.textContent = "Measure all methods";
+    state.textContent = words;
+    announce(words);
+  }
+
+  async function measure() {
+    const mine = ++run;
+    radii = read_radii(by_id("radii").value);
+    if (radii.length === 0) return stop("give radii from 1 to 1024, such as 8 16 32");
+    by_id("radii").value = radii.join(" ");
+    results.clear();
+    draw();
+    button.textContent = "Stop";
+    state.textContent = "collecting the truth…";
+    truth.want(true);
+    await truth.when_done();
+    const total = methods.length * radii.length;
+    for (const { name } of methods) {
+      for (const radius of radii) {
+        let reply = { cancelled: true };
+        // A frame cancels what runs in the background: it is asked again.
+        while (reply.cancelled && mine === run) {
+          const answer = await engine.ask({ do: "compare_methods", methods: [name],
+                                            radii: [radius] }, kBackground);
+          reply = answer.reply.results?.[0] ?? answer.reply;
+        }
+        if (mine !== run) return undefined;
+        results.set(`${name} ${radius}`, reply);
+        state.textContent = `${results.size} of ${total}`;
+        draw();
+      }
+    }
+    return stop(`${total} measured`);
+  }
+
+  button.addEventListener("click", () => {
+    if (button.textContent === "Stop") stop("stopped");
+    else if (settled()) measure();
+    else state.textContent = "wait for the whole picture";
+  });
+  radii = read_radii(by_id("radii").value);
+  draw();
+
+  return {
+    /** The measured picture is not shown any more. */
+    renew() {
+      if (button.textContent === "Stop") stop("stopped: the picture has changed");
+      else if (results.size > 0) state.textContent = "of an earlier picture";
+    },
+  };
+}

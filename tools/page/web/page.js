@@ -1,0 +1,475 @@
+// The page: starts everything and joins it. The state (state.js) is the one truth; controls,
+// pointer and link change it, and everything shown follows from it and from the last frame.
+
+import { make_cases } from "./cases.js";
+import { start_compare_view } from "./compare_view.js";
+import { make_controls } from "./controls.js";
+import { announce, by_id, copy_text, element, show_error } from "./dom.js";
+import { kAsked, start_engine } from "./engine.js";
+import { make_frames, picture_key } from "./frames.js";
+import { start_gpu } from "./gpu.js";
+import { show_hash, start_hashes } from "./hashes.js";
+import { start_keys } from "./keys.js";
+import { lens_numbers, start_lens_view } from "./lens_view.js";
+import { link_of, read_link, state_to_open, with_link } from "./link.js";
+import { make_methods_table } from "./methods_table.js";
+import { start_own_files } from "./own_files.js";
+import { locked_fov_degrees } from "./photographer.js";
+import { start_pointer } from "./pointer.js";
+import { save_report } from "./report.js";
+import { first_state, make_store, with_scene } from "./state.js";
+import { start_tabs } from "./tabs.js";
+import { start_theme } from "./theme.js";
+import { start_tips } from "./tips.js";
+import { make_truth } from "./truth.js";
+import { metres_text, ms_text, three_digits } from "./units.js";
+
+const kFrameMs = 1000 / 30;  // of the animation, at least
+const kRestartMs = 20000;    // a module that stops twice in this time is not started a third time
+
+const store = make_store(first_state());
+const known_focus_m = [1, 1];     // of each side, as whole frames told it
+const known_max_coc = [16, 16];
+let opened = null;   // the reply of the last open
+let last_reply = null;
+let build = "";
+let listing = { scenes: [], cases: [], methods: [] };
+let playing = false;
+let quit = false;
+let read_own = async () => [];  // reads the visitor's files once more
+
+const engine = start_engine({
+  on_ready: start,
+  on_failed: (line) => {
+    by_id("over").textContent = line;
+    by_id("over").hidden = false;
+    show_error(line);
+  },
+  on_restarted: reopen,
+});
+
+const camera = () => (opened && !store.get().failure
+    ? store.get().camera ?? opened.camera : null);
+const focus_m = () => store.side().focus.m ?? known_focus_m[store.get().editing];
+const max_coc = () => store.side().max_coc_px ?? known_max_coc[store.get().editing];
+const object_m = () => store.get().object_m ?? 1.5 * focus_m();
+const move = (next) => store.change({ camera: next });
+
+const view = start_compare_view(store);
+const lens_view = start_lens_view(store);
+const controls = make_controls({ store, camera, move, focus_m, max_coc, object_m });
+const frames = make_frames({
+  engine, store,
+  moving: () => playing,
+  paint: (side, reply, pixels) => {
+    by_id("over").hidden = true;
+    view.paint(side, reply, pixels);
+  },
+  on_frame,
+  on_error: (line) => show_error(line, "frame"),
+  on_settled: (settled) => by_id("picture").setAttribute("aria-busy", String(!settled)),
+});
+const truth = make_truth({
+  engine,
+  settled: () => {
+    const { show } = store.get();
+    const measured = show === "truth" || show === "error";
+    return frames.settled() && (measured || (show === "picture" && store.side().dof));
+  },
+  shown: () => {
+    const { show } = store.get();
+    return show === "truth" || show === "error" ? show : null;
+  },
+  paint: (reply, pixels) => view.paint_over(store.get(), reply, pixels),
+  on_error: show_error,
+});
+let methods_table = { renew() {} };
+let cases = { show() {} };
+const gpu = start_gpu({ engine, store, settled: frames.settled });
+const tabs = start_tabs(document.querySelector("[role=tablist]"), (id) => {
+  if (id === "tab-lens") show_lens();
+});
+
+function show_lens() {
+  const state = store.get();
+  lens_view.show(lens_numbers(state, { ...store.side(), max_coc_px: max_coc() }, focus_m(),
+                              object_m(), camera()?.fov_y_degrees ?? opened?.camera?.fov_y_degrees ?? 40));
+}
+
+function show_cross() {
+  const { at } = store.side().focus;
+  const cross = by_id("cross");
+  cross.toggleAttribute("hidden", !at || !opened);
+  if (!at) return;
+  cross.style.left = `${100 * at[0]}%`;
+  cross.style.top = `${100 * at[1]}%`;
+}
+
+// A locked field of view follows the focal length, the focus, the sensor and the shape.
+function keep_locked_fov() {
+  const now = camera();
+  const degrees = locked_fov_degrees(store.get(), { ...store.side(), focus_m: focus_m() });
+  if (!now || degrees === null) return;
+  if (Math.abs(now.fov_y_degrees - degrees) > 1e-4 * degrees) move({ ...now, fov_y_degrees: degrees });
+}
+
+let link_timer = 0;
+function keep_link() {
+  clearTimeout(link_timer);
+  link_timer = setTimeout(() => {
+    try {
+      if (opened) history.replaceState(null, "", `#${link_of(store.get())}`);
+    } catch {
+      // Browsers allow a number of these a minute; the next change tries again.
+    }
+  }, 400);
+}
+
+store.listen((state, before) => {
+  keep_locked_fov();
+  controls.update();
+  view.update(state);
+  show_cross();
+  if (!by_id("lens-panel").hidden) show_lens();
+  by_id("time").value = String(state.time);
+  show_scene_choice(state);
+  by_id("seed-part").hidden = !state.scene?.startsWith("random:");
+  cases.show(state.failure);
+  keep_link();
+  const measured = state.show === "truth" || state.show === "error";
+  if (measured && !truth.wanted()) truth.want(true);
+  const changed = picture_key(state) !== picture_key(before) || state.editing !== before.editing;
+  if (changed || state.show !== before.show) {
+    if (changed) {
+      truth.renew();
+      methods_table.renew();
+    }
+    frames.want(state.time === before.time && state.show === before.show);
+  }
+});
+
+function keep_known({ focus_m: focus, max_coc_px: radius }, side) {
+  if (focus === known_focus_m[side] && radius === known_max_coc[side]) return;
+  known_focus_m[side] = focus;
+  known_max_coc[side] = radius;
+  keep_locked_fov();
+  controls.update();
+  if (!by_id("lens-panel").hidden) show_lens();
+}
+
+const recent_ms = [];
+function on_frame(reply, coarse, state, wall_ms) {
+  last_reply = { ...last_reply, ...reply };
+  recent_ms.push(wall_ms);
+  if (recent_ms.length > 8) recent_ms.shift();
+  const mean_ms = recent_ms.reduce((sum, ms) => sum + ms, 0) / recent_ms.length;
+  const fps = three_digits(1000 / mean_ms);
+  by_id("speed").textContent = `${fps} fps · ${ms_text(mean_ms)} ms`;
+  by_id("speed").title = `draw ${ms_text(reply.draw_ms)} ms, filter ${ms_text(reply.filter_ms)} ms` +
+                         `${coarse ? ", coarse" : ""}`;
+  document.title = `${fps} fps · ${ms_text(mean_ms)} ms · softfocus`;
+  if (reply.focus_m && !coarse) keep_known(reply, state.editing);
+  show_hash(reply, state, state.sides[state.editing]);
+  if (playing) {
+    setTimeout(() => { if (playing) step(); }, Math.max(0, kFrameMs - wall_ms));
+  } else if (!coarse && reply.hash === null) {
+    frames.want(false);  // it was asked for while the animation played
+  } else if (!coarse) {
+    truth.show();
+    truth.go();
+  }
+}
+
+function show_scene_choice({ scene, failure }) {
+  const select = by_id("scene");
+  select.options[0].textContent = failure ? `Case ${failure.name}` : "Failure case";
+  select.value = failure ? "" : scene?.startsWith("random:") ? "random" : scene ?? "";
+}
+
+function open_request(what) {
+  return what.failure ? { do: "open", case: what.failure.name, value: what.failure.value }
+                      : { do: "open", scene: what.scene };
+}
+
+// In a new module, what was open is opened again, with its files. What stops the module twice is
+// left alone.
+let restarted_at = -Infinity;
+async function reopen() {
+  const soon = performance.now() - restarted_at < kRestartMs;
+  restarted_at = performance.now();
+  if (!opened) return;
+  frames.set_open(false);
+  if (soon) {
+    show_error("the module stopped again; reset the settings or choose another scene");
+    return;
+  }
+  const { reply } = await engine.ask(open_request(store.get()), kAsked, await read_own());
+  if (reply.error) show_error(`${reply.error}; choose another scene`);
+  frames.set_open(!reply.error);
+  frames.want(false);
+  truth.renew();
+}
+
+/**
+ * Opens a scene or case; what is there stays if it cannot be. `words` are a link's, `read` reads
+ * the visitor's files. Resolves to warnings, or to null.
+ */
+async function open(what, { words = null, read = null } = {}) {
+  frames.set_open(false);
+  const { reply } = await engine.ask(open_request(what), kAsked, read ? await read() : []);
+  if (reply.error) {
+    show_error(reply.error);
+    frames.set_open(Boolean(opened));
+    frames.want(false);
+    controls.update();
+    show_scene_choice(store.get());
+    return null;
+  }
+  show_error("");
+  opened = reply;
+  if (read) read_own = read;
+  last_reply = null;
+  by_id("over").textContent = "Drawing…";
+  // Another severity of the same case keeps the setting.
+  const before = words ? what : store.get();
+  const same = what.failure && before.failure?.name === what.failure.name;
+  let next = { ...before, scene: what.scene ?? null, failure: what.failure ?? null };
+  if (!same || words) next = with_scene(next, reply);
+  if (words) next = with_link(next, words);
+  next.sides.forEach((_, index) => { known_focus_m[index] = reply.lens?.focus_m ?? 1; });
+  for (const id of ["play", "step", "time"]) by_id(id).disabled = is_still();
+  by_id("camera-home").disabled = Boolean(what.failure);
+  set_playing(false);
+  store.set(next);
+  frames.set_open(true);
+  frames.want(false);
+  truth.renew();
+  announce(`${reply.title ?? "The scene"} is open.`);
+  show_own_scene(next.scene);
+  const warnings = reply.warnings ?? [];
+  if (warnings.length > 0) show_error(warnings.slice(0, 3).join(" · "));
+  return warnings;
+}
+
+// While a case is opened at one severity, the slider moves on: only the newest is opened next.
+let opening = false;
+let open_next = null;
+async function open_newest(what) {
+  open_next = what;
+  if (opening) return;
+  opening = true;
+  while (open_next) {
+    const now = open_next;
+    open_next = null;
+    await open(now);
+  }
+  opening = false;
+}
+
+function show_own_scene(scene) {
+  const select = by_id("scene");
+  if (!scene?.startsWith("/own/")) return;
+  if (![...select.options].some(({ value }) => value === scene)) {
+    select.append(element("option", { value: scene }, scene.slice(5)));
+  }
+  select.value = scene;
+}
+
+const is_still = () => !opened?.animation_frames;
+
+function set_playing(on) {
+  playing = on && !quit && !is_still();
+  by_id("play").textContent = playing ? "Pause" : "Play";
+  if (playing) step();
+  else if (opened && !last_reply?.hash) frames.want(false);
+}
+
+function step(count = 1) {
+  if (is_still()) return;
+  store.change({ time: Math.max(0, store.get().time + count) });
+}
+
+function set_quit(on) {
+  quit = on;
+  set_playing(false);
+  frames.pause(on);
+  truth.pause(on);
+  engine.pause(on);
+  by_id("quit").setAttribute("aria-pressed", String(on));
+  by_id("over").textContent = "Paused. Press Q to go on.";
+  by_id("over").hidden = !on;
+  if (on) document.title = "softfocus, paused";
+}
+
+function reset() {
+  if (!opened) return;
+  const fresh = { ...first_state(), scene: store.get().scene, failure: store.get().failure };
+  store.set(with_scene(fresh, opened));
+  if (performance.now() - restarted_at < kRestartMs) {
+    restarted_at = -Infinity;
+    reopen();
+  }
+  announce("All settings are the scene’s again.");
+}
+
+function toggle_show(kind) {
+  store.change({ show: store.get().show === kind ? "picture" : kind });
+}
+
+async function report() {
+  const { reply } = await engine.ask({ do: "file", name: "report.txt" }, kAsked);
+  if (reply.error) {
+    show_error(reply.error);
+    return;
+  }
+  save_report({ state: store.get(), timings: frames.timings(), build, own: reply.text,
+                address: location.href.replace(/#.*/, "") });
+}
+
+async function copy_link() {
+  const address = `${location.href.replace(/#.*/, "")}#${link_of(store.get())}`;
+  const copied = await copy_text(address);
+  by_id("copy-link").firstChild.textContent = copied ? "Copied " : "See the address ";
+  setTimeout(() => { by_id("copy-link").firstChild.textContent = "Copy link "; }, 1500);
+  announce(copied ? "The link is copied." : "The link is in the address bar.");
+}
+
+let asking_pixel = false;
+async function point_at(place) {
+  if (!place) by_id("pixel").textContent = "\u00a0";
+  if (!place || asking_pixel || !frames.settled() || playing) return;
+  asking_pixel = true;
+  const [width, height] = [last_reply.width, last_reply.height];
+  const x = Math.min(width - 1, Math.floor(place[0] * width));
+  const y = Math.min(height - 1, Math.floor(place[1] * height));
+  const { reply } = await engine.ask({ do: "pixel", x, y }, kAsked);
+  asking_pixel = false;
+  if (reply.error) return;
+  const depth = reply.depth_m === null ? "∞" : metres_text(reply.depth_m);
+  const circle = reply.coc_radius_px === null || reply.coc_radius_px === undefined
+      ? "" : ` · circle ${three_digits(reply.coc_radius_px)} px`;
+  by_id("pixel").textContent =
+      `${x}, ${y} · depth ${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
+}
+
+const pointer = start_pointer(by_id("picture"), {
+  camera, move, point_at,
+  focus_at: (at) => store.change_side({ focus: { at: at.map((part) => Number(part.toFixed(4))) } }),
+  focus_place: () => store.side().focus.at ?? null,
+});
+
+const nudge = (name) => (shifted) => controls.nudge(name, shifted ? -1 : 1);
+const pair = (key) => [key, `Shift+${key}`];
+start_keys({
+  camera_key: pointer.key,
+  commands: [
+    { keys: ["b"], words: "Depth of field on and off", run: () => store.change_side({ dof: !store.side().dof }) },
+    { keys: ["m"], words: "Map of the circles: black is sharp", run: () => toggle_show("coc") },
+    { keys: ["z"], words: "Map of the depth", run: () => toggle_show("depth") },
+    { keys: ["r"], words: "Next resolution", run: () => controls.next_size() },
+    { keys: ["l"], shown: pair("L"), words: "Focal length up, down", repeats: true, run: nudge("focal-length") },
+    { keys: ["n"], shown: pair("N"), words: "f-number up, down", repeats: true, run: nudge("f-number") },
+    { keys: ["f"], shown: pair("F"), words: "Focus farther, nearer", repeats: true, run: nudge("focus") },
+    { keys: ["c"], words: "Focus at the centre", run: () => store.change_side({ focus: { at: [0.5, 0.5] } }) },
+    { keys: ["x"], shown: pair("X"), words: "Filter size up, down", repeats: true, run: nudge("max-coc") },
+    { keys: ["k"], shown: pair("K"), words: "Scale of the circles up, down", repeats: true, run: nudge("coc-scale") },
+    { keys: ["v"], words: "Two settings side by side", run: () => controls.compare(store.get().sides.length < 2) },
+    { keys: ["t"], words: "The truth", run: () => toggle_show("truth") },
+    { keys: ["e"], words: "Map of the error against the truth", run: () => toggle_show("error") },
+    { keys: ["g"], words: "Draw on your GPU", run: () => { tabs.choose("tab-gpu"); gpu.draw(); } },
+    { keys: [" "], shown: ["Space"], words: "Play and pause the animation", run: () => set_playing(!playing) },
+    { keys: ["."], words: "One frame on", repeats: true, run: () => step() },
+    { keys: [","], words: "One frame back", repeats: true, run: () => step(-1) },
+    { keys: ["h"], words: "The scene’s own camera", run: () => store.change({ camera: null }) },
+    { keys: ["p"], words: "Save the performance report", run: report },
+    { keys: ["u"], words: "Copy the link", run: copy_link },
+    { keys: ["o"], words: "Open a file", run: () => by_id("files").click() },
+    { keys: ["0"], words: "Reset all settings", run: reset },
+    { keys: ["q"], words: "Quit: pause everything, and go on", run: () => set_quit(!quit) },
+    { keys: ["?"], words: "This table", run: () => tabs.choose("tab-keys") },
+  ],
+  others: [
+    { shown: ["W", "A", "S", "D"], words: "Walk; with the picture focused also Page Up and Page Down" },
+    { shown: ["+", "-"], words: "Come nearer, go back; also the wheel, or two fingers" },
+    { shown: ["←", "→", "↑", "↓"], words: "In the picture: turn around the target; also by dragging" },
+    { shown: ["Shift+←", "…"], words: "In the picture: move the place of focus; also a click" },
+    { shown: ["Shift+drag"], words: "Shift the picture; also the right button, or two fingers" },
+  ],
+});
+
+by_id("play").addEventListener("click", () => set_playing(!playing));
+by_id("step").addEventListener("click", () => step());
+by_id("time").addEventListener("change", (event) => {
+  const time = event.target.valueAsNumber;
+  if (time >= 0) store.change({ time });
+});
+by_id("camera-home").addEventListener("click", () => store.change({ camera: null }));
+by_id("reset").addEventListener("click", reset);
+by_id("quit").addEventListener("click", () => set_quit(!quit));
+by_id("report").addEventListener("click", report);
+by_id("copy-link").addEventListener("click", copy_link);
+by_id("help").addEventListener("click", () => tabs.choose("tab-keys"));
+by_id("error-close").addEventListener("click", () => show_error(""));
+by_id("truth-on").addEventListener("change", (event) => truth.want(event.target.checked));
+by_id("scene").addEventListener("change", ({ target }) => {
+  open({ scene: target.value === "random" ? `random:${by_id("seed").value}` : target.value });
+});
+by_id("seed").addEventListener("change", ({ target }) => {
+  if (target.checkValidity()) open({ scene: `random:${target.value}` });
+});
+by_id("seed-next").addEventListener("click", () => {
+  const next = BigInt.asUintN(64, BigInt(by_id("seed").value || 0) + 1n);
+  by_id("seed").value = String(next);
+  open({ scene: `random:${next}` });
+});
+window.addEventListener("hashchange", () => open_link(location.hash));
+document.addEventListener("visibilitychange", () => {
+  if (document.hidden) set_playing(false);
+  engine.pause(document.hidden || quit);
+});
+setInterval(() => { by_id("busy").hidden = frames.busy_for_ms() < 400; }, 200);
+start_tips();
+start_theme();
+start_hashes({ engine });
+start_own_files({
+  on_error: show_error,
+  open: (path, read) => open({ scene: `/own/${path}` }, { read }),
+});
+
+async function open_link(fragment) {
+  const words = read_link(fragment);
+  const wanted = state_to_open(words);
+  const seed = /^random:([0-9]{1,20})$/.exec(wanted.scene ?? "");
+  if (seed) by_id("seed").value = seed[1];
+  const done = await open(wanted, { words });
+  if (done || opened) return;
+  const line = by_id("error-text").textContent;
+  await open({ scene: "figures" });
+  show_error(line);
+}
+
+async function start(ready) {
+  build = ready.build ?? "";
+  const about = (await engine.ask({ do: "about" })).reply;
+  listing = (await engine.ask({ do: "scenes" })).reply;
+  if (about.error || listing.error) {
+    show_error(about.error ?? listing.error);
+    return;
+  }
+  const lacks = ready.missing?.length ? ` Not here: ${ready.missing.join(", ")}.` : "";
+  by_id("version").textContent = `softfocus ${about.version}, ${about.isa}, ` +
+                                 `${about.threads === 1 ? "one thread" : `${about.threads} threads`}.`;
+  by_id("build").textContent = `Build: ${build}.${lacks}`;
+  const options = listing.scenes.map(({ name, title }) => element("option", { value: name }, title ?? name));
+  by_id("scene").replaceChildren(element("option", { value: "", hidden: "" }, "Failure case"),
+                                 ...options, element("option", { value: "random" }, "Random…"));
+  by_id("scene").disabled = false;
+  controls.set_methods(listing.methods);
+  cases = make_cases({ cases: listing.cases, open: (name, value) => open_newest({ failure: { name, value } }) });
+  methods_table = make_methods_table({
+    engine, truth, settled: frames.settled,
+    methods: listing.methods.filter(({ kind }) => kind === "filter"),
+    choose: (method, radius) => store.change_side({ method, max_coc_px: radius }),
+  });
+  await open_link(location.hash);
+}

@@ -1,0 +1,79 @@
+// What stands behind a control: a sentence, the equation, and where it is in the source.
+
+import { by_id } from "./dom.js";
+
+const kTips = {
+  focal_length: ["The distance behind the lens at which light from infinity meets. A longer lens blurs more.",
+                 "Eq. 1: 1/f = 1/z + 1/v", "dof/lens.h, image_distance_mm"],
+  aperture: ["The focal length over the diameter of the opening. A full stop, a factor of √2, halves the light and blurs less.",
+             "Eq. 3: A = f / N", "dof/lens.h, aperture_mm"],
+  focus: ["The distance of the plane that is sharp, along the lens's axis.",
+          "Eq. 2: c = A f |z − z_f| / (z (z_f − f))", "dof/lens.h, coc_on_film_mm"],
+  max_coc: ["The largest circle that the filter draws, a radius in pixels. Larger circles are cut to it. A larger filter takes longer.",
+            "Eq. 10: overlap of the circles", "dof/dof.h, DofSettings::max_coc_px; dof/weights.h"],
+  coc_scale: ["Makes all circles larger or smaller. 1 is the lens; no lens has other values.",
+              "r = scale · (A/2) (z − z_f) / (z z_f) · height / (2 tan(fov/2))", "dof/lens.h, pixel_coc"],
+  field_of_view: ["The vertical angle that is seen. The film lies where the focus plane's image is, so focusing does not zoom.",
+                  "film height = 2 v0 tan(fov/2)", "dof/lens.h, film_height_mm"],
+  samples: ["Points of the lens from which the scene is drawn. More are more exact and slower.",
+            "mean of the views (Haeberli and Akeley 1990)", "scenes/lens_views/take_samples.h"],
+  object: ["A point on the axis. Drag it in the drawing, or move it here.",
+           "Eq. 2: c = A f |z − z_f| / (z (z_f − f))", "dof/lens.h, coc_on_film_mm"],
+  flip: ["How different two pictures look to somebody who flips between them: 0 equal, 1 most. The truth stops growing when its own noise is small against the errors.",
+         "FLIP (Andersson et al. 2020)", "dof/measure; docs/measures.md; docs/ground-truth.md"],
+  severity: ["How hard the case is. A method fails from the severity on at which its error passes the limit.",
+             "docs/failures.md has the limits", "tools/stress/stress_case.h"],
+};
+
+/** Every button of class "why" shows its tip: pointed at, focused or pressed. */
+export function start_tips() {
+  const tip = by_id("tip");
+  let owner = null;
+
+  function hide() {
+    if (!owner) return;
+    owner.removeAttribute("aria-describedby");
+    owner = null;
+    tip.hidden = true;
+  }
+
+  function show(button) {
+    const [words, equation, source] = kTips[button.dataset.tip];
+    hide();
+    owner = button;
+    tip.replaceChildren(words, document.createElement("br"),
+                        Object.assign(document.createElement("b"), { textContent: equation }),
+                        document.createElement("br"),
+                        Object.assign(document.createElement("code"), { textContent: source }));
+    tip.hidden = false;
+    button.setAttribute("aria-describedby", "tip");
+    const at = button.getBoundingClientRect();
+    const width = tip.offsetWidth;
+    const left = Math.min(at.left, document.documentElement.clientWidth - width - 8);
+    const below = at.bottom + tip.offsetHeight + 8 < window.innerHeight;
+    tip.style.left = `${Math.max(8, left)}px`;
+    tip.style.top = `${below ? at.bottom + 4 : at.top - tip.offsetHeight - 4}px`;
+  }
+
+  const button_of = (event) => event.target.closest?.("button.why");
+  document.addEventListener("click", (event) => {
+    const button = button_of(event);
+    if (button) show(button);
+    else hide();
+  });
+  document.addEventListener("mouseover", (event) => {
+    const button = button_of(event);
+    if (button) show(button);
+    // The pointer may go onto the tip itself, to read or copy it.
+    else if (owner && !event.target.closest?.("#tip") && document.activeElement !== owner) hide();
+  });
+  document.addEventListener("focusin", (event) => {
+    const button = button_of(event);
+    if (button?.matches(":focus-visible")) show(button);
+    else if (!button) hide();
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") hide();
+  });
+  document.addEventListener("scroll", hide, { capture: true, passive: true });
+}

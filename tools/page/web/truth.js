@@ -1,0 +1,106 @@
+// The truth: views of the lens, collected in the background for the picture that is shown, until
+// they are enough. It begins anew whenever the picture changes.
+
+import { announce, by_id } from "./dom.js";
+import { kAsked, kBackground } from "./engine.js";
+import { three_digits } from "./units.js";
+
+const kTurnMs = 200;     // of one request, so that input and frames stay quick
+const kShownEvery = 16;  // views between two pictures of the growing truth
+
+/**
+ * `paint(reply, pixels)` shows the truth or the error; `shown()` is "truth", "error" or null.
+ * `settled()`: whether the whole picture of the present state is there.
+ */
+export function make_truth({ engine, settled, shown, paint, on_error }) {
+  let wanted = false;
+  let running = false;
+  let paused = false;
+  let last = null;       // the newest reply
+  let views = 4;         // of the next request
+  let painted_at = -1;   // samples of the truth that is shown
+  const waiting = [];    // told when the truth is good enough
+
+  function tell() {
+    const progress = by_id("truth-progress");
+    const state = by_id("truth-state");
+    if (!last) {
+      progress.value = 0;
+      state.textContent = wanted ? "waiting for the whole picture" : "not begun";
+      return;
+    }
+    const flip = last.flip_mean === undefined || last.flip_mean === null
+        ? "" : ` · FLIP of the picture ${three_digits(last.flip_mean)}`;
+    const noise = last.half_set_rms === undefined || last.half_set_rms === null
+        ? "" : ` · halves differ by ${three_digits(last.half_set_rms)}`;
+    progress.value = last.done ? 1 : Math.min(0.95, Math.log2(1 + last.samples) / 12);
+    // A case whose answer is written down needs no views.
+    const views_text = last.samples === 0 ? "known answer" : `${last.samples} views`;
+    state.textContent = `${views_text}${noise}${flip}${last.done ? " · good enough" : ""}`;
+  }
+
+  async function show(force) {
+    const kind = shown();
+    if (!kind || !last) return;
+    if (!force && last.samples < painted_at + kShownEvery && !last.done) return;
+    const { reply, pixels } = await engine.ask({ do: "truth", show: kind }, kAsked);
+    if (reply.error) on_error(reply.error);
+    else if (!reply.cancelled && pixels && shown() === kind && settled()) {
+      painted_at = reply.samples ?? last.samples;
+      paint(reply, pixels);
+    }
+  }
+
+  async function pump() {
+    if (running || paused || !wanted || !settled() || last?.done) return;
+    running = true;
+    const began = performance.now();
+    const { reply } = await engine.ask({ do: "truth", views }, kBackground);
+    running = false;
+    if (reply.error) {
+      last = null;
+      by_id("truth-state").textContent = reply.error;
+      wanted = false;
+      by_id("truth-on").checked = false;
+      return;
+    }
+    if (!reply.cancelled && settled()) {
+      const took = performance.now() - began;
+      views = Math.min(64, Math.max(1, Math.round(views * kTurnMs / Math.max(took, 1))));
+      last = reply;
+      tell();
+      await show(painted_at < 0);
+      if (last?.done) announce("The truth is good enough.");
+      if (last?.done) waiting.splice(0).forEach((done) => done());
+    }
+    pump();
+  }
+
+  return {
+    /** The picture has changed; what was collected is of another one. */
+    renew() {
+      last = null;
+      painted_at = -1;
+      tell();
+      pump();
+    },
+    want(on) {
+      wanted = on;
+      by_id("truth-on").checked = on;
+      tell();
+      pump();
+    },
+    pause(on) {
+      paused = on;
+      pump();
+    },
+    /** The whole picture is there. */
+    go: pump,
+    /** Shows the truth or the error as far as it is known. */
+    show: () => show(true),
+    wanted: () => wanted,
+    /** Resolves once the truth is good enough. */
+    when_done: () => (last?.done ? Promise.resolve() : new Promise((done) => waiting.push(done))),
+    numbers: () => last,
+  };
+}

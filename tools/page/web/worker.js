@@ -1,0 +1,152 @@
+// The simulator's worker: loads the build of the module that this browser can run, and answers
+// requests one after the other.
+//
+// To the worker: {id, request, files}. `files` ([{path, bytes}]) are written below /own/ first.
+// From the worker: {ready: true, build, missing, cancel} once (`cancel` is an Int32Array of one
+// number in memory shared with the module, or null), or {failed: "one line"} if nothing can run.
+// Then {id, reply, pixels} for each request; `pixels` is an ArrayBuffer of RGBA8 rows, or absent.
+// If the module stops for good, the reply is {error}, and a new module takes its place, in which
+// nothing is open: {restarted: true, cancel}.
+//
+// A page in one file gives the module's parts as self.softfocus_parts: {script, wasm}, a function
+// and a promise of bytes, and loads no other file.
+"use strict";
+
+const kMostThreads = 16;
+
+// Modules of a few bytes, each with one instruction of what it asks for. What their bytes say:
+// a function that drops a v128.const; one that does an atomic load on a shared memory; one with
+// an empty try and catch_all.
+const kProbes = {
+  simd: [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 23, 1, 21, 0, 253, 12,
+         0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 26, 11],
+  atomics: [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 5, 4, 1, 3, 1, 1, 10, 11,
+            1, 9, 0, 65, 0, 254, 16, 2, 0, 26, 11],
+  exceptions: [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 8, 1, 6, 0, 6, 64,
+               25, 11, 11],
+};
+
+function can_run(probe) {
+  return WebAssembly.validate(new Uint8Array(kProbes[probe]));
+}
+
+/** The build for this browser, and what it lacks for a faster one. */
+function choose_build() {
+  const missing = [];
+  if (typeof WebAssembly !== "object") return { build: null, missing: ["WebAssembly"] };
+  if (!can_run("exceptions")) missing.push("WebAssembly exceptions");
+  if (!can_run("simd")) missing.push("WebAssembly SIMD");
+  if (missing.length > 0) return { build: "plain", missing };
+  if (self.softfocus_parts) return { build: "simd", missing: ["threads, which one file has not"] };
+  if (!self.crossOriginIsolated) {
+    missing.push("threads, for which the host would have to send COOP and COEP headers");
+  } else if (typeof SharedArrayBuffer === "undefined" || !can_run("atomics")) {
+    missing.push("WebAssembly threads");
+  } else if (thread_count() < 2) {
+    missing.push("a second processor core");
+  }
+  return { build: missing.length > 0 ? "simd" : "threads", missing };
+}
+
+function thread_count() {
+  return Math.min(navigator.hardwareConcurrency || 1, kMostThreads);
+}
+
+async function wasm_of(build) {
+  if (self.softfocus_parts) return self.softfocus_parts.wasm();
+  const response = await fetch(`softfocus-${build}.wasm`);
+  if (!response.ok) throw new Error(`softfocus-${build}.wasm: ${response.status}`);
+  return response.arrayBuffer();
+}
+
+/** A module that runs, with its threads. */
+async function make_module(build, bytes) {
+  const threads = build === "threads" ? thread_count() : 1;
+  const settings = { wasmBinary: bytes, threads, print: () => {}, printErr: () => {} };
+  if (self.softfocus_parts) {
+    if (!self.createSoftfocus) self.softfocus_parts.script();
+  } else {
+    // Each thread loads the script anew.
+    settings.mainScriptUrlOrBlob = new URL(`softfocus-${build}.js`, self.location.href).href;
+    if (!self.createSoftfocus) importScripts(settings.mainScriptUrlOrBlob);
+  }
+  const module = await self.createSoftfocus(settings);
+  module.FS.mkdir("/own");
+  const started = ask(module, { do: "start", threads });
+  if (started.error) throw new Error(started.error);
+  return module;
+}
+
+function ask(module, request) {
+  const text = JSON.stringify(request);
+  const size = module.lengthBytesUTF8(text) + 1;
+  const place = module._malloc(size);
+  if (place === 0) return { error: "there is not enough memory for this request" };
+  module.stringToUTF8(text, place, size);
+  module._softfocus_request(place);
+  module._free(place);
+  return JSON.parse(module.UTF8ToString(module._softfocus_reply()));
+}
+
+/**
+ * The module's memory, which is another buffer each time that it has grown. With threads, any of
+ * which may make it grow, only `wasmMemory` knows the newest.
+ */
+function memory_of(module) {
+  return module.wasmMemory?.buffer ?? module.HEAPU8.buffer;
+}
+
+/** A copy of the picture, if the reply brought one: then it tells its size. */
+function pixels_of(module, reply) {
+  if (!reply.width || !reply.height) return undefined;
+  const begin = module._softfocus_pixels();
+  const bytes = new Uint8Array(memory_of(module), begin, 4 * reply.width * reply.height);
+  return bytes.slice().buffer;
+}
+
+/** What a page writes 1 to, to end a request early; null where it shares no memory. */
+function cancel_of(module) {
+  const memory = memory_of(module);
+  const is_shared = typeof SharedArrayBuffer !== "undefined" && memory instanceof SharedArrayBuffer;
+  return is_shared ? new Int32Array(memory, module._softfocus_cancel(), 1) : null;
+}
+
+/** Writes a file below /own/, with its folders. A path cannot lead out of there. */
+function write_file(module, { path, bytes }) {
+  const names = path.split(/[\\/]+/).filter((name) => name && name !== "." && name !== "..");
+  let folder = "/own";
+  for (const name of names.slice(0, -1)) {
+    folder += `/${name}`;
+    if (!module.FS.analyzePath(folder).exists) module.FS.mkdir(folder);
+  }
+  module.FS.writeFile(`${folder}/${names[names.length - 1]}`, new Uint8Array(bytes));
+}
+
+async function run() {
+  const { build, missing } = choose_build();
+  if (!build) throw new Error("this browser has no WebAssembly");
+  const bytes = await wasm_of(build);
+  let module = await make_module(build, bytes);
+  let queue = Promise.resolve();
+
+  async function answer({ id, request, files }) {
+    let reply, pixels;
+    try {
+      for (const file of files ?? []) write_file(module, file);
+      reply = ask(module, request);
+      pixels = pixels_of(module, reply);
+    } catch (error) {
+      // Out of stack, or a mistake of ours: the module's memory is in no known state.
+      reply = { error: `the module stopped: ${error.message ?? error}` };
+      module.PThread?.terminateAllThreads();
+      module = await make_module(build, bytes);
+      self.postMessage({ restarted: true, cancel: cancel_of(module) });
+    }
+    self.postMessage({ id, reply, pixels }, pixels ? [pixels] : []);
+  }
+
+  self.onmessage = ({ data }) => { queue = queue.then(() => answer(data)); };
+  self.postMessage({ ready: true, build, missing, cancel: cancel_of(module) });
+}
+
+run().catch((error) => self.postMessage({ failed: String(error.message ?? error) }));
