@@ -64,6 +64,7 @@ SharpRange sharp_range(const ThinLens& lens, double largest_coc_mm);
 struct PixelCoc {
   float radius_at_infinity_px = 0.0f;  ///< of the horizon's circle, 0 or more
   float focus_m = 1.0f;                ///< more than 0
+  bool operator==(const PixelCoc&) const = default;
 };
 
 /// `height_px` is the picture's height, `fov_y_degrees` its vertical field of view, between 0

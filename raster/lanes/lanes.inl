@@ -122,6 +122,14 @@ SOFTFOCUS_INLINE unsigned equal_lane_bits(Ints a, Ints b) {
   return lane_bits(a == b);
 #endif
 }
+/// lane_bits(a <= b), likewise.
+SOFTFOCUS_INLINE unsigned at_most_lane_bits(Bits a, Bits b) {
+#if SOFTFOCUS_LANES == 16
+  return _mm512_cmple_epu32_mask((__m512i)a, (__m512i)b);
+#else
+  return lane_bits(a <= b);
+#endif
+}
 inline constexpr unsigned kAllLaneBits = (1u << SOFTFOCUS_LANES) - 1;
 SOFTFOCUS_INLINE bool any(Mask mask) { return lane_bits(mask) != 0; }
 SOFTFOCUS_INLINE bool all(Mask mask) { return lane_bits(mask) == kAllLaneBits; }

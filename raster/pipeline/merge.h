@@ -50,8 +50,8 @@ bool can_peel(const RenderTargets& targets, const DrawState& state);
 /// Whether a fragment is among a pixel's nearest, of those submitted so far.
 bool reaches_layers(const RenderTargets& targets, int x, int y, float depth);
 
-/// Puts a fragment that reaches_layers() before all that are farther, each of which goes to the
-/// next layer.
+/// Inserts a fragment that reaches_layers() before the farther ones. Each of these moves back by a
+/// layer.
 void insert_into_layers(const RenderTargets& targets, int x, int y, float depth, glm::vec4 colour,
                         const Profile& profile);
 

@@ -85,14 +85,27 @@ PixelCoc coc_of(const LensViewInput& input) {
 }
 
 void set_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int views) {
-  buffer.cells = lens_cells(input.sampling.aperture, views, points_of_cell(views));
-  buffer.spread = make_view_spread(coc_of(input), buffer.cells);
+  const ApertureShape aperture = input.sampling.aperture;
+  const PixelCoc coc = coc_of(input);
+  // To frames of one lens the cells are the same.
+  const bool same_cells =
+      buffer.cells.views.size() == static_cast<std::size_t>(views) && buffer.aperture == aperture;
+  if (!same_cells) {
+    buffer.aperture = aperture;
+    buffer.cells = lens_cells(aperture, views, points_of_cell(views));
+  }
+  if (!same_cells || buffer.spread.coc != coc) buffer.spread = make_view_spread(coc, buffer.cells);
   buffer.views.points = buffer.cells.views;
   buffer.views.offsets = pixel_offsets(input.sampling.jitter, views);
 }
 
 FilteredViewsBuffer make_filtered_views_buffer(const LensViewInput& input, ThreadPool& pool) {
-  return {make_accumulation_buffer(input, pool), {}, {}, {}};
+  return {make_accumulation_buffer(input, pool),
+          {},
+          {},
+          {},
+          {},
+          make_sample_sums(input.pinhole.width, input.pinhole.height)};
 }
 
 void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input, SampleSums& sums,
@@ -118,7 +131,8 @@ SampledPicture filtered_views(const LensViewInput& input, ThreadPool& pool) {
 
 SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,
                               ThreadPool& pool) {
-  SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
+  SampleSums& sums = buffer.sums;
+  clear_sums(sums);
   const Sampling& sampling = input.sampling;
   if (!sampling.until) {
     set_views(buffer, input, sampling.samples);

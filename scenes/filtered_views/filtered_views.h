@@ -25,9 +25,11 @@ inline constexpr int kFilteredViews = kSampleGroup;
 /// Made once for many pictures of one scene.
 struct FilteredViewsBuffer {
   AccumulationBuffer views;
+  ApertureShape aperture;  ///< of the cells
   LensCells cells;
   ViewSpread spread;
   std::vector<ViewTiles> pictures;  ///< of a group
+  SampleSums sums;                  ///< of filtered_views()
 };
 
 /// Needs set_views(). The scene must outlive it.

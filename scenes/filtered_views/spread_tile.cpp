@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cassert>
-#include <cstdlib>
 
 #include "raster/images/texel.h"
+#include "scenes/filtered_views/cell_levels.h"
 
 namespace softfocus {
 namespace {
@@ -17,26 +15,14 @@ constexpr std::size_t kSpreadTexelHalves = 4;
 constexpr std::ptrdiff_t kPlane = std::ptrdiff_t{kSpreadRows} * kSpreadStride;
 constexpr std::ptrdiff_t kSumPlane = std::ptrdiff_t{kSpreadTile} * kSpreadTile;
 
-// Cells in which levels are counted, of the tile and of what lies around it.
-constexpr int kCellWidth = 16, kCellHeight = 8;
-constexpr int kCellsAcross = kSpreadRows / kCellWidth, kCellsDown = kSpreadRows / kCellHeight;
-// Cells that rays reach beside a cell.
-constexpr int kRingAcross = kMostSpreadStep / kCellWidth;
-constexpr int kRingDown = kMostSpreadStep / kCellHeight;
-
-// Levels are counted from 0 here, not from -L.
-constexpr int kWords = LevelSet::kWords;
+// The first cell of a tile among those around it.
+constexpr int kFirstCellX = kMostSpreadStep / kCellWidth;
+constexpr int kFirstCellY = kMostSpreadStep / kCellHeight;
 
 // A run of pixels of a row in lanes, or one by one.
 struct UnpackedRow {
   float *r, *g, *b;
   std::int32_t* level;
-};
-
-// Levels to look for, from the nearest.
-struct LevelList {
-  std::array<std::int32_t, kSpreadLevels> number;
-  int count = 0;
 };
 
 // A cell's rows and what its rays look at.
@@ -45,9 +31,9 @@ struct CellWork {
   const std::int32_t* levels;  // the same
   const std::int32_t* offsets;
   const std::int32_t* sought;
+  const RayRuns* runs;
   int sought_count, rays;
   int width, rows;
-  bool one_level;  // of all that its rays look at
   bool begin;
   float* sums;
 };
@@ -139,87 +125,6 @@ int reach_around(const ViewTiles& view, const SpreadSteps& steps, int tile_x, in
   return reach;
 }
 
-// A square of a tile's planes that may stick out of what is there.
-LevelSet levels_of_cell(const SpreadMemory& memory, int x_begin, int y_begin, int x_end, int y_end,
-                        Isa isa) {
-  LevelSet set;
-  if (isa != Isa::scalar && x_begin < x_end && y_begin < y_end &&
-      SOFTFOCUS_KERNEL(isa, add_levels)(
-          memory.levels.get() + y_begin * std::ptrdiff_t{kSpreadStride} + x_begin, x_end - x_begin,
-          y_end - y_begin, set)) {
-    return set;
-  }
-  for (int y = y_begin; y < y_end; ++y) {
-    const std::int32_t* levels = memory.levels.get() + y * std::ptrdiff_t{kSpreadStride};
-    for (int x = x_begin; x < x_end; ++x) {
-      set.bits[levels[x] / 64] |= std::uint64_t{1} << levels[x] % 64;
-    }
-  }
-  return set;
-}
-
-struct CellLevels {
-  LevelSet of[kCellsDown][kCellsAcross];
-};
-
-void find_levels(const SpreadMemory& memory, int width, int height, int reach, Isa isa,
-                 CellLevels& cells) {
-  const int begin = kMostSpreadStep - reach;
-  const int x_end = kMostSpreadStep + width + reach, y_end = kMostSpreadStep + height + reach;
-  for (int cell_y = 0; cell_y < kCellsDown; ++cell_y) {
-    for (int cell_x = 0; cell_x < kCellsAcross; ++cell_x) {
-      cells.of[cell_y][cell_x] = levels_of_cell(memory, std::max(cell_x * kCellWidth, begin),
-                                                std::max(cell_y * kCellHeight, begin),
-                                                std::min((cell_x + 1) * kCellWidth, x_end),
-                                                std::min((cell_y + 1) * kCellHeight, y_end), isa);
-    }
-  }
-}
-
-struct NearLevels {
-  LevelSet reaching;  // that may come to a cell
-  LevelSet all;       // that its rays may look at
-};
-
-NearLevels levels_near(const CellLevels& cells, const SpreadSteps& steps, int cell_x, int cell_y,
-                       int reach) {
-  NearLevels near{cells.of[cell_y][cell_x], cells.of[cell_y][cell_x]};
-  const int across = (reach + kCellWidth - 1) / kCellWidth;
-  const int down = (reach + kCellHeight - 1) / kCellHeight;
-  for (int y = -down; y <= down; ++y) {
-    for (int x = -across; x <= across; ++x) {
-      if (x == 0 && y == 0) continue;
-      // Pixels between the two cells.
-      const int apart_x = std::max(std::abs(x) - 1, 0) * kCellWidth;
-      const int apart_y = std::max(std::abs(y) - 1, 0) * kCellHeight;
-      const LevelSet& from =
-          steps.reaching[static_cast<std::size_t>(std::max(apart_x, apart_y) / kCellHeight)];
-      for (int word = 0; word < kWords; ++word) {
-        const std::uint64_t bits = cells.of[cell_y + y][cell_x + x].bits[word];
-        near.reaching.bits[word] |= bits & from.bits[word];
-        near.all.bits[word] |= bits;
-      }
-    }
-  }
-  return near;
-}
-
-int count_of(const LevelSet& levels) {
-  int count = 0;
-  for (const std::uint64_t word : levels.bits) count += std::popcount(word);
-  return count;
-}
-
-LevelList list_of(const LevelSet& levels) {
-  LevelList list;
-  for (int word = 0; word < kWords; ++word) {
-    for (std::uint64_t left = levels.bits[word]; left != 0; left &= left - 1) {
-      list.number[static_cast<std::size_t>(list.count++)] = 64 * word + std::countr_zero(left);
-    }
-  }
-  return list;
-}
-
 // Where the ray comes from, among a cell's pixels.
 std::ptrdiff_t source_scalar(const CellWork& cell, const std::int32_t* offsets, std::ptrdiff_t at) {
   for (int i = 0; i < cell.sought_count; ++i) {
@@ -266,40 +171,13 @@ void add_cell_scalar(const CellWork& cell) {
 
 }  // namespace
 
-SpreadSteps spread_steps(const ViewSpread& spread, std::span<const glm::dvec2> points) {
-  SpreadSteps steps{static_cast<int>(points.size()), ray_steps(spread, points), {}, {}, {}};
-  steps.reach_px.resize(kSpreadLevels);
-  for (std::size_t i = 0; i < steps.steps.size(); ++i) {
-    const PixelStep step = steps.steps[i];
-    steps.offsets.push_back(step.y * kSpreadStride + step.x);
-    std::int16_t& reach = steps.reach_px[i % kSpreadLevels];
-    const int longest = std::max({int{reach}, std::abs(step.x), std::abs(step.y)});
-    assert(longest <= kMostSpreadStep);
-    reach = static_cast<std::int16_t>(longest);
-  }
-  // Rounding may take a pixel from a level's step. The reach of all from the focus to it does not.
-  for (std::size_t away = 1; away <= kMostSpreadLevel; ++away) {
-    std::int16_t* focus = steps.reach_px.data() + kMostSpreadLevel;
-    focus[away] = std::max(focus[away], focus[away - 1]);
-    std::int16_t* before = focus - away;
-    *before = std::max(*before, before[1]);
-  }
-  for (int away = 0; away <= kRingDown; ++away) {
-    LevelSet& reaching = steps.reaching.emplace_back();
-    for (int level = 0; level < kSpreadLevels; ++level) {
-      if (steps.reach_px[static_cast<std::size_t>(level)] <= away * kCellHeight) continue;
-      reaching.bits[level / 64] |= std::uint64_t{1} << level % 64;
-    }
-  }
-  return steps;
-}
-
 SpreadMemory make_spread_memory() {
   // Lanes read and write whole vectors past the last pixel.
   SpreadMemory memory;
   memory.colours = make_row_memory<float>(3 * kPlane + kMostLanes);
   memory.levels = make_row_memory<std::int32_t>(kPlane + kMostLanes);
   memory.sums = make_row_memory<float>(3 * kSumPlane + kMostLanes);
+  memory.runs = std::make_unique<RayRuns>();
   return memory;
 }
 
@@ -313,15 +191,16 @@ void spread_tile(const ViewTiles& view, const SpreadSteps& steps, int tile, bool
                 .levels = nullptr,
                 .offsets = steps.offsets.data(),
                 .sought = nullptr,
+                .runs = memory.runs.get(),
                 .sought_count = 0,
                 .rays = steps.rays,
                 .width = 0,
                 .rows = 0,
-                .one_level = false,
                 .begin = begin,
                 .sums = nullptr};
   CellLevels levels;
-  if (reach > 0) find_levels(memory, width, height, reach, isa, levels);
+  if (reach > 0) find_levels(memory.levels.get(), width, height, reach, isa, levels);
+  NearLevels of_runs;
   for (int y = 0; y < height; y += kCellHeight) {
     for (int x = 0; x < width; x += kCellWidth) {
       const UnpackedRow first = row_at(memory, kMostSpreadStep + x, kMostSpreadStep + y);
@@ -333,14 +212,17 @@ void spread_tile(const ViewTiles& view, const SpreadSteps& steps, int tile, bool
       LevelList sought;
       int cell_reach = 0;
       if (reach > 0) {
-        const NearLevels near = levels_near(levels, steps, x / kCellWidth + kRingAcross,
-                                            y / kCellHeight + kRingDown, reach);
+        const NearLevels near = levels_near(levels, steps, x / kCellWidth + kFirstCellX,
+                                            y / kCellHeight + kFirstCellY, reach);
         sought = list_of(near.reaching);
-        cell.one_level = count_of(near.all) == 1;
         const auto nearest = static_cast<std::size_t>(sought.number[0]);
         const auto farthest =
             static_cast<std::size_t>(sought.number[static_cast<std::size_t>(sought.count - 1)]);
         cell_reach = std::max(steps.reach_px[nearest], steps.reach_px[farthest]);
+        if (cell_reach > 0 && isa != Isa::scalar && near != of_runs) {
+          find_runs(steps, sought, near.reaching == near.all, *memory.runs);
+          of_runs = near;
+        }
       }
       cell.sought = sought.number.data();
       cell.sought_count = sought.count;
@@ -369,42 +251,6 @@ void unpack_texels(const std::uint16_t* texels, int count, const UnpackedRow& to
   }
 }
 
-/// The levels of a square, if they are within 32 of each other.
-bool add_levels(const std::int32_t* levels, int width, int rows, LevelSet& set) {
-  Ints least = splat(kSpreadLevels), most = splat(0);
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < width; x += kLanes) {
-      const Ints level = load(levels + y * kSpreadStride + x);
-      const Mask there = first_lanes(width - x);
-      least = smaller(least, select(there, level, least));
-      most = larger(most, select(there, level, most));
-    }
-  }
-  std::int32_t first = least[0], last = most[0];
-  for (int i = 1; i < kLanes; ++i) {
-    first = least[i] < first ? least[i] : first;
-    last = most[i] > last ? most[i] : last;
-  }
-  if (last - first >= 32) return false;
-  Bits seen = splat(0u);
-  if (last - first < 2) {
-    seen |= 1u | 1u << (last - first);
-  } else {
-    for (int y = 0; y < rows; ++y) {
-      for (int x = 0; x < width; x += kLanes) {
-        const Bits above = as_bits(load(levels + y * kSpreadStride + x) - first);
-        seen |= select(first_lanes(width - x), splat(1u) << (above & 31u), splat(0u));
-      }
-    }
-  }
-  std::uint32_t bits = 0;
-  for (int i = 0; i < kLanes; ++i) bits |= seen[i];
-  const int word = first / 64, place = first % 64;
-  set.bits[word] |= std::uint64_t{bits} << place;
-  if (place > 32 && word + 1 < kWords) set.bits[word + 1] |= std::uint64_t{bits} >> (64 - place);
-  return true;
-}
-
 namespace {
 
 struct Colours {
@@ -428,20 +274,51 @@ SOFTFOCUS_INLINE Colours beside(const CellWork& cell, const std::int32_t* offset
           select(left, gather(cell.colours + 2 * kPlane, from, left), others.b)};
 }
 
-// The colours that a ray sees from `count` pixels on.
-SOFTFOCUS_INLINE Colours seen_by_ray(const CellWork& cell, const std::int32_t* offsets, int at,
-                                     int count) {
-  if (cell.one_level) return load_colours(cell.colours + at + offsets[cell.sought[0]]);
+SOFTFOCUS_INLINE void add(Colours& sum, const Colours& more) {
+  sum = {sum.r + more.r, sum.g + more.g, sum.b + more.b};
+}
+
+// What a ray sees from `count` pixels on, where few runs are cheaper without a branch between them.
+template <int kRuns>
+SOFTFOCUS_INLINE Colours seen_in_runs(const CellWork& cell, const LevelRun* runs,
+                                      const std::int32_t* offsets, int at, int count) {
+  Colours seen{};
+  unsigned held_bits = 0;
+  // The nearest comes last, over what lies behind it.
+  for (int i = kRuns; i-- > 0;) {
+    const int from = at + runs[i].offset;
+    const Bits above = as_bits(load(cell.levels + from) - runs[i].first);
+    const Bits span = splat(runs[i].span);
+    const Colours of_run = load_colours(cell.colours + from);
+    const Mask held = above <= span;
+    seen = {select(held, of_run.r, seen.r), select(held, of_run.g, seen.g),
+            select(held, of_run.b, seen.b)};
+    held_bits |= at_most_lane_bits(above, span);
+  }
+  const unsigned wanted = count >= kLanes ? kAllLaneBits : (1u << count) - 1u;
+  if ((held_bits & wanted) == wanted) [[likely]]
+    return seen;
+  Mask left = first_lanes(count);
+  for (int i = 0; i < kRuns; ++i) {
+    const Bits above = as_bits(load(cell.levels + at + runs[i].offset) - runs[i].first);
+    left &= ~(above <= splat(runs[i].span));
+  }
+  return beside(cell, offsets, at, left, seen);
+}
+
+// The same for any number of runs.
+SOFTFOCUS_INLINE Colours seen_by_ray(const CellWork& cell, const LevelRun* run, const LevelRun* end,
+                                     const std::int32_t* offsets, int at, int count) {
   Mask left = first_lanes(count);
   unsigned left_bits = lane_bits(left);
   Colours seen{};
-  for (int i = 0; i < cell.sought_count; ++i) {
-    const std::int32_t level = cell.sought[i];
-    const int from = at + offsets[level];
-    const Ints found = load(cell.levels + from);
-    const unsigned held_bits = equal_lane_bits(found, splat(level)) & left_bits;
+  for (; run < end; ++run) {
+    const int from = at + run->offset;
+    const Bits above = as_bits(load(cell.levels + from) - run->first);
+    const Bits span = splat(run->span);
+    const unsigned held_bits = at_most_lane_bits(above, span) & left_bits;
     if (held_bits == 0) continue;
-    const Mask held = left & (found == level);
+    const Mask held = left & (above <= span);
     const Colours of_level = load_colours(cell.colours + from);
     if (held_bits == kAllLaneBits) return of_level;
     seen = {select(held, of_level.r, seen.r), select(held, of_level.g, seen.g),
@@ -451,6 +328,31 @@ SOFTFOCUS_INLINE Colours seen_by_ray(const CellWork& cell, const std::int32_t* o
     if (left_bits == 0) return seen;
   }
   return beside(cell, offsets, at, left, seen);
+}
+
+// Adds what a ray sees from a cell's rows on to their sums.
+SOFTFOCUS_INLINE void add_ray(const CellWork& cell, int ray, int x, int count, Colours* sums) {
+  const std::int32_t* offsets = cell.offsets + std::ptrdiff_t{ray} * kSpreadLevels;
+  const auto number = static_cast<std::size_t>(ray);
+  const LevelRun* runs = cell.runs->runs.data() + cell.runs->begin[number];
+  const LevelRun* end = cell.runs->runs.data() + cell.runs->begin[number + 1];
+  if (cell.runs->certain[number]) {
+    const float* from = cell.colours + x + runs->offset;
+    for (int y = 0; y < cell.rows; ++y) add(sums[y], load_colours(from + y * kSpreadStride));
+    return;
+  }
+  // One branch for all rows, since what ends a search is hard to predict.
+  const auto of_rows = [&](auto seen_from) {
+    for (int y = 0; y < cell.rows; ++y) add(sums[y], seen_from(y * kSpreadStride + x));
+  };
+  switch (end - runs) {
+    case 1: return of_rows([&](int at) { return seen_in_runs<1>(cell, runs, offsets, at, count); });
+    case 2: return of_rows([&](int at) { return seen_in_runs<2>(cell, runs, offsets, at, count); });
+    case 3: return of_rows([&](int at) { return seen_in_runs<3>(cell, runs, offsets, at, count); });
+    case 4: return of_rows([&](int at) { return seen_in_runs<4>(cell, runs, offsets, at, count); });
+    default:
+      return of_rows([&](int at) { return seen_by_ray(cell, runs, end, offsets, at, count); });
+  }
 }
 
 SOFTFOCUS_INLINE void add_to_sums(const CellWork& cell, int at, int count, const Colours& means) {
@@ -468,17 +370,27 @@ SOFTFOCUS_INLINE void add_to_sums(const CellWork& cell, int at, int count, const
 
 void spread_cell(const CellWork& cell) {
   const float share = 1.0f / static_cast<float>(cell.rays);
-  for (int y = 0; y < cell.rows; ++y) {
-    for (int x = 0; x < cell.width; x += kLanes) {
-      const int count = cell.width - x;
-      const int at = y * kSpreadStride + x;
-      Colours sum = seen_by_ray(cell, cell.offsets, at, count);
-      for (int ray = 1; ray < cell.rays; ++ray) {
-        const Colours seen =
-            seen_by_ray(cell, cell.offsets + std::ptrdiff_t{ray} * kSpreadLevels, at, count);
-        sum = {sum.r + seen.r, sum.g + seen.g, sum.b + seen.b};
+  // -0 + a is a, of either sign.
+  const Floats none = splat(-0.0f);
+  for (int x = 0; x < cell.width; x += kLanes) {
+    const int count = cell.width - x;
+    Colours sums[kCellHeight];
+    for (int y = 0; y < cell.rows; ++y) sums[y] = {none, none, none};
+    if (cell.runs->all_certain) {
+      for (int y = 0; y < cell.rows; ++y) {
+        const float* from = cell.colours + y * kSpreadStride + x;
+        Colours sum = sums[y];
+        for (int ray = 0; ray < cell.rays; ++ray) {
+          add(sum, load_colours(from + cell.runs->runs[static_cast<std::size_t>(ray)].offset));
+        }
+        sums[y] = sum;
       }
-      add_to_sums(cell, y * kSpreadTile + x, count, {sum.r * share, sum.g * share, sum.b * share});
+    } else {
+      for (int ray = 0; ray < cell.rays; ++ray) add_ray(cell, ray, x, count, sums);
+    }
+    for (int y = 0; y < cell.rows; ++y) {
+      add_to_sums(cell, y * kSpreadTile + x, count,
+                  {sums[y].r * share, sums[y].g * share, sums[y].b * share});
     }
   }
 }

@@ -25,6 +25,7 @@ glm::dvec2 square_point(std::uint32_t index, std::uint32_t series);
 /// A disc of radius 1, or a regular polygon whose corners lie on its edge, one of them up.
 struct ApertureShape {
   int blades = 0;  ///< corners, 3 to kMostBlades; 0: the disc
+  bool operator==(const ApertureShape&) const = default;
 };
 inline constexpr int kMostBlades = 64;
 

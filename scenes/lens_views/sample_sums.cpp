@@ -15,6 +15,9 @@
 namespace softfocus {
 namespace {
 
+// It leaves every number as it is, even -0.
+constexpr double kNoLight = -0.0;
+
 constexpr int kChannels = 4;  // of a pixel, alpha too
 
 std::size_t place_of(const SampleSums& sums, int x, int y) {
@@ -29,15 +32,13 @@ std::size_t place_of(const SampleSums& sums, int x, int y) {
 SampleSums make_sample_sums(int width, int height) {
   SampleSums sums{width, height, 0, (width + kSumTile - 1) / kSumTile, {}};
   const int tiles_y = (height + kSumTile - 1) / kSumTile;
-  sums.totals.resize(place_of(sums, 0, tiles_y * kSumTile));
-  clear_sums(sums);
+  sums.totals.assign(place_of(sums, 0, tiles_y * kSumTile), kNoLight);
   return sums;
 }
 
 void clear_sums(SampleSums& sums) {
   sums.count = 0;
-  // -0 leaves every number as it is, even -0.
-  std::fill(sums.totals.begin(), sums.totals.end(), -0.0);
+  std::fill(sums.totals.begin(), sums.totals.end(), kNoLight);
 }
 
 double* sums_at(SampleSums& sums, int x, int y) {

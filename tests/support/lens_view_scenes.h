@@ -35,7 +35,7 @@ inline Scene square_scene(double depth_m, double size_m) {
   return scene;
 }
 
-/// The square as a lattice of 4 x 4 fields of which every other one is a hole.
+/// The square with 4 x 4 fields. Every other field is a hole.
 inline Scene lattice_scene(double depth_m, double size_m) {
   Scene scene = square_scene(depth_m, size_m);
   // Not along pixels' centres, where rounding decides.

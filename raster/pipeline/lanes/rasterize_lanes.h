@@ -12,10 +12,10 @@
 
 namespace softfocus {
 
-/// Depth-tests the listed triangles of a chunk against a tile, in order, and puts their ids
-/// where they are seen and not discarded; in a tile of several layers, into the layers, of which
-/// those that lie behind move back. Needs an isa with vectors, and for layers a test for less that
-/// writes.
+/// Depth-tests the listed triangles of a chunk against a tile, in order, and writes the ids of
+/// those that are seen and not discarded. In a tile of several layers a triangle's id goes before
+/// the farther ones, and each of these moves back by a layer. Needs an isa with vectors; layers
+/// need the depth test `less` with depth writes.
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DrawCall& draw, const Profile& profile, VisibilityTile& tile);
 

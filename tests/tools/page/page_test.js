@@ -51,7 +51,7 @@ test("what a link has wrong stays at its default", async () => {
 });
 
 test("the lens has the numbers of `softfocus lens`", async () => {
-  const lens_module = await module_of("lens.js");
+  const lens_module = await module_of("lens/lens.js");
   // softfocus lens --focal-length 50 --f-number 2 --focus 1.5 --at 0.5 8
   const lens = { focal_length_mm: 50, f_number: 2, focus_m: 1.5 };
   const film_mm = lens_module.film_height(lens, 40);
@@ -69,7 +69,7 @@ test("the lens has the numbers of `softfocus lens`", async () => {
 });
 
 test("a locked lens sees what its sensor takes in", async () => {
-  const { locked_fov_degrees, nearest_stop } = await module_of("photographer.js");
+  const { locked_fov_degrees, nearest_stop } = await module_of("lens/photographer.js");
   const lens = { focal_length_mm: 50, f_number: 2, focus_m: 1e9 };
   const state = { size: [1024, 512], photo: { on: true, sensor: "full-frame", lock: true } };
   near(locked_fov_degrees({ ...state, size: [512, 512] }, lens), 26.9915);  // 24 mm at 50 mm
@@ -96,7 +96,7 @@ test("the camera turns around its target and never over it", async () => {
 
 test("a command repeats the frame, or there is none", async () => {
   const { first_side, first_state } = await module_of("state.js");
-  const { command_of } = await module_of("hashes.js");
+  const { command_of } = await module_of("panels/hashes.js");
   const side = { ...first_side(), focus: { at: [0.5, 1] }, max_coc_px: 24 };
   assert.strictEqual(
       command_of({ ...first_state(), time: 3 }, side),
@@ -119,14 +119,14 @@ test("the error of a picture without depth of field is that of the pinhole", asy
 });
 
 test("of dropped files the scene is opened, else the model", async () => {
-  const { scene_among } = await module_of("own_files.js");
+  const { scene_among } = await module_of("panels/own_files.js");
   assert.strictEqual(scene_among(["a/b.obj", "b.mtl", "c.OBJ"]), "c.OBJ");
   assert.strictEqual(scene_among(["c.obj", "deep/room.toml"]), "deep/room.toml");
   assert.strictEqual(scene_among(["a.png"]), undefined);
 });
 
 test("radii are read from a line of text", async () => {
-  const { read_radii } = await module_of("methods_table.js");
+  const { read_radii } = await module_of("panels/methods_table.js");
   assert.deepStrictEqual(read_radii("32, 8;8 x -1 2000"), [8, 32]);
 });
 

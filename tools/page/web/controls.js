@@ -2,7 +2,7 @@
 
 import { by_id, element } from "./dom.js";
 import { make_number } from "./numbers.js";
-import { kSensors, kStops, locked_fov_degrees, nearest_stop } from "./photographer.js";
+import { kSensors, kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
 import { kSizes } from "./state.js";
 
 const kSampled = ["accumulation", "filtered-views", "ray-traced"];

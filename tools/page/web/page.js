@@ -1,27 +1,27 @@
 // The page: starts everything and joins it. The state (state.js) is the one truth; controls,
 // pointer and link change it, and everything shown follows from it and from the last frame.
 
-import { make_cases } from "./cases.js";
-import { start_compare_view } from "./compare_view.js";
+import { make_cases } from "./panels/cases.js";
+import { start_compare_view } from "./panels/compare_view.js";
 import { make_controls } from "./controls.js";
 import { announce, by_id, copy_text, element, show_error } from "./dom.js";
 import { kAsked, start_engine } from "./engine.js";
 import { make_frames, picture_key } from "./frames.js";
-import { start_gpu } from "./gpu.js";
-import { show_hash, start_hashes } from "./hashes.js";
+import { start_gpu } from "./panels/gpu.js";
+import { show_hash, start_hashes } from "./panels/hashes.js";
 import { start_keys } from "./keys.js";
-import { lens_numbers, start_lens_view } from "./lens_view.js";
+import { lens_numbers, start_lens_view } from "./lens/lens_view.js";
 import { link_of, read_link, state_to_open, with_link } from "./link.js";
-import { make_methods_table } from "./methods_table.js";
-import { start_own_files } from "./own_files.js";
-import { locked_fov_degrees } from "./photographer.js";
+import { make_methods_table } from "./panels/methods_table.js";
+import { start_own_files } from "./panels/own_files.js";
+import { locked_fov_degrees } from "./lens/photographer.js";
 import { start_pointer } from "./pointer.js";
-import { save_report } from "./report.js";
+import { save_report } from "./panels/report.js";
 import { first_state, make_store, with_scene } from "./state.js";
 import { start_tabs } from "./tabs.js";
 import { start_theme } from "./theme.js";
 import { start_tips } from "./tips.js";
-import { make_truth } from "./truth.js";
+import { make_truth } from "./panels/truth.js";
 import { metres_text, ms_text, three_digits } from "./units.js";
 
 const kFrameMs = 1000 / 30;  // of the animation, at least

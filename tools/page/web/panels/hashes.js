@@ -1,8 +1,8 @@
 // The frame's hash, the command and the file that give the same bits, and all golden hashes
 // against the table that every machine must match.
 
-import { announce, by_id, copy_text, element, save_text, show_error } from "./dom.js";
-import { kBackground } from "./engine.js";
+import { announce, by_id, copy_text, element, save_text, show_error } from "../dom.js";
+import { kBackground } from "../engine.js";
 
 const kSlice = 8;  // golden hashes a request
 

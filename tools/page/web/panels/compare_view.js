@@ -1,6 +1,6 @@
 // One picture or two with a divider: what lies right of it is the second setting's.
 
-import { by_id, paint_pixels } from "./dom.js";
+import { by_id, paint_pixels } from "../dom.js";
 
 export function start_compare_view(store) {
   const canvases = [by_id("canvas-a"), by_id("canvas-b")];

@@ -1,8 +1,8 @@
 // The table of methods and radii: time and error of each, one measurement after the other.
 
-import { announce, by_id, element } from "./dom.js";
-import { kBackground } from "./engine.js";
-import { ms_text } from "./units.js";
+import { announce, by_id, element } from "../dom.js";
+import { kBackground } from "../engine.js";
+import { ms_text } from "../units.js";
 
 /** Radii from a line of text, at most six; empty if it says none. */
 export function read_radii(text) {

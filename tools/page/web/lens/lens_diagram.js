@@ -2,9 +2,9 @@
 // what is behind it in millimetres, and the circle on the film among the pixels. One drawing
 // cannot hold them: film and scene differ by a factor of a thousand.
 
-import { by_id, svg_element } from "./dom.js";
+import { by_id, svg_element } from "../dom.js";
 import { aperture_of, film_height, image_distance } from "./lens.js";
-import { metres_text, millimetres_text, three_digits } from "./units.js";
+import { metres_text, millimetres_text, three_digits } from "../units.js";
 
 const kHeight = 150;  // of each drawing, in CSS pixels
 

@@ -1,8 +1,8 @@
 // Equations 1 to 6 of the thesis, filled with this lens's numbers, and the limits that follow.
 
-import { by_id, element } from "./dom.js";
+import { by_id, element } from "../dom.js";
 import { aperture_of, circle_on_film, image_distance } from "./lens.js";
-import { metres_text, millimetres_text, pixels_text, three_digits } from "./units.js";
+import { metres_text, millimetres_text, pixels_text, three_digits } from "../units.js";
 
 /** "z_f" with its index lowered. */
 function with_indices(text) {

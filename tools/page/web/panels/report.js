@@ -1,8 +1,8 @@
 // The performance report: a text file, as the thesis's simulator writes one.
 
-import { save_text } from "./dom.js";
-import { link_of } from "./link.js";
-import { ms_text } from "./units.js";
+import { save_text } from "../dom.js";
+import { link_of } from "../link.js";
+import { ms_text } from "../units.js";
 
 function statistics(values) {
   const sorted = values.slice().sort((a, b) => a - b);

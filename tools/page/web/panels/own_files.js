@@ -1,6 +1,6 @@
 // The visitor's own scenes: dropped on the page or chosen. They go to the worker and no farther.
 
-import { by_id, element } from "./dom.js";
+import { by_id, element } from "../dom.js";
 
 const kLargestBytes = 512 * 1024 * 1024;
 

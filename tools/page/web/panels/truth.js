@@ -1,9 +1,9 @@
 // The truth: views of the lens, collected in the background for the picture that is shown, until
 // they are enough. It begins anew whenever the picture changes.
 
-import { announce, by_id } from "./dom.js";
-import { kAsked, kBackground } from "./engine.js";
-import { three_digits } from "./units.js";
+import { announce, by_id } from "../dom.js";
+import { kAsked, kBackground } from "../engine.js";
+import { three_digits } from "../units.js";
 
 const kTurnMs = 200;     // of one request, so that input and frames stay quick
 const kShownEvery = 16;  // views between two pictures of the growing truth

@@ -1,7 +1,7 @@
 // The failure cases of `softfocus stress`, each as a scene with its sentence and severity.
 
-import { by_id, element } from "./dom.js";
-import { make_number } from "./numbers.js";
+import { by_id, element } from "../dom.js";
+import { make_number } from "../numbers.js";
 
 /** `open(name, value)` opens a case. `cases` are those of the `scenes` reply. */
 export function make_cases({ cases, open }) {

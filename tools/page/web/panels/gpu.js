@@ -1,10 +1,10 @@
 // Your GPU: WebGL2 draws and filters the shown frame with the project's GLSL, and every value is
 // compared with the module's.
 
-import { by_id, element, paint_pixels, save_text } from "./dom.js";
-import { kAsked, kBackground } from "./engine.js";
-import { frame_request } from "./state.js";
-import { ms_text } from "./units.js";
+import { by_id, element, paint_pixels, save_text } from "../dom.js";
+import { kAsked, kBackground } from "../engine.js";
+import { frame_request } from "../state.js";
+import { ms_text } from "../units.js";
 
 /** What this browser lacks, as a sentence, or "". */
 function missing_here() {
