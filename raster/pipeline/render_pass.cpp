@@ -42,6 +42,22 @@ void clear_targets(const RenderPass& pass, const Rectangle& area) {
   }
 }
 
+// What clear_behind() does to a tile, in the targets.
+void clear_behind(const RenderPass& pass, const Rectangle& area) {
+  const RenderTargets& targets = pass.targets;
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    const std::span<const float> nearest = row<float>(*targets.depth, y);
+    for (int x = area.x_begin; x < area.x_end; ++x) {
+      if (nearest[static_cast<std::size_t>(x)] < *pass.behind_before) continue;
+      const Rectangle pixel{x, y, x + 1, y + 1};
+      for (const LayerTarget& layer : targets.behind) {
+        clear_area(pass, layer.colour, pixel, *pass.clear_colour);
+        clear_area(pass, layer.depth, pixel, glm::vec4{*pass.clear_depth});
+      }
+    }
+  }
+}
+
 // Draws in lanes collect in a VisibilityTile until a scalar draw or the end comes. If they come
 // first, the VisibilityTile clears: it need only clear the pixels that show no triangle.
 class TileDrawing {
@@ -61,6 +77,17 @@ class TileDrawing {
   }
 
   void end() {
+    const bool drops = pass_.behind_before && has_layers(pass_.targets);
+    assert(!drops || (pass_.clear_colour && pass_.clear_depth));
+    if (has_begun_ && drops) {
+      softfocus::clear_behind(*memory_, *pass_.behind_before, *pass_.clear_depth);
+      // Earlier triangles may have been shaded there: of these layers only what was dropped has
+      // nothing to show.
+      if (is_cleared_) clear_unseen(pass_.isa, *memory_, *pass_.clear_colour, pass_.profile);
+    } else if (drops) {
+      clear();
+      clear_behind(pass_, area_);
+    }
     leave_lanes(pass_.keep_depth);
     clear();
   }

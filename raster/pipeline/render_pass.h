@@ -38,6 +38,9 @@ struct RenderPass {
   /// A pass that peels has both or none.
   std::optional<glm::vec4> clear_colour = {};
   std::optional<float> clear_depth = {};
+  /// In a pass that peels and clears: the layers behind the first are wanted only where the first's
+  /// depth is less than this. Elsewhere they are clear, and not shaded.
+  std::optional<float> behind_before = {};
   /// Whether depths are wanted after finish(). If not, the depth buffer may hold anything then.
   bool keep_depth = true;
   /// The vector unit of draws in lanes.

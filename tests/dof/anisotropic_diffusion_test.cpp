@@ -8,6 +8,7 @@
 
 #include "dof/methods/anisotropic_diffusion.h"
 #include "raster/images/texel.h"
+#include "tests/support/method_checks.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -15,20 +16,8 @@ using namespace softfocus;
 namespace {
 
 void check_oracle(const Image& scene, float max_coc, const PixelCoc& lens = {40.0f, 2.0f}) {
-  const DofInput input{scene, {.coc = lens, .max_coc_px = max_coc}, {}};
-  ThreadPool any(1);
-  Image expected = make_image(scene.format, scene.width, scene.height);
-  anisotropic_diffusion_oracle(input, expected, any);
-  for (const Isa isa : available_isas()) {
-    for (const int threads : {1, 2, 3}) {
-      ThreadPool pool(threads, isa);
-      Image result = random_scene_image(scene.width, scene.height, 99);
-      anisotropic_diffusion(input, result, pool);
-      INFO(std::string{isa_name(isa)}, " on ", threads, " threads, ", scene.width, "x",
-           scene.height, ", max_coc ", max_coc);
-      CHECK(equal(result, expected));
-    }
-  }
+  test::check_oracle(anisotropic_diffusion, anisotropic_diffusion_oracle,
+                     DofInput{scene, {.coc = lens, .max_coc_px = max_coc}, {}});
 }
 
 // 12 (z - 2) / z is `radius` at 2 / (1 - radius / 12) metres.

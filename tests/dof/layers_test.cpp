@@ -12,6 +12,7 @@
 #include "dof/scatter/layer_planes.h"
 #include "dof/scatter/tile_reach.h"
 #include "raster/images/texel.h"
+#include "tests/support/method_checks.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -222,23 +223,9 @@ TEST_CASE("tiles that discs can touch are all those within their reach") {
 }
 
 TEST_CASE("a blurred edge of a near layer is soft on both sides, over a background filled in") {
-  ThreadPool pool(2);
-  // Black at radius -10 before a white wall: in focus, then behind the focus.
-  for (const float wall_m : {2.0f, 4.0f}) {
-    const Image scene = grey_depth_picture(128, 64, [&](int x, int) {
-      return x < 64 ? std::pair{0.0f, 1.0f} : std::pair{1.0f, wall_m};
-    });
-    const DofSettings settings{.coc = {10.0f, 2.0f}, .max_coc_px = 16.0f};
-    const Image result = filtered(scene, settings, pool);
-    for (int x = 0; x < 128; ++x) {
-      // The part of a disc about x on the left of the edge.
-      const double apart = std::clamp((x - 63.5) / 10.0, -1.0, 1.0);
-      const double black =
-          (std::acos(apart) - apart * std::sqrt(1.0 - apart * apart)) / 3.14159265358979;
-      INFO("wall at ", wall_m, " m, x ", x);
-      CHECK(std::fabs(load_texel(result, x, 32).x - (1.0 - black)) < 0.02);
-    }
-  }
+  test::check_soft_near_edge(
+      [](const DofInput& input, Image& result, ThreadPool& pool) { layers(input, result, pool); },
+      0.02);
 }
 
 TEST_CASE("a near slope lets nothing through, nor does a near thing at the border") {

@@ -8,6 +8,7 @@
 #include "dof/mipmap/mip_ladder.h"
 #include "dof/mipmap/mipmap.h"
 #include "raster/images/texel.h"
+#include "tests/support/method_checks.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -24,20 +25,8 @@ Image filtered(const Image& scene, float max_coc, const PixelCoc& lens = kLens) 
 }
 
 void check_oracle(const Image& scene, float max_coc, const PixelCoc& lens = kLens) {
-  const DofInput input{scene, {.coc = lens, .max_coc_px = max_coc}, {}};
-  ThreadPool any(1);
-  Image expected = make_image(scene.format, scene.width, scene.height);
-  mipmap_oracle(input, expected, any);
-  for (const Isa isa : available_isas()) {
-    for (const int threads : {1, 2, 3}) {
-      ThreadPool pool(threads, isa);
-      Image result = random_scene_image(scene.width, scene.height, 99);
-      mipmap(input, result, pool);
-      INFO(std::string{isa_name(isa)}, " on ", threads, " threads, ", scene.width, "x",
-           scene.height, ", max_coc ", max_coc);
-      CHECK(equal(result, expected));
-    }
-  }
+  test::check_oracle(mipmap, mipmap_oracle,
+                     DofInput{scene, {.coc = lens, .max_coc_px = max_coc}, {}});
 }
 
 }  // namespace

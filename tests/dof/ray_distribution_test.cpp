@@ -14,6 +14,7 @@
 #include "dof/picture_planes.h"
 #include "dof/ray_distribution/behind.h"
 #include "raster/images/texel.h"
+#include "tests/support/method_checks.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -190,22 +191,9 @@ TEST_CASE("a flat picture hides nothing") {
 }
 
 TEST_CASE("a ray distribution buffer blurs a near edge on both sides") {
-  ThreadPool pool(2);
-  // Black at radius -10 before a white wall: in focus, then behind the focus.
-  for (const float wall_m : {2.0f, 4.0f}) {
-    const Image scene = grey_depth_picture(128, 64, [&](int x, int) {
-      return x < 64 ? std::pair{0.0f, 1.0f} : std::pair{1.0f, wall_m};
-    });
-    const DofSettings settings{.coc = {10.0f, 2.0f}, .max_coc_px = 16.0f};
-    const Image result = filtered(scene, settings, pool);
-    for (int x = 0; x < 128; ++x) {
-      const double apart = std::clamp((x - 63.5) / 10.0, -1.0, 1.0);
-      const double black =
-          (std::acos(apart) - apart * std::sqrt(1.0 - apart * apart)) / 3.14159265358979;
-      INFO("wall at ", wall_m, " m, x ", x);
-      CHECK(std::fabs(load_texel(result, x, 32).x - (1.0 - black)) < 0.03);
-    }
-  }
+  test::check_soft_near_edge([](const DofInput& input, Image& result,
+                                ThreadPool& pool) { ray_distribution(input, result, pool); },
+                             0.03);
 }
 
 TEST_CASE("a near slope hides what is behind it, and has no gaps") {

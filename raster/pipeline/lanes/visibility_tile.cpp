@@ -65,6 +65,17 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
   }
 }
 
+void clear_behind(VisibilityTile& tile, float before, float clear_depth) {
+  for (std::size_t number = 1; number < tile.layers; ++number) {
+    TileLayer& layer = tile.layer(number);
+    for (std::size_t i = 0; i < kTilePixels; ++i) {
+      const bool is_kept = tile.front.depth[i] < before;
+      layer.ids[i] = is_kept ? layer.ids[i] : 0;
+      layer.depth[i] = is_kept ? layer.depth[i] : clear_depth;
+    }
+  }
+}
+
 void end_tile(const VisibilityTile& tile, const RenderTargets& targets) {
   const Rectangle& area = tile.area;
   for (std::size_t i = 0; i < tile.layers; ++i) {

@@ -71,6 +71,8 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
 void shade_tile(const VisibilityTile& tile);
 /// Forgets the triangles and keeps the depths.
 void forget_seen(VisibilityTile& tile);
+/// Leaves nothing, at `clear_depth`, behind pixels whose nearest depth is not less than `before`.
+void clear_behind(VisibilityTile& tile, float before, float clear_depth);
 /// Writes the tile's depths to the buffers.
 void end_tile(const VisibilityTile& tile, const RenderTargets& targets);
 

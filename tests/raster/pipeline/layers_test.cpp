@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -70,7 +71,7 @@ struct DrawnLayers {
 
 template <class Stage>
 DrawnLayers peeled(const std::vector<VertexOutput<4>>& vertices, std::size_t layers, Stage stage,
-                   int threads = 1) {
+                   int threads = 1, std::optional<float> behind_before = {}) {
   DrawnLayers drawn;
   for (std::size_t i = 0; i < layers; ++i) {
     drawn.colour.push_back(make_image(Format::rgba16f, kLayersWidth, kLayersHeight));
@@ -84,6 +85,7 @@ DrawnLayers peeled(const std::vector<VertexOutput<4>>& vertices, std::size_t lay
   }
   pass.clear_colour = glm::vec4{kLayersClear};
   pass.clear_depth = 1.0f;
+  pass.behind_before = behind_before;
   const std::vector<std::uint32_t> indices = test::indices_up_to(vertices.size());
   draw(pass, both_sides(), indices, static_cast<std::uint32_t>(vertices.size()),
        test::ListedVertices<4>{&vertices}, stage);
@@ -171,6 +173,27 @@ TEST_CASE("layers: behind the last fragment lies the cleared colour, in all that
   for (const Image& layer : none.colour) {
     CHECK(load_texel(layer, 3, 3) == glm::vec4{kLayersClear});
   }
+}
+
+TEST_CASE("layers: behind what is not before a depth lies the cleared colour, if so wanted") {
+  const auto triangles = stacked_triangles(40, 10);
+  const DrawnLayers some = peeled(triangles, 3, HoledColour<false>{}, 1, 0.5f);
+  DrawnLayers expected = peeled(triangles, 3, HoledColour<false>{});
+  int kept = 0, dropped = 0;
+  for (int y = 0; y < kLayersHeight; ++y) {
+    for (int x = 0; x < kLayersWidth; ++x) {
+      const auto at = static_cast<std::size_t>(x);
+      const bool is_kept = row<float>(expected.depth[0], y)[at] < 0.5f;
+      ++(is_kept ? kept : dropped);
+      for (std::size_t i = 1; i < 3 && !is_kept; ++i) {
+        store_texel(expected.colour[i], x, y, glm::vec4{kLayersClear}, {});
+        row<float>(expected.depth[i], y)[at] = 1.0f;
+      }
+    }
+  }
+  CHECK(kept > 100);
+  CHECK(dropped > 100);
+  check_equal(some, expected);
 }
 
 TEST_CASE("layers: a pass that peels takes no draw that blends, masks, or tests for more") {

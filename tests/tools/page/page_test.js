@@ -10,7 +10,7 @@ const { pathToFileURL } = require("url");
 // The page's files are modules by where they are used; node asks for a package that says so.
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-page-"));
 const web = path.join(__dirname, "../../../tools/page/web");
-for (const name of fs.readdirSync(web)) fs.copyFileSync(path.join(web, name), path.join(folder, name));
+fs.cpSync(web, folder, { recursive: true });
 fs.writeFileSync(path.join(folder, "package.json"), '{"type": "module"}');
 const module_of = (name) => import(pathToFileURL(path.join(folder, name)));
 
