@@ -5,6 +5,7 @@
 
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/interrupts.h"
 #include "tools/cli/platform.h"
 #include "tools/render/options.h"
 
@@ -71,5 +72,6 @@ int run(std::vector<std::string> arguments) {
 
 int main(int argc, char** argv) {
   softfocus::prepare_process();
+  softfocus::prepare_interrupts();
   return softfocus::run({argv + 1, argv + argc});
 }

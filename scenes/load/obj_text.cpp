@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "scenes/load/decimal.h"
 #include "scenes/load/scene_error.h"
@@ -166,6 +168,8 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
   FaceState state;
   std::vector<std::size_t> face_lines;
   Tolerated short_faces, wild_uvs, missing_uvs;
+  std::unordered_map<std::string, std::int32_t> number_of_material;
+  std::unordered_set<std::string> known_libraries;
   std::string joined;
   std::size_t lines_read = 0;
   while (!text.empty()) {
@@ -197,11 +201,13 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
       face_lines.push_back(place.line);
     } else if (keyword == "usemtl") {
       const std::string name{trimmed(line)};
-      const auto found = std::find(obj.material_names.begin(), obj.material_names.end(), name);
-      state.material = static_cast<std::int32_t>(found - obj.material_names.begin());
-      if (found == obj.material_names.end()) obj.material_names.push_back(name);
+      const auto [entry, is_new] =
+          number_of_material.emplace(name, static_cast<std::int32_t>(obj.material_names.size()));
+      if (is_new) obj.material_names.push_back(name);
+      state.material = entry->second;
     } else if (keyword == "mtllib") {
-      obj.libraries.emplace_back(trimmed(line));
+      const std::string library{trimmed(line)};
+      if (known_libraries.insert(library).second) obj.libraries.push_back(library);
     } else if (keyword == "s") {
       const std::string_view group = next_word(line);
       state.smoothing_group = 0;  // for `off` too

@@ -32,7 +32,21 @@ Object read_placement(Section& section) {
   return object;
 }
 
-std::uint32_t add_mesh(Scene& scene, Mesh mesh) {
+// Of all meshes of a scene: a gigabyte, and more than a picture has pixels.
+constexpr std::size_t kMostTriangles = 25'000'000;
+
+void check_triangles(const Section& section, const Scene& scene, const Mesh& next) {
+  std::size_t count = next.indices.size() / 3;
+  for (const Mesh& mesh : scene.meshes) count += mesh.indices.size() / 3;
+  if (count <= kMostTriangles) return;
+  fail_at(section, "shape",
+          "with this one the scene's meshes have " + std::to_string(count) +
+              " triangles; fewer segments, rings or cells would do, for up to " +
+              std::to_string(kMostTriangles));
+}
+
+std::uint32_t add_mesh(const Section& section, Scene& scene, Mesh mesh) {
+  check_triangles(section, scene, mesh);
   scene.meshes.push_back(std::move(mesh));
   return static_cast<std::uint32_t>(scene.meshes.size() - 1);
 }
@@ -60,7 +74,7 @@ void read_object(Section& section, const std::filesystem::path& directory,
   if (is_model(section)) return read_model(section, directory, surfaces, scene);
   Object object = read_placement(section);
   object.material = read_material_key(section, surfaces);
-  object.mesh = add_mesh(scene, read_shape(section));
+  object.mesh = add_mesh(section, scene, read_shape(section));
   scene.objects.push_back(object);
 }
 
@@ -117,7 +131,7 @@ void read_balls(Section& section, const NamedSurfaces& surfaces, std::vector<Bal
   // Of a sequence of its own, so that turning moves nothing.
   RandomSequence random{mix_bits(rule.seed)};
   Object object;
-  object.mesh = add_mesh(scene, std::move(mesh));
+  object.mesh = add_mesh(section, scene, std::move(mesh));
   for (const Ball& ball : *balls) {
     object.position = ball.centre;
     object.scale = glm::dvec3{ball.radius / mesh_radius};

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <bit>
+#include <limits>
+#include <optional>
+#include <set>
 
 #include "scenes/load/texture_file.h"
 #include "scenes/make/opacity_texture.h"
@@ -17,7 +20,41 @@ constexpr int kMaxProceduralSize = 2048;
 constexpr std::array<std::string_view, 3> kFilters = {"nearest", "bilinear", "trilinear"};
 constexpr std::array<std::string_view, 3> kWraps = {"repeat", "mirrored_repeat", "clamp_to_edge"};
 
-Texture read_procedural_texture(Section& section) {
+// Of a texture that no object shows: it is checked, and not made.
+constexpr std::uint32_t kNotMade = std::numeric_limits<std::uint32_t>::max();
+
+// Materials that objects name, and the textures that these name, as far as both are texts.
+struct UsedNames {
+  std::set<std::string> materials;
+  std::set<std::string> textures;
+};
+
+void add_text(const toml::node_view<const toml::node>& node, std::set<std::string>& names) {
+  if (const auto text = node.value<std::string>()) names.insert(*text);
+}
+
+UsedNames used_names(const Section& top) {
+  UsedNames used;
+  const toml::table& file = *top.table;
+  const auto for_each_table = [](const toml::array* array, const auto& visit) {
+    if (array == nullptr) return;
+    for (const toml::node& entry : *array) visit(toml::node_view{entry});
+  };
+  for_each_table(file["object"].as_array(),
+                 [&](const auto& object) { add_text(object["material"], used.materials); });
+  for_each_table(file["scatter"].as_array(), [&](const auto& scatter) {
+    for_each_table(scatter["materials"].as_array(),
+                   [&](const auto& name) { add_text(name, used.materials); });
+  });
+  for (const std::string& name : used.materials) {
+    const toml::node_view material = file["material"][name];
+    add_text(material["texture"], used.textures);
+    add_text(material["opacity_texture"], used.textures);
+  }
+  return used;
+}
+
+std::optional<Texture> read_procedural_texture(Section& section, bool is_used) {
   std::vector<std::string_view> names;
   for (const TexturePattern& pattern : texture_patterns()) names.push_back(pattern.name);
   const TexturePattern& pattern = texture_patterns()[read_choice(section, "kind", 0, names)];
@@ -42,18 +79,22 @@ Texture read_procedural_texture(Section& section) {
                 std::string(pattern.colours) + "), each [red, green, blue] from 0 to 1");
   }
   for (const auto& row : rows) recipe.colours.emplace_back(glm::dvec3{row[0], row[1], row[2]});
+  if (!is_used) return std::nullopt;
   return make_procedural_texture(pattern, recipe);
 }
 
-Texture read_texture(Section& section, const std::filesystem::path& directory, Scene& scene) {
+std::optional<Texture> read_texture(Section& section, const std::filesystem::path& directory,
+                                    bool is_used, Scene& scene) {
   const bool has_kind = has_key(section, "kind");
   const bool has_file = has_key(section, "file");
   if (has_kind == has_file) {
     fail_at(section, has_kind ? "file" : "",
             "a texture has either a `kind` (made by formula) or a `file` (PNG or JPEG)");
   }
-  if (has_kind) return read_procedural_texture(section);
+  if (has_kind) return read_procedural_texture(section, is_used);
+  // Used or not, no picture may be written over it.
   scene.files.push_back(directory / read_text(section, "file", ""));
+  if (!is_used) return std::nullopt;
   return load_texture(scene.files.back());
 }
 
@@ -78,6 +119,10 @@ void read_opacity(Section& section, NamedSurfaces& surfaces, Scene& scene, Mater
     return;
   }
   const auto named = texture_named(section, "opacity_texture", surfaces);
+  if (named.index == kNotMade) {
+    read_flag(section, "cut_out", false);
+    return;
+  }
   const auto [entry, is_new] = surfaces.opacity_of_texture.emplace(
       named.index, static_cast<std::uint32_t>(scene.textures.size()));
   if (is_new) {
@@ -103,7 +148,7 @@ Material read_material(Section& section, const std::string& name, NamedSurfaces&
   material.lit = read_flag(section, "lit", material.lit);
   if (has_key(section, "texture")) {
     const auto named = texture_named(section, "texture", surfaces);
-    material.texture = named.index;
+    if (named.index != kNotMade) material.texture = named.index;
     material.sampler = named.sampler;
   }
   read_opacity(section, surfaces, scene, material);
@@ -120,16 +165,20 @@ NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory
             "has " + std::to_string(textures.size()) + " textures; up to " +
                 std::to_string(kMaxTextures) + " would do");
   }
+  const UsedNames used = used_names(top);
   for (auto& [name, section] : textures) {
     Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
     sampler.filter = static_cast<Filter>(
         read_choice(section, "filter", static_cast<std::size_t>(sampler.filter), kFilters));
     sampler.wrap_u = sampler.wrap_v = static_cast<Wrap>(
         read_choice(section, "wrap", static_cast<std::size_t>(sampler.wrap_u), kWraps));
-    Texture texture = read_texture(section, directory, scene);
+    std::optional<Texture> texture =
+        read_texture(section, directory, used.textures.contains(name), scene);
     finish_section(section);
-    surfaces.textures[name] = {static_cast<std::uint32_t>(scene.textures.size()), sampler};
-    scene.textures.push_back(std::move(texture));
+    surfaces.textures[name] = {kNotMade, sampler};
+    if (!texture) continue;
+    surfaces.textures[name].index = static_cast<std::uint32_t>(scene.textures.size());
+    scene.textures.push_back(std::move(*texture));
   }
   for (auto& [name, section] : read_named_sections(top, "material")) {
     Material material = read_material(section, name, surfaces, scene);

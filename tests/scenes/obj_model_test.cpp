@@ -342,3 +342,14 @@ TEST_CASE("a model of 100,000 triangles keeps its triangles and shares its verti
   CHECK(model.parts[0].mesh.indices.size() == 3 * 2 * kSide * kSide);
   CHECK(model.parts[0].mesh.positions.size() == (kSide + 1) * (kSide + 1));
 }
+
+TEST_CASE("a library that is named again is not read again, and a material keeps its number") {
+  const ObjText obj =
+      parse(std::string("mtllib a.mtl\nmtllib b.mtl\nmtllib a.mtl\n") + std::string(kTriangle) +
+            "usemtl x\nf 1 2 3\nusemtl y\nf 1 2 3\nusemtl x\nf 2 3 1\n");
+  CHECK(obj.libraries == std::vector<std::string>{"a.mtl", "b.mtl"});
+  CHECK(obj.material_names == std::vector<std::string>{"x", "y"});
+  CHECK(obj.faces[0].material == 0);
+  CHECK(obj.faces[1].material == 1);
+  CHECK(obj.faces[2].material == 0);
+}

@@ -108,6 +108,9 @@ shininess = 100
 texture = "t"
 two_sided = true
 lit = false
+[[object]]
+shape = "cube"
+material = "b"
 )");
   REQUIRE(scene.materials.size() == 2);
   CHECK(scene.materials[0].ambient == glm::vec3{0.1f, 0.2f, 0.3f});
@@ -167,7 +170,8 @@ TEST_CASE("a material may have an opacity, and a texture for it") {
       "colours = [[1, 1, 1], [0, 0, 0]]\n"
       "[material.a]\n[material.b]\nopacity = 0.25\nopacity_texture = \"holes\"\n"
       "[material.c]\nopacity_texture = \"holes\"\n"
-      "[material.d]\nopacity_texture = \"holes\"\ncut_out = true\n");
+      "[material.d]\nopacity_texture = \"holes\"\ncut_out = true\n"
+      "[[object]]\nshape = \"cube\"\nmaterial = \"b\"\n");
   REQUIRE(scene.textures.size() == 2);
   CHECK(scene.materials[0].opacity == 1.0f);
   CHECK_FALSE(scene.materials[0].opacity_texture);
@@ -378,7 +382,9 @@ TEST_CASE("a texture is made by formula or read from a file") {
   CHECK(contains(complaint("[texture.t]\n"), "a.toml:1: texture.t: a texture has either"));
   CHECK(contains(complaint("[texture.t]\nkind = \"dots\"\nfile = \"x.png\"\n"),
                  "texture.t.file: a texture has either"));
-  CHECK(contains(complaint("[texture.t]\nfile = \"none.png\"\n"), "none.png: no such file"));
+  CHECK(contains(complaint("[texture.t]\nfile = \"none.png\"\n[material.m]\ntexture = \"t\"\n"
+                           "[[object]]\nmaterial = \"m\"\n"),
+                 "none.png: no such file"));
   CHECK(contains(
       complaint("[texture.t]\nfile = \"none.png\"\nfilter = \"cubic\"\n"),
       "texture.t.filter: there is no \"cubic\"; there are nearest, bilinear and trilinear"));
@@ -408,6 +414,29 @@ TEST_CASE("absurd sizes are errors before any memory is taken for them") {
   std::string many;
   for (int i = 0; i < 65; ++i) many += "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n";
   CHECK(contains(complaint(many), "light: has 65 lights; up to 64 would do"));
+}
+
+TEST_CASE("more triangles than a scene may have are an error that names the object") {
+  std::string text{kMaterial};
+  for (int i = 0; i < 20; ++i) {
+    text += "[[object]]\nmaterial = \"m\"\nshape = \"sphere\"\nsegments = 1024\nrings = 1024\n";
+  }
+  const std::string said = complaint(text);
+  CHECK(said.starts_with("a.toml:"));
+  CHECK(said.find("fewer segments") != said.npos);
+}
+
+TEST_CASE("a texture that no object shows is checked, but neither made nor loaded") {
+  const std::string unused =
+      "[texture.t]\nfile = \"missing.png\"\n[material.n]\ntexture = \"t\"\n" +
+      object("shape = \"cube\"\n");
+  const Scene scene = read(unused);
+  CHECK(scene.textures.empty());
+  CHECK(scene.files.size() == 1);
+  CHECK(complaint("[texture.t]\nfiel = \"missing.png\"\n") != "");
+  CHECK(complaint("[texture.t]\nfile = \"missing.png\"\n[material.m]\ntexture = \"t\"\n"
+                  "[[object]]\nmaterial = \"m\"\nshape = \"cube\"\n")
+            .find("missing.png") != std::string::npos);
 }
 
 TEST_CASE("a name with a line end or a terminal sequence in it cannot spoil the complaint") {

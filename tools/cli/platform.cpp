@@ -20,6 +20,7 @@
 #endif
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 
 namespace softfocus {
@@ -82,6 +83,8 @@ std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes) {
   return ::_write(descriptor, bytes.data(), size);
 }
 
+bool sync_file(int descriptor) { return ::_commit(descriptor) == 0; }
+
 bool close_file(int descriptor) { return ::_close(descriptor) == 0; }
 
 #else
@@ -119,6 +122,10 @@ bool may_write(const std::filesystem::path& file) { return ::access(file.c_str()
 
 std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes) {
   return ::write(descriptor, bytes.data(), std::min(bytes.size(), kLargestWrite));
+}
+
+bool sync_file(int descriptor) {
+  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS;
 }
 
 bool close_file(int descriptor) { return ::close(descriptor) == 0; }

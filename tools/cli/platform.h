@@ -39,6 +39,10 @@ bool may_write(const std::filesystem::path& file);
 /// Writes some of the bytes, at least one, and returns how many; -1 with errno set.
 std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes);
 
+/// Waits until what was written is on the disk; false with errno set if it is lost. True where
+/// the file system knows no such thing.
+bool sync_file(int descriptor);
+
 /// Closes a descriptor; false with errno set if what was written is lost.
 bool close_file(int descriptor);
 

@@ -87,6 +87,7 @@ WholeFile::WholeFile(const std::filesystem::path& target) : shown_(target), targ
       fail(error);
     }
   }
+  removed_.emplace(temporary_);
   // Best effort: some file systems know no permissions.
   std::error_code ignored;
   if (is_there) std::filesystem::permissions(temporary_, status.permissions(), ignored);
@@ -96,6 +97,7 @@ WholeFile::~WholeFile() {
   if (descriptor_ >= 0) close_file(descriptor_);
   std::error_code ignored;
   if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
+  removed_.reset();
 }
 
 void WholeFile::fail(int error) const { refuse(shown_, error); }
@@ -113,6 +115,9 @@ void WholeFile::write(std::string_view text) {
 }
 
 void WholeFile::commit() {
+  // A file has its name only when its bytes are on the disk: a crash between the two would leave a
+  // file that is neither the old nor the new one.
+  if (!temporary_.empty() && !sync_file(descriptor_)) fail(errno);
   // Some file systems report a full disk only here.
   if (!close_file(std::exchange(descriptor_, -1))) fail(errno);
   if (temporary_.empty()) return;
@@ -120,6 +125,7 @@ void WholeFile::commit() {
   std::filesystem::rename(temporary_, target_, error);
   if (error) fail(error.default_error_condition().value());
   temporary_.clear();
+  removed_.reset();
 }
 
 void check_writable(const std::filesystem::path& target) {

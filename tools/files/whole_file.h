@@ -1,11 +1,14 @@
 #pragma once
 // A file that appears whole or not at all: the bytes go into a temporary file beside
-// it, which takes its name at the end.
+// it, which takes its name at the end. An interrupt removes it.
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
+
+#include "tools/cli/interrupts.h"
 
 namespace softfocus {
 
@@ -33,6 +36,7 @@ class WholeFile {
   std::filesystem::path shown_;      // as the user named it
   std::filesystem::path target_;     // with links followed
   std::filesystem::path temporary_;  // empty: written to directly, or committed
+  std::optional<RemovedByInterrupt> removed_;
   int descriptor_ = -1;
 };
 
