@@ -17,9 +17,9 @@ struct ErrorModel {
   float always = 0.0f;      ///< the error of a good picture
   float fine = 0.0f;        ///< of `blurred` for the least radius
   float blurred = 0.0f;     ///< of blurred; without a radius, of blur
-  float lost = 0.0f;        ///< of lost
-  float near_edges = 0.0f;  ///< of near_edges
-  float far_edges = 0.0f;   ///< of far_edges
+  float lost = 0.0f;        ///< of lost; without a radius, of the last
+  float near_edges = 0.0f;  ///< of near_edges, likewise
+  float far_edges = 0.0f;   ///< of far_edges, likewise
   float ghosts = 0.0f;      ///< of ghosts
 };
 

@@ -35,6 +35,8 @@ constexpr int kMostFilters = 4;
 // scenes, against 2,048 views: .31 to .61 for 64 to 256 views.
 constexpr double kHalvesToWhole = 0.62;
 
+bool is_accumulation(const AutoMethod& choice) { return choice.method == "accumulation"; }
+
 class Work {
  public:
   Work(const AutoInput& input, ThreadPool& pool)
@@ -47,7 +49,7 @@ class Work {
     for (;;) {
       AutoPicture result = draw(choice);
       if (!is_checked(choice)) return result;
-      if (choice.samples > 0) return result;  // doubled until it was enough
+      if (is_accumulation(choice)) return result;  // doubled until it was enough
       result.measured_error = check(result.picture, result.choice);
       if (result.choice.meets_goal || !step_up(result, choice)) return result;
     }
@@ -75,7 +77,7 @@ class Work {
   }
 
   AutoPicture draw(const AutoMethod& choice) {
-    if (choice.samples > 0) return draw_views(choice);
+    if (is_accumulation(choice)) return draw_views(choice);
     tell(AutoStage::filtering);
     AutoPicture result;
     result.choice = choice;
@@ -118,7 +120,7 @@ class Work {
   AutoMethod with_twice_the_samples(const AutoMethod& choice) const {
     const std::vector<AutoMethod> choices = open_choices(traits_, input_.limits);
     const auto twice = std::find_if(choices.begin(), choices.end(), [&](const AutoMethod& other) {
-      return other.samples == 2 * choice.samples;
+      return is_accumulation(other) && other.samples == 2 * choice.samples;
     });
     assert(twice != choices.end());  // kSampleCounts doubles
     AutoMethod found = *twice;
@@ -201,17 +203,19 @@ class Work {
     const std::vector<AutoMethod> choices = open_choices(traits_, input_.limits);
     for (const AutoMethod& other : choices) {
       if (other.predicted_ms <= choice.predicted_ms) continue;
-      if (other.samples == 0 &&
+      if (!is_accumulation(other) &&
           (rejected_ >= kMostFilters || other.predicted_error >= choice.predicted_error)) {
         continue;
       }
-      const double expected = other.predicted_error * (other.samples == 0 ? excess : 1.0);
+      const double expected = other.predicted_error * (is_accumulation(other) ? 1.0 : excess);
       if (expected > input_.goal.max_error) continue;
       if (next == nullptr || other.predicted_ms < next->predicted_ms) next = &other;
     }
     // No prediction is within the limit: views of the lens get there by doubling.
     for (std::size_t i = choices.size(); next == nullptr && i-- > 0;) {
-      if (choices[i].samples > 0 && choices[i].samples <= kViewsToBeginWith) next = &choices[i];
+      if (is_accumulation(choices[i]) && choices[i].samples <= kViewsToBeginWith) {
+        next = &choices[i];
+      }
     }
     if (next == nullptr) return false;
     const std::string why = result.choice.reason + ", so " + setting_text(*next) + " was taken";
@@ -242,9 +246,12 @@ bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal) {
 
 Image picture_of(const AutoMethod& choice, const LensViewInput& views, DofSettings settings,
                  ThreadPool& pool) {
-  assert(choice.samples == 0);
+  assert(!is_accumulation(choice));
   if (const LensViewMethod* of_scene = find_lens_view_method(choice.method)) {
-    return of_scene->render(views, pool).picture;
+    LensViewInput of_choice = views;
+    of_choice.sampling.samples = std::max(choice.samples, 1);
+    of_choice.prepared = nullptr;  // which the first to draw takes, and others may follow
+    return of_scene->render(of_choice, pool).picture;
   }
   const Method& filter = *find_method(choice.method);
   settings.max_coc_px = choice.radius_px;

@@ -41,12 +41,12 @@ struct AutoPicture {
 /// is brighter than 1, or the picture has fewer rows than those of the fit.
 bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal);
 
-/// The picture of a choice that takes no samples: a filter's, or of a method that draws the scene.
-/// `settings.max_coc_px` is not looked at.
+/// The picture of a choice other than accumulation. `settings.max_coc_px` and
+/// `views.sampling.samples` are not looked at.
 Image picture_of(const AutoMethod& choice, const LensViewInput& views, DofSettings settings,
                  ThreadPool& pool);
 
-/// A filter's picture is checked on kCheckedTiles tiles, against 16 views of the lens or more. If
+/// A picture of filters or of filtered-views is checked on kCheckedTiles tiles, against 16 views of the lens or more. If
 /// it misses the limit, the next dearer choice that should meet it is taken. An accumulation is
 /// checked in the same way, against four times its views (from 128 samples on 512 views, or twice
 /// its own), and its samples doubled. The same bits on every machine, and the bits that the method

@@ -39,6 +39,7 @@ struct CandidatesOptions {
   std::optional<int> measured_samples;  ///< of the truth
   std::vector<double> errors_asked;     ///< for which auto chooses
   std::filesystem::path table;          ///< in place of auto's own, if not empty
+  std::vector<std::string> only;        ///< methods to list, all if empty
   bool json = false;
   PoolOptions pool;
 };
@@ -89,6 +90,8 @@ struct Measured {
   std::vector<double> flips;
 };
 
+bool is_accumulation(const AutoMethod& choice) { return choice.method == "accumulation"; }
+
 // Beyond kMostFewLensPoints the views that accumulation averages are the truth's first: each such
 // number of samples on the way is measured against the truth once it is there.
 Measured measure(const Subject& subject, std::span<const AutoMethod> choices, int samples,
@@ -102,15 +105,17 @@ Measured measure(const Subject& subject, std::span<const AutoMethod> choices, in
     const int step = sums.count < kLensViewGroup ? kSampleGroup : kLensViewGroup;
     add_lens_views(buffer, input, sums.count, std::min(sums.count + step, samples), sums, pool);
     for (const AutoMethod& choice : choices) {
+      if (!is_accumulation(choice) || choice.samples <= kMostFewLensPoints) continue;
       if (choice.samples != sums.count || sums.count == samples) continue;
-      if (choice.samples <= kMostFewLensPoints) continue;
       on_the_way.emplace_back(sums.count, mean_picture(sums, subject.pinhole, Profile{}, pool));
     }
     if (sums.count == samples / 2) half = sums;
   }
   const Image truth = mean_picture(sums, subject.pinhole, Profile{}, pool);
   for (const AutoMethod& choice : choices) {
-    if (choice.samples <= 0 || choice.samples > std::min(kMostFewLensPoints, samples - 1)) continue;
+    if (!is_accumulation(choice) || choice.samples > std::min(kMostFewLensPoints, samples - 1)) {
+      continue;
+    }
     on_the_way.emplace_back(choice.samples,
                             accumulation(views_of(subject, choice.samples), pool).picture);
   }
@@ -119,10 +124,9 @@ Measured measure(const Subject& subject, std::span<const AutoMethod> choices, in
       mean_flip(mean_picture(half, subject.pinhole, Profile{}, pool),
                 mean_picture(later_samples(half, sums), subject.pinhole, Profile{}, pool), pool);
   for (const AutoMethod& choice : choices) {
-    const auto drawn = std::find_if(on_the_way.begin(), on_the_way.end(), [&](const auto& of) {
-      return choice.samples > 0 && of.first == choice.samples;
-    });
-    if (choice.samples > 0) {
+    if (is_accumulation(choice)) {
+      const auto drawn = std::find_if(on_the_way.begin(), on_the_way.end(),
+                                      [&](const auto& of) { return of.first == choice.samples; });
       measured.flips.push_back(drawn != on_the_way.end()
                                    ? mean_flip(truth, drawn->second, pool)
                                    : std::numeric_limits<double>::quiet_NaN());
@@ -191,6 +195,28 @@ Json taken_json(const Taken& taken) {
           {"reason", taken.choice.reason}};
 }
 
+std::vector<AutoMethod> listed_choices(const CandidatesOptions& options,
+                                       std::vector<AutoMethod> choices) {
+  for (const std::string& name : options.only) {
+    if (std::none_of(choices.begin(), choices.end(),
+                     [&](const AutoMethod& choice) { return choice.method == name; })) {
+      std::string known;
+      for (const AutoMethod& choice : choices) {
+        if (known.ends_with(choice.method)) continue;
+        known += (known.empty() ? "" : ", ") + std::string{choice.method};
+      }
+      throw UsageError("--only '" + name + "': give one of " + known);
+    }
+  }
+  if (!options.only.empty()) {
+    std::erase_if(choices, [&](const AutoMethod& choice) {
+      return std::find(options.only.begin(), options.only.end(), choice.method) ==
+             options.only.end();
+    });
+  }
+  return choices;
+}
+
 int list_candidates(const CandidatesOptions& options) {
   std::vector<Candidate> table;
   if (!options.table.empty()) table = read_candidate_table(options.table);
@@ -199,7 +225,7 @@ int list_candidates(const CandidatesOptions& options) {
   const SceneTraits traits = scene_traits(subject.pinhole, subject.coc, pool);
   AutoLimits limits{.max_radius_px = {}, .triangles = triangle_count(subject.scene)};
   if (!table.empty()) limits.table = table;
-  const std::vector<AutoMethod> choices = open_choices(traits, limits);
+  const std::vector<AutoMethod> choices = listed_choices(options, open_choices(traits, limits));
   const std::vector<Taken> taken = take(subject, options.errors_asked, limits, pool);
   std::optional<Measured> measured;
   if (options.measured_samples) {
@@ -280,6 +306,9 @@ Command add_candidates_command(CLI::App& program) {
                                                      "a mean FLIP from 0 to 1, such as "
                                                      "0.02"));
       });
+  add_repeatable_value(*parser, "--only", "METHOD",
+                       "List and measure this method alone; may be repeated",
+                       [options](const std::string& text) { options->only.push_back(text); });
   add_value(*parser, "--table", "FILE",
             "Coefficients in place of auto's own: JSON, {\"two-pass:8\": [seven numbers], ...}",
             [options](const std::string& text) { options->table = text; });

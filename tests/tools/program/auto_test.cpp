@@ -53,7 +53,8 @@ TEST_CASE("auto: the bytes are those of the method that it says it chose") {
   for (const Case& asked : {Case{"figures", "0.2"},
                             {"figures", "0.02"},
                             {"sphere-world", "0.05"},
-                            {"lattice", "0.02"}}) {
+                            {"lattice", "0.02"},
+                            {"lattice", "0.01"}}) {
     const char* scene = asked.scene;
     const char* error = asked.error;
     CAPTURE(scene);
@@ -73,6 +74,7 @@ TEST_CASE("auto: the bytes are those of the method that it says it chose") {
   CAPTURE(methods);  // or the claim would be about one of them
   CHECK(contains(methods, "pinhole"));
   CHECK(contains(methods, "two-pass"));
+  CHECK(contains(methods, "filtered-views"));
   CHECK(contains(methods, "accumulation"));
 }
 
