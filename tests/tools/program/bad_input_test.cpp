@@ -78,7 +78,7 @@ TEST_CASE("bad input: an unknown name is answered with the names there are") {
                        {"'three-pass'", "pinhole, two-pass, two-pass-single, one-pass"});
   check_option_refused({"--profile", "voodoo"}, {"'voodoo'", "ieee, d3d11, llvmpipe"});
   check_option_refused({"--show", "me"}, {"'me'", "image, pinhole, coc, depth"});
-  check_option_refused({"--format", "gif"}, {"'gif'", "png, pfm, npy"});
+  check_option_refused({"--format", "gif"}, {"'gif'", "png, png-16, pfm, npy"});
   const TemporaryDirectory directory;
   check_refused(directory, {"render", "figurines", "-o", directory.file("out.png")}, 1,
                 {"figurines", "clutter, cube-room, dunes, figures, foliage"});
@@ -151,7 +151,7 @@ TEST_CASE("bad input: an output whose name has no format") {
   const TemporaryDirectory directory;
   for (const std::string name : {"out.jpg", "out", "png"}) {
     check_refused(directory, {"render", "figures", "-o", directory.file(name)}, 2,
-                  {"-o", name, ".png, .pfm or .npy"});
+                  {"-o", name, ".png, .exr, .pfm, .hdr or .npy"});
   }
 }
 
