@@ -271,3 +271,27 @@ TEST_CASE("EXR: a file cut short anywhere is refused") {
     CHECK(refusal(directory.file("a.exr")) != "");
   }
 }
+
+TEST_CASE("EXR: any changed byte is refused or gives a picture") {
+  Image image = make_image(Format::rgba16f, 5, 9);
+  const Bytes whole = encode_exr(image, ExrNumbers::half, "{}");
+  int pictures = 0, refusals = 0;
+  for (std::size_t i = 4; i < whole.size(); ++i) {
+    for (const std::byte change : {std::byte{0x01}, std::byte{0x80}, std::byte{0xFF}}) {
+      CAPTURE(i);
+      Bytes damaged = whole;
+      damaged[i] ^= change;
+      try {
+        const PictureFile file = open_picture_file(std::move(damaged), "a.exr");
+        for (std::size_t plane = 0; plane < file.planes.size(); ++plane) {
+          read_planes(file, {&plane, 1}, 0.0f);
+        }
+        ++pictures;
+      } catch (const FileError&) {
+        ++refusals;
+      }
+    }
+  }
+  CHECK(pictures > 0);
+  CHECK(refusals > pictures);
+}

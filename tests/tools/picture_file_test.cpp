@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -209,8 +210,8 @@ TEST_CASE("JPEG: a picture has the colours of its sRGB numbers") {
   const PictureFile file = open_picture_file(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg");
   CHECK(names(file) == "R, G, B");
   const Picture picture = read_colour(file, colour_layers(file).front(), false);
-  CHECK(load_texel(picture.image, 2, 4).x > 0.9f);
-  CHECK(load_texel(picture.image, 13, 4).z > 0.9f);
+  CHECK(load_texel(picture.image, 2, 4).x > 5.0f * load_texel(picture.image, 2, 4).z);
+  CHECK(load_texel(picture.image, 13, 4).z > 5.0f * load_texel(picture.image, 13, 4).x);
 }
 
 TEST_CASE("a picture that is not read is named, and the program that converts it") {

@@ -1,4 +1,4 @@
-// Radiance HDR (Ward, "Real Pixels", Graphics Gems II): lines of text, an empty one, the size, then
+// Radiance HDR (Ward 1991): lines of text, an empty one, the size, then
 // rows of RGBE: three mantissas of 8 bits with one exponent, in runs for each of the four bytes.
 //
 //   value = mantissa * 2^(exponent - 136), all 0 if the exponent is 0

@@ -1,5 +1,6 @@
 // softfocus refocus: a picture and its depth to a picture with depth of field.
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -35,7 +36,8 @@ void check_outputs(const RefocusOptions& options) {
 }
 
 /// Colours of a file whose alpha is no depth are multiplied by it, if they are not already.
-/// Returns whether anything is transparent.
+/// Returns whether anything is transparent. Alphas beyond 0 and 1, as of a NumPy file that we
+/// wrote, are depths.
 bool multiply_by_alpha(const PictureSources& sources, Image& colour) {
   if (!sources.colour.alpha) return false;
   const std::size_t plane = *sources.colour.alpha;
@@ -43,6 +45,11 @@ bool multiply_by_alpha(const PictureSources& sources, Image& colour) {
   const PictureFile& file = sources.colour_file;
   const PlaneValues alpha = read_planes(file, {&plane, 1}, 0.0f)[0];
   const auto whole = static_cast<float>(full_scale(file.planes[plane].type));
+  const bool is_ours = sources.notes && file.reader == &kNpyReader;
+  if (is_ours || std::any_of(alpha.begin(), alpha.end(),
+                             [&](float value) { return !(value >= 0.0f && value <= whole); })) {
+    return false;
+  }
   const bool is_straight = file.reader != &kExrReader;
   bool found = false;
   std::size_t next = 0;

@@ -21,18 +21,26 @@ glm::vec4 seen_colour(const Image& colour, int x, int y) {
   return seen;
 }
 
-/// The mean colour of the part of the picture that a pixel of the smaller map covers.
+/// The mean colour around the middle of the part of the picture that a pixel of the smaller map
+/// covers: half of its width and height, for its depth is that of its middle.
 std::vector<glm::vec4> colours_of(const DepthMap& map, const Image& colour, ThreadPool& pool) {
   std::vector<glm::vec4> means(map.metres.size());
   pool.for_each(map.height, [&](int y) {
     const auto first_of = [](int i, int small, int large) {
       return static_cast<int>(std::int64_t{i} * large / small);
     };
-    const int y0 = first_of(y, map.height, colour.height);
-    const int y1 = std::max(first_of(y + 1, map.height, colour.height), y0 + 1);
+    const auto middle_of = [](int& first, int& end) {
+      const int quarter = (end - first) / 4;
+      first += quarter;
+      end = std::max(end - quarter, first + 1);
+    };
+    int y0 = first_of(y, map.height, colour.height);
+    int y1 = first_of(y + 1, map.height, colour.height);
+    middle_of(y0, y1);
     for (int x = 0; x < map.width; ++x) {
-      const int x0 = first_of(x, map.width, colour.width);
-      const int x1 = std::max(first_of(x + 1, map.width, colour.width), x0 + 1);
+      int x0 = first_of(x, map.width, colour.width);
+      int x1 = first_of(x + 1, map.width, colour.width);
+      middle_of(x0, x1);
       glm::vec4 sum{0.0f};
       for (int v = y0; v < y1; ++v) {
         for (int u = x0; u < x1; ++u) sum += seen_colour(colour, u, v);

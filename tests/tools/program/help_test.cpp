@@ -68,6 +68,8 @@ TEST_CASE("help names every option of every subcommand, with units") {
                         "--blur-at-infinity PIXELS",
                         "--method NAME",
                         "--max-error E"});
+  names_all("inspect",
+            {"FILES", "-o,--output FILE", "--depth-encoding NAME", "--focus METRES", "--json"});
   names_all("lens",
             {"--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
              "--fov DEGREES", "--height PIXELS", "--max-coc-film MM", "--at METRES ...", "--json"});

@@ -1,7 +1,9 @@
 // softfocus refocus: what `render` draws, refocused, is what `render` makes of it.
 
+#include <algorithm>
 #include <cmath>
 
+#include "dof/dof.h"
 #include "raster/images/texel.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
@@ -121,12 +123,24 @@ TEST_CASE("refocus: --focus-range is sharp in the range and keeps the depth") {
   CHECK(equal(result, sharp));
 }
 
-TEST_CASE("refocus: a picture that is transparent is told so") {
+TEST_CASE("refocus: what is transparent becomes black, with a warning") {
   const TemporaryDirectory directory;
-  draw(directory, "a.npy", "d.pfm");  // its alpha, the depth, taken for alpha
+  Image half_there = make_image(Format::rgba16f, 8, 8);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) store_texel(half_there, x, y, {1.0f, 1.0f, 1.0f, x < 4 ? 1.0f : 0.0f}, {});
+  }
+  const auto write = [&](const char* name, const Bytes& bytes) {
+    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  };
+  write("a.npy", encode_npy(half_there));
+  write("d.pfm", encode_grey_pfm(std::vector<float>(64, 2.0f), 8, 8));
   const ProgramRun run = run_program(
-      {"refocus", directory.file("a.npy"), directory.file("d.pfm"), "-o", directory.file("b.png")});
+      {"refocus", directory.file("a.npy"), directory.file("d.pfm"), "-o", directory.file("b.npy")});
   CHECK(run.status == 0);
+  CHECK(contains(run.err, "transparent"));
+  const Image result = read_image_file(directory.file("b.npy")).image;
+  CHECK(load_texel(result, 2, 2).x == 1.0f);
+  CHECK(load_texel(result, 6, 2).x == 0.0f);
 }
 
 TEST_CASE("bad input: refocus without a depth, of no depth, with a method of scenes") {
