@@ -5,6 +5,7 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/cli/errors.h"
 #include "tools/files/image_file.h"
+#include "tools/files/picture_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softfocus;
@@ -14,6 +15,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       decode(bytes, format);
     } catch (const FileError&) {
     }
+  }
+  try {
+    const PictureFile file = open_picture_file({bytes.begin(), bytes.end()}, "fuzz");
+    for (std::size_t i = 0; i < file.planes.size() && i < 4; ++i) read_planes(file, {&i, 1}, 0.0f);
+  } catch (const FileError&) {
   }
   try {
     load_texture(fuzz_file(data, size, ".png"));

@@ -19,6 +19,8 @@ struct Command {
 };
 
 Command add_render_command(CLI::App& program);
+Command add_refocus_command(CLI::App& program);
+Command add_inspect_command(CLI::App& program);
 Command add_scenes_command(CLI::App& program);
 Command add_methods_command(CLI::App& program);
 Command add_candidates_command(CLI::App& program);

@@ -1,14 +1,17 @@
 #pragma once
-// RGBA16F images as files: PNG to look at, PFM for linear colour, NPY for every bit.
+// RGBA16F images as files: PNG to look at, PFM, HDR and EXR for linear colour, NPY for every bit.
 //
-//   PNG   RGB, 8 bits, sRGB; alpha (the depth) is left out
+//   PNG   RGB, 8 or 16 bits, sRGB; alpha (the depth) is left out
 //   PFM   RGB, binary32, linear, little-endian (scale -1.0), bottom row first
+//   HDR   Radiance's RGBE, linear
+//   EXR   R, G, B in halves or floats, linear, and the depth as the float channel Z (exr_file.h)
 //   NPY   version 1.0, '<f2', shape (height, width, 4): the image's own bits
 
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,12 +19,17 @@
 
 namespace softfocus {
 
-enum class FileFormat : std::uint8_t { png, pfm, npy };
+enum class FileFormat : std::uint8_t { png, png_16, pfm, npy, hdr, exr, exr_float };
 
 using Bytes = std::vector<std::byte>;
 
-/// The format that a name asks for (png, pfm or npy; as an extension, any case).
+/// The format that a name asks for: one of format_names(). As an extension, in any case: png, pfm,
+/// npy, hdr or exr.
 std::optional<FileFormat> format_by_name(std::string_view name);
+/// "png, png-16, pfm, npy, hdr, exr, exr-float"; with another text between them.
+std::string format_names(std::string_view between = ", ");
+/// Why this build cannot write it, as a sentence; empty if it can.
+std::string_view missing_format(FileFormat format);
 std::optional<FileFormat> format_by_extension(const std::filesystem::path& file);
 
 /// A picture as read. Without alpha in the file, alpha is 0 here.
@@ -33,24 +41,35 @@ struct Picture {
 /// An RGBA16F image as the bytes of a file, the same on every machine.
 Bytes encode(const Image& image, FileFormat format);
 Bytes encode_png(const Image& image);
+Bytes encode_png_16(const Image& image);
+Bytes encode_hdr(const Image& image);
 Bytes encode_pfm(const Image& image);
 /// Takes every format, value by value as it is: (height, width, channels) of bytes, halves or
 /// binary32. decode_npy() reads halves and binary32 of 3 or 4 channels.
 Bytes encode_npy(const Image& image);
 
+/// One plane of numbers, row by row from the top: a depth in metres. PNG has 16 bits grey, whole
+/// millimetres: 0 for what is NaN, infinite or not within 1 to 65535. PFM ('Pf') and NPY ('<f4',
+/// (height, width)) have the floats, EXR too, as its channel Z. Not HDR, which has no grey.
+Bytes encode_depth(std::span<const float> metres, int width, int height, FileFormat format);
+Bytes encode_grey_png_16(std::span<const std::uint16_t> values, int width, int height);
+Bytes encode_grey_pfm(std::span<const float> values, int width, int height);
+Bytes encode_grey_npy(std::span<const float> values, int width, int height);
+
 /// The way back. Throws FileError with what is wrong, the file itself unnamed.
 ///
-/// PNG: 8 bits a channel, through the sRGB table and rounded to nearest half, which
-/// keeps all 256 values apart; alpha is linear. PFM: colour, either byte order. NPY:
-/// versions 1.0 and 2.0, '<f2' or '<f4', C order, (height, width, 3 or 4).
-/// binary32 values are rounded to the nearest half.
+/// PNG: 8 and 16 bits a channel, through the sRGB curve and rounded to nearest half, which
+/// keeps all 256 values of 8 bits apart; alpha is linear. PFM: colour, either byte order. NPY:
+/// as picture_file.h says, halves bit by bit. Other values are rounded to the nearest half.
 Picture decode(std::span<const std::byte> bytes, FileFormat format);
 Picture decode_png(std::span<const std::byte> bytes);
 Picture decode_pfm(std::span<const std::byte> bytes);
 Picture decode_npy(std::span<const std::byte> bytes);
+/// Of any kind, by the first bytes. FileError names `path`.
+Picture decode_other(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
-/// The bytes of a picture's file, and the picture in them, of any of the formats, told by the first
-/// bytes. FileError names the file.
+/// The bytes of a picture's file, and the picture in them, of any kind that picture_file.h reads,
+/// told by the first bytes; of an EXR its first colour, with Z in alpha. FileError names the file.
 Bytes read_picture_bytes(const std::filesystem::path& file);
 Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::path& file);
 

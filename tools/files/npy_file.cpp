@@ -3,6 +3,7 @@
 // numpy/lib/format.py describes it.
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <string>
@@ -11,7 +12,7 @@
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
-#include "tools/files/image_file.h"
+#include "tools/files/picture_file.h"
 
 namespace softfocus {
 namespace {
@@ -134,6 +135,86 @@ Header take_header(std::span<const std::byte>& rest) {
   return HeaderReader{text}.read();
 }
 
+/// An array as a picture.
+struct NpyPicture {
+  NumberType type = NumberType::half;
+  std::size_t value_bytes = 2;
+  bool columns_first = false;
+  std::size_t width = 0, height = 0, channels = 0;
+  std::span<const std::byte> values{};
+};
+
+struct NpyType {
+  std::string_view name;
+  NumberType type;
+  std::size_t bytes;
+};
+constexpr std::array kNpyTypes{
+    NpyType{"<f2", NumberType::half, 2}, NpyType{"<f4", NumberType::single, 4},
+    NpyType{"<f8", NumberType::double_precision, 8}, NpyType{"|u1", NumberType::unsigned8, 1},
+    NpyType{"<u2", NumberType::unsigned16, 2}};
+
+NpyPicture npy_picture(std::span<const std::byte> bytes) {
+  NpyPicture picture;
+  picture.values = bytes;
+  const Header header = take_header(picture.values);
+  const auto type = std::find_if(kNpyTypes.begin(), kNpyTypes.end(),
+                                 [&](const NpyType& known) { return known.name == header.type; });
+  if (type == kNpyTypes.end()) {
+    throw FileError("the NumPy array holds '" + header.type +
+                    "'; it must be '<f2', '<f4', '<f8', '|u1' or '<u2'");
+  }
+  picture.type = type->type;
+  picture.value_bytes = type->bytes;
+  picture.columns_first = header.columns_first;
+  auto shape = header.shape;
+  if (shape.size() == 2) shape.push_back(1);
+  const auto is_side = [](std::uint64_t side) { return side >= 1 && side <= kMaxImageSize; };
+  if (shape.size() != 3 || !is_side(shape[0]) || !is_side(shape[1]) || shape[2] < 1 ||
+      shape[2] > 4) {
+    throw FileError(
+        "the NumPy array must be of shape (height, width) or (height, width, 1 to 4), each side 1 "
+        "to " +
+        std::to_string(kMaxImageSize));
+  }
+  picture.height = static_cast<std::size_t>(shape[0]);
+  picture.width = static_cast<std::size_t>(shape[1]);
+  picture.channels = static_cast<std::size_t>(shape[2]);
+  const std::uint64_t size = shape[0] * shape[1] * shape[2] * picture.value_bytes;
+  if (picture.values.size() != size) {
+    throw FileError("the NumPy file has " + std::to_string(picture.values.size()) +
+                    " bytes of values where its shape needs " + std::to_string(size));
+  }
+  return picture;
+}
+
+float npy_value(NumberType type, std::span<const std::byte> at) {
+  switch (type) {
+    case NumberType::half: return half_to_float(little_endian<std::uint16_t>(at));
+    case NumberType::single: return std::bit_cast<float>(little_endian<std::uint32_t>(at));
+    case NumberType::double_precision:
+      return static_cast<float>(std::bit_cast<double>(little_endian<std::uint64_t>(at)));
+    case NumberType::unsigned8: return static_cast<float>(std::to_integer<int>(at[0]));
+    default: return static_cast<float>(little_endian<std::uint16_t>(at));
+  }
+}
+
+Bytes npy_start(std::string_view type, const std::string& shape) {
+  std::string header =
+      "{'descr': '" + std::string{type} + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+  const std::size_t before = kMagic.size() + 4;
+  const std::size_t end = (before + header.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
+  header.append(end - before - header.size() - 1, ' ');
+  header.push_back('\n');
+
+  Bytes bytes;
+  for (const char c : kMagic) bytes.push_back(static_cast<std::byte>(c));
+  append_little_endian(bytes, std::uint16_t{1});  // version 1.0
+  append_little_endian(bytes, static_cast<std::uint16_t>(header.size()));
+  for (const char c : header) bytes.push_back(static_cast<std::byte>(c));
+  return bytes;
+}
+
 }  // namespace
 
 Bytes encode_npy(const Image& image) {
@@ -141,21 +222,11 @@ Bytes encode_npy(const Image& image) {
   const std::size_t value_bytes =
       bytes_per_texel(image.format) / static_cast<std::size_t>(channels);
   const char* const type = value_bytes == 1 ? "|u1" : value_bytes == 2 ? "<f2" : "<f4";
-  std::string header = std::string{"{'descr': '"} + type + "', 'fortran_order': False, 'shape': (" +
-                       std::to_string(image.height) + ", " + std::to_string(image.width) + ", " +
-                       std::to_string(channels) + "), }";
-  const std::size_t before = kMagic.size() + 4;
-  const std::size_t end = (before + header.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
-  header.append(end - before - header.size() - 1, ' ');
-  header.push_back('\n');
-
-  Bytes bytes;
-  bytes.reserve(end + bytes_per_texel(image.format) * static_cast<std::size_t>(image.width) *
-                          static_cast<std::size_t>(image.height));
-  for (const char c : kMagic) bytes.push_back(static_cast<std::byte>(c));
-  append_little_endian(bytes, std::uint16_t{1});  // version 1.0
-  append_little_endian(bytes, static_cast<std::uint16_t>(header.size()));
-  for (const char c : header) bytes.push_back(static_cast<std::byte>(c));
+  Bytes bytes = npy_start(type, std::to_string(image.height) + ", " + std::to_string(image.width) +
+                                    ", " + std::to_string(channels));
+  bytes.reserve(bytes.size() + bytes_per_texel(image.format) *
+                                   static_cast<std::size_t>(image.width) *
+                                   static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y) {
     switch (value_bytes) {
       case 1:
@@ -177,42 +248,77 @@ Bytes encode_npy(const Image& image) {
   return bytes;
 }
 
+Bytes encode_grey_npy(std::span<const float> values, int width, int height) {
+  Bytes bytes = npy_start("<f4", std::to_string(height) + ", " + std::to_string(width));
+  bytes.reserve(bytes.size() + sizeof(float) * values.size());
+  for (const float value : values) {
+    append_little_endian(bytes, std::bit_cast<std::uint32_t>(value));
+  }
+  return bytes;
+}
+
 Picture decode_npy(std::span<const std::byte> bytes) {
-  auto rest = bytes;
-  const Header header = take_header(rest);
-  if (header.type != "<f2" && header.type != "<f4") {
-    throw FileError("the NumPy array holds '" + header.type + "'; it must be '<f2' or '<f4'");
-  }
-  const auto& shape = header.shape;
-  const auto is_side = [](std::uint64_t side) { return side >= 1 && side <= kMaxImageSize; };
-  if (header.columns_first || shape.size() != 3 || !is_side(shape[0]) || !is_side(shape[1]) ||
-      (shape[2] != 3 && shape[2] != 4)) {
-    throw FileError(
-        "the NumPy array must be in C order and of shape (height, width, 3 or 4), "
-        "each side 1 to " +
-        std::to_string(kMaxImageSize));
-  }
-  const std::size_t value_bytes = header.type == "<f2" ? 2 : 4;
-  const std::uint64_t size = shape[0] * shape[1] * shape[2] * value_bytes;
-  if (rest.size() != size) {
-    throw FileError("the NumPy file has " + std::to_string(rest.size()) +
-                    " bytes of values where its shape needs " + std::to_string(size));
+  const NpyPicture array = npy_picture(bytes);
+  const bool is_half = array.type == NumberType::half;
+  if ((!is_half && array.type != NumberType::single) || array.columns_first || array.channels < 3) {
+    PictureFile file{.path = {}, .bytes = {bytes.begin(), bytes.end()}, .reader = &kNpyReader};
+    kNpyReader.list(file);
+    return read_colour(file, colour_layers(file).front(), true);
   }
   Picture picture{
-      make_image(Format::rgba16f, static_cast<int>(shape[1]), static_cast<int>(shape[0])),
-      shape[2] == 4};
+      make_image(Format::rgba16f, static_cast<int>(array.width), static_cast<int>(array.height)),
+      array.channels == 4};
+  auto rest = array.values;
   for (int y = 0; y < picture.image.height; ++y) {
     const auto values = row<std::uint16_t>(picture.image, y);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (i % 4 == 3 && !picture.has_alpha) continue;
-      values[i] = value_bytes == 2
-                      ? little_endian<std::uint16_t>(rest)
-                      : float_to_half(std::bit_cast<float>(little_endian<std::uint32_t>(rest)),
-                                      HalfRounding::nearest_even);
-      rest = rest.subspan(value_bytes);
+      values[i] = is_half ? little_endian<std::uint16_t>(rest)
+                          : float_to_half(npy_value(array.type, rest), HalfRounding::nearest_even);
+      rest = rest.subspan(array.value_bytes);
     }
   }
   return picture;
 }
+
+namespace {
+
+bool begins_as_npy(std::span<const std::byte> bytes) {
+  return bytes.size() >= kMagic.size() &&
+         std::equal(kMagic.begin(), kMagic.end(), bytes.begin(),
+                    [](char c, std::byte b) { return static_cast<std::byte>(c) == b; });
+}
+
+void list_npy(PictureFile& file) {
+  const NpyPicture array = npy_picture(file.bytes);
+  file.width = static_cast<int>(array.width);
+  file.height = static_cast<int>(array.height);
+  constexpr std::array<std::string_view, 4> kNames{"Y", "YA", "RGB", "RGBA"};
+  for (const char name : kNames[array.channels - 1]) {
+    file.planes.push_back({.name = std::string{name}, .type = array.type});
+  }
+  file.is_srgb = array.type == NumberType::unsigned8 || array.type == NumberType::unsigned16;
+  if (array.columns_first) file.remark = "Fortran order";
+}
+
+void read_npy(const PictureFile& file, std::span<const std::size_t> planes,
+              std::span<PlaneValues> values) {
+  const NpyPicture array = npy_picture(file.bytes);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (std::size_t y = 0; y < array.height; ++y) {
+      for (std::size_t x = 0; x < array.width; ++x) {
+        const std::size_t place = array.columns_first
+                                      ? (planes[i] * array.width + x) * array.height + y
+                                      : (y * array.width + x) * array.channels + planes[i];
+        values[i][y * array.width + x] =
+            npy_value(array.type, array.values.subspan(place * array.value_bytes));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+const PictureFileReader kNpyReader{"NumPy", begins_as_npy, list_npy, read_npy};
 
 }  // namespace softfocus

@@ -11,7 +11,7 @@
 #include "scenes/load/decimal.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
-#include "tools/files/image_file.h"
+#include "tools/files/picture_file.h"
 
 namespace softfocus {
 namespace {
@@ -51,6 +51,44 @@ float number(std::string_view word) {
   return *value;
 }
 
+struct PfmHeader {
+  std::size_t channels = 3;
+  int width = 0, height = 0;
+  bool low_byte_first = true;
+  std::span<const std::byte> values{};
+};
+
+PfmHeader pfm_header(std::span<const std::byte> bytes) {
+  PfmHeader header;
+  auto rest = bytes;
+  const std::string_view mark = take_word(rest);
+  if (mark != "PF" && mark != "Pf") throw FileError("the PFM must begin with 'PF' or 'Pf'");
+  header.channels = mark == "PF" ? 3 : 1;
+  header.width = whole_number(take_word(rest));
+  header.height = whole_number(take_word(rest));
+  const float scale = number(take_word(rest));
+  check_picture_size("the PFM", header.width, header.height);
+  if (!std::isfinite(scale) || scale == 0.0f) {
+    throw FileError("the PFM's scale must be a number below or above 0");
+  }
+  header.low_byte_first = scale < 0.0f;
+  const auto size = header.channels * sizeof(float) * static_cast<std::uint64_t>(header.width) *
+                    static_cast<std::uint64_t>(header.height);
+  if (rest.size() != size) {
+    throw FileError("the PFM has " + std::to_string(rest.size()) +
+                    " bytes of values where its size needs " + std::to_string(size));
+  }
+  header.values = rest;
+  return header;
+}
+
+float take_float(std::span<const std::byte>& rest, bool low_byte_first) {
+  const auto bits =
+      low_byte_first ? little_endian<std::uint32_t>(rest) : big_endian<std::uint32_t>(rest);
+  rest = rest.subspan(sizeof bits);
+  return std::bit_cast<float>(bits);
+}
+
 }  // namespace
 
 Bytes encode_pfm(const Image& image) {
@@ -71,37 +109,68 @@ Bytes encode_pfm(const Image& image) {
   return bytes;
 }
 
+Bytes encode_grey_pfm(std::span<const float> values, int width, int height) {
+  const std::string header =
+      "Pf\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";
+  Bytes bytes;
+  bytes.reserve(header.size() + sizeof(float) * values.size());
+  for (const char c : header) bytes.push_back(static_cast<std::byte>(c));
+  const auto columns = static_cast<std::size_t>(width);
+  for (std::size_t y = static_cast<std::size_t>(height); y-- > 0;) {
+    for (const float value : values.subspan(y * columns, columns)) {
+      append_little_endian(bytes, std::bit_cast<std::uint32_t>(value));
+    }
+  }
+  return bytes;
+}
+
 Picture decode_pfm(std::span<const std::byte> bytes) {
-  auto rest = bytes;
-  if (take_word(rest) != "PF") throw FileError("the PFM must be a colour one, 'PF'");
-  const int width = whole_number(take_word(rest));
-  const int height = whole_number(take_word(rest));
-  const float scale = number(take_word(rest));
-  if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize) {
-    throw FileError("the PFM is " + std::to_string(width) + "x" + std::to_string(height) +
-                    " pixels; each side may be 1 to " + std::to_string(kMaxImageSize));
-  }
-  if (!std::isfinite(scale) || scale == 0.0f) {
-    throw FileError("the PFM's scale must be a number below or above 0");
-  }
-  const auto size =
-      kTexelBytes * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  if (rest.size() != size) {
-    throw FileError("the PFM has " + std::to_string(rest.size()) +
-                    " bytes of values where its size needs " + std::to_string(size));
-  }
-  Picture picture{make_image(Format::rgba16f, width, height), false};
-  for (int y = height - 1; y >= 0; --y) {
+  PfmHeader header = pfm_header(bytes);
+  if (header.channels != 3) throw FileError("the PFM must be a colour one, 'PF'");
+  auto rest = header.values;
+  Picture picture{make_image(Format::rgba16f, header.width, header.height), false};
+  for (int y = header.height - 1; y >= 0; --y) {
     const auto values = row<std::uint16_t>(picture.image, y);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (i % 4 == 3) continue;
-      const auto bits =
-          scale < 0.0f ? little_endian<std::uint32_t>(rest) : big_endian<std::uint32_t>(rest);
-      values[i] = float_to_half(std::bit_cast<float>(bits), HalfRounding::nearest_even);
-      rest = rest.subspan(sizeof bits);
+      values[i] =
+          float_to_half(take_float(rest, header.low_byte_first), HalfRounding::nearest_even);
     }
   }
   return picture;
 }
+
+namespace {
+
+bool begins_as_pfm(std::span<const std::byte> bytes) {
+  return bytes.size() >= 2 && bytes[0] == std::byte{'P'} &&
+         (bytes[1] == std::byte{'F'} || bytes[1] == std::byte{'f'});
+}
+
+void list_pfm(PictureFile& file) {
+  const PfmHeader header = pfm_header(file.bytes);
+  file.width = header.width;
+  file.height = header.height;
+  for (const char name : std::string_view{header.channels == 3 ? "RGB" : "Y"}) {
+    file.planes.push_back({.name = std::string{name}, .type = NumberType::single});
+  }
+}
+
+void read_pfm(const PictureFile& file, std::span<const std::size_t> planes,
+              std::span<PlaneValues> values) {
+  const PfmHeader header = pfm_header(file.bytes);
+  const auto columns = static_cast<std::size_t>(file.width);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (std::size_t place = 0; place < values[i].size(); ++place) {
+      auto at = header.values.subspan(sizeof(float) * (header.channels * place + planes[i]));
+      const std::size_t y = static_cast<std::size_t>(file.height) - 1 - place / columns;
+      values[i][y * columns + place % columns] = take_float(at, header.low_byte_first);
+    }
+  }
+}
+
+}  // namespace
+
+const PictureFileReader kPfmReader{"PFM", begins_as_pfm, list_pfm, read_pfm};
 
 }  // namespace softfocus

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "raster/numbers/hash.h"
+#include "tools/files/exr_file.h"
 #include "tools/files/hash_text.h"
 #include "tools/files/png_text.h"
 
@@ -100,13 +101,19 @@ std::optional<PictureNotes> parse_notes(std::string_view text) {
 }
 
 Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes) {
+  if (format == FileFormat::exr || format == FileFormat::exr_float) {
+    return encode_exr(image, format == FileFormat::exr ? ExrNumbers::half : ExrNumbers::single,
+                      json_text(notes_json(notes)));
+  }
   Bytes bytes = encode(image, format);
-  if (format != FileFormat::png) return bytes;
+  if (needs_sidecar(format)) return bytes;
   return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION},
                                 {kKeyword, json_text(notes_json(notes))}});
 }
 
-bool needs_sidecar(FileFormat format) { return format != FileFormat::png; }
+bool needs_sidecar(FileFormat format) {
+  return format == FileFormat::pfm || format == FileFormat::npy || format == FileFormat::hdr;
+}
 
 std::filesystem::path sidecar_of(const std::filesystem::path& picture) {
   std::filesystem::path sidecar = picture;
@@ -130,6 +137,10 @@ bool is_free_for_sidecar(const std::filesystem::path& sidecar) {
 FoundNotes find_notes(const std::filesystem::path& picture, std::span<const std::byte> bytes) {
   if (is_png(bytes)) {
     const auto text = find_png_text(bytes, kKeyword);
+    return {text ? parse_notes(*text) : std::nullopt, picture};
+  }
+  if (is_exr(bytes)) {
+    const auto text = find_exr_notes(bytes);
     return {text ? parse_notes(*text) : std::nullopt, picture};
   }
   FoundNotes found{std::nullopt, sidecar_of(picture)};

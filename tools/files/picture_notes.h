@@ -2,7 +2,8 @@
 // What a picture's file says of how the picture was made: its lens, field of view and method.
 //
 //   PNG        in the file: `Software` (tEXt) and `softfocus` (iTXt), the notes as JSON
-//   PFM, NPY   a sidecar beside it, its name and ".json", with the same JSON and the hash of
+//   EXR        in the file: the attribute `softfocus`
+//   PFM, NPY, HDR   a sidecar beside it, its name and ".json", with the same JSON and the hash of
 //              the picture's file, by which a sidecar that is left from another picture shows
 
 #include <cstdint>

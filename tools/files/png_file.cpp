@@ -6,11 +6,14 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "raster/images/texel.h"
 #include "tools/cli/errors.h"
 #include "tools/files/image_file.h"
 #include "tools/files/png_text.h"
+#include "tools/files/srgb16.h"
 
 namespace {
 
@@ -58,6 +61,69 @@ Bytes encode_png(const Image& image) {
   return {start, start + size};
 }
 
+namespace {
+
+/// Rows of 16-bit numbers, high bytes first, each behind its filter's number: Sub, the difference
+/// from the pixel on the left.
+Bytes png_of_wide_rows(std::span<const std::uint16_t> values, int width, int height,
+                       std::size_t channels) {
+  const std::size_t row_values = static_cast<std::size_t>(width) * channels;
+  if (values.size() * 2 + static_cast<std::size_t>(height) > 0x7FFFFFFF) {
+    throw FileError("a PNG of 16 bits can have 2 GB of values at most; write an EXR");
+  }
+  constexpr std::uint8_t kSub = 1;
+  std::vector<std::uint8_t> rows;
+  rows.reserve(values.size() * 2 + static_cast<std::size_t>(height));
+  for (std::size_t start = 0; start < values.size(); start += row_values) {
+    rows.push_back(kSub);
+    for (std::size_t i = 0; i < row_values; ++i) {
+      const std::uint16_t value = values[start + i];
+      const std::uint16_t left = i < channels ? std::uint16_t{0} : values[start + i - channels];
+      rows.push_back(static_cast<std::uint8_t>((value >> 8) - (left >> 8)));
+      rows.push_back(static_cast<std::uint8_t>((value & 0xFF) - (left & 0xFF)));
+    }
+  }
+  constexpr int kQuality = 8;  // stb's own for PNG
+  int size = 0;
+  const std::unique_ptr<unsigned char, decltype(&std::free)> packed{
+      stbi_zlib_compress(rows.data(), static_cast<int>(rows.size()), &size, kQuality), std::free};
+  if (!packed) throw std::bad_alloc{};
+
+  std::string header;
+  for (const int side : {width, height}) {
+    for (int shift = 24; shift >= 0; shift -= 8) header += static_cast<char>(side >> shift & 0xFF);
+  }
+  header += static_cast<char>(16);                     // bits
+  header += static_cast<char>(channels == 1 ? 0 : 2);  // grey or RGB
+  header += std::string(3, '\0');                      // the one compression, filter, no interlace
+  Bytes bytes;
+  for (const char c : kPngSignature) bytes.push_back(static_cast<std::byte>(c));
+  append_png_chunk(bytes, "IHDR", header);
+  append_png_chunk(bytes, "IDAT",
+                   {reinterpret_cast<const char*>(packed.get()), static_cast<std::size_t>(size)});
+  append_png_chunk(bytes, "IEND", {});
+  return bytes;
+}
+
+}  // namespace
+
+Bytes encode_png_16(const Image& image) {
+  const std::vector<std::uint16_t> encoded = srgb16_of_halves();
+  std::vector<std::uint16_t> rgb;
+  rgb.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
+  for (int y = 0; y < image.height; ++y) {
+    const auto halves = row<std::uint16_t>(image, y);
+    for (std::size_t i = 0; i < halves.size(); ++i) {
+      if (i % 4 != 3) rgb.push_back(encoded[halves[i]]);
+    }
+  }
+  return png_of_wide_rows(rgb, image.width, image.height, 3);
+}
+
+Bytes encode_grey_png_16(std::span<const std::uint16_t> values, int width, int height) {
+  return png_of_wide_rows(values, width, height, 1);
+}
+
 Picture decode_png(std::span<const std::byte> bytes) {
   check_png_chunks(bytes);  // stb reads them without checksums, and does not mind the end
   if (bytes.size() > 0x7FFFFFFF) throw FileError("the PNG is larger than 2 GB");
@@ -71,9 +137,7 @@ Picture decode_png(std::span<const std::byte> bytes) {
     throw FileError("the PNG is " + std::to_string(width) + "x" + std::to_string(height) +
                     " pixels; each side may be 1 to " + std::to_string(kMaxImageSize));
   }
-  if (stbi_is_16_bit_from_memory(data, data_size) != 0) {
-    throw FileError("the PNG has 16 bits a channel; 8 are supported");
-  }
+  if (stbi_is_16_bit_from_memory(data, data_size) != 0) return decode_other(bytes, "the PNG");
   const bool has_alpha = channels == 2 || channels == 4;
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels{
       stbi_load_from_memory(data, data_size, &width, &height, &channels, 4), stbi_image_free};

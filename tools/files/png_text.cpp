@@ -10,7 +10,6 @@
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::size_t kFrame = 12;  // of a chunk: length, type, CRC
 constexpr std::size_t kHeaderEnd = 8 + kFrame + 13;
 constexpr std::uint32_t kIend = 0x49454E44;
@@ -40,14 +39,6 @@ void append_big_endian(std::vector<std::byte>& bytes, std::uint32_t value) {
   }
 }
 
-void append_chunk(std::vector<std::byte>& bytes, std::string_view type, std::string_view data) {
-  append_big_endian(bytes, static_cast<std::uint32_t>(data.size()));
-  const std::size_t start = bytes.size();
-  append(bytes, type);
-  append(bytes, data);
-  append_big_endian(bytes, crc32(std::span{bytes}.subspan(start)));
-}
-
 /// The keyword, and behind its zero what remains; nullopt without a zero.
 struct Keyed {
   std::string_view keyword, rest;
@@ -71,12 +62,20 @@ std::optional<std::string_view> international_text(std::string_view rest) {
 
 }  // namespace
 
+void append_png_chunk(std::vector<std::byte>& bytes, std::string_view type, std::string_view data) {
+  append_big_endian(bytes, static_cast<std::uint32_t>(data.size()));
+  const std::size_t start = bytes.size();
+  append(bytes, type);
+  append(bytes, data);
+  append_big_endian(bytes, crc32(std::span{bytes}.subspan(start)));
+}
+
 bool is_png(std::span<const std::byte> bytes) { return text_of(bytes).starts_with("\x89PNG"); }
 
 void check_png_chunks(std::span<const std::byte> png) {
   const FileError truncated{"the PNG is cut short"};
-  if (png.size() < kSignature.size()) throw truncated;
-  for (auto rest = png.subspan(kSignature.size());;) {
+  if (png.size() < kPngSignature.size()) throw truncated;
+  for (auto rest = png.subspan(kPngSignature.size());;) {
     if (rest.size() < kFrame) throw truncated;
     const std::size_t length = big_endian<std::uint32_t>(rest);
     if (rest.size() - kFrame < length) throw truncated;
@@ -99,14 +98,15 @@ std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
                                    [](char c) { return c >= ' ' && c <= '~' && c != '"'; });
     // A zero ends the keyword; behind an iTXt's no compression, no language, no translation.
     const std::string ends = plain ? std::string(1, '\0') : std::string(5, '\0');
-    append_chunk(result, plain ? "tEXt" : "iTXt", std::string{keyword}.append(ends).append(text));
+    append_png_chunk(result, plain ? "tEXt" : "iTXt",
+                     std::string{keyword}.append(ends).append(text));
   }
   result.insert(result.end(), png.begin() + kHeaderEnd, png.end());
   return result;
 }
 
 std::optional<std::string> find_png_text(std::span<const std::byte> png, std::string_view keyword) {
-  for (auto rest = png.subspan(kSignature.size()); rest.size() >= kFrame;) {
+  for (auto rest = png.subspan(kPngSignature.size()); rest.size() >= kFrame;) {
     const std::size_t length = big_endian<std::uint32_t>(rest);
     const std::string_view type = text_of(rest.subspan(4, 4));
     const auto keyed = split_at_zero(text_of(rest.subspan(8, length)));

@@ -12,6 +12,12 @@ namespace softfocus {
 
 bool is_png(std::span<const std::byte> bytes);
 
+/// What a PNG begins with.
+inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+
+/// Appends a chunk with its length and checksum; `type` has four letters.
+void append_png_chunk(std::vector<std::byte>& bytes, std::string_view type, std::string_view data);
+
 /// Throws FileError for chunks that are cut short, have a wrong checksum, or do not end where the
 /// bytes do.
 void check_png_chunks(std::span<const std::byte> png);

@@ -5,6 +5,7 @@
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/options/lengths.h"
 
 namespace softfocus {
 namespace {
@@ -16,7 +17,10 @@ constexpr double kLargest = 1e9;
 /// Checks one value by putting it into a lens in which nothing else can be wrong.
 double checked(std::string_view option, const std::string& text, std::string_view wanted,
                ThinLens lens, double ThinLens::*value) {
-  lens.*value = parse_number(option, text, -kLargest, kLargest, wanted);
+  const auto parse = value == &ThinLens::focus_m           ? parse_metres
+                     : value == &ThinLens::focal_length_mm ? parse_millimetres
+                                                           : parse_f_number;
+  lens.*value = parse(option, text, -kLargest, kLargest, wanted);
   if (const char* error = lens_error(lens)) {
     throw UsageError(std::string{option} + " " + text + ": " + error);
   }
@@ -40,7 +44,7 @@ void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults
               });
   };
   add("--focus", "METRES", "Distance in focus, along the axis", defaults.focus,
-      "a distance in metres above 0 (at most 1e9), such as 2.5", &ThinLens::focus_m,
+      "a distance in metres above 0 (at most 1e9), such as 2.5 or 250cm", &ThinLens::focus_m,
       options.focus_m);
   add("--focal-length", "MM", "Focal length", defaults.focal_length,
       "a focal length in millimetres above 0 (at most 1e9), such as 50", &ThinLens::focal_length_mm,
@@ -86,6 +90,16 @@ void add_compared_lens_options(CLI::App& parser, LensOptions& options,
   const std::string theirs = "--scene's or the picture's";
   add_lens_options(parser, options, {theirs, theirs, theirs, theirs});
   add_fov(parser, theirs, std::move(on_fov));
+}
+
+void add_refocus_lens_options(CLI::App& parser, LensOptions& options,
+                              std::function<void(double degrees)> on_fov) {
+  add_lens_options(parser, options,
+                   {.focus = "what is in the middle",
+                    .focal_length = "the picture's or 50",
+                    .f_number = "the picture's or 2",
+                    .coc_scale = "the picture's or 1"});
+  add_fov(parser, "the picture's, or by --sensor", std::move(on_fov));
 }
 
 ThinLens overruled(ThinLens lens, const LensOptions& options) {

@@ -31,6 +31,10 @@ void add_own_lens_options(CLI::App& parser, LensOptions& options,
 void add_compared_lens_options(CLI::App& parser, LensOptions& options,
                                std::function<void(double degrees)> on_fov);
 
+/// Likewise for a picture to refocus, which may carry a lens.
+void add_refocus_lens_options(CLI::App& parser, LensOptions& options,
+                              std::function<void(double degrees)> on_fov);
+
 /// `lens` with what was given put in.
 ThinLens overruled(ThinLens lens, const LensOptions& options);
 

@@ -56,13 +56,37 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
             });
 }
 
-void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px) {
+void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px,
+                        const std::string& standard) {
   add_value(parser, "--max-coc", "PIXELS",
-            "Filter size: largest radius, 0 to 1024 (default: the scene's, by height)",
+            "Filter size: largest radius, 0 to 1024 (default: " + standard + ")",
             [&max_coc_px](const std::string& text) {
               max_coc_px = static_cast<float>(parse_number("--max-coc", text, 0.0, kLargestMaxCoc,
                                                            "a radius in pixels from 0 to 1024"));
             });
+}
+
+void add_weight_options(CLI::App& parser, float& leak, float& budget) {
+  add_value(parser, "--leak", "A",
+            "How readily a background gives its colour to what is before it (default: " +
+                short_number(static_cast<double>(leak)) + ")",
+            [&leak](const std::string& text) {
+              leak = static_cast<float>(
+                  parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
+            });
+  add_value(parser, "--budget", "SHARE",
+            "Of importance-ordered: the share of one-pass's work to do, 0 to 1 (default: " +
+                short_number(static_cast<double>(budget)) + ")",
+            [&budget](const std::string& text) {
+              budget = static_cast<float>(
+                  parse_number("--budget", text, 0.0, 1.0, "a share from 0 to 1"));
+            });
+}
+
+void check_budget(const CLI::App& parser, std::string_view method) {
+  if (!is_given(parser, "--budget") || method == kBudgetMethod) return;
+  throw UsageError("--budget: the method " + std::string{method} + " has none; give --method " +
+                   std::string{kBudgetMethod});
 }
 
 float used_max_coc_px(std::optional<float> given, const SceneLens& of_scene, int height_px) {
@@ -147,7 +171,7 @@ void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
   }
 }
 
-void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify) {
+void add_goal_options(CLI::App& parser, AutoGoal& goal) {
   add_value(parser, "--max-error", "E",
             "Of auto: the cheapest method whose mean FLIP should be at most this (default: " +
                 short_number(goal.max_error) + ")",
@@ -162,6 +186,10 @@ void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify) {
               goal.max_time_ms = parse_number("--max-time", text, 0.0, 1e9,
                                               "a time in milliseconds of 0 or more, such as 8");
             });
+}
+
+void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify) {
+  add_goal_options(parser, goal);
   add_flag(
       parser, "--verify",
       "Of auto: hold every choice by --max-error against views of the lens (default: where the "

@@ -40,8 +40,15 @@ void add_method_option(CLI::App& parser, const Method*& method);
 /// The same for both tables and for `auto`. What a build lacks is refused here, with how to get it.
 void add_method_option(CLI::App& parser, MethodChoice& method);
 
-/// Adds --max-coc.
-void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px);
+/// Adds --max-coc. `standard` is the help's text for the default.
+void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px,
+                        const std::string& standard = "the scene's, by height");
+
+/// Adds --leak and --budget, which hold their defaults.
+void add_weight_options(CLI::App& parser, float& leak, float& budget);
+
+/// Throws UsageError if --budget was given to a method that has none.
+void check_budget(const CLI::App& parser, std::string_view method);
 
 /// The filter size for a picture of that height: as given, or the scene's, at most
 /// kLargestMaxCoc.
@@ -63,7 +70,10 @@ void complete_sampling(Sampling& sampling, const LensViewMethod& method, const C
 /// Throws UsageError if one of them was given, for a filter does not sample the lens.
 void refuse_sampling_options(const CLI::App& parser, std::string_view method);
 
-/// Adds --max-error, --max-time, --verify and --no-verify.
+/// Adds --max-error and --max-time.
+void add_goal_options(CLI::App& parser, AutoGoal& goal);
+
+/// Adds them, --verify and --no-verify.
 void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify);
 
 /// Throws UsageError if both were given, or either without --method auto, or with it an

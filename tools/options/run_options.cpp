@@ -97,6 +97,37 @@ void add_profile_option(CLI::App& parser, Profile& profile, std::string& name) {
                      });
 }
 
+void add_format_option(CLI::App& parser, FileFormat& format) {
+  add_value(parser, "--format", format_names("|"),
+            "Format of FILE, whatever its name: PNG of 8 or 16 bits (sRGB), PFM and HDR (linear), "
+            "NPY (halves, depth in alpha), EXR in halves or floats (linear, depth as Z) (default: "
+            "by the name, png for -)",
+            [&format](const std::string& text) {
+              const auto chosen = format_by_name(text);
+              if (!chosen) throw UsageError("--format '" + text + "': there are " + format_names());
+              format = *chosen;
+            });
+}
+
+void settle_format(const CLI::App& parser, const std::string& output, FileFormat& format) {
+  constexpr const char* kEndings = ".png, .exr, .pfm, .hdr or .npy";
+  if (output.empty()) {
+    throw UsageError(std::string{"-o is missing: give a "} + kEndings +
+                     " file, or - for standard output");
+  }
+  if (!is_given(parser, "--format") && output != "-") {
+    const auto by_name = format_by_extension(output);
+    if (!by_name) {
+      throw UsageError("-o '" + output + "': the name must end in " + kEndings +
+                       ", or --format say which");
+    }
+    format = *by_name;
+  }
+  if (!missing_format(format).empty()) {
+    throw UsageError("-o '" + output + "': " + std::string{missing_format(format)});
+  }
+}
+
 void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel) {
   const auto needed = bytes_per_pixel * static_cast<std::uint64_t>(size.width) *
                       static_cast<std::uint64_t>(size.height);

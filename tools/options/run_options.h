@@ -1,6 +1,6 @@
 #pragma once
 // What a command runs on, and what it says before it does: --threads and --isa, --driver,
-// --shaders, --profile, too little memory, what a scene lacks.
+// --shaders, --profile, --format, too little memory, what a scene lacks.
 
 #include <cstdint>
 #include <functional>
@@ -11,6 +11,7 @@
 #include "raster/threads/parallel.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
+#include "tools/files/image_file.h"
 #include "tools/files/profile_file.h"
 #include "tools/gl/driver.h"
 #include "tools/gl/shaders.h"
@@ -42,6 +43,13 @@ void add_profile_option(CLI::App& parser, const std::string& help,
 
 /// Adds --profile for the emulated GPU. `profile` and `name` hold the default.
 void add_profile_option(CLI::App& parser, Profile& profile, std::string& name);
+
+/// Adds --format; `format` is that of standard output.
+void add_format_option(CLI::App& parser, FileFormat& format);
+
+/// Once all options are read: the format of -o by its name, unless --format says it. Throws
+/// UsageError if -o is missing, has no known ending, or this build lacks the format.
+void settle_format(const CLI::App& parser, const std::string& output, FileFormat& format);
 
 /// Throws UsageError, naming the option that gave the size, if the machine has less memory
 /// than so many bytes a pixel. Where the system does not tell, allocation decides.

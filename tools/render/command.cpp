@@ -252,6 +252,7 @@ int render(const RenderOptions& options) {
   const bool to_standard_output = options.output == "-";
   if (!to_standard_output) check_writable(options.output);
   if (options.report) check_writable(*options.report);
+  if (options.depth_output) check_writable(*options.depth_output);
 
   RenderRecord record;
   StageTimes& ms = record.ms;
@@ -360,7 +361,7 @@ int render(const RenderOptions& options) {
   std::vector<std::unique_ptr<WholeFile>> layer_files;
   if (options.show != Show::image) write_layers(behind, options, record, pool, layer_files);
   // The files get their names together, when nothing can fail but the naming.
-  std::optional<WholeFile> picture_file, sidecar_file, report_file;
+  std::optional<WholeFile> picture_file, sidecar_file, report_file, depth_file;
   timed(progress, "writing", ms.write, [&] {
     if (to_standard_output) {
       write_to_standard_output(bytes);
@@ -370,12 +371,16 @@ int render(const RenderOptions& options) {
     if (sidecar) {
       sidecar_file.emplace(*sidecar).write(sidecar_text(notes_of(options, record), bytes));
     }
+    if (options.depth_output) {
+      depth_file.emplace(*options.depth_output).write(depth_bytes(options, picture));
+    }
   });
   const std::string report = text_report(options, record);
   if (options.report) report_file.emplace(*options.report).write(report);
   if (picture_file) picture_file->commit();
   for (const auto& file : layer_files) file->commit();
   if (sidecar_file) sidecar_file->commit();
+  if (depth_file) depth_file->commit();
   if (report_file) report_file->commit();
   progress.clear();
   for (const std::string& warning : warnings) {

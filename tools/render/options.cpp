@@ -31,14 +31,23 @@ template <class Range>
 
 void add_picture_options(CLI::App& parser, RenderOptions& options) {
   add_value(parser, "-o,--output", "FILE",
-            "The picture: .png, .pfm or .npy; - for standard output (required)",
+            "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
             [&options](const std::string& text) { options.output = text; });
-  add_value(parser, "--format", "png|pfm|npy",
-            "Format of FILE, whatever its name (default: by the name, png for -)",
+  add_format_option(parser, options.format);
+  add_value(parser, "--depth-output", "FILE",
+            "The depth too, in metres along the axis: .pfm, .npy, .exr (channel Z), or .png (16 "
+            "bits, millimetres)",
             [&options](const std::string& text) {
-              const auto format = format_by_name(text);
-              if (!format) throw UsageError("--format '" + text + "': there are png, pfm, npy");
-              options.format = *format;
+              const auto format = format_by_extension(text);
+              if (!format || *format == FileFormat::hdr) {
+                throw UsageError("--depth-output '" + text +
+                                 "': the name must end in .pfm, .npy, .exr or .png");
+              }
+              if (!missing_format(*format).empty()) {
+                throw UsageError("--depth-output '" + text +
+                                 "': " + std::string{missing_format(*format)});
+              }
+              options.depth_output = text;
             });
   add_size(parser, options.size);
   add_value(
@@ -84,20 +93,7 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
             });
   add_sharp_depths_option(parser, options.sharp_depths);
   add_max_coc_option(parser, options.max_coc_px);
-  add_value(parser, "--leak", "A",
-            "How readily a background gives its colour to what is before it (default: " +
-                short_number(options.leak) + ")",
-            [&options](const std::string& text) {
-              options.leak = static_cast<float>(
-                  parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
-            });
-  add_value(parser, "--budget", "SHARE",
-            "Of importance-ordered: the share of one-pass's work to do, 0 to 1 (default: " +
-                short_number(options.budget) + ")",
-            [&options](const std::string& text) {
-              options.budget = static_cast<float>(
-                  parse_number("--budget", text, 0.0, 1.0, "a share from 0 to 1"));
-            });
+  add_weight_options(parser, options.leak, options.budget);
   add_sampling_options(parser, options.sampling);
   add_auto_options(parser, options.goal, options.verify);
 }
@@ -131,6 +127,18 @@ void check_layers(const RenderOptions& options) {
   }
   if (options.output == "-" && *options.layers > 1) {
     throw UsageError("--layers and -o - exclude each other: each layer is a file; give -o a file");
+  }
+}
+
+void check_depth_output(const RenderOptions& options) {
+  if (!options.depth_output) return;
+  if (options.show == Show::coc || options.show == Show::depth) {
+    throw UsageError("--depth-output: give it with --show image or pinhole");
+  }
+  if (is_same_file(*options.depth_output, options.output) ||
+      (options.report && is_same_file(*options.depth_output, *options.report))) {
+    throw UsageError("--depth-output '" + *options.depth_output +
+                     "' names another output's file; give another name");
   }
 }
 
@@ -229,18 +237,8 @@ void add_render_options(CLI::App& parser, RenderOptions& options) {
 }
 
 void complete(RenderOptions& options, const CLI::App& parser) {
-  if (options.output.empty()) {
-    throw UsageError("-o is missing: give a .png, .pfm or .npy file, or - for standard output");
-  }
   const bool to_standard_output = options.output == "-";
-  if (!is_given(parser, "--format") && !to_standard_output) {
-    const auto format = format_by_extension(options.output);
-    if (!format) {
-      throw UsageError("-o '" + options.output +
-                       "': the name must end in .png, .pfm or .npy, or --format say which");
-    }
-    options.format = *format;
-  }
+  settle_format(parser, options.output, options.format);
   if (to_standard_output && options.json) {
     throw UsageError("--json and -o - would both write to standard output; give -o a file");
   }
@@ -254,6 +252,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (options.report && is_same_file(*options.report, options.output)) {
     throw UsageError("--report and -o name the same file; give two");
   }
+  check_depth_output(options);
   if (options.autofocus && options.lens.focus_m) {
     throw UsageError("--focus and --autofocus exclude each other; give one");
   }
@@ -267,10 +266,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     }
   }
   check_sharp_depths(parser, options.method, options.show == Show::image);
-  if (is_given(parser, "--budget") && options.method.name() != kBudgetMethod) {
-    throw UsageError("--budget: the method " + std::string{options.method.name()} +
-                     " has none; give --method " + std::string{kBudgetMethod});
-  }
+  check_budget(parser, options.method.name());
   check_layers(options);
   check_auto_options(parser, options.method);
   check_arithmetic(options.arithmetic, options.method.name(), options.gl != nullptr);

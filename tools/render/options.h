@@ -55,6 +55,7 @@ struct RenderOptions {
   Show show = Show::image;
   std::optional<std::size_t> layers;  ///< of --layers
   std::optional<std::filesystem::path> report;
+  std::optional<std::string> depth_output;
   bool json = false;
   bool verbose = false;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/same_file.h"
@@ -59,6 +60,7 @@ void check_outputs(const RenderOptions& options, const Scene& scene) {
   }
   if (options.output != "-") check_not_read("-o", options.output, inputs);
   if (options.report) check_not_read("--report", *options.report, inputs);
+  if (options.depth_output) check_not_read("--depth-output", *options.depth_output, inputs);
   for (std::size_t layer = 2; options.show != Show::image && layer <= layers_of(options); ++layer) {
     check_not_read("--layers", layer_place(options, layer), inputs);
     if (options.report && is_same_file(*options.report, layer_place(options, layer))) {
@@ -68,6 +70,10 @@ void check_outputs(const RenderOptions& options, const Scene& scene) {
   }
   if (const auto sidecar = sidecar_place(options)) {
     check_not_read("-o", *sidecar, inputs);
+    if (options.depth_output && is_same_file(*options.depth_output, *sidecar)) {
+      throw UsageError("--depth-output '" + *options.depth_output +
+                       "' is where -o writes the picture's lens; give another name");
+    }
     if (options.report && is_same_file(*options.report, *sidecar)) {
       throw UsageError("--report '" + options.report->string() +
                        "' is where -o writes the picture's lens; give another name");
@@ -97,6 +103,18 @@ PictureNotes notes_of(const RenderOptions& options, const RenderRecord& record) 
     notes.lens = {record.lens->lens, record.lens->coc_scale, notes.fov_y_degrees};
   }
   return notes;
+}
+
+Bytes depth_bytes(const RenderOptions& options, const Image& picture) {
+  std::vector<float> metres;
+  metres.reserve(static_cast<std::size_t>(picture.width) *
+                 static_cast<std::size_t>(picture.height));
+  for (int y = 0; y < picture.height; ++y) {
+    const auto halves = row<std::uint16_t>(picture, y);
+    for (std::size_t i = 3; i < halves.size(); i += 4) metres.push_back(half_to_float(halves[i]));
+  }
+  return encode_depth(metres, picture.width, picture.height,
+                      *format_by_extension(*options.depth_output));
 }
 
 std::optional<std::filesystem::path> sidecar_place(const RenderOptions& options) {

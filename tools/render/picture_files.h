@@ -24,6 +24,9 @@ PictureNotes notes_of(const RenderOptions& options, const RenderRecord& record);
 /// The file of a layer behind the first, which is layer 1: FILE.png becomes FILE.layer2.png.
 std::filesystem::path layer_place(const RenderOptions& options, std::size_t layer);
 
+/// The file of --depth-output: what the picture has in alpha.
+Bytes depth_bytes(const RenderOptions& options, const Image& picture);
+
 /// Where the notes go beside the picture: nowhere for a format that has them inside, standard
 /// output, a device or a pipe.
 std::optional<std::filesystem::path> sidecar_place(const RenderOptions& options);

@@ -32,7 +32,7 @@ TEST_CASE("bad input: numbers that are none, infinite, too large or too small") 
     const char* option;
     Words values;
   };
-  const Words always{"nan", "inf", "-inf", "1e999", "one", "1m", "0x10", "", "1 2", "1,5"};
+  const Words always{"nan", "inf", "-inf", "1e999", "one", "1k", "0x10", "", "1 2", "1,5"};
   for (const auto& [option, values] :
        {Case{"--focus", {"0", "-1", "1e10"}}, Case{"--focal-length", {"0", "-50", "1e10"}},
         Case{"--f-number", {"0", "-2", "1e10"}}, Case{"--coc-scale", {"-0.1", "1e7"}},
@@ -78,7 +78,7 @@ TEST_CASE("bad input: an unknown name is answered with the names there are") {
                        {"'three-pass'", "pinhole, two-pass, two-pass-single, one-pass"});
   check_option_refused({"--profile", "voodoo"}, {"'voodoo'", "ieee, d3d11, llvmpipe"});
   check_option_refused({"--show", "me"}, {"'me'", "image, pinhole, coc, depth"});
-  check_option_refused({"--format", "gif"}, {"'gif'", "png, pfm, npy"});
+  check_option_refused({"--format", "gif"}, {"'gif'", "png, png-16, pfm, npy"});
   const TemporaryDirectory directory;
   check_refused(directory, {"render", "figurines", "-o", directory.file("out.png")}, 1,
                 {"figurines", "clutter, cube-room, dunes, figures, foliage"});
@@ -120,8 +120,9 @@ TEST_CASE("bad input: what a subcommand needs is missing") {
 
 TEST_CASE("bad input: a subcommand that there is not") {
   const TemporaryDirectory directory;
-  check_refused(directory, {"draw"}, 2,
-                {"'draw'", "render, scenes, methods, candidates, profiles, lens"});
+  check_refused(
+      directory, {"draw"}, 2,
+      {"'draw'", "render, refocus, inspect, scenes, methods, candidates, profiles, lens"});
   check_refused(directory, {"--draw"}, 2, {"'--draw'"});
   check_refused(directory, {"draw", "render", "figures"}, 2, {"'draw'"});
   check_refused(directory, {"scenes", "all"}, 2, {"'all'"});
@@ -151,7 +152,7 @@ TEST_CASE("bad input: an output whose name has no format") {
   const TemporaryDirectory directory;
   for (const std::string name : {"out.jpg", "out", "png"}) {
     check_refused(directory, {"render", "figures", "-o", directory.file(name)}, 2,
-                  {"-o", name, ".png, .pfm or .npy"});
+                  {"-o", name, ".png, .exr, .pfm, .hdr or .npy"});
   }
 }
 

@@ -1,0 +1,297 @@
+// OpenEXR files as other programs write them. tests/CMakeLists.txt leaves this file out where the
+// build has no OpenEXR.
+
+#include "tools/files/exr_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfTiledOutputFile.h>
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "raster/images/texel.h"
+#include "tests/support/run_program.h"
+#include "tools/cli/errors.h"
+#include "tools/files/picture_file.h"
+#include "tools/refocus/chosen_layers.h"
+
+using namespace softfocus;
+
+namespace {
+
+constexpr int kColumns = 37, kRows = 301;  // more rows than the largest block has
+
+float value_at(int x, int y, int channel) {
+  return static_cast<float>(channel + 1) + static_cast<float>(x) / 64.0f +
+         static_cast<float>(y) / 4.0f;
+}
+
+/// The planes of a data window, each `value_at` its place in the display window.
+struct Planes3 {
+  Imath::Box2i window;
+  std::vector<std::vector<float>> values;
+
+  Planes3(Imath::Box2i of, int count) : window(of) {
+    for (int c = 0; c < count; ++c) {
+      std::vector<float>& plane = values.emplace_back();
+      for (int y = window.min.y; y <= window.max.y; ++y) {
+        for (int x = window.min.x; x <= window.max.x; ++x) plane.push_back(value_at(x, y, c));
+      }
+    }
+  }
+
+  Imf::FrameBuffer buffer(const std::vector<std::string>& names) {
+    const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      char* base = reinterpret_cast<char*>(values[c].data() - window.min.x -
+                                           static_cast<std::ptrdiff_t>(window.min.y) *
+                                               static_cast<std::ptrdiff_t>(width));
+      buffer.insert(names[c], Imf::Slice(Imf::FLOAT, base, sizeof(float), width * sizeof(float)));
+    }
+    return buffer;
+  }
+};
+
+const Imath::Box2i kDisplay{{0, 0}, {kColumns - 1, kRows - 1}};
+
+Imf::Header header_with(const std::vector<std::string>& names, Imath::Box2i data = kDisplay) {
+  Imf::Header header{kDisplay, data};
+  for (const std::string& name : names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  return header;
+}
+
+/// How many values of a plane are not those of value_at(), to within `error` times their size.
+int wrong_values(const PictureFile& file, std::size_t plane, int channel, float error = 0.0f) {
+  const PlaneValues values = read_planes(file, {&plane, 1}, -5.0f)[0];
+  int wrong = 0;
+  for (int y = 0; y < file.height; ++y) {
+    for (int x = 0; x < file.width; ++x) {
+      const float expected = value_at(x, y, channel);
+      wrong += !(std::fabs(values[static_cast<std::size_t>(y * file.width + x)] - expected) <=
+                 error * expected);
+    }
+  }
+  return wrong;
+}
+
+std::size_t plane_of(const PictureFile& file, const std::string& name) {
+  for (std::size_t i = 0; i < file.planes.size(); ++i) {
+    if (file.planes[i].name == name) return i;
+  }
+  FAIL("no plane ", name);
+  return 0;
+}
+
+std::string refusal(const std::string& name) {
+  try {
+    const PictureFile file = open_picture_file(name);
+    const std::size_t first = 0;
+    read_planes(file, {&first, 1}, 0.0f);
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("EXR: what is written comes back, halves bit by bit and depth in alpha") {
+  Image image = make_image(Format::rgba16f, 33, 70);
+  std::uint16_t next = 1;
+  for (int y = 0; y < image.height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(image, y)) value = next++;  // no NaN
+  }
+  for (const FileFormat format : {FileFormat::exr, FileFormat::exr_float}) {
+    CHECK(equal(decode(encode(image, format), format).image, image));
+  }
+}
+
+TEST_CASE("EXR: notes stand in an attribute") {
+  const Bytes bytes = encode_exr(make_image(Format::rgba16f, 2, 2), ExrNumbers::half, "{\"a\": 1}");
+  CHECK(find_exr_notes(bytes) == "{\"a\": 1}");
+  CHECK_FALSE(find_exr_notes(encode_exr(make_image(Format::rgba16f, 2, 2), ExrNumbers::half, "")));
+}
+
+TEST_CASE("EXR: every compression is read") {
+  const TemporaryDirectory directory;
+  for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
+    CAPTURE(compression);
+    Planes3 planes{kDisplay, 1};
+    Imf::Header header = header_with({"Z"});
+    header.compression() = static_cast<Imf::Compression>(compression);
+    const std::string name = directory.file("a.exr");
+    {
+      Imf::OutputFile file{name.c_str(), header};
+      file.setFrameBuffer(planes.buffer({"Z"}));
+      file.writePixels(kRows);
+    }
+    // PXR24 keeps 24 bits of a float; the others keep all of them, or halves alone lose some.
+    CHECK(wrong_values(open_picture_file(name), 0, 0, 1e-4f) == 0);
+  }
+}
+
+TEST_CASE("EXR: half, float and uint channels are read as numbers") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  std::vector<std::uint32_t> whole(static_cast<std::size_t>(kColumns) * kRows, 70000);
+  {
+    Imf::Header header{kDisplay, kDisplay};
+    header.channels().insert("id", Imf::Channel(Imf::UINT));
+    Imf::OutputFile file{name.c_str(), header};
+    Imf::FrameBuffer buffer;
+    buffer.insert("id",
+                  Imf::Slice(Imf::UINT, reinterpret_cast<char*>(whole.data()), 4, 4 * kColumns));
+    file.setFrameBuffer(buffer);
+    file.writePixels(kRows);
+  }
+  const PictureFile file = open_picture_file(name);
+  CHECK(file.planes[0].type == NumberType::unsigned32);
+  const std::size_t first = 0;
+  CHECK(read_planes(file, {&first, 1}, 0.0f)[0].back() == 70000.0f);
+}
+
+TEST_CASE("EXR: tiles are read") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  Planes3 planes{kDisplay, 2};
+  {
+    Imf::Header header = header_with({"Y", "Z"});
+    header.setTileDescription(Imf::TileDescription(16, 8));
+    Imf::TiledOutputFile file{name.c_str(), header};
+    file.setFrameBuffer(planes.buffer({"Y", "Z"}));
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+  }
+  const PictureFile file = open_picture_file(name);
+  CHECK(wrong_values(file, plane_of(file, "Z"), 1) == 0);
+  CHECK(contains(file.remark, "tiles"));
+}
+
+TEST_CASE("EXR: a data window beyond the picture is cut, one within leaves the rest outside") {
+  const TemporaryDirectory directory;
+  for (const Imath::Box2i window : {Imath::Box2i{{-7, -9}, {kColumns + 5, kRows + 300}},
+                                    Imath::Box2i{{5, 100}, {kColumns - 3, kRows - 20}}}) {
+    const std::string name = directory.file("a.exr");
+    Planes3 planes{window, 1};
+    {
+      Imf::OutputFile file{name.c_str(), header_with({"Z"}, window)};
+      file.setFrameBuffer(planes.buffer({"Z"}));
+      file.writePixels(window.max.y - window.min.y + 1);
+    }
+    const PictureFile file = open_picture_file(name);
+    CHECK(file.width == kColumns);
+    CHECK(file.height == kRows);
+    const std::size_t first = 0;
+    const PlaneValues values = read_planes(file, {&first, 1}, -5.0f)[0];
+    int wrong = 0;
+    for (int y = 0; y < kRows; ++y) {
+      for (int x = 0; x < kColumns; ++x) {
+        const bool inside = window.intersects(Imath::V2i{x, y});
+        wrong += values[static_cast<std::size_t>(y * kColumns + x)] !=
+                 (inside ? value_at(x, y, 0) : -5.0f);
+      }
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("EXR: layers as Blender names them give colour and depth without an option") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  const std::vector<std::string> names{"ViewLayer.Combined.A", "ViewLayer.Combined.B",
+                                       "ViewLayer.Combined.G", "ViewLayer.Combined.R",
+                                       "ViewLayer.Depth.Z",    "ViewLayer.Normal.X",
+                                       "ViewLayer.Normal.Y",   "ViewLayer.Normal.Z"};
+  Planes3 planes{kDisplay, 8};
+  {
+    Imf::OutputFile file{name.c_str(), header_with(names)};
+    file.setFrameBuffer(planes.buffer(names));
+    file.writePixels(kRows);
+  }
+  const PictureFile file = open_picture_file(name);
+  CHECK(choose_colour(file, {}, "--layer").name == "ViewLayer.Combined");
+  CHECK(choose_depth(file, {}, true) == plane_of(file, "ViewLayer.Depth.Z"));
+  CHECK(choose_depth(file, "ViewLayer.Normal", true) == plane_of(file, "ViewLayer.Normal.Z"));
+  CHECK(wrong_values(file, plane_of(file, "ViewLayer.Depth.Z"), 4) == 0);
+  CHECK_THROWS_AS(choose_depth(file, "Nowhere", true), UsageError);
+}
+
+TEST_CASE("EXR: parts of a file are layers") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  Planes3 colour{kDisplay, 3}, depth{kDisplay, 1};
+  {
+    std::vector<Imf::Header> headers{header_with({"B", "G", "R"}), header_with({"Z"})};
+    headers[0].setName("beauty");
+    headers[1].setName("depth");
+    for (Imf::Header& header : headers) header.setType(Imf::SCANLINEIMAGE);
+    Imf::MultiPartOutputFile file{name.c_str(), headers.data(), 2};
+    Imf::OutputPart first{file, 0};
+    first.setFrameBuffer(colour.buffer({"B", "G", "R"}));
+    first.writePixels(kRows);
+    Imf::OutputPart second{file, 1};
+    second.setFrameBuffer(depth.buffer({"Z"}));
+    second.writePixels(kRows);
+  }
+  const PictureFile file = open_picture_file(name);
+  CHECK(plane_names(file) == "beauty.B, beauty.G, beauty.R, depth.Z");
+  CHECK(wrong_values(file, plane_of(file, "beauty.R"), 2) == 0);
+  CHECK(wrong_values(file, choose_depth(file, {}, true), 0) == 0);
+  CHECK(choose_colour(file, {}, "--layer").name == "beauty");
+}
+
+TEST_CASE("EXR: a deep picture is refused by its name") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  {
+    Imf::Header header = header_with({"Z"});
+    header.setType(Imf::DEEPSCANLINE);
+    header.compression() = Imf::ZIPS_COMPRESSION;
+    const Imf::DeepScanLineOutputFile file{name.c_str(), header};
+  }
+  CHECK(contains(refusal(name), "deep"));
+  CHECK(contains(refusal(name), "oiiotool --flatten"));
+}
+
+TEST_CASE("EXR: a file cut short anywhere is refused") {
+  Image image = make_image(Format::rgba16f, 8, 40);
+  const Bytes whole = encode_exr(image, ExrNumbers::half, "");
+  const TemporaryDirectory directory;
+  for (std::size_t length = 4; length + 1 < whole.size(); length += 7) {
+    CAPTURE(length);
+    const std::string_view text{reinterpret_cast<const char*>(whole.data()), length};
+    write_file(directory.file("a.exr"), text);
+    CHECK(refusal(directory.file("a.exr")) != "");
+  }
+}
+
+TEST_CASE("EXR: any changed byte is refused or gives a picture") {
+  Image image = make_image(Format::rgba16f, 5, 9);
+  const Bytes whole = encode_exr(image, ExrNumbers::half, "{}");
+  int pictures = 0, refusals = 0;
+  for (std::size_t i = 4; i < whole.size(); ++i) {
+    for (const std::byte change : {std::byte{0x01}, std::byte{0x80}, std::byte{0xFF}}) {
+      CAPTURE(i);
+      Bytes damaged = whole;
+      damaged[i] ^= change;
+      try {
+        const PictureFile file = open_picture_file(std::move(damaged), "a.exr");
+        for (std::size_t plane = 0; plane < file.planes.size(); ++plane) {
+          read_planes(file, {&plane, 1}, 0.0f);
+        }
+        ++pictures;
+      } catch (const FileError&) {
+        ++refusals;
+      }
+    }
+  }
+  CHECK(pictures > 0);
+  CHECK(refusals > pictures);
+}

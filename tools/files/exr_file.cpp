@@ -1,0 +1,321 @@
+#include "tools/files/exr_file.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfTileDescription.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <vector>
+
+#include "raster/images/texel.h"
+#include "tools/cli/errors.h"
+#include "tools/files/picture_file.h"
+
+namespace softfocus {
+namespace {
+
+constexpr const char* kNotes = "softfocus";
+
+/// No layer of a compositor comes near; a hostile header could name millions.
+constexpr std::size_t kMostChannels = 4096;
+/// Flat colour in DWAB and PIZ shrinks to about a ten-thousandth. Beyond this no file is one.
+constexpr std::uint64_t kMostOfCompression = 50000;
+
+class MemoryInput : public Imf::IStream {
+ public:
+  explicit MemoryInput(std::span<const std::byte> bytes) : IStream("picture"), bytes_(bytes) {}
+
+  bool read(char c[], int n) override {
+    const auto count = static_cast<std::size_t>(n);
+    if (n < 0 || count > bytes_.size() - at_) throw FileError("the EXR is cut short");
+    std::memcpy(c, bytes_.data() + at_, count);
+    at_ += count;
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t place) override {
+    if (place > bytes_.size()) throw FileError("the EXR is cut short");
+    at_ = static_cast<std::size_t>(place);
+  }
+  void clear() override {}
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+ public:
+  explicit MemoryOutput(Bytes& bytes) : OStream("picture"), bytes_(bytes) {}
+
+  void write(const char c[], int n) override {
+    const auto count = static_cast<std::size_t>(n);
+    if (bytes_.size() < at_ + count) bytes_.resize(at_ + count);
+    std::memcpy(bytes_.data() + at_, c, count);
+    at_ += count;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t place) override { at_ = static_cast<std::size_t>(place); }
+
+ private:
+  Bytes& bytes_;
+  std::size_t at_ = 0;
+};
+
+/// Does what may throw the library's exceptions.
+template <class Work>
+auto guarded(Work work) {
+  try {
+    return work();
+  } catch (const FileError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw FileError(std::string{"the EXR is damaged: "} + error.what());
+  }
+}
+
+NumberType type_of(Imf::PixelType type) {
+  switch (type) {
+    case Imf::UINT: return NumberType::unsigned32;
+    case Imf::HALF: return NumberType::half;
+    default: return NumberType::single;
+  }
+}
+
+std::int64_t width_of(const Imath::Box2i& window) {
+  return std::int64_t{window.max.x} - window.min.x + 1;
+}
+std::int64_t height_of(const Imath::Box2i& window) {
+  return std::int64_t{window.max.y} - window.min.y + 1;
+}
+
+std::string window_text(const Imath::Box2i& window) {
+  return std::to_string(window.min.x) + "," + std::to_string(window.min.y) + ".." +
+         std::to_string(window.max.x) + "," + std::to_string(window.max.y);
+}
+
+std::string_view compression_name(Imf::Compression compression) {
+  constexpr std::string_view kNames[] = {"no compression", "RLE", "ZIPS", "ZIP",  "PIZ",
+                                         "PXR24",          "B44", "B44A", "DWAA", "DWAB"};
+  const auto index = static_cast<std::size_t>(compression);
+  return index < std::size(kNames) ? kNames[index] : "unknown compression";
+}
+
+/// "part.layer.R": the part's name is left out where the channel's begins with it, or there is one
+/// part alone.
+std::string full_name(const Imf::Header& header, int parts, const std::string& channel) {
+  if (parts == 1 || !header.hasName()) return channel;
+  const std::string& part = header.name();
+  return part.empty() || channel.starts_with(part + ".") ? channel : part + "." + channel;
+}
+
+void list_part(PictureFile& file, const Imf::Header& header, int part, int parts) {
+  const std::string type = header.hasType() ? header.type() : std::string{};
+  if (type == Imf::DEEPSCANLINE || type == Imf::DEEPTILE) {
+    throw FileError(
+        "it is a deep EXR, with any number of samples a pixel; flatten it: oiiotool --flatten IN "
+        "-o OUT.exr");
+  }
+  const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();
+  check_picture_size("the EXR", width_of(display), height_of(display));
+  check_picture_size("the EXR's data window", width_of(data), height_of(data));
+  if (part == 0) {
+    file.width = static_cast<int>(width_of(display));
+    file.height = static_cast<int>(height_of(display));
+    file.remark = std::string{compression_name(header.compression())} +
+                  (header.hasTileDescription() ? ", tiles" : "") +
+                  (data != display ? ", data window " + window_text(data) : "") +
+                  (parts > 1 ? ", " + std::to_string(parts) + " parts" : "");
+  } else if (width_of(display) != file.width || height_of(display) != file.height) {
+    throw FileError("the EXR's parts have different sizes; one size would do");
+  }
+  if (header.hasTileDescription()) {
+    const Imf::TileDescription& tiles = header.tileDescription();
+    if (tiles.xSize > kMaxImageSize || tiles.ySize > kMaxImageSize) {
+      throw FileError("the EXR's tiles are larger than any picture may be");
+    }
+  }
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+    if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
+      throw FileError(std::string{"the EXR's channel '"} + channel.name() +
+                      "' has fewer pixels than the others; oiiotool IN -o OUT.exr evens them");
+    }
+    if (file.planes.size() >= kMostChannels) {
+      throw FileError("the EXR has more than " + std::to_string(kMostChannels) + " channels");
+    }
+    file.planes.push_back({.name = full_name(header, parts, channel.name()),
+                           .type = type_of(channel.channel().type),
+                           .part = part,
+                           .channel = channel.name()});
+  }
+}
+
+void list_exr(PictureFile& file) {
+  guarded([&] {
+    MemoryInput stream{file.bytes};
+    const Imf::MultiPartInputFile exr{stream, 1, false};
+    for (int part = 0; part < exr.parts(); ++part) {
+      list_part(file, exr.header(part), part, exr.parts());
+    }
+  });
+  const auto pixels =
+      static_cast<std::uint64_t>(file.width) * static_cast<std::uint64_t>(file.height);
+  if (pixels * file.planes.size() / kMostOfCompression > file.bytes.size()) {
+    throw FileError("the EXR is too small a file for the size that it claims");
+  }
+}
+
+/// The planes of one part. Rows are read a band at a time into a buffer as wide as the data window,
+/// which may reach beyond the picture.
+void read_part(Imf::MultiPartInputFile& exr, int part, const PictureFile& file,
+               std::span<const std::size_t> planes, std::span<PlaneValues> values) {
+  std::vector<std::size_t> wanted;  // places in `planes`
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (file.planes[planes[i]].part == part) wanted.push_back(i);
+  }
+  if (wanted.empty()) return;
+  Imf::InputPart input{exr, part};
+  const Imath::Box2i data = input.header().dataWindow();
+  const Imath::Box2i display = input.header().displayWindow();
+  const auto width = static_cast<std::size_t>(width_of(data));
+  constexpr int kBand = 256;  // rows: those of the largest block
+  std::vector<std::vector<float>> band(wanted.size(), std::vector<float>(width * kBand));
+  const int first_x = std::max(data.min.x, display.min.x);
+  const int last_x = std::min(data.max.x, display.max.x);
+  for (std::int64_t y0 = data.min.y; y0 <= data.max.y; y0 += kBand) {
+    const auto y1 = std::min<std::int64_t>(y0 + kBand - 1, data.max.y);
+    if (y1 < display.min.y || y0 > display.max.y) continue;
+    Imf::FrameBuffer buffer;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      // As the library wants it: the address that pixel (0, 0) would have.
+      const std::intptr_t stride = static_cast<std::intptr_t>(width * sizeof(float));
+      const std::intptr_t base =
+          reinterpret_cast<std::intptr_t>(band[i].data()) -
+          static_cast<std::intptr_t>(y0) * stride -
+          static_cast<std::intptr_t>(data.min.x) * static_cast<std::intptr_t>(sizeof(float));
+      buffer.insert(file.planes[planes[wanted[i]]].channel,
+                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base), sizeof(float),
+                               width * sizeof(float)));
+    }
+    input.setFrameBuffer(buffer);
+    input.readPixels(static_cast<int>(y0), static_cast<int>(y1));
+    if (first_x > last_x) continue;
+    for (std::int64_t y = std::max<std::int64_t>(y0, display.min.y);
+         y <= std::min<std::int64_t>(y1, display.max.y); ++y) {
+      const auto from = static_cast<std::size_t>(y - y0) * width +
+                        static_cast<std::size_t>(std::int64_t{first_x} - data.min.x);
+      const auto to =
+          static_cast<std::size_t>(y - display.min.y) * static_cast<std::size_t>(file.width) +
+          static_cast<std::size_t>(std::int64_t{first_x} - display.min.x);
+      const auto count = static_cast<std::size_t>(std::int64_t{last_x} - first_x + 1);
+      for (std::size_t i = 0; i < wanted.size(); ++i) {
+        std::copy_n(band[i].begin() + static_cast<std::ptrdiff_t>(from), count,
+                    values[wanted[i]].begin() + static_cast<std::ptrdiff_t>(to));
+      }
+    }
+  }
+}
+
+void read_exr(const PictureFile& file, std::span<const std::size_t> planes,
+              std::span<PlaneValues> values) {
+  guarded([&] {
+    MemoryInput stream{file.bytes};
+    Imf::MultiPartInputFile exr{stream, 1, false};
+    for (int part = 0; part < exr.parts(); ++part) read_part(exr, part, file, planes, values);
+  });
+}
+
+/// One plane to write.
+struct ExrPlane {
+  const char* name;
+  Imf::PixelType type;
+  std::vector<std::byte> values;
+};
+
+Bytes written(std::vector<ExrPlane>& planes, int width, int height, const std::string& notes) {
+  return guarded([&] {
+    Imf::Header header{width, height};
+    header.compression() = Imf::ZIP_COMPRESSION;
+    if (!notes.empty()) header.insert(kNotes, Imf::StringAttribute(notes));
+    Imf::FrameBuffer buffer;
+    for (ExrPlane& plane : planes) {
+      const std::size_t bytes = plane.type == Imf::HALF ? 2 : 4;
+      header.channels().insert(plane.name, Imf::Channel(plane.type));
+      buffer.insert(plane.name, Imf::Slice(plane.type, reinterpret_cast<char*>(plane.values.data()),
+                                           bytes, bytes * static_cast<std::size_t>(width)));
+    }
+    Bytes bytes;
+    MemoryOutput stream{bytes};
+    {
+      Imf::OutputFile exr{stream, header, 1};
+      exr.setFrameBuffer(buffer);
+      exr.writePixels(height);
+    }
+    return bytes;
+  });
+}
+
+}  // namespace
+
+std::string_view missing_exr() { return {}; }
+
+Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes) {
+  const auto pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  std::vector<ExrPlane> planes;
+  constexpr const char* kNames[] = {"R", "G", "B", "Z"};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const bool is_half = c < 3 && numbers == ExrNumbers::half;
+    const std::size_t bytes = is_half ? 2 : 4;
+    ExrPlane plane{kNames[c], is_half ? Imf::HALF : Imf::FLOAT,
+                   std::vector<std::byte>(bytes * pixels)};
+    std::byte* to = plane.values.data();
+    for (int y = 0; y < image.height; ++y) {
+      const auto from = row<std::uint16_t>(image, y);
+      for (std::size_t i = c; i < from.size(); i += 4, to += bytes) {
+        const float value = half_to_float(from[i]);
+        if (is_half) {
+          std::memcpy(to, &from[i], bytes);
+        } else {
+          std::memcpy(to, &value, bytes);
+        }
+      }
+    }
+    planes.push_back(std::move(plane));
+  }
+  return written(planes, image.width, image.height, notes);
+}
+
+Bytes encode_depth_exr(std::span<const float> values, int width, int height) {
+  const auto bytes = std::as_bytes(values);
+  std::vector<ExrPlane> planes;
+  planes.push_back({"Z", Imf::FLOAT, {bytes.begin(), bytes.end()}});
+  return written(planes, width, height, "");
+}
+
+std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes) {
+  try {
+    MemoryInput stream{bytes};
+    const Imf::MultiPartInputFile exr{stream, 1, false};
+    const auto* notes = exr.header(0).findTypedAttribute<Imf::StringAttribute>(kNotes);
+    if (notes != nullptr) return notes->value();
+  } catch (const std::exception&) {  // what cannot be read has no notes
+  }
+  return std::nullopt;
+}
+
+const PictureFileReader kExrReader{"OpenEXR", is_exr, list_exr, read_exr};
+
+}  // namespace softfocus

@@ -1,0 +1,35 @@
+#pragma once
+// OpenEXR, where the build has the library.
+
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tools/files/image_file.h"
+
+namespace softfocus {
+
+/// Why this build has no OpenEXR and how to get it, as a sentence; empty if it has.
+std::string_view missing_exr();
+
+enum class ExrNumbers : std::uint8_t { half, single };
+
+/// An RGBA16F picture: R, G, B in halves or floats, and alpha, the depth in metres, as the float
+/// channel Z. `notes`, if any, become the attribute `softfocus`. ZIP-compressed: the values are the
+/// same everywhere, the file's bytes are zlib's. Throws FileError.
+Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes);
+
+/// A depth in metres as the float channel Z.
+Bytes encode_depth_exr(std::span<const float> values, int width, int height);
+
+/// The attribute `softfocus` of such a file, or nothing.
+std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes);
+
+/// By the first bytes.
+inline bool is_exr(std::span<const std::byte> bytes) {
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), "\x76\x2f\x31\x01", 4) == 0;
+}
+
+}  // namespace softfocus

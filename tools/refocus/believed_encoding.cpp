@@ -1,0 +1,70 @@
+#include "tools/refocus/believed_encoding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace softfocus {
+
+NumbersSeen numbers_seen(const PlaneValues& values, NumberType type) {
+  NumbersSeen seen;
+  seen.count = values.size();
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  const bool is_small = type == NumberType::unsigned8 || type == NumberType::unsigned16;
+  std::vector<bool> there(is_small ? 65536 : 0);
+  for (const float value : values) {
+    seen.nans += value != value;
+    seen.infinities += std::isinf(value);
+    seen.zeros += value == 0.0f;
+    seen.negatives += value < 0.0f;
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, static_cast<double>(value));
+    largest = std::max(largest, static_cast<double>(value));
+    if (is_small) there[static_cast<std::size_t>(value)] = true;
+  }
+  seen.different = static_cast<std::size_t>(std::count(there.begin(), there.end(), true));
+  if (least <= largest) {
+    seen.least = least;
+    seen.largest = largest;
+  }
+  return seen;
+}
+
+BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours) {
+  if (is_ours) return {find_depth_encoding("metres"), "softfocus wrote it, in metres"};
+  switch (type) {
+    case NumberType::unsigned8:
+      return {nullptr,
+              "8 bits may be white-near, white-far, gdepth-inverse or midas, which look alike; "
+              "their near "
+              "and far must be said anyway"};
+    case NumberType::unsigned16:
+      if (seen.largest >= 60000.0) {
+        return {nullptr,
+                "16 bits that use the whole range may be a depth buffer, a grey picture, tum or "
+                "cityscapes"};
+      }
+      return {find_depth_encoding("millimetres"),
+              "16 bits that stay below 60000: millimetres, as most depth cameras write"};
+    default: break;
+  }
+  if (seen.largest >= 9.9e9) {
+    return {find_depth_encoding("blender-z"), "1e10 is what Blender writes where there is nothing"};
+  }
+  if (seen.negatives > 0) {
+    return {nullptr, "there are numbers below 0, which are no distances: perhaps midas"};
+  }
+  if (seen.largest <= 1.0) {
+    return {nullptr,
+            "all numbers are within 0 and 1: a depth buffer (device), a grey picture, or metres"};
+  }
+  if (seen.largest > 1000.0 && seen.least > 100.0) {
+    return {nullptr, "numbers from " + std::to_string(static_cast<long long>(seen.least)) +
+                         " on are far for metres: perhaps millimetres, or midas"};
+  }
+  return {find_depth_encoding("metres"),
+          "numbers of " + std::string{name_of(type)} + " beyond 1 are metres in most programs"};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,33 @@
+#pragma once
+// What a depth map's numbers are taken for if nobody says.
+
+#include <string>
+
+#include "tools/files/picture_file.h"
+#include "tools/refocus/depth_encodings.h"
+
+namespace softfocus {
+
+/// What there is to see in a plane's numbers.
+struct NumbersSeen {
+  std::size_t count = 0;
+  std::size_t nans = 0;
+  std::size_t infinities = 0;
+  std::size_t zeros = 0;
+  std::size_t negatives = 0;
+  std::size_t different = 0;  ///< distinct whole numbers, of types that are; else 0
+  double least = 0.0;         ///< of finite numbers; 0 if there is none
+  double largest = 0.0;
+};
+
+NumbersSeen numbers_seen(const PlaneValues& values, NumberType type);
+
+struct BelievedEncoding {
+  const DepthEncoding* encoding = nullptr;  ///< or none: it cannot be told
+  std::string why;                          ///< one sentence without its full stop
+};
+
+/// `is_ours`: the file has softfocus's notes, whose depths are metres.
+BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours);
+
+}  // namespace softfocus

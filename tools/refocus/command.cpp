@@ -1,0 +1,138 @@
+// softfocus refocus: a picture and its depth to a picture with depth of field.
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/progress.h"
+#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
+#include "tools/refocus/report.h"
+
+namespace softfocus {
+namespace {
+
+/// The sidecar of -o, if its format has one and there is room for it.
+std::optional<std::filesystem::path> sidecar_place(const RefocusOptions& options) {
+  if (options.output == "-" || !needs_sidecar(options.format)) return std::nullopt;
+  std::error_code error;
+  const auto status = std::filesystem::status(options.output, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return std::nullopt;
+  }
+  return sidecar_of(options.output);
+}
+
+void check_outputs(const RefocusOptions& options) {
+  if (options.output == "-") return;
+  check_writable(options.output);
+  std::vector<ReadFile> inputs{{options.colour, "the picture"}};
+  if (!options.depth.empty()) inputs.push_back({options.depth, "its depth"});
+  if (options.reading.mask) inputs.push_back({*options.reading.mask, "the mask"});
+  check_not_read("-o", options.output, inputs);
+  if (const auto sidecar = sidecar_place(options)) check_not_read("-o", *sidecar, inputs);
+}
+
+/// Colours of a file whose alpha is no depth are multiplied by it, if they are not already.
+/// Returns whether anything is transparent. Alphas beyond 0 and 1, as of a NumPy file that we
+/// wrote, are depths.
+bool multiply_by_alpha(const PictureSources& sources, Image& colour) {
+  if (!sources.colour.alpha) return false;
+  const std::size_t plane = *sources.colour.alpha;
+  if (!sources.depth_file && sources.depth_plane == plane) return false;
+  const PictureFile& file = sources.colour_file;
+  const PlaneValues alpha = read_planes(file, {&plane, 1}, 0.0f)[0];
+  const auto whole = static_cast<float>(full_scale(file.planes[plane].type));
+  const bool is_ours = sources.notes && file.reader == &kNpyReader;
+  if (is_ours || std::any_of(alpha.begin(), alpha.end(),
+                             [&](float value) { return !(value >= 0.0f && value <= whole); })) {
+    return false;
+  }
+  const bool is_straight = file.reader != &kExrReader;
+  bool found = false;
+  std::size_t next = 0;
+  for (int y = 0; y < colour.height; ++y) {
+    const auto halves = row<std::uint16_t>(colour, y);
+    for (std::size_t i = 0; i < halves.size(); i += 4, ++next) {
+      if (alpha[next] == whole) continue;
+      found = true;
+      for (std::size_t c = 0; is_straight && c < 3; ++c) {
+        halves[i + c] = float_to_half(half_to_float(halves[i + c]) * (alpha[next] / whole),
+                                      HalfRounding::nearest_even);
+      }
+    }
+  }
+  return found;
+}
+
+void warn(const std::string& text) { std::cerr << "softfocus: warning: " << text << '\n'; }
+
+int refocus(const RefocusOptions& options) {
+  check_outputs(options);
+  Progress progress;
+  ThreadPool pool{options.pool.threads, options.pool.isa};
+  progress.show("reading");
+  const PictureSources sources = open_sources(options.colour, options.depth, options.reading);
+  // The colour as planes and as a picture, the depth, the filtered picture and one between.
+  constexpr std::uint64_t kBytesPerPixel = 64;
+  check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
+               kBytesPerPixel);
+  Image colour = read_colour(sources.colour_file, sources.colour, false).image;
+  const bool is_transparent = multiply_by_alpha(sources, colour);
+  const ReadDepth depth = read_depth(sources, colour, options.reading, options.photo, pool);
+  UsedRefocus used;
+  used.lens =
+      settle_lens(options.photo, sources.notes, options.reading.numbers.focal_px, depth.map);
+  progress.show("filtering");
+  const Image picture = refocused(std::move(colour), depth.map, options, used, pool);
+
+  progress.show("writing");
+  const PictureNotes notes = refocus_notes(options, used, picture);
+  const Bytes bytes = encode_with_notes(picture, options.format, notes);
+  auto sidecar = sidecar_place(options);
+  const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
+  std::optional<WholeFile> picture_file, sidecar_file;
+  if (options.output == "-") {
+    write_to_standard_output(bytes);
+  } else {
+    picture_file.emplace(options.output).write(bytes);
+  }
+  if (sidecar && has_room) sidecar_file.emplace(*sidecar).write(sidecar_text(notes, bytes));
+  if (picture_file) picture_file->commit();
+  if (sidecar_file) sidecar_file->commit();
+  progress.clear();
+  if (!has_room) {
+    warn("'" + sidecar->string() +
+         "' is no sidecar of a picture and stays as it is: the picture's "
+         "lens is written nowhere");
+  }
+  if (is_transparent) {
+    warn("'" + options.colour +
+         "' is transparent in places; the result has no alpha, and black "
+         "there");
+  }
+  if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
+    warn("circles of more than " + std::to_string(static_cast<int>(kLargestMaxCoc)) +
+         " pixels are cut to that; a larger --f-number has smaller ones");
+  }
+  if (options.json) std::cout << refocus_json(options, sources, depth, used, notes.picture_hash);
+  if (options.verbose) std::cerr << refocus_text(options, sources, depth, used);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_refocus_command(CLI::App& program) {
+  CLI::App* parser =
+      add_command(program, "refocus", "Give a picture with depth the depth of field of a lens");
+  const auto options = std::make_shared<RefocusOptions>();
+  add_refocus_options(*parser, *options);
+  return {parser, [parser, options] {
+            complete(*options, *parser);
+            return refocus(*options);
+          }};
+}
+
+}  // namespace softfocus

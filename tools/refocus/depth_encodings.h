@@ -1,0 +1,61 @@
+#pragma once
+// The table of depth encodings: what the numbers of a depth map mean. Adding one is a line of the
+// table and its two functions.
+//
+//   code        the number in the file; of the encodings `by_full_scale`, 255 or 65535 counts as 1
+//   distance_m  metres, along the axis or along the ray (DepthAlong)
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace softfocus {
+
+/// What encodings need beside the code: options of the command line.
+struct DepthNumbers {
+  std::optional<double> near_m;
+  std::optional<double> far_m;
+  std::optional<double> scale;
+  std::optional<double> offset;
+  std::optional<double> baseline_m;
+  std::optional<double> focal_px;
+  /// The least and the largest code of the map, for encodings that know nothing else.
+  double least_code = 0.0;
+  double largest_code = 1.0;
+};
+
+/// Whether a distance is measured along the camera's axis, as a depth buffer has it, or along the
+/// pixel's ray, as a laser scanner has it.
+enum class DepthAlong : std::uint8_t { axis, ray };
+
+struct DepthEncoding {
+  std::string_view name;
+  std::string_view summary;
+  /// The options it cannot do without: "near far", "baseline focal-px".
+  std::string_view needs;
+  /// Options that it understands beside them: "scale offset", 1 and 0 unless given.
+  std::string_view takes;
+  DepthAlong along = DepthAlong::axis;
+  bool by_full_scale = false;  ///< whole numbers of a file are divided by their largest
+  bool zero_is_missing = false;
+  /// Whether what is infinitely far, or nothing, is said by infinity; else infinity is missing.
+  bool infinity_is_far = false;
+  /// Metres of a code. May give infinity; NaN or a number of 0 or less means missing.
+  double (*distance_m)(double code, const DepthNumbers& numbers);
+  /// The inverse.
+  double (*code)(double distance_m, const DepthNumbers& numbers);
+};
+
+std::span<const DepthEncoding> depth_encodings();
+
+/// The encoding of that name, or nullptr.
+const DepthEncoding* find_depth_encoding(std::string_view name);
+
+/// Throws UsageError if a number that the encoding needs was not given, if one was given that it
+/// does not understand (but for focal_px, which gives a field of view, too), or if near is not
+/// before far.
+void check_depth_numbers(const DepthEncoding& encoding, const DepthNumbers& numbers);
+
+}  // namespace softfocus

@@ -1,0 +1,128 @@
+#include "tools/refocus/depth_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace softfocus {
+namespace {
+
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+
+bool is_missing(float metres) { return metres != metres; }
+
+bool means_missing(double code, const DepthReading& reading) {
+  const DepthEncoding& encoding = *reading.encoding;
+  if (code != code || code == -std::numeric_limits<double>::infinity()) return true;
+  if (std::isinf(code)) return !encoding.infinity_is_far;
+  if (code == 0.0 && encoding.zero_is_missing) return true;
+  return std::find(reading.missing_codes.begin(), reading.missing_codes.end(), code) !=
+         reading.missing_codes.end();
+}
+
+/// The distance along the ray of what lies at distance 1 along the axis.
+double ray_length(int x, int y, int width, int height, double pixels_per_tangent) {
+  const double right = (x + 0.5 - width / 2.0) / pixels_per_tangent;
+  const double down = (y + 0.5 - height / 2.0) / pixels_per_tangent;
+  return std::sqrt(1.0 + right * right + down * down);
+}
+
+double largest_of(NumberType type, const DepthEncoding& encoding) {
+  return encoding.by_full_scale ? full_scale(type) : 1.0;
+}
+
+/// Walks over the places of a line, `count` of them, `step` apart from `first` on, and puts into
+/// `farthest` the last known depth where that is farther.
+void sweep(const std::vector<float>& metres, std::vector<float>& farthest, std::ptrdiff_t first,
+           std::ptrdiff_t step, int count) {
+  float last = kMissing;
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(first + i * step);
+    if (!is_missing(metres[at])) {
+      last = metres[at];
+    } else if (!is_missing(last) && !(farthest[at] >= last)) {
+      farthest[at] = last;
+    }
+  }
+}
+
+}  // namespace
+
+DepthMap depth_of_codes(const PlaneValues& codes, NumberType type, int width, int height,
+                        const DepthReading& reading, const PlaneValues& mask) {
+  const DepthEncoding& encoding = *reading.encoding;
+  const double largest = largest_of(type, encoding);
+  DepthReading full = reading;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const double raw = static_cast<double>(codes[i]);
+    if (means_missing(raw, reading) || std::isinf(raw) || (!mask.empty() && mask[i] == 0.0f)) {
+      continue;
+    }
+    const double code = raw / largest;
+    least = std::min(least, code);
+    most = std::max(most, code);
+  }
+  full.numbers.least_code = least;
+  full.numbers.largest_code = most > least ? most : least + 1.0;
+
+  DepthMap map{width, height, std::vector<float>(codes.size(), kMissing)};
+  std::size_t i = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x, ++i) {
+      const double raw = static_cast<double>(codes[i]);
+      if (means_missing(raw, reading) || (!mask.empty() && mask[i] == 0.0f)) continue;
+      double metres = encoding.distance_m(raw / largest, full.numbers);
+      if (reading.along == DepthAlong::ray) {
+        metres /= ray_length(x, y, width, height, reading.pixels_per_tangent);
+      }
+      if (metres > 0.0) map.metres[i] = static_cast<float>(metres);
+    }
+  }
+  return map;
+}
+
+PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthReading& reading) {
+  const DepthEncoding& encoding = *reading.encoding;
+  const double largest = largest_of(type, encoding);
+  PlaneValues codes(map.metres.size(), kMissing);
+  std::size_t i = 0;
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x, ++i) {
+      if (is_missing(map.metres[i])) continue;
+      double metres = static_cast<double>(map.metres[i]);
+      if (reading.along == DepthAlong::ray) {
+        metres *= ray_length(x, y, map.width, map.height, reading.pixels_per_tangent);
+      }
+      codes[i] = static_cast<float>(encoding.code(metres, reading.numbers) * largest);
+    }
+  }
+  return codes;
+}
+
+std::size_t missing_depths(const DepthMap& map) {
+  return static_cast<std::size_t>(std::count_if(map.metres.begin(), map.metres.end(), is_missing));
+}
+
+void fill_from_far_side(DepthMap& map) {
+  const int width = map.width, height = map.height;
+  // Twice: a pixel whose row and column know nothing finds a filled one in its row.
+  for (int pass = 0; pass < 2 && missing_depths(map) > 0; ++pass) {
+    std::vector<float> farthest(map.metres.size(), kMissing);
+    for (int y = 0; y < height; ++y) {
+      const std::ptrdiff_t start = std::ptrdiff_t{y} * width;
+      sweep(map.metres, farthest, start, 1, width);
+      sweep(map.metres, farthest, start + width - 1, -1, width);
+    }
+    for (int x = 0; x < width; ++x) {
+      const std::ptrdiff_t last = x + std::ptrdiff_t{height - 1} * width;
+      sweep(map.metres, farthest, x, width, height);
+      sweep(map.metres, farthest, last, -width, height);
+    }
+    for (std::size_t i = 0; i < map.metres.size(); ++i) {
+      if (is_missing(map.metres[i])) map.metres[i] = farthest[i];
+    }
+  }
+}
+
+}  // namespace softfocus

@@ -1,0 +1,45 @@
+#pragma once
+// A depth map as metres along the camera's axis: from the codes of a file.
+
+#include <optional>
+#include <vector>
+
+#include "tools/files/picture_file.h"
+#include "tools/refocus/depth_encodings.h"
+
+namespace softfocus {
+
+/// Row by row from the top, width x height: metres above 0, infinity where nothing is; NaN where
+/// the depth is missing.
+struct DepthMap {
+  int width = 0;
+  int height = 0;
+  std::vector<float> metres{};
+};
+
+/// How codes are to be read.
+struct DepthReading {
+  const DepthEncoding* encoding = nullptr;
+  DepthNumbers numbers{};  ///< least_code and largest_code are found here
+  DepthAlong along = DepthAlong::axis;
+  std::vector<double> missing_codes{};  ///< beside those that the encoding knows
+  /// The map's height over the height at distance 1: half of it over the tangent of half the field
+  /// of view. For distances along the ray.
+  double pixels_per_tangent = 1.0;
+};
+
+/// `codes` are width x height numbers of that type. `mask`, empty or as many, is 0 where the depth
+/// is missing.
+DepthMap depth_of_codes(const PlaneValues& codes, NumberType type, int width, int height,
+                        const DepthReading& reading, const PlaneValues& mask);
+
+/// The codes of a map: the inverse, which tests compare with. Missing depths become NaN.
+PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthReading& reading);
+
+std::size_t missing_depths(const DepthMap& map);
+
+/// Gives each missing depth the farthest of the nearest known ones to its left and right, above
+/// and below: a hole opens behind what is near, where the camera saw nothing. Needs a known one.
+void fill_from_far_side(DepthMap& map);
+
+}  // namespace softfocus

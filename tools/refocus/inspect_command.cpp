@@ -1,0 +1,259 @@
+// softfocus inspect: what is in pictures' files, and what refocus would take it for.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
+#include "tools/refocus/depth_histogram.h"
+#include "tools/refocus/report.h"
+
+namespace softfocus {
+namespace {
+
+struct InspectOptions {
+  std::vector<std::string> files;
+  RefocusOptions preview;  ///< of which output, format, reading and lens are used
+  bool json = false;
+};
+
+struct InspectedPlane {
+  PlaneInfo info;
+  NumbersSeen seen;
+};
+
+struct InspectedFile {
+  PictureFile file;
+  std::vector<InspectedPlane> planes{};
+  std::vector<ColourLayer> colours{};
+  std::optional<PictureNotes> notes{};
+  std::optional<std::size_t> depth_plane{};
+  BelievedEncoding believed{};
+  std::optional<DepthHistogram>
+      histogram{};  ///< in metres if the encoding can do it, else in codes
+  bool in_metres = false;
+  std::size_t missing = 0;
+};
+
+std::optional<std::size_t> likely_depth(const PictureFile& file, const DepthOptions& reading) {
+  if (reading.depth_layer) return choose_depth(file, reading.depth_layer, true);
+  try {
+    const bool has_colour = !colour_layers(file).empty() && file.planes.size() >= 3;
+    return choose_depth(file, {}, has_colour);
+  } catch (const UsageError&) {  // none that the names tell
+    return std::nullopt;
+  }
+}
+
+/// Reads one plane after the other, so that a file of forty layers takes the memory of one.
+InspectedFile inspected(const std::string& name, const DepthOptions& reading) {
+  InspectedFile found{.file = open_picture_file(name)};
+  const PictureFile& file = found.file;
+  found.colours = colour_layers(file);
+  found.notes = find_notes(file.path, file.bytes).notes;
+  found.depth_plane = likely_depth(file, reading);
+  for (std::size_t i = 0; i < file.planes.size(); ++i) {
+    const NumberType type = file.planes[i].type;
+    const PlaneValues values = read_planes(file, {&i, 1}, 0.0f)[0];
+    found.planes.push_back({file.planes[i], numbers_seen(values, type)});
+    if (found.depth_plane != i) continue;
+    found.believed = reading.encoding != nullptr
+                         ? BelievedEncoding{reading.encoding, "--depth-encoding says so"}
+                         : believed_encoding(found.planes[i].seen, type, found.notes.has_value());
+    const DepthEncoding* encoding = found.believed.encoding;
+    try {
+      if (encoding != nullptr) check_depth_numbers(*encoding, reading.numbers);
+    } catch (const UsageError& error) {
+      found.believed.why += "; " + std::string{error.what()};
+      encoding = nullptr;
+    }
+    found.in_metres = encoding != nullptr;
+    const DepthEncoding* const plain = find_depth_encoding("metres");
+    const DepthReading as_said{.encoding = found.in_metres ? encoding : plain,
+                               .numbers = found.in_metres ? reading.numbers : DepthNumbers{},
+                               .missing_codes = reading.missing_codes};
+    const DepthMap map = depth_of_codes(values, type, file.width, file.height, as_said, {});
+    found.missing = missing_depths(map);
+    found.histogram = depth_histogram(map, !found.in_metres);
+  }
+  return found;
+}
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.resize(width, ' ');
+  return text;
+}
+
+std::string seen_text(const NumbersSeen& seen) {
+  std::string text = short_number(seen.least) + " to " + short_number(seen.largest);
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) text += ", " + std::to_string(count) + " " + what;
+  };
+  add(seen.different, "different");
+  add(seen.zeros, "zero");
+  add(seen.negatives, "negative");
+  add(seen.infinities, "infinite");
+  add(seen.nans, "NaN");
+  return text;
+}
+
+std::string histogram_text(const DepthHistogram& histogram, bool in_metres) {
+  constexpr std::size_t kColumns = 40;
+  const std::string unit = in_metres ? " m" : "";
+  std::size_t most = std::max<std::size_t>(histogram.infinite, 1);
+  for (const DepthBin& bin : histogram.bins) most = std::max(most, bin.count);
+  std::string text;
+  const auto line = [&](const std::string& label, std::size_t count) {
+    text += "    " + padded(label, 24) + std::string((count * kColumns + most - 1) / most, '#') +
+            " " + std::to_string(count) + "\n";
+  };
+  for (const DepthBin& bin : histogram.bins) {
+    line(short_number(bin.from) + " to " + short_number(bin.to) + unit, bin.count);
+  }
+  if (histogram.infinite > 0) line("infinitely far", histogram.infinite);
+  return text;
+}
+
+std::string text_of(const InspectedFile& found) {
+  const PictureFile& file = found.file;
+  std::string text = file.path.string() + ": " + std::string{file.reader->name} + ", " +
+                     size_text({file.width, file.height}) +
+                     (file.remark.empty() ? "" : ", " + file.remark) +
+                     (file.is_srgb ? ", sRGB" : ", linear") + "\n";
+  std::size_t widest = 8;
+  for (const InspectedPlane& plane : found.planes) {
+    widest = std::max(widest, plane.info.name.size());
+  }
+  for (const InspectedPlane& plane : found.planes) {
+    text += "  " + padded(plane.info.name, widest + 2) +
+            padded(std::string{name_of(plane.info.type)}, 9) + seen_text(plane.seen) + "\n";
+  }
+  for (const ColourLayer& layer : found.colours) {
+    text +=
+        "  colour: " + (layer.name.empty() ? "without a layer's name" : "--layer " + layer.name) +
+        (layer.alpha ? ", with alpha" : "") + "\n";
+  }
+  if (found.notes) text += "  notes: softfocus wrote it, of " + found.notes->scene + "\n";
+  if (!found.depth_plane) return text + "  depth: none that the channels' names tell\n";
+  text += "  depth: " + found.planes[*found.depth_plane].info.name + ", ";
+  text += found.believed.encoding != nullptr
+              ? "read as " + std::string{found.believed.encoding->name} + " (" +
+                    found.believed.why + ")"
+              : "not to be told: " + found.believed.why;
+  text += "\n  " + std::to_string(found.missing) + " of " +
+          std::to_string(found.planes[*found.depth_plane].seen.count) + " pixels without a depth\n";
+  return text + histogram_text(*found.histogram, found.in_metres);
+}
+
+Json json_of(const InspectedFile& found) {
+  const PictureFile& file = found.file;
+  Json planes = Json::array();
+  for (const InspectedPlane& plane : found.planes) {
+    planes.push_back({{"name", plane.info.name},
+                      {"type", name_of(plane.info.type)},
+                      {"least", plane.seen.least},
+                      {"largest", plane.seen.largest},
+                      {"nan", plane.seen.nans},
+                      {"infinite", plane.seen.infinities},
+                      {"zero", plane.seen.zeros},
+                      {"negative", plane.seen.negatives}});
+  }
+  Json layers = Json::array();
+  for (const ColourLayer& layer : found.colours) layers.push_back(layer.name);
+  Json json{{"file", file.path.string()}, {"kind", file.reader->name}, {"width", file.width},
+            {"height", file.height},      {"remark", file.remark},     {"srgb", file.is_srgb},
+            {"planes", planes},           {"colour_layers", layers},   {"depth", nullptr}};
+  if (!found.depth_plane) return json;
+  Json bins = Json::array();
+  for (const DepthBin& bin : found.histogram->bins) {
+    bins.push_back({{"from", bin.from}, {"to", bin.to}, {"count", bin.count}});
+  }
+  json["depth"] = {{"plane", found.planes[*found.depth_plane].info.name},
+                   {"encoding", nullptr},
+                   {"why", found.believed.why},
+                   {"missing", found.missing},
+                   {"in_metres", found.in_metres},
+                   {"infinite", found.histogram->infinite},
+                   {"histogram", bins}};
+  if (found.believed.encoding != nullptr) json["depth"]["encoding"] = found.believed.encoding->name;
+  return json;
+}
+
+/// The circles of the lens that was asked for, as a grey picture.
+void write_circles(const InspectOptions& options) {
+  RefocusOptions preview = options.preview;
+  preview.colour = options.files[0];
+  preview.depth = options.files.size() > 1 ? options.files[1] : "";
+  preview.show = RefocusShow::coc;
+  for (const std::string& file : options.files) {
+    check_not_read("-o", preview.output, {{file, "a file to inspect"}});
+  }
+  ThreadPool pool{preview.pool.threads, preview.pool.isa};
+  const PictureSources sources = open_sources(preview.colour, preview.depth, preview.reading);
+  const Image colour = read_colour(sources.colour_file, sources.colour, false).image;
+  const ReadDepth depth = read_depth(sources, colour, preview.reading, preview.photo, pool);
+  UsedRefocus used;
+  used.lens =
+      settle_lens(preview.photo, sources.notes, preview.reading.numbers.focal_px, depth.map);
+  const Image circles = refocused(colour, depth.map, preview, used, pool);
+  WholeFile file{preview.output};
+  file.write(encode(circles, preview.format));
+  file.commit();
+  std::cerr << "circles in " << preview.output << ": black is sharp, white a radius of "
+            << short_number(static_cast<double>(used.settings.max_coc_px)) << " px\n"
+            << refocus_text(preview, sources, depth, used);
+}
+
+int inspect(const InspectOptions& options) {
+  Json all = Json::array();
+  for (const std::string& name : options.files) {
+    const InspectedFile found = inspected(name, options.preview.reading);
+    if (options.json) {
+      all.push_back(json_of(found));
+    } else {
+      std::cout << text_of(found);
+    }
+  }
+  if (options.json) std::cout << json_text(all, 2) << '\n';
+  if (!options.preview.output.empty()) write_circles(options);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_inspect_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "inspect",
+                                 "Show what is in pictures' files, and what their depth means");
+  const auto options = std::make_shared<InspectOptions>();
+  add_value_list(*parser, "FILES", "", "Pictures, depths, or both",
+                 [options](const std::vector<std::string>& names) { options->files = names; });
+  add_value(*parser, "-o,--output", "FILE",
+            "A grey picture of the circles of confusion, of one file or of a colour and its depth",
+            [options](const std::string& text) { options->preview.output = text; });
+  add_depth_options(*parser, options->preview.reading);
+  add_photo_lens_options(*parser, options->preview.photo);
+  add_flag(*parser, "--json", "Print JSON", options->json);
+  return {parser, [parser, options] {
+            if (options->files.empty()) {
+              throw UsageError("FILES is missing: give pictures, softfocus inspect a.exr");
+            }
+            check_photo_lens(*parser);
+            RefocusOptions& preview = options->preview;
+            if (!preview.output.empty()) {
+              if (options->files.size() > 2) {
+                throw UsageError("-o: it takes one file, or a colour and its depth; " +
+                                 std::to_string(options->files.size()) + " are given");
+              }
+              settle_format(*parser, preview.output, preview.format);
+            }
+            return inspect(*options);
+          }};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,85 @@
+#include "tools/refocus/options.h"
+
+#include <array>
+
+#include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
+
+namespace softfocus {
+namespace {
+
+struct NamedShow {
+  std::string_view name;
+  RefocusShow show;
+};
+constexpr std::array kShows{NamedShow{"image", RefocusShow::image},
+                            NamedShow{"coc", RefocusShow::coc},
+                            NamedShow{"depth", RefocusShow::depth}};
+
+void check_method(const RefocusOptions& options) {
+  if (options.method.of_scene == nullptr) return;
+  throw UsageError("--method " + std::string{options.method.name()} +
+                   ": it draws a scene anew, and there is a picture alone; give disc-layers, "
+                   "two-pass or another filter (softfocus methods)");
+}
+
+}  // namespace
+
+void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
+  add_argument(parser, "COLOUR",
+               "A picture: PNG and JPEG (sRGB), EXR, HDR, PFM (linear), NPY (linear; whole numbers "
+               "sRGB)",
+               options.colour);
+  add_optional_argument(parser, "DEPTH", "Its depth, unless COLOUR has it: any of these",
+                        options.depth);
+  add_value(parser, "-o,--output", "FILE",
+            "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
+            [&options](const std::string& text) { options.output = text; });
+  add_format_option(parser, options.format);
+  add_value(parser, "--show", "image|coc|depth",
+            "The picture with depth of field, or a grey map (default: image)",
+            [&options](const std::string& text) {
+              for (const NamedShow& known : kShows) {
+                if (known.name != text) continue;
+                options.show = known.show;
+                return;
+              }
+              throw UsageError("--show '" + text + "': there are " + names_of(kShows));
+            });
+  add_depth_options(parser, options.reading);
+  add_photo_lens_options(parser, options.photo);
+  add_method_option(parser, options.method);
+  add_arithmetic_option(parser, options.arithmetic);
+  add_max_coc_option(parser, options.max_coc_px, "the picture's largest circle");
+  add_weight_options(parser, options.leak, options.budget);
+  add_goal_options(parser, options.goal);
+  add_profile_option(parser, options.profile, options.profile_name);
+  add_pool_options(parser, options.pool, "the picture is the same");
+  add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
+  add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);
+}
+
+void complete(RefocusOptions& options, const CLI::App& parser) {
+  settle_format(parser, options.output, options.format);
+  const bool to_standard_output = options.output == "-";
+  if (to_standard_output && options.json) {
+    throw UsageError("--json and -o - would both write to standard output; give -o a file");
+  }
+  if (to_standard_output && is_terminal(kStandardOutput)) {
+    throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
+  }
+  check_photo_lens(parser);
+  check_method(options);
+  check_budget(parser, options.method.name());
+  for (const char* option : {"--max-error", "--max-time"}) {
+    if (!is_given(parser, option) || options.method.is_auto()) continue;
+    throw UsageError(std::string{option} + ": the method " + std::string{options.method.name()} +
+                     " keeps to no bound; give --method auto");
+  }
+  if (is_given(parser, "--max-error") && is_given(parser, "--max-time")) {
+    throw UsageError("--max-error and --max-time exclude each other; give one");
+  }
+  check_arithmetic(options.arithmetic, options.method.name(), false);
+}
+
+}  // namespace softfocus

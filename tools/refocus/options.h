@@ -1,0 +1,45 @@
+#pragma once
+// Everything that `refocus` is told.
+
+#include <optional>
+#include <string>
+
+#include "dof/fixed_pictures/arithmetic.h"
+#include "tools/files/image_file.h"
+#include "tools/options/method_options.h"
+#include "tools/options/run_options.h"
+#include "tools/refocus/picture_with_depth.h"
+
+namespace softfocus {
+
+/// What is written: the picture, or a map of what it is made from.
+enum class RefocusShow : std::uint8_t { image, coc, depth };
+
+struct RefocusOptions {
+  std::string colour;
+  std::string depth;   ///< empty: COLOUR has it
+  std::string output;  ///< "-" for standard output
+  FileFormat format = FileFormat::png;
+  DepthOptions reading;
+  PhotoLens photo;
+  MethodChoice method{.filter = find_method("two-pass")};
+  Arithmetic arithmetic = Arithmetic::floats;
+  AutoGoal goal;                    ///< of auto
+  std::optional<float> max_coc_px;  ///< none: the picture's largest circle
+  float leak = DofSettings{}.leak;
+  float budget = DofSettings{}.budget;
+  RefocusShow show = RefocusShow::image;
+  Profile profile;
+  std::string profile_name = "ieee";
+  PoolOptions pool;
+  bool json = false;
+  bool verbose = false;
+};
+
+void add_refocus_options(CLI::App& parser, RefocusOptions& options);
+
+/// What each option alone cannot know: throws UsageError for options that are missing or exclude
+/// each other and for methods that need the scene, and settles the format.
+void complete(RefocusOptions& options, const CLI::App& parser);
+
+}  // namespace softfocus

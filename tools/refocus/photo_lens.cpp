@@ -1,0 +1,279 @@
+#include "tools/refocus/photo_lens.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "raster/numbers/exact_math.h"
+#include "tools/cli/errors.h"
+#include "tools/options/lengths.h"
+
+namespace softfocus {
+namespace {
+
+struct NamedSensor {
+  std::string_view name;
+  double width_mm, height_mm;
+};
+constexpr std::array kSensors{
+    NamedSensor{"full-frame", 36.0, 24.0},  NamedSensor{"aps-c", 23.6, 15.6},
+    NamedSensor{"aps-c-canon", 22.3, 14.9}, NamedSensor{"micro-four-thirds", 17.3, 13.0},
+    NamedSensor{"1-inch", 13.2, 8.8},       NamedSensor{"phone", 9.8, 7.3}};
+
+Sensor parse_sensor(const std::string& text) {
+  for (const NamedSensor& known : kSensors) {
+    if (known.name == text) return {text, known.width_mm, known.height_mm};
+  }
+  const auto cross = text.find('x');
+  const std::string wanted = names_of(kSensors) + ", or millimetres as WxH, such as 36x24mm";
+  if (cross == text.npos) throw UsageError("--sensor '" + text + "': there are " + wanted);
+  try {
+    return {text, parse_millimetres("", text.substr(0, cross), 0.1, 1e4, wanted),
+            parse_millimetres("", text.substr(cross + 1), 0.1, 1e4, wanted)};
+  } catch (const UsageError&) {  // which knows one side alone
+    throw UsageError("--sensor '" + text + "': there are " + wanted);
+  }
+}
+
+SharpDepthRange parse_focus_range(const std::string& text) {
+  constexpr const char* kWanted = "two distances as NEAR..FAR, such as 1.5m..3m";
+  const auto dots = text.find("..");
+  const auto refuse = [&] { throw UsageError("--focus-range '" + text + "': give " + kWanted); };
+  if (dots == text.npos) refuse();
+  SharpDepthRange range;
+  try {
+    range = {parse_metres("", text.substr(0, dots), 1e-9, 1e9, kWanted),
+             parse_metres("", text.substr(dots + 2), 1e-9, 1e9, kWanted)};
+  } catch (const UsageError&) {  // which knows one end alone
+    refuse();
+  }
+  if (!(range.near_m < range.far_m)) refuse();
+  return range;
+}
+
+/// The pixels of a millimetre on the sensor: the picture is the largest part of it that has the
+/// picture's shape, upright if the picture is.
+double pixels_per_mm(const Sensor& sensor, int width, int height) {
+  const bool turned = (width < height) != (sensor.width_mm < sensor.height_mm);
+  const double across = turned ? sensor.height_mm : sensor.width_mm;
+  const double down = turned ? sensor.width_mm : sensor.height_mm;
+  return std::max(width / across, height / down);
+}
+
+/// What says how much the camera sees, in the order in which it is asked.
+enum class CameraSource : std::uint8_t { fov, sensor, focal_px, notes, full_frame };
+
+CameraSource camera_source(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
+                           std::optional<double> focal_px) {
+  if (photo.fov_y_degrees) return CameraSource::fov;
+  if (photo.sensor) return CameraSource::sensor;
+  if (focal_px) return CameraSource::focal_px;
+  return notes ? CameraSource::notes : CameraSource::full_frame;
+}
+
+Sensor sensor_of(const PhotoLens& photo) {
+  return photo.sensor.value_or(Sensor{"full-frame", 36.0, 24.0});
+}
+
+double focal_length_mm(const PhotoLens& photo, const std::optional<PictureNotes>& notes) {
+  const ThinLens standard;
+  const double noted =
+      notes && notes->lens ? notes->lens->lens.focal_length_mm : standard.focal_length_mm;
+  return photo.lens.focal_length_mm.value_or(noted);
+}
+
+/// The picture's height over the height that it shows at distance 1. `image_mm` lies between the
+/// lens and a sensor.
+double pixels_per_tangent(CameraSource source, const PhotoLens& photo,
+                          const std::optional<PictureNotes>& notes, std::optional<double> focal_px,
+                          double image_mm, int width, int height) {
+  const auto of_degrees = [&](double degrees) {
+    return height / (2.0 * exact_math::tan_degrees(degrees / 2.0));
+  };
+  switch (source) {
+    case CameraSource::fov: return of_degrees(*photo.fov_y_degrees);
+    case CameraSource::notes: return of_degrees(notes->fov_y_degrees);
+    case CameraSource::focal_px: return *focal_px;
+    default: return image_mm * pixels_per_mm(sensor_of(photo), width, height);
+  }
+}
+
+/// For notes and reports alone: the C library's arctangent has other bits elsewhere.
+double shown_degrees(double pixels_per_unit_tangent, int height) {
+  return 2.0 * std::atan(height / (2.0 * pixels_per_unit_tangent)) * 180.0 / exact_math::kPi;
+}
+
+/// As pixel_coc() has it, of a camera whose field of view is not known in degrees.
+PixelCoc coc_of(const ThinLens& lens, double pixels_per_unit_tangent, double coc_scale) {
+  const double aperture_radius_m = aperture_mm(lens) / 1000.0 / 2.0;
+  return {
+      static_cast<float>(aperture_radius_m / lens.focus_m * pixels_per_unit_tangent * coc_scale),
+      static_cast<float>(lens.focus_m)};
+}
+
+std::vector<float> finite_depths(const DepthMap& depth, int x0, int x1, int y0, int y1) {
+  std::vector<float> found;
+  for (int y = std::max(y0, 0); y <= std::min(y1, depth.height - 1); ++y) {
+    for (int x = std::max(x0, 0); x <= std::min(x1, depth.width - 1); ++x) {
+      const float metres =
+          depth.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(depth.width) +
+                       static_cast<std::size_t>(x)];
+      if (std::isfinite(metres)) found.push_back(metres);
+    }
+  }
+  return found;
+}
+
+double ranked(std::vector<float>& values, std::size_t rank) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(values.begin(), place, values.end());
+  return static_cast<double>(*place);
+}
+
+double median_around(const DepthMap& depth, Pixel pixel, const std::string& option) {
+  constexpr int kReach = 2;
+  auto around =
+      finite_depths(depth, pixel.x - kReach, pixel.x + kReach, pixel.y - kReach, pixel.y + kReach);
+  if (around.empty()) {
+    throw UsageError(option +
+                     ": nothing there has a finite depth; give a --focus or another pixel");
+  }
+  return ranked(around, around.size() / 2);
+}
+
+std::string pixel_text(Pixel pixel) {
+  return std::to_string(pixel.x) + "," + std::to_string(pixel.y);
+}
+
+/// The distance in focus and who said it.
+double focus_of(const PhotoLens& photo, const DepthMap& depth, std::string& from) {
+  if (photo.lens.focus_m) {
+    from = "--focus";
+    return *photo.lens.focus_m;
+  }
+  if (photo.focus_range) {
+    from = "--focus-range";
+    return photo.focus_range->near_m;
+  }
+  if (photo.focus_nearest) {
+    auto all = finite_depths(depth, 0, depth.width - 1, 0, depth.height - 1);
+    if (all.empty())
+      throw UsageError("--focus-nearest: nothing has a finite depth; give a --focus");
+    from = "the nearest thousandth";
+    return ranked(all, all.size() / 1000);
+  }
+  const Pixel pixel = photo.focus_at.value_or(Pixel{depth.width / 2, depth.height / 2});
+  if (pixel.x < 0 || pixel.x >= depth.width || pixel.y < 0 || pixel.y >= depth.height) {
+    throw UsageError("--focus-at " + pixel_text(pixel) +
+                     ": the pixel must lie in the picture, 0,0 to " +
+                     pixel_text({depth.width - 1, depth.height - 1}));
+  }
+  from = "the median around pixel " + pixel_text(pixel);
+  return median_around(depth, pixel, "--focus-at " + pixel_text(pixel));
+}
+
+}  // namespace
+
+void add_photo_lens_options(CLI::App& parser, PhotoLens& photo) {
+  add_refocus_lens_options(parser, photo.lens,
+                           [&photo](double degrees) { photo.fov_y_degrees = degrees; });
+  add_value(
+      parser, "--focus-at", "X,Y", "Focus on what is at this pixel: the median of the 5x5 there",
+      [&photo](const std::string& text) { photo.focus_at = parse_pixel("--focus-at", text); });
+  add_flag(parser, "--focus-nearest", "Focus on what is nearest", photo.focus_nearest);
+  add_value(parser, "--focus-range", "NEAR..FAR",
+            "All between these distances is sharp; beyond, the blur begins at their ends",
+            [&photo](const std::string& text) { photo.focus_range = parse_focus_range(text); });
+  add_value(parser, "--sensor", "NAME|WxHmm",
+            "The sensor, which with the focal length gives the field of view: " +
+                names_of(kSensors) + " (default: the picture's field of view, or full-frame)",
+            [&photo](const std::string& text) { photo.sensor = parse_sensor(text); });
+  add_value(parser, "--blur-at-infinity", "PIXELS",
+            "In place of a lens: the radius of the circle of what is infinitely far",
+            [&photo](const std::string& text) {
+              photo.blur_at_infinity_px =
+                  parse_number("--blur-at-infinity", text, 0.0, 1e6, "a radius in pixels from 0");
+            });
+}
+
+void check_photo_lens(const CLI::App& parser) {
+  const auto only_one_of = [&](std::initializer_list<const char*> options) {
+    const char* first = nullptr;
+    for (const char* option : options) {
+      if (!is_given(parser, option)) continue;
+      if (first != nullptr) {
+        throw UsageError(std::string{first} + " and " + option + " exclude each other; give one");
+      }
+      first = option;
+    }
+  };
+  only_one_of({"--focus", "--focus-at", "--focus-nearest", "--focus-range"});
+  only_one_of({"--fov", "--sensor"});
+  for (const char* option : {"--f-number", "--focal-length", "--sensor", "--coc-scale"}) {
+    only_one_of({"--blur-at-infinity", option});
+  }
+}
+
+double pixels_per_tangent(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
+                          std::optional<double> focal_px, int width, int height) {
+  return pixels_per_tangent(camera_source(photo, notes, focal_px), photo, notes, focal_px,
+                            focal_length_mm(photo, notes), width, height);
+}
+
+SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
+                        std::optional<double> focal_px, const DepthMap& depth) {
+  SettledLens settled;
+  if (notes && notes->lens) {
+    settled.lens = notes->lens->lens;
+    settled.coc_scale = notes->lens->coc_scale;
+  }
+  settled.lens = overruled(settled.lens, photo.lens);
+  settled.coc_scale = photo.lens.coc_scale.value_or(settled.coc_scale);
+  settled.lens.focus_m = focus_of(photo, depth, settled.focus_from);
+  settled.range = photo.focus_range;
+  const CameraSource source = camera_source(photo, notes, focal_px);
+  constexpr std::array<const char*, 5> kSources{"--fov", "--sensor ", "--focal-px",
+                                                "what the picture says", "the default, full-frame"};
+  settled.camera_from = kSources[static_cast<std::size_t>(source)];
+  if (source == CameraSource::sensor) settled.camera_from += photo.sensor->name;
+  const auto camera = [&](double image_mm) {
+    const double pixels =
+        pixels_per_tangent(source, photo, notes, focal_px, image_mm, depth.width, depth.height);
+    const bool known = source == CameraSource::fov || source == CameraSource::notes;
+    settled.fov_y_degrees = !known                        ? shown_degrees(pixels, depth.height)
+                            : source == CameraSource::fov ? *photo.fov_y_degrees
+                                                          : notes->fov_y_degrees;
+    return pixels;
+  };
+  if (photo.blur_at_infinity_px) {
+    // A lens focused at the near end of a range has more blur beyond it than one at the far end.
+    const double more =
+        photo.focus_range ? photo.focus_range->far_m / photo.focus_range->near_m : 1.0;
+    settled.has_lens = false;
+    camera(focal_length_mm(photo, notes));
+    settled.coc = {static_cast<float>(*photo.blur_at_infinity_px * more),
+                   static_cast<float>(settled.lens.focus_m)};
+    return settled;
+  }
+  check_lens(settled.lens, photo.lens, settled.focus_from);
+  settled.coc = coc_of(settled.lens, camera(image_distance_mm(settled.lens, settled.lens.focus_m)),
+                       settled.coc_scale);
+  if (!std::isfinite(settled.coc.radius_at_infinity_px)) {
+    throw UsageError("the lens's circles are too large: give a larger --f-number");
+  }
+  return settled;
+}
+
+void move_range_into_focus(DepthMap& map, const SharpDepthRange& range) {
+  for (float& metres : map.metres) {
+    const double z = static_cast<double>(metres);
+    if (z >= range.near_m && z <= range.far_m) {
+      metres = static_cast<float>(range.near_m);
+    } else if (z > range.far_m) {
+      metres = static_cast<float>(1.0 / (1.0 / z + 1.0 / range.near_m - 1.0 / range.far_m));
+    }
+  }
+}
+
+}  // namespace softfocus

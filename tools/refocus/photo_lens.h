@@ -1,0 +1,67 @@
+#pragma once
+// The lens as photographers say it: what is in focus, the sensor, the blur at infinity.
+
+#include <optional>
+#include <string>
+
+#include "dof/lens.h"
+#include "tools/cli/option_values.h"
+#include "tools/files/picture_notes.h"
+#include "tools/options/lens_options.h"
+#include "tools/refocus/depth_map.h"
+#include "tools/render/sharp_depths_option.h"
+
+namespace softfocus {
+
+/// The film or chip behind the lens.
+struct Sensor {
+  std::string name;
+  double width_mm = 36.0;
+  double height_mm = 24.0;
+};
+
+/// What was given.
+struct PhotoLens {
+  LensOptions lens;
+  std::optional<double> fov_y_degrees;
+  std::optional<Sensor> sensor;
+  std::optional<Pixel> focus_at;
+  bool focus_nearest = false;
+  std::optional<SharpDepthRange> focus_range;
+  std::optional<double> blur_at_infinity_px;  ///< a radius
+};
+
+void add_photo_lens_options(CLI::App& parser, PhotoLens& photo);
+
+/// Throws UsageError for options that exclude each other.
+void check_photo_lens(const CLI::App& parser);
+
+/// How a lens was settled.
+struct SettledLens {
+  ThinLens lens{};
+  double coc_scale = 1.0;
+  double fov_y_degrees = 0.0;
+  PixelCoc coc{};
+  bool has_lens = true;  ///< false: --blur-at-infinity alone says how much is blurred
+  std::optional<SharpDepthRange> range{};
+  std::string focus_from;   ///< "--focus", "the median around pixel 3,4"
+  std::string camera_from;  ///< "--sensor full-frame", "the notes in a.exr"
+};
+
+/// The height of a picture over its height at distance 1, of the camera that was given or noted, or
+/// by `focal_px`. Of a sensor with the lens focused at infinity.
+double pixels_per_tangent(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
+                          std::optional<double> focal_px, int width, int height);
+
+/// The lens for a picture of the map's size. The median around a pixel is of the 5x5 pixels there;
+/// the nearest is the depth that one pixel in a thousand is nearer than. Throws UsageError for a
+/// lens that cannot be, a pixel outside, or a map in which nothing has a finite depth.
+SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
+                        std::optional<double> focal_px, const DepthMap& depth);
+
+/// Moves depths so that a lens focused at the range's near end leaves all within the range sharp,
+/// and blurs what is nearer or farther as a lens does that is focused at that end: 1/z is what
+/// circles are linear in, so 1/z' = 1/z + 1/near - 1/far beyond the range, and 1/near in it.
+void move_range_into_focus(DepthMap& map, const SharpDepthRange& range);
+
+}  // namespace softfocus

@@ -1,0 +1,189 @@
+#include "tools/refocus/picture_with_depth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
+#include "tools/options/lengths.h"
+
+namespace softfocus {
+namespace {
+
+void add_number_options(CLI::App& parser, DepthNumbers& numbers) {
+  const auto add_metres = [&](const char* name, const char* help, std::optional<double>& place) {
+    add_value(parser, name, "METRES", help, [name, &place](const std::string& text) {
+      place = parse_metres(name, text, 1e-9, 1e9, "a distance above 0, such as 0.1 or 12cm");
+    });
+  };
+  const auto add_number = [&](const char* name, const char* type, const char* help, double least,
+                              std::optional<double>& place) {
+    add_value(parser, name, type, help, [name, least, &place](const std::string& text) {
+      place = parse_number(name, text, least, 1e12, "a decimal number");
+    });
+  };
+  add_metres("--near", "Of the encodings that need it: the near plane, or the nearest depth",
+             numbers.near_m);
+  add_metres("--far", "Likewise the far plane, or the farthest depth", numbers.far_m);
+  add_number("--scale", "S", "Of metres, inverse, disparity: what a code is multiplied by", -1e12,
+             numbers.scale);
+  add_number("--offset", "O", "Likewise what is added then; of middlebury its doffs", -1e12,
+             numbers.offset);
+  add_metres("--baseline", "Of disparities: between the two cameras", numbers.baseline_m);
+  add_number("--focal-px", "PIXELS",
+             "Of disparities: focal length in pixels of the colour picture; also its field of view",
+             1e-3, numbers.focal_px);
+}
+
+void add_mending_options(CLI::App& parser, Mending& mending) {
+  add_value(parser, "--upsample", "colour|nearest",
+            "A map smaller than the picture grows along the colours' edges, or by its nearest "
+            "pixel (default: colour)",
+            [&mending](const std::string& text) {
+              if (text != "colour" && text != "nearest") {
+                throw UsageError("--upsample '" + text + "': there are colour, nearest");
+              }
+              mending.by_colour = text == "colour";
+            });
+  add_flag(parser, "--mend-edges",
+           "Depth between two surfaces, as anti-aliasing leaves it, becomes that of one of them",
+           mending.edges);
+  add_flag(parser, "--mend-bands", "Steps of a depth of 8 bits become slopes", mending.bands);
+}
+
+/// A file whose values hide depths, as a mask of the map's size.
+PlaneValues read_mask(const std::string& name, const PictureFile& depth) {
+  const PictureFile file = open_picture_file(name);
+  if (file.width != depth.width || file.height != depth.height) {
+    throw UsageError("--mask '" + name + "' is " + size_text({file.width, file.height}) +
+                     " pixels and the depth " + size_text({depth.width, depth.height}) +
+                     "; give one of that size");
+  }
+  const std::size_t plane = 0;
+  return read_planes(file, {&plane, 1}, 0.0f)[0];
+}
+
+void check_shape(const PictureFile& colour, const PictureFile& depth) {
+  // A map of an odd size is the half of one rounded either way.
+  const double across = static_cast<double>(colour.width) / depth.width;
+  const double down = static_cast<double>(colour.height) / depth.height;
+  const double most = 1.0 + 1.5 / std::min(depth.width, depth.height);
+  if (std::max(across, down) <= most * std::min(across, down)) return;
+  throw UsageError("'" + depth.path.string() + "' is " + size_text({depth.width, depth.height}) +
+                   " pixels and the colour " + size_text({colour.width, colour.height}) +
+                   ", another shape; give a depth of the same part of the picture");
+}
+
+}  // namespace
+
+void add_depth_options(CLI::App& parser, DepthOptions& options) {
+  add_value(parser, "--layer", "NAME", "Layer of COLOUR (default: R G B, Combined or the first)",
+            [&options](const std::string& text) { options.layer = text; });
+  add_value(parser, "--depth-layer", "NAME",
+            "Layer or channel of the depth (default: Z, Depth, or a NumPy file's alpha)",
+            [&options](const std::string& text) { options.depth_layer = text; });
+  add_value(parser, "--depth-encoding", "NAME",
+            "What the depth's numbers mean: " + names_of(depth_encodings()) +
+                " (default: by the numbers, where they tell; softfocus inspect says)",
+            [&options](const std::string& text) {
+              options.encoding = find_depth_encoding(text);
+              if (options.encoding == nullptr) {
+                throw UsageError("--depth-encoding '" + text + "': there are " +
+                                 names_of(depth_encodings()));
+              }
+            });
+  add_number_options(parser, options.numbers);
+  add_value(parser, "--depth-along", "axis|ray",
+            "Whether depth is measured along the camera's axis or the pixel's ray (default: the "
+            "encoding's, axis but for blender-mist)",
+            [&options](const std::string& text) {
+              if (text != "axis" && text != "ray") {
+                throw UsageError("--depth-along '" + text + "': there are axis, ray");
+              }
+              options.along = text == "axis" ? DepthAlong::axis : DepthAlong::ray;
+            });
+  add_repeatable_value(parser, "--missing", "NUMBER",
+                       "This number in the depth file means that nothing is known; may be repeated "
+                       "(NaN and what the encoding says always do)",
+                       [&options](const std::string& text) {
+                         options.missing_codes.push_back(
+                             parse_number("--missing", text, -1e30, 1e30, "a decimal number"));
+                       });
+  add_value(parser, "--mask", "FILE", "A picture of the depth's size, 0 where nothing is known",
+            [&options](const std::string& text) { options.mask = text; });
+  add_value(parser, "--holes", "far|refuse",
+            "What is not known is filled from the far side, or refused (default: far)",
+            [&options](const std::string& text) {
+              if (text != "far" && text != "refuse") {
+                throw UsageError("--holes '" + text + "': there are far, refuse");
+              }
+              options.holes = text == "far" ? Holes::from_far_side : Holes::refused;
+            });
+  add_mending_options(parser, options.mending);
+}
+
+PictureSources open_sources(const std::string& colour, const std::string& depth,
+                            const DepthOptions& options) {
+  PictureSources sources{.colour_file = open_picture_file(colour)};
+  sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
+  if (!depth.empty()) sources.depth_file = open_picture_file(depth);
+  sources.depth_plane = choose_depth(sources.of_depth(), options.depth_layer, depth.empty());
+  sources.notes = find_notes(sources.colour_file.path, sources.colour_file.bytes).notes;
+  return sources;
+}
+
+ReadDepth read_depth(const PictureSources& sources, const Image& colour,
+                     const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool) {
+  const PictureFile& file = sources.of_depth();
+  check_shape(sources.colour_file, file);
+  const NumberType type = file.planes[sources.depth_plane].type;
+  const PlaneValues codes = depth_codes(file, sources.depth_plane);
+  const PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
+
+  ReadDepth read{.seen = numbers_seen(codes, type),
+                 .encoding = options.encoding,
+                 .width = file.width,
+                 .height = file.height};
+  if (read.encoding == nullptr) {
+    const bool is_ours = !sources.depth_file && sources.notes;
+    const BelievedEncoding believed = believed_encoding(read.seen, type, is_ours);
+    if (believed.encoding == nullptr) {
+      throw UsageError("'" + file.path.string() + "': " + believed.why +
+                       "; give a --depth-encoding");
+    }
+    read.encoding = believed.encoding;
+    read.why = believed.why;
+  }
+  check_depth_numbers(*read.encoding, options.numbers);
+  read.along = options.along.value_or(read.encoding->along);
+  DepthReading reading{.encoding = read.encoding,
+                       .numbers = options.numbers,
+                       .along = read.along,
+                       .missing_codes = options.missing_codes};
+  // A smaller map has a smaller focal length in pixels.
+  reading.pixels_per_tangent = pixels_per_tangent(photo, sources.notes, options.numbers.focal_px,
+                                                  colour.width, colour.height) *
+                               file.height / colour.height;
+  const bool has_bands = options.mending.bands && full_scale(type) > 1.0;
+  const PlaneValues mended_codes =
+      has_bands ? without_bands(codes, file.width, file.height, pool) : PlaneValues{};
+  read.mended.bands = has_bands;
+  read.map = depth_of_codes(has_bands ? mended_codes : codes, type, file.width, file.height,
+                            reading, mask);
+  read.filled = missing_depths(read.map);
+  const std::size_t all = read.map.metres.size();
+  if (read.filled == all) {
+    throw UsageError("'" + file.path.string() + "' has no depth that is known (read as " +
+                     std::string{read.encoding->name} + "); another --depth-encoding would do");
+  }
+  if (read.filled > 0 && options.holes == Holes::refused) {
+    throw UsageError("--holes refuse: '" + file.path.string() + "' knows no depth at " +
+                     std::to_string(read.filled) + " of " + std::to_string(all) +
+                     " pixels; --holes far fills them");
+  }
+  fill_from_far_side(read.map);
+  mend(read.map, colour, options.mending, read.mended, pool);
+  return read;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,70 @@
+#pragma once
+// A colour and its depth from one file or two, as `refocus` and `inspect` read them.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/cli/parser.h"
+#include "tools/files/picture_notes.h"
+#include "tools/refocus/believed_encoding.h"
+#include "tools/refocus/chosen_layers.h"
+#include "tools/refocus/depth_map.h"
+#include "tools/refocus/mend_depth.h"
+#include "tools/refocus/photo_lens.h"
+
+namespace softfocus {
+
+/// What becomes of pixels without a depth.
+enum class Holes : std::uint8_t { from_far_side, refused };
+
+struct DepthOptions {
+  std::optional<std::string> layer;  ///< of the colour
+  std::optional<std::string> depth_layer;
+  std::optional<std::string> mask;          ///< a file that is 0 where the depth is missing
+  const DepthEncoding* encoding = nullptr;  ///< none: as believed
+  DepthNumbers numbers;
+  std::optional<DepthAlong> along;  ///< none: the encoding's
+  std::vector<double> missing_codes;
+  Holes holes = Holes::from_far_side;
+  Mending mending;
+};
+
+/// Adds --layer, --depth-layer, --depth-encoding, its numbers, --depth-along, --missing, --mask,
+/// --holes and the three ways of mending.
+void add_depth_options(CLI::App& parser, DepthOptions& options);
+
+/// Files whose headers were read.
+struct PictureSources {
+  PictureFile colour_file;
+  std::optional<PictureFile> depth_file{};  ///< none: the colour's
+  ColourLayer colour{};
+  std::size_t depth_plane = 0;
+  std::optional<PictureNotes> notes{};  ///< of the colour's file
+
+  const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
+};
+
+/// Opens COLOUR and, unless it is empty, DEPTH, and chooses layers. Throws FileError, UsageError.
+PictureSources open_sources(const std::string& colour, const std::string& depth,
+                            const DepthOptions& options);
+
+/// A depth map and how it was read.
+struct ReadDepth {
+  DepthMap map{};  ///< of the colour's size, nothing missing
+  NumbersSeen seen{};
+  const DepthEncoding* encoding = nullptr;
+  std::string why{};  ///< of a believed encoding
+  DepthAlong along = DepthAlong::axis;
+  int width = 0, height = 0;  ///< of the file's map
+  std::size_t filled = 0;     ///< missing depths of the file's map
+  MendedDepth mended{};
+};
+
+/// Reads the depth of `sources`, mends it beside `colour` (RGBA16F) and fills what is missing.
+/// Throws FileError; UsageError for an encoding that cannot be told or lacks numbers, a map of
+/// another shape than the colour, and missing depths that are not to be filled.
+ReadDepth read_depth(const PictureSources& sources, const Image& colour,
+                     const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool);
+
+}  // namespace softfocus

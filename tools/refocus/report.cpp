@@ -1,0 +1,149 @@
+#include "tools/refocus/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tools/files/hash_text.h"
+
+namespace softfocus {
+namespace {
+
+std::string lines_of_lens(const SettledLens& lens) {
+  std::string text = "focus            " + short_number(static_cast<double>(lens.coc.focus_m)) +
+                     " m, by " + lens.focus_from;
+  if (lens.range) {
+    text += "; sharp from " + short_number(lens.range->near_m) + " m to " +
+            short_number(lens.range->far_m) + " m";
+  }
+  if (lens.has_lens) {
+    text += "\nlens             " + short_number(lens.lens.focal_length_mm) + " mm, f/" +
+            short_number(lens.lens.f_number) + ", coc scale " + short_number(lens.coc_scale) +
+            "\nfield of view    " + short_number(lens.fov_y_degrees) +
+            " degrees from top to bottom, by " + lens.camera_from;
+  }
+  return text + "\nblur at infinity " +
+         short_number(static_cast<double>(lens.coc.radius_at_infinity_px)) + " px radius\n";
+}
+
+struct DepthEnds {
+  double near_m, far_m;
+  bool has_infinite;
+};
+DepthEnds ends_of(const DepthMap& map) {
+  DepthEnds ends{1e30, 0.0, false};
+  for (const float metres : map.metres) {
+    if (std::isinf(metres)) ends.has_infinite = true;
+    if (!std::isfinite(metres)) continue;
+    ends.near_m = std::min(ends.near_m, static_cast<double>(metres));
+    ends.far_m = std::max(ends.far_m, static_cast<double>(metres));
+  }
+  return ends;
+}
+
+}  // namespace
+
+std::string_view name_of(DepthAlong along) { return along == DepthAlong::axis ? "axis" : "ray"; }
+
+std::string depth_range_text(const DepthMap& map) {
+  const DepthEnds ends = ends_of(map);
+  if (ends.far_m == 0.0) return "nothing nearer than infinity";
+  return short_number(ends.near_m) + " m to " + short_number(ends.far_m) + " m" +
+         (ends.has_infinite ? ", and infinity" : "");
+}
+
+std::string refocus_text(const RefocusOptions& options, const PictureSources& sources,
+                         const ReadDepth& depth, const UsedRefocus& used) {
+  const PictureFile& file = sources.of_depth();
+  std::string text = "colour           " + options.colour +
+                     (sources.colour.name.empty() ? "" : ", layer " + sources.colour.name) +
+                     "\ndepth            " + file.path.string() + ", channel " +
+                     file.planes[sources.depth_plane].name + ", " +
+                     std::string{depth.encoding->name} + " along the " +
+                     std::string{name_of(depth.along)} +
+                     (depth.why.empty() ? "" : " (believed: " + depth.why + ")") +
+                     "\n                 " + depth_range_text(depth.map) + "\n";
+  if (depth.filled > 0) {
+    text += "                 " + std::to_string(depth.filled) +
+            " pixels without a depth, filled from the far side\n";
+  }
+  if (depth.mended.upsampled) {
+    text +=
+        "                 " + size_text({depth.width, depth.height}) + " pixels, brought to " +
+        size_text({depth.map.width, depth.map.height}) +
+        (options.reading.mending.by_colour ? " along the colours' edges\n" : " by the nearest\n");
+  }
+  if (options.reading.mending.edges) {
+    text += "                 " + std::to_string(depth.mended.edge_pixels) +
+            " pixels between two surfaces given to one\n";
+  }
+  text += lines_of_lens(used.lens);
+  if (used.choice)
+    text += "chosen           " + setting_text(*used.choice) + ": " + used.choice->reason + "\n";
+  if (options.show == RefocusShow::image) {
+    text += "method           " + std::string{used.method->name} + ", circles up to " +
+            short_number(static_cast<double>(used.settings.max_coc_px)) + " px radius\n";
+  }
+  return text;
+}
+
+std::string refocus_json(const RefocusOptions& options, const PictureSources& sources,
+                         const ReadDepth& depth, const UsedRefocus& used, std::uint64_t hash) {
+  const PictureFile& file = sources.of_depth();
+  const DepthEnds ends = ends_of(depth.map);
+  const SettledLens& lens = used.lens;
+  Json json{{"colour", options.colour},
+            {"layer", sources.colour.name},
+            {"depth", file.path.string()},
+            {"depth_channel", file.planes[sources.depth_plane].name},
+            {"depth_encoding", depth.encoding->name},
+            {"depth_along", name_of(depth.along)},
+            {"width", depth.map.width},
+            {"height", depth.map.height},
+            {"nearest_m", number_or_null(ends.near_m)},
+            {"farthest_m", number_or_null(ends.far_m)},
+            {"filled_pixels", static_cast<std::int64_t>(depth.filled)},
+            {"mended_edge_pixels", static_cast<std::int64_t>(depth.mended.edge_pixels)},
+            {"focus_m", lens.coc.focus_m},
+            {"focus_from", lens.focus_from},
+            {"radius_at_infinity_px", lens.coc.radius_at_infinity_px},
+            {"largest_circle_px", used.largest_circle_px},
+            {"max_coc_px", used.settings.max_coc_px},
+            {"method", nullptr},
+            {"lens", nullptr},
+            {"picture_hash", hash_text(hash)}};
+  if (options.show == RefocusShow::image) json["method"] = used.method->name;
+  if (lens.has_lens) {
+    json["lens"] = {{"focal_length_mm", lens.lens.focal_length_mm},
+                    {"f_number", lens.lens.f_number},
+                    {"coc_scale", lens.coc_scale},
+                    {"fov_y_degrees", lens.fov_y_degrees},
+                    {"camera_from", lens.camera_from}};
+  }
+  return json_text(json, 2) + "\n";
+}
+
+PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& used,
+                           const Image& picture) {
+  PictureNotes notes{.scene = std::filesystem::path{options.colour}.filename().string(),
+                     .width = picture.width,
+                     .height = picture.height,
+                     .show = options.show == RefocusShow::image ? "image"
+                             : options.show == RefocusShow::coc ? "coc"
+                                                                : "depth",
+                     .fov_y_degrees = used.lens.fov_y_degrees,
+                     .lens = {},
+                     .method = {},
+                     .picture_hash = hash_image(picture)};
+  if (options.show == RefocusShow::image) {
+    notes.method = {{"name", used.method->name},
+                    {"max_coc_px", used.settings.max_coc_px},
+                    {"leak", used.settings.leak},
+                    {"arithmetic", arithmetic_name(options.arithmetic)},
+                    {"profile", options.profile_name}};
+  }
+  if (used.lens.has_lens) notes.lens = {used.lens.lens, used.lens.coc_scale, notes.fov_y_degrees};
+  return notes;
+}
+
+}  // namespace softfocus
