@@ -48,7 +48,8 @@ void add_group(FilteredViewsBuffer& buffer, const LensViewInput& input, int begi
   }
   std::vector<SpreadSteps> steps;
   for (int view = begin; view < end; ++view) {
-    steps.push_back(spread_steps(buffer.spread, points_of(buffer.cells, view)));
+    steps.push_back(spread_steps(buffer.spread, points_of(buffer.cells, view),
+                                 buffer.cells.in_pixel[static_cast<std::size_t>(view)]));
   }
   const TileLists& lists = buffer.views.tile_lists[0];
   ScratchShelf<TileMemory> drawing;
@@ -85,10 +86,11 @@ PixelCoc coc_of(const LensViewInput& input) {
 }
 
 void set_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int views) {
-  buffer.cells = lens_cells(input.sampling.aperture, views, points_of_cell(views));
+  buffer.cells =
+      lens_cells(input.sampling.aperture, views, points_of_cell(views), input.sampling.jitter);
   buffer.spread = make_view_spread(coc_of(input), buffer.cells);
   buffer.views.points = buffer.cells.views;
-  buffer.views.offsets = pixel_offsets(input.sampling.jitter, views);
+  buffer.views.offsets = buffer.cells.in_pixel;
 }
 
 FilteredViewsBuffer make_filtered_views_buffer(const LensViewInput& input, ThreadPool& pool) {

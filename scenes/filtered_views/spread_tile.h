@@ -27,7 +27,8 @@ struct SpreadSteps {
   /// Of 0, 8, 16, ... pixels: the levels whose steps are longer.
   std::vector<LevelSet> reaching;
 };
-SpreadSteps spread_steps(const ViewSpread& spread, std::span<const glm::dvec2> points);
+SpreadSteps spread_steps(const ViewSpread& spread, std::span<const glm::dvec2> points,
+                         glm::dvec2 in_pixel = glm::dvec2{0.0});
 
 /// Rows of a tile's planes, with what rays reach around it, are so many numbers apart.
 inline constexpr int kSpreadRows = kSpreadTile + 2 * kMostSpreadStep;

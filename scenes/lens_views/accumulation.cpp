@@ -8,6 +8,7 @@
 
 #include "raster/threads/scratch_shelf.h"
 #include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/take_samples.h"
 
@@ -46,7 +47,7 @@ void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const 
 
 SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
-  buffer.points = view_points(input.sampling);
+  place_views(buffer, input.sampling);
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
     add_lens_views(buffer, input, begin, end, sums, pool);
   };
@@ -56,6 +57,12 @@ SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
 std::vector<glm::dvec2> view_points(const Sampling& sampling) {
   return sampling.until ? lens_points(sampling.aperture, sampling.samples)
                         : lens_points_for(sampling.aperture, sampling.samples);
+}
+
+void place_views(AccumulationBuffer& buffer, const Sampling& sampling) {
+  buffer.points = view_points(sampling);
+  buffer.offsets = sampling.until ? pixel_offsets(sampling.jitter, sampling.samples)
+                                  : view_offsets(sampling.jitter, buffer.points);
 }
 
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool) {

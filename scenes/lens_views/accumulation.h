@@ -33,8 +33,13 @@ struct AccumulationBuffer {
   std::vector<TileLists> tile_lists;  ///< of the passes
 };
 
-/// With lens_points() for up to `input.sampling.samples` views. The scene must outlive it.
+/// With lens_points() and pixel_offsets() for up to `input.sampling.samples` views. The scene must
+/// outlive it.
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool);
+
+/// Puts the buffer's views where accumulation() has them: at the view_points(), with offsets made
+/// for these (few_pixel_offsets.h), or, where they are of the sequence, with the pixel_offsets().
+void place_views(AccumulationBuffer& buffer, const Sampling& sampling);
 
 /// Lens views that are drawn together. More take more memory for vertices and triangles, and
 /// fetch the sums less often.

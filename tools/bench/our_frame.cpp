@@ -42,7 +42,7 @@ void sample_lens(OurFrame& frame, const LensViewMethod& method, const Sampling& 
   if (method.render == accumulation) {
     // As accumulation() does it, but with textures decoded once for all frames.
     if (!frame.views) frame.views = make_accumulation_buffer(input, frame.pool);
-    frame.views->points = view_points(sampling);
+    place_views(*frame.views, sampling);
     const auto add_samples = [&](int begin, int end, SampleSums& sums) {
       add_lens_views(*frame.views, input, begin, end, sums, frame.pool);
     };
