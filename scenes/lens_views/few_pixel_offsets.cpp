@@ -1,6 +1,7 @@
 #include "scenes/lens_views/few_pixel_offsets.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -19,8 +20,8 @@ constexpr std::size_t kLargeSet = 65;
 using Offsets = std::vector<glm::dvec2>;
 
 // From |x| + |y| <= 1, the aperture of four blades, to the pixel.
-Offsets square_set(int count) {
-  Offsets offsets = few_lens_points({4}, count);
+Offsets square_set(std::span<const int> sizes) {
+  Offsets offsets = growing_lens_points({4}, sizes);
   for (glm::dvec2& p : offsets) p = glm::dvec2{p.x + p.y, p.x - p.y} * 0.5;
   return offsets;
 }
@@ -87,11 +88,11 @@ double gain(const Pairing& pairing, std::size_t i, std::size_t j) {
   return change;
 }
 
-bool exchange(Pairing& pairing) {
+bool exchange(Pairing& pairing, std::size_t begin) {
   constexpr double kLeast = -1e-12;
   bool changed = false;
-  for (std::size_t i = 0; i < pairing.offset_of.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
+  for (std::size_t i = begin; i < pairing.offset_of.size(); ++i) {
+    for (std::size_t j = begin; j < i; ++j) {
       if (gain(pairing, i, j) >= kLeast) continue;
       std::swap(pairing.offset_of[i], pairing.offset_of[j]);
       changed = true;
@@ -100,21 +101,40 @@ bool exchange(Pairing& pairing) {
   return changed;
 }
 
-}  // namespace
-
-std::vector<glm::dvec2> few_pixel_offsets(std::span<const glm::dvec2> lens_points) {
-  assert(!lens_points.empty() && lens_points.size() <= kMostFewLensPoints);
-  Offsets offsets = square_set(static_cast<int>(lens_points.size()));
-  for (const int axis : {0, 1}) spread_over_columns(offsets, axis);
+// Pairs the offsets from `begin` on anew, with those before as they are.
+void pair(std::span<const glm::dvec2> lens_points, std::span<glm::dvec2> offsets,
+          std::size_t begin) {
   Pairing pairing{centred_distances(lens_points), centred_distances(offsets), {}};
   pairing.offset_of.resize(offsets.size());
   std::iota(pairing.offset_of.begin(), pairing.offset_of.end(), std::size_t{0});
   const int rounds = offsets.size() < kLargeSet ? kRounds : kRoundsOfLargeSets;
-  for (int round = 0; round < rounds && exchange(pairing); ++round) {
+  for (int round = 0; round < rounds && exchange(pairing, begin); ++round) {
   }
-  Offsets paired;
-  for (const std::size_t offset : pairing.offset_of) paired.push_back(offsets[offset]);
-  return paired;
+  const Offsets before{offsets.begin(), offsets.end()};
+  for (std::size_t i = begin; i < offsets.size(); ++i) offsets[i] = before[pairing.offset_of[i]];
+}
+
+}  // namespace
+
+std::vector<glm::dvec2> few_pixel_offsets(std::span<const glm::dvec2> lens_points) {
+  assert(!lens_points.empty() && lens_points.size() <= kMostFewLensPoints);
+  Offsets offsets = square_set(std::array{static_cast<int>(lens_points.size())});
+  for (const int axis : {0, 1}) spread_over_columns(offsets, axis);
+  pair(lens_points, offsets, 0);
+  return offsets;
+}
+
+std::vector<glm::dvec2> growing_pixel_offsets(std::span<const glm::dvec2> lens_points,
+                                              std::span<const int> sizes) {
+  assert(lens_points.size() == static_cast<std::size_t>(sizes.back()));
+  Offsets offsets = square_set(sizes);
+  std::size_t begin = 0;
+  for (const int size : sizes) {
+    const auto count = static_cast<std::size_t>(size);
+    pair(lens_points.first(count), std::span{offsets}.first(count), begin);
+    begin = count;
+  }
+  return offsets;
 }
 
 std::vector<glm::dvec2> view_offsets(bool jitter, std::span<const glm::dvec2> lens_points) {

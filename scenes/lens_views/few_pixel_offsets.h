@@ -26,6 +26,11 @@ namespace softfocus {
 /// of both is the product of the two shares.
 std::vector<glm::dvec2> few_pixel_offsets(std::span<const glm::dvec2> lens_points);
 
+/// The same for growing_lens_points() of these sizes: the first n offsets are paired with the first
+/// n points for each n of them. They have no columns of their own.
+std::vector<glm::dvec2> growing_pixel_offsets(std::span<const glm::dvec2> lens_points,
+                                              std::span<const int> sizes);
+
 /// The offsets for a picture of exactly these views: 0 without `jitter`; else few_pixel_offsets()
 /// up to kMostFewLensPoints, the sequence beyond.
 std::vector<glm::dvec2> view_offsets(bool jitter, std::span<const glm::dvec2> lens_points);
