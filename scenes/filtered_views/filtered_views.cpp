@@ -4,17 +4,13 @@
 #include <utility>
 
 #include "raster/threads/scratch_shelf.h"
+#include "scenes/filtered_views/filtered_views_by_tile.h"
 
 namespace softfocus {
 namespace {
 
 // Views that are held against twice as many.
 constexpr int kFirstViews = 8;
-
-struct TileTask {
-  TileMemory drawing;
-  SpreadMemory spreading;
-};
 
 void draw_tile_of_views(FilteredViewsBuffer& buffer, int tile, std::size_t count,
                         TileMemory& memory, Isa isa) {
@@ -39,41 +35,9 @@ void add_tile_sums(const SpreadMemory& memory, const Rectangle& area, SampleSums
   }
 }
 
-void add_group(FilteredViewsBuffer& buffer, const LensViewInput& input, int begin, int end,
-               SampleSums& sums, ThreadPool& pool) {
-  const auto count = static_cast<std::size_t>(end - begin);
-  sort_lens_views(buffer.views, input, begin, end, pool);
-  while (buffer.pictures.size() < count) {
-    buffer.pictures.push_back(make_view_tiles(input.pinhole.width, input.pinhole.height));
-  }
-  std::vector<SpreadSteps> steps;
-  for (int view = begin; view < end; ++view) {
-    steps.push_back(spread_steps(buffer.spread, points_of(buffer.cells, view)));
-  }
-  const TileLists& lists = buffer.views.tile_lists[0];
-  ScratchShelf<TileMemory> drawing;
-  pool.for_each(tile_count(lists), [&](int tile) {
-    TileMemory memory = drawing.take();
-    draw_tile_of_views(buffer, tile, count, memory, pool.isa());
-    drawing.put_back(std::move(memory));
-  });
-  ScratchShelf<SpreadMemory> spreading;
-  pool.for_each(tile_count(lists), [&](int tile) {
-    SpreadMemory memory = spreading.take();
-    if (!memory.sums) memory = make_spread_memory();
-    for (std::size_t i = 0; i < count; ++i) {
-      spread_tile(buffer.pictures[i], steps[i], tile, i == 0, memory, pool.isa());
-    }
-    add_tile_sums(memory, tile_area(lists, tile), sums);
-    spreading.put_back(std::move(memory));
-  });
-  for (RenderPass& pass : buffer.views.passes) pass.draws.clear();
-  sums.count += end - begin;
-}
-
 SampledPicture picture_of_sums(const SampleSums& sums, const LensViewInput& input,
                                ThreadPool& pool) {
-  return {mean_picture(sums, input.pinhole, input.profile, pool), sums.count, {}};
+  return {mean_picture(sums, input.pinhole, input.profile, pool), sums.count, {}, {}};
 }
 
 }  // namespace
@@ -85,27 +49,71 @@ PixelCoc coc_of(const LensViewInput& input) {
 }
 
 void set_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int views) {
-  const ApertureShape aperture = input.sampling.aperture;
+  const Sampling& sampling = input.sampling;
   const PixelCoc coc = coc_of(input);
   // To frames of one lens the cells are the same.
-  const bool same_cells =
-      buffer.cells.views.size() == static_cast<std::size_t>(views) && buffer.aperture == aperture;
+  const bool same_cells = buffer.cells.views.size() == static_cast<std::size_t>(views) &&
+                          buffer.aperture == sampling.aperture && buffer.jitter == sampling.jitter;
   if (!same_cells) {
-    buffer.aperture = aperture;
-    buffer.cells = lens_cells(aperture, views, points_of_cell(views));
+    buffer.aperture = sampling.aperture;
+    buffer.jitter = sampling.jitter;
+    buffer.cells = lens_cells(sampling.aperture, views, points_of_cell(views), sampling.jitter);
   }
   if (!same_cells || buffer.spread.coc != coc) buffer.spread = make_view_spread(coc, buffer.cells);
   buffer.views.points = buffer.cells.views;
-  buffer.views.offsets = pixel_offsets(input.sampling.jitter, views);
+  buffer.views.offsets = buffer.cells.in_pixel;
 }
 
 FilteredViewsBuffer make_filtered_views_buffer(const LensViewInput& input, ThreadPool& pool) {
   return {make_accumulation_buffer(input, pool),
           {},
+          false,
           {},
           {},
           {},
           make_sample_sums(input.pinhole.width, input.pinhole.height)};
+}
+
+void draw_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int begin, int end,
+                std::span<const int> tiles, ThreadPool& pool) {
+  const auto count = static_cast<std::size_t>(end - begin);
+  sort_lens_views(buffer.views, input, begin, end, pool);
+  while (buffer.pictures.size() < count) {
+    buffer.pictures.push_back(make_view_tiles(input.pinhole.width, input.pinhole.height));
+  }
+  ScratchShelf<TileMemory> shelf;
+  const int drawn =
+      tiles.empty() ? tile_count(buffer.views.tile_lists[0]) : static_cast<int>(tiles.size());
+  pool.for_each(drawn, [&](int number) {
+    TileMemory memory = shelf.take();
+    const int tile = tiles.empty() ? number : tiles[static_cast<std::size_t>(number)];
+    draw_tile_of_views(buffer, tile, count, memory, pool.isa());
+    shelf.put_back(std::move(memory));
+  });
+  for (RenderPass& pass : buffer.views.passes) pass.draws.clear();
+}
+
+void spread_views(const FilteredViewsBuffer& buffer, int begin, int end, std::span<const int> tiles,
+                  SampleSums& sums, ThreadPool& pool) {
+  std::vector<SpreadSteps> steps;
+  for (int view = begin; view < end; ++view) {
+    steps.push_back(spread_steps(buffer.spread, points_of(buffer.cells, view),
+                                 buffer.cells.in_pixel[static_cast<std::size_t>(view)]));
+  }
+  const TileLists& lists = buffer.views.tile_lists[0];
+  ScratchShelf<SpreadMemory> shelf;
+  const int spread = tiles.empty() ? tile_count(lists) : static_cast<int>(tiles.size());
+  pool.for_each(spread, [&](int number) {
+    SpreadMemory memory = shelf.take();
+    if (!memory.sums) memory = make_spread_memory();
+    const int tile = tiles.empty() ? number : tiles[static_cast<std::size_t>(number)];
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      spread_tile(buffer.pictures[i], steps[i], tile, i == 0, memory, pool.isa());
+    }
+    add_tile_sums(memory, tile_area(lists, tile), sums);
+    shelf.put_back(std::move(memory));
+  });
+  sums.count += end - begin;
 }
 
 void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input, SampleSums& sums,
@@ -118,7 +126,8 @@ void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,
     if (plain) {
       add_lens_views(buffer.views, input, begin, end, sums, pool);
     } else {
-      add_group(buffer, input, begin, end, sums, pool);
+      draw_views(buffer, input, begin, end, {}, pool);
+      spread_views(buffer, begin, end, {}, sums, pool);
     }
     if (input.progress) input.progress(sums.count);
   }
@@ -131,9 +140,10 @@ SampledPicture filtered_views(const LensViewInput& input, ThreadPool& pool) {
 
 SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,
                               ThreadPool& pool) {
+  const Sampling& sampling = input.sampling;
+  if (sampling.by_tile) return filtered_views_by_tile(buffer, input, pool);
   SampleSums& sums = buffer.sums;
   clear_sums(sums);
-  const Sampling& sampling = input.sampling;
   if (!sampling.until) {
     set_views(buffer, input, sampling.samples);
     add_filtered_views(buffer, input, sums, pool);

@@ -22,10 +22,15 @@ SampledPicture filtered_views(const LensViewInput& input, ThreadPool& pool);
 /// The views of a picture if no number is given: the most that one group draws.
 inline constexpr int kFilteredViews = kSampleGroup;
 
+/// The most views of a tile, with Sampling::by_tile, if no number is given: of twice that none is
+/// spread.
+inline constexpr int kMostFilteredViewsByTile = 32;
+
 /// Made once for many pictures of one scene.
 struct FilteredViewsBuffer {
   AccumulationBuffer views;
-  ApertureShape aperture;  ///< of the cells
+  ApertureShape aperture;  ///< of the cells, as is `jitter`
+  bool jitter = false;
   LensCells cells;
   ViewSpread spread;
   std::vector<ViewTiles> pictures;  ///< of a group
@@ -41,6 +46,16 @@ SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& 
 
 /// Makes the cells for so many views.
 void set_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int views);
+
+/// Draws the views `begin` to `end` - 1, at most kSampleGroup, in the tiles, or in all if there are
+/// none.
+void draw_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int begin, int end,
+                std::span<const int> tiles, ThreadPool& pool);
+
+/// Spreads the views that draw_views() has drawn last in the tiles, or in all, and adds them to the
+/// sums. They must have been drawn in the tiles' neighbours too.
+void spread_views(const FilteredViewsBuffer& buffer, int begin, int end, std::span<const int> tiles,
+                  SampleSums& sums, ThreadPool& pool);
 
 /// Draws, spreads and adds all of the buffer's views.
 void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input, SampleSums& sums,

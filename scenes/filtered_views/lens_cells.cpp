@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/few_pixel_offsets.h"
 
 namespace softfocus {
 namespace {
@@ -68,13 +69,14 @@ int points_of_cell(int views) {
   return points < kFewestCellPoints ? 1 : points;
 }
 
-LensCells lens_cells(ApertureShape shape, int views, int per_cell) {
+LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter) {
   assert(views >= 1 && per_cell >= 1);
   LensCells cells;
   cells.per_cell = per_cell;
   if (per_cell == 1) {
     cells.views = lens_points_for(shape, views);
     cells.points.assign(cells.views.size(), glm::dvec2{0.0});
+    cells.in_pixel = view_offsets(jitter, cells.views);
     return cells;
   }
   Parted parted{few_lens_points(shape, views * per_cell), {}, few_lens_points(shape, views)};
@@ -83,6 +85,7 @@ LensCells lens_cells(ApertureShape shape, int views, int per_cell) {
   for (int round = 0; round < kRounds && exchange(parted); ++round) {
   }
   cells.views = parted.views;
+  cells.in_pixel = view_offsets(jitter, cells.views);
   for (std::size_t cell = 0; cell < parted.views.size(); ++cell) {
     for (std::size_t i = 0; i < parted.points.size(); ++i) {
       if (parted.cell_of[i] == cell) {

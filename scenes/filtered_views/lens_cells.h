@@ -14,6 +14,7 @@ struct LensCells {
   std::vector<glm::dvec2> views;   ///< where each cell's view looks from
   std::vector<glm::dvec2> points;  ///< cell by cell, as offsets from the view
   int per_cell = 1;
+  std::vector<glm::dvec2> in_pixel;  ///< where in the pixel each view looks: view_offsets()
 };
 
 /// The most points that a cell has.
@@ -28,7 +29,7 @@ int points_of_cell(int views);
 /// each given to a view such that no exchange of two brings them nearer to theirs. So both the
 /// views and the points have the lens's middle and size: nothing out of focus moves or changes its
 /// size, whether a view stands for its cell or for itself.
-LensCells lens_cells(ApertureShape shape, int views, int per_cell);
+LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter = false);
 
 /// The offsets of a cell's points.
 std::span<const glm::dvec2> points_of(const LensCells& cells, int cell);

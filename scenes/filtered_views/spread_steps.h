@@ -40,7 +40,9 @@ struct SpreadSteps {
   std::vector<LevelSet> reaching;
 };
 inline constexpr int kReachStepPx = 8;
-SpreadSteps spread_steps(const ViewSpread& spread, std::span<const glm::dvec2> points);
+/// `in_pixel` is where the view looks from in its pixels (LensCells).
+SpreadSteps spread_steps(const ViewSpread& spread, std::span<const glm::dvec2> points,
+                         glm::dvec2 in_pixel = glm::dvec2{0.0});
 
 /// Levels that a ray sees at one place.
 struct LevelRun {

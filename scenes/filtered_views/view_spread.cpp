@@ -25,16 +25,25 @@ double rounded(double v, double t) {
   return v < 0.0 ? -whole : whole;
 }
 
-// The t with which the points keep their mean square along the axis.
+// Of a pixel's places along an axis.
+constexpr double kPixelMeanSquare = 1.0 / 12.0;
+
+// The t with which the points keep their mean square along the axis, and the pixel its own.
 double rounding_of(const LensCells& cells, int axis, double radius_px) {
   std::vector<double> view, step;
   double wanted = 0.0;
+  bool jitter = false;
   for (std::size_t i = 0; i < cells.points.size(); ++i) {
-    view.push_back(axis_of(cells.views[i / static_cast<std::size_t>(cells.per_cell)], axis) *
-                   radius_px);
-    step.push_back(axis_of(cells.points[i], axis) * radius_px);
-    wanted += (view[i] + step[i]) * (view[i] + step[i]);
+    const std::size_t cell = i / static_cast<std::size_t>(cells.per_cell);
+    const double in_pixel = cells.in_pixel[cell][axis];
+    const double at_view = axis_of(cells.views[cell], axis) * radius_px;
+    const double beside = axis_of(cells.points[i], axis) * radius_px;
+    wanted += (at_view + beside) * (at_view + beside);
+    view.push_back(at_view + in_pixel);
+    step.push_back(beside - in_pixel);
+    jitter = jitter || in_pixel != 0.0;
   }
+  if (jitter) wanted += kPixelMeanSquare * static_cast<double>(cells.points.size());
   double best = 0.0, least = std::numeric_limits<double>::infinity();
   constexpr int kTries = 32;
   for (int i = 0; i <= kTries; ++i) {
@@ -88,15 +97,17 @@ int spread_level(const ViewSpread& spread, float depth_m) {
   return static_cast<int>(std::floor(level + 0.5f));
 }
 
-std::vector<PixelStep> ray_steps(const ViewSpread& spread, std::span<const glm::dvec2> points) {
+std::vector<PixelStep> ray_steps(const ViewSpread& spread, std::span<const glm::dvec2> points,
+                                 glm::dvec2 in_pixel) {
   std::vector<PixelStep> steps;
   for (const glm::dvec2 point : points) {
     for (int level = -kMostSpreadLevel; level <= kMostSpreadLevel; ++level) {
       const auto number = static_cast<std::size_t>(std::abs(level));
       const double radius_px = level < 0 ? -spread.radius_px[number] : spread.radius_px[number];
       const auto along = [&](int axis) {
-        return static_cast<int>(rounded(axis_of(point, axis) * radius_px,
-                                        spread.rounding[static_cast<std::size_t>(axis)][number]));
+        const double t = spread.rounding[static_cast<std::size_t>(axis)][number];
+        return static_cast<int>(
+            rounded(axis_of(point, axis) * radius_px - (t > 0.0 ? in_pixel[axis] : 0.0), t));
       };
       steps.push_back({along(0), along(1)});
     }

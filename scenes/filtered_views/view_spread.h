@@ -20,6 +20,10 @@
 // steps of all views together have the mean square that they have before they are rounded: a
 // circle keeps its size. t = 1/2 would make one of a pixel too small, one of two too large.
 //
+// A view that looks beside its pixels' centres, at o, shows what lies at q + o. So a ray's step is
+// round'(r_j (-x, y) - o), around the centre, and the steps' mean square has a pixel's in it, 1/12.
+// Where t is 0 no ray moves: the views' own places smooth what is in focus.
+//
 // Levels lie 2/3 of a pixel apart in focus, where all steps are 0, and the farther from it the
 // more: none moves a ray by much more than a pixel. Pixels outside the picture are those of its
 // edge.
@@ -75,8 +79,10 @@ struct PixelStep {
   int x = 0, y = 0;
 };
 
-/// q_j - p of every ray and level: ray by ray, kSpreadLevels each.
-std::vector<PixelStep> ray_steps(const ViewSpread& spread, std::span<const glm::dvec2> points);
+/// q_j - p of every ray and level: ray by ray, kSpreadLevels each. The view looks at `in_pixel`,
+/// to the right and down from its pixels' centres.
+std::vector<PixelStep> ray_steps(const ViewSpread& spread, std::span<const glm::dvec2> points,
+                                 glm::dvec2 in_pixel = glm::dvec2{0.0});
 
 /// Red, green and blue of a picture, planes one after the other.
 using ColourPlanes = std::vector<float>;

@@ -8,7 +8,9 @@
 
 #include "raster/threads/scratch_shelf.h"
 #include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/samples_by_tile.h"
 #include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
@@ -46,7 +48,13 @@ void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const 
 
 SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
   AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
-  buffer.points = view_points(input.sampling);
+  return accumulation(buffer, input, pool);
+}
+
+SampledPicture accumulation(AccumulationBuffer& buffer, const LensViewInput& input,
+                            ThreadPool& pool) {
+  if (input.sampling.by_tile) return accumulation_by_tile(buffer, input, pool);
+  place_views(buffer, input.sampling);
   const auto add_samples = [&](int begin, int end, SampleSums& sums) {
     add_lens_views(buffer, input, begin, end, sums, pool);
   };
@@ -56,6 +64,12 @@ SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
 std::vector<glm::dvec2> view_points(const Sampling& sampling) {
   return sampling.until ? lens_points(sampling.aperture, sampling.samples)
                         : lens_points_for(sampling.aperture, sampling.samples);
+}
+
+void place_views(AccumulationBuffer& buffer, const Sampling& sampling) {
+  buffer.points = view_points(sampling);
+  buffer.offsets = sampling.until ? pixel_offsets(sampling.jitter, sampling.samples)
+                                  : view_offsets(sampling.jitter, buffer.points);
 }
 
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool) {
@@ -98,7 +112,8 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
 }
 
 void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
-                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles) {
+                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles,
+                    const LookAtTile& look) {
   assert(begin % kSampleGroup == 0);
   sort_lens_views(buffer, input, begin, end, pool);
   const auto count = static_cast<std::size_t>(end - begin);
@@ -113,6 +128,11 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
     for (std::size_t i = 0; i < count; ++i) {
       draw_tile_aside(passes[i], tile_lists[i], tile, samples.memory,
                       reinterpret_cast<std::byte*>(texels_of(samples, i)));
+    }
+    if (look) {
+      std::array<const std::uint16_t*, kLensViewGroup> views{};
+      for (std::size_t i = 0; i < count; ++i) views[i] = texels_of(samples, i);
+      look(tile, area, {views.data(), count});
     }
     // The first group fetches the sums from memory; the second finds them in the cache.
     for (std::size_t first = 0; first < count; first += kSampleGroup) {

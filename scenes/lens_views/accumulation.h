@@ -2,6 +2,7 @@
 // The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
 // lens, and the mean of the pictures.
 
+#include <functional>
 #include <glm/vec2.hpp>
 #include <span>
 #include <vector>
@@ -16,6 +17,12 @@ namespace softfocus {
 /// the view_points(). One sample without jitter is the pinhole's picture. At few samples
 /// a thing out of focus is a handful of sharp ghosts.
 SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool);
+
+struct AccumulationBuffer;
+
+/// accumulation() of the buffer's scene.
+SampledPicture accumulation(AccumulationBuffer& buffer, const LensViewInput& input,
+                            ThreadPool& pool);
 
 /// The points of accumulation(): a set made for their number (few_lens_points.h), or, where they
 /// are many or `until` may stop at any, the sequence lens_points().
@@ -33,8 +40,13 @@ struct AccumulationBuffer {
   std::vector<TileLists> tile_lists;  ///< of the passes
 };
 
-/// With lens_points() for up to `input.sampling.samples` views. The scene must outlive it.
+/// With lens_points() and pixel_offsets() for up to `input.sampling.samples` views. The scene must
+/// outlive it.
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool);
+
+/// Puts the buffer's views where accumulation() has them: at the view_points(), with offsets made
+/// for these (few_pixel_offsets.h), or, where they are of the sequence, with the pixel_offsets().
+void place_views(AccumulationBuffer& buffer, const Sampling& sampling);
 
 /// Lens views that are drawn together. More take more memory for vertices and triangles, and
 /// fetch the sums less often.
@@ -45,12 +57,17 @@ inline constexpr int kLensViewGroup = 2 * kSampleGroup;
 void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
                      ThreadPool& pool);
 
+/// Is shown the views of a tile, RGBA16F in rows without gaps, on the thread that drew them.
+using LookAtTile = std::function<void(int tile, const Rectangle& area,
+                                      std::span<const std::uint16_t* const> views)>;
+
 /// Draws the samples `begin` to `end` - 1 and adds them to the sums. They are at most
 /// kLensViewGroup, and `begin` is a multiple of kSampleGroup. All are drawn in one tile before
 /// the next, so that their pixels stay in a core's cache. The buffer must have been made for
 /// `end` points or more, with the input's scene and profile. Of the picture only `tiles` are drawn
 /// (row by row, kTileSize), unless that is empty.
 void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
-                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles = {});
+                    SampleSums& sums, ThreadPool& pool, std::span<const int> tiles = {},
+                    const LookAtTile& look = {});
 
 }  // namespace softfocus

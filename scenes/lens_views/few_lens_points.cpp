@@ -81,7 +81,7 @@ class MeanDistance {
   std::vector<Node> nodes_;  // none: a disc
 };
 
-void add_repulsion(const std::vector<glm::dvec2>& points, std::vector<glm::dvec2>& gradients) {
+void add_repulsion(std::span<const glm::dvec2> points, std::span<glm::dvec2> gradients) {
   const auto count = static_cast<double>(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -96,7 +96,7 @@ void add_repulsion(const std::vector<glm::dvec2>& points, std::vector<glm::dvec2
 }
 
 // To multiples of 2^-32 whose sum is 0.
-void centre(std::vector<glm::dvec2>& points) {
+void centre(std::span<glm::dvec2> points) {
   constexpr double kUnits = 0x1p32;
   for (int axis = 0; axis < 2; ++axis) {
     double mean = 0.0;
@@ -118,22 +118,40 @@ void centre(std::vector<glm::dvec2>& points) {
 }  // namespace
 
 std::vector<glm::dvec2> few_lens_points(ApertureShape shape, int count) {
+  return growing_lens_points(shape, std::array{count});
+}
+
+std::vector<glm::dvec2> growing_lens_points(ApertureShape shape, std::span<const int> sizes) {
+  const int count = sizes.back();
   assert(count >= 1 && count <= kMostFewLensPoints);
   const MeanDistance to_aperture{shape};
   std::vector<glm::dvec2> points = lens_points(shape, count);
-  std::vector<glm::dvec2> gradients(points.size()), moves(points.size(), glm::dvec2{0.0});
+  std::vector<glm::dvec2> gradients(points.size());
+  std::vector<glm::dvec2> moves(points.size(), glm::dvec2{0.0});
+  std::vector<double> sets(points.size());  // that a point is in
+  for (const int size : sizes) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) sets[i] += 1.0;
+  }
   const int steps = count < kLargeSet ? kSteps : kStepsOfLargeSets;
   for (int step = 0; step < steps; ++step) {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      gradients[i] = to_aperture.gradient(points[i]);
+      gradients[i] = to_aperture.gradient(points[i]) * sets[i];
     }
-    add_repulsion(points, gradients);
+    for (const int size : sizes) {
+      const auto in_set = static_cast<std::size_t>(size);
+      add_repulsion(std::span{points}.first(in_set), std::span{gradients}.first(in_set));
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
-      moves[i] = moves[i] * kMomentum - gradients[i] * kStep;
+      moves[i] = moves[i] * kMomentum - gradients[i] * (kStep / sets[i]);
       points[i] += moves[i];
     }
   }
-  centre(points);
+  std::size_t begin = 0;
+  for (const int size : sizes) {
+    const auto end = static_cast<std::size_t>(size);
+    centre(std::span{points}.subspan(begin, end - begin));
+    begin = end;
+  }
   return points;
 }
 

@@ -2,6 +2,7 @@
 // Points of the lens for a picture of few views: a set made for its number.
 
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
 #include "scenes/lens_views/lens_points.h"
@@ -25,6 +26,12 @@ inline constexpr int kMostFewLensPoints = 256;
 /// first points of lens_points(). Centroids of cells of equal area have an energy distance of
 /// 1 % more, but lie too far inside, by the spread of their cells: circles come out too small.
 std::vector<glm::dvec2> few_lens_points(ApertureShape shape, int count);
+
+/// Points whose first n are a set for each n of `sizes`, which grow: the sum of the energy
+/// distances of all these sets is least. Each has the mean 0. A set that is four times the one
+/// before, or more, is as good as few_lens_points(); of sets that double, FLIP is a tenth to a
+/// third higher.
+std::vector<glm::dvec2> growing_lens_points(ApertureShape shape, std::span<const int> sizes);
 
 /// The points for a picture of exactly `count` views: few_lens_points() up to kMostFewLensPoints,
 /// the sequence beyond.

@@ -26,6 +26,9 @@ struct Sampling {
   /// Stops when half_set_rms() is at most this, which is tried at 16, 32, 64, ... samples.
   std::optional<double> until = {};
   ApertureShape aperture = {};
+  /// Each tile takes as few samples as it needs, `samples` at most (samples_by_tile.h). Not with
+  /// `until`.
+  bool by_tile = false;
 };
 
 /// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
@@ -53,6 +56,8 @@ struct SampledPicture {
   int samples = 0;  ///< that it is the mean of
   /// With `until`, half_set_rms() at the end; none if there were too few samples.
   std::optional<double> half_set_rms;
+  /// With `by_tile`, of all pixels; `samples` is then the most that a tile has.
+  std::optional<double> mean_samples;
 };
 
 struct LensViewMethod {
@@ -67,6 +72,8 @@ struct LensViewMethod {
   bool samples_lens = true;
   /// Sampling::samples where none are given.
   int usual_samples = Sampling{}.samples;
+  /// The same for Sampling::by_tile. 0: it cannot do that.
+  int usual_most_by_tile = 0;
 };
 
 std::span<const LensViewMethod> lens_view_methods();

@@ -30,7 +30,7 @@ std::size_t place_of(const SampleSums& sums, int x, int y) {
 }  // namespace
 
 SampleSums make_sample_sums(int width, int height) {
-  SampleSums sums{width, height, 0, (width + kSumTile - 1) / kSumTile, {}};
+  SampleSums sums{width, height, 0, (width + kSumTile - 1) / kSumTile, {}, {}};
   const int tiles_y = (height + kSumTile - 1) / kSumTile;
   sums.totals.assign(place_of(sums, 0, tiles_y * kSumTile), kNoLight);
   return sums;
@@ -38,7 +38,13 @@ SampleSums make_sample_sums(int width, int height) {
 
 void clear_sums(SampleSums& sums) {
   sums.count = 0;
+  sums.tile_counts.clear();
   std::fill(sums.totals.begin(), sums.totals.end(), kNoLight);
+}
+
+int count_at(const SampleSums& sums, int x, int y) {
+  if (sums.tile_counts.empty()) return sums.count;
+  return sums.tile_counts[static_cast<std::size_t>(y / kSumTile * sums.tiles_x + x / kSumTile)];
 }
 
 double* sums_at(SampleSums& sums, int x, int y) {
@@ -103,10 +109,11 @@ void store_mean(const SampleSums& sums, const Image& depth, const Profile& profi
     const auto to = row<std::uint16_t>(picture, y);
     for (int tile_x = 0; tile_x < sums.width; tile_x += kSumTile) {
       const int end = std::min(tile_x + kSumTile, sums.width);
+      const int count = count_at(sums, tile_x, y);
       int x = tile_x;
       if (pool.isa() != Isa::scalar) {
         const auto first = static_cast<std::size_t>(kChannels * x);
-        x += SOFTFOCUS_KERNEL(pool.isa(), store_means)(sums_at(sums, x, y), sums.count,
+        x += SOFTFOCUS_KERNEL(pool.isa(), store_means)(sums_at(sums, x, y), count,
                                                        profile.half_store, &from[first],
                                                        kChannels * (end - x), &to[first]) /
              kChannels;
@@ -115,8 +122,7 @@ void store_mean(const SampleSums& sums, const Image& depth, const Profile& profi
         const auto texel = static_cast<std::size_t>(kChannels * x);
         const double* totals = sums_at(sums, x, y);
         for (std::size_t c = 0; c < 3; ++c) {
-          to[texel + c] =
-              float_to_half(static_cast<float>(totals[c] / sums.count), profile.half_store);
+          to[texel + c] = float_to_half(static_cast<float>(totals[c] / count), profile.half_store);
         }
         to[texel + 3] = from[texel + 3];
       }

@@ -27,7 +27,8 @@ struct SampleSums {
   int height = 0;
   int count = 0;  ///< of samples
   int tiles_x = 0;
-  std::vector<double> totals;  ///< four a pixel; those of alpha are not used
+  std::vector<double> totals;    ///< four a pixel; those of alpha are not used
+  std::vector<int> tile_counts;  ///< of samples, where tiles have different ones; else empty
 };
 
 SampleSums make_sample_sums(int width, int height);
@@ -38,6 +39,9 @@ void clear_sums(SampleSums& sums);
 /// The sums of a pixel. Those of the next pixels in its row of the tile follow.
 double* sums_at(SampleSums& sums, int x, int y);
 const double* sums_at(const SampleSums& sums, int x, int y);
+
+/// The samples of a pixel.
+int count_at(const SampleSums& sums, int x, int y);
 
 /// Adds 1 to kSampleGroup samples, RGBA16F, of the `width` pixels from (x, y) on, which lie in
 /// one tile. The caller counts the samples.

@@ -301,6 +301,7 @@ SampledPicture surface_splatting(const LensViewInput& input, ThreadPool& pool) {
   const auto surfaces = static_cast<std::uint32_t>(input.scene.objects.size() + 1);
   return {draw_splats(splats, surfaces, input.scene.background, input.pinhole, input.profile, pool),
           1,
+          {},
           {}};
 }
 

@@ -2,7 +2,6 @@
 
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/object_numbers.h"
-#include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
 namespace {
@@ -39,14 +38,10 @@ void choose_and_filter(OurFrame& frame) {
 void sample_lens(OurFrame& frame, const LensViewMethod& method, const Sampling& sampling) {
   const LensViewInput input = views_input(frame, sampling);
   SampledPicture sampled;
-  if (method.render == accumulation) {
-    // As accumulation() does it, but with textures decoded once for all frames.
+  if (method.name == "accumulation") {
+    // Textures are decoded once for all frames.
     if (!frame.views) frame.views = make_accumulation_buffer(input, frame.pool);
-    frame.views->points = view_points(sampling);
-    const auto add_samples = [&](int begin, int end, SampleSums& sums) {
-      add_lens_views(*frame.views, input, begin, end, sums, frame.pool);
-    };
-    sampled = take_samples(input, add_samples, kLensViewGroup, frame.pool);
+    sampled = accumulation(*frame.views, input, frame.pool);
   } else if (method.name == "filtered-views") {
     if (!frame.filtered_views) {
       frame.filtered_views = make_filtered_views_buffer(input, frame.pool);

@@ -94,6 +94,12 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
       {entry_name(name, "accumulation", where), hash_image(accumulation(from_lens, pool).picture)});
   hashes.push_back({entry_name(name, "filtered-views", where),
                     hash_image(filtered_views(from_lens, pool).picture)});
+  const Sampling tile_sampling{.samples = 3 * kSampleGroup, .jitter = true, .by_tile = true};
+  const LensViewInput by_tile = seen_from_lens(scene, view, picture, tile_sampling, profile);
+  hashes.push_back({entry_name(name, "accumulation-by-tile", where),
+                    hash_image(accumulation(by_tile, pool).picture)});
+  hashes.push_back({entry_name(name, "filtered-views-by-tile", where),
+                    hash_image(filtered_views(by_tile, pool).picture)});
   const std::vector<Image> layers =
       draw_layers(scene, view, kFrame, width, height, kGoldenLayers, profile, pool);
   add_layer_hashes(name, layers, where, hashes);

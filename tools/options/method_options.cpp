@@ -24,6 +24,9 @@ std::string names_of_sampling_methods() {
   return names;
 }
 
+// Of Sampling::by_tile: the method's own.
+constexpr int kMostUsual = 0;
+
 constexpr std::array kSamplingOptions{"--samples", "--jitter", "--until", "--aperture-blades"};
 
 }  // namespace
@@ -129,14 +132,23 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings) {
 }
 
 void add_sampling_options(CLI::App& parser, Sampling& sampling) {
-  add_value(parser, "--samples", "N",
+  add_value(parser, "--samples", "N|auto[:N]",
             "Of accumulation, filtered-views and ray-traced: points on the lens, 1 to 65536 "
             "(default: " +
                 std::to_string(sampling.samples) + ", of filtered-views " +
-                std::to_string(kFilteredViews) + ", with --until 65536)",
+                std::to_string(kFilteredViews) +
+                ", with --until 65536); auto, not of ray-traced: as each tile needs, at most N "
+                "(default: " +
+                std::to_string(sampling.samples) + ", of filtered-views " +
+                std::to_string(kMostFilteredViewsByTile) + ")",
             [&sampling](const std::string& text) {
+              constexpr std::string_view kAuto = "auto", kAutoLimit = "auto:";
+              sampling.by_tile = text == kAuto || text.starts_with(kAutoLimit);
+              sampling.samples = kMostUsual;
+              if (text == kAuto) return;
               sampling.samples =
-                  parse_whole("--samples", text, 1, kMostSamples, "a whole number from 1 to 65536");
+                  parse_whole("--samples", sampling.by_tile ? text.substr(kAutoLimit.size()) : text,
+                              1, kMostSamples, "a whole number from 1 to 65536, auto or auto:64");
             });
   add_flag(parser, "--jitter",
            "Of the same: look from all over each pixel, not from its centre alone",
@@ -159,6 +171,17 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
 }
 
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser) {
+  if (sampling.by_tile) {
+    if (method.usual_most_by_tile == 0) {
+      throw UsageError("--samples auto: the method " + std::string{method.name} +
+                       " takes the same number everywhere; give a number");
+    }
+    if (sampling.until) {
+      throw UsageError(
+          "--until and --samples auto exclude each other: auto stops in each tile by itself");
+    }
+    if (sampling.samples == kMostUsual) sampling.samples = method.usual_most_by_tile;
+  }
   if (is_given(parser, "--samples")) return;
   sampling.samples = sampling.until ? kMostSamples : method.usual_samples;
 }

@@ -65,6 +65,7 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings);
 void add_sampling_options(CLI::App& parser, Sampling& sampling);
 
 /// Once all options are read: without --samples, those of the method; with --until, kMostSamples.
+/// Throws UsageError for --samples auto of a method that cannot, or with --until.
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser);
 
 /// Throws UsageError if one of them was given, for a filter does not sample the lens.

@@ -115,13 +115,13 @@ Image sampled_picture(const Scene& scene, const CameraMatrices& view, const Imag
   const Sampling& sampling = record.used.sampling;
   const auto tell = [&](int samples) {
     progress.show("sampling the lens, " + std::to_string(samples) + " of " +
-                  (sampling.until ? "at most " : "") + std::to_string(sampling.samples));
+                  (sampling.until || sampling.by_tile ? "at most " : "") + std::to_string(sampling.samples));
   };
   SampledPicture sampled = record.used.method.of_scene->render(
       {scene, view, options.frame, pinhole, used.lens.focus_m,
        aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell, prepared},
       pool);
-  record.sampled = {sampled.samples, sampled.half_set_rms};
+  record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
   return std::move(sampled.picture);
 }
 
@@ -196,7 +196,7 @@ Image auto_drawn(const Scene& scene, const CameraMatrices& view, const Image& pi
   used.method = {find_method(choice.method), find_lens_view_method(choice.method)};
   if (choice.samples > 0) {
     used.sampling.samples = choice.samples;
-    record.sampled = {choice.samples, {}};
+    record.sampled = {choice.samples, {}, {}};
   } else {
     lens.settings.max_coc_px = choice.radius_px;
   }

@@ -71,6 +71,9 @@ std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
   std::string text = line("Samples", std::to_string(used.samples)) +
                      line("Pixel jitter", sampling.jitter ? "yes" : "no") +
                      line("Blades", blades == 0 ? "round" : std::to_string(blades));
+  if (used.mean_samples) {
+    text += line("Samples a pixel", short_number(*used.mean_samples) + " in the mean");
+  }
   if (used.half_set_rms) {
     text += line("Half-sets differ by", short_number(*used.half_set_rms) + " (RMS, linear)");
   }
@@ -222,6 +225,10 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     json["sampling"] = {{"samples", record.sampled->samples},
                         {"jitter", record.used.sampling.jitter},
                         {"aperture_blades", record.used.sampling.aperture.blades}};
+    if (record.sampled->mean_samples) {
+      json["sampling"]["mean_samples"] = *record.sampled->mean_samples;
+      json["sampling"]["most_samples"] = record.used.sampling.samples;
+    }
     if (record.sampled->half_set_rms)
       json["sampling"]["half_set_rms"] = *record.sampled->half_set_rms;
   }

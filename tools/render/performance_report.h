@@ -45,6 +45,7 @@ struct UsedMethod {
 struct UsedSamples {
   int samples = 0;
   std::optional<double> half_set_rms;
+  std::optional<double> mean_samples;  ///< of a pixel, with Sampling::by_tile
 };
 
 struct RenderRecord {

@@ -29,6 +29,10 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
   if (options.supersample > 1) json["supersample"] = options.supersample;
   if (record.sampled) {
     json["samples"] = record.sampled->samples;
+    if (record.sampled->mean_samples) {
+      json["mean_samples"] = *record.sampled->mean_samples;
+      json["most_samples"] = record.used.sampling.samples;
+    }
     json["jitter"] = record.used.sampling.jitter;
     json["aperture_blades"] = record.used.sampling.aperture.blades;
   } else if (record.lens) {

@@ -42,10 +42,9 @@ TEST_CASE("filtered views: the mean of the views, each as the oracle spreads it"
 
     const CameraMatrices pinhole_camera = camera_matrices(scene.camera, 0.0, width, height);
     const double radius_m = aperture_radius_m(scene.lens.lens, 1.0);
-    const LensCells cells = lens_cells({}, samples, points_of_cell(samples));
+    const LensCells cells = lens_cells({}, samples, points_of_cell(samples), true);
     const PixelCoc coc = pixel_coc(scene.lens.lens, scene.camera.fov_y_degrees, height, 1.0);
     const ViewSpread spread = make_view_spread(coc, cells);
-    const auto offsets = pixel_offsets(true, samples);
     const auto pixels = static_cast<std::size_t>(width * height);
     std::vector<double> totals(3 * pixels);
     ColourPlanes group;
@@ -53,10 +52,11 @@ TEST_CASE("filtered views: the mean of the views, each as the oracle spreads it"
       const auto number = static_cast<std::size_t>(i);
       const CameraMatrices camera =
           lens_camera(pinhole_camera, cells.views[number] * radius_m, scene.lens.lens.focus_m,
-                      offsets[number], width, height);
+                      cells.in_pixel[number], width, height);
       const Image view = draw_scene(scene, camera, 0.0, width, height, profile, pool);
-      const ColourPlanes planes =
-          spread_view_oracle(view, spread, ray_steps(spread, points_of(cells, i)), cells.per_cell);
+      const ColourPlanes planes = spread_view_oracle(
+          view, spread, ray_steps(spread, points_of(cells, i), cells.in_pixel[number]),
+          cells.per_cell);
       if (i % kSampleGroup == 0) {
         group = planes;
       } else {

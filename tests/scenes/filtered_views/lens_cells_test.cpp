@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/few_pixel_offsets.h"
 
 using namespace softfocus;
 
@@ -78,6 +79,17 @@ TEST_CASE("cells of the lens: a cell's points lie about its view") {
     for (const glm::dvec2 point : cells.points) {
       CHECK(std::hypot(point.x, point.y) < 1.6 / std::sqrt(views));
     }
+  }
+}
+
+TEST_CASE("cells of the lens: views look from the pixel's centre, or from offsets made for them") {
+  for (const int views : {4, 200}) {
+    const LensCells still = lens_cells({}, views, points_of_cell(views));
+    CHECK(still.in_pixel == std::vector<glm::dvec2>(still.views.size(), glm::dvec2{0.0}));
+    const LensCells jittered = lens_cells({}, views, points_of_cell(views), true);
+    CHECK(jittered.views == still.views);
+    CHECK(jittered.points == still.points);
+    CHECK(jittered.in_pixel == view_offsets(true, still.views));
   }
 }
 

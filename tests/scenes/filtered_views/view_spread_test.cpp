@@ -104,3 +104,46 @@ TEST_CASE("view spread: what is near and out of focus lets through what lies bes
   CHECK(dark == doctest::Approx(3.0).epsilon(0.02));
   CHECK(darkest < 0.35);
 }
+
+TEST_CASE("view spread: rays of views that look from all over the pixel keep a circle's place") {
+  const LensCells cells = lens_cells({}, 8, 32, true);
+  const ViewSpread of_lens = make_view_spread(kCoc, cells);
+  for (const int level : {-40, -12, 12, 40}) {
+    CAPTURE(level);
+    const double radius_px = of_lens.radius_px[static_cast<std::size_t>(std::abs(level))];
+    glm::dvec2 mean{0.0};
+    double mean_square = 0.0;
+    for (int cell = 0; cell < 8; ++cell) {
+      const glm::dvec2 at = cells.in_pixel[static_cast<std::size_t>(cell)];
+      const glm::dvec2 view = cells.views[static_cast<std::size_t>(cell)] * radius_px;
+      const auto steps = ray_steps(of_lens, points_of(cells, cell), at);
+      for (int ray = 0; ray < cells.per_cell; ++ray) {
+        const PixelStep step =
+            steps[static_cast<std::size_t>(ray * kSpreadLevels + level + kMostSpreadLevel)];
+        const double sign = level < 0 ? -1.0 : 1.0;
+        const glm::dvec2 from =
+            glm::dvec2{step.x, step.y} + at + sign * glm::dvec2{-view.x, view.y};
+        mean += from / 256.0;
+        mean_square += (from.x * from.x + from.y * from.y) / 256.0;
+      }
+    }
+    CHECK(std::hypot(mean.x, mean.y) < 0.06);
+    // The circle's and the pixel's.
+    CHECK(mean_square == doctest::Approx(0.5 * radius_px * radius_px + 1.0 / 6.0).epsilon(0.02));
+  }
+}
+
+TEST_CASE("view spread: what is in focus stays as it is, wherever in the pixel the view looks") {
+  const LensCells cells = lens_cells({}, 4, 32, true);
+  const ViewSpread of_lens = make_view_spread(kCoc, cells);
+  for (int cell = 0; cell < 4; ++cell) {
+    const auto steps =
+        ray_steps(of_lens, points_of(cells, cell), cells.in_pixel[static_cast<std::size_t>(cell)]);
+    for (int ray = 0; ray < cells.per_cell; ++ray) {
+      const PixelStep step =
+          steps[static_cast<std::size_t>(ray * kSpreadLevels + kMostSpreadLevel)];
+      CHECK(step.x == 0);
+      CHECK(step.y == 0);
+    }
+  }
+}

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/load/load_scene.h"
@@ -90,7 +91,7 @@ TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes"
 
       const auto points = view_points(sampling);
       CHECK((points == lens_points({}, samples)) == (samples > kMostFewLensPoints));
-      const auto offsets = pixel_offsets(true, samples);
+      const auto offsets = view_offsets(true, points);
       SampleSums sums = make_sample_sums(width, height);
       std::vector<Image> group;
       for (std::size_t i = 0; i < points.size(); ++i) {

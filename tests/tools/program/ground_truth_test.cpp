@@ -80,6 +80,27 @@ TEST_CASE("ground truth: the report says how many samples there were and how the
   CHECK(contains(read_file(report), "Half-sets differ by"));
 }
 
+TEST_CASE("ground truth: samples by tile are told by their mean and by their most") {
+  const auto by_tile = rendered_json("figures", accumulation_with({"--samples", "auto:24"}));
+  CHECK(by_tile["sampling"]["samples"] == 24);
+  CHECK(by_tile["sampling"]["most_samples"] == 24);
+  CHECK(by_tile["sampling"]["mean_samples"] >= 8);
+  CHECK(by_tile["sampling"]["mean_samples"] <= 24);
+  const auto views = rendered_json("figures", {"--method", "filtered-views", "--samples", "auto"});
+  CHECK(views["sampling"]["most_samples"] == 32);
+  CHECK(!rendered_json("figures", accumulation_with({"--samples", "9"}))["sampling"].contains(
+      "mean_samples"));
+}
+
+TEST_CASE("ground truth: samples by tile are refused where they cannot be") {
+  check_refused_render(accumulation_with({"--samples", "auto", "--until", "0.1"}),
+                       {"--until", "--samples auto", "exclude"});
+  for (const char* value : {"auto:", "auto:0", "auto:65537", "auto64", "automatic"}) {
+    check_refused_render(accumulation_with({"--samples", value}), {"--samples", "auto:64"});
+  }
+  check_refused_render({"--method", "two-pass", "--samples", "auto"}, {"--samples", "two-pass"});
+}
+
 TEST_CASE("ground truth: an error that is not reached is told, and the picture is there") {
   for (const auto& [samples, said] :
        {std::pair{"32", "the half-sets differ by 0."}, std::pair{"8", "from 16 samples on"}}) {
