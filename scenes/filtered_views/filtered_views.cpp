@@ -20,8 +20,8 @@ void draw_tile_of_views(FilteredViewsBuffer& buffer, int tile, std::size_t count
                         TileMemory& memory, Isa isa) {
   for (std::size_t i = 0; i < count; ++i) {
     ViewTiles& picture = buffer.pictures[i];
-    draw_tile_aside(buffer.views.passes[i], buffer.views.tile_lists[i], tile, memory,
-                    reinterpret_cast<std::byte*>(texels_of_tile(picture, tile)));
+    draw_view_tile(buffer.views, i, tile, memory,
+                   reinterpret_cast<std::byte*>(texels_of_tile(picture, tile)));
     set_levels(picture, buffer.spread, tile, isa);
   }
 }
@@ -67,7 +67,7 @@ void add_group(FilteredViewsBuffer& buffer, const LensViewInput& input, int begi
     add_tile_sums(memory, tile_area(lists, tile), sums);
     spreading.put_back(std::move(memory));
   });
-  for (RenderPass& pass : buffer.views.passes) pass.draws.clear();
+  clear_lens_views(buffer.views);
   sums.count += end - begin;
 }
 

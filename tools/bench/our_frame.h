@@ -22,7 +22,8 @@ struct OurFrame {
   std::optional<AccumulationBuffer> views{};
   std::optional<FilteredViewsBuffer> filtered_views{};
   Image drawn{};
-  std::vector<Image> behind{};           ///< the layers behind it, if the method reads them
+  std::vector<Image> behind{};  ///< the layers behind it, if the method reads them
+  std::vector<TransparentPicture> transparent{};  ///< layers before it, for a filter
   std::vector<std::uint16_t> objects{};  ///< the drawn objects' numbers, if the method reads them
   Image filtered{};
   std::optional<AutoMethod> choice{};  ///< of auto
