@@ -69,7 +69,7 @@ void draw(OurFrame& frame) {
   if (frame.drawn.bytes.empty()) {
     frame.drawn = make_image(Format::rgba16f, work.size.width, work.size.height);
   }
-  if (work.method.filter == nullptr) {
+  if (work.method.filter == nullptr || frame.one_picture) {
     draw_scene(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
     return;
   }

@@ -18,6 +18,8 @@ namespace softfocus {
 struct OurFrame {
   const BenchWork& work;
   ThreadPool& pool;
+  bool one_picture =
+      false;  ///< a filter gets no transparent layers: beside a driver, which has none
   std::optional<PreparedScene> scene{};
   std::optional<AccumulationBuffer> views{};
   std::optional<FilteredViewsBuffer> filtered_views{};

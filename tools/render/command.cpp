@@ -296,6 +296,7 @@ int render(const RenderOptions& options) {
   progress.clear();
   print_scene_warnings(scene.warnings, options.verbose);
   check_outputs(options, scene);
+  if (has_transparent(scene)) check_transparent_memory(options);
   record.scene_name = scene.name;
   record.scene_title = scene.title;
   record.triangles = triangle_count(scene);
