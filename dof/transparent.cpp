@@ -21,7 +21,8 @@ void lay_transparent_over(const Method& method, const DofInput& input, const Ima
       std::uint16_t* below = row<std::uint16_t>(result, y).data();
       lay_over({row<std::uint16_t>(colour, y).data(), row<std::uint16_t>(opacity, y).data(), width},
                input.profile.half_store, below, pool.isa());
-      take_depths(row<std::uint16_t>(input.transparent[i].opacity, y).data(), width, below);
+      take_depths(row<std::uint16_t>(input.transparent[i].opacity, y).data(), width, below,
+                  pool.isa());
     });
   }
 }

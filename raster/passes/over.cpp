@@ -31,8 +31,10 @@ void lay_over(const OverRow& row, HalfRounding rounding, std::uint16_t* below, I
   }
 }
 
-void take_depths(const std::uint16_t* opacity, int width, std::uint16_t* below) {
-  for (int i = 0; i < 4 * width; i += 4) {
+void take_depths(const std::uint16_t* opacity, int width, std::uint16_t* below, Isa isa) {
+  int x = 0;
+  if (isa != Isa::scalar) x = SOFTFOCUS_KERNEL(isa, take_vectors_of_depths)(opacity, width, below);
+  for (int i = 4 * x; i < 4 * width; i += 4) {
     if (half_to_float(opacity[i]) >= 0.5f) below[i + 3] = opacity[i + 3];
   }
 }
@@ -79,6 +81,18 @@ int lay_vectors_over(const OverRow& row, HalfRounding rounding, std::uint16_t* b
     case swiftshader: break;
   }
   return lay_whole_vectors<swiftshader>(row, below);
+}
+
+/// Likewise.
+int take_vectors_of_depths(const std::uint16_t* opacity, int width, std::uint16_t* below) {
+  int x = 0;
+  for (; x + kLanes <= width; x += kLanes) {
+    const HalfTexels layer = load_half_texels(opacity + 4 * x);
+    HalfTexels texels = load_half_texels(below + 4 * x);
+    texels.a = select(half_to_float(layer.r) >= 0.5f, layer.a, texels.a);
+    store_half_texels(below + 4 * x, texels);
+  }
+  return x;
 }
 
 #endif

@@ -27,6 +27,6 @@ void lay_over(const OverRow& row, HalfRounding rounding, std::uint16_t* below, I
 
 /// Puts the alpha of `opacity` into that of `below` where red, as opacity, is 1/2 or more: the
 /// depth of what one sees most of.
-void take_depths(const std::uint16_t* opacity, int width, std::uint16_t* below);
+void take_depths(const std::uint16_t* opacity, int width, std::uint16_t* below, Isa isa);
 
 }  // namespace softfocus

@@ -160,9 +160,9 @@ void blend_transparent(PreparedScene& prepared, const CameraMatrices& camera, do
   for_each_transparent_tile(
       prepared, camera, frame, false, pool, [&](const Rectangle& area, std::size_t layers) {
         std::uint16_t* texels = row<std::uint16_t>(picture, area.y_begin).data() + 4 * area.x_begin;
-        blend_transparent_tile(prepared.transparent, layers, area, in_metres, prepared.pass.profile,
-                               pool.isa(), reinterpret_cast<std::byte*>(texels),
-                               picture.stride_bytes);
+        blend_transparent_tile(prepared.transparent, layers, prepared.depth, area, in_metres,
+                               prepared.pass.profile, pool.isa(),
+                               reinterpret_cast<std::byte*>(texels), picture.stride_bytes);
       });
 }
 
@@ -185,13 +185,12 @@ std::vector<TransparentPicture> draw_transparent(PreparedScene& prepared,
   }
   const DepthsInMetres in_metres = depths_in_metres(prepared.scene->camera);
   std::array<std::atomic<bool>, kTransparentLayers> shows{};
-  for_each_transparent_tile(prepared, camera, frame, true, pool,
-                            [&](const Rectangle& area, std::size_t layers) {
-                              store_transparent_tile(prepared.transparent, layers, area, in_metres,
-                                                     picture, prepared.pass.profile, pictures);
-                              for (std::size_t i = 0; i < layers; ++i)
-                                shows[i].store(true, std::memory_order_relaxed);
-                            });
+  for_each_transparent_tile(
+      prepared, camera, frame, true, pool, [&](const Rectangle& area, std::size_t layers) {
+        store_transparent_tile(prepared.transparent, layers, area, in_metres, picture,
+                               prepared.pass.profile, pool.isa(), pictures);
+        for (std::size_t i = 0; i < layers; ++i) shows[i].store(true, std::memory_order_relaxed);
+      });
   while (!pictures.empty() && !shows[pictures.size() - 1]) pictures.pop_back();
   return pictures;
 }

@@ -4,10 +4,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "raster/images/texel.h"
 #include "raster/numbers/half.h"
 #include "raster/passes/over.h"
-#include "scenes/draw/surface_stages.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
@@ -30,32 +28,14 @@ const float* depths_in(const Image& image, const Rectangle& area, int y) {
   return row<float>(image, y).data() + area.x_begin;
 }
 
-float metres_of(const DepthsInMetres& in_metres, float depth) {
-  const float left = 1.0f - depth;
-  // softpipe's slivers have depths beyond 1.
-  return 1.0f /
-         (in_metres.inverse_far + (left > 0.0f ? left : 0.0f) * in_metres.inverse_near_less_far);
-}
-
 int width_of(const Rectangle& area) { return area.x_end - area.x_begin; }
 
-// `elsewhere`: texels whose alpha is the depth where the layer shows nothing, or null.
 void split_row(const TransparentTargets& targets, std::size_t layer, const Rectangle& area, int y,
                const DepthsInMetres& in_metres, HalfRounding rounding,
-               const std::uint16_t* elsewhere, LayerRow& split) {
-  const std::uint16_t* texels = texels_in(targets.colour[layer], area, y);
-  const float* depths = depths_in(targets.depth[layer], area, y);
-  for (int x = 0; x < width_of(area); ++x) {
-    const std::uint16_t* texel = texels + 4 * x;
-    std::uint16_t depth = elsewhere != nullptr ? elsewhere[4 * x + 3] : std::uint16_t{0};
-    if (texel[3] != 0)
-      depth = float_to_half(alpha_depth(metres_of(in_metres, depths[x])), rounding);
-    std::uint16_t* colour = &split.colour[static_cast<std::size_t>(4 * x)];
-    std::uint16_t* opacity = &split.opacity[static_cast<std::size_t>(4 * x)];
-    std::copy_n(texel, 3, colour);
-    std::fill_n(opacity, 3, texel[3]);
-    colour[3] = opacity[3] = depth;
-  }
+               const std::uint16_t* elsewhere, Isa isa, LayerRow& split) {
+  split_layer_row({texels_in(targets.colour[layer], area, y),
+                   depths_in(targets.depth[layer], area, y), width_of(area)},
+                  in_metres, rounding, elsewhere, split.colour.data(), split.opacity.data(), isa);
 }
 
 // Nothing, at the depths of what is opaque.
@@ -70,11 +50,15 @@ void clear_layers(const Rectangle& area, const Image& opaque_depth, TransparentT
   }
 }
 
+// Whether a row of a layer shows anything: nearer depths.
+bool shows_in_row(const Rectangle& area, int y, const Image& opaque_depth, const Image& depth) {
+  return std::memcmp(depths_in(depth, area, y), depths_in(opaque_depth, area, y),
+                     sizeof(float) * static_cast<std::size_t>(width_of(area))) != 0;
+}
+
 bool shows_anything(const Rectangle& area, const Image& opaque_depth, const Image& depth) {
-  const auto columns = static_cast<std::size_t>(width_of(area));
   for (int y = area.y_begin; y < area.y_end; ++y) {
-    const float* of_layer = depths_in(depth, area, y);
-    if (!std::equal(of_layer, of_layer + columns, depths_in(opaque_depth, area, y))) return true;
+    if (shows_in_row(area, y, opaque_depth, depth)) return true;
   }
   return false;
 }
@@ -118,25 +102,26 @@ std::size_t draw_transparent_tile(const RenderPass& pass, const TileLists& lists
 }
 
 void blend_transparent_tile(const TransparentTargets& targets, std::size_t layers,
-                            const Rectangle& area, const DepthsInMetres& in_metres,
-                            const Profile& profile, Isa isa, std::byte* texels,
-                            std::size_t stride_bytes) {
+                            const Image& opaque_depth, const Rectangle& area,
+                            const DepthsInMetres& in_metres, const Profile& profile, Isa isa,
+                            std::byte* texels, std::size_t stride_bytes) {
   if (layers == 0) return;
   LayerRow split;
   for (int y = area.y_begin; y < area.y_end; ++y, texels += stride_bytes) {
     auto* below = reinterpret_cast<std::uint16_t*>(texels);
     for (std::size_t i = layers; i-- > 0;) {
-      split_row(targets, i, area, y, in_metres, profile.half_store, nullptr, split);
+      if (!shows_in_row(area, y, opaque_depth, targets.depth[i])) continue;
+      split_row(targets, i, area, y, in_metres, profile.half_store, below, isa, split);
       lay_over({split.colour.data(), split.opacity.data(), width_of(area)}, profile.half_store,
                below, isa);
-      take_depths(split.opacity.data(), width_of(area), below);
+      take_depths(split.opacity.data(), width_of(area), below, isa);
     }
   }
 }
 
 void store_transparent_tile(const TransparentTargets& targets, std::size_t layers,
                             const Rectangle& area, const DepthsInMetres& in_metres,
-                            const Image& opaque, const Profile& profile,
+                            const Image& opaque, const Profile& profile, Isa isa,
                             std::vector<TransparentPicture>& pictures) {
   LayerRow split;
   const auto halves = 4 * static_cast<std::size_t>(width_of(area));
@@ -147,7 +132,7 @@ void store_transparent_tile(const TransparentTargets& targets, std::size_t layer
     for (int y = area.y_begin; y < area.y_end; ++y) {
       const std::uint16_t* elsewhere = texels_in(opaque, area, y);
       if (i < layers) {
-        split_row(targets, i, area, y, in_metres, profile.half_store, elsewhere, split);
+        split_row(targets, i, area, y, in_metres, profile.half_store, elsewhere, isa, split);
       } else {
         split.colour.fill(0);
         for (std::size_t at = 3; at < halves; at += 4) split.colour[at] = elsewhere[at];
@@ -168,7 +153,7 @@ Image blended(const Image& opaque, const std::vector<TransparentPicture>& layers
       const std::uint16_t* opacity = row<std::uint16_t>(layers[i].opacity, y).data();
       lay_over({row<std::uint16_t>(layers[i].colour, y).data(), opacity, picture.width},
                profile.half_store, below, pool.isa());
-      take_depths(opacity, picture.width, below);
+      take_depths(opacity, picture.width, below, pool.isa());
     }
   });
   return picture;

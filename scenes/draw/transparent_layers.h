@@ -23,6 +23,7 @@
 #include "raster/images/image.h"
 #include "raster/pipeline/render_pass.h"
 #include "raster/threads/parallel.h"
+#include "scenes/draw/split_layer_row.h"
 
 namespace softfocus {
 
@@ -42,11 +43,6 @@ TransparentTargets make_transparent_targets(int width, int height);
 /// Lets a pass draw to them.
 void set_targets(TransparentTargets& targets, RenderPass& pass);
 
-/// From depths in the buffer to metres: 1 / (1/far + (1 - d) (1/near - 1/far)) in binary32. 1 - d
-/// loses nothing where most depths lie, from 1/2 on.
-struct DepthsInMetres {
-  float inverse_far, inverse_near_less_far;
-};
 DepthsInMetres depths_in_metres(const Camera& camera);
 
 /// Draws a tile's layers: all of the tile begins at the depths of `opaque_depth`. The pass has
@@ -56,11 +52,11 @@ std::size_t draw_transparent_tile(const RenderPass& pass, const TileLists& lists
                                   TileMemory& memory);
 
 /// Blends the first `layers` of a tile into its pixels, RGBA16F, which lie at `texels` in rows
-/// `stride_bytes` apart.
+/// `stride_bytes` apart. The tile was drawn before `opaque_depth`.
 void blend_transparent_tile(const TransparentTargets& targets, std::size_t layers,
-                            const Rectangle& area, const DepthsInMetres& in_metres,
-                            const Profile& profile, Isa isa, std::byte* texels,
-                            std::size_t stride_bytes);
+                            const Image& opaque_depth, const Rectangle& area,
+                            const DepthsInMetres& in_metres, const Profile& profile, Isa isa,
+                            std::byte* texels, std::size_t stride_bytes);
 
 /// A layer as depth of field takes it: TransparentLayer of dof.h.
 struct TransparentPicture {
@@ -71,7 +67,7 @@ struct TransparentPicture {
 /// nothing.
 void store_transparent_tile(const TransparentTargets& targets, std::size_t layers,
                             const Rectangle& area, const DepthsInMetres& in_metres,
-                            const Image& opaque, const Profile& profile,
+                            const Image& opaque, const Profile& profile, Isa isa,
                             std::vector<TransparentPicture>& pictures);
 
 /// A picture with layers blended into it, as blend_transparent_tile() does it.

@@ -136,8 +136,8 @@ void draw_view_tile(AccumulationBuffer& buffer, std::size_t i, int tile, TileMem
                                                    buffer.depth, buffer.transparent, memory);
   const Rectangle area = tile_area(buffer.tile_lists[i], tile);
   blend_transparent_tile(
-      buffer.transparent, layers, area, depths_in_metres(buffer.prepared.scene->camera),
-      pass.profile, pass.isa, texels,
+      buffer.transparent, layers, buffer.depth, area,
+      depths_in_metres(buffer.prepared.scene->camera), pass.profile, pass.isa, texels,
       kTexelHalves * sizeof(std::uint16_t) * static_cast<std::size_t>(area.x_end - area.x_begin));
 }
 

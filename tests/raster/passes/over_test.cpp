@@ -73,9 +73,11 @@ TEST_CASE("over: the same bits on every vector unit, for any halves, width and r
       Row expected = random_row(width, 7);
       const Row below = expected;
       lay_over({colour.data(), opacity.data(), width}, rounding, expected.data(), Isa::scalar);
+      take_depths(opacity.data(), width, expected.data(), Isa::scalar);
       for (const Isa isa : available_isas()) {
         Row laid = below;
         lay_over({colour.data(), opacity.data(), width}, rounding, laid.data(), isa);
+        take_depths(opacity.data(), width, laid.data(), isa);
         INFO(isa_name(isa), ", ", width);
         CHECK(laid == expected);
       }
@@ -87,7 +89,7 @@ TEST_CASE("over: the depth is that of the layer from an opacity of 1/2 on") {
   Row below = row_of({0.0f, 0.0f, 0.0f, 5.0f}, 2);
   Row opacity = row_of({0.5f, 0.0f, 0.0f, 2.0f}, 2);
   opacity[4] = float_to_half(0.4995f, HalfRounding::nearest_even);
-  take_depths(opacity.data(), 2, below.data());
+  take_depths(opacity.data(), 2, below.data(), Isa::scalar);
   CHECK(half_to_float(below[3]) == 2.0f);
   CHECK(half_to_float(below[7]) == 5.0f);
 }
