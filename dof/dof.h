@@ -26,6 +26,18 @@ inline constexpr float kLargestMaxCoc = 1024.0f;
 /// Layers behind the first that a method may read.
 inline constexpr std::size_t kMostBehind = 3;
 
+/// Transparent layers before a picture.
+inline constexpr std::size_t kMostTransparent = 4;
+
+/// A layer of transparent surfaces before a picture: two pictures of its size and format with the
+/// same depths.
+struct TransparentLayer {
+  /// Colour times opacity. Depths of the layer's surfaces, and of the picture where it has none.
+  ConstImageView colour;
+  /// The opacity, 0 to 1, in red, green and blue.
+  ConstImageView opacity;
+};
+
 /// What every method is told about the lens and the filter.
 struct DofSettings {
   PixelCoc coc;
@@ -53,6 +65,11 @@ struct DofInput {
   /// on, as pictures like `scene`, up to kMostBehind; or empty if that is not known. Where nothing
   /// lies behind, a picture repeats the background.
   std::span<const ConstImageView> behind = {};
+  /// Transparent surfaces before `scene`, which shows what is opaque: the nearest layer first, up
+  /// to kMostTransparent, or empty. apply() has the method blur the picture and each layer by
+  /// itself, so that each surface has its own circle, and lays them over each other
+  /// (transparent.h).
+  std::span<const TransparentLayer> transparent = {};
   /// Signed radii in pixels, row by row from the top, in place of those that the lens gives, or
   /// empty. Only methods that take_radii read them.
   std::span<const float> radii_px = {};

@@ -22,6 +22,7 @@
 #include "dof/ring_bucket/ring_bucket.h"
 #include "dof/scatter/layers.h"
 #include "dof/scatter/scatter.h"
+#include "dof/transparent.h"
 #include "dof/two_pass/two_pass.h"
 #include "raster/images/image.h"
 #include "raster/threads/float_environment.h"
@@ -119,14 +120,26 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
   if (!input.objects.empty() && input.objects.size() != pixels) {
     return "there is not one object number for each pixel";
   }
-  if (input.behind.size() > kMostBehind) return "there are more than 3 layers behind the first";
-  for (const ConstImageView& layer : input.behind) {
+  const auto layer_error = [&](const ConstImageView& layer) -> const char* {
     if (layer.texels == nullptr) return "there is no memory";
     if (layer.format != scene.format || layer.width != scene.width ||
         layer.height != scene.height) {
       return "a layer has not the scene's size and format";
     }
-    if (std::abs(layer.stride_bytes) < row_bytes) return "a stride is shorter than a row";
+    return std::abs(layer.stride_bytes) < row_bytes ? "a stride is shorter than a row" : nullptr;
+  };
+  if (input.behind.size() > kMostBehind) return "there are more than 3 layers behind the first";
+  for (const ConstImageView& layer : input.behind) {
+    if (const char* error = layer_error(layer)) return error;
+  }
+  if (input.transparent.size() > kMostTransparent)
+    return "there are more than 4 transparent layers";
+  for (const TransparentLayer& layer : input.transparent) {
+    if (const char* error = layer_error(layer.colour)) return error;
+    if (const char* error = layer_error(layer.opacity)) return error;
+  }
+  if (!input.transparent.empty() && !input.radii_px.empty()) {
+    return "radii are of one picture, and transparent layers are pictures of their own";
   }
   if (!input.radii_px.empty() && input.radii_px.size() != pixels) {
     return "there is not one radius for each pixel";
@@ -151,6 +164,7 @@ void apply(const Method& method, const DofInput& input, const ImageView& result,
   assert(input_error(input, result) == nullptr);
   const DefaultFloatEnvironment environment;
   method.filter(input, result, pool);
+  lay_transparent_over(method, input, result, pool);
 }
 
 Image apply(const Method& method, const DofInput& input, ThreadPool& pool) {

@@ -7,7 +7,7 @@
 
 #include "dof/measure/flip.h"
 #include "scenes/auto/tile_sample.h"
-#include "scenes/draw/object_numbers.h"
+#include "scenes/draw/frame_parts.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/few_lens_points.h"
 
@@ -255,11 +255,8 @@ Image picture_of(const AutoMethod& choice, const LensViewInput& views, DofSettin
   }
   const Method& filter = *find_method(choice.method);
   settings.max_coc_px = choice.radius_px;
-  const Image& pinhole = views.pinhole;
-  const std::vector<std::uint16_t> objects =
-      object_numbers_for(filter, views.scene, views.camera, views.frame, pinhole.width,
-                         pinhole.height, views.profile, pool);
-  return apply(filter, {pinhole, settings, views.profile, objects}, pool);
+  return filtered_frame(filter, views.scene, views.camera, views.frame, views.pinhole, settings,
+                        views.profile, pool);
 }
 
 AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool) {

@@ -1,11 +1,13 @@
 #include "scenes/draw/draw_scene.h"
 
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <utility>
 
 #include "raster/images/texel.h"
 #include "raster/pipeline/draw.h"
+#include "raster/threads/scratch_shelf.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/draw/surface_lanes.h"
 #include "scenes/draw/surface_stages.h"
@@ -24,14 +26,13 @@ void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, Ren
   const auto vertices = static_cast<std::uint32_t>(input.mesh->positions.size());
   const SurfaceVertexStage<variant> vertex_stage{input};
   SurfaceFragmentStage<variant> fragment_stage{surface.texture, input.material->sampler,
-                                               pass.profile, surface.opacity,
-                                               surface.opacity_sampler};
+                                               pass.profile, surface.opacity};
   if (!can_draw_in_lanes(pass, surface.state)) {
     draw(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage);
     return;
   }
   fragment_stage.decoded = decoded(prepared, surface.texture);
-  fragment_stage.decoded_opacity = decoded(prepared, surface.opacity);
+  fragment_stage.decoded_opacity = decoded(prepared, surface.opacity.texture);
   draw_in_lanes(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage,
                 surface_lane_stages<variant>(pass.isa));
 }
@@ -50,7 +51,7 @@ constexpr auto kVariants = []<std::size_t... number>(std::index_sequence<number.
 void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {
   const SurfaceVariant variant = surface.variant;
   const std::size_t number = (variant.textured ? 1u : 0u) + (variant.specular ? 2u : 0u) +
-                             (variant.two_sided ? 4u : 0u) + (variant.cut_out ? 8u : 0u);
+                             (variant.two_sided ? 4u : 0u) + (variant.holed ? 8u : 0u);
   kVariants[number](prepared, surface, pass);
 }
 
@@ -72,13 +73,15 @@ PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPo
 }
 
 PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, ThreadPool& pool) {
-  PreparedScene prepared{&scene, {}, {}, {}, {}};
+  PreparedScene prepared{&scene, has_transparent(scene), {}, {}, {}, {}, {}, {}};
   prepared.pass.profile = profile;
   prepared.pass.isa = pool.isa();
+  prepared.transparent_pass.profile = profile;
+  prepared.transparent_pass.isa = pool.isa();
   if (pool.isa() == Isa::scalar) return prepared;
   prepared.textures.resize(scene.textures.size());
   for (const Material& material : scene.materials) {
-    if (!material.cut_out || !material.opacity_texture) continue;
+    if (!material.opacity_texture) continue;
     const std::size_t number = *material.opacity_texture;
     prepared.textures[number] = decode_texture(scene.textures[number], profile);
   }
@@ -89,9 +92,17 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
                   RenderPass& pass) {
   pass.clear_colour = clear_colour(*prepared.scene);
   pass.clear_depth = 1.0f;
-  pass.keep_depth = false;
+  pass.keep_depth = prepared.has_transparent;
   for (const SurfaceDraw& surface : surface_draws(*prepared.scene, camera, frame)) {
-    draw_surface(prepared, surface, pass);
+    if (!surface.opacity.blends) draw_surface(prepared, surface, pass);
+  }
+}
+
+void record_transparent(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                        RenderPass& pass) {
+  for (const SurfaceDraw& surface : surface_draws(*prepared.scene, camera, frame)) {
+    const SurfaceOpacity& opacity = surface.opacity;
+    if (opacity.blends && opacity.value > 0.0f) draw_surface(prepared, surface, pass);
   }
 }
 
@@ -99,35 +110,101 @@ void record_surfaces(const PreparedScene& prepared, std::span<const Material> of
                      const CameraMatrices& camera, double frame, RenderPass& pass) {
   std::vector<SurfaceDraw> surfaces = surface_draws(*prepared.scene, camera, frame);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].opacity.blends) continue;
     // Which sides are culled stays the scene's choice.
     surfaces[i].input.material = &of_objects[i];
     surfaces[i].texture = nullptr;
-    surfaces[i].variant = {.cut_out = surfaces[i].variant.cut_out};
+    surfaces[i].variant = {.holed = surfaces[i].variant.holed};
     draw_surface(prepared, surfaces[i], pass);
   }
 }
 
+namespace {
+
+Image* of_size(Image& depth, const Image& picture) {
+  if (depth.width != picture.width || depth.height != picture.height) {
+    depth = make_image(Format::r32f, picture.width, picture.height);
+  }
+  return &depth;
+}
+
+// Calls `with(tile area, its layers)` for each tile that shows something transparent or, if
+// `every`, for all.
+template <class With>
+void for_each_transparent_tile(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                               bool every, ThreadPool& pool, const With& with) {
+  TransparentTargets& targets = prepared.transparent;
+  if (targets.depth[0].width != prepared.depth.width ||
+      targets.depth[0].height != prepared.depth.height) {
+    targets = make_transparent_targets(prepared.depth.width, prepared.depth.height);
+  }
+  RenderPass& pass = prepared.transparent_pass;
+  set_targets(targets, pass);
+  record_transparent(prepared, camera, frame, pass);
+  TileLists lists;
+  sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
+  ScratchShelf<TileMemory> shelf;
+  pool.for_each(tile_count(lists), [&](int tile) {
+    TileMemory memory = shelf.take();
+    const std::size_t layers =
+        draw_transparent_tile(pass, lists, tile, prepared.depth, targets, memory);
+    if (layers > 0 || every) with(tile_area(lists, tile), layers);
+    shelf.put_back(std::move(memory));
+  });
+  pass.draws.clear();
+}
+
+void blend_transparent(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                       Image& picture, ThreadPool& pool) {
+  const DepthsInMetres in_metres = depths_in_metres(prepared.scene->camera);
+  for_each_transparent_tile(
+      prepared, camera, frame, false, pool, [&](const Rectangle& area, std::size_t layers) {
+        std::uint16_t* texels = row<std::uint16_t>(picture, area.y_begin).data() + 4 * area.x_begin;
+        blend_transparent_tile(prepared.transparent, layers, prepared.depth, area, in_metres,
+                               prepared.pass.profile, pool.isa(),
+                               reinterpret_cast<std::byte*>(texels), picture.stride_bytes);
+      });
+}
+
+}  // namespace
+
 void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool) {
   draw_layers(prepared, camera, frame, picture, {}, pool);
+  if (prepared.has_transparent) blend_transparent(prepared, camera, frame, picture, pool);
+}
+
+std::vector<TransparentPicture> draw_transparent(PreparedScene& prepared,
+                                                 const CameraMatrices& camera, double frame,
+                                                 const Image& picture, ThreadPool& pool) {
+  std::vector<TransparentPicture> pictures;
+  if (!prepared.has_transparent) return pictures;
+  while (pictures.size() < kTransparentLayers) {
+    pictures.push_back({make_image(Format::rgba16f, picture.width, picture.height),
+                        make_image(Format::rgba16f, picture.width, picture.height)});
+  }
+  const DepthsInMetres in_metres = depths_in_metres(prepared.scene->camera);
+  std::array<std::atomic<bool>, kTransparentLayers> shows{};
+  for_each_transparent_tile(
+      prepared, camera, frame, true, pool, [&](const Rectangle& area, std::size_t layers) {
+        store_transparent_tile(prepared.transparent, layers, area, in_metres, picture,
+                               prepared.pass.profile, pool.isa(), pictures);
+        for (std::size_t i = 0; i < layers; ++i) shows[i].store(true, std::memory_order_relaxed);
+      });
+  while (!pictures.empty() && !shows[pictures.size() - 1]) pictures.pop_back();
+  return pictures;
 }
 
 void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                  Image& picture, std::span<Image> behind, ThreadPool& pool) {
   assert(behind.size() < kMaxLayers);
-  const auto depth_of_size = [&](Image& depth) {
-    if (depth.width != picture.width || depth.height != picture.height) {
-      depth = make_image(Format::r32f, picture.width, picture.height);
-    }
-    return &depth;
-  };
   RenderTargets& targets = prepared.pass.targets;
   targets.colour[0] = &picture;
-  targets.depth = depth_of_size(prepared.depth);
+  targets.depth = of_size(prepared.depth, picture);
   targets.behind = {};
   if (prepared.depths_behind.size() < behind.size()) prepared.depths_behind.resize(behind.size());
   for (std::size_t i = 0; i < behind.size(); ++i) {
-    targets.behind[i] = {&behind[i], depth_of_size(prepared.depths_behind[i])};
+    targets.behind[i] = {&behind[i], of_size(prepared.depths_behind[i], picture)};
   }
   record_scene(prepared, camera, frame, prepared.pass);
   finish(prepared.pass, pool);

@@ -11,6 +11,7 @@
 #include "raster/pipeline/render_pass.h"
 #include "raster/threads/parallel.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/transparent_layers.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
@@ -20,6 +21,7 @@ glm::vec4 clear_colour(const Scene& scene);
 
 /// Draws one frame into an RGBA16F image of any size: linear colour, and in alpha the
 /// depth in metres along the axis (the camera's far distance where nothing was drawn).
+/// Transparent surfaces are blended (transparent_layers.h, which says whose depth alpha is).
 /// The same bits for any number of threads.
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
                  int height, const Profile& profile, ThreadPool& pool);
@@ -27,25 +29,30 @@ Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame,
 /// A scene made ready for many frames: decoded textures, and memory to use again.
 struct PreparedScene {
   const Scene* scene;
+  bool has_transparent;
   std::vector<DecodedTexture> textures;  ///< decoded, for drawing in lanes
   RenderPass pass;
   Image depth;
   std::vector<Image> depths_behind;  ///< of the layers behind the first
+  // If the scene has transparent surfaces.
+  RenderPass transparent_pass;
+  TransparentTargets transparent;
 };
 
 /// The scene must outlive the result. `pool` is the one that will draw.
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);
 
-/// For record_surfaces() alone, which reads no textures but those of cut-outs.
+/// For record_surfaces() alone, which reads no textures but opacities.
 PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, ThreadPool& pool);
 
 /// As above, into an RGBA16F picture.
 void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool);
 
-/// The nearest surfaces of each pixel, by depth peeling: `picture` as draw_scene() has it,
-/// behind[0] the next surface, and so on. The background is all that lies behind the last surface,
-/// again and again. Up to kMaxLayers - 1 behind, of the picture's size and format.
+/// The nearest opaque surfaces of each pixel, by depth peeling: `picture` as draw_scene() has it
+/// but for what is transparent, behind[0] the next surface, and so on. The background is all that
+/// lies behind the last surface, again and again. Up to kMaxLayers - 1 behind, of the picture's
+/// size and format.
 void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                  Image& picture, std::span<Image> behind, ThreadPool& pool);
 
@@ -54,14 +61,24 @@ std::vector<Image> draw_layers(const Scene& scene, const CameraMatrices& camera,
                                int width, int height, std::size_t layers, const Profile& profile,
                                ThreadPool& pool);
 
-/// Records the clearing and the draws of a frame into a pass, which has its targets, and the
-/// profile and isa of prepare_scene(). Depths are not kept.
+/// The transparent surfaces before a picture that draw_layers() has just drawn of the same frame,
+/// as depth of field takes them: the nearest layer first, and none that is empty.
+std::vector<TransparentPicture> draw_transparent(PreparedScene& prepared,
+                                                 const CameraMatrices& camera, double frame,
+                                                 const Image& picture, ThreadPool& pool);
+
+/// Records the clearing and the opaque draws of a frame into a pass, which has its targets, and the
+/// profile and isa of prepare_scene(). Depths are kept if the scene has transparent surfaces.
 void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                   RenderPass& pass);
 
-/// Records the draws of a frame, without the clearing, with materials of the caller's in place of
-/// the scene's: one for each object, unlit and without texture. The same pixels, at the same
-/// depths: what is cut out stays so. The materials must outlive finish().
+/// Records the transparent draws of a frame into a pass that has set_targets().
+void record_transparent(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                        RenderPass& pass);
+
+/// Records the opaque draws of a frame, without the clearing, with materials of the caller's in
+/// place of the scene's: one for each object, unlit and without texture. The same pixels, at the
+/// same depths: what is cut out stays so. The materials must outlive finish().
 void record_surfaces(const PreparedScene& prepared, std::span<const Material> of_objects,
                      const CameraMatrices& camera, double frame, RenderPass& pass);
 

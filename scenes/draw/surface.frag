@@ -1,10 +1,13 @@
 // The fragment stage of a lit, perhaps textured surface: linear colour, and the depth in
 // metres in alpha. Beside scenes/draw/surface_stages.h. Defined or not: TEXTURED, SPECULAR,
-// TWO_SIDED, CUT_OUT, PEELED.
+// TWO_SIDED, CUT_OUT, BLENDED, PEELED.
 //
 // PEELED, after Everitt 2001: a fragment is discarded unless it lies behind the one that `layer_before` has. Depth alone
 // cannot say so where several fragments have the same; the number of the triangle, counted over the
 // frame, then gives the order of submission.
+//
+// BLENDED: the colour is multiplied by the opacity, which is in alpha in place of the depth. PEELED, the
+// fragment also lies before what is opaque.
 in float depth_m;
 in vec3 front_base;
 #ifdef SPECULAR
@@ -24,6 +27,14 @@ uniform sampler2D surface_texture;
 #endif
 #ifdef CUT_OUT
 uniform sampler2D opacity_texture;
+uniform float least_texel;
+#endif
+#ifdef BLENDED
+uniform float surface_opacity;
+uniform int cuts_out;
+#ifdef PEELED
+uniform sampler2D opaque_depth;
+#endif
 #endif
 
 #ifdef PEELED
@@ -52,13 +63,26 @@ void main() {
 #endif
 #ifdef CUT_OUT
   // Last: a texture is sampled with its neighbours in the quad.
-  if (texture(opacity_texture, uv).r < 0.5) discard;
+  float red = texture(opacity_texture, uv).r;
+  if (red < least_texel) discard;
 #endif
 #ifdef PEELED
   vec2 before = texelFetch(layer_before, ivec2(gl_FragCoord.xy), 0).rg;
   if (gl_FragCoord.z < before.r) discard;
   if (gl_FragCoord.z == before.r && float(triangle) <= before.g) discard;
+#ifdef BLENDED
+  if (gl_FragCoord.z >= texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).r) discard;
+#endif
   peeled = vec4(gl_FragCoord.z, float(triangle), 0.0, 0.0);
 #endif
+#ifdef BLENDED
+  precise float hides = surface_opacity;
+#ifdef CUT_OUT
+  if (cuts_out == 0) hides *= red;
+#endif
+  colour *= hides;
+  colour_and_depth = vec4(colour, hides);
+#else
   colour_and_depth = vec4(colour, depth_m < 65504.0 ? depth_m : 65504.0);
+#endif
 }

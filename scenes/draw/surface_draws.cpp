@@ -1,5 +1,7 @@
 #include "scenes/draw/surface_draws.h"
 
+#include <algorithm>
+
 #include "raster/numbers/vector_math.h"
 
 namespace softfocus {
@@ -20,6 +22,10 @@ glm::mat3 normal_matrix(const glm::dmat4& to_world) {
                    glm::vec3{cross(x, y) * sign}};
 }
 
+bool has_opacity_texture(const Material& material, const Mesh& mesh) {
+  return material.opacity_texture && !mesh.uvs.empty();
+}
+
 SurfaceDraw surface_draw(const Scene& scene, const Object& object, const CameraMatrices& camera,
                          double frame) {
   const Mesh& mesh = scene.meshes[object.mesh];
@@ -31,14 +37,17 @@ SurfaceDraw surface_draw(const Scene& scene, const Object& object, const CameraM
   draw.state.cull = material.two_sided ? Cull::none : Cull::back;
   if (determinant(to_world) < 0.0) draw.state.front_face = FrontFace::clockwise;
   if (material.texture && !mesh.uvs.empty()) draw.texture = &scene.textures[*material.texture];
-  if (material.cut_out && material.opacity_texture && !mesh.uvs.empty()) {
-    draw.opacity = &scene.textures[*material.opacity_texture];
-    draw.opacity_sampler = material.opacity_sampler;
-  }
+  draw.opacity = {.value = material.opacity,
+                  .texture = has_opacity_texture(material, mesh)
+                                 ? &scene.textures[*material.opacity_texture]
+                                 : nullptr,
+                  .sampler = material.opacity_sampler,
+                  .cuts_out = material.cut_out,
+                  .blends = is_transparent(material, mesh)};
   draw.variant = {.textured = draw.texture != nullptr,
                   .specular = material.lit && material.specular != glm::vec3{0.0f},
                   .two_sided = material.two_sided,
-                  .cut_out = draw.opacity != nullptr};
+                  .holed = draw.opacity.texture != nullptr};
   draw.input = {&mesh,
                 &material,
                 scene.lights,
@@ -51,6 +60,16 @@ SurfaceDraw surface_draw(const Scene& scene, const Object& object, const CameraM
 }
 
 }  // namespace
+
+bool is_transparent(const Material& material, const Mesh& mesh) {
+  return material.opacity < 1.0f || (has_opacity_texture(material, mesh) && !material.cut_out);
+}
+
+bool has_transparent(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+    return is_transparent(scene.materials[object.material], scene.meshes[object.mesh]);
+  });
+}
 
 std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,
                                        double frame) {

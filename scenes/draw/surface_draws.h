@@ -15,12 +15,18 @@ struct SurfaceDraw {
   DrawState state;
   SurfaceVertexInput input;
   const Texture* texture;  ///< none if the variant is not textured
-  const Texture* opacity;  ///< none if the variant is not cut out
-  Sampler opacity_sampler;
+  SurfaceOpacity opacity;
   SurfaceVariant variant;  ///< the features of the material
 };
 
-/// One for each of the scene's objects, in the order of drawing.
+/// Whether a surface is blended with what lies behind it.
+bool is_transparent(const Material& material, const Mesh& mesh);
+
+/// Whether any of a scene's objects is.
+bool has_transparent(const Scene& scene);
+
+/// One for each of the scene's objects, in the order of drawing. Those of opacity 0 show nothing:
+/// callers leave them out.
 std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,
                                        double frame);
 

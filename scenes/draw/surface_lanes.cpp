@@ -24,7 +24,7 @@ SurfaceLaneStages<variant> surface_lane_stages(Isa isa) {
   SurfaceLaneStages<variant> stages{SOFTFOCUS_KERNEL(isa, place_surface_vertices<variant>),
                                     SOFTFOCUS_KERNEL(isa, shade_surface_vertices<variant>),
                                     SOFTFOCUS_KERNEL(isa, shade_surface_fragments<variant>)};
-  if constexpr (variant.cut_out) {
+  if constexpr (variant.holed) {
     stages.keep_fragments = SOFTFOCUS_KERNEL(isa, keep_surface_fragments<variant>);
   }
   return stages;
@@ -174,6 +174,23 @@ struct SurfaceVertexLanes {
 
 // --- fragments ---
 
+// The red of a holed surface's opacity texture.
+template <SurfaceVariant variant, class Quads>
+SOFTFOCUS_INLINE Floats opacity_texels(const Quads& in, const DecodedTexture& texture,
+                                       const Sampler& sampler, const Profile& profile) {
+  const std::size_t u = surface_layout(variant).texture;
+  const std::size_t v = u + 1;
+  alignas(64) std::array<std::array<float, kLanes>, 3> place;
+  store(place[0].data(), in.varying(u));
+  store(place[1].data(), in.varying(v));
+  store(place[2].data(),
+        level_of_detail_lanes(texture, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
+  RgbLanes texels;
+  sample_lanes(texture, sampler, profile, {place[0].data(), place[1].data(), place[2].data()}, 1,
+               &texels);
+  return texels.r;
+}
+
 template <SurfaceVariant variant>
 struct SurfaceFragmentLanes {
   static constexpr SurfaceLayout kLayout = surface_layout(variant);
@@ -186,6 +203,8 @@ struct SurfaceFragmentLanes {
   const DecodedTexture* texture;
   const Sampler& sampler;
   const Profile& profile;
+  const SurfaceOpacity& opacity;
+  const DecodedTexture* decoded_opacity;
 
   template <class Quads, class Put>
   SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
@@ -211,7 +230,11 @@ struct SurfaceFragmentLanes {
     put(kRed, colour.x);
     put(kGreen, colour.y);
     put(kBlue, colour.z);
-    put(kDepth, smaller(in.varying(SurfaceLayout::kDepth), splat(65504.0f)));
+    if (opacity.blends) {
+      put(kDepth, hides(in));
+    } else {
+      put(kDepth, smaller(in.varying(SurfaceLayout::kDepth), splat(65504.0f)));
+    }
   }
 
   SOFTFOCUS_INLINE void shade(const FragmentBatch<kInputs>& batch,
@@ -221,7 +244,16 @@ struct SurfaceFragmentLanes {
       colours[i] = {batch.input(kRed, i), batch.input(kGreen, i), batch.input(kBlue, i),
                     batch.input(kDepth, i)};
     }
-    if constexpr (!variant.textured) return;
+    if constexpr (variant.textured) multiply_by_texture(batch, colours);
+    if (!opacity.blends) return;
+    for (int i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) colours[i][c] *= colours[i][3];
+    }
+  }
+
+  SOFTFOCUS_INLINE void multiply_by_texture(const FragmentBatch<kInputs>& batch,
+                                            std::array<Floats, 4>* colours) const {
+    const int count = batch.vectors();
     std::array<RgbLanes, kMostSampled> texels;
     sample_lanes(*texture, sampler, profile,
                  {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
@@ -234,6 +266,14 @@ struct SurfaceFragmentLanes {
       if constexpr (!variant.specular) continue;
       for (std::size_t c = 0; c < 3; ++c) colours[i][c] += batch.input(kHighlight + c, i);
     }
+  }
+
+  // The opacity.
+  template <class Quads>
+  SOFTFOCUS_INLINE Floats hides(const Quads& in) const {
+    const Floats value = splat(opacity.value);
+    if constexpr (!variant.holed) return value;
+    return value * opacity_texels<variant>(in, *decoded_opacity, opacity.sampler, profile);
   }
 
   // Three varyings of the side that is seen.
@@ -254,23 +294,14 @@ template <SurfaceVariant variant>
 struct SurfaceHoles {
   static constexpr SurfaceLayout kLayout = surface_layout(variant);
   static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
-  const DecodedTexture& opacity;
-  const Sampler& sampler;
+  const SurfaceOpacity& opacity;
+  const DecodedTexture& decoded_opacity;
   const Profile& profile;
 
   template <class Quads>
   SOFTFOCUS_INLINE Mask keeps(const Quads& in) const {
-    const std::size_t u = kLayout.texture;
-    const std::size_t v = kLayout.texture + 1;
-    alignas(64) std::array<std::array<float, kLanes>, 3> place;
-    store(place[0].data(), in.varying(u));
-    store(place[1].data(), in.varying(v));
-    store(place[2].data(),
-          level_of_detail_lanes(opacity, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
-    RgbLanes texels;
-    sample_lanes(opacity, sampler, profile, {place[0].data(), place[1].data(), place[2].data()}, 1,
-                 &texels);
-    return ~(texels.r < kLeastOpacity);
+    return ~(opacity_texels<variant>(in, decoded_opacity, opacity.sampler, profile) <
+             least_texel(opacity));
   }
 };
 
@@ -286,22 +317,31 @@ void shade_surface_vertices(const SurfaceVertexStage<variant>& stage, const Vert
   shade_vertices(SurfaceVertexLanes{stage.input, variant}, job);
 }
 
+template <SurfaceVariant variant, SurfaceVariant of>
+void shade_surface(const SurfaceFragmentStage<of>& stage, const FragmentJob& job,
+                   const VisibilityTile& tile, const VisibleRun& run) {
+  shade_fragments(SurfaceFragmentLanes<variant>{stage.decoded, stage.sampler, stage.profile,
+                                                stage.opacity, stage.decoded_opacity},
+                  job, tile, run);
+}
+
 // A cut-out has the varyings and colours of the surface without holes, and perhaps u and v after
 // them: both share their code.
 template <SurfaceVariant variant>
 void shade_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
                              const VisibilityTile& tile, const VisibleRun& run) {
   constexpr SurfaceVariant kWhole{variant.textured, variant.specular, variant.two_sided};
-  shade_fragments(SurfaceFragmentLanes<kWhole>{stage.decoded, stage.sampler, stage.profile}, job,
-                  tile, run);
+  if constexpr (variant.holed) {
+    if (!stage.opacity.cuts_out) return shade_surface<variant>(stage, job, tile, run);
+  }
+  shade_surface<kWhole>(stage, job, tile, run);
 }
 
 template <SurfaceVariant variant>
 unsigned keep_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
                                 const LaneTriangle& triangle, int x, int y, unsigned pixels) {
-  return keep_fragments(
-      SurfaceHoles<variant>{*stage.decoded_opacity, stage.opacity_sampler, stage.profile}, job,
-      triangle, x, y, pixels);
+  return keep_fragments(SurfaceHoles<variant>{stage.opacity, *stage.decoded_opacity, stage.profile},
+                        job, triangle, x, y, pixels);
 }
 
 #endif

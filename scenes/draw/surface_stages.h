@@ -26,13 +26,32 @@ struct SurfaceVariant {
   bool textured = false;
   bool specular = false;
   bool two_sided = false;
-  bool cut_out = false;
+  bool holed = false;  ///< an opacity texture says where it is
 };
 
-constexpr bool has_uvs(SurfaceVariant variant) { return variant.textured || variant.cut_out; }
+constexpr bool has_uvs(SurfaceVariant variant) { return variant.textured || variant.holed; }
+
+/// How a surface hides what lies behind it.
+struct SurfaceOpacity {
+  float value = 1.0f;
+  const Texture* texture = nullptr;  ///< of a holed variant
+  Sampler sampler = {};
+  /// Whether the texture only says where the surface is. If not, its red multiplies `value`.
+  bool cuts_out = true;
+  /// Whether fragments are blended: then their colour is multiplied by their opacity, which is
+  /// in alpha in place of the depth.
+  bool blends = false;
+};
 
 /// A cut-out surface is there where its opacity, as sampled, is this or more.
 inline constexpr float kLeastOpacity = 0.5f;
+/// A transparent one is there where it would show: half a step of 8 bits.
+inline constexpr float kLeastBlended = 1.0f / 512.0f;
+
+/// A holed surface is there where its texture has this or more.
+constexpr float least_texel(const SurfaceOpacity& opacity) {
+  return opacity.cuts_out ? kLeastOpacity : kLeastBlended;
+}
 
 /// Where each varying lies: depth, base colour, then what the variant has.
 struct SurfaceLayout {
@@ -103,22 +122,24 @@ struct SurfaceVertexStage {
 template <SurfaceVariant variant>
 struct SurfaceFragmentStage {
   static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  static constexpr bool kDiscards = variant.cut_out;
+  static constexpr bool kDiscards = variant.holed;
   static constexpr bool kNeedsDerivatives = has_uvs(variant);
   static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
 
   const Texture* texture;
   Sampler sampler;
   Profile profile;
-  const Texture* opacity = nullptr;  ///< of a cut-out
-  Sampler opacity_sampler = {};
+  SurfaceOpacity opacity = {};
   // For the form in lanes.
   const DecodedTexture* decoded = nullptr;
   const DecodedTexture* decoded_opacity = nullptr;
 
   FragmentOutput<1> operator()(const Fragment<kLayout.count>& in) const {
-    if constexpr (variant.cut_out) {
-      if (texel(*opacity, opacity_sampler, in).x < kLeastOpacity) return {{}, true};
+    float hides = opacity.value;
+    if constexpr (variant.holed) {
+      const float red = texel(*opacity.texture, opacity.sampler, in).x;
+      if (red < least_texel(opacity)) return {{}, true};
+      if (!opacity.cuts_out) hides *= red;
     }
     const std::size_t side = variant.two_sided && !in.front_facing ? kLayout.back : kLayout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
@@ -128,6 +149,7 @@ struct SurfaceFragmentStage {
     if constexpr (variant.specular) {
       colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
     }
+    if (opacity.blends) return {{glm::vec4{colour * hides, hides}}, false};
     return {{glm::vec4{colour, alpha_depth(in.varyings[kLayout.kDepth])}}, false};
   }
 

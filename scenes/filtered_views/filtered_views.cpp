@@ -16,8 +16,8 @@ void draw_tile_of_views(FilteredViewsBuffer& buffer, int tile, std::size_t count
                         TileMemory& memory, Isa isa) {
   for (std::size_t i = 0; i < count; ++i) {
     ViewTiles& picture = buffer.pictures[i];
-    draw_tile_aside(buffer.views.passes[i], buffer.views.tile_lists[i], tile, memory,
-                    reinterpret_cast<std::byte*>(texels_of_tile(picture, tile)));
+    draw_view_tile(buffer.views, i, tile, memory,
+                   reinterpret_cast<std::byte*>(texels_of_tile(picture, tile)));
     set_levels(picture, buffer.spread, tile, isa);
   }
 }
@@ -90,7 +90,7 @@ void draw_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int beg
     draw_tile_of_views(buffer, tile, count, memory, pool.isa());
     shelf.put_back(std::move(memory));
   });
-  for (RenderPass& pass : buffer.views.passes) pass.draws.clear();
+  clear_lens_views(buffer.views);
 }
 
 void spread_views(const FilteredViewsBuffer& buffer, int begin, int end, std::span<const int> tiles,

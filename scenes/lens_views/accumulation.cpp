@@ -82,19 +82,44 @@ AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPo
           make_image(Format::rgba16f, width, height),
           make_image(Format::r32f, width, height),
           {},
+          {},
+          {},
+          {},
           {}};
 }
+
+namespace {
+
+RenderPass& pass_of(std::vector<RenderPass>& passes, std::size_t i, const PreparedScene& prepared) {
+  if (i == passes.size()) {
+    passes.emplace_back();
+    passes[i].profile = prepared.pass.profile;
+    passes[i].isa = prepared.pass.isa;
+  }
+  return passes[i];
+}
+
+// Makes passes, targets and lists for the transparent surfaces of `count` views.
+void make_transparent_passes(AccumulationBuffer& buffer, std::size_t count) {
+  if (buffer.transparent.depth[0].width == 0) {
+    buffer.transparent = make_transparent_targets(buffer.picture.width, buffer.picture.height);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    set_targets(buffer.transparent, pass_of(buffer.transparent_passes, i, buffer.prepared));
+  }
+  if (buffer.transparent_lists.size() < count) buffer.transparent_lists.resize(count);
+}
+
+}  // namespace
 
 void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
                      ThreadPool& pool) {
   const auto count = static_cast<std::size_t>(end - begin);
   assert(end - begin <= kLensViewGroup);
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
-  for (std::size_t i = buffer.passes.size(); i < count; ++i) {
-    RenderPass& pass = buffer.passes.emplace_back();
-    pass.profile = buffer.prepared.pass.profile;
-    pass.isa = buffer.prepared.pass.isa;
-  }
+  const bool has_transparent = buffer.prepared.has_transparent;
+  for (std::size_t i = 0; i < count; ++i) pass_of(buffer.passes, i, buffer.prepared);
+  if (has_transparent) make_transparent_passes(buffer, count);
   if (buffer.tile_lists.size() < count) buffer.tile_lists.resize(count);
   const std::span passes = std::span{buffer.passes}.first(count);
   const std::span tile_lists = std::span{buffer.tile_lists}.first(count);
@@ -107,8 +132,32 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
         lens_camera(input.camera, buffer.points[sample] * input.aperture_radius_m, input.focus_m,
                     buffer.offsets[sample], buffer.picture.width, buffer.picture.height);
     record_scene(buffer.prepared, camera, input.frame, passes[i]);
+    if (!has_transparent) return;
+    record_transparent(buffer.prepared, camera, input.frame, buffer.transparent_passes[i]);
   });
   sort_into_tiles(passes, tile_lists, pool);
+  if (!has_transparent) return;
+  sort_into_tiles(std::span{buffer.transparent_passes}.first(count),
+                  std::span{buffer.transparent_lists}.first(count), pool);
+}
+
+void draw_view_tile(AccumulationBuffer& buffer, std::size_t i, int tile, TileMemory& memory,
+                    std::byte* texels) {
+  draw_tile_aside(buffer.passes[i], buffer.tile_lists[i], tile, memory, texels);
+  if (!buffer.prepared.has_transparent) return;
+  const RenderPass& pass = buffer.transparent_passes[i];
+  const std::size_t layers = draw_transparent_tile(pass, buffer.transparent_lists[i], tile,
+                                                   buffer.depth, buffer.transparent, memory);
+  const Rectangle area = tile_area(buffer.tile_lists[i], tile);
+  blend_transparent_tile(
+      buffer.transparent, layers, buffer.depth, area,
+      depths_in_metres(buffer.prepared.scene->camera), pass.profile, pass.isa, texels,
+      kTexelHalves * sizeof(std::uint16_t) * static_cast<std::size_t>(area.x_end - area.x_begin));
+}
+
+void clear_lens_views(AccumulationBuffer& buffer) {
+  for (RenderPass& pass : buffer.passes) pass.draws.clear();
+  for (RenderPass& pass : buffer.transparent_passes) pass.draws.clear();
 }
 
 void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
@@ -117,7 +166,6 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
   assert(begin % kSampleGroup == 0);
   sort_lens_views(buffer, input, begin, end, pool);
   const auto count = static_cast<std::size_t>(end - begin);
-  const std::vector<RenderPass>& passes = buffer.passes;
   const std::vector<TileLists>& tile_lists = buffer.tile_lists;
   ScratchShelf<TileSamples> shelf;
   const int drawn = tiles.empty() ? tile_count(tile_lists[0]) : static_cast<int>(tiles.size());
@@ -126,8 +174,8 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
     TileSamples samples = shelf.take();
     const Rectangle area = tile_area(tile_lists[0], tile);
     for (std::size_t i = 0; i < count; ++i) {
-      draw_tile_aside(passes[i], tile_lists[i], tile, samples.memory,
-                      reinterpret_cast<std::byte*>(texels_of(samples, i)));
+      draw_view_tile(buffer, i, tile, samples.memory,
+                     reinterpret_cast<std::byte*>(texels_of(samples, i)));
     }
     if (look) {
       std::array<const std::uint16_t*, kLensViewGroup> views{};
@@ -141,7 +189,7 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
     }
     shelf.put_back(std::move(samples));
   });
-  for (RenderPass& pass : buffer.passes) pass.draws.clear();
+  clear_lens_views(buffer);
   sums.count += end - begin;
 }
 

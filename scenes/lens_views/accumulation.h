@@ -38,6 +38,10 @@ struct AccumulationBuffer {
   Image picture, depth;
   std::vector<RenderPass> passes;     ///< of a group
   std::vector<TileLists> tile_lists;  ///< of the passes
+  /// Likewise of transparent surfaces; none if the scene has none.
+  TransparentTargets transparent;
+  std::vector<RenderPass> transparent_passes;
+  std::vector<TileLists> transparent_lists;
 };
 
 /// With lens_points() and pixel_offsets() for up to `input.sampling.samples` views. The scene must
@@ -53,13 +57,21 @@ void place_views(AccumulationBuffer& buffer, const Sampling& sampling);
 inline constexpr int kLensViewGroup = 2 * kSampleGroup;
 
 /// Records the samples `begin` to `end` - 1, at most kLensViewGroup, in as many of the buffer's
-/// passes, and sorts them into its tile lists. The caller draws the tiles, and clears the passes.
+/// passes, and sorts them into its tile lists. Then the tiles can be drawn, in any order, by
+/// several threads at once, each tile by one; and last, clear_lens_views().
 void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
                      ThreadPool& pool);
 
 /// Is shown the views of a tile, RGBA16F in rows without gaps, on the thread that drew them.
 using LookAtTile = std::function<void(int tile, const Rectangle& area,
                                       std::span<const std::uint16_t* const> views)>;
+
+/// Draws a tile of the view number `i` of the sorted ones to `texels`, as draw_tile_aside().
+void draw_view_tile(AccumulationBuffer& buffer, std::size_t i, int tile, TileMemory& memory,
+                    std::byte* texels);
+
+/// Forgets the sorted views.
+void clear_lens_views(AccumulationBuffer& buffer);
 
 /// Draws the samples `begin` to `end` - 1 and adds them to the sums. They are at most
 /// kLensViewGroup, and `begin` is a multiple of kSampleGroup. All are drawn in one tile before

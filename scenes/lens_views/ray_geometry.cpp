@@ -172,11 +172,13 @@ glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, bool back,
   return shade(mesh, hit, back, block, profile, [&](std::uint32_t vertex) { return side[vertex]; });
 }
 
-bool is_cut_out(const RayMesh& mesh, const RayHit& hit, const BlockRays& block,
-                const Profile& profile) {
-  const SurfaceDraw& draw = mesh.draw;
-  return draw.variant.cut_out &&
-         texel_at(mesh, *draw.opacity, draw.opacity_sampler, hit, block, profile).x < kLeastOpacity;
+float opacity_at(const RayMesh& mesh, const RayHit& hit, const BlockRays& block,
+                 const Profile& profile) {
+  const SurfaceOpacity& opacity = mesh.draw.opacity;
+  if (!mesh.draw.variant.holed) return opacity.value;
+  const float red = texel_at(mesh, *opacity.texture, opacity.sampler, hit, block, profile).x;
+  if (red < least_texel(opacity)) return 0.0f;
+  return opacity.cuts_out ? opacity.value : opacity.value * red;
 }
 
 RayHit hit_in_triangle(const RayMesh& mesh, std::uint32_t triangle, const LensRay& ray) {

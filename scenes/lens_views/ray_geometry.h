@@ -74,9 +74,9 @@ glm::vec3 shade_hit(const RayMesh& mesh, const RayHit& hit, bool back,
                     const SpecularLight& highlights, const BlockRays& block,
                     const Profile& profile);
 
-/// Whether a place lies in a hole of a cut-out surface. The opacity is sampled as textures are.
-bool is_cut_out(const RayMesh& mesh, const RayHit& hit, const BlockRays& block,
-                const Profile& profile);
+/// A place's opacity, 0 in holes. It is sampled as textures are.
+float opacity_at(const RayMesh& mesh, const RayHit& hit, const BlockRays& block,
+                 const Profile& profile);
 
 /// Where a ray meets the triangle's plane, moved into the triangle if it lies outside.
 RayHit hit_in_triangle(const RayMesh& mesh, std::uint32_t triangle, const LensRay& ray);

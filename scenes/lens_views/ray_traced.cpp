@@ -6,6 +6,8 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -15,6 +17,7 @@
 
 #include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/draw/transparent_layers.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/ray_geometry.h"
 #include "scenes/lens_views/take_samples.h"
@@ -46,27 +49,74 @@ using QueryContext = RTCRayQueryContext;
 using QueryContext = RTCIntersectContext;
 #endif
 
+/// Where a ray goes through a transparent surface.
+struct PassedHit {
+  float distance;
+  unsigned surface;
+  RayHit place;
+  float opacity;
+};
+
+/// The nearest of them, sorted; surfaces at one distance in the order of drawing.
+struct PassedHits {
+  std::array<PassedHit, kTransparentLayers> hits;
+  std::size_t count = 0;
+};
+
+bool is_before(const PassedHit& a, const PassedHit& b) {
+  if (a.distance != b.distance) return a.distance < b.distance;
+  if (a.surface != b.surface) return a.surface < b.surface;
+  return a.place.triangle < b.place.triangle;
+}
+
+void insert(const PassedHit& hit, PassedHits& passed) {
+  const auto begin = passed.hits.begin();
+  const auto end = begin + static_cast<std::ptrdiff_t>(passed.count);
+  // A tree may hold a triangle several times.
+  const bool is_known = std::any_of(begin, end, [&](const PassedHit& known) {
+    return known.surface == hit.surface && known.place.triangle == hit.place.triangle;
+  });
+  if (is_known) return;
+  const auto place =
+      std::find_if(begin, end, [&](const PassedHit& known) { return is_before(hit, known); });
+  if (place == passed.hits.end()) return;
+  if (passed.count < passed.hits.size()) ++passed.count;
+  std::move_backward(place, begin + static_cast<std::ptrdiff_t>(passed.count) - 1,
+                     begin + static_cast<std::ptrdiff_t>(passed.count));
+  *place = hit;
+}
+
 /// A ray on its way. The context comes first: filters get a pointer to it.
 struct Query {
   QueryContext context;
   const BlockRays& block;
   const Profile& profile;
+  PassedHits& passed;
 };
 
-/// Lets rays through holes, and through the backs of surfaces that are drawn from the front only.
+/// Lets rays through holes, through the backs of surfaces that are drawn from the front only, and
+/// through transparent surfaces, which it notes.
 void skip_unseen(const RTCFilterFunctionNArguments* arguments) {
   if (arguments->N != 1 || arguments->valid[0] == 0) return;
   const auto& mesh = *static_cast<const RayMesh*>(arguments->geometryUserPtr);
   const auto& query = *reinterpret_cast<const Query*>(arguments->context);
   RTCHitN* const hit = arguments->hit;
   const RayHit place{RTCHitN_primID(hit, 1, 0), RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)};
-  if (is_cut_out(mesh, place, query.block, query.profile)) arguments->valid[0] = 0;
-  if (mesh.draw.state.cull != Cull::back) return;
   RTCRayN* const ray = arguments->ray;
-  const LensRay lens_ray{
-      {RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0)},
-      {RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)}};
-  if (!meets_front(mesh, place.triangle, lens_ray)) arguments->valid[0] = 0;
+  if (mesh.draw.state.cull == Cull::back) {
+    const LensRay lens_ray{
+        {RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0)},
+        {RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)}};
+    if (!meets_front(mesh, place.triangle, lens_ray)) {
+      arguments->valid[0] = 0;
+      return;
+    }
+  }
+  const float opacity = opacity_at(mesh, place, query.block, query.profile);
+  if (opacity > 0.0f && !mesh.draw.opacity.blends) return;
+  arguments->valid[0] = 0;
+  if (opacity == 0.0f) return;
+  insert({RTCRayN_tfar(ray, 1, 0), RTCHitN_geomID(hit, 1, 0), place, opacity}, query.passed);
 }
 
 struct TracedScene {
@@ -86,7 +136,7 @@ void add_mesh(TracedScene& traced, RayMesh& mesh) {
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              indices.data(), 0, 3 * sizeof(std::uint32_t), indices.size() / 3);
   rtcSetGeometryUserData(geometry.get(), &mesh);
-  if (mesh.draw.state.cull == Cull::back || mesh.draw.variant.cut_out) {
+  if (mesh.draw.state.cull == Cull::back || mesh.draw.variant.holed || mesh.draw.opacity.blends) {
     rtcSetGeometryIntersectFilterFunction(geometry.get(), skip_unseen);
   }
   rtcCommitGeometry(geometry.get());
@@ -109,7 +159,7 @@ TracedScene traced_scene(const LensViewInput& input) {
 }
 
 RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const BlockRays& block,
-                    const Camera& camera, const Profile& profile) {
+                    const Camera& camera, const Profile& profile, PassedHits& passed) {
   RTCRayHit hit{};
   hit.ray.org_x = static_cast<float>(lens_ray.origin.x);
   hit.ray.org_y = static_cast<float>(lens_ray.origin.y);
@@ -121,7 +171,7 @@ RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const Bl
   hit.ray.tfar = static_cast<float>(camera.far_m);
   hit.ray.mask = std::numeric_limits<unsigned>::max();
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  Query query{{}, block, profile};
+  Query query{{}, block, profile, passed};
 #if RTC_VERSION_MAJOR >= 4
   rtcInitRayQueryContext(&query.context);
   RTCIntersectArguments arguments;
@@ -160,10 +210,22 @@ glm::vec3 trace(const Tracer& tracer, int x, int y, std::uint32_t sample) {
   const int left = x & ~1, top = y & ~1;
   const BlockRays block{ray_through(left, top), ray_through(left + 1, top),
                         ray_through(left, top + 1)};
-  const RTCRayHit hit = intersect(tracer.traced, ray, block, input.scene.camera, input.profile);
-  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return input.scene.background;
-  return shade_hit(tracer.traced.meshes[hit.hit.geomID], {hit.hit.primID, hit.hit.u, hit.hit.v},
-                   tracer.eyes[sample], ray, block, input.profile);
+  PassedHits passed;
+  const RTCRayHit hit =
+      intersect(tracer.traced, ray, block, input.scene.camera, input.profile, passed);
+  const auto colour_of = [&](unsigned surface, const RayHit& place) {
+    return shade_hit(tracer.traced.meshes[surface], place, tracer.eyes[sample], ray, block,
+                     input.profile);
+  };
+  glm::vec3 colour = hit.hit.geomID == RTC_INVALID_GEOMETRY_ID
+                         ? input.scene.background
+                         : colour_of(hit.hit.geomID, {hit.hit.primID, hit.hit.u, hit.hit.v});
+  for (std::size_t i = passed.count; i-- > 0;) {
+    const PassedHit& at = passed.hits[i];
+    if (!(at.distance < hit.ray.tfar)) continue;
+    colour = colour_of(at.surface, at.place) * at.opacity + (1.0f - at.opacity) * colour;
+  }
+  return colour;
 }
 
 }  // namespace

@@ -122,12 +122,13 @@ BlockRays block_at(const PointSource& source, double x, double y, int size_px) {
           pinhole_ray(source, x, y + size_px)};
 }
 
+// A transparent surface is all there or not at all.
 bool is_hole(const PointSource& source, const SeenTriangle& seen, double x, double y,
              double block_x, double block_y, int step) {
   const RayMesh& mesh = source.meshes[seen.surface].mesh;
-  return mesh.draw.variant.cut_out &&
-         is_cut_out(mesh, hit_in_triangle(mesh, seen.triangle, pinhole_ray(source, x, y)),
-                    block_at(source, block_x, block_y, step), source.profile);
+  return (mesh.draw.variant.holed || mesh.draw.opacity.blends) &&
+         opacity_at(mesh, hit_in_triangle(mesh, seen.triangle, pinhole_ray(source, x, y)),
+                    block_at(source, block_x, block_y, step), source.profile) < 0.5f;
 }
 
 glm::vec3 shade_at(const PointSource& source, const SeenTriangle& seen, double x, double y,

@@ -94,12 +94,9 @@ TEST_CASE("an opacity of 1/2 is there, and one below is not") {
   }
 }
 
-TEST_CASE("an opacity texture of a material that is no cut-out cuts nothing") {
+TEST_CASE("the opacity texture of a mesh that says nowhere where cuts nothing") {
   Scene scene = scene_with_holes();
-  scene.materials[0].cut_out = false;
-  CHECK(load_texel(drawn(scene, Isa::scalar), 39, 25) == kWhiteAt4);
-  scene.materials[0].cut_out = true;
-  scene.meshes[0].uvs.clear();  // nor does one of a mesh that says nowhere where
+  scene.meshes[0].uvs.clear();
   CHECK(load_texel(drawn(scene, Isa::scalar), 39, 25) == kWhiteAt4);
 }
 

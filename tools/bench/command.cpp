@@ -153,7 +153,7 @@ int bench(const BenchOptions& options) {
   }
   const std::vector<TimedStage> peers = on_gl ? stages_of(work, *on_gl) : std::vector<TimedStage>{};
   ThreadPool pool{options.pool.threads, options.pool.isa};
-  OurFrame frame{work, pool};
+  OurFrame frame{work, pool, on_gl != nullptr};
   const std::vector<TimedStage> ours = stages_of(
       work, [&] { draw(frame); }, [&] { filter(frame); }, [] {});
 

@@ -12,7 +12,9 @@ void apply_filter(OurFrame& frame, const Method& method, const DofSettings& sett
   Image& filtered = frame.filtered;  // one memory for all frames
   if (filtered.bytes.empty()) filtered = make_image(scene.format, scene.width, scene.height);
   const std::vector<ConstImageView> behind{frame.behind.begin(), frame.behind.end()};
-  apply(method, {scene, settings, work.profile, frame.objects, behind}, filtered, frame.pool);
+  const std::vector<TransparentLayer> transparent = views_of(frame.transparent);
+  apply(method, {scene, settings, work.profile, frame.objects, behind, transparent}, filtered,
+        frame.pool);
 }
 
 LensViewInput views_input(OurFrame& frame, const Sampling& sampling) {
@@ -62,15 +64,19 @@ void draw(OurFrame& frame) {
   if (frame.drawn.bytes.empty()) {
     frame.drawn = make_image(Format::rgba16f, work.size.width, work.size.height);
   }
-  const std::size_t layers = work.method.filter != nullptr ? work.method.filter->layers : 1;
+  if (work.method.filter == nullptr || frame.one_picture) {
+    draw_scene(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
+    return;
+  }
+  const std::size_t layers = work.method.filter->layers;
   while (frame.behind.size() + 1 < layers) {
     frame.behind.push_back(make_image(Format::rgba16f, work.size.width, work.size.height));
   }
   draw_layers(*frame.scene, work.view, work.frame, frame.drawn, frame.behind, frame.pool);
-  if (work.method.filter != nullptr) {
-    frame.objects = object_numbers_for(*work.method.filter, *work.scene, work.view, work.frame,
-                                       work.size.width, work.size.height, work.profile, frame.pool);
-  }
+  frame.transparent =
+      draw_transparent(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
+  frame.objects = object_numbers_for(*work.method.filter, *work.scene, work.view, work.frame,
+                                     work.size.width, work.size.height, work.profile, frame.pool);
 }
 
 void filter(OurFrame& frame) {

@@ -18,11 +18,14 @@ namespace softfocus {
 struct OurFrame {
   const BenchWork& work;
   ThreadPool& pool;
+  bool one_picture =
+      false;  ///< a filter gets no transparent layers: beside a driver, which has none
   std::optional<PreparedScene> scene{};
   std::optional<AccumulationBuffer> views{};
   std::optional<FilteredViewsBuffer> filtered_views{};
   Image drawn{};
-  std::vector<Image> behind{};           ///< the layers behind it, if the method reads them
+  std::vector<Image> behind{};  ///< the layers behind it, if the method reads them
+  std::vector<TransparentPicture> transparent{};  ///< layers before it, for a filter
   std::vector<std::uint16_t> objects{};  ///< the drawn objects' numbers, if the method reads them
   Image filtered{};
   std::optional<AutoMethod> choice{};  ///< of auto

@@ -53,7 +53,14 @@ PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
 
 void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
   const std::vector<ConstImageView> behind{behind_.begin(), behind_.end()};
-  apply(filter, {drawn_, {.coc = scene_.coc, .max_coc_px = max_coc_px}, profile, objects_, behind},
+  const std::vector<TransparentLayer> transparent = views_of(transparent_);
+  apply(filter,
+        {drawn_,
+         {.coc = scene_.coc, .max_coc_px = max_coc_px},
+         profile,
+         objects_,
+         behind,
+         transparent},
         result_, pool_);
 }
 
@@ -82,7 +89,12 @@ RunTime ChartRunner::filter(const ChartEntry& entry) {
     if (layer.bytes.empty()) layer = make_image(Format::rgba16f, drawn_.width, drawn_.height);
   }
   const Clock::time_point start = Clock::now();
-  draw_layers(prepared, scene_.view, scene_.frame, drawn_, behind_, pool_);
+  if (entry.arithmetic == Arithmetic::floats) {
+    draw_layers(prepared, scene_.view, scene_.frame, drawn_, behind_, pool_);
+    transparent_ = draw_transparent(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  } else {
+    draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  }
   objects_ = object_numbers_for(*entry.filter, scene_.scene, scene_.view, scene_.frame,
                                 drawn_.width, drawn_.height, profile, pool_);
   const Clock::time_point drawn = Clock::now();
@@ -172,6 +184,7 @@ void ChartRunner::warm_up(const ChartEntry& entry) {
   int samples = entry.samples;
   if (entry.max_error) {
     draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
+    transparent_.clear();
     const AutoMethod choice = predicted_for(*entry.max_error);
     samples = choice.samples;
     if (samples == 0) {

@@ -65,8 +65,9 @@ class ChartRunner {
   std::optional<FilteredViewsBuffer> filtered_;
   SampleSums sums_;
   Image drawn_;
-  std::vector<Image> behind_;           ///< as many layers as the method reads
-  std::vector<std::uint16_t> objects_;  // of the filter drawn last, if it reads them
+  std::vector<Image> behind_;                    ///< as many layers as the method reads
+  std::vector<TransparentPicture> transparent_;  ///< layers before drawn_
+  std::vector<std::uint16_t> objects_;           // of the filter drawn last, if it reads them
   Image result_;
   std::string chosen_;
 };

@@ -10,7 +10,10 @@ std::vector<Case> crosscheck_cases() {
   add_texture_cases(cases);
   add_triangle_cases(cases);
   add_scene_cases(cases);
-  if (!kIsWebGl) add_peel_cases(cases);  // not tried there
+  if (!kIsWebGl) {  // not tried there
+    add_peel_cases(cases);
+    add_blend_cases(cases);
+  }
   add_filter_cases(cases);
   return cases;
 }

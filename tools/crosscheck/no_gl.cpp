@@ -28,6 +28,10 @@ FrameOnGl::FrameOnGl(const Driver&, Shaders) { refuse(); }
 FrameOnGl::~FrameOnGl() = default;
 std::string FrameOnGl::renderer() const { refuse(); }
 Image FrameOnGl::draw(const Scene&, const CameraMatrices&, double, int, int) { refuse(); }
+std::vector<Image> FrameOnGl::draw_layers(const Scene&, const CameraMatrices&, double, int, int,
+                                          std::size_t) {
+  refuse();
+}
 Image FrameOnGl::filter(const Method&, const DofSettings&, const Image&) { refuse(); }
 
 struct RepeatedOnGl::State {};

@@ -13,7 +13,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kTies = "ties";
+constexpr std::string_view kTies = "ties", kPanes = "panes";
 
 // Triangles of which many lie at one depth over each other, in two objects of one mesh: their order
 // is that of submission.
@@ -43,15 +43,41 @@ Scene tied_triangles() {
   return scene;
 }
 
+// The same, transparent, about a wall that is not.
+Scene random_panes() {
+  Scene scene = tied_triangles();
+  scene.name = kPanes;
+  scene.materials[0].opacity = 0.4f;
+  scene.materials[1].opacity = 0.7f;
+  scene.materials[1].specular = glm::vec3{0.6f};
+  Material wall;
+  wall.two_sided = true;
+  wall.diffuse = {0.7f, 0.7f, 0.5f};
+  scene.materials.push_back(wall);
+  Mesh mesh;
+  mesh.positions = {{-3, -3, -3.1f}, {3, -2, -2.9f}, {0, 3, -2.2f}};
+  mesh.normals.assign(3, {0, 0, 1});
+  mesh.indices = {0, 1, 2};
+  scene.meshes.push_back(std::move(mesh));
+  Object object;
+  object.mesh = 1;
+  object.material = 2;
+  scene.objects.push_back(object);
+  return scene;
+}
+
+Scene made_or_loaded(const std::string& name) {
+  if (name == kTies) return tied_triangles();
+  if (name == kPanes) return random_panes();
+  return load_scene(name, scene_search_path({}));
+}
+
 // Making a scene's textures takes longer than drawing it small: each is loaded once.
 const Scene& loaded(const std::string& name) {
   static std::map<std::string, Scene> scenes;
   auto found = scenes.find(name);
   if (found == scenes.end()) {
-    found = scenes
-                .emplace(name,
-                         name == kTies ? tied_triangles() : load_scene(name, scene_search_path({})))
-                .first;
+    found = scenes.emplace(name, made_or_loaded(name)).first;
   }
   return found->second;
 }
@@ -126,6 +152,19 @@ void add_peel_cases(std::vector<Case>& cases) {
     add({scene, 512, 512, 7}, false, false);
   }
   add({"clutter", 333, 517, 31}, false, false);
+}
+
+void add_blend_cases(std::vector<Case>& cases) {
+  const auto add = [&](const SceneCase& what, bool quick, bool slow_too) {
+    cases.push_back({"blend", size_and_frame(what), quick, slow_too,
+                     [what](const Bench& bench, Tally& tally) { scene_both(bench, tally, what); }});
+  };
+  for (const char* scene : {"panes", "glass"}) {
+    add({scene, 128, 96, 7}, true, true);
+    add({scene, 1, 1, 3}, false, true);
+    add({scene, 512, 512, 7}, false, false);
+    add({scene, 333, 517, 31}, false, false);
+  }
 }
 
 void add_scene_cases(std::vector<Case>& cases) {

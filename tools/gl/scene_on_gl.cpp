@@ -4,6 +4,7 @@
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/surface_draws.h"
+#include "scenes/draw/transparent_layers.h"
 
 namespace softfocus {
 namespace {
@@ -76,7 +77,7 @@ GlScene::GlScene(const GlContext& context, const Shaders& shaders, const Scene& 
     if (material.texture) {
       textures_.emplace(&material, upload(scene.textures[*material.texture], material.sampler));
     }
-    if (material.cut_out && material.opacity_texture) {
+    if (material.opacity_texture) {
       opacities_.emplace(
           &material, upload(scene.textures[*material.opacity_texture], material.opacity_sampler));
     }
@@ -101,59 +102,108 @@ void GlScene::make_unshared_meshes() {
   }
 }
 
-const GlProgram& GlScene::program(SurfaceVariant variant, bool peeled) {
-  GlProgram& program =
-      programs_[(peeled ? 16u : 0u) + (variant.cut_out ? 8u : 0u) + (variant.textured ? 4u : 0u) +
-                (variant.specular ? 2u : 0u) + (variant.two_sided ? 1u : 0u)];
+const GlProgram& GlScene::program(const SurfaceDraw& surface, bool peeled) {
+  const SurfaceVariant variant = surface.variant;
+  const bool blends = surface.opacity.blends;
+  GlProgram& program = programs_[(blends ? 32u : 0u) + (peeled ? 16u : 0u) +
+                                 (variant.holed ? 8u : 0u) + (variant.textured ? 4u : 0u) +
+                                 (variant.specular ? 2u : 0u) + (variant.two_sided ? 1u : 0u)];
   if (program != 0) return program;
   std::string defines =
       "#define MAX_LIGHTS " + std::to_string(std::max<std::size_t>(scene_.lights.size(), 1)) + '\n';
   if (variant.textured) defines += "#define TEXTURED\n";
   if (variant.specular) defines += "#define SPECULAR\n";
   if (variant.two_sided) defines += "#define TWO_SIDED\n";
-  if (variant.cut_out) defines += "#define CUT_OUT\n";
+  if (variant.holed) defines += "#define CUT_OUT\n";
+  if (blends) defines += "#define BLENDED\n";
   if (peeled) defines += "#define PEELED\n";
   program = link_program(context_, shaders_, "surface.vert", "surface.frag", defines);
   return program;
 }
 
 void GlScene::draw(const CameraMatrices& view, double frame, const GlTarget& target) {
+  if (has_transparent(scene_)) return draw_blended(view, frame, target);
   bind(target);
   const glm::vec4 clear = clear_colour(scene_);
   glClearColor(clear.r, clear.g, clear.b, clear.a);
   glClearDepth(1.0);
   glDepthMask(GL_TRUE);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  draw_surfaces(view, frame, nullptr);
+  draw_surfaces(view, frame, {});
+}
+
+namespace {
+
+// A layer's colour; and the depth and number of its fragments' triangles.
+constexpr std::array kPeeledFormats{Format::rgba16f, Format::rgba32f};
+
+GlTarget before_all_layers(int width, int height) {
+  constexpr glm::vec4 kBeforeAll{-1.0f, 0.0f, 0.0f, 0.0f};
+  GlTarget before = make_target(kPeeledFormats, width, height, true);
+  bind(before);
+  glClearBufferfv(GL_COLOR, 1, &kBeforeAll.x);
+  return before;
+}
+
+}  // namespace
+
+GlTarget GlScene::peel(const CameraMatrices& view, double frame, glm::vec4 clear,
+                       const Peeling& peeling, int width, int height) {
+  // Behind a pixel without a fragment none is looked for.
+  constexpr glm::vec4 kBehindAll{2.0f, 0.0f, 0.0f, 0.0f};
+  constexpr float kFar = 1.0f;
+  make_unshared_meshes();
+  GlTarget target = make_target(kPeeledFormats, width, height, true);
+  bind(target);
+  glDepthMask(GL_TRUE);
+  glClearBufferfv(GL_COLOR, 0, &clear.x);
+  glClearBufferfv(GL_COLOR, 1, &kBehindAll.x);
+  glClearBufferfv(GL_DEPTH, 0, &kFar);
+  draw_surfaces(view, frame, peeling);
+  return target;
 }
 
 std::vector<Image> GlScene::draw_layers(const CameraMatrices& view, double frame, int width,
                                         int height, std::size_t layers) {
-  constexpr std::array kFormats{Format::rgba16f, Format::rgba32f};
-  // Before the first layer lies nothing, and behind a pixel without a fragment none is looked for.
-  constexpr glm::vec4 kBeforeAll{-1.0f, 0.0f, 0.0f, 0.0f}, kBehindAll{2.0f, 0.0f, 0.0f, 0.0f};
-  constexpr float kFar = 1.0f;
-  const glm::vec4 clear = clear_colour(scene_);
-  make_unshared_meshes();
   std::vector<Image> pictures;
-  GlTarget before = make_target(kFormats, width, height, true);
-  bind(before);
-  glClearBufferfv(GL_COLOR, 1, &kBeforeAll.x);
+  GlTarget before = before_all_layers(width, height);
   for (std::size_t i = 0; i < layers; ++i) {
-    GlTarget target = make_target(kFormats, width, height, true);
-    bind(target);
-    glDepthMask(GL_TRUE);
-    glClearBufferfv(GL_COLOR, 0, &clear.x);
-    glClearBufferfv(GL_COLOR, 1, &kBehindAll.x);
-    glClearBufferfv(GL_DEPTH, 0, &kFar);
-    draw_surfaces(view, frame, &before.colour[1]);
-    pictures.push_back(read_colour(target, 0));
-    before = std::move(target);
+    before = peel(view, frame, clear_colour(scene_), {&before.colour[1]}, width, height);
+    pictures.push_back(read_colour(before, 0));
   }
   return pictures;
 }
 
-void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const GlTexture* before) {
+void GlScene::draw_blended(const CameraMatrices& view, double frame, const GlTarget& target) {
+  const int width = target.width, height = target.height;
+  const GlTarget before_all = before_all_layers(width, height);
+  GlTarget picture =
+      peel(view, frame, clear_colour(scene_), {&before_all.colour[1]}, width, height);
+  std::vector<GlTarget> layers;
+  for (std::size_t i = 0; i < kTransparentLayers; ++i) {
+    const GlTarget& before = i == 0 ? before_all : layers.back();
+    layers.push_back(
+        peel(view, frame, glm::vec4{0.0f}, {&before.colour[1], &picture.colour[1]}, width, height));
+  }
+  if (blend_program_ == 0) {
+    blend_program_ = link_program(context_, shaders_, "fullscreen.vert", "blend_layer.frag");
+  }
+  const DepthsInMetres in_metres = depths_in_metres(scene_.camera);
+  set_uniform(blend_program_, "inverse_far", in_metres.inverse_far);
+  set_uniform(blend_program_, "inverse_near_less_far", in_metres.inverse_near_less_far);
+  for (std::size_t i = kTransparentLayers; i-- > 0;) {
+    GlTarget next;
+    if (i > 0) next = make_target(std::array{Format::rgba16f}, width, height, false);
+    set_texture(blend_program_, "below", 0, picture.colour[0]);
+    set_texture(blend_program_, "layer", 1, layers[i].colour[0]);
+    set_texture(blend_program_, "layer_depth", 2, layers[i].colour[1]);
+    draw_fullscreen(i > 0 ? next : target, blend_program_);
+    if (i > 0) picture = std::move(next);
+  }
+}
+
+void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const Peeling& peeling) {
+  const GlTexture* before = peeling.before;
   int first_triangle = 0;
   // What the draw before has set is not set again.
   const GlProgram* program_set = nullptr;
@@ -161,7 +211,10 @@ void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const GlTe
   const softfocus::Mesh* mesh_set = nullptr;
   for (const SurfaceDraw& surface : surface_draws(scene_, view, frame)) {
     const SurfaceVertexInput& input = surface.input;
-    const GlProgram& used = program(surface.variant, before != nullptr);
+    const SurfaceOpacity& opacity = surface.opacity;
+    if (opacity.blends != (peeling.opaque_depth != nullptr)) continue;
+    if (opacity.value == 0.0f) continue;
+    const GlProgram& used = program(surface, before != nullptr);
     set_uniform(used, "to_clip", input.to_clip);
     set_uniform(used, "to_world", input.to_world);
     set_uniform(used, "normal_to_world", input.normal_to_world);
@@ -174,10 +227,16 @@ void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const GlTe
       if (surface.variant.textured) {
         set_texture(used, "surface_texture", 0, textures_.at(input.material));
       }
-      if (surface.variant.cut_out) {
+      if (surface.variant.holed) {
         set_texture(used, "opacity_texture", 1, opacities_.at(input.material));
+        set_uniform(used, "least_texel", least_texel(opacity));
+      }
+      if (opacity.blends) {
+        set_uniform(used, "surface_opacity", opacity.value);
+        set_uniform(used, "cuts_out", opacity.cuts_out ? 1 : 0);
       }
     }
+    if (opacity.blends) set_texture(used, "opaque_depth", 3, *peeling.opaque_depth);
     if (before != nullptr) {
       set_texture(used, "layer_before", 2, *before);
       set_uniform(used, "first_triangle", first_triangle);

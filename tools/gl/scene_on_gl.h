@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/draw/frame_matrices.h"
-#include "scenes/draw/surface_stages.h"
+#include "scenes/draw/surface_draws.h"
 #include "scenes/scene.h"
 #include "tools/gl/objects.h"
 
@@ -18,7 +18,8 @@ class GlScene {
  public:
   GlScene(const GlContext& context, const Shaders& shaders, const Scene& scene);
 
-  /// Draws one frame into an RGBA16F target with depth, cleared first.
+  /// Draws one frame into an RGBA16F target with depth, cleared first. Transparent surfaces are
+  /// peeled, a pass for each layer, and blended; then the scene has fewer than 2^24 triangles.
   void draw(const CameraMatrices& view, double frame, const GlTarget& target);
 
   /// As softfocus::draw_layers(): a pass for each layer. Needs a scene of fewer than 2^24
@@ -41,12 +42,23 @@ class GlScene {
   std::vector<Mesh> unshared_meshes_;  // three vertices of its own for each triangle, to peel
   std::map<const Material*, GlTexture> textures_;  // a material has one sampler
   std::map<const Material*, GlTexture> opacities_;
-  std::array<GlProgram, 32> programs_;  // by variant, and whether peeled; made when first used
+  // By variant, whether blended, and whether peeled; made when first used.
+  std::array<GlProgram, 64> programs_;
+  GlProgram blend_program_;
 
-  const GlProgram& program(SurfaceVariant variant, bool peeled);
+  const GlProgram& program(const SurfaceDraw& surface, bool peeled);
   void make_unshared_meshes();
-  // Into a cleared target. `before`: what the layer before shows, or null if nothing is peeled.
-  void draw_surfaces(const CameraMatrices& view, double frame, const GlTexture* before);
+
+  // How surfaces are peeled: behind the layer before, and transparent ones before what is opaque.
+  struct Peeling {
+    const GlTexture* before = nullptr;        // null if nothing is peeled
+    const GlTexture* opaque_depth = nullptr;  // null for opaque surfaces
+  };
+  // Into a cleared target.
+  void draw_surfaces(const CameraMatrices& view, double frame, const Peeling& peeling);
+  GlTarget peel(const CameraMatrices& view, double frame, glm::vec4 clear, const Peeling& peeling,
+                int width, int height);
+  void draw_blended(const CameraMatrices& view, double frame, const GlTarget& target);
 };
 
 /// What `draw` draws into: RGBA16F, with a depth buffer.

@@ -3,7 +3,7 @@
 
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
-#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/frame_parts.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/sample_sums.h"
@@ -17,10 +17,10 @@ namespace {
 constexpr std::array<std::string_view, 3> kScenes{"figures", "cube-room", "sphere-world"};
 
 // These draw what the first three lack: one small frame each, by a few methods.
-constexpr std::array<std::string_view, 15> kMoreScenes{
-    "bright-edges",  "canopy",   "clutter",  "dunes",      "foliage",
-    "grazing-floor", "interior", "lattice",  "near-fence", "night-lights",
-    "portrait",      "random:1", "random:6", "random:20",  "random:48"};
+constexpr std::array<std::string_view, 16> kMoreScenes{
+    "bright-edges",  "canopy",   "clutter",   "dunes",      "foliage",      "glass",
+    "grazing-floor", "interior", "lattice",   "near-fence", "night-lights", "portrait",
+    "random:1",      "random:6", "random:20", "random:48"};
 constexpr std::array<std::string_view, 3> kFewMethods{"pinhole", "two-pass", "disc-layers"};
 
 // Whole tiles, and parts of tiles.
@@ -87,7 +87,8 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
   hashes.reserve(kFewMethods.size() + 1 + kGoldenLayers);
   for (const std::string_view method : kFewMethods) {
     hashes.push_back({entry_name(name, method, where),
-                      hash_image(apply(*find_method(method), {picture, settings, profile}, pool))});
+                      hash_image(filtered_frame(*find_method(method), scene, view, kFrame, picture,
+                                                settings, profile, pool))});
   }
   const LensViewInput from_lens = seen_from_lens(scene, view, picture, {.samples = 5}, profile);
   hashes.push_back(

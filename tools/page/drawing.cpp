@@ -6,7 +6,7 @@
 #include "dof/circle_sizes.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
-#include "scenes/draw/object_numbers.h"
+#include "scenes/draw/frame_parts.h"
 #include "tools/cli/errors.h"
 #include "tools/stress/make_frame.h"
 
@@ -154,26 +154,10 @@ LensViewInput lens_view_input(const Drawn& drawn, double focus_m, double apertur
 Image filtered_picture(const Drawn& drawn, const Method& method, const DofSettings& settings,
                        ThreadPool& pool) {
   const Image& picture = drawn.picture;
-  std::vector<std::uint16_t> objects;
-  std::vector<Image> layers;
-  if (drawn.scene != nullptr) {
-    const double frame = drawn.trial ? 0.0 : drawn.settings.frame;
-    objects = object_numbers_for(method, *drawn.scene, drawn.view, frame, picture.width,
-                                 picture.height, Profile{}, pool);
-    if (method.layers > 1) {
-      layers = draw_layers(*drawn.scene, drawn.view, frame, picture.width, picture.height,
-                           method.layers, Profile{}, pool);
-    }
-  }
-  std::vector<ConstImageView> behind{layers.begin(), layers.end()};
-  if (!behind.empty()) behind.erase(behind.begin());
-  return apply(method,
-               {.scene = picture,
-                .settings = settings,
-                .profile = Profile{},
-                .objects = objects,
-                .behind = behind},
-               pool);
+  if (drawn.scene == nullptr) return apply(method, {picture, settings, Profile{}}, pool);
+  const double frame = drawn.trial ? 0.0 : drawn.settings.frame;
+  return filtered_frame(method, *drawn.scene, drawn.view, frame, picture, settings, Profile{},
+                        pool);
 }
 
 }  // namespace softfocus

@@ -13,8 +13,9 @@
 #include "dof/show.h"
 #include "raster/images/texel.h"
 #include "scenes/auto/auto_picture.h"
-#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/frame_parts.h"
 #include "scenes/draw/object_numbers.h"
+#include "scenes/draw/surface_draws.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -72,9 +73,22 @@ UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene,
   return used;
 }
 
+/// Of the picture and of each layer that is blurred by itself.
+float largest_circle_px(const FrameParts& parts, const PixelCoc& coc, ThreadPool& pool) {
+  const auto largest = [&](const Image& picture) {
+    return circle_sizes(picture, coc, 0.0f, pool).largest_px;
+  };
+  float most = largest(parts.transparent.empty() ? parts.picture : parts.opaque);
+  for (const TransparentPicture& layer : parts.transparent) {
+    most = std::max(most, largest(layer.colour));
+  }
+  return most;
+}
+
 /// Focuses on the drawn picture if that is asked for, and computes the frame's constants.
-void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
+void set_lens(UsedLens& used, const FrameParts& parts, const RenderOptions& options,
               double fov_y_degrees, ThreadPool& pool) {
+  const Image& scene = parts.picture;
   if (used.autofocus_pixel) {
     const auto [x, y] = *used.autofocus_pixel;
     const int scale = options.supersample;
@@ -90,8 +104,7 @@ void set_lens(UsedLens& used, const Image& scene, const RenderOptions& options,
     const float largest = *std::max_element(used.radii_px.begin(), used.radii_px.end());
     if (takes_all_circles(options)) used.settings.max_coc_px = std::ceil(largest);
   } else if (takes_all_circles(options)) {
-    const CircleSizes sizes = circle_sizes(scene, used.settings.coc, 0.0f, pool);
-    used.settings.max_coc_px = std::ceil(sizes.largest_px);
+    used.settings.max_coc_px = std::ceil(largest_circle_px(parts, used.settings.coc, pool));
   }
   if (options.show == Show::image) check_arithmetic(options.arithmetic, used.settings);
 }
@@ -150,6 +163,28 @@ std::string goal_warning(const RenderOptions& options, const RenderRecord& recor
          " comes nearest, with a predicted error of " + short_number(choice.predicted_error);
 }
 
+/// How the picture of a scene with transparent surfaces falls short, as a line, or nothing.
+std::string transparent_warning(const Scene& scene, const FrameParts& parts,
+                                const RenderOptions& options) {
+  if (!has_transparent(scene)) return {};
+  const bool filters = options.show == Show::image && options.method.filter != nullptr;
+  if (options.show == Show::image && options.method.name() == "surface-splatting") {
+    return "--method surface-splatting: surfaces of opacity 1/2 or more are drawn opaque, other "
+           "transparent ones not at all";
+  }
+  if (filters && options.method.name() != "pinhole" &&
+      (options.gl != nullptr || options.arithmetic != Arithmetic::floats ||
+       !options.sharp_depths.empty())) {
+    return std::string{options.gl != nullptr                      ? "--gl"
+                       : options.arithmetic != Arithmetic::floats ? "--arithmetic"
+                                                                  : "--sharp-depths"} +
+           ": a transparent surface and what is seen through it are blurred by one circle";
+  }
+  if (parts.transparent.size() < kTransparentLayers) return {};
+  return "there are pixels of " + std::to_string(kTransparentLayers) +
+         " transparent surfaces; if there are more behind them, those are left out";
+}
+
 /// The picture of what auto chooses.
 Image auto_drawn(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
                  PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
@@ -205,34 +240,31 @@ Image auto_drawn(const Scene& scene, const CameraMatrices& view, const Image& pi
   return std::move(found.picture);
 }
 
-/// `objects` and `radii_px` are what the filter reads beside the picture, if it does.
-Image shown_picture(Image scene, std::span<const ConstImageView> behind,
-                    std::span<const std::uint16_t> objects, std::span<const float> radii_px,
-                    const RenderOptions& options, const Method* filter, const Camera& camera,
-                    const DofSettings& settings, FrameOnGl* on_gl, ThreadPool& pool) {
+/// `objects` and `radii_px` are what the filter reads beside the parts, if it does.
+Image shown_picture(FrameParts parts, std::span<const std::uint16_t> objects,
+                    std::span<const float> radii_px, const RenderOptions& options,
+                    const Method* filter, const Camera& camera, const DofSettings& settings,
+                    FrameOnGl* on_gl, ThreadPool& pool) {
+  Image& scene = parts.picture;
   switch (options.show) {
     case Show::image:
-      if (filter == nullptr) break;
+      if (filter == nullptr) return std::move(scene);
       if (options.arithmetic != Arithmetic::floats) {
         Image result = make_image(scene.format, scene.width, scene.height);
         two_pass_in(options.arithmetic, {scene, settings, options.profile}, result, pool);
         return result;
       }
       return on_gl != nullptr ? on_gl->filter(*filter, settings, scene)
-                              : apply(*filter,
-                                      {.scene = scene,
-                                       .settings = settings,
-                                       .profile = options.profile,
-                                       .objects = objects,
-                                       .behind = behind,
-                                       .radii_px = radii_px},
-                                      pool);
-    case Show::pinhole: return scene;
+                              : with_dof_input(parts, settings, options.profile, objects, radii_px,
+                                               [&](const DofInput& input) {
+                                                 return apply(*filter, input, pool);
+                                               });
+    case Show::pinhole: return std::move(scene);
     case Show::coc: return show_coc(scene, settings.coc, settings.max_coc_px);
     case Show::depth:
       return show_depth(scene, static_cast<float>(camera.near_m), static_cast<float>(camera.far_m));
   }
-  return scene;
+  return std::move(scene);
 }
 
 /// Layers behind the first, each shown as the picture is.
@@ -241,7 +273,7 @@ void write_layers(std::vector<Image>& behind, const RenderOptions& options,
                   std::vector<std::unique_ptr<WholeFile>>& files) {
   for (std::size_t i = 0; i < behind.size(); ++i) {
     const Image shown =
-        shown_picture(std::move(behind[i]), {}, {}, {}, options, nullptr, record.camera,
+        shown_picture({std::move(behind[i]), {}, {}, {}}, {}, {}, options, nullptr, record.camera,
                       record.lens ? record.lens->settings : DofSettings{}, nullptr, pool);
     files.push_back(std::make_unique<WholeFile>(layer_place(options, i + 2)));
     files.back()->write(encode_with_notes(shown, options.format, notes_of(options, record)));
@@ -265,6 +297,7 @@ int render(const RenderOptions& options) {
   progress.clear();
   print_scene_warnings(scene.warnings, options.verbose);
   check_outputs(options, scene);
+  if (has_transparent(scene)) check_transparent_memory(options);
   record.scene_name = scene.name;
   record.scene_title = scene.title;
   record.triangles = triangle_count(scene);
@@ -281,35 +314,33 @@ int render(const RenderOptions& options) {
   record.camera = scene.camera;
   record.camera.position = view.eye;
   std::optional<PreparedScene> prepared;
-  std::vector<Image> behind;
-  Image drawn = timed(progress, "drawing", ms.draw, [&] {
+  FrameParts parts = timed(progress, "drawing", ms.draw, [&] {
+    FrameParts drawn;
     if (on_gl && layers_of(options) == 1) {
-      return on_gl->draw(scene, view, options.frame, width, height);
+      drawn.picture = on_gl->draw(scene, view, options.frame, width, height);
+      return drawn;
     }
     if (on_gl) {
-      behind = on_gl->draw_layers(scene, view, options.frame, width, height, layers_of(options));
-      Image picture = std::move(behind.front());
-      behind.erase(behind.begin());
-      return picture;
+      drawn.behind =
+          on_gl->draw_layers(scene, view, options.frame, width, height, layers_of(options));
+      drawn.picture = std::move(drawn.behind.front());
+      drawn.behind.erase(drawn.behind.begin());
+      return drawn;
     }
     prepared = prepare_scene(scene, options.profile, pool);
-    Image picture = make_image(Format::rgba16f, width, height);
-    for (std::size_t i = 1; i < layers_of(options); ++i) {
-      behind.push_back(make_image(Format::rgba16f, width, height));
-    }
-    draw_layers(*prepared, view, options.frame, picture, behind, pool);
-    return picture;
+    return draw_parts(*prepared, view, options.frame, width, height, layers_of(options), pool);
   });
 
   std::vector<std::string> warnings;
   DofSettings settings;
   if (record.lens) {
     timed(progress, "focusing", ms.focus,
-          [&] { set_lens(*record.lens, drawn, options, scene.camera.fov_y_degrees, pool); });
+          [&] { set_lens(*record.lens, parts, options, scene.camera.fov_y_degrees, pool); });
     settings = record.lens->settings;
     if (cuts_by_default(options))
-      warnings.push_back(cut_warning(drawn, options, *record.lens, pool));
+      warnings.push_back(cut_warning(parts.picture, options, *record.lens, pool));
   }
+  warnings.push_back(transparent_warning(scene, parts, options));
   record.used = {options.method, options.sampling, {}, {}};
   const bool is_auto = options.show == Show::image && options.method.is_auto();
   const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
@@ -319,16 +350,18 @@ int render(const RenderOptions& options) {
     objects = object_numbers_for(*record.used.method.filter, scene, view, options.frame, width,
                                  height, options.profile, pool);
   }
+  std::vector<Image> behind;
+  if (options.show != Show::image) behind = std::move(parts.behind);
   const auto make_picture = [&] {
     PreparedScene* const ready = prepared ? &*prepared : nullptr;
     if (is_auto) {
-      return auto_drawn(scene, view, drawn, ready, options, record, progress, pool);
+      return auto_drawn(scene, view, parts.picture, ready, options, record, progress, pool);
     }
     if (from_lens) {
-      return sampled_picture(scene, view, drawn, ready, options, record, progress, pool);
+      return sampled_picture(scene, view, parts.picture, ready, options, record, progress, pool);
     }
     return shown_picture(
-        std::move(drawn), std::vector<ConstImageView>{behind.begin(), behind.end()}, objects,
+        std::move(parts), objects,
         record.lens ? std::span<const float>{record.lens->radii_px} : std::span<const float>{},
         options, record.used.method.filter, scene.camera, settings, on_gl ? &*on_gl : nullptr,
         pool);

@@ -216,7 +216,29 @@ constexpr std::uint64_t kLayerBytesPerPixel = 12;
 constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredBytesPerPixel = kSamplingBytesPerPixel + 8 * 8;
 
+/// And for transparent surfaces: four layers with their depths (12 bytes each), two pictures of
+/// each for the filter, and the opaque picture.
+constexpr std::uint64_t kTransparentBytesPerPixel = 4 * 12 + 8 * 8 + 8;
+
+std::uint64_t bytes_per_pixel(const RenderOptions& options) {
+  const bool may_sample = options.method.of_scene != nullptr || options.method.is_auto();
+  const bool may_filter_views = options.method.name() == "filtered-views";
+  return kRenderBytesPerPixel + (layers_of(options) - 1) * kLayerBytesPerPixel +
+         (may_filter_views ? kFilteredBytesPerPixel
+          : may_sample     ? kSamplingBytesPerPixel
+                           : 0);
+}
+
+void check_render_memory(const RenderOptions& options, std::uint64_t each_pixel) {
+  check_memory(options.supersample == 1 ? "--size" : "--supersample", drawn_size(options),
+               each_pixel);
+}
+
 }  // namespace
+
+void check_transparent_memory(const RenderOptions& options) {
+  check_render_memory(options, bytes_per_pixel(options) + kTransparentBytesPerPixel);
+}
 
 PictureSize drawn_size(const RenderOptions& options) {
   return {options.size.width * options.supersample, options.size.height * options.supersample};
@@ -277,13 +299,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     refuse_sampling_options(parser, options.method.name());
   }
   check_supersample(options);
-  const bool may_sample = samples || options.method.is_auto();
-  const bool may_filter_views = options.method.name() == "filtered-views";
-  check_memory(options.supersample == 1 ? "--size" : "--supersample", drawn_size(options),
-               kRenderBytesPerPixel + (layers_of(options) - 1) * kLayerBytesPerPixel +
-                   (may_filter_views ? kFilteredBytesPerPixel
-                    : may_sample     ? kSamplingBytesPerPixel
-                                     : 0));
+  check_render_memory(options, bytes_per_pixel(options));
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {

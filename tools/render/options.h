@@ -72,6 +72,9 @@ void add_render_options(CLI::App& parser, RenderOptions& options);
 /// exclude each other or do not fit together, and settles the format.
 void complete(RenderOptions& options, const CLI::App& parser);
 
+/// Throws UsageError if there is not the memory for a scene with transparent surfaces.
+void check_transparent_memory(const RenderOptions& options);
+
 /// --autofocus may stand without a value, and CLI11 would take the next argument for
 /// it, a scene perhaps. So what follows is joined to it with "=": the pixel, or "centre".
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments);

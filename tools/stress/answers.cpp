@@ -4,8 +4,7 @@
 #include <cassert>
 
 #include "scenes/auto/auto_picture.h"
-#include "scenes/draw/draw_scene.h"
-#include "scenes/draw/object_numbers.h"
+#include "scenes/draw/frame_parts.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/lens_view_method.h"
 
@@ -35,20 +34,9 @@ LensViewInput views_input(const StressFrame& frame, int samples) {
 Image filtered(const Method& method, const StressFrame& frame, float max_coc_px, ThreadPool& pool) {
   DofSettings settings = frame.settings;
   settings.max_coc_px = max_coc_px;
-  std::vector<std::uint16_t> objects;
-  std::vector<Image> layers;
-  if (frame.scene) {
-    const StressScene& scene = *frame.scene;
-    objects = object_numbers_for(method, scene.scene, scene.camera, 0.0, frame.sharp.width,
-                                 frame.sharp.height, Profile{}, pool);
-    if (method.layers > 1) {
-      layers = draw_layers(scene.scene, scene.camera, 0.0, frame.sharp.width, frame.sharp.height,
-                           method.layers, Profile{}, pool);
-    }
-  }
-  std::vector<ConstImageView> behind{layers.begin(), layers.end()};
-  if (!behind.empty()) behind.erase(behind.begin());
-  return apply(method, {frame.sharp, settings, Profile{}, objects, behind}, pool);
+  if (!frame.scene) return apply(method, {frame.sharp, settings, Profile{}}, pool);
+  return filtered_frame(method, frame.scene->scene, frame.scene->camera, 0.0, frame.sharp, settings,
+                        Profile{}, pool);
 }
 
 /// What auto chooses by itself, with no goal but its own.

@@ -73,6 +73,7 @@ std::vector<StressCase> stress_cases();
 std::span<const StressCase> edge_cases();
 std::span<const StressCase> light_cases();
 std::span<const StressCase> crowd_cases();
+std::span<const StressCase> glass_cases();
 std::span<const StressCase> plane_cases();
 std::span<const StressCase> depth_cases();
 std::span<const StressCase> plain_cases();

@@ -27,7 +27,7 @@ Scene built_in(const char* name) { return load_scene(name, scene_search_path({})
 
 TEST_CASE("accumulation: one sample is the pinhole's picture") {
   ThreadPool pool{2};
-  for (const char* name : {"figures", "cube-room", "sphere-world", "canopy"}) {
+  for (const char* name : {"figures", "cube-room", "sphere-world", "canopy", "glass"}) {
     const Drawn drawn = accumulated(built_in(name), {.samples = 1}, 96, 64, pool);
     CHECK(equal(drawn.sampled.picture, drawn.pinhole));
     CHECK(drawn.sampled.samples == 1);
@@ -79,7 +79,7 @@ TEST_CASE("accumulation: the same bits for any number of threads and on every ve
 TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes") {
   const int width = 150, height = 70;  // parts of tiles
   const Profile profile{};
-  for (const char* name : {"sphere-world", "canopy"}) {
+  for (const char* name : {"sphere-world", "canopy", "glass"}) {
     const Scene scene = built_in(name);
     const CameraMatrices pinhole_camera = camera_matrices(scene.camera, 0.0, width, height);
     const double radius_m = aperture_radius_m(scene.lens.lens, 1.0);

@@ -111,7 +111,7 @@ TEST_CASE("ray-traced: it agrees with accumulation on each scene, and what is le
           doctest::test_suite("long")) {
   if (is_missing()) return;
   ThreadPool pool{2};
-  for (const char* name : {"figures", "cube-room", "sphere-world", "canopy"}) {
+  for (const char* name : {"figures", "cube-room", "sphere-world", "canopy", "glass"}) {
     const Scene scene = load_scene(name, scene_search_path({}));
     const Sampling sampling{.samples = 256};
     const auto by = [&](const char* method) {

@@ -46,7 +46,7 @@ void check_all_equal(const std::string& driver) {
   const std::set<std::string> all{
       "store", "bilinear-rgba16f", "bilinear-rgba8", "mipmap",   "coverage",
       "depth", "attributes",       "scene",          "two-pass", "one-pass",
-      "frame", "two-pass-tiled",   "one-pass-tiled", "peel"};
+      "frame", "two-pass-tiled",   "one-pass-tiled", "peel",     "blend"};
   CHECK(stages == all);
 }
 

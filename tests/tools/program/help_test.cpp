@@ -109,8 +109,8 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
           static_cast<std::ptrdiff_t>(names.size()));
   };
   lists("scenes", {"bright-edges", "canopy", "clutter", "cube-room", "dunes", "figures", "foliage",
-                   "grazing-floor", "interior", "lattice", "near-fence", "night-lights", "portrait",
-                   "sphere-world", "random:SEED"});
+                   "glass", "grazing-floor", "interior", "lattice", "near-fence", "night-lights",
+                   "portrait", "sphere-world", "random:SEED"});
   // clang-format off
   lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "importance-ordered",
                     "scatter", "scatter-sorted", "layers", "ray-distribution-buffer", "diffusion",

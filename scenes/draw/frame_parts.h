@@ -1,0 +1,50 @@
+#pragma once
+// A frame in the parts that a depth-of-field method reads: what is opaque, the surfaces behind it,
+// and the transparent ones before it.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dof/dof.h"
+#include "scenes/draw/draw_scene.h"
+
+namespace softfocus {
+
+struct FrameParts {
+  Image picture;  ///< as draw_scene() has it
+  /// draw_layers()'s first, if anything is transparent. If not, it is empty: the picture is it.
+  Image opaque;
+  std::vector<Image> behind;
+  std::vector<TransparentPicture> transparent;
+};
+
+/// Draws a frame, with `layers` - 1 opaque surfaces behind the first.
+FrameParts draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                      int width, int height, std::size_t layers, ThreadPool& pool);
+
+/// Calls `use(DofInput)` with a frame's parts as a method reads them. With `radii_px`, which are of
+/// one picture, that is the blended picture alone.
+template <class Use>
+auto with_dof_input(const FrameParts& parts, const DofSettings& settings, const Profile& profile,
+                    std::span<const std::uint16_t> objects, std::span<const float> radii_px,
+                    const Use& use) {
+  const std::vector<ConstImageView> behind{parts.behind.begin(), parts.behind.end()};
+  const bool is_one = parts.transparent.empty() || !radii_px.empty();
+  const std::vector<TransparentLayer> transparent =
+      is_one ? std::vector<TransparentLayer>{} : views_of(parts.transparent);
+  return use(DofInput{.scene = is_one ? parts.picture : parts.opaque,
+                      .settings = settings,
+                      .profile = profile,
+                      .objects = objects,
+                      .behind = behind,
+                      .transparent = transparent,
+                      .radii_px = radii_px});
+}
+
+/// A frame by a method, with all that the method reads of the scene. `picture` is draw_scene()'s.
+Image filtered_frame(const Method& method, const Scene& scene, const CameraMatrices& camera,
+                     double frame, const Image& picture, const DofSettings& settings,
+                     const Profile& profile, ThreadPool& pool);
+
+}  // namespace softfocus
