@@ -128,6 +128,12 @@ Image* of_size(Image& depth, const Image& picture) {
   return &depth;
 }
 
+// What the depth buffer has of a distance along the axis.
+float buffer_depth(const Camera& camera, double distance_m) {
+  const double near = camera.near_m, far = camera.far_m;
+  return static_cast<float>(far * (distance_m - near) / (distance_m * (far - near)));
+}
+
 // Calls `with(tile area, its layers)` for each tile that shows something transparent or, if
 // `every`, for all.
 template <class With>
@@ -196,7 +202,8 @@ std::vector<TransparentPicture> draw_transparent(PreparedScene& prepared,
 }
 
 void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                 Image& picture, std::span<Image> behind, ThreadPool& pool) {
+                 Image& picture, std::span<Image> behind, ThreadPool& pool,
+                 std::optional<double> behind_before_m) {
   assert(behind.size() < kMaxLayers);
   RenderTargets& targets = prepared.pass.targets;
   targets.colour[0] = &picture;
@@ -206,8 +213,13 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   for (std::size_t i = 0; i < behind.size(); ++i) {
     targets.behind[i] = {&behind[i], of_size(prepared.depths_behind[i], picture)};
   }
-  record_scene(prepared, camera, frame, prepared.pass);
-  finish(prepared.pass, pool);
+  RenderPass& pass = prepared.pass;
+  pass.behind_before = {};
+  if (behind_before_m) {
+    pass.behind_before = buffer_depth(prepared.scene->camera, *behind_before_m);
+  }
+  record_scene(prepared, camera, frame, pass);
+  finish(pass, pool);
 }
 
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,

@@ -2,6 +2,7 @@
 // From a scene to draw calls.
 
 #include <glm/vec4.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,9 +53,11 @@ void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double fr
 /// The nearest opaque surfaces of each pixel, by depth peeling: `picture` as draw_scene() has it
 /// but for what is transparent, behind[0] the next surface, and so on. The background is all that
 /// lies behind the last surface, again and again. Up to kMaxLayers - 1 behind, of the picture's
-/// size and format.
+/// size and format. With `behind_before_m` they show the background behind what is as far as that
+/// or farther, and cost less: no method looks behind what is in focus.
 void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                 Image& picture, std::span<Image> behind, ThreadPool& pool);
+                 Image& picture, std::span<Image> behind, ThreadPool& pool,
+                 std::optional<double> behind_before_m = {});
 
 /// As above, `layers` new pictures, 1 to kMaxLayers, the nearest first.
 std::vector<Image> draw_layers(const Scene& scene, const CameraMatrices& camera, double frame,

@@ -8,13 +8,14 @@
 namespace softfocus {
 
 FrameParts draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                      int width, int height, std::size_t layers, ThreadPool& pool) {
+                      int width, int height, std::size_t layers, ThreadPool& pool,
+                      std::optional<double> behind_before_m) {
   FrameParts parts;
   parts.picture = make_image(Format::rgba16f, width, height);
   while (parts.behind.size() + 1 < layers) {
     parts.behind.push_back(make_image(Format::rgba16f, width, height));
   }
-  draw_layers(prepared, camera, frame, parts.picture, parts.behind, pool);
+  draw_layers(prepared, camera, frame, parts.picture, parts.behind, pool, behind_before_m);
   parts.transparent = draw_transparent(prepared, camera, frame, parts.picture, pool);
   if (parts.transparent.empty()) return parts;
   parts.opaque = std::move(parts.picture);
@@ -32,7 +33,8 @@ Image filtered_frame(const Method& method, const Scene& scene, const CameraMatri
     return apply(method, {picture, settings, profile, objects}, pool);
   }
   PreparedScene prepared = prepare_scene(scene, profile, pool);
-  const FrameParts parts = draw_parts(prepared, camera, frame, width, height, method.layers, pool);
+  const FrameParts parts = draw_parts(prepared, camera, frame, width, height, method.layers, pool,
+                                      static_cast<double>(settings.coc.focus_m));
   return with_dof_input(parts, settings, profile, objects, {},
                         [&](const DofInput& input) { return apply(method, input, pool); });
 }

@@ -3,6 +3,7 @@
 // and the transparent ones before it.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct FrameParts {
   std::vector<TransparentPicture> transparent;
 };
 
-/// Draws a frame, with `layers` - 1 opaque surfaces behind the first.
+/// Draws a frame, with `layers` - 1 opaque surfaces behind the first, as draw_layers().
 FrameParts draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                      int width, int height, std::size_t layers, ThreadPool& pool);
+                      int width, int height, std::size_t layers, ThreadPool& pool,
+                      std::optional<double> behind_before_m = {});
 
 /// Calls `use(DofInput)` with a frame's parts as a method reads them. With `radii_px`, which are of
 /// one picture, that is the blended picture alone.

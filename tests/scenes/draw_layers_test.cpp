@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -133,5 +134,42 @@ TEST_CASE("layers of scenes: draws in lanes and scalar draws mixed in a pass") {
     for (std::size_t i = 0; i < scalar.draws.size(); i += 3) in_lanes.draws[i] = scalar.draws[i];
     finish(in_lanes, pool);
     check_layers(layers, expected);
+  }
+}
+
+TEST_CASE("layers of a scene: behind what is in focus or farther nothing is drawn, if so wanted") {
+  const Scene scene = load_scene("near-fence", scene_search_path({}));
+  const double focus_m = scene.lens.lens.focus_m;
+  const CameraMatrices view = camera_matrices(scene.camera, 0.0, kAcross, kDown);
+  Image cleared = make_image(Format::rgba16f, 1, 1);
+  store_texel(cleared, 0, 0, clear_colour(scene), {});
+  const glm::vec4 nothing = load_texel(cleared, 0, 0);
+  for (const Isa isa : {Isa::scalar, widest_isa()}) {
+    ThreadPool pool{2, isa};
+    const auto drawn = [&](std::optional<double> limit) {
+      std::vector<Image> layers(2, make_image(Format::rgba16f, kAcross, kDown));
+      PreparedScene prepared = prepare_scene(scene, {}, pool);
+      draw_layers(prepared, view, 0.0, layers[0], std::span{layers}.subspan(1), pool, limit);
+      return layers;
+    };
+    const std::vector<Image> all = drawn({}), some = drawn(focus_m);
+    CHECK(equal(all[0], some[0]));
+    int kept = 0, wrong = 0, dropped = 0;
+    for (int y = 0; y < kDown; ++y) {
+      for (int x = 0; x < kAcross; ++x) {
+        const double front_m = static_cast<double>(load_texel(all[0], x, y).w);
+        const glm::vec4 behind = load_texel(some[1], x, y);
+        if (front_m < 0.999 * focus_m) {
+          ++kept;
+          wrong += behind != load_texel(all[1], x, y);
+        } else if (front_m > 1.001 * focus_m) {
+          ++dropped;
+          wrong += behind != nothing;
+        }
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK(kept > 1000);
+    CHECK(dropped > 1000);
   }
 }

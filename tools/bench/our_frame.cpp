@@ -72,7 +72,8 @@ void draw(OurFrame& frame) {
   while (frame.behind.size() + 1 < layers) {
     frame.behind.push_back(make_image(Format::rgba16f, work.size.width, work.size.height));
   }
-  draw_layers(*frame.scene, work.view, work.frame, frame.drawn, frame.behind, frame.pool);
+  draw_layers(*frame.scene, work.view, work.frame, frame.drawn, frame.behind, frame.pool,
+              static_cast<double>(work.settings.coc.focus_m));
   frame.transparent =
       draw_transparent(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
   frame.objects = object_numbers_for(*work.method.filter, *work.scene, work.view, work.frame,
