@@ -131,6 +131,11 @@ void check_picture_size(std::string_view kind, std::int64_t width, std::int64_t 
                   std::to_string(kMaxImageSize));
 }
 
+bool begins_as_picture(std::span<const std::byte> bytes) {
+  return std::any_of(kReaders.begin(), kReaders.end(),
+                     [&](const PictureFileReader* reader) { return reader->is(bytes); });
+}
+
 PictureFile open_picture_file(Bytes bytes, const std::filesystem::path& path) {
   PictureFile file{.path = path, .bytes = std::move(bytes)};
   try {

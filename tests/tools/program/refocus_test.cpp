@@ -127,7 +127,8 @@ TEST_CASE("refocus: what is transparent becomes black, with a warning") {
   const TemporaryDirectory directory;
   Image half_there = make_image(Format::rgba16f, 8, 8);
   for (int y = 0; y < 8; ++y) {
-    for (int x = 0; x < 8; ++x) store_texel(half_there, x, y, {1.0f, 1.0f, 1.0f, x < 4 ? 1.0f : 0.0f}, {});
+    for (int x = 0; x < 8; ++x)
+      store_texel(half_there, x, y, {1.0f, 1.0f, 1.0f, x < 4 ? 1.0f : 0.0f}, {});
   }
   const auto write = [&](const char* name, const Bytes& bytes) {
     write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
@@ -177,6 +178,13 @@ TEST_CASE("bad input: refocus without a depth, of no depth, with a method of sce
   check_refused(directory,
                 {"refocus", a, d, "-o", out, "--blur-at-infinity", "9", "--f-number", "2"}, 2,
                 {"--blur-at-infinity", "--f-number", "exclude"});
+}
+
+TEST_CASE("bad input: a file without an end is refused by its beginning") {
+  const TemporaryDirectory directory;
+  check_refused(directory, {"refocus", "/dev/zero", "-o", directory.file("out.png")}, 1,
+                {"/dev/zero", "none of PNG"});
+  check_refused(directory, {"inspect", "/dev/zero"}, 1, {"/dev/zero", "none of PNG"});
 }
 
 TEST_CASE("bad input: a depth of another shape, all missing, or with holes that are refused") {
