@@ -74,7 +74,7 @@ SplitName split(const std::string& name) {
 /// From numbers of 0 to full_scale() along the sRGB curve, or any numbers of light, to halves.
 class ToHalf {
  public:
-  ToHalf(NumberType type, bool is_srgb) : type_(type), is_srgb_(is_srgb) {
+  ToHalf(NumberType type, bool is_srgb) : type_(type) {
     if (type != NumberType::unsigned8 && type != NumberType::unsigned16) return;
     const auto count = static_cast<std::size_t>(full_scale(type)) + 1;
     table_.resize(count);
@@ -97,7 +97,6 @@ class ToHalf {
 
  private:
   NumberType type_;
-  bool is_srgb_;
   std::vector<std::uint16_t> table_{};
 };
 
