@@ -176,8 +176,8 @@ TEST_CASE("EXR: tiles are read") {
 
 TEST_CASE("EXR: a data window beyond the picture is cut, one within leaves the rest outside") {
   const TemporaryDirectory directory;
-  for (const Imath::Box2i window : {Imath::Box2i{{-7, -9}, {kColumns + 5, kRows + 300}},
-                                    Imath::Box2i{{5, 100}, {kColumns - 3, kRows - 20}}}) {
+  for (const Imath::Box2i& window : {Imath::Box2i{{-7, -9}, {kColumns + 5, kRows + 300}},
+                                     Imath::Box2i{{5, 100}, {kColumns - 3, kRows - 20}}}) {
     const std::string name = directory.file("a.exr");
     Planes3 planes{window, 1};
     {

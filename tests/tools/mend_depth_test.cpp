@@ -67,6 +67,29 @@ TEST_CASE("mending: a slope stays one when it is upsampled") {
   }
 }
 
+TEST_CASE("mending: on a smooth surface a pattern of colours moves nothing") {
+  ThreadPool pool{1};
+  Image colour = make_image(Format::rgba16f, 80, 40);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 80; ++x) {
+      const float c = (x / 6 + y / 6) % 2 == 0 ? 0.0f : 1.0f;
+      store_texel(colour, x, y, {c, c, c, 0.0f}, {});
+    }
+  }
+  DepthMap map{20, 10, {}};
+  for (int y = 0; y < 10; ++y) {
+    for (int x = 0; x < 20; ++x)
+      map.metres.push_back(1.0f / (0.2f + 0.05f * static_cast<float>(y)));
+  }
+  const DepthMap large = upsampled_by_colour(map, colour, pool);
+  for (std::size_t y = 6; y < 34; ++y) {
+    for (std::size_t x = 6; x < 74; ++x) {
+      const float truth = 1.0f / (0.2f + 0.05f * ((static_cast<float>(y) + 0.5f) / 4.0f - 0.5f));
+      CHECK(large.metres[80 * y + x] == doctest::Approx(truth).epsilon(1e-4));
+    }
+  }
+}
+
 TEST_CASE("mending: anti-aliased depth takes the side that the pixel shows more of") {
   ThreadPool pool{1};
   DepthMap map{9, 3, {}};

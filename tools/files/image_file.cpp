@@ -10,6 +10,7 @@
 
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
 #include "tools/files/exr_file.h"
 #include "tools/files/picture_file.h"
 #include "tools/files/png_text.h"
@@ -140,7 +141,9 @@ Bytes read_picture_bytes(const std::filesystem::path& file) {
     stream.read(reinterpret_cast<char*>(bytes.data() + before), kPart);
     bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
     if (stream.bad()) refuse(EIO);
-    if (!stream) return bytes;
+    // Of what is no picture the first part is enough to be refused by: it may have no end.
+    if (!stream || !begins_as_picture(bytes)) return bytes;
+    if (const auto there = memory_bytes(); there && bytes.size() > *there / 2) refuse(EFBIG);
   }
 }
 

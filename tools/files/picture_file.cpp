@@ -74,7 +74,7 @@ SplitName split(const std::string& name) {
 /// From numbers of 0 to full_scale() along the sRGB curve, or any numbers of light, to halves.
 class ToHalf {
  public:
-  ToHalf(NumberType type, bool is_srgb) : type_(type), is_srgb_(is_srgb) {
+  ToHalf(NumberType type, bool is_srgb) : type_(type) {
     if (type != NumberType::unsigned8 && type != NumberType::unsigned16) return;
     const auto count = static_cast<std::size_t>(full_scale(type)) + 1;
     table_.resize(count);
@@ -97,7 +97,6 @@ class ToHalf {
 
  private:
   NumberType type_;
-  bool is_srgb_;
   std::vector<std::uint16_t> table_{};
 };
 
@@ -129,6 +128,11 @@ void check_picture_size(std::string_view kind, std::int64_t width, std::int64_t 
   throw FileError(std::string{kind} + " is " + std::to_string(width) + "x" +
                   std::to_string(height) + " pixels; each side may be 1 to " +
                   std::to_string(kMaxImageSize));
+}
+
+bool begins_as_picture(std::span<const std::byte> bytes) {
+  return std::any_of(kReaders.begin(), kReaders.end(),
+                     [&](const PictureFileReader* reader) { return reader->is(bytes); });
 }
 
 PictureFile open_picture_file(Bytes bytes, const std::filesystem::path& path) {

@@ -76,6 +76,9 @@ struct PictureFileReader {
 extern const PictureFileReader kPngReader, kJpegReader, kHdrReader, kPfmReader, kNpyReader,
     kExrReader;
 
+/// Whether there is a reader for what begins so.
+bool begins_as_picture(std::span<const std::byte> bytes);
+
 /// Reads the header. Throws FileError that names the file: for what is no picture, is damaged, has
 /// a side beyond kMaxImageSize, or claims more values than so few bytes can hold. For other kinds
 /// of pictures it names the program that converts them.

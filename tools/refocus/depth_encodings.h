@@ -15,12 +15,12 @@ namespace softfocus {
 
 /// What encodings need beside the code: options of the command line.
 struct DepthNumbers {
-  std::optional<double> near_m;
-  std::optional<double> far_m;
-  std::optional<double> scale;
-  std::optional<double> offset;
-  std::optional<double> baseline_m;
-  std::optional<double> focal_px;
+  std::optional<double> near_m{};
+  std::optional<double> far_m{};
+  std::optional<double> scale{};
+  std::optional<double> offset{};
+  std::optional<double> baseline_m{};
+  std::optional<double> focal_px{};
   /// The least and the largest code of the map, for encodings that know nothing else.
   double least_code = 0.0;
   double largest_code = 1.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "raster/images/texel.h"
 
@@ -80,6 +81,36 @@ float mean_near_median(std::array<Weighed, 25>& all, std::size_t count) {
   return weights > 0.0f ? weights / sum : median;
 }
 
+/// 1/z in a line between the four depths around (u, v), if the 4x4 around it are of one smooth
+/// surface: a plane's 1/z is linear in the picture, so that its second differences are 0. Colours
+/// need not be asked there, and would lean to one side on a pattern.
+std::optional<float> on_smooth_surface(const DepthMap& map, float u, float v) {
+  const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+  std::array<std::array<float, 4>, 4> inverse{};
+  float largest = 0.0f;
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      const int column = std::clamp(i + x - 1, 0, map.width - 1);
+      const int row = std::clamp(j + y - 1, 0, map.height - 1);
+      float& value = inverse[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
+      value = 1.0f / map.metres[place_of(column, row, map.width)];
+      largest = std::max(largest, value);
+    }
+  }
+  constexpr float kBend = 0.01f;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 2; ++b) {
+      const float across = inverse[a][b] - 2.0f * inverse[a][b + 1] + inverse[a][b + 2];
+      const float down = inverse[b][a] - 2.0f * inverse[b + 1][a] + inverse[b + 2][a];
+      if (std::fabs(across) > kBend * largest || std::fabs(down) > kBend * largest) return {};
+    }
+  }
+  const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
+  const float above = inverse[1][1] + s * (inverse[1][2] - inverse[1][1]);
+  const float below = inverse[2][1] + s * (inverse[2][2] - inverse[2][1]);
+  return 1.0f / (above + t * (below - above));
+}
+
 }  // namespace
 
 PlaneValues without_bands(const PlaneValues& codes, int width, int height, ThreadPool& pool) {
@@ -141,6 +172,10 @@ DepthMap upsampled_by_colour(const DepthMap& map, const Image& colour, ThreadPoo
     for (int x = 0; x < colour.width; ++x) {
       const float u = (static_cast<float>(x) + 0.5f) * across - 0.5f;
       const int u0 = static_cast<int>(std::floor(u + 0.5f));
+      if (const auto smooth = on_smooth_surface(map, u, v)) {
+        large.metres[place_of(x, y, colour.width)] = *smooth;
+        continue;
+      }
       const glm::vec4 own = seen_colour(colour, x, y);
       std::array<Weighed, 25> all{};
       std::size_t count = 0;

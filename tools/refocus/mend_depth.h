@@ -25,7 +25,8 @@ struct MendedDepth {
 /// slope again. Each code moves by half a step at most, so an edge of two steps or more stays.
 PlaneValues without_bands(const PlaneValues& codes, int width, int height, ThreadPool& pool);
 
-/// The map at the size of `colour`, RGBA16F. Needs known depths. Around each pixel lie 5x5 depths
+/// The map at the size of `colour`, RGBA16F. Needs known depths. On a smooth surface 1/z is
+/// interpolated. Elsewhere, around each pixel lie 5x5 depths
 /// of the smaller map, weighted by how near they lie and how like the pixel's colour theirs is
 /// (Kopf et al. 2007). Their mean would lie between two surfaces: the depth is the weighted mean of
 /// those alone that are within a twentieth of the weighted median.

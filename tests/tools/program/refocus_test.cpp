@@ -7,8 +7,10 @@
 #include "raster/images/texel.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
+#include "tools/cli/option_values.h"
 #include "tools/files/exr_file.h"
 #include "tools/files/picture_file.h"
+#include "tools/refocus/depth_map.h"
 
 using namespace softfocus;
 using nlohmann::json;
@@ -95,6 +97,74 @@ TEST_CASE("refocus: millimetres of 16 bits and colours of 8 bits are off by 50 d
   CHECK(psnr(refocus_of(directory, {"a.hdr", "d.png"}, kLens), truth) > 50.0);
 }
 
+TEST_CASE("refocus: every encoding of an exact depth gives the picture, within 50 dB") {
+  const Image truth = rendered_picture("figures", kLens).image;
+  const TemporaryDirectory directory;
+  draw(directory, "a.npy", "d.pfm");
+  const PictureFile file = open_picture_file(directory.file("d.pfm"));
+  const std::size_t first = 0;
+  const DepthMap depth{file.width, file.height, read_planes(file, {&first, 1}, 0.0f)[0]};
+  const auto ends = std::minmax_element(depth.metres.begin(), depth.metres.end());
+  const std::string near = exact_number(static_cast<double>(*ends.first));
+  const std::string far = exact_number(static_cast<double>(*ends.second));
+  for (const DepthEncoding& encoding : depth_encodings()) {
+    CAPTURE(encoding.name);
+    DepthReading reading{.encoding = &encoding, .along = encoding.along};
+    reading.pixels_per_tangent = 16.0 / std::tan(14.0 * 3.14159265358979 / 180.0);
+    DepthNumbers& numbers = reading.numbers;
+    Words options = joined(kLens, {"--depth-encoding", std::string{encoding.name}});
+    const auto needs = [&](const char* name) { return contains(encoding.needs, name); };
+    if (needs("near")) {
+      numbers.near_m = static_cast<double>(*ends.first);
+      options = joined(options, {"--near", near});
+    }
+    if (needs("far")) {
+      numbers.far_m = static_cast<double>(*ends.second);
+      options = joined(options, {"--far", far});
+    }
+    if (needs("baseline")) {
+      numbers.baseline_m = 0.1;
+      numbers.focal_px = 600.0;
+      options = joined(options, {"--baseline", "10cm", "--focal-px", "600", "--fov", "28"});
+    }
+    const PlaneValues codes = codes_of_depth(depth, NumberType::single, reading);
+    const Bytes bytes = encode_grey_pfm(codes, depth.width, depth.height);
+    write_file(directory.file("e.pfm"),
+               {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    CHECK(psnr(refocus_of(directory, {"a.npy", "e.pfm"}, options), truth) > 50.0);
+  }
+}
+
+TEST_CASE("refocus: 8 bits of GDepth, 16 of disparity, are near the picture") {
+  const Image truth = rendered_picture("figures", kLens).image;
+  const TemporaryDirectory directory;
+  draw(directory, "a.npy", "d.pfm");
+  const PictureFile file = open_picture_file(directory.file("d.pfm"));
+  const std::size_t first = 0;
+  const DepthMap depth{file.width, file.height, read_planes(file, {&first, 1}, 0.0f)[0]};
+  const auto refocused_with = [&](const char* name, const DepthNumbers& numbers, double steps,
+                                  const Words& options) {
+    const DepthReading reading{.encoding = find_depth_encoding(name), .numbers = numbers};
+    PlaneValues codes = codes_of_depth(depth, NumberType::unsigned16, reading);
+    std::vector<std::uint16_t> whole;
+    for (const float code : codes) {
+      const double share = reading.encoding->by_full_scale ? 65535.0 / steps : 1.0;
+      whole.push_back(
+          static_cast<std::uint16_t>(std::round(static_cast<double>(code) / share) * share + 0.5));
+    }
+    const Bytes bytes = encode_grey_png_16(whole, depth.width, depth.height);
+    write_file(directory.file("e.png"),
+               {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return psnr(refocus_of(directory, {"a.npy", "e.png"}, joined(kLens, options)), truth);
+  };
+  CHECK(refocused_with("gdepth-inverse", {.near_m = 0.7, .far_m = 21.0}, 255.0,
+                       {"--depth-encoding", "gdepth-inverse", "--near", "0.7", "--far", "21"}) >
+        35.0);
+  CHECK(refocused_with("cityscapes", {.baseline_m = 0.1, .focal_px = 600.0}, 1.0,
+                       {"--depth-encoding", "cityscapes", "--baseline", "0.1", "--focal-px", "600",
+                        "--fov", "28"}) > 50.0);
+}
+
 TEST_CASE("refocus: auto takes a filter and says which") {
   const TemporaryDirectory directory;
   draw(directory, "a.npy", "d.pfm");
@@ -127,7 +197,8 @@ TEST_CASE("refocus: what is transparent becomes black, with a warning") {
   const TemporaryDirectory directory;
   Image half_there = make_image(Format::rgba16f, 8, 8);
   for (int y = 0; y < 8; ++y) {
-    for (int x = 0; x < 8; ++x) store_texel(half_there, x, y, {1.0f, 1.0f, 1.0f, x < 4 ? 1.0f : 0.0f}, {});
+    for (int x = 0; x < 8; ++x)
+      store_texel(half_there, x, y, {1.0f, 1.0f, 1.0f, x < 4 ? 1.0f : 0.0f}, {});
   }
   const auto write = [&](const char* name, const Bytes& bytes) {
     write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
@@ -177,6 +248,13 @@ TEST_CASE("bad input: refocus without a depth, of no depth, with a method of sce
   check_refused(directory,
                 {"refocus", a, d, "-o", out, "--blur-at-infinity", "9", "--f-number", "2"}, 2,
                 {"--blur-at-infinity", "--f-number", "exclude"});
+}
+
+TEST_CASE("bad input: a file without an end is refused by its beginning") {
+  const TemporaryDirectory directory;
+  check_refused(directory, {"refocus", "/dev/zero", "-o", directory.file("out.png")}, 1,
+                {"/dev/zero", "none of PNG"});
+  check_refused(directory, {"inspect", "/dev/zero"}, 1, {"/dev/zero", "none of PNG"});
 }
 
 TEST_CASE("bad input: a depth of another shape, all missing, or with holes that are refused") {
