@@ -98,12 +98,12 @@ LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter) 
 }
 
 double least_step_px(const LensCells& cells) {
-  constexpr double kLeast = 2.4;
+  constexpr double kLeast = 2.6, kLeastOfJitter = 2.4;
   const double rays = cells.per_cell;
   const bool jitter = std::any_of(cells.in_pixel.begin(), cells.in_pixel.end(),
                                   [](glm::dvec2 offset) { return offset != glm::dvec2{0.0}; });
-  const double rays_missing = jitter ? 1.0 : kMostCellPoints / rays;
-  return kLeast * rays_missing / std::sqrt(rays);
+  const double least = jitter ? kLeastOfJitter : kLeast * kMostCellPoints / rays;
+  return least / std::sqrt(rays);
 }
 
 std::span<const glm::dvec2> points_of(const LensCells& cells, int cell) {
