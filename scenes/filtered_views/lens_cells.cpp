@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -94,6 +95,15 @@ LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter) 
     }
   }
   return cells;
+}
+
+double least_step_px(const LensCells& cells) {
+  constexpr double kLeast = 2.6, kLeastOfJitter = 2.4;
+  const double rays = cells.per_cell;
+  const bool jitter = std::any_of(cells.in_pixel.begin(), cells.in_pixel.end(),
+                                  [](glm::dvec2 offset) { return offset != glm::dvec2{0.0}; });
+  const double least = jitter ? kLeastOfJitter : kLeast * kMostCellPoints / rays;
+  return least / std::sqrt(rays);
 }
 
 std::span<const glm::dvec2> points_of(const LensCells& cells, int cell) {

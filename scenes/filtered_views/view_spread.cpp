@@ -14,14 +14,13 @@ namespace {
 
 constexpr double kLevelsPerPx = 1.5;  // in focus
 
-// Rays in whole pixels are no better than as many views whose pictures are so far apart, in pixels
-// for one ray: by mean FLIP on figures, cube-room, sphere-world and near-fence.
-constexpr double kLeastStepPx = 2.4;
+// Of round'(), for levels whose rays stay where they are.
+constexpr double kNoStep = -kMostSpreadStep;
 
 double axis_of(glm::dvec2 point, int axis) { return axis == 0 ? -point.x : point.y; }
 
 double rounded(double v, double t) {
-  const double whole = std::floor(std::fabs(v) + t);
+  const double whole = std::fmax(std::floor(std::fabs(v) + t), 0.0);
   return v < 0.0 ? -whole : whole;
 }
 
@@ -75,13 +74,13 @@ ViewSpread make_view_spread(const PixelCoc& coc, const LensCells& cells) {
   const double last_px = (kMostSpreadStep - 1) / std::max(longest, 1e-3);
   const double bend = std::max(kLevelsPerPx / kLast - 1.0 / last_px, 0.0);
   spread.bend_per_px = static_cast<float>(bend);
-  const double least_px = kLeastStepPx / std::sqrt(static_cast<double>(cells.per_cell));
+  const double least_px = least_step_px(cells);
   for (int level = 0; level <= kMostSpreadLevel; ++level) {
     const double radius_px = std::min(level / (kLevelsPerPx - bend * level), last_px);
     spread.radius_px.push_back(radius_px);
     for (int axis = 0; axis < 2; ++axis) {
       spread.rounding[static_cast<std::size_t>(axis)].push_back(
-          longest * radius_px < least_px ? 0.0 : rounding_of(cells, axis, radius_px));
+          longest * radius_px < least_px ? kNoStep : rounding_of(cells, axis, radius_px));
     }
   }
   return spread;
@@ -106,8 +105,7 @@ std::vector<PixelStep> ray_steps(const ViewSpread& spread, std::span<const glm::
       const double radius_px = level < 0 ? -spread.radius_px[number] : spread.radius_px[number];
       const auto along = [&](int axis) {
         const double t = spread.rounding[static_cast<std::size_t>(axis)][number];
-        return static_cast<int>(
-            rounded(axis_of(point, axis) * radius_px - (t > 0.0 ? in_pixel[axis] : 0.0), t));
+        return static_cast<int>(rounded(axis_of(point, axis) * radius_px - in_pixel[axis], t));
       };
       steps.push_back({along(0), along(1)});
     }

@@ -14,7 +14,7 @@
 //   level(q) = round(a r_q / (1 + b |r_q|)),  from -L to L, the farther ones in the last
 //   q_j = p - round'(r_j (x, -y)),  r_j the radius of level j;
 //   the first j with level(q_j) = j gives q
-//   round'(v) = floor(|v| + t), with the sign of v
+//   round'(v) = floor(|v| + t), 0 if that is less, with the sign of v
 //
 // Pixels are whole, and a circle may have one. So t, of each level and axis, is such that the
 // steps of all views together have the mean square that they have before they are rounded: a
@@ -22,7 +22,7 @@
 //
 // A view that looks beside its pixels' centres, at o, shows what lies at q + o. So a ray's step is
 // round'(r_j (-x, y) - o), around the centre, and the steps' mean square has a pixel's in it, 1/12.
-// Where t is 0 no ray moves: the views' own places smooth what is in focus.
+// Where no ray moves, the views' own places smooth what is in focus.
 //
 // Levels lie 2/3 of a pixel apart in focus, where all steps are 0, and the farther from it the
 // more: none moves a ray by much more than a pixel. Pixels outside the picture are those of its
@@ -34,8 +34,8 @@
 // them by taking what lies between q_(j-1) and q_j lets leaves and bars grow: with 8 views of
 // foliage mean FLIP is .017, and .015 without.)
 //
-// Where the longest step is below 2.4 pixels over the root of a cell's points, t is 0 and nothing
-// smaller than a pixel moves: there the mean of the views is smooth as it is.
+// Where the longest step is below least_step_px() no ray moves: there the mean of the views is
+// smooth as it is, and whole pixels only add noise.
 //
 // Known failures: what is hidden is a guess; r beyond that of the last level counts as that, so
 // light of larger circles is left in as many spots as there are views; rays end in whole pixels,

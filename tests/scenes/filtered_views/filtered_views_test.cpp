@@ -119,6 +119,25 @@ TEST_CASE("filtered views: nearer to the truth than as many views unfiltered") {
   }
 }
 
+TEST_CASE("filtered views: where views are many, no farther from the truth than unfiltered ones" *
+          doctest::test_suite("long")) {
+  ThreadPool pool{2};
+  for (const char* name : {"cube-room", "random:101", "random:202"}) {
+    const Scene scene = scene_named(name);
+    const auto picture = [&](const char* method, int samples) {
+      return sample_scene(scene, method, {.samples = samples}, 256, 256, pool, scene.lens.lens)
+          .sampled.picture;
+    };
+    const Image truth = picture("accumulation", 1024);
+    for (const int samples : {12, 16, 24, 32}) {
+      CAPTURE(name);
+      CAPTURE(samples);
+      CHECK(mean_flip(truth, picture("filtered-views", samples), pool) <
+            1.005 * mean_flip(truth, picture("accumulation", samples), pool));
+    }
+  }
+}
+
 TEST_CASE("filtered views: many of them are accumulation") {
   ThreadPool pool{2};
   const Scene scene = scene_named("cube-room");

@@ -93,6 +93,18 @@ TEST_CASE("cells of the lens: views look from the pixel's centre, or from offset
   }
 }
 
+TEST_CASE("cells of the lens: the fewer rays, the longer the steps that are left alone") {
+  const auto least_px = [](int views, bool jitter) {
+    return least_step_px(lens_cells({}, views, points_of_cell(views), jitter));
+  };
+  CHECK(least_px(8, false) == doctest::Approx(0.460).epsilon(0.01));
+  CHECK(least_px(16, false) == doctest::Approx(1.3));
+  CHECK(least_px(32, false) == doctest::Approx(3.677).epsilon(0.01));
+  CHECK(least_px(8, true) == doctest::Approx(0.424).epsilon(0.01));
+  CHECK(least_px(16, true) == doctest::Approx(0.6));
+  CHECK(least_px(32, true) == doctest::Approx(0.849).epsilon(0.01));
+}
+
 TEST_CASE("cells of the lens: many views are points, those of accumulation") {
   CHECK(points_of_cell(1) == kMostCellPoints);
   CHECK(points_of_cell(kMostFewLensPoints / kMostCellPoints) == kMostCellPoints);

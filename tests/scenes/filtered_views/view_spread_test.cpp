@@ -147,3 +147,22 @@ TEST_CASE("view spread: what is in focus stays as it is, wherever in the pixel t
     }
   }
 }
+
+TEST_CASE("view spread: no ray moves where the longest step would be below the least") {
+  const LensCells cells = lens_cells({}, 32, 8);
+  const ViewSpread of_lens = make_view_spread(kCoc, cells);
+  double longest = 0.0;
+  for (const glm::dvec2 point : cells.points) {
+    longest = std::max({longest, std::fabs(point.x), std::fabs(point.y)});
+  }
+  const auto steps = ray_steps(of_lens, points_of(cells, 3));
+  bool some_move = false;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const int level = static_cast<int>(i % kSpreadLevels) - kMostSpreadLevel;
+    const double radius_px = of_lens.radius_px[static_cast<std::size_t>(std::abs(level))];
+    const bool moves = steps[i].x != 0 || steps[i].y != 0;
+    some_move = some_move || moves;
+    if (longest * radius_px < least_step_px(cells)) CHECK(!moves);
+  }
+  CHECK(some_move);
+}
