@@ -13,6 +13,7 @@
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/files/exr_file.h"
+#include "tools/files/png_text.h"
 #include "tools/files/srgb16.h"
 
 using namespace softfocus;
@@ -72,7 +73,66 @@ Image ramp() {
   return image;
 }
 
+/// A PNG of rows that are stored without compression, each behind a 0, the filter's number.
+Bytes plain_png(int width, int height, int bits, int colour_type, const Bytes& rows,
+                std::string_view palette = {}, std::string_view transparency = {}) {
+  const auto big = [](std::uint32_t value) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift & 0xFFu);
+    return text;
+  };
+  std::string packed{"\x78\x01\x01", 3};
+  const auto length = static_cast<std::uint16_t>(rows.size());
+  for (const std::uint16_t number : {length, static_cast<std::uint16_t>(~length)}) {
+    packed += static_cast<char>(number & 0xFF);
+    packed += static_cast<char>(number >> 8);
+  }
+  std::uint32_t a = 1, b = 0;  // Adler-32
+  for (const std::byte byte : rows) {
+    packed += static_cast<char>(byte);
+    a = (a + std::to_integer<std::uint32_t>(byte)) % 65521;
+    b = (b + a) % 65521;
+  }
+  packed += big(b << 16 | a);
+  Bytes png = bytes_of(kPngSignature);
+  append_png_chunk(png, "IHDR",
+                   big(static_cast<std::uint32_t>(width)) +
+                       big(static_cast<std::uint32_t>(height)) + static_cast<char>(bits) +
+                       static_cast<char>(colour_type) + std::string(3, '\0'));
+  if (!palette.empty()) append_png_chunk(png, "PLTE", palette);
+  if (!transparency.empty()) append_png_chunk(png, "tRNS", transparency);
+  append_png_chunk(png, "IDAT", packed);
+  append_png_chunk(png, "IEND", {});
+  return png;
+}
+
 }  // namespace
+
+TEST_CASE("PNG: palettes are looked up, with the alpha of their entries") {
+  const Bytes rows = bytes_of(std::string_view{"\0\1\0", 3});
+  const std::string_view palette{"\xFF\0\0\0\x80\0", 6};  // red, green
+  const PictureFile plain = open_picture_file(plain_png(2, 1, 8, 3, rows, palette), "a.png");
+  CHECK(names(plain) == "R, G, B");
+  const auto planes = all_planes(plain);
+  CHECK(planes[0] == PlaneValues{0, 255});
+  CHECK(planes[1] == PlaneValues{128, 0});
+  const PictureFile clear =
+      open_picture_file(plain_png(2, 1, 8, 3, rows, palette, "\x40"), "a.png");
+  CHECK(names(clear) == "R, G, B, A");
+  CHECK(all_planes(clear)[3] == PlaneValues{255, 64});
+}
+
+TEST_CASE("PNG: grey of one bit goes from 0 to 255, grey with alpha has two planes") {
+  const PictureFile bits =
+      open_picture_file(plain_png(4, 1, 1, 0, bytes_of(std::string_view{"\0\xA0", 2})), "a.png");
+  CHECK(names(bits) == "Y");
+  CHECK(all_planes(bits)[0] == PlaneValues{255, 0, 255, 0});
+  const PictureFile grey = open_picture_file(
+      plain_png(2, 1, 8, 4, bytes_of(std::string_view{"\0\x10\xFF\x20\x80", 5})), "a.png");
+  CHECK(names(grey) == "Y, A");
+  CHECK(all_planes(grey)[0] == PlaneValues{16, 32});
+  CHECK(all_planes(grey)[1] == PlaneValues{255, 128});
+}
 
 TEST_CASE("NPY: every type and both orders give the same planes") {
   struct Case {
