@@ -15,7 +15,11 @@ namespace {
 // The sets of up to 256 points are parted after fewer.
 constexpr int kRounds = 50;
 
-constexpr int kFewestCellPoints = 8;
+// Views of full cells, and the most of cells with half as many points.
+constexpr int kFewViews = 8;
+constexpr int kMostSpreadViews = 32;
+constexpr int kFewCellPoints = 16;
+static_assert(kMostSpreadViews * kFewCellPoints <= kMostLensPointsOfSet);
 
 double square(glm::dvec2 v) { return v.x * v.x + v.y * v.y; }
 
@@ -65,9 +69,7 @@ bool exchange(Parted& parted) {
 }  // namespace
 
 int points_of_cell(int views) {
-  int points = kMostCellPoints;
-  while (points > 1 && points * views > kMostFewLensPoints) points /= 2;
-  return points < kFewestCellPoints ? 1 : points;
+  return views <= kFewViews ? kMostCellPoints : views <= kMostSpreadViews ? kFewCellPoints : 1;
 }
 
 LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter) {
@@ -98,12 +100,11 @@ LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter) 
 }
 
 double least_step_px(const LensCells& cells) {
-  constexpr double kLeast = 2.6, kLeastOfJitter = 2.4;
-  const double rays = cells.per_cell;
   const bool jitter = std::any_of(cells.in_pixel.begin(), cells.in_pixel.end(),
                                   [](glm::dvec2 offset) { return offset != glm::dvec2{0.0}; });
-  const double least = jitter ? kLeastOfJitter : kLeast * kMostCellPoints / rays;
-  return least / std::sqrt(rays);
+  const std::size_t views = cells.views.size();
+  if (jitter || views <= kFewViews) return 2.6 / std::sqrt(static_cast<double>(cells.per_cell));
+  return views <= 2 * kFewViews ? 1.3 : 1.75;
 }
 
 std::span<const glm::dvec2> points_of(const LensCells& cells, int cell) {

@@ -20,9 +20,8 @@ struct LensCells {
 /// The most points that a cell has.
 inline constexpr int kMostCellPoints = 32;
 
-/// Points of a cell for a picture of so many views: the largest power of two that leaves
-/// kMostFewLensPoints in all, at most kMostCellPoints. 1, a cell is its view, where that is below
-/// 8: so few rays in whole pixels leave more noise than they take away.
+/// Points of a cell for a picture of so many views: 32 up to 8 views, 16 up to 32, and 1 beyond: a
+/// cell is its view.
 int points_of_cell(int views);
 
 /// The views are lens_points_for() their number, and the points those for `views` * `per_cell`,
@@ -31,11 +30,11 @@ int points_of_cell(int views);
 /// size, whether a view stands for its cell or for itself.
 LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter = false);
 
-/// The longest step of a cell's rays, in pixels, below which they are better left alone: whole
-/// pixels would add more noise than the rays take away. With m rays 83 m^(-3/2): 0.5 with 32 of
-/// them, 1.3 with 16 and 3.7 with 8. No smaller bound leaves all scenes of docs/methods.md as near
-/// to the truth as unfiltered views. With jitter a step's rounding is the pixel's own width, and
-/// the bound is 2.4 m^(-1/2).
+/// The longest step of a cell's rays, in pixels, below which they are better left alone: the mean
+/// of the views is smooth there, and whole pixels would only add noise. 0.5 up to 8 views, 1.3 up
+/// to 16, 1.75 beyond: found on the scenes of docs/methods.md, all of which are then as near to the
+/// truth as with unfiltered views. With jitter a step's rounding is the pixel's own width, and the
+/// bound is 0.5 and 0.65.
 double least_step_px(const LensCells& cells);
 
 /// The offsets of a cell's points.

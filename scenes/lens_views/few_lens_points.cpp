@@ -123,7 +123,7 @@ std::vector<glm::dvec2> few_lens_points(ApertureShape shape, int count) {
 
 std::vector<glm::dvec2> growing_lens_points(ApertureShape shape, std::span<const int> sizes) {
   const int count = sizes.back();
-  assert(count >= 1 && count <= kMostFewLensPoints);
+  assert(count >= 1 && count <= kMostLensPointsOfSet);
   const MeanDistance to_aperture{shape};
   std::vector<glm::dvec2> points = lens_points(shape, count);
   std::vector<glm::dvec2> gradients(points.size());

@@ -93,23 +93,23 @@ TEST_CASE("cells of the lens: views look from the pixel's centre, or from offset
   }
 }
 
-TEST_CASE("cells of the lens: the fewer rays, the longer the steps that are left alone") {
+TEST_CASE("cells of the lens: the more views, the longer the steps that are left alone") {
   const auto least_px = [](int views, bool jitter) {
     return least_step_px(lens_cells({}, views, points_of_cell(views), jitter));
   };
   CHECK(least_px(8, false) == doctest::Approx(0.460).epsilon(0.01));
   CHECK(least_px(16, false) == doctest::Approx(1.3));
-  CHECK(least_px(32, false) == doctest::Approx(3.677).epsilon(0.01));
-  CHECK(least_px(8, true) == doctest::Approx(0.424).epsilon(0.01));
-  CHECK(least_px(16, true) == doctest::Approx(0.6));
-  CHECK(least_px(32, true) == doctest::Approx(0.849).epsilon(0.01));
+  CHECK(least_px(32, false) == doctest::Approx(1.75));
+  CHECK(least_px(8, true) == doctest::Approx(0.460).epsilon(0.01));
+  CHECK(least_px(32, true) == doctest::Approx(0.65));
 }
 
 TEST_CASE("cells of the lens: many views are points, those of accumulation") {
   CHECK(points_of_cell(1) == kMostCellPoints);
-  CHECK(points_of_cell(kMostFewLensPoints / kMostCellPoints) == kMostCellPoints);
-  CHECK(points_of_cell(kMostFewLensPoints / 8) == 8);
-  CHECK(points_of_cell(kMostFewLensPoints / 8 + 1) == 1);
+  CHECK(points_of_cell(8) == kMostCellPoints);
+  CHECK(points_of_cell(9) == kMostCellPoints / 2);
+  CHECK(points_of_cell(32) == kMostCellPoints / 2);
+  CHECK(points_of_cell(33) == 1);
   const LensCells cells = lens_cells({}, 200, 1);
   CHECK(cells.views == lens_points_for({}, 200));
   CHECK(cells.points == std::vector<glm::dvec2>(200, glm::dvec2{0.0}));

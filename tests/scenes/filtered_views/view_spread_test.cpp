@@ -149,7 +149,7 @@ TEST_CASE("view spread: what is in focus stays as it is, wherever in the pixel t
 }
 
 TEST_CASE("view spread: no ray moves where the longest step would be below the least") {
-  const LensCells cells = lens_cells({}, 32, 8);
+  const LensCells cells = lens_cells({}, 32, 16);
   const ViewSpread of_lens = make_view_spread(kCoc, cells);
   double longest = 0.0;
   for (const glm::dvec2 point : cells.points) {
