@@ -46,11 +46,11 @@ bool is_in_doubt(const AutoMethod& choice, const AutoGoal& goal);
 Image picture_of(const AutoMethod& choice, const LensViewInput& views, DofSettings settings,
                  ThreadPool& pool);
 
-/// A picture of filters or of filtered-views is checked on kCheckedTiles tiles, against 16 views of the lens or more. If
-/// it misses the limit, the next dearer choice that should meet it is taken. An accumulation is
-/// checked in the same way, against four times its views (from 128 samples on 512 views, or twice
-/// its own), and its samples doubled. The same bits on every machine, and the bits that the method
-/// gives by its own name.
+/// A picture of filters or of filtered-views is checked on kCheckedTiles tiles, against 16 views of
+/// the lens or more. If it misses the limit, the next dearer choice that should meet it is taken.
+/// An accumulation is checked in the same way, against four times its views (from 128 samples on
+/// 512 views, or twice its own), and its samples doubled. The same bits on every machine, and the
+/// bits that the method gives by its own name.
 AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool);
 
 inline constexpr int kCheckedTiles = 24;

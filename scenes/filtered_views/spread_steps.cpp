@@ -19,7 +19,8 @@ LevelList list_of(const LevelSet& levels) {
 
 SpreadSteps spread_steps(const ViewSpread& spread, std::span<const glm::dvec2> points,
                          glm::dvec2 in_pixel) {
-  SpreadSteps steps{static_cast<int>(points.size()), ray_steps(spread, points, in_pixel), {}, {}, {}, {}};
+  SpreadSteps steps{
+      static_cast<int>(points.size()), ray_steps(spread, points, in_pixel), {}, {}, {}, {}};
   steps.reach_px.resize(kSpreadLevels);
   for (std::size_t i = 0; i < steps.steps.size(); ++i) {
     const PixelStep step = steps.steps[i];

@@ -128,7 +128,8 @@ Image sampled_picture(const Scene& scene, const CameraMatrices& view, const Imag
   const Sampling& sampling = record.used.sampling;
   const auto tell = [&](int samples) {
     progress.show("sampling the lens, " + std::to_string(samples) + " of " +
-                  (sampling.until || sampling.by_tile ? "at most " : "") + std::to_string(sampling.samples));
+                  (sampling.until || sampling.by_tile ? "at most " : "") +
+                  std::to_string(sampling.samples));
   };
   SampledPicture sampled = record.used.method.of_scene->render(
       {scene, view, options.frame, pinhole, used.lens.focus_m,
