@@ -13,7 +13,8 @@ void add_map(CLI::App& parser, const std::string& name, const std::string& help,
              std::optional<std::string>& file) {
   add_value(parser, name, "OUT", help, [name, &file](const std::string& text) {
     if (!format_by_extension(text)) {
-      throw UsageError(name + " '" + text + "': the name must end in .png, .exr, .pfm, .hdr or .npy");
+      throw UsageError(name + " '" + text +
+                       "': the name must end in .png, .exr, .pfm, .hdr or .npy");
     }
     file = text;
   });
@@ -74,7 +75,8 @@ std::vector<ReadFile> compared_files(const CompareOptions& options) {
 
 void add_compare_options(CLI::App& parser, CompareOptions& options) {
   // check_compare_options() asks for them: with --flicker there are none.
-  add_optional_argument(parser, "A", "A picture: .npy, .exr, .pfm, .hdr, .png or .jpg", options.first);
+  add_optional_argument(parser, "A", "A picture: .npy, .exr, .pfm, .hdr, .png or .jpg",
+                        options.first);
   add_optional_argument(parser, "B", "What it should be: a picture of the same size",
                         options.second);
   add_map(parser, "--diff",
