@@ -198,7 +198,7 @@ std::vector<ColourLayer> colour_layers(const PictureFile& file) {
     const auto red = find("R"), green = find("G"), blue = find("B"), grey = find("Y");
     if (red && green && blue) {
       layers.push_back({name, *red, *green, *blue, find("A")});
-    } else if (grey && !red) {
+    } else if (grey && !red && !find("X")) {  // X, Y, Z are a direction
       layers.push_back({name, *grey, *grey, *grey, find("A")});
     }
   }
