@@ -1,5 +1,6 @@
 #include "raster/pipeline/lanes/visibility_tile.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace softfocus {
@@ -7,11 +8,15 @@ namespace {
 
 constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
 
+// Calls `visit` with two pixels beside each other at a time, which lie together in a quad, or with
+// the last one of an odd row.
 template <class Visit>
-void for_each_pixel(const VisibilityTile& tile, const Visit& visit) {
-  const Rectangle& area = tile.area;
-  for (int y = 0; y < area.y_end - area.y_begin; ++y) {
-    for (int x = 0; x < area.x_end - area.x_begin; ++x) visit(x, y, place_of_pixel(x, y));
+void for_each_pair(const VisibilityTile& tile, const Visit& visit) {
+  const int width = tile.area.x_end - tile.area.x_begin;
+  for (int y = 0; y < tile.area.y_end - tile.area.y_begin; ++y) {
+    int x = 0;
+    for (; x + 2 <= width; x += 2) visit(x, y, place_of_pixel(x, y), std::size_t{2});
+    if (x < width) visit(x, y, place_of_pixel(x, y), std::size_t{1});
   }
 }
 
@@ -23,11 +28,15 @@ std::byte* texel_of(const TileLayer& layer, int x, int y) {
 // Texels that were there before, and that nearer triangles have moved back to this layer.
 void move_back(const VisibilityTile& tile, std::size_t number) {
   const TileLayer& layer = tile.layer(number);
-  for_each_pixel(tile, [&](int x, int y, std::size_t place) {
-    if (layer.ids[place] >= 0) return;
-    const auto before = static_cast<std::size_t>(-1 - layer.ids[place]);
-    if (before == number) return;
-    std::memcpy(texel_of(layer, x, y), texel_of(tile.layer(before), x, y), kTexelBytes);
+  for_each_pair(tile, [&](int x, int y, std::size_t place, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t id = layer.ids[place + i];
+      if (id >= 0) continue;
+      const auto before = static_cast<std::size_t>(-1 - id);
+      if (before == number) continue;
+      const int column = x + static_cast<int>(i);
+      std::memcpy(texel_of(layer, column, y), texel_of(tile.layer(before), column, y), kTexelBytes);
+    }
   });
 }
 
@@ -58,9 +67,9 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
       continue;
     }
     const Image& from = *layer_target(targets, i).depth;
-    for_each_pixel(tile, [&](int x, int y, std::size_t place) {
-      layer.depth[place] =
-          row<float>(from, area.y_begin + y)[static_cast<std::size_t>(area.x_begin + x)];
+    for_each_pair(tile, [&](int x, int y, std::size_t place, std::size_t count) {
+      std::copy_n(row<float>(from, area.y_begin + y).data() + area.x_begin + x, count,
+                  &layer.depth[place]);
     });
   }
 }
@@ -80,9 +89,10 @@ void end_tile(const VisibilityTile& tile, const RenderTargets& targets) {
   const Rectangle& area = tile.area;
   for (std::size_t i = 0; i < tile.layers; ++i) {
     Image& to = *layer_target(targets, i).depth;
-    for_each_pixel(tile, [&](int x, int y, std::size_t place) {
-      row<float>(to, area.y_begin + y)[static_cast<std::size_t>(area.x_begin + x)] =
-          tile.layer(i).depth[place];
+    const float* depths = tile.layer(i).depth.data();
+    for_each_pair(tile, [&](int x, int y, std::size_t place, std::size_t count) {
+      std::copy_n(depths + place, count,
+                  row<float>(to, area.y_begin + y).data() + area.x_begin + x);
     });
   }
 }
