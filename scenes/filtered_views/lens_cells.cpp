@@ -104,7 +104,7 @@ double least_step_px(const LensCells& cells) {
                                   [](glm::dvec2 offset) { return offset != glm::dvec2{0.0}; });
   const std::size_t views = cells.views.size();
   if (jitter || views <= kFewViews) return 2.6 / std::sqrt(static_cast<double>(cells.per_cell));
-  return views <= 2 * kFewViews ? 1.3 : 1.75;
+  return views <= 2 * kFewViews ? 1.3 : 1.5;
 }
 
 std::span<const glm::dvec2> points_of(const LensCells& cells, int cell) {

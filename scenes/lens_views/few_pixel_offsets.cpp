@@ -13,9 +13,9 @@ namespace softfocus {
 namespace {
 
 // Up to 64 points all rounds but the last few hardly change anything; more take too long.
-constexpr int kRounds = 8;
-constexpr int kRoundsOfLargeSets = 2;
-constexpr std::size_t kLargeSet = 65;
+constexpr int kPairingRounds = 8;
+constexpr int kPairingRoundsOfLargeSets = 2;
+constexpr std::size_t kLargePairing = 65;
 
 using Offsets = std::vector<glm::dvec2>;
 
@@ -102,12 +102,12 @@ bool exchange(Pairing& pairing, std::size_t begin) {
 }
 
 // Pairs the offsets from `begin` on anew, with those before as they are.
-void pair(std::span<const glm::dvec2> lens_points, std::span<glm::dvec2> offsets,
-          std::size_t begin) {
+void pair_offsets(std::span<const glm::dvec2> lens_points, std::span<glm::dvec2> offsets,
+                  std::size_t begin) {
   Pairing pairing{centred_distances(lens_points), centred_distances(offsets), {}};
   pairing.offset_of.resize(offsets.size());
   std::iota(pairing.offset_of.begin(), pairing.offset_of.end(), std::size_t{0});
-  const int rounds = offsets.size() < kLargeSet ? kRounds : kRoundsOfLargeSets;
+  const int rounds = offsets.size() < kLargePairing ? kPairingRounds : kPairingRoundsOfLargeSets;
   for (int round = 0; round < rounds && exchange(pairing, begin); ++round) {
   }
   const Offsets before{offsets.begin(), offsets.end()};
@@ -120,7 +120,7 @@ std::vector<glm::dvec2> few_pixel_offsets(std::span<const glm::dvec2> lens_point
   assert(!lens_points.empty() && lens_points.size() <= kMostFewLensPoints);
   Offsets offsets = square_set(std::array{static_cast<int>(lens_points.size())});
   for (const int axis : {0, 1}) spread_over_columns(offsets, axis);
-  pair(lens_points, offsets, 0);
+  pair_offsets(lens_points, offsets, 0);
   return offsets;
 }
 
@@ -131,7 +131,7 @@ std::vector<glm::dvec2> growing_pixel_offsets(std::span<const glm::dvec2> lens_p
   std::size_t begin = 0;
   for (const int size : sizes) {
     const auto count = static_cast<std::size_t>(size);
-    pair(lens_points.first(count), std::span{offsets}.first(count), begin);
+    pair_offsets(lens_points.first(count), std::span{offsets}.first(count), begin);
     begin = count;
   }
   return offsets;

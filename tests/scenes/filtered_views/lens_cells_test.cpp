@@ -99,7 +99,7 @@ TEST_CASE("cells of the lens: the more views, the longer the steps that are left
   };
   CHECK(least_px(8, false) == doctest::Approx(0.460).epsilon(0.01));
   CHECK(least_px(16, false) == doctest::Approx(1.3));
-  CHECK(least_px(32, false) == doctest::Approx(1.75));
+  CHECK(least_px(32, false) == doctest::Approx(1.5));
   CHECK(least_px(8, true) == doctest::Approx(0.460).epsilon(0.01));
   CHECK(least_px(32, true) == doctest::Approx(0.65));
 }
