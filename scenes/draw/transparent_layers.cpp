@@ -161,6 +161,7 @@ Image blended(const Image& opaque, const std::vector<TransparentPicture>& layers
 
 std::vector<TransparentLayer> views_of(const std::vector<TransparentPicture>& pictures) {
   std::vector<TransparentLayer> views;
+  views.reserve(pictures.size());
   for (const TransparentPicture& picture : pictures) {
     views.push_back({picture.colour, picture.opacity});
   }

@@ -27,7 +27,7 @@ std::vector<std::int16_t> brightness_table() {
 }  // namespace
 
 std::uint64_t squared_difference(std::span<const std::uint16_t* const> views, int pixels) {
-  static const std::vector<std::int16_t> kBrightness = brightness_table();
+  static const std::vector<std::int16_t> brightness = brightness_table();
   constexpr int kRun = 64;  // halves, of 16 pixels
   std::uint64_t sum = 0;
   for (int begin = 0; begin < 4 * pixels; begin += kRun) {
@@ -47,7 +47,7 @@ std::uint64_t squared_difference(std::span<const std::uint16_t* const> views, in
       if (i % 4 == 3 || least[at] == most[at]) continue;
       const auto low = static_cast<std::size_t>(std::max<std::int16_t>(least[at], 0));
       const auto high = static_cast<std::size_t>(std::min(most[at], kOne));
-      const int apart = kBrightness[high] - kBrightness[low];
+      const int apart = brightness[high] - brightness[low];
       sum += static_cast<std::uint64_t>(apart * apart);
     }
   }

@@ -128,7 +128,8 @@ void list_part(PictureFile& file, const Imf::Header& header, int part, int parts
         "it is a deep EXR, with any number of samples a pixel; flatten it: oiiotool --flatten IN "
         "-o OUT.exr");
   }
-  const Imath::Box2i display = header.displayWindow(), data = header.dataWindow();
+  const Imath::Box2i& display = header.displayWindow();
+  const Imath::Box2i& data = header.dataWindow();
   check_picture_size("the EXR", width_of(display), height_of(display));
   check_picture_size("the EXR's data window", width_of(data), height_of(data));
   if (part == 0) {
@@ -199,15 +200,11 @@ void read_part(Imf::MultiPartInputFile& exr, int part, const PictureFile& file,
     if (y1 < display.min.y || y0 > display.max.y) continue;
     Imf::FrameBuffer buffer;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      // As the library wants it: the address that pixel (0, 0) would have.
-      const std::intptr_t stride = static_cast<std::intptr_t>(width * sizeof(float));
-      const std::intptr_t base =
-          reinterpret_cast<std::intptr_t>(band[i].data()) -
-          static_cast<std::intptr_t>(y0) * stride -
-          static_cast<std::intptr_t>(data.min.x) * static_cast<std::intptr_t>(sizeof(float));
-      buffer.insert(file.planes[planes[wanted[i]]].channel,
-                    Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base), sizeof(float),
-                               width * sizeof(float)));
+      buffer.insert(
+          file.planes[planes[wanted[i]]].channel,
+          Imf::Slice::Make(Imf::FLOAT, band[i].data(), Imath::V2i{data.min.x, static_cast<int>(y0)},
+                           static_cast<std::int64_t>(width), y1 - y0 + 1, sizeof(float),
+                           width * sizeof(float)));
     }
     input.setFrameBuffer(buffer);
     input.readPixels(static_cast<int>(y0), static_cast<int>(y1));

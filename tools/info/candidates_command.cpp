@@ -203,7 +203,8 @@ std::vector<AutoMethod> listed_choices(const CandidatesOptions& options,
       std::string known;
       for (const AutoMethod& choice : choices) {
         if (known.ends_with(choice.method)) continue;
-        known += (known.empty() ? "" : ", ") + std::string{choice.method};
+        if (!known.empty()) known += ", ";
+        known += choice.method;
       }
       throw UsageError("--only '" + name + "': give one of " + known);
     }

@@ -192,11 +192,13 @@ void check_depth_numbers(const DepthEncoding& encoding, const DepthNumbers& numb
   for (const NamedNumber& number : named) {
     const std::string option = "--" + std::string{number.name};
     if (lists(encoding.needs, number.name) && !number.value) {
-      throw UsageError(what + " needs " + option + "; --help says which others it knows");
+      throw UsageError(std::string{what}.append(" needs ").append(option).append(
+          "; --help says which others it knows"));
     }
     if (number.value && !number.may_be_idle && !lists(encoding.needs, number.name) &&
         !lists(encoding.takes, number.name)) {
-      throw UsageError(option + ": " + what + " makes no use of it; leave it out");
+      throw UsageError(std::string{option}.append(": ").append(what).append(
+          " makes no use of it; leave it out"));
     }
   }
   if (numbers.near_m && numbers.far_m && !(*numbers.near_m < *numbers.far_m)) {
