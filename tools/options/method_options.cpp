@@ -142,10 +142,10 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
                 std::to_string(sampling.samples) + ", of filtered-views " +
                 std::to_string(kMostFilteredViewsByTile) + ")",
             [&sampling](const std::string& text) {
-              constexpr std::string_view kAuto = "auto", kAutoLimit = "auto:";
-              sampling.by_tile = text == kAuto || text.starts_with(kAutoLimit);
+              constexpr std::string_view kAutoWord = "auto", kAutoLimit = "auto:";
+              sampling.by_tile = text == kAutoWord || text.starts_with(kAutoLimit);
               sampling.samples = kMostUsual;
-              if (text == kAuto) return;
+              if (text == kAutoWord) return;
               sampling.samples =
                   parse_whole("--samples", sampling.by_tile ? text.substr(kAutoLimit.size()) : text,
                               1, kMostSamples, "a whole number from 1 to 65536, auto or auto:64");

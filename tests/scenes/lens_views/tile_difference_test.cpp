@@ -37,6 +37,7 @@ std::uint64_t squares_of(const std::vector<std::vector<std::uint16_t>>& views) {
 
 std::uint64_t found(const std::vector<std::vector<std::uint16_t>>& views) {
   std::vector<const std::uint16_t*> rows;
+  rows.reserve(views.size());
   for (const auto& view : views) rows.push_back(view.data());
   return squared_difference(rows, static_cast<int>(views[0].size() / 4));
 }
