@@ -38,7 +38,7 @@ struct Planes3 {
   Imath::Box2i window;
   std::vector<std::vector<float>> values;
 
-  Planes3(Imath::Box2i of, int count) : window(of) {
+  Planes3(const Imath::Box2i& of, int count) : window(of) {
     for (int c = 0; c < count; ++c) {
       std::vector<float>& plane = values.emplace_back();
       for (int y = window.min.y; y <= window.max.y; ++y) {
@@ -48,13 +48,12 @@ struct Planes3 {
   }
 
   Imf::FrameBuffer buffer(const std::vector<std::string>& names) {
-    const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
     Imf::FrameBuffer buffer;
     for (std::size_t c = 0; c < names.size(); ++c) {
-      char* base = reinterpret_cast<char*>(values[c].data() - window.min.x -
-                                           static_cast<std::ptrdiff_t>(window.min.y) *
-                                               static_cast<std::ptrdiff_t>(width));
-      buffer.insert(names[c], Imf::Slice(Imf::FLOAT, base, sizeof(float), width * sizeof(float)));
+      buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, values[c].data(), window.min, width,
+                                               height, sizeof(float),
+                                               static_cast<std::size_t>(width) * sizeof(float)));
     }
     return buffer;
   }
@@ -62,7 +61,8 @@ struct Planes3 {
 
 const Imath::Box2i kDisplay{{0, 0}, {kColumns - 1, kRows - 1}};
 
-Imf::Header header_with(const std::vector<std::string>& names, Imath::Box2i data = kDisplay) {
+Imf::Header header_with(const std::vector<std::string>& names,
+                        const Imath::Box2i& data = kDisplay) {
   Imf::Header header{kDisplay, data};
   for (const std::string& name : names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   return header;

@@ -201,6 +201,7 @@ TEST_CASE("PFM: grey comes back from its file, top row first") {
 
 TEST_CASE("PNG: 16 bits of grey and of colour come back from their file") {
   std::vector<std::uint16_t> values;
+  values.reserve(700);
   for (int i = 0; i < 700; ++i) values.push_back(static_cast<std::uint16_t>(i * 93));
   const PictureFile grey = open_picture_file(encode_grey_png_16(values, 35, 20), "a.png");
   CHECK(names(grey) == "Y");

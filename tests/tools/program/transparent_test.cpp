@@ -16,7 +16,7 @@ namespace {
 
 // A white wall at 4 m, and before it a red pane of one half.
 std::string with_pane(const TemporaryDirectory& directory, const std::string& of_pane) {
-  const std::string file = directory.file("pane.toml");
+  std::string file = directory.file("pane.toml");
   std::ofstream{file} << "background = [0, 0, 1]\n"
                          "[camera]\nposition = [0, 0, 2]\n"
                          "[material.wall]\nlit = false\ndiffuse = [1, 1, 1]\n"
