@@ -24,8 +24,11 @@ void* grown(void* memory, std::size_t size) {
   return larger;
 }
 
+/// What malloc gives for no bytes differs between systems.
+void* allocated(std::size_t size) { return std::malloc(size > 0 ? size : 1); }
+
 }  // namespace
-#define STBIW_MALLOC(size) std::malloc(size)
+#define STBIW_MALLOC(size) allocated(static_cast<std::size_t>(size))
 #define STBIW_REALLOC(memory, size) grown(memory, size)
 #define STBIW_FREE(memory) std::free(memory)
 
