@@ -32,8 +32,8 @@ LensCells lens_cells(ApertureShape shape, int views, int per_cell, bool jitter =
 
 /// The longest step of a cell's rays, in pixels, below which they are better left alone: the mean
 /// of the views is smooth there, and whole pixels would only add noise. 0.5 up to 8 views, 1.3 up
-/// to 16, 1.5 beyond: found on the scenes of docs/methods.md, all of which are then as near to the
-/// truth as with unfiltered views, but for 2 %. With jitter a step's rounding is the pixel's own
+/// to 16, 1.5 beyond. With these bounds every scene of docs/methods.md is as near to the truth as
+/// with unfiltered views, to within 2 %. With jitter a step's rounding is the pixel's own
 /// width, and the bound is 0.5 and 0.65.
 double least_step_px(const LensCells& cells);
 

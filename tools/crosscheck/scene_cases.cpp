@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::string_view kTies = "ties", kPanes = "panes";
 
-// Triangles of which many lie at one depth over each other, in two objects of one mesh: their order
-// is that of submission.
+// Many triangles over each other at one depth, in two objects of one mesh. The first submitted is
+// the nearest.
 Scene tied_triangles() {
   Scene scene;
   scene.name = kTies;

@@ -19,7 +19,7 @@ namespace {
 
 struct InspectOptions {
   std::vector<std::string> files;
-  RefocusOptions preview;  ///< of which output, format, reading and lens are used
+  RefocusOptions preview;  ///< only its output, format, reading and lens are used
   bool json = false;
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 Scene built_in(const char* name) { return load_scene(name, scene_search_path({})); }
 
-// All tiles with the first `samples` of the views, of which there are `most`.
+// All tiles with the first `samples` of `most` views.
 Image with_as_many(const Scene& scene, const Sampling& sampling, int samples, const Image& pinhole,
                    ThreadPool& pool) {
   const CameraMatrices camera = camera_matrices(scene.camera, 0.0, pinhole.width, pinhole.height);
