@@ -27,6 +27,7 @@
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
+#include "tools/render/shard_file.h"
 
 namespace softfocus {
 namespace {
@@ -120,21 +121,32 @@ Image halved(const Image& picture, const RenderOptions& options, double fov_y_de
   return halve(picture, options.profile, pool);
 }
 
-/// The method that draws the scene itself, from many points of the lens.
-Image sampled_picture(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
-                      PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
-                      Progress& progress, ThreadPool& pool) {
+/// What a method works from that draws the scene itself, from many points of the lens.
+LensViewInput lens_view_input(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
+                              PreparedScene* prepared, const RenderOptions& options,
+                              const RenderRecord& record, Progress& progress) {
   const UsedLens& used = *record.lens;
   const Sampling& sampling = record.used.sampling;
-  const auto tell = [&](int samples) {
-    progress.show("sampling the lens, " + std::to_string(samples) + " of " +
-                  (sampling.until || sampling.by_tile ? "at most " : "") +
-                  std::to_string(sampling.samples));
-  };
-  SampledPicture sampled = record.used.method.of_scene->render(
-      {scene, view, options.frame, pinhole, used.lens.focus_m,
-       aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell, prepared},
-      pool);
+  const SampleRange range = samples_of(options.shard.value_or(Shard{}), sampling.samples);
+  const std::string of_all = std::string{" of "} +
+                             (sampling.until || sampling.by_tile ? "at most " : "") +
+                             std::to_string(range.end - range.begin);
+  return {scene,
+          view,
+          options.frame,
+          pinhole,
+          used.lens.focus_m,
+          aperture_radius_m(used.lens, used.coc_scale),
+          sampling,
+          options.profile,
+          [&progress, of_all](int samples) {
+            progress.show("sampling the lens, " + std::to_string(samples) + of_all);
+          },
+          prepared};
+}
+
+Image sampled_picture(const LensViewInput& input, RenderRecord& record, ThreadPool& pool) {
+  SampledPicture sampled = record.used.method.of_scene->render(input, pool);
   record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
   return std::move(sampled.picture);
 }
@@ -281,6 +293,12 @@ void write_layers(std::vector<Image>& behind, const RenderOptions& options,
   }
 }
 
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    if (!warning.empty()) std::cerr << "softfocus: warning: " << warning << '\n';
+  }
+}
+
 int render(const RenderOptions& options) {
   const bool to_standard_output = options.output == "-";
   if (!to_standard_output) check_writable(options.output);
@@ -359,7 +377,9 @@ int render(const RenderOptions& options) {
       return auto_drawn(scene, view, parts.picture, ready, options, record, progress, pool);
     }
     if (from_lens) {
-      return sampled_picture(scene, view, parts.picture, ready, options, record, progress, pool);
+      return sampled_picture(
+          lens_view_input(scene, view, parts.picture, ready, options, record, progress), record,
+          pool);
     }
     return shown_picture(
         std::move(parts), objects,
@@ -367,6 +387,17 @@ int render(const RenderOptions& options) {
         options, record.used.method.filter, scene.camera, settings, on_gl ? &*on_gl : nullptr,
         pool);
   };
+  if (options.shard) {
+    timed(progress, "sampling", ms.filter, [&] {
+      record.sampled = {options.sampling.samples, {}, {}};
+      write_shard(
+          lens_view_input(scene, view, parts.picture, &*prepared, options, record, progress),
+          options, record, pool);
+    });
+    progress.clear();
+    print_warnings(warnings);
+    return kDone;
+  }
   Image picture =
       is_auto ? make_picture()  // which times its stages itself
               : timed(progress, from_lens ? "sampling" : "filtering", ms.filter, make_picture);
@@ -417,9 +448,7 @@ int render(const RenderOptions& options) {
   if (depth_file) depth_file->commit();
   if (report_file) report_file->commit();
   progress.clear();
-  for (const std::string& warning : warnings) {
-    if (!warning.empty()) std::cerr << "softfocus: warning: " << warning << '\n';
-  }
+  print_warnings(warnings);
 
   if (options.json) std::cout << json_report(options, record);
   if (options.verbose) std::cerr << report;

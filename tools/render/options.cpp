@@ -11,6 +11,7 @@
 #include "tools/files/same_file.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/render/shard_file.h"
 
 namespace softfocus {
 namespace {
@@ -95,6 +96,9 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
   add_max_coc_option(parser, options.max_coc_px);
   add_weight_options(parser, options.leak, options.budget);
   add_sampling_options(parser, options.sampling);
+  add_shard_option(parser, options.shard,
+                   "Of accumulation: draw the I-th of N parts of the samples; FILE, a .sum, gets "
+                   "their sums, which softfocus join joins");
   add_auto_options(parser, options.goal, options.verify);
 }
 
@@ -260,7 +264,11 @@ void add_render_options(CLI::App& parser, RenderOptions& options) {
 
 void complete(RenderOptions& options, const CLI::App& parser) {
   const bool to_standard_output = options.output == "-";
-  settle_format(parser, options.output, options.format);
+  if (options.shard) {
+    check_shard_options(options, parser);
+  } else {
+    settle_format(parser, options.output, options.format);
+  }
   if (to_standard_output && options.json) {
     throw UsageError("--json and -o - would both write to standard output; give -o a file");
   }
@@ -298,6 +306,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   } else if (!options.method.is_auto()) {
     refuse_sampling_options(parser, options.method.name());
   }
+  if (options.shard) check_shard_count(*options.shard, options.sampling.samples);
   check_supersample(options);
   check_render_memory(options, bytes_per_pixel(options));
 }
