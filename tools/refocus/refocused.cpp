@@ -11,6 +11,9 @@
 namespace softfocus {
 namespace {
 
+/// The largest depth that a 16-bit float holds.
+constexpr float kFarthestHalf_m = 65504.0f;
+
 /// Auto's choice among the filters, for there is no scene to look at anew.
 AutoMethod chosen_filter(const Image& picture, const RefocusOptions& options, const PixelCoc& coc,
                          ThreadPool& pool) {
@@ -58,13 +61,11 @@ Image refocused(Image colour, const DepthMap& depth, const RefocusOptions& optio
   used.settings.coc = used.lens.coc;
   used.settings.leak = options.leak;
   used.settings.budget = options.budget;
-  if (used.lens.range) {
-    DepthMap moved = depth;
-    move_range_into_focus(moved, *used.lens.range);
-    put_in_alpha(moved.metres, colour);
-  } else {
-    put_in_alpha(depth.metres, colour);
-  }
+  DepthMap seen = depth;
+  if (used.lens.range) move_range_into_focus(seen, *used.lens.range);
+  // (z - focus) / z is NaN at infinity, and NaN has the largest circle. The horizon has its own.
+  for (float& metres : seen.metres) metres = std::min(metres, kFarthestHalf_m);
+  put_in_alpha(seen.metres, colour);
   const CircleSizes sizes = circle_sizes(colour, used.settings.coc, 0.0f, pool);
   used.largest_circle_px = sizes.largest_px;
   used.settings.max_coc_px = options.max_coc_px.value_or(std::ceil(sizes.largest_px));
@@ -81,7 +82,7 @@ Image refocused(Image colour, const DepthMap& depth, const RefocusOptions& optio
     if (!is_sharp(*used.choice)) used.settings.max_coc_px = used.choice->radius_px;
   }
   Image result = filtered(colour, options, used, pool);
-  if (used.lens.range) put_in_alpha(depth.metres, result);
+  put_in_alpha(depth.metres, result);
   return result;
 }
 

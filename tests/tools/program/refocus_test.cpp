@@ -88,6 +88,55 @@ TEST_CASE("refocus: exact depth in any file gives the bits that render gives") {
   }
 }
 
+TEST_CASE(
+    "refocus: a multi-layer EXR by Blender gives the picture of the same scene, within 50 dB") {
+  if (!missing_exr().empty()) return;
+  // Both have one sample in the middle of a pixel: tests/data/blender-cubes/cubes.py.
+  const std::string folder = SOFTFOCUS_TEST_DATA "/blender-cubes/";
+  const TemporaryDirectory directory;
+  for (const std::string method : {"two-pass", "one-pass", "disc-layers", "mipmap", "scatter"}) {
+    CAPTURE(method);
+    const Words options{"--method", method, "--max-coc", "8", "-o", directory.file("result.npy")};
+    CHECK(run_program(joined({"render", folder + "cubes.toml", "--size", "240x160"}, options))
+              .status == 0);
+    const Image truth = read_image_file(directory.file("result.npy")).image;
+    const ProgramRun run =
+        run_program(joined({"refocus", folder + "cubes.exr", "--focus", "1.6m", "--focal-length",
+                            "85mm", "--f-number", "1.8", "--fov", "35"},
+                           options));
+    CHECK(run.status == 0);
+    CHECK(run.err == "");
+    CHECK(psnr(truth, read_image_file(directory.file("result.npy")).image) > 50.0);
+  }
+}
+
+TEST_CASE("refocus: what is infinitely far has the horizon's circle, and stays infinitely far") {
+  const TemporaryDirectory directory;
+  draw(directory, "a.npy", "d.pfm");
+  Image picture = read_image_file(directory.file("a.npy")).image;
+  const auto set_sky = [&](float metres, const std::string& name) {
+    for (int y = 0; y < picture.height / 3; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        glm::vec4 texel = load_texel(picture, x, y);
+        texel.a = metres;
+        store_texel(picture, x, y, texel, {});
+      }
+    }
+    const Bytes bytes = encode_npy(picture);
+    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  };
+  set_sky(60000.0f, "far.npy");
+  set_sky(std::numeric_limits<float>::infinity(), "infinite.npy");
+  for (const std::string method : {"two-pass", "disc-layers"}) {
+    CAPTURE(method);
+    const Words options = joined(kLens, {"--method", method});
+    const Image far = refocus_of(directory, {"far.npy"}, options);
+    const Image infinite = refocus_of(directory, {"infinite.npy"}, options);
+    CHECK(psnr(far, infinite) > 70.0);
+    CHECK(std::isinf(load_texel(infinite, 0, 0).a));
+  }
+}
+
 TEST_CASE("refocus: millimetres of 16 bits and colours of 8 bits are off by 50 dB at most") {
   const Image truth = rendered_picture("figures", kLens).image;
   const TemporaryDirectory directory;
