@@ -54,6 +54,17 @@ FrameWork work_of(const RenderOptions& options, FrameNumber number, const Scene&
   return work;
 }
 
+/// Decoded, as each frame has them for itself.
+std::uint64_t bytes_of_textures(const Scene& scene) {
+  std::uint64_t texels = 0;
+  for (const Texture& texture : scene.textures) {
+    for (const Image& level : texture.levels) {
+      texels += static_cast<std::uint64_t>(level.width) * static_cast<std::uint64_t>(level.height);
+    }
+  }
+  return texels * 4 * sizeof(float);
+}
+
 }  // namespace
 
 int render_frames(const RenderOptions& options, const CLI::App& parser, const Scene& scene,
@@ -80,7 +91,8 @@ int render_frames(const RenderOptions& options, const CLI::App& parser, const Sc
                                     options.json, options.verbose);
   // A driver belongs to one thread.
   if (options.gl == nullptr) {
-    run.at_once = frames_at_once(frames.size(), options.pool.threads, bytes_of_a_frame(options),
+    run.at_once = frames_at_once(frames.size(), options.pool.threads,
+                                 bytes_of_a_frame(options) + bytes_of_textures(scene),
                                  memory_bytes().value_or(0));
   }
   return run_frames(frames, run, [&](std::size_t frame, FrameRun& frame_run) {

@@ -32,10 +32,11 @@ std::string file_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>{stream}, {}};
 }
 
-void read_lines(std::string_view text, std::set<JournalLine>& lines) {
+void read_lines(std::string_view text, std::set<std::string>& lines) {
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
-    if (const auto line = parse_journal_line(text.substr(0, end))) lines.insert(*line);
+    if (const auto line = parse_journal_line(text.substr(0, end)))
+      lines.insert(journal_line(*line));
     text.remove_prefix(end == text.npos ? text.size() : end + 1);
   }
 }
@@ -96,9 +97,10 @@ Journal::Journal(const std::string& output, const std::string& shard)
 }
 
 bool Journal::add(const JournalLine& line) {
-  lines_.insert(line);
+  const std::string text = journal_line(line);
+  lines_.insert(text);
   stream_.clear();
-  stream_ << journal_line(line) << std::flush;
+  stream_ << text << std::flush;
   return static_cast<bool>(stream_);
 }
 

@@ -16,7 +16,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <tuple>
 
 #include "tools/sequence/frame_names.h"
 
@@ -26,7 +25,7 @@ struct JournalLine {
   FrameNumber frame = 0;
   std::uint64_t made_from = 0;  ///< hash of the settings and the files that are read
   std::uint64_t files = 0;      ///< hash of the files that were written
-  auto operator<=>(const JournalLine&) const = default;
+  bool operator==(const JournalLine&) const = default;
 };
 
 /// With its line end.
@@ -44,14 +43,14 @@ class Journal {
   /// `shard` is empty or "2-of-8". Throws FileError if the journal could not be written.
   Journal(const std::string& output, const std::string& shard);
 
-  bool has(const JournalLine& line) const { return lines_.contains(line); }
+  bool has(const JournalLine& line) const { return lines_.contains(journal_line(line)); }
   /// False if it could not be written.
   bool add(const JournalLine& line);
   const std::filesystem::path& file() const { return file_; }
 
  private:
   std::filesystem::path file_;
-  std::set<JournalLine> lines_;
+  std::set<std::string> lines_;  ///< of all journals
   std::ofstream stream_;
 };
 
