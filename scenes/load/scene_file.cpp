@@ -59,13 +59,11 @@ double read_keyed_number(Section& section, std::string_view key, double fallback
                          std::vector<Keyframe>& keys) {
   const toml::node* node = find_key(section, key);
   if (node == nullptr || !node->is_array()) return read_number(section, key, fallback, range);
-  constexpr double kLastFrame = 1e9;
-  for (const auto& row : read_rows(section, key, 2, {0.0, std::max(range.high, kLastFrame)})) {
+  constexpr Range kFramesAndValues{0.0, 1e9};
+  for (const auto& row : read_rows(section, key, 2, kFramesAndValues)) {
     const Keyframe next{row[0], row[1]};
-    if (next.frame > kLastFrame || (!keys.empty() && next.frame <= keys.back().frame)) {
-      fail_at(section, key,
-              "has frames that do not increase, or go beyond 1e9; [[0, 2], [48, 6]] "
-              "would be right");
+    if (!keys.empty() && next.frame <= keys.back().frame) {
+      fail_at(section, key, "has frames that do not increase; [[0, 2], [48, 6]] would be right");
     }
     if (next.value < range.low || next.value > range.high) {
       fail_at(section, key, "has a value out of range; docs/scene-format.md has the range");

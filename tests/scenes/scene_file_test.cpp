@@ -93,13 +93,14 @@ TEST_CASE("keys that cannot be are complaints with their line") {
   const auto of_focus = [](const std::string& keys) {
     return complaint("[lens]\nfocus_m = " + keys + "\n");
   };
-  for (const char* keys : {"[[5, 2], [5, 3]]", "[[5, 2], [4, 3]]", "[[2e9, 2]]"}) {
+  for (const char* keys : {"[[5, 2], [5, 3]]", "[[5, 2], [4, 3]]"}) {
     CHECK(contains(of_focus(keys), "a.toml:2: lens.focus_m: has frames that do not increase"));
   }
   CHECK(contains(of_focus("[[0, 2], [5, 0]]"), "a.toml:2: lens.focus_m: has a value out of range"));
   CHECK(contains(of_focus("[]"), "a.toml:2: lens.focus_m: is empty"));
   CHECK(contains(of_focus("[[0, 2], [5, 0.04]]"), "a.toml:2: lens.focus_m: "));
-  for (const char* keys : {"[1, 2]", "[[1, 2, 3]]", "[[-1, 2]]", "[[0, \"a\"]]", "[[nan, 2]]"}) {
+  for (const char* keys :
+       {"[1, 2]", "[[1, 2, 3]]", "[[-1, 2]]", "[[0, \"a\"]]", "[[nan, 2]]", "[[2e9, 2]]"}) {
     CHECK(contains(of_focus(keys), "a.toml:2: lens.focus_m: "));
   }
   CHECK(contains(complaint("[lens]\nkeyframes = \"cubic\"\n"), "there are linear and smooth"));

@@ -33,7 +33,7 @@ std::vector<FrameWork> works(const TemporaryDirectory& directory, int count) {
   std::vector<FrameWork> frames;
   for (int i = 0; i < count; ++i) {
     const std::string name = directory.file("f_" + std::to_string(i));
-    frames.push_back({.number = i, .file = name, .settings = "s", .outputs = {name}});
+    frames.push_back({.number = i, .file = name, .settings = 1, .outputs = {name}});
   }
   return frames;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tools/cli/platform.h"
-#include "tools/files/whole_file.h"
+#include "tools/sequence/journal.h"
 
 namespace softfocus {
 namespace {
@@ -23,7 +23,7 @@ RefocusOptions options_of(const RefocusOptions& all, const std::vector<FrameFile
 FrameWork work_of(const RefocusOptions& options, FrameNumber number, const std::string& settings) {
   FrameWork work{.number = number,
                  .file = options.colour,
-                 .settings = settings + lens_text(options.photo.lens)};
+                 .settings = hash_of(settings + lens_text(options.photo.lens))};
   work.inputs = {options.colour};
   if (!options.depth.empty()) work.inputs.emplace_back(options.depth);
   if (options.reading.mask) work.inputs.emplace_back(*options.reading.mask);
@@ -69,8 +69,7 @@ bool is_sequence(const RefocusOptions& options, const std::vector<FrameFiles>& f
 int refocus_frames(const RefocusOptions& options, const CLI::App& parser,
                    const std::vector<FrameFiles>& files, const RefocusFrame& refocus) {
   const FrameOutput output{"-o", options.output};
-  const std::string settings =
-      given_settings(parser) + profile_text({options.profile_name, "", options.profile}, "");
+  const std::string settings = given_settings(parser, options.profile);
   std::vector<FrameWork> frames;
   for (const FrameNumber number : chosen_frames(options.sequence, files)) {
     frames.push_back(work_of(options_of(options, files, output, number), number, settings));

@@ -285,9 +285,9 @@ void write_layers(std::vector<Image>& behind, const RenderOptions& options,
 
 /// What is said once the files are there.
 struct Rendered {
-  Bytes picture;  ///< of -o -
-  std::vector<std::string> warnings;
-  std::string report, json;
+  Bytes picture{};  ///< of -o -
+  std::vector<std::string> warnings{};
+  std::string report{}, json{};
 };
 
 Rendered make_rendered(const RenderOptions& options, const Scene& scene, double load_ms,

@@ -8,6 +8,7 @@
 #include "tools/files/picture_notes.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
+#include "tools/sequence/journal.h"
 
 namespace softfocus {
 namespace {
@@ -38,8 +39,9 @@ RenderOptions options_of(const RenderOptions& all, const FrameOutputs& outputs,
 
 FrameWork work_of(const RenderOptions& options, FrameNumber number, const Scene& scene,
                   const std::string& settings) {
-  FrameWork work{
-      .number = number, .file = options.output, .settings = settings + lens_text(options.lens)};
+  FrameWork work{.number = number,
+                 .file = options.output,
+                 .settings = hash_of(settings + lens_text(options.lens))};
   work.inputs = scene.files;
   for (const auto& [name, text] : options.shaders.own) {
     work.inputs.push_back(options.shaders.folder / name);
@@ -70,8 +72,7 @@ std::uint64_t bytes_of_textures(const Scene& scene) {
 int render_frames(const RenderOptions& options, const CLI::App& parser, const Scene& scene,
                   const RenderFrame& render) {
   const FrameOutputs outputs = outputs_of(options);
-  const std::string settings =
-      given_settings(parser) + profile_text({options.profile_name, "", options.profile}, "");
+  const std::string settings = given_settings(parser, options.profile);
   const bool needs_lens = options.show == Show::coc || has_depth_of_field(options);
   std::vector<FrameWork> frames;
   for (const FrameNumber number : chosen_frames(options.sequence, {})) {

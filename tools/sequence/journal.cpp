@@ -11,21 +11,12 @@
 namespace softfocus {
 namespace {
 
-void add_text_to(Hash& hash, std::string_view text) {
-  for (const char letter : text) add_to_hash(hash, static_cast<std::uint8_t>(letter));
-  add_to_hash(hash, std::uint8_t{0});
-}
-
 std::string without_sum(const JournalLine& line) {
   return "frame " + std::to_string(line.frame) + " from " + hash_text(line.made_from) + " files " +
          hash_text(line.files);
 }
 
-std::string sum_of(std::string_view text) {
-  Hash hash;
-  add_text_to(hash, text);
-  return " sum " + hash_text(hash.value);
-}
+std::string sum_of(std::string_view text) { return " sum " + hash_text(hash_of(text)); }
 
 std::string file_text(const std::filesystem::path& file) {
   std::ifstream stream{file, std::ios::binary};
@@ -62,10 +53,16 @@ std::optional<JournalLine> parse_journal_line(std::string_view text) {
   return line;
 }
 
+std::uint64_t hash_of(std::string_view text) {
+  Hash hash;
+  for (const char letter : text) add_to_hash(hash, static_cast<std::uint8_t>(letter));
+  return hash.value;
+}
+
 std::uint64_t stamp_of(std::span<const std::filesystem::path> files) {
   Hash hash;
   for (const std::filesystem::path& file : files) {
-    add_text_to(hash, file.string());
+    add_to_hash(hash, hash_of(file.string()));
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     add_to_hash(hash, static_cast<std::uint64_t>(error ? ~std::uintmax_t{0} : size));

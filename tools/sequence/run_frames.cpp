@@ -36,14 +36,11 @@ struct FailedFrame {
 
 std::uint64_t made_from(const FrameWork& frame) {
   Hash hash;
-  const auto add = [&hash](const std::string& text) {
-    for (const char letter : text) add_to_hash(hash, static_cast<std::uint8_t>(letter));
-    add_to_hash(hash, std::uint8_t{0});
-  };
-  add(SOFTFOCUS_VERSION);
-  add(frame.settings);
-  for (const std::filesystem::path& file : frame.outputs) add(file.string());
+  add_to_hash(hash, frame.settings);
   add_to_hash(hash, stamp_of(frame.inputs));
+  for (const std::filesystem::path& file : frame.outputs) {
+    add_to_hash(hash, hash_of(file.string()));
+  }
   return hash.value;
 }
 
@@ -132,7 +129,7 @@ class Run {
     if (todo_.empty()) return;
     const std::size_t done = frames_.size() - todo_.size() + made_ + failed_.size();
     const double seconds = left_.seconds();
-    progress_.show("frame " + std::to_string(done) + " of " + std::to_string(frames_.size()) +
+    progress_.show(std::to_string(done) + " of " + std::to_string(frames_.size()) + " frames" +
                    (seconds > 0.0 ? ", " + time_left_text(seconds) : ""));
   }
 

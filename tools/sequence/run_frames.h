@@ -17,8 +17,8 @@ namespace softfocus {
 /// A frame before it is made.
 struct FrameWork {
   FrameNumber number = 0;
-  std::string file{};      ///< by which complaints name it
-  std::string settings{};  ///< all that decides its files, but the inputs
+  std::string file{};          ///< by which complaints name it
+  std::uint64_t settings = 0;  ///< hash_of() all that decides its files, but the inputs
   std::vector<std::filesystem::path> inputs{};
   std::vector<std::filesystem::path> outputs{};  ///< the first is the picture
 };

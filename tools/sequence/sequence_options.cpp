@@ -136,13 +136,13 @@ void check_outputs_apart(const std::vector<FrameWork>& frames) {
   }
 }
 
-std::string given_settings(const CLI::App& parser) {
+std::string given_settings(const CLI::App& parser, const Profile& profile) {
   // -o, --mask and the like name files of each frame, which count by themselves.
   static constexpr std::array<std::string_view, 18> kOthers{
       "COLOUR",      "DEPTH",     "--output", "--mask",  "--depth-output", "--report",
       "--frame",     "--frames",  "--shard",  "--again", "--focus",        "--f-number",
       "--keyframes", "--threads", "--isa",    "--json",  "--verbose",      "--quiet"};
-  return given_text(parser, kOthers);
+  return SOFTFOCUS_VERSION "\n" + profile_text({"", "", profile}, "") + given_text(parser, kOthers);
 }
 
 FrameRunOptions run_options(const SequenceOptions& options, const std::string& output,

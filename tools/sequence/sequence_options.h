@@ -53,9 +53,10 @@ class FrameOutput {
 /// frame writes, links and hard links followed.
 void check_outputs_apart(const std::vector<FrameWork>& frames);
 
-/// What decides the pictures, of all that was given on the command line: not the frames, the files
-/// of a frame, the lens by frames, nor what only changes the speed or what is said.
-std::string given_settings(const CLI::App& parser);
+/// What decides the pictures: the program's version, the profile, and all that was given on the
+/// command line, but for the frames, the files of a frame, the lens by frames, and what only
+/// changes the speed or what is said.
+std::string given_settings(const CLI::App& parser, const Profile& profile);
 
 /// How the run goes, but for FrameRunOptions::at_once.
 FrameRunOptions run_options(const SequenceOptions& options, const std::string& output,
