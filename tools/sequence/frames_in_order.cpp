@@ -1,15 +1,11 @@
 #include "tools/sequence/frames_in_order.h"
 
-#include <utility>
-
-#include "tools/files/whole_file.h"
-
 namespace softfocus {
 
 void FramesInOrder::write(std::span<const std::byte> picture) {
   if (end_ != Put::written) return;
   try {
-    if (!write_to_standard_output(picture)) end_ = Put::reader_gone;
+    if (!write_(picture)) end_ = Put::reader_gone;
   } catch (...) {
     end_ = Put::failed;
     turn_.notify_all();

@@ -17,6 +17,7 @@
 #include "tools/cli/progress.h"
 #include "tools/cli/time_left.h"
 #include "tools/files/json.h"
+#include "tools/files/whole_file.h"
 #include "tools/sequence/frames_in_order.h"
 #include "tools/sequence/journal.h"
 
@@ -48,7 +49,10 @@ std::uint64_t made_from(const FrameWork& frame) {
 class Run {
  public:
   Run(const std::vector<FrameWork>& frames, const FrameRunOptions& options, const MakeFrame& make)
-      : frames_(frames), options_(options), make_(make), in_order_(options.same_length) {
+      : frames_(frames),
+        options_(options),
+        make_(make),
+        in_order_(options.same_length, write_to_standard_output) {
     if (options.output != "-") journal_.emplace(options.output, options.shard);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (options.again || !is_there(frames[i])) todo_.push_back(i);
