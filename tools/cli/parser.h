@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming)
@@ -60,6 +62,10 @@ void add_argument(CLI::App& parser, const std::string& name, const std::string& 
 /// A positional argument that need not be given.
 void add_optional_argument(CLI::App& parser, const std::string& name, const std::string& help,
                            std::string& value);
+
+/// All options and arguments that are on the command line that was parsed, with their values, but
+/// those of these names; in the order in which the command has them.
+std::string given_text(const CLI::App& parser, std::span<const std::string_view> without);
 
 /// Whether an option, by one of its names, is on the command line that was parsed; false for one
 /// that the command does not have.

@@ -54,6 +54,7 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_weight_options(parser, options.leak, options.budget);
   add_goal_options(parser, options.goal);
   add_profile_option(parser, options.profile, options.profile_name);
+  add_sequence_options(parser, options.sequence);
   add_pool_options(parser, options.pool, "the picture is the same");
   add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
   add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);

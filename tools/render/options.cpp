@@ -79,13 +79,16 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
 
 void add_scene_options(CLI::App& parser, RenderOptions& options) {
   add_frame(parser, options.frame);
+  add_sequence_options(parser, options.sequence,
+                       "; of a single picture by accumulation the I-th of N parts of the samples: "
+                       "FILE, a .sum, gets their sums, which softfocus join joins");
   add_scene_path(parser, options.scene_path);
 }
 
 void add_method_options(CLI::App& parser, RenderOptions& options) {
   add_method_option(parser, options.method);
   add_arithmetic_option(parser, options.arithmetic);
-  add_lens_options(parser, options.lens);
+  add_animated_lens_options(parser, options.lens);
   add_value(parser, "--autofocus", "[X,Y]",
             "Focus on what is at this pixel, from the top left (default: the centre)",
             [&options](const std::string& text) {
@@ -96,9 +99,6 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
   add_max_coc_option(parser, options.max_coc_px);
   add_weight_options(parser, options.leak, options.budget);
   add_sampling_options(parser, options.sampling);
-  add_shard_option(parser, options.shard,
-                   "Of accumulation: draw the I-th of N parts of the samples; FILE, a .sum, gets "
-                   "their sums, which softfocus join joins");
   add_auto_options(parser, options.goal, options.verify);
 }
 
@@ -254,6 +254,12 @@ std::size_t layers_of(const RenderOptions& options) {
   return options.layers.value_or(filters ? filter->layers : 1);
 }
 
+std::uint64_t bytes_of_a_frame(const RenderOptions& options) {
+  const auto [width, height] = drawn_size(options);
+  return (bytes_per_pixel(options) + kTransparentBytesPerPixel) *
+         static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
 void add_render_options(CLI::App& parser, RenderOptions& options) {
   add_scene_argument(parser, options.scene);
   add_picture_options(parser, options);
@@ -264,6 +270,7 @@ void add_render_options(CLI::App& parser, RenderOptions& options) {
 
 void complete(RenderOptions& options, const CLI::App& parser) {
   const bool to_standard_output = options.output == "-";
+  if (!options.sequence.frames) options.shard = options.sequence.shard;
   if (options.shard) {
     check_shard_options(options, parser);
   } else {
@@ -283,7 +290,10 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     throw UsageError("--report and -o name the same file; give two");
   }
   check_depth_output(options);
-  if (options.autofocus && options.lens.focus_m) {
+  if (options.sequence.frames && is_given(parser, "--frame")) {
+    throw UsageError("--frame and --frames exclude each other; give one");
+  }
+  if (options.autofocus && is_given(parser, "--focus")) {
     throw UsageError("--focus and --autofocus exclude each other; give one");
   }
   if (options.autofocus_pixel) {
