@@ -95,6 +95,7 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 MpiDefault=none
 KillWait=2
+SchedulerParameters=batch_sched_delay=0,sched_interval=1
 NodeName=$host NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
 PartitionName=all Nodes=$host Default=YES MaxTime=INFINITE State=UP
 END
@@ -165,7 +166,7 @@ make_stopping_program() {
 #!/bin/bash
 if [[ " \$* " == *" --shard 2/4"* ]] && mkdir "$work/first" 2>/dev/null; then
   "$program" "\$@" &
-  sleep 0.2
+  sleep 0.1
   kill -STOP \$!
   echo \$! >"$work/number" && mv "$work/number" "$work/stopped"
   wait \$!
@@ -209,6 +210,21 @@ accumulation() {
     2>"$work/said" || fail "one task: $(cat "$work/said")"
   cmp one.dat farm.dat && cmp one.dat.json farm.dat.json || fail "one task has other bytes"
   rm -f ./*.png ./*.dat ./*.json
+}
+
+sequence() {
+  local i refocus=(refocus in_%02d.npy --method one-pass --blur-at-infinity 60 --frames 1..6)
+  "$program" render figures --size 480x360 --method pinhole --frames 1..6 -o in_%02d.npy 2>/dev/null
+  "$program" "${refocus[@]}" -o one_%02d.png 2>/dev/null
+  farm_and_kill cancel_task "$work/softfocus" "${refocus[@]}" --threads 1 -o farm_%02d.png
+  for i in 01 02 03 04 05 06; do
+    cmp one_$i.png farm_$i.png || fail "frame $i of the sequence has other bytes"
+  done
+  # More tasks than frames, and nothing to do that is not done.
+  "$farm" --tasks 4 --retries 0 -- "$program" render figures --size 32x32 --frames 1..2 \
+    -o few_%d.png 2>"$work/said" || fail "more tasks than frames: $(cat "$work/said")"
+  [ -e few_1.png ] && [ -e few_2.png ] || fail "more tasks than frames: there are $(ls few_*)"
+  rm -f ./*
 }
 
 # A task that fails and stays so: its reason, its log's place, and no more tasks than were asked for.
@@ -264,6 +280,7 @@ wrong_usage
 make_stopping_program
 if start_daemons; then
   accumulation
+  if "$program" render --help | grep -q -- --frames; then sequence; fi
   hopeless
   interrupted
 else
