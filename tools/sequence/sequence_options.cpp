@@ -10,10 +10,11 @@ namespace softfocus {
 namespace {
 
 FrameShard parse_shard(const std::string& text) {
-  constexpr const char* kWanted = "I/N with I from 1 to N, such as 1/8";
   constexpr int kMostShards = 1'000'000;
   const auto slash = text.find('/');
-  const auto refuse = [&] { throw UsageError("--shard '" + text + "': give " + kWanted); };
+  const auto refuse = [&] {
+    throw UsageError("--shard '" + text + "': give I/N with I from 1 to N, such as 1/8");
+  };
   if (slash == text.npos) refuse();
   try {
     const FrameShard shard{parse_whole("", text.substr(0, slash), 1, kMostShards, ""),
