@@ -33,27 +33,27 @@ double checked(std::string_view option, const std::string& text, std::string_vie
 template <class ParseValue>
 std::vector<Keyframe> parse_keys(const std::string& option, const std::string& text,
                                  const std::string& wanted, ParseValue parse_value) {
-  constexpr const char* kBetween = " ,\t\n";
-  constexpr double kLastFrame = 1e9;
+  constexpr const char* kSeparators = " ,\t\n";
+  constexpr double kFarthestFrame = 1e9;
   const std::string keys_wanted =
       wanted + "; or FRAME:VALUE for some frames, which increase, such as '1:2 48:6'";
   std::vector<Keyframe> keys;
-  for (std::size_t start = text.find_first_not_of(kBetween); start != text.npos;) {
-    const std::size_t end = std::min(text.find_first_of(kBetween, start), text.size());
+  for (std::size_t start = text.find_first_not_of(kSeparators); start != text.npos;) {
+    const std::size_t end = std::min(text.find_first_of(kSeparators, start), text.size());
     const std::string word = text.substr(start, end - start);
     const std::size_t colon = word.find(':');
     const auto refuse = [&] { throw UsageError(option + " '" + word + "': give " + keys_wanted); };
     if (colon == word.npos) refuse();
     Keyframe key;
     try {
-      key.frame = parse_number(option, word.substr(0, colon), 0.0, kLastFrame, "");
+      key.frame = parse_number(option, word.substr(0, colon), 0.0, kFarthestFrame, "");
     } catch (const UsageError&) {  // which knows the frame alone
       refuse();
     }
     key.value = parse_value(word.substr(colon + 1), keys_wanted);
     if (!keys.empty() && key.frame <= keys.back().frame) refuse();
     keys.push_back(key);
-    start = text.find_first_not_of(kBetween, end);
+    start = text.find_first_not_of(kSeparators, end);
   }
   return keys;
 }
