@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kMethod = "accumulation";
 
-void add_text(Hash& hash, std::string_view text) {
+void add_letters(Hash& hash, std::string_view text) {
   for (const char letter : text) add_to_hash(hash, static_cast<unsigned char>(letter));
 }
 
@@ -27,7 +27,7 @@ std::uint64_t hash_of_files(const Scene& scene) {
     do {
       stream.read(part.data(), static_cast<std::streamsize>(part.size()));
       const auto count = static_cast<std::size_t>(stream.gcount());
-      add_text(hash, {part.data(), count});
+      add_letters(hash, {part.data(), count});
       bytes += count;
     } while (stream);
     if (!stream.eof()) throw FileError("cannot read '" + file.string() + "' again; keep it there");
@@ -36,9 +36,9 @@ std::uint64_t hash_of_files(const Scene& scene) {
   return hash.value;
 }
 
-std::uint64_t hash_of(const Profile& profile) {
+std::uint64_t hash_of_profile(const Profile& profile) {
   Hash hash;
-  add_text(hash, profile_text({.name = {}, .summary = {}, .profile = profile}, {}));
+  add_letters(hash, profile_text({.name = {}, .summary = {}, .profile = profile}, {}));
   return hash.value;
 }
 
@@ -81,7 +81,7 @@ void write_shard(const LensViewInput& input, const RenderOptions& options,
                           .samples = samples,
                           .half_store = options.profile.half_store,
                           .scene_files_hash = hash_of_files(input.scene),
-                          .profile_hash = hash_of(options.profile),
+                          .profile_hash = hash_of_profile(options.profile),
                           .pinhole_hash = hash_image(input.pinhole)};
   const SampleSums sums = accumulation_sums(input, samples_of(*options.shard, samples), pool);
   write_sums_file(options.output, *options.shard, origin, sums, input.pinhole);
