@@ -20,9 +20,9 @@
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kMagic{"softfocus sums\n\0", 16};
-constexpr int kForm = 1;
-constexpr std::size_t kBeforeHeader = kMagic.size() + sizeof(std::uint32_t);
+constexpr std::string_view kSumsMagic{"softfocus sums\n\0", 16};
+constexpr int kSumsForm = 1;
+constexpr std::size_t kBeforeHeader = kSumsMagic.size() + sizeof(std::uint32_t);
 constexpr std::size_t kMostHeaderBytes = 65536;
 constexpr std::size_t kColours = 3, kTexelHalves = 4;
 
@@ -41,7 +41,7 @@ void add_bytes(Hash& hash, std::span<const std::byte> bytes) {
 }
 
 Json header_json(const Shard& shard, const SumsOrigin& origin) {
-  return {{"softfocus_sums", kForm},
+  return {{"softfocus_sums", kSumsForm},
           {kShard, shard.number},
           {"shards", shard.count},
           {"samples", origin.samples},
@@ -94,7 +94,7 @@ void read_header(const Json& header, SumsFile& file) {
     return static_cast<int>(value);
   };
   const Json& picture = header.at(kPicture);
-  whole(header.at("softfocus_sums"), kForm, kForm);
+  whole(header.at("softfocus_sums"), kSumsForm, kSumsForm);
   whole(picture.at("width"), 1, kMaxImageSize);
   whole(picture.at("height"), 1, kMaxImageSize);
   const std::optional<PictureNotes> notes = parse_notes(json_text(picture));
@@ -175,7 +175,7 @@ void write_sums_file(const std::filesystem::path& path, const Shard& shard,
     const auto more = std::as_bytes(std::span{text});
     bytes.insert(bytes.end(), more.begin(), more.end());
   };
-  append_text(kMagic);
+  append_text(kSumsMagic);
   append_little_endian(bytes, static_cast<std::uint32_t>(header.size()));
   append_text(header);
   write();
@@ -203,10 +203,12 @@ void write_sums_file(const std::filesystem::path& path, const Shard& shard,
 SumsFile open_sums_file(const std::filesystem::path& path) {
   std::ifstream stream = opened(path);
   std::array<std::byte, kBeforeHeader> begin;
-  if (!read_bytes(stream, begin) || std::memcmp(begin.data(), kMagic.data(), kMagic.size()) != 0) {
+  if (!read_bytes(stream, begin) ||
+      std::memcmp(begin.data(), kSumsMagic.data(), kSumsMagic.size()) != 0) {
     refuse(path, "it holds no sums; give what softfocus render --shard wrote");
   }
-  const auto header_bytes = little_endian<std::uint32_t>(std::span{begin}.subspan(kMagic.size()));
+  const auto header_bytes =
+      little_endian<std::uint32_t>(std::span{begin}.subspan(kSumsMagic.size()));
   if (header_bytes > kMostHeaderBytes) refuse(path, "its header is damaged; make it again");
   std::string text(header_bytes, '\0');
   if (!read_bytes(stream, std::as_writable_bytes(std::span{text}))) {
