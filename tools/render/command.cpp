@@ -148,7 +148,7 @@ std::string until_warning(const RenderRecord& record) {
   const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
                                     : "half-sets are compared from 16 samples on";
   return "--until " + short_number(*sampling.until) + ": not reached with " +
-         std::to_string(record.sampled->samples) + " samples: " + found;
+         counted(record.sampled->samples, "sample") + ": " + found;
 }
 
 /// What auto was to keep to and predicts that it will not, as a line, or nothing.
@@ -289,7 +289,7 @@ int render(const RenderOptions& options) {
 
   RenderRecord record;
   StageTimes& ms = record.ms;
-  Progress progress;
+  Progress progress{options.quiet};
   ThreadPool pool{options.pool.threads, options.pool.isa};
 
   const Scene scene = timed(progress, "loading", ms.load, [&] {
