@@ -29,6 +29,6 @@ TEST_CASE("a slip of the finger is answered with the name that was meant, anothe
   CHECK(did_you_mean("--nothing", names) == "");
   CHECK(did_you_mean("", names) == "");
   CHECK(did_you_mean("---", names) == "");
-  CHECK(did_you_mean(std::string(100'000'000, 'a'), names) == "");
+  CHECK(did_you_mean(std::string(1'000'000, 'a'), names) == "");
   CHECK(did_you_mean("x", {}) == "");
 }

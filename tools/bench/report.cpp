@@ -42,7 +42,7 @@ Spread ratio_of(const BenchRecord& record, std::size_t stage) {
 std::string setting_of(const BenchRecord& record) {
   if (record.choice) return ": " + setting_text(*record.choice);
   if (const LensViewMethod* of_scene = record.work.method.of_scene) {
-    return of_scene->samples_lens ? ", " + counted(record.samples_taken, "sample") : "";
+    return of_scene->samples_lens ? ", " + count_text(record.samples_taken, "sample") : "";
   }
   return ", max-coc " + short_number(static_cast<double>(record.work.settings.max_coc_px));
 }

@@ -20,7 +20,7 @@ std::string escaped(std::string_view text, std::string_view special) {
 }
 
 /// Within the single quotes of a POSIX shell.
-std::string quoted(std::string_view text) {
+std::string shell_quoted(std::string_view text) {
   std::string safe = "'";
   for (const char c : text) safe += c == '\'' ? std::string{"'\\''"} : std::string{c};
   return safe + "'";
@@ -67,29 +67,31 @@ std::string bash_case(const CommandDescription& command) {
       if (choices.empty()) {
         plain_values += (plain_values.empty() ? "" : "|") + pattern;
       } else {
-        text += "    " + pattern + ") words=" + quoted(choices) + " ;;\n";
+        text += "    " + pattern + ") words=" + shell_quoted(choices) + " ;;\n";
       }
     }
   }
   if (!plain_values.empty()) text += "    " + plain_values + ") ;;\n";
-  const std::string options = quoted(option_names(command));
+  const std::string options = shell_quoted(option_names(command));
   if (command.arguments.empty()) return text + "    " + name + ",*) words=" + options + " ;;\n";
-  return text + "    " + name + ",*)\n      words=" + quoted(argument_choices(command)) +
+  return text + "    " + name + ",*)\n      words=" + shell_quoted(argument_choices(command)) +
          "\n      [[ $current == -* ]] && words=" + options + "\n      ;;\n";
 }
 
 std::string zsh_option(const OptionDescription& option) {
   // In a specification brackets end the explanation and colons the message.
-  std::string text = quoted("[" + escaped(option.help, "[]:\\") + "]");
+  std::string text = shell_quoted("[" + escaped(option.help, "[]:\\") + "]");
   std::vector<std::string> names = option.names;
   if (!option.type.empty()) {
     const std::string choices = choices_of(option);
-    text = quoted("[" + escaped(option.help, "[]:\\") + "]:" + escaped(option.type, ":\\") + ":" +
-                  (choices.empty() || takes_file_too(option) ? "_files" : "(" + choices + ")"));
+    text = shell_quoted(
+        "[" + escaped(option.help, "[]:\\") + "]:" + escaped(option.type, ":\\") + ":" +
+        (choices.empty() || takes_file_too(option) ? "_files" : "(" + choices + ")"));
     for (std::string& name : names) name += name.starts_with("--") ? "=" : "";
   }
   if (names.size() == 1) return names.front() + text;
-  return quoted("(" + joined(option.names, " ") + ")") + "{" + joined(names, ",") + "}" + text;
+  return shell_quoted("(" + joined(option.names, " ") + ")") + "{" + joined(names, ",") + "}" +
+         text;
 }
 
 std::string zsh_case(const CommandDescription& command) {
@@ -102,8 +104,8 @@ std::string zsh_case(const CommandDescription& command) {
   const std::string choices = argument_choices(command);
   if (!choices.empty()) {
     text += " \\\n            " +
-            quoted("1:" + command.arguments.front().names.front() +
-                   ": _alternative \"names:name:(" + choices + ")\" \"files:file:_files\"");
+            shell_quoted("1:" + command.arguments.front().names.front() +
+                         ": _alternative \"names:name:(" + choices + ")\" \"files:file:_files\"");
   }
   if (!command.arguments.empty()) text += " \\\n            '*:file:_files'";
   return text + "\n          ;;\n";
@@ -162,9 +164,9 @@ std::string bash_completion(const CommandDescription& program) {
          "  # Where nothing can be named, bash offers files.\n"
          "  case $command,$previous in\n"
          "    ,*)\n      words=" +
-         quoted(joined(commands, " ")) +
-         "\n      [[ $current == -* ]] && words=" + quoted(option_names(program)) + "\n      ;;\n" +
-         cases +
+         shell_quoted(joined(commands, " ")) +
+         "\n      [[ $current == -* ]] && words=" + shell_quoted(option_names(program)) +
+         "\n      ;;\n" + cases +
          "  esac\n"
          "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
          "}\n"
@@ -181,7 +183,8 @@ std::string zsh_completion(const CommandDescription& program) {
   for (const CommandDescription& command : program.commands) {
     commands +=
         "    " +
-        quoted(escaped(last_word(command.name), ":\\") + ":" + escaped(command.help, ":\\")) + "\n";
+        shell_quoted(escaped(last_word(command.name), ":\\") + ":" + escaped(command.help, ":\\")) +
+        "\n";
     cases += zsh_case(command);
   }
   return "#compdef softfocus\n"

@@ -127,7 +127,7 @@ std::string short_number(double value) {
   return text;
 }
 
-std::string counted(int count, const std::string& thing) {
+std::string count_text(int count, const std::string& thing) {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 

@@ -59,7 +59,7 @@ Pixel parse_pixel(std::string_view option, const std::string& text);
 std::string short_number(double value);
 
 /// "1 sample", "2 samples".
-std::string counted(int count, const std::string& thing);
+std::string count_text(int count, const std::string& thing);
 
 /// Every bit of `value`, readable: 17 digits.
 std::string exact_number(double value);

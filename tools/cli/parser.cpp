@@ -125,6 +125,12 @@ const CLI::App& parsed_command(const CLI::App& program) {
   return commands.empty() ? program : *commands.front();
 }
 
+/// "softfocus render --help".
+std::string help_of(const CLI::App& command) {
+  const bool is_program = command.get_parent() == nullptr;
+  return "softfocus " + (is_program ? "" : command.get_name() + " ") + "--help";
+}
+
 /// Throws for the arguments that the parser had no place for.
 void check_rest(const CLI::App& program) {
   const auto rest = program.remaining(true);
@@ -135,8 +141,7 @@ void check_rest(const CLI::App& program) {
   if (!is_option && (&command == &program || !program.remaining(false).empty())) {
     refuse_command(program, first);
   }
-  const std::string help =
-      "softfocus " + (&command == &program ? "" : command.get_name() + " ") + "--help";
+  const std::string help = help_of(command);
   if (!is_option) {
     throw UsageError("unexpected argument '" + first + "'; " + help + " lists what there is");
   }
@@ -163,13 +168,17 @@ std::vector<std::string> with_options_ended(std::vector<std::string> arguments) 
 
 /// CLI11's own complaints in this program's words: an option without its value, a
 /// missing argument.
-std::string reworded(const CLI::ParseError& error) {
+std::string reworded(const CLI::ParseError& error, const std::string& help) {
   std::string message = error.what();
+  const std::string option = message.substr(0, message.find_first_of(": "));
   if (error.get_name() == "ArgumentMismatch") {
-    return message.substr(0, message.find(':')) + " needs a value; --help says which";
+    if (message.ends_with("flag override")) {  // of which it tells the name without dashes
+      return (option.size() > 1 ? "--" : "-") + option + " takes no value";
+    }
+    return option + " needs a value; " + help + " says which";
   }
   if (error.get_name() == "RequiredError") {
-    return message.substr(0, message.find(' ')) + " is missing; --help says what to give";
+    return option + " is missing; " + help + " says what to give";
   }
   return message;
 }
@@ -212,7 +221,7 @@ Parsed parse(CLI::App& program, std::vector<std::string> arguments) {
     program.exit(request);
     return {nullptr, true};
   } catch (const CLI::ParseError& error) {
-    throw UsageError(reworded(error));
+    throw UsageError(reworded(error, help_of(parsed_command(program))));
   }
   const auto commands = program.get_subcommands();
   if (!commands.empty()) return {commands.front(), false};
@@ -250,12 +259,12 @@ void begin_group(CLI::App& parser, const std::string& heading) {
 }
 
 void add_flag(CLI::App& parser, const std::string& name, const std::string& help, bool& given) {
-  parser.add_flag(name, given, help);
+  parser.add_flag(name, given, help)->disable_flag_override();
 }
 
 void add_flag(CLI::App& parser, const std::string& name, const std::string& help,
               std::function<void()> take) {
-  parser.add_flag_callback(name, std::move(take), help);
+  parser.add_flag_callback(name, std::move(take), help)->disable_flag_override();
 }
 
 void add_value(CLI::App& parser, const std::string& name, const std::string& type,

@@ -13,7 +13,7 @@
 namespace softfocus {
 namespace {
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
+void write_whole(const std::filesystem::path& file, const std::string& text) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
   WholeFile whole{file};
@@ -24,18 +24,18 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 /// Where systems look for them, below a `share` folder.
 void write_documentation(const CommandDescription& program, const std::filesystem::path& share) {
   const auto write_page = [&](const CommandDescription& command, const std::string& name) {
-    write_text(share / "man" / "man1" / (name + ".1"), man_page(command, SOFTFOCUS_VERSION));
+    write_whole(share / "man" / "man1" / (name + ".1"), man_page(command, SOFTFOCUS_VERSION));
   };
   write_page(program, program.name);
   for (const CommandDescription& command : program.commands) {
     write_page(command, program.name + "-" + last_word(command.name));
   }
-  write_text(share / "bash-completion" / "completions" / program.name, bash_completion(program));
+  write_whole(share / "bash-completion" / "completions" / program.name, bash_completion(program));
   // Debian's zsh looks into the second of these alone.
   const std::string zsh = zsh_completion(program);
-  write_text(share / "zsh" / "site-functions" / ("_" + program.name), zsh);
-  write_text(share / "zsh" / "vendor-completions" / ("_" + program.name), zsh);
-  write_text(share / "fish" / "vendor_completions.d" / (program.name + ".fish"),
+  write_whole(share / "zsh" / "site-functions" / ("_" + program.name), zsh);
+  write_whole(share / "zsh" / "vendor-completions" / ("_" + program.name), zsh);
+  write_whole(share / "fish" / "vendor_completions.d" / (program.name + ".fish"),
              fish_completion(program));
 }
 
