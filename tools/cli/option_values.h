@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,6 +74,7 @@ std::string exact_number(double value);
 template <class Range>
 std::vector<std::string> names_in(const Range& things) {
   std::vector<std::string> names;
+  names.reserve(std::size(things));
   for (const auto& thing : things) names.emplace_back(thing.name);
   return names;
 }

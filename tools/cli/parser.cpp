@@ -35,8 +35,6 @@ auto& root_of(App& command) {
 // lets end a list of values alone.
 constexpr const char* kEndOfOptions = "--end-of-options";
 
-constexpr const char* kGeneral = "General";
-
 bool is_hidden(const CLI::App& command) { return command.get_group().empty(); }
 
 std::vector<std::string> command_names(const CLI::App& program) {
@@ -54,7 +52,7 @@ std::vector<std::string> command_names(const CLI::App& program) {
   throw UsageError("unknown command '" + name + "'; there are " + list + did_you_mean(name, there));
 }
 
-/// "those" of "a", "b", "a|b|c" and so on: what a type names by itself.
+/// "image", "coc", "depth" of "image|coc|depth": what a type names by itself.
 std::vector<std::string> words_of_type(const std::string& type) {
   if (type.find('|') == type.npos ||
       type.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-|") != type.npos) {
@@ -85,8 +83,8 @@ OptionDescription described(const CLI::Option& option, const Program& program) {
   const auto offered = program.choices.find(&option);
   if (offered != program.choices.end()) {
     known.choices = offered->second;
-  } else if (const auto words = words_of_type(known.type); !words.empty()) {
-    known.choices = [words] { return words; };
+  } else if (auto words = words_of_type(known.type); !words.empty()) {
+    known.choices = [words = std::move(words)] { return words; };
   }
   return known;
 }
@@ -96,12 +94,12 @@ CommandDescription described(const CLI::App& command, const Program& program) {
   CommandDescription known{
       .name = is_program ? command.get_name() : program.get_name() + " " + command.get_name(),
       .help = command.get_description()};
-  OptionGroup general{kGeneral, {}};
+  OptionGroup general{kGeneralGroup, {}};
   for (const CLI::Option* option : command.get_options()) {
     const std::string& group = option->get_group();
     if (option->get_positional()) {
       known.arguments.push_back(described(*option, program));
-    } else if (group == kGeneral) {
+    } else if (group == kGeneralGroup) {
       general.options.push_back(described(*option, program));
     } else if (!group.empty()) {
       auto found = std::find_if(known.groups.begin(), known.groups.end(),
@@ -191,7 +189,7 @@ std::shared_ptr<CLI::App> make_program(const std::string& name, const std::strin
   program->set_help_flag("-h,--help", "Print this help");
   program->set_version_flag("-V,--version", name + " " + version, "Print the version");
   program->require_subcommand(0, 1);
-  for (CLI::Option* option : program->get_options()) option->group(kGeneral);
+  for (CLI::Option* option : program->get_options()) option->group(kGeneralGroup);
   program->add_flag(kEndOfOptions)->group("");
   return program;
 }
@@ -242,7 +240,7 @@ std::string name_of(const CLI::App& command) { return command.get_name(); }
 
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help) {
   CLI::App* command = program.add_subcommand(name, help);
-  command->get_help_ptr()->group(kGeneral);
+  command->get_help_ptr()->group(kGeneralGroup);
   command->add_flag(kEndOfOptions)->group("");
   begin_group(*command, "Options");
   return command;
@@ -299,9 +297,8 @@ void add_repeatable_value(CLI::App& parser, const std::string& name, const std::
 
 void add_value_list(CLI::App& parser, const std::string& name, const std::string& type,
                     const std::string& help,
-                    std::function<void(const std::vector<std::string>&)> take) {
-  parser.add_option_function<std::vector<std::string>>(name, std::move(take), help)
-      ->type_name(type);
+                    const std::function<void(const std::vector<std::string>&)>& take) {
+  parser.add_option_function<std::vector<std::string>>(name, take, help)->type_name(type);
 }
 
 void add_argument(CLI::App& parser, const std::string& name, const std::string& help,

@@ -41,6 +41,9 @@ CLI::App* add_command(CLI::App& program, const std::string& name, const std::str
 /// The same, which no list of commands shows.
 CLI::App* add_hidden_command(CLI::App& program, const std::string& name, const std::string& help);
 
+/// The heading of --help, which stands last.
+inline constexpr const char* kGeneralGroup = "General";
+
 /// The heading in the help for all options that are added from here on. Headings stand in the
 /// order in which they first come; more options can be added to one later.
 void begin_group(CLI::App& parser, const std::string& heading);
@@ -64,7 +67,7 @@ void add_repeatable_value(CLI::App& parser, const std::string& name, const std::
 /// Adds an option that takes all values up to the next option.
 void add_value_list(CLI::App& parser, const std::string& name, const std::string& type,
                     const std::string& help,
-                    std::function<void(const std::vector<std::string>&)> take);
+                    const std::function<void(const std::vector<std::string>&)>& take);
 
 /// A positional argument that must be given.
 void add_argument(CLI::App& parser, const std::string& name, const std::string& help,

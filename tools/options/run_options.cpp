@@ -138,13 +138,13 @@ void settle_format(const CLI::App& parser, const std::string& output, FileFormat
 }
 
 void add_quiet_option(CLI::App& parser, bool& quiet) {
-  begin_group(parser, "General");
+  begin_group(parser, kGeneralGroup);
   add_flag(parser, "-q,--quiet", "No progress and no notes on standard error; warnings stay",
            quiet);
 }
 
 void add_talk_options(CLI::App& parser, bool& verbose, bool& quiet) {
-  begin_group(parser, "General");
+  begin_group(parser, kGeneralGroup);
   add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", verbose);
   add_quiet_option(parser, quiet);
 }
