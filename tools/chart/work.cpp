@@ -45,7 +45,7 @@ struct Work {
   std::vector<ChartEntry> entries;
   std::uint64_t measures;  ///< measures_hash()
   ChartFindings findings{};
-  Progress progress{};
+  Progress progress{options.quiet};
   TimeLeft left{};
 
   void show(const std::string& stage) {

@@ -144,6 +144,7 @@ void write_to_standard_output(std::span<const std::byte> bytes) {
   try {
     write_all(kStandardOutput, bytes);
   } catch (const std::system_error& error) {
+    if (error.code().value() == EPIPE) return;  // whoever reads it has enough
     refuse("standard output", error.code().value());
   }
 }

@@ -71,7 +71,7 @@ void warn(const std::string& text) { std::cerr << "softfocus: warning: " << text
 
 int refocus(const RefocusOptions& options) {
   check_outputs(options);
-  Progress progress;
+  Progress progress{options.quiet};
   ThreadPool pool{options.pool.threads, options.pool.isa};
   progress.show("reading");
   const PictureSources sources = open_sources(options.colour, options.depth, options.reading);

@@ -34,6 +34,7 @@ struct RefocusOptions {
   PoolOptions pool;
   bool json = false;
   bool verbose = false;
+  bool quiet = false;
 };
 
 void add_refocus_options(CLI::App& parser, RefocusOptions& options);

@@ -135,7 +135,9 @@ Image sampled_picture(const Scene& scene, const CameraMatrices& view, const Imag
       {scene, view, options.frame, pinhole, used.lens.focus_m,
        aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell, prepared},
       pool);
-  record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
+  if (record.used.method.of_scene->samples_lens) {
+    record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
+  }
   return std::move(sampled.picture);
 }
 
@@ -148,7 +150,7 @@ std::string until_warning(const RenderRecord& record) {
   const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
                                     : "half-sets are compared from 16 samples on";
   return "--until " + short_number(*sampling.until) + ": not reached with " +
-         std::to_string(record.sampled->samples) + " samples: " + found;
+         count_text(record.sampled->samples, "sample") + ": " + found;
 }
 
 /// What auto was to keep to and predicts that it will not, as a line, or nothing.
@@ -289,7 +291,7 @@ int render(const RenderOptions& options) {
 
   RenderRecord record;
   StageTimes& ms = record.ms;
-  Progress progress;
+  Progress progress{options.quiet};
   ThreadPool pool{options.pool.threads, options.pool.isa};
 
   const Scene scene = timed(progress, "loading", ms.load, [&] {
