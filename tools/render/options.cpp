@@ -79,11 +79,12 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Scene");
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
+  add_sequence_options(parser, options.sequence);
 }
 
 void add_lens_and_method_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Lens");
-  add_lens_options(parser, options.lens);
+  add_animated_lens_options(parser, options.lens);
   add_value(parser, "--autofocus", "[X,Y]",
             "Focus on what is at this pixel, from the top left (default: the centre)",
             [&options](const std::string& text) {
@@ -253,6 +254,12 @@ std::size_t layers_of(const RenderOptions& options) {
   return options.layers.value_or(filters ? filter->layers : 1);
 }
 
+std::uint64_t bytes_of_a_frame(const RenderOptions& options) {
+  const auto [width, height] = drawn_size(options);
+  return (bytes_per_pixel(options) + kTransparentBytesPerPixel) *
+         static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
 void add_render_options(CLI::App& parser, RenderOptions& options) {
   add_scene_argument(parser, options.scene);
   add_scene_options(parser, options);
@@ -279,7 +286,10 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     throw UsageError("--report and -o name the same file; give two");
   }
   check_depth_output(options);
-  if (options.autofocus && options.lens.focus_m) {
+  if (options.sequence.frames && is_given(parser, "--frame")) {
+    throw UsageError("--frame and --frames exclude each other; give one");
+  }
+  if (options.autofocus && is_given(parser, "--focus")) {
     throw UsageError("--focus and --autofocus exclude each other; give one");
   }
   if (options.autofocus_pixel) {
