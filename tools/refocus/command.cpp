@@ -150,6 +150,9 @@ Command add_refocus_command(CLI::App& program) {
                                     });
             }
             check_single_picture(*parser, options->output);
+            if (options->sequence.shard) {
+              throw UsageError("--shard: it is of many frames; give --frames A..B");
+            }
             check_no_keys(options->photo.lens);
             return refocus(*options);
           }};

@@ -29,6 +29,7 @@
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
 #include "tools/render/render_frames.h"
+#include "tools/render/shard_file.h"
 
 namespace softfocus {
 namespace {
@@ -122,21 +123,32 @@ Image halved(const Image& picture, const RenderOptions& options, double fov_y_de
   return halve(picture, options.profile, pool);
 }
 
-/// The method that draws the scene itself, from many points of the lens.
-Image sampled_picture(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
-                      PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
-                      Progress& progress, ThreadPool& pool) {
+/// What a method works from that draws the scene itself, from many points of the lens.
+LensViewInput lens_view_input(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
+                              PreparedScene* prepared, const RenderOptions& options,
+                              const RenderRecord& record, Progress& progress) {
   const UsedLens& used = *record.lens;
   const Sampling& sampling = record.used.sampling;
-  const auto tell = [&](int samples) {
-    progress.show("sampling the lens, " + std::to_string(samples) + " of " +
-                  (sampling.until || sampling.by_tile ? "at most " : "") +
-                  std::to_string(sampling.samples));
-  };
-  SampledPicture sampled = record.used.method.of_scene->render(
-      {scene, view, options.frame, pinhole, used.lens.focus_m,
-       aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell, prepared},
-      pool);
+  const SampleRange range = samples_of(options.shard.value_or(Shard{}), sampling.samples);
+  const std::string of_all = std::string{" of "} +
+                             (sampling.until || sampling.by_tile ? "at most " : "") +
+                             std::to_string(range.end - range.begin);
+  return {scene,
+          view,
+          options.frame,
+          pinhole,
+          used.lens.focus_m,
+          aperture_radius_m(used.lens, used.coc_scale),
+          sampling,
+          options.profile,
+          [&progress, of_all](int samples) {
+            progress.show("sampling the lens, " + std::to_string(samples) + of_all);
+          },
+          prepared};
+}
+
+Image sampled_picture(const LensViewInput& input, RenderRecord& record, ThreadPool& pool) {
+  SampledPicture sampled = record.used.method.of_scene->render(input, pool);
   if (record.used.method.of_scene->samples_lens) {
     record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
   }
@@ -358,7 +370,9 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
       return auto_drawn(scene, view, parts.picture, ready, options, record, progress, pool);
     }
     if (from_lens) {
-      return sampled_picture(scene, view, parts.picture, ready, options, record, progress, pool);
+      return sampled_picture(
+          lens_view_input(scene, view, parts.picture, ready, options, record, progress), record,
+          pool);
     }
     return shown_picture(
         std::move(parts), objects,
@@ -366,6 +380,17 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
         options, record.used.method.filter, scene.camera, settings, on_gl ? &*on_gl : nullptr,
         pool);
   };
+  if (options.shard) {
+    timed(progress, "sampling", ms.filter, [&] {
+      record.sampled = {options.sampling.samples, {}, {}};
+      write_shard(
+          lens_view_input(scene, view, parts.picture, &*prepared, options, record, progress),
+          options, record, pool);
+    });
+    progress.clear();
+    std::erase(warnings, "");
+    return {.warnings = std::move(warnings)};
+  }
   Image picture =
       is_auto ? make_picture()  // which times its stages itself
               : timed(progress, from_lens ? "sampling" : "filtering", ms.filter, make_picture);

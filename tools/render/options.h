@@ -44,8 +44,9 @@ struct RenderOptions {
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;
-  Sampling sampling;  ///< of a method that draws the scene
-  AutoGoal goal;      ///< of auto
+  Sampling sampling;           ///< of a method that draws the scene
+  std::optional<Shard> shard;  ///< the samples of this alone: `output` gets their sums
+  AutoGoal goal;               ///< of auto
   Verify verify = Verify::in_doubt;
   LensOptions lens;
   bool autofocus = false;

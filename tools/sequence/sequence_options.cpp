@@ -9,23 +9,6 @@
 namespace softfocus {
 namespace {
 
-FrameShard parse_shard(const std::string& text) {
-  constexpr int kMostShards = 1'000'000;
-  const auto slash = text.find('/');
-  const auto refuse = [&] {
-    throw UsageError("--shard '" + text + "': give I/N with I from 1 to N, such as 1/8");
-  };
-  if (slash == text.npos) refuse();
-  try {
-    const FrameShard shard{parse_whole("", text.substr(0, slash), 1, kMostShards, ""),
-                           parse_whole("", text.substr(slash + 1), 1, kMostShards, "")};
-    if (shard.number <= shard.count) return shard;
-  } catch (const UsageError&) {  // which knows one number alone
-  }
-  refuse();
-  return {};
-}
-
 /// The place that a name leads to, links followed, even to a file that is not there yet.
 std::string place_of(std::filesystem::path file) {
   std::error_code error;
@@ -45,24 +28,22 @@ bool has_other_names(const std::filesystem::path& file) {
 
 }  // namespace
 
-void add_sequence_options(CLI::App& parser, SequenceOptions& options) {
+void add_sequence_options(CLI::App& parser, SequenceOptions& options,
+                          const std::string& shard_help) {
   begin_group(parser, "Many pictures");
   add_value(parser, "--frames", "A..B[:STEP]",
             "Make these frames; file names then have a number, such as frame_%04d.exr",
             [&options](const std::string& text) {
               options.frames = parse_frame_range("--frames", text);
             });
-  add_value(parser, "--shard", "I/N", "Of the frames only every N-th, from the I-th on",
-            [&options](const std::string& text) { options.shard = parse_shard(text); });
+  add_shard_option(parser, options.shard, shard_help);
   add_flag(parser, "--again", "Make frames too that an earlier run has made from the same",
            options.again);
 }
 
 void check_single_picture(const CLI::App& parser, const std::string& output) {
-  for (const char* option : {"--shard", "--again"}) {
-    if (is_given(parser, option)) {
-      throw UsageError(std::string{option} + ": it is of many frames; give --frames A..B");
-    }
+  if (is_given(parser, "--again")) {
+    throw UsageError("--again: it is of many frames; give --frames A..B");
   }
   if (!numbered_name("-o", output)) return;
   throw UsageError("-o '" + output + "' is a name for many frames; give --frames A..B");
@@ -88,8 +69,7 @@ std::vector<FrameNumber> chosen_frames(const SequenceOptions& options,
   return frames;
 }
 
-std::vector<FrameWork> of_shard(std::vector<FrameWork> frames,
-                                const std::optional<FrameShard>& shard) {
+std::vector<FrameWork> of_shard(std::vector<FrameWork> frames, const std::optional<Shard>& shard) {
   if (!shard) return frames;
   std::vector<FrameWork> some;
   for (auto i = static_cast<std::size_t>(shard->number - 1); i < frames.size();

@@ -5,25 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "scenes/lens_views/shard.h"
 #include "tools/cli/parser.h"
 #include "tools/sequence/run_frames.h"
 
 namespace softfocus {
 
-/// The I-th of N parts of the frames: every N-th, from the I-th on.
-struct FrameShard {
-  int number = 1;
-  int count = 1;
-};
-
 struct SequenceOptions {
   std::optional<FrameRange> frames;
-  std::optional<FrameShard> shard;
+  std::optional<Shard> shard;  ///< every count-th of the frames, from the number-th on
   bool again = false;
 };
 
-/// Adds --frames, --shard and --again.
-void add_sequence_options(CLI::App& parser, SequenceOptions& options);
+/// Adds --frames, --shard and --again. `shard_help` says what is shared out.
+void add_sequence_options(CLI::App& parser, SequenceOptions& options,
+                          const std::string& shard_help);
 
 /// Throws UsageError if an option is given that a single picture has no use for.
 void check_single_picture(const CLI::App& parser, const std::string& output);
@@ -34,8 +30,7 @@ std::vector<FrameNumber> chosen_frames(const SequenceOptions& options,
                                        const std::vector<FrameFiles>& files);
 
 /// Those of the shard.
-std::vector<FrameWork> of_shard(std::vector<FrameWork> frames,
-                                const std::optional<FrameShard>& shard);
+std::vector<FrameWork> of_shard(std::vector<FrameWork> frames, const std::optional<Shard>& shard);
 
 /// An output that each frame has one of; "-" is all of them. Throws UsageError if there is no
 /// number in it.
