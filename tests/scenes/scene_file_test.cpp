@@ -119,6 +119,19 @@ TEST_CASE("lights are read, of both kinds") {
   CHECK(scene.lights[1].colour == glm::vec3{7, 8, 9});
 }
 
+TEST_CASE("a colour may be a color, but not both") {
+  const Scene scene = read(
+      "[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\ncolor = [7, 8, 9]\n"
+      "[texture.t]\nkind = \"dots\"\nsize = 16\ncolors = [[1, 0, 0], [0, 0, 1]]\n");
+  CHECK(scene.lights[0].colour == glm::vec3{7, 8, 9});
+  CHECK(complaint("[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\ncolour = [1, 1, 1]\n"
+                  "color = [1, 1, 1]\n") ==
+        "a.toml:5: light.color: is there as colour too; one of them would be right");
+  CHECK(contains(complaint("[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\n\ncolor = 7\n"),
+                 "a.toml:5: light.colour: is a number"));
+  CHECK(contains(complaint("[lens]\ncolor = 7\n"), "a.toml:2: lens.color: there is no such key"));
+}
+
 TEST_CASE("a material has what its table says, and ambient like diffuse if it says nothing") {
   const Scene scene = read(R"(
 [texture.t]

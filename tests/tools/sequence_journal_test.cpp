@@ -46,6 +46,15 @@ TEST_CASE("a journal keeps what was added, beside what is torn") {
   CHECK(journal.has(third));
 }
 
+TEST_CASE("a journal on a full disk says so, and goes on") {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink("/dev/full", directory.file("f_%d.png.journal"));
+  Journal journal{directory.file("f_%d.png"), ""};
+  CHECK(!journal.add({1, 2, 3}));
+  CHECK(!journal.add({2, 2, 3}));
+  CHECK(journal.has({1, 2, 3}));
+}
+
 TEST_CASE("a shard has a journal of its own, and all are read") {
   const TemporaryDirectory directory;
   const std::string output = directory.file("f_%d.png");

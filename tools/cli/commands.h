@@ -35,5 +35,7 @@ Command add_bench_command(CLI::App& program);
 Command add_chart_command(CLI::App& program);
 Command add_stress_command(CLI::App& program);
 Command add_selftest_command(CLI::App& program);
+Command add_help_command(CLI::App& program);
+Command add_documentation_command(CLI::App& program);
 
 }  // namespace softfocus

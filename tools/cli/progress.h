@@ -5,7 +5,7 @@
 
 namespace softfocus {
 
-/// Silent where standard error is no terminal, or if `quiet`.
+/// Silent where standard error is no terminal, or if `quiet` (--quiet).
 class Progress {
  public:
   explicit Progress(bool quiet = false);

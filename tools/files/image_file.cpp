@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <system_error>
 
@@ -134,6 +135,18 @@ Picture decode_other(std::span<const std::byte> bytes, const std::filesystem::pa
   return picture;
 }
 
+namespace {
+
+/// Half of the machine's memory; 16 GB where the system does not tell.
+std::size_t most_picture_bytes() {
+  const std::uint64_t most = memory_bytes().value_or(std::uint64_t{1} << 35) / 2;
+  // On 32 bits a buffer of more could not grow.
+  return static_cast<std::size_t>(
+      std::min<std::uint64_t>(most, std::numeric_limits<std::size_t>::max() / 4));
+}
+
+}  // namespace
+
 Bytes read_picture_bytes(const std::filesystem::path& file) {
   const auto refuse = [&](int error) {
     throw FileError("cannot read '" + file.string() +
@@ -152,7 +165,12 @@ Bytes read_picture_bytes(const std::filesystem::path& file) {
     if (stream.bad()) refuse(EIO);
     // Of what is no picture the first part is enough to be refused by: it may have no end.
     if (!stream || !begins_as_picture(bytes)) return bytes;
-    if (const auto there = memory_bytes(); there && bytes.size() > *there / 2) refuse(EFBIG);
+    // A device that begins as a picture need not end either.
+    const std::size_t most = most_picture_bytes();
+    if (bytes.size() > most) {
+      throw FileError("cannot read '" + file.string() + "': has more than " + std::to_string(most) +
+                      " bytes; give a smaller file");
+    }
   }
 }
 

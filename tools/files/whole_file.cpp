@@ -144,7 +144,7 @@ bool write_to_standard_output(std::span<const std::byte> bytes) {
   try {
     write_all(kStandardOutput, bytes);
   } catch (const std::system_error& error) {
-    if (error.code().value() == EPIPE) return false;
+    if (error.code().value() == EPIPE) return false;  // whoever reads it has enough
     refuse("standard output", error.code().value());
   }
   return true;

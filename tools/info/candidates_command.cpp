@@ -26,6 +26,7 @@
 #include "tools/info/candidate_table.h"
 #include "tools/info/candidates.h"
 #include "tools/options/lens_options.h"
+#include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -286,10 +287,13 @@ Command add_candidates_command(CLI::App& program) {
                                  "List what --method auto chooses from: predicted time and error");
   const auto options = std::make_shared<CandidatesOptions>();
   add_scene_argument(*parser, options->scene);
+  begin_group(*parser, "Picture");
   add_scene_path(*parser, options->scene_path);
   add_size(*parser, options->size);
   add_frame(*parser, options->frame);
+  begin_group(*parser, "Lens");
   add_lens_options(*parser, options->lens);
+  begin_group(*parser, "Candidates");
   add_value(*parser, "--measure", "N",
             "Measure each error too, against N views of the lens: a multiple of 16 from 32 on",
             [options](const std::string& text) {
@@ -311,9 +315,11 @@ Command add_candidates_command(CLI::App& program) {
   add_repeatable_value(*parser, "--only", "METHOD",
                        "List and measure this method alone; may be repeated",
                        [options](const std::string& text) { options->only.push_back(text); });
+  offer(*parser, "--only", all_methods);
   add_value(*parser, "--table", "FILE",
             "Coefficients in place of auto's own: JSON, {\"two-pass:8\": [seven numbers], ...}",
             [options](const std::string& text) { options->table = text; });
+  begin_group(*parser, "Run");
   add_flag(*parser, "--json", "Print JSON", options->json);
   add_pool_options(*parser, options->pool, "what is printed is the same");
   return {parser, [options] { return list_candidates(*options); }};

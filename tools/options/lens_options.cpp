@@ -42,7 +42,10 @@ std::vector<Keyframe> parse_keys(const std::string& option, const std::string& t
     const std::size_t end = std::min(text.find_first_of(kSeparators, start), text.size());
     const std::string word = text.substr(start, end - start);
     const std::size_t colon = word.find(':');
-    const auto refuse = [&] { throw UsageError(option + " '" + word + "': give " + keys_wanted); };
+    const auto refuse = [&] {
+      throw UsageError(
+          std::string{option}.append(" '").append(word).append("': give ").append(keys_wanted));
+    };
     if (colon == word.npos) refuse();
     Keyframe key;
     try {

@@ -60,6 +60,15 @@ void settle_format(const CLI::App& parser, const std::string& output, FileFormat
 /// than so many bytes a pixel. Where the system does not tell, allocation decides.
 void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel);
 
+/// Adds -q, beside --help.
+void add_quiet_option(CLI::App& parser, bool& quiet);
+
+/// Adds -v and -q, beside --help.
+void add_talk_options(CLI::App& parser, bool& verbose, bool& quiet);
+
+/// Throws UsageError if both were given.
+void check_talk(const CLI::App& parser);
+
 /// A line each. A model may lack a hundred textures: three at most, unless `all`.
 void print_scene_warnings(const std::vector<std::string>& warnings, bool all);
 

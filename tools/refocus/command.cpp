@@ -116,7 +116,7 @@ Refocused make_refocused(const RefocusOptions& options, Progress& progress, Thre
 
 int refocus(const RefocusOptions& options) {
   check_outputs(options);
-  Progress progress;
+  Progress progress{options.quiet};
   ThreadPool pool{options.pool.threads, options.pool.isa};
   const Refocused made = make_refocused(options, progress, pool);
   if (options.output == "-") write_to_standard_output(made.picture);
@@ -150,6 +150,9 @@ Command add_refocus_command(CLI::App& program) {
                                     });
             }
             check_single_picture(*parser, options->output);
+            if (options->sequence.shard) {
+              throw UsageError("--shard: it is of many frames; give --frames A..B");
+            }
             check_no_keys(options->photo.lens);
             return refocus(*options);
           }};

@@ -36,6 +36,7 @@ struct RefocusOptions {
   SequenceOptions sequence;  ///< of many pictures
   bool json = false;
   bool verbose = false;
+  bool quiet = false;
 };
 
 void add_refocus_options(CLI::App& parser, RefocusOptions& options);

@@ -78,6 +78,7 @@ int refocus_frames(const RefocusOptions& options, const CLI::App& parser,
   frames = of_shard(std::move(frames), options.sequence.shard);
   FrameRunOptions run = run_options(options.sequence, options.output, options.format, options.pool,
                                     options.json, options.verbose);
+  run.quiet = options.quiet;
   run.at_once = frames_at_once(frames.size(), options.pool.threads, bytes_of_a_frame(frames),
                                memory_bytes().value_or(0));
   return run_frames(frames, run, [&](std::size_t frame, FrameRun& frame_run) {

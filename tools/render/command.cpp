@@ -149,7 +149,9 @@ LensViewInput lens_view_input(const Scene& scene, const CameraMatrices& view, co
 
 Image sampled_picture(const LensViewInput& input, RenderRecord& record, ThreadPool& pool) {
   SampledPicture sampled = record.used.method.of_scene->render(input, pool);
-  record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
+  if (record.used.method.of_scene->samples_lens) {
+    record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
+  }
   return std::move(sampled.picture);
 }
 
@@ -162,7 +164,7 @@ std::string until_warning(const RenderRecord& record) {
   const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
                                     : "half-sets are compared from 16 samples on";
   return "--until " + short_number(*sampling.until) + ": not reached with " +
-         std::to_string(record.sampled->samples) + " samples: " + found;
+         count_text(record.sampled->samples, "sample") + ": " + found;
 }
 
 /// What auto was to keep to and predicts that it will not, as a line, or nothing.
@@ -385,6 +387,7 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
           lens_view_input(scene, view, parts.picture, &*prepared, options, record, progress),
           options, record, pool);
     });
+    progress.clear();
     std::erase(warnings, "");
     return {.warnings = std::move(warnings)};
   }
@@ -455,7 +458,7 @@ int render(const RenderOptions& options) {
   if (options.report) check_writable(*options.report);
   if (options.depth_output) check_writable(*options.depth_output);
 
-  Progress progress;
+  Progress progress{options.quiet};
   ThreadPool pool{options.pool.threads, options.pool.isa};
   double load_ms = 0.0;
   const Scene scene = loaded_scene(options, progress, load_ms);
@@ -472,7 +475,7 @@ int render(const RenderOptions& options) {
 }
 
 int render_many(const RenderOptions& options, const CLI::App& parser) {
-  Progress progress;
+  Progress progress{options.quiet};
   double load_ms = 0.0;
   const Scene scene = loaded_scene(options, progress, load_ms);
   return render_frames(options, parser, scene, [&](const RenderOptions& frame, FrameRun& run) {
@@ -493,7 +496,7 @@ Command add_render_command(CLI::App& program) {
   return {parser, [parser, options] {
             complete(*options, *parser);
             if (options->sequence.frames) return render_many(*options, *parser);
-            check_single_picture(*parser, options->output, true);
+            check_single_picture(*parser, options->output);
             options->lens = at_frame(options->lens, options->frame);
             return render(*options);
           }};

@@ -61,6 +61,7 @@ struct RenderOptions {
   std::optional<std::string> depth_output;
   bool json = false;
   bool verbose = false;
+  bool quiet = false;
 };
 
 /// The size that is drawn.

@@ -35,7 +35,7 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
     }
     json["jitter"] = record.used.sampling.jitter;
     json["aperture_blades"] = record.used.sampling.aperture.blades;
-  } else if (record.lens) {
+  } else if (record.lens && method.of_scene == nullptr) {
     json["max_coc_px"] = record.lens->settings.max_coc_px;
     json["leak"] = record.lens->settings.leak;
     if (method.name() == kBudgetMethod) json["budget"] = record.lens->settings.budget;

@@ -90,6 +90,7 @@ int render_frames(const RenderOptions& options, const CLI::App& parser, const Sc
   frames = of_shard(std::move(frames), options.sequence.shard);
   FrameRunOptions run = run_options(options.sequence, options.output, options.format, options.pool,
                                     options.json, options.verbose);
+  run.quiet = options.quiet;
   // A driver belongs to one thread.
   if (options.gl == nullptr) {
     run.at_once = frames_at_once(frames.size(), options.pool.threads,

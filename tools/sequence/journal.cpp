@@ -18,7 +18,10 @@ std::string without_sum(const JournalLine& line) {
 
 std::string sum_of(std::string_view text) { return " sum " + hash_text(hash_of(text)); }
 
+/// Nothing of a device, which may have no end.
 std::string file_text(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return {};
   std::ifstream stream{file, std::ios::binary};
   return {std::istreambuf_iterator<char>{stream}, {}};
 }
@@ -89,16 +92,17 @@ Journal::Journal(const std::string& output, const std::string& shard)
   const std::string before = file_text(file_);
   stream_.open(file_, std::ios::binary | std::ios::app);
   if (!stream_) throw FileError("cannot write '" + file_.string() + "': the list of frames made");
-  // What is torn must not take the next line with it.
-  if (!before.empty() && before.back() != '\n') stream_ << '\n' << std::flush;
+  torn_ = !before.empty() && before.back() != '\n';
 }
 
 bool Journal::add(const JournalLine& line) {
   const std::string text = journal_line(line);
   lines_.insert(text);
   stream_.clear();
-  stream_ << text << std::flush;
-  return static_cast<bool>(stream_);
+  // What is torn must not take the next line with it.
+  stream_ << (torn_ ? "\n" : "") << text << std::flush;
+  torn_ = !stream_;
+  return !torn_;
 }
 
 }  // namespace softfocus

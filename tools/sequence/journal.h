@@ -55,6 +55,7 @@ class Journal {
   std::filesystem::path file_;
   std::set<std::string> lines_;  ///< of all journals
   std::ofstream stream_;
+  bool torn_ = false;  ///< the last line may be
 };
 
 }  // namespace softfocus

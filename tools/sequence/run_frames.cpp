@@ -62,7 +62,7 @@ class Run {
 
   void make_all() {
     const std::size_t there = frames_.size() - todo_.size();
-    if (there > 0) {
+    if (there > 0 && !options_.quiet) {
       std::cerr << "softfocus: " << there << " of " << frames_.size() << " frames are there\n";
     }
     show_progress();
@@ -103,7 +103,10 @@ class Run {
       text += ", " + std::to_string(failed_.size()) + " failed (" + some_of(numbers) + ")";
     }
     if (left > 0) text += ", " + std::to_string(left) + " left";
-    if (!reader_is_gone_) std::cerr << "softfocus: " << text << '\n';
+    const bool all_made = failed_.empty() && left == 0;
+    if (!reader_is_gone_ && !(options_.quiet && all_made)) {
+      std::cerr << "softfocus: " << text << '\n';
+    }
     if (options_.json) {
       const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
       std::cout << json_text({{"frames", count(frames_.size())},
@@ -236,7 +239,7 @@ class Run {
   FramesInOrder in_order_;
 
   std::mutex mutex_;  // what follows
-  Progress progress_;
+  Progress progress_{options_.quiet};
   TimeLeft left_;
   std::size_t made_ = 0;
   std::vector<FailedFrame> failed_;

@@ -43,6 +43,7 @@ struct FrameRunOptions {
   bool again = false;
   bool json = false;
   bool verbose = false;
+  bool quiet = false;  ///< no summary, unless a frame failed
 };
 
 /// How many frames are made at once: one for each thread, but no more than there are, and than fit

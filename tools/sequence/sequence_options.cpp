@@ -28,24 +28,22 @@ bool has_other_names(const std::filesystem::path& file) {
 
 }  // namespace
 
-void add_sequence_options(CLI::App& parser, SequenceOptions& options, const std::string& of_one) {
+void add_sequence_options(CLI::App& parser, SequenceOptions& options,
+                          const std::string& shard_help) {
+  begin_group(parser, "Many pictures");
   add_value(parser, "--frames", "A..B[:STEP]",
             "Make these frames; file names then have a number, such as frame_%04d.exr",
             [&options](const std::string& text) {
               options.frames = parse_frame_range("--frames", text);
             });
-  add_shard_option(parser, options.shard,
-                   "Of the frames only every N-th, from the I-th on" + of_one);
+  add_shard_option(parser, options.shard, shard_help);
   add_flag(parser, "--again", "Make frames too that an earlier run has made from the same",
            options.again);
 }
 
-void check_single_picture(const CLI::App& parser, const std::string& output, bool shares_out) {
-  for (const char* option : {"--shard", "--again"}) {
-    if (shares_out && option == std::string_view{"--shard"}) continue;
-    if (is_given(parser, option)) {
-      throw UsageError(std::string{option} + ": it is of many frames; give --frames A..B");
-    }
+void check_single_picture(const CLI::App& parser, const std::string& output) {
+  if (is_given(parser, "--again")) {
+    throw UsageError("--again: it is of many frames; give --frames A..B");
   }
   if (!numbered_name("-o", output)) return;
   throw UsageError("-o '" + output + "' is a name for many frames; give --frames A..B");

@@ -13,18 +13,16 @@ namespace softfocus {
 
 struct SequenceOptions {
   std::optional<FrameRange> frames;
-  std::optional<Shard> shard;  ///< of the frames every N-th, from the I-th on
+  std::optional<Shard> shard;  ///< every count-th of the frames, from the number-th on
   bool again = false;
 };
 
-/// Adds --frames, --shard and --again. `of_one` continues the help of --shard, if a single picture
-/// is shared out too.
+/// Adds --frames, --shard and --again. `shard_help` says what is shared out.
 void add_sequence_options(CLI::App& parser, SequenceOptions& options,
-                          const std::string& of_one = {});
+                          const std::string& shard_help);
 
 /// Throws UsageError if an option is given that a single picture has no use for.
-void check_single_picture(const CLI::App& parser, const std::string& output,
-                          bool shares_out = false);
+void check_single_picture(const CLI::App& parser, const std::string& output);
 
 /// The frames of --frames, or those that there are of the first of `files` that is many. Throws
 /// UsageError if a file is missing, and if neither says which frames.

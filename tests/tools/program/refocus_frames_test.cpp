@@ -38,7 +38,8 @@ void cut(const std::string& file) { std::filesystem::resize_file(file, 200); }
 
 }  // namespace
 
-TEST_CASE("refocus: frames of one run are the files of single runs, byte by byte") {
+TEST_CASE("refocus: frames of one run are the files of single runs, byte by byte" *
+          doctest::test_suite("threads")) {
   const TemporaryDirectory directory;
   draw_frames(directory, 4);
   for (const char* threads : {"1", "3"}) {

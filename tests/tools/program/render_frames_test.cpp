@@ -5,7 +5,8 @@
 
 using namespace softfocus;
 
-TEST_CASE("render: frames of one run are the files of single runs, byte by byte") {
+TEST_CASE("render: frames of one run are the files of single runs, byte by byte" *
+          doctest::test_suite("threads")) {
   for (const std::string threads : {"1", "3"}) {
     for (const std::string method : {"two-pass", "accumulation"}) {
       CAPTURE(method);
