@@ -204,9 +204,10 @@ accumulation() {
   "$program" "${render[@]}" -o one.png
   farm_and_kill kill_process "$work/softfocus" "${render[@]}" --threads 1 -o farm.png
   cmp one.png farm.png || fail "the sharded accumulation has other bytes"
-  # As few parts as there may be, another format, and a file with a sidecar.
+  # As few parts as there may be, another format, a file with a sidecar; after -- no options.
   "$program" "${render[@]}" --format npy -o one.dat
-  "$farm" --tasks 1 --retries 0 -- "$program" "${render[@]}" --output=farm.dat --format=npy \
+  "$farm" --tasks 1 --retries 0 -- "$program" render --output=farm.dat --format=npy \
+    "${render[@]:2}" -- figures \
     2>"$work/said" || fail "one task: $(cat "$work/said")"
   cmp one.dat farm.dat && cmp one.dat.json farm.dat.json || fail "one task has other bytes"
   rm -f ./*.png ./*.dat ./*.json
@@ -280,7 +281,7 @@ wrong_usage
 make_stopping_program
 if start_daemons; then
   accumulation
-  if "$program" render --help | grep -q -- --frames; then sequence; fi
+  sequence
   hopeless
   interrupted
 else

@@ -9,6 +9,7 @@
 
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
 #include "tools/cli/progress.h"
 #include "tools/files/same_file.h"
 #include "tools/files/sums_file.h"
@@ -23,6 +24,7 @@ struct JoinOptions {
   std::vector<std::string> parts;
   RenderOptions picture;  ///< of it, the output and its format
   bool check = false;
+  bool quiet = false;
 };
 
 std::string in_quotes(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
@@ -75,7 +77,10 @@ void check_all_are_there(const std::vector<SumsFile>& files) {
 }
 
 void check_output(const JoinOptions& options) {
-  if (options.picture.output == "-") return;
+  if (options.picture.output == "-") {
+    if (!is_terminal(kStandardOutput)) return;
+    throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
+  }
   check_writable(options.picture.output);
   std::vector<ReadFile> inputs;
   inputs.reserve(options.parts.size());
@@ -109,7 +114,7 @@ int join(const JoinOptions& options) {
   if (!options.check) check_output(options);
   const std::vector<SumsFile> files = opened_parts(options.parts);
   if (!options.check) check_all_are_there(files);
-  Progress progress;
+  Progress progress{options.quiet};
   const auto show = [&](std::size_t done) {
     progress.show("joining, " + std::to_string(done) + " of " + std::to_string(files.size()));
   };
@@ -160,6 +165,7 @@ Command add_join_command(CLI::App& program) {
   add_format_option(*parser, options->picture.format);
   add_flag(*parser, "--check", "Only look whether the files are whole and of one picture",
            options->check);
+  add_quiet_option(*parser, options->quiet);
   return {parser, [parser, options] {
             if (options->parts.empty()) {
               throw UsageError("PARTS is missing: give the .sum files that render --shard wrote");
