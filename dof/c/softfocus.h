@@ -15,9 +15,9 @@
  *     puts(softfocus_message(context));
  *   softfocus_close(context);
  *
- * Later versions have longer structs. So each begins with its size, what it does not set is 0, and
- * a library reads of it what both know. A library that is older than the program refuses a field
- * that it does not know, unless that is 0. */
+ * Later versions have longer structs. So each begins with its size. Settings start from
+ * softfocus_init_settings(), the other structs from zeros. A library refuses a field that it does
+ * not know, unless that is 0. */
 
 #include <stddef.h>
 #include <stdint.h>
