@@ -11,9 +11,9 @@
 #include "tools/chart/scene_names.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/time_left.h"
 #include "tools/golden/hashes.h"
 #include "tools/report/report_files.h"
-#include "tools/report/time_left.h"
 
 namespace softfocus {
 namespace {

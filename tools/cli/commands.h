@@ -19,6 +19,7 @@ struct Command {
 };
 
 Command add_render_command(CLI::App& program);
+Command add_join_command(CLI::App& program);
 Command add_refocus_command(CLI::App& program);
 Command add_inspect_command(CLI::App& program);
 Command add_scenes_command(CLI::App& program);

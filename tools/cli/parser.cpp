@@ -315,6 +315,21 @@ void offer(CLI::App& parser, const std::string& option, Choices choices) {
   root_of(parser).choices[parser.get_option(option)] = std::move(choices);
 }
 
+std::string given_text(const CLI::App& parser, std::span<const std::string_view> without) {
+  std::string text;
+  for (const CLI::Option* option : parser.get_options()) {
+    const bool left_out = option->count() == 0 ||
+                          std::any_of(without.begin(), without.end(), [&](std::string_view name) {
+                            return option->check_name(std::string{name});
+                          });
+    if (left_out) continue;
+    text += option->get_name();
+    for (const std::string& value : option->results()) text += "=" + value;
+    text += "\n";
+  }
+  return text;
+}
+
 bool is_given(const CLI::App& parser, const std::string& option) {
   const CLI::Option* found = parser.get_option_no_throw(option);
   return found != nullptr && found->count() != 0;

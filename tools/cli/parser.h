@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/cli/command_description.h"
@@ -80,6 +82,10 @@ void add_optional_argument(CLI::App& parser, const std::string& name, const std:
 /// Names what the value of an option or argument can be, for completions and man pages. A type
 /// such as `image|coc|depth` says it already.
 void offer(CLI::App& parser, const std::string& option, Choices choices);
+
+/// All options and arguments that are on the command line that was parsed, with their values, but
+/// those of these names; in the order in which the command has them.
+std::string given_text(const CLI::App& parser, std::span<const std::string_view> without);
 
 /// Whether an option, by one of its names, is on the command line that was parsed; false for one
 /// that the command does not have.

@@ -33,7 +33,9 @@ constexpr std::array kFormats{NamedFormat{"png", FileFormat::png},
                               NamedFormat{"npy", FileFormat::npy},
                               NamedFormat{"hdr", FileFormat::hdr},
                               NamedFormat{"exr", FileFormat::exr},
-                              NamedFormat{"exr-float", FileFormat::exr_float}};
+                              NamedFormat{"exr-float", FileFormat::exr_float},
+                              NamedFormat{"rgb24", FileFormat::rgb24},
+                              NamedFormat{"rgb48le", FileFormat::rgb48le}};
 
 }  // namespace
 
@@ -57,6 +59,10 @@ std::string_view missing_format(FileFormat format) {
                                                                       : std::string_view{};
 }
 
+bool is_raw_video(FileFormat format) {
+  return format == FileFormat::rgb24 || format == FileFormat::rgb48le;
+}
+
 std::optional<FileFormat> format_by_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   if (extension.empty()) return std::nullopt;
@@ -64,7 +70,8 @@ std::optional<FileFormat> format_by_extension(const std::filesystem::path& file)
   for (char& c : extension) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  return format_by_name(extension);
+  const auto format = format_by_name(extension);
+  return format && is_raw_video(*format) ? std::nullopt : format;
 }
 
 Bytes encode(const Image& image, FileFormat format) {
@@ -76,6 +83,8 @@ Bytes encode(const Image& image, FileFormat format) {
     case FileFormat::hdr: return encode_hdr(image);
     case FileFormat::exr: return encode_exr(image, ExrNumbers::half, "");
     case FileFormat::exr_float: return encode_exr(image, ExrNumbers::single, "");
+    case FileFormat::rgb24: return encode_rgb24(image);
+    case FileFormat::rgb48le: return encode_rgb48le(image);
   }
   return {};
 }
@@ -95,9 +104,9 @@ Bytes encode_depth(std::span<const float> metres, int width, int height, FileFor
     case FileFormat::npy: return encode_grey_npy(metres, width, height);
     case FileFormat::exr:
     case FileFormat::exr_float: return encode_depth_exr(metres, width, height);
-    case FileFormat::hdr: break;
+    default: break;
   }
-  throw FileError("HDR has no depth; give a .pfm, .exr, .npy or .png file");
+  throw FileError("such a file has no depth; give a .pfm, .exr, .npy or .png file");
 }
 
 Picture decode(std::span<const std::byte> bytes, FileFormat format) {

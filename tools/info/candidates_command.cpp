@@ -16,6 +16,7 @@
 #include "dof/measure/flip.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/draw/keyframes.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/few_lens_points.h"
 #include "scenes/load/load_scene.h"
@@ -64,7 +65,7 @@ Subject make_subject(const CandidatesOptions& options, ThreadPool& pool) {
   print_scene_warnings(scene.warnings, false);
   subject.view = camera_matrices(scene.camera, options.frame, width, height);
   subject.frame = options.frame;
-  subject.lens = overruled(scene.lens.lens, options.lens);
+  subject.lens = overruled(lens_at(scene.lens, options.frame), options.lens);
   check_lens(subject.lens, options.lens, options.scene);
   const double coc_scale = options.lens.coc_scale.value_or(scene.lens.coc_scale);
   subject.coc = checked_pixel_coc(subject.lens, scene.camera.fov_y_degrees, height, coc_scale);

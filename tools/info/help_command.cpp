@@ -36,7 +36,7 @@ void write_documentation(const CommandDescription& program, const std::filesyste
   write_whole(share / "zsh" / "site-functions" / ("_" + program.name), zsh);
   write_whole(share / "zsh" / "vendor-completions" / ("_" + program.name), zsh);
   write_whole(share / "fish" / "vendor_completions.d" / (program.name + ".fish"),
-             fish_completion(program));
+              fish_completion(program));
 }
 
 }  // namespace

@@ -69,6 +69,21 @@ void add_pool_options(CLI::App& parser, PoolOptions& options, const std::string&
   });
 }
 
+void add_shard_option(CLI::App& parser, std::optional<Shard>& shard, const std::string& help) {
+  add_value(parser, "--shard", "I/N", help, [&shard](const std::string& text) {
+    const std::string wanted =
+        "I/N, both from 1 to " + std::to_string(kMostSamples) + ", I at most N, such as 1/8";
+    const auto refuse = [&] { throw UsageError("--shard '" + text + "': give " + wanted); };
+    const auto slash = text.find('/');
+    if (slash == text.npos) refuse();
+    const auto number = [&](const std::string& part) {
+      return parse_whole("--shard", part, 1, kMostSamples, wanted);
+    };
+    shard = Shard{number(text.substr(0, slash)), number(text.substr(slash + 1))};
+    if (shard->number > shard->count) refuse();
+  });
+}
+
 const Driver& parse_driver(std::string_view option, const std::string& text) {
   const Driver* driver = find_driver(text);
   if (driver == nullptr) {

@@ -248,6 +248,7 @@ Command add_inspect_command(CLI::App& program) {
               throw UsageError("FILES is missing: give pictures, softfocus inspect a.exr");
             }
             check_photo_lens(*parser);
+            check_no_keys(options->preview.photo.lens);
             RefocusOptions& preview = options->preview;
             if (!preview.output.empty()) {
               if (options->files.size() > 2) {

@@ -56,6 +56,7 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_max_coc_option(parser, options.max_coc_px, "the picture's largest circle");
   add_weight_options(parser, options.leak, options.budget);
   add_goal_options(parser, options.goal);
+  add_sequence_options(parser, options.sequence, "Of the frames only every N-th, from the I-th on");
   begin_group(parser, "Run");
   add_profile_option(parser, options.profile, options.profile_name);
   add_pool_options(parser, options.pool, "the picture is the same");

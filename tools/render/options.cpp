@@ -11,6 +11,7 @@
 #include "tools/files/same_file.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/render/shard_file.h"
 
 namespace softfocus {
 namespace {
@@ -79,11 +80,15 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Scene");
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
+  add_sequence_options(parser, options.sequence,
+                       "Of --frames only every N-th, from the I-th on; without them, of "
+                       "accumulation, the I-th of N parts of the samples: FILE, a .sum, gets their "
+                       "sums, which softfocus join joins");
 }
 
 void add_lens_and_method_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Lens");
-  add_lens_options(parser, options.lens);
+  add_animated_lens_options(parser, options.lens);
   add_value(parser, "--autofocus", "[X,Y]",
             "Focus on what is at this pixel, from the top left (default: the centre)",
             [&options](const std::string& text) {
@@ -253,6 +258,12 @@ std::size_t layers_of(const RenderOptions& options) {
   return options.layers.value_or(filters ? filter->layers : 1);
 }
 
+std::uint64_t bytes_of_a_frame(const RenderOptions& options) {
+  const auto [width, height] = drawn_size(options);
+  return (bytes_per_pixel(options) + kTransparentBytesPerPixel) *
+         static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
 void add_render_options(CLI::App& parser, RenderOptions& options) {
   add_scene_argument(parser, options.scene);
   add_scene_options(parser, options);
@@ -264,7 +275,12 @@ void add_render_options(CLI::App& parser, RenderOptions& options) {
 void complete(RenderOptions& options, const CLI::App& parser) {
   check_talk(parser);
   const bool to_standard_output = options.output == "-";
-  settle_format(parser, options.output, options.format);
+  if (!options.sequence.frames) options.shard = options.sequence.shard;
+  if (options.shard) {
+    check_shard_options(options, parser);
+  } else {
+    settle_format(parser, options.output, options.format);
+  }
   if (to_standard_output && options.json) {
     throw UsageError("--json and -o - would both write to standard output; give -o a file");
   }
@@ -279,7 +295,10 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     throw UsageError("--report and -o name the same file; give two");
   }
   check_depth_output(options);
-  if (options.autofocus && options.lens.focus_m) {
+  if (options.sequence.frames && is_given(parser, "--frame")) {
+    throw UsageError("--frame and --frames exclude each other; give one");
+  }
+  if (options.autofocus && is_given(parser, "--focus")) {
     throw UsageError("--focus and --autofocus exclude each other; give one");
   }
   if (options.autofocus_pixel) {
@@ -302,6 +321,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   } else if (!options.method.is_auto()) {
     refuse_sampling_options(parser, options.method.name());
   }
+  if (options.shard) check_shard_count(*options.shard, options.sampling.samples);
   check_supersample(options);
   check_render_memory(options, bytes_per_pixel(options));
 }

@@ -122,13 +122,7 @@ Bytes depth_bytes(const RenderOptions& options, const Image& picture) {
 }
 
 std::optional<std::filesystem::path> sidecar_place(const RenderOptions& options) {
-  if (options.output == "-" || !needs_sidecar(options.format)) return std::nullopt;
-  std::error_code error;
-  const auto status = std::filesystem::status(options.output, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return std::nullopt;
-  }
-  return sidecar_of(options.output);
+  return sidecar_place(options.output, options.format);
 }
 
 bool cuts_by_default(const RenderOptions& options) {

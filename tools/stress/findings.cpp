@@ -8,7 +8,7 @@
 
 #include "tools/cli/option_values.h"
 #include "tools/cli/progress.h"
-#include "tools/report/time_left.h"
+#include "tools/cli/time_left.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/stress_pictures.h"
 #include "tools/stress/trial_record.h"
