@@ -45,7 +45,7 @@ struct RenderOptions {
   MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;           ///< of a method that draws the scene
-  std::optional<Shard> shard;  ///< the samples of this alone: `output` gets their sums
+  std::optional<Shard> shard;  ///< of the samples, whose sums `output` gets
   AutoGoal goal;               ///< of auto
   Verify verify = Verify::in_doubt;
   LensOptions lens;

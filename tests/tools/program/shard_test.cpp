@@ -71,6 +71,16 @@ TEST_CASE("shards: the bytes do not depend on threads and vector units") {
   CHECK(read_file(make_shards(directory, 1, {"--threads", "3", "--isa", "scalar"})[0]) == one);
 }
 
+TEST_CASE("shards: of many frames, they are frames, and of each all samples") {
+  const TemporaryDirectory directory;
+  const Words words =
+      accumulated(directory.file("a%d.png"), {"--frames", "1..4", "--shard", "2/2"});
+  CHECK(run_program(words).status == 0);
+  CHECK(run_program(accumulated(directory.file("b.png"), {"--frame", "4"})).status == 0);
+  CHECK(read_file(directory.file("a4.png")) == read_file(directory.file("b.png")));
+  CHECK(directory.listing() == Words{"a%d.png.2-of-2.journal", "a2.png", "a4.png", "b.png"});
+}
+
 TEST_CASE("join: parts that are missing, there twice or of another picture are named") {
   const TemporaryDirectory directory;
   const Words parts = make_shards(directory, 4);
