@@ -106,7 +106,7 @@ Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNote
                       json_text(notes_json(notes)));
   }
   Bytes bytes = encode(image, format);
-  if (needs_sidecar(format)) return bytes;
+  if (needs_sidecar(format) || is_raw_video(format)) return bytes;
   return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION},
                                 {kKeyword, json_text(notes_json(notes))}});
 }
@@ -118,6 +118,16 @@ bool needs_sidecar(FileFormat format) {
 std::filesystem::path sidecar_of(const std::filesystem::path& picture) {
   std::filesystem::path sidecar = picture;
   return sidecar += ".json";
+}
+
+std::optional<std::filesystem::path> sidecar_place(const std::string& output, FileFormat format) {
+  if (output == "-" || !needs_sidecar(format)) return std::nullopt;
+  std::error_code error;
+  const auto status = std::filesystem::status(output, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return std::nullopt;
+  }
+  return sidecar_of(output);
 }
 
 std::string sidecar_text(const PictureNotes& notes, const Bytes& picture) {

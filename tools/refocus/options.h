@@ -9,6 +9,7 @@
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 #include "tools/refocus/picture_with_depth.h"
+#include "tools/sequence/sequence_options.h"
 
 namespace softfocus {
 
@@ -32,8 +33,10 @@ struct RefocusOptions {
   Profile profile;
   std::string profile_name = "ieee";
   PoolOptions pool;
+  SequenceOptions sequence;  ///< of many pictures
   bool json = false;
   bool verbose = false;
+  bool quiet = false;
 };
 
 void add_refocus_options(CLI::App& parser, RefocusOptions& options);
