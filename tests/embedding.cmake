@@ -1,8 +1,8 @@
 # Installs the package, builds the programs of docs/examples/embedding against it and holds
 # what they print against the golden hashes, which the flags they are built with must not
 # change:
-#   cmake -D BUILD=FOLDER -D SOURCE=FOLDER -D CXX=COMPILER -D GENERATOR=NAME -D TESTS=PROGRAM
-#         -P embedding.cmake
+#   cmake -D BUILD=FOLDER -D SOURCE=FOLDER -D CXX=COMPILER -D CC=COMPILER -D GENERATOR=NAME
+#         -D TESTS=PROGRAM -P embedding.cmake
 set(work ${BUILD}/embedding)
 set(triangle_hash 2e4e01e28b673d46)
 set(blur_hash 0d6a42bf84e87dce)
@@ -46,6 +46,9 @@ run(${CMAKE_COMMAND} --build ${work}/build -j 2)
 expect(${work}/build/blur_buffer ${blur_hash})
 expect(${work}/build/blur_buffer_fast ${blur_hash})
 expect(${work}/build/triangle ${triangle_hash})
+if(EXISTS ${work}/build/refocus_frame)
+  expect(${work}/build/refocus_frame ${blur_hash})
+endif()
 
 if(EXISTS ${work}/build/gl_renderer_blurred)
   set(ENV{GALLIUM_DRIVER} llvmpipe)
@@ -65,18 +68,50 @@ endif()
 # The same by pkg-config, and how much dof.h makes a compiler read.
 find_program(PKG_CONFIG pkg-config)
 if(PKG_CONFIG)
-  set(ENV{PKG_CONFIG_PATH} ${work}/prefix/lib/pkgconfig)
   file(GLOB_RECURSE pc ${work}/prefix/softfocus-dof.pc)
   get_filename_component(folder "${pc}" DIRECTORY)
   set(ENV{PKG_CONFIG_PATH} ${folder})
-  run(${PKG_CONFIG} --define-variable=prefix=${work}/prefix --cflags --libs softfocus-dof)
+  run(${PKG_CONFIG} --cflags --libs softfocus-dof)
   separate_arguments(flags UNIX_COMMAND "${output}")
   run(${CXX} -O1 ${SOURCE}/docs/examples/embedding/blur_buffer.cpp -o ${work}/by_pkg_config ${flags})
   expect(${work}/by_pkg_config ${blur_hash})
+  if(CC)
+    run(${PKG_CONFIG} --cflags --libs softfocus)
+    separate_arguments(flags UNIX_COMMAND "${output}")
+    run(${CC} -std=c99 -Wall -Wextra -Werror -pedantic
+        ${SOURCE}/docs/examples/embedding/refocus_frame.c -o ${work}/in_c ${flags})
+    get_filename_component(libraries ${folder} DIRECTORY)
+    set(ENV{LD_LIBRARY_PATH} ${libraries})
+    expect(${work}/in_c ${blur_hash})
+  endif()
 else()
   message("skipped: pkg-config is not there")
 endif()
-foreach(room two_pass_stream raster fixed measure auto scenes)
+
+# The shared library shows what softfocus.h declares and nothing else, each name with its version.
+file(GLOB_RECURSE shared ${work}/prefix/libsoftfocus.so.0)
+find_program(NM nm)
+find_program(READELF readelf)
+if(shared AND NM AND READELF)
+  file(STRINGS ${work}/prefix/include/softfocus/dof/c/softfocus.h declared REGEX "^SOFTFOCUS_API ")
+  list(TRANSFORM declared REPLACE ".*(softfocus_[a-z_]+)\\(.*" "\\1@@SOFTFOCUS_0.1")
+  list(APPEND declared SOFTFOCUS_0.1)
+  list(SORT declared)
+  run(${NM} -D --defined-only --format=posix ${shared})
+  string(REGEX REPLACE " [^\n]*" "" shown "${output}")
+  string(REPLACE "\n" ";" shown "${shown}")
+  list(TRANSFORM shown REPLACE "^SOFTFOCUS_0.1@@.*" "SOFTFOCUS_0.1")  # as some versions of nm say it
+  list(SORT shown)
+  if(NOT shown STREQUAL declared)
+    message(FATAL_ERROR "${shared} shows ${shown}, not ${declared}")
+  endif()
+  run(${READELF} -d ${shared})
+  if(NOT output MATCHES "SONAME[^\n]*\\[libsoftfocus.so.0\\]")
+    message(FATAL_ERROR "${shared} has another SONAME: ${output}")
+  endif()
+endif()
+
+foreach(room softfocus two_pass_stream raster fixed measure auto scenes)
   if(EXISTS ${work}/prefix/include/softfocus/${room}.h)
     file(WRITE ${work}/${room}.cpp "#include <softfocus/${room}.h>\nint main() {}\n")
     run(${CXX} -std=c++20 -fsyntax-only -I ${work}/prefix/include ${work}/${room}.cpp)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dof/auto/candidates.h"
+#include "dof/dof.h"
 
 namespace softfocus {
 namespace {
@@ -139,6 +140,16 @@ AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const Au
   }
   return goal.max_time_ms ? most_accurate_within(choices, *goal.max_time_ms)
                           : cheapest_within(choices, goal.max_error);
+}
+
+AutoMethod auto_filter(const ConstImageView& picture, const PixelCoc& coc, const AutoGoal& goal,
+                       std::optional<float> max_radius_px, ThreadPool& pool) {
+  std::vector<Candidate> filters;
+  for (const Candidate& candidate : candidates()) {
+    if (find_method(candidate.method) != nullptr) filters.push_back(candidate);
+  }
+  return auto_method(scene_traits(picture, coc, pool), goal,
+                     {.max_radius_px = max_radius_px, .table = filters});
 }
 
 std::string number_text(double value) {

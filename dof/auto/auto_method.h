@@ -47,6 +47,11 @@ struct AutoMethod {
 /// cheapest. Of equal candidates the first in the table.
 AutoMethod auto_method(const SceneTraits& traits, const AutoGoal& goal, const AutoLimits& limits);
 
+/// The choice among the filters alone, for a picture that has no scene to draw anew: RGBA16F,
+/// depth in alpha.
+AutoMethod auto_filter(const ConstImageView& picture, const PixelCoc& coc, const AutoGoal& goal,
+                       std::optional<float> max_radius_px, ThreadPool& pool);
+
 /// The candidates that differ on such a picture, from cheap to dear, with their predictions. A
 /// filter's radius is cut to the largest circle.
 std::vector<AutoMethod> open_choices(const SceneTraits& traits, const AutoLimits& limits);

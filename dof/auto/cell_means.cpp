@@ -35,7 +35,7 @@ void add_pixel(const std::uint16_t* texel, const PixelCoc& coc, std::size_t x, C
   if (std::fabs(radius_px) >= 0.5f) brightest = std::max(brightest, largest);
 }
 
-void add_row(const Image& picture, int y, const PixelCoc& coc, Isa isa, ColumnSums& sums) {
+void add_row(const ConstImageView& picture, int y, const PixelCoc& coc, Isa isa, ColumnSums& sums) {
   const std::uint16_t* texels = row<std::uint16_t>(picture, y).data();
   int x = 0;
   if (isa != Isa::scalar) {
@@ -71,7 +71,7 @@ float trait_light(float value) {
   return value < kLargestHalf ? value : kLargestHalf;
 }
 
-CellMeans cell_means(const Image& picture, const PixelCoc& coc, ThreadPool& pool) {
+CellMeans cell_means(const ConstImageView& picture, const PixelCoc& coc, ThreadPool& pool) {
   CellMeans means;
   means.columns = (picture.width + kCellPx - 1) / kCellPx;
   means.rows = (picture.height + kCellPx - 1) / kCellPx;

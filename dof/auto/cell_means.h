@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dof/lens.h"
-#include "raster/images/image.h"
+#include "raster/images/image_view.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
@@ -30,7 +30,7 @@ struct CellMeans {
 /// Of an RGBA16F picture with depth in alpha. A negative or NaN colour counts as 0, an infinite
 /// one as 65504; radii as in signed_trait_radius(). A cell's columns are summed from above, then
 /// from the left, in binary32: the same bits for any number of threads and every vector unit.
-CellMeans cell_means(const Image& picture, const PixelCoc& coc, ThreadPool& pool);
+CellMeans cell_means(const ConstImageView& picture, const PixelCoc& coc, ThreadPool& pool);
 
 /// Cut to a magnitude of kLargestTraitRadiusPx; a depth that is NaN or infinite lies beyond the
 /// focus, one of 0 before it.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kBandHeight = 32;
 
-DepthRange range_of_band(const Image& picture, Isa isa, int begin, int end) {
+DepthRange range_of_band(const ConstImageView& picture, Isa isa, int begin, int end) {
   DepthRange range;
   std::array<std::uint32_t, 2 * kMostLanes> lanes{};
   const auto used =
@@ -40,7 +40,7 @@ DepthRange range_of_band(const Image& picture, Isa isa, int begin, int end) {
 
 }  // namespace
 
-DepthRange depth_range(const Image& picture, ThreadPool& pool) {
+DepthRange depth_range(const ConstImageView& picture, ThreadPool& pool) {
   const int bands = (picture.height + kBandHeight - 1) / kBandHeight;
   std::vector<DepthRange> of_bands(static_cast<std::size_t>(bands));
   pool.for_each(bands, [&](int band) {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "raster/images/image.h"
+#include "raster/images/image_view.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
@@ -16,6 +16,6 @@ struct DepthRange {
 };
 
 /// Of the alpha of an RGBA16F picture.
-DepthRange depth_range(const Image& picture, ThreadPool& pool);
+DepthRange depth_range(const ConstImageView& picture, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -101,7 +101,7 @@ CutAreas cut_areas() {
 }
 
 struct Sight {
-  const Image& picture;
+  const ConstImageView& picture;
   const PixelCoc& coc;
   const CellMeans& cells;
   std::size_t rings;  // that any circle of the picture reaches
@@ -332,7 +332,7 @@ float largest_px(const SceneTraits& traits) {
   return std::max(std::fabs(traits.nearest_px), std::fabs(traits.farthest_px));
 }
 
-SceneTraits scene_traits(const Image& pinhole, const PixelCoc& coc, ThreadPool& pool) {
+SceneTraits scene_traits(const ConstImageView& pinhole, const PixelCoc& coc, ThreadPool& pool) {
   SceneTraits traits{.width = pinhole.width, .height = pinhole.height};
   // The radius grows with depth, so its ends are those of depth.
   const DepthRange depths = depth_range(pinhole, pool);

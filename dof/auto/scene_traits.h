@@ -27,7 +27,7 @@
 #include <array>
 
 #include "dof/lens.h"
-#include "raster/images/image.h"
+#include "raster/images/image_view.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
@@ -71,6 +71,6 @@ float largest_px(const SceneTraits& traits);
 /// Of an RGBA16F picture with depth in alpha. A depth that is NaN or infinite lies beyond the
 /// focus, one of 0 before it. In binary32 and the order written, sums in binary64 by rows of
 /// points: the same bits for any number of threads and every vector unit.
-SceneTraits scene_traits(const Image& pinhole, const PixelCoc& coc, ThreadPool& pool);
+SceneTraits scene_traits(const ConstImageView& pinhole, const PixelCoc& coc, ThreadPool& pool);
 
 }  // namespace softfocus

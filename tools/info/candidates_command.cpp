@@ -202,13 +202,11 @@ std::vector<AutoMethod> listed_choices(const CandidatesOptions& options,
   for (const std::string& name : options.only) {
     if (std::none_of(choices.begin(), choices.end(),
                      [&](const AutoMethod& choice) { return choice.method == name; })) {
-      std::string known;
+      std::vector<std::string> known;
       for (const AutoMethod& choice : choices) {
-        if (known.ends_with(choice.method)) continue;
-        if (!known.empty()) known += ", ";
-        known += choice.method;
+        if (known.empty() || known.back() != choice.method) known.emplace_back(choice.method);
       }
-      throw UsageError("--only '" + name + "': give one of " + known);
+      refuse_name("--only", name, known);
     }
   }
   if (!options.only.empty()) {

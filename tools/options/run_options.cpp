@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 
 #include "scenes/load/scene_error.h"
 #include "tools/cli/errors.h"
@@ -122,15 +123,21 @@ void add_profile_option(CLI::App& parser, Profile& profile, std::string& name) {
 }
 
 void add_format_option(CLI::App& parser, FileFormat& format) {
-  add_value(parser, "--format", format_names("|"),
-            "Format of FILE, whatever its name: PNG of 8 or 16 bits (sRGB), PFM and HDR (linear), "
-            "NPY (halves, depth in alpha), EXR in halves or floats (linear, depth as Z) (default: "
-            "by the name, png for -)",
+  add_value(parser, "--format", "FORMAT",
+            "Format of FILE, whatever its name: " + format_names() +
+                "; PNG of 8 or 16 bits (sRGB), PFM and HDR (linear), NPY (halves, depth in alpha), "
+                "EXR in halves or floats (linear, depth as Z) (default: by the name, png for -)",
             [&format](const std::string& text) {
               const auto chosen = format_by_name(text);
               if (!chosen) throw UsageError("--format '" + text + "': there are " + format_names());
               format = *chosen;
             });
+  offer(parser, "--format", [] {
+    std::vector<std::string> names;
+    std::istringstream words{format_names(" ")};
+    for (std::string name; words >> name;) names.push_back(name);
+    return names;
+  });
 }
 
 void settle_format(const CLI::App& parser, const std::string& output, FileFormat& format) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "dof/sensor.h"
 #include "raster/numbers/exact_math.h"
 #include "tools/cli/errors.h"
 #include "tools/options/lengths.h"
@@ -54,15 +55,6 @@ SharpDepthRange parse_focus_range(const std::string& text) {
   return range;
 }
 
-/// The pixels of a millimetre on the sensor: the picture is the largest part of it that has the
-/// picture's shape, upright if the picture is.
-double pixels_per_mm(const Sensor& sensor, int width, int height) {
-  const bool turned = (width < height) != (sensor.width_mm < sensor.height_mm);
-  const double across = turned ? sensor.height_mm : sensor.width_mm;
-  const double down = turned ? sensor.width_mm : sensor.height_mm;
-  return std::max(width / across, height / down);
-}
-
 /// What says how much the camera sees, in the order in which it is asked.
 enum class CameraSource : std::uint8_t { fov, sensor, focal_px, notes, full_frame };
 
@@ -97,21 +89,16 @@ double pixels_per_tangent(CameraSource source, const PhotoLens& photo,
     case CameraSource::fov: return of_degrees(*photo.fov_y_degrees);
     case CameraSource::notes: return of_degrees(notes->fov_y_degrees);
     case CameraSource::focal_px: return *focal_px;
-    default: return image_mm * pixels_per_mm(sensor_of(photo), width, height);
+    default: {
+      const Sensor sensor = sensor_of(photo);
+      return image_mm * pixels_per_sensor_mm(sensor.width_mm, sensor.height_mm, width, height);
+    }
   }
 }
 
 /// For notes and reports alone: the C library's arctangent has other bits elsewhere.
 double shown_degrees(double pixels_per_unit_tangent, int height) {
   return 2.0 * std::atan(height / (2.0 * pixels_per_unit_tangent)) * 180.0 / exact_math::kPi;
-}
-
-/// As pixel_coc() has it, of a camera whose field of view is not known in degrees.
-PixelCoc coc_of(const ThinLens& lens, double pixels_per_unit_tangent, double coc_scale) {
-  const double aperture_radius_m = aperture_mm(lens) / 1000.0 / 2.0;
-  return {
-      static_cast<float>(aperture_radius_m / lens.focus_m * pixels_per_unit_tangent * coc_scale),
-      static_cast<float>(lens.focus_m)};
 }
 
 std::vector<float> finite_depths(const DepthMap& depth, int x0, int x1, int y0, int y1) {
@@ -261,8 +248,9 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
     return settled;
   }
   check_lens(settled.lens, photo.lens, settled.focus_from);
-  settled.coc = coc_of(settled.lens, camera(image_distance_mm(settled.lens, settled.lens.focus_m)),
-                       settled.coc_scale);
+  settled.coc =
+      sensor_coc(settled.lens, camera(image_distance_mm(settled.lens, settled.lens.focus_m)),
+                 settled.coc_scale);
   if (!std::isfinite(settled.coc.radius_at_infinity_px)) {
     throw UsageError("the lens's circles are too large: give a larger --f-number");
   }

@@ -14,17 +14,6 @@ namespace {
 /// The largest depth that a 16-bit float holds.
 constexpr float kFarthestHalf_m = 65504.0f;
 
-/// Auto's choice among the filters, for there is no scene to look at anew.
-AutoMethod chosen_filter(const Image& picture, const RefocusOptions& options, const PixelCoc& coc,
-                         ThreadPool& pool) {
-  std::vector<Candidate> filters;
-  for (const Candidate& candidate : candidates()) {
-    if (find_method(candidate.method) != nullptr) filters.push_back(candidate);
-  }
-  return auto_method(scene_traits(picture, coc, pool), options.goal,
-                     {.max_radius_px = options.max_coc_px, .table = filters});
-}
-
 /// The nearest and farthest finite depths, apart.
 struct DepthBounds {
   float near_m, far_m;
@@ -77,7 +66,7 @@ Image refocused(Image colour, const DepthMap& depth, const RefocusOptions& optio
     return show_depth(colour, bounds.near_m, bounds.far_m);
   }
   if (options.method.is_auto()) {
-    used.choice = chosen_filter(colour, options, used.settings.coc, pool);
+    used.choice = auto_filter(colour, used.settings.coc, options.goal, options.max_coc_px, pool);
     used.method = find_method(used.choice->method);
     if (!is_sharp(*used.choice)) used.settings.max_coc_px = used.choice->radius_px;
   }

@@ -1,0 +1,87 @@
+// The example in Python against the program: the same bits from the same arrays.
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/support/run_program.h"
+#include "tests/support/skip.h"
+
+using namespace softfocus;
+
+namespace {
+
+// A Python that has NumPy, or nothing. Debian's first: another may stand before it without.
+std::string python_with_numpy() {
+  for (const char* name : {"/usr/bin/python3", "python3"}) {
+    if (std::system((std::string{name} + " -c 'import numpy' 2>/dev/null").c_str()) == 0)
+      return name;
+  }
+  return {};
+}
+
+#ifdef SOFTFOCUS_LIBRARY
+/// Whether a command of these words, the second in quotes, ends well.
+bool done(const std::string& program, const std::string& quoted,
+          const std::vector<std::string>& words) {
+  std::string command = program + " \"" + quoted + '"';
+  for (const std::string& word : words) command.append(1, ' ').append(word);
+  return std::system(command.c_str()) == 0;
+}
+#endif
+
+}  // namespace
+
+TEST_CASE("refocus.py gives what the program writes, to the bit") {
+#ifdef SOFTFOCUS_LIBRARY
+  const std::string python = python_with_numpy();
+  if (python.empty()) return skip("numpy", "no python3 with NumPy");
+  const TemporaryDirectory folder;
+  const std::string colour = folder.file("colour.npy"), depth = folder.file("depth.npy"),
+                    theirs = folder.file("theirs.npy"), ours = folder.file("ours.npy");
+  const std::string library = "SOFTFOCUS_LIBRARY=" SOFTFOCUS_LIBRARY " " + python;
+  const std::string script = SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding/refocus.py";
+  const std::string python_line = python + " -c";
+  const std::string save = "; import sys; np.save(sys.argv[1], c); np.save(sys.argv[2], d)";
+  const std::string random = "import numpy as np; r = np.random.default_rng(1); ";
+  struct Pair {
+    std::string arrays;  // colour c, depth d
+    std::vector<std::string> options;
+    std::vector<std::string> settings;
+  };
+  for (const Pair& pair :
+       {Pair{
+            "c = r.random((48, 64, 3)).astype('f4'); d = (1 + 5 * r.random((48, 64))).astype('f4')",
+            {"--focus", "2.5", "--f-number", "1.4", "--fov", "30"},
+            {"focus_m=2.5", "f_number=1.4", "fov_y_degrees=30"}},
+        Pair{"c = r.integers(0, 256, (40, 30, 3), dtype='u1'); "
+             "d = (1 + 5 * r.random((40, 30))).astype('f2')",
+             {"--focus", "2", "--sensor", "full-frame", "--method", "disc-layers", "--profile",
+              "llvmpipe", "--coc-scale", "9"},
+             {"focus_m=2", "coc_scale=9", "method=disc-layers", "profile=llvmpipe"}},
+        Pair{"c = r.random((48, 64, 3)).astype('f2'); "
+             "d = np.asfortranarray((1 + 5 * r.random((48, 64))).astype('f4'))",
+             {"--focus", "3", "--blur-at-infinity", "7", "--method", "auto"},
+             {"focus_m=3", "blur_at_infinity_px=7", "method=auto"}}}) {
+    CAPTURE(pair.arrays);
+    std::string make = random;
+    REQUIRE(done(python_line, make.append(pair.arrays).append(save), {colour, depth}));
+    std::vector<std::string> words{"refocus",          colour,  depth, "-o", theirs,
+                                   "--depth-encoding", "metres"};
+    words.insert(words.end(), pair.options.begin(), pair.options.end());
+    const ProgramRun run = run_program(words);
+    CHECK(run.err == "");
+    REQUIRE(run.status == 0);
+    words = {colour, depth, ours};
+    words.insert(words.end(), pair.settings.begin(), pair.settings.end());
+    REQUIRE(done(library, script, words));
+    CHECK(read_file(ours) == read_file(theirs));
+  }
+  CHECK(!done(library, script, {colour, depth, ours, "method=none", "2>/dev/null"}));
+  CHECK(!done(library, script, {depth, depth, ours, "2>/dev/null"}));
+#else
+  skip("", "a build without the shared library");
+#endif
+}
