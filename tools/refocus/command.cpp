@@ -9,6 +9,7 @@
 #include "tools/cli/progress.h"
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
+#include "tools/refocus/opacity.h"
 #include "tools/refocus/report.h"
 
 namespace softfocus {
@@ -35,36 +36,41 @@ void check_outputs(const RefocusOptions& options) {
   if (const auto sidecar = sidecar_place(options)) check_not_read("-o", *sidecar, inputs);
 }
 
-/// Colours of a file whose alpha is no depth are multiplied by it, if they are not already.
-/// Returns whether anything is transparent. Alphas beyond 0 and 1, as of a NumPy file that we
-/// wrote, are depths.
-bool multiply_by_alpha(const PictureSources& sources, Image& colour) {
-  if (!sources.colour.alpha) return false;
-  const std::size_t plane = *sources.colour.alpha;
-  if (!sources.depth_file && sources.depth_plane == plane) return false;
-  const PictureFile& file = sources.colour_file;
-  const PlaneValues alpha = read_planes(file, {&plane, 1}, 0.0f)[0];
-  const auto whole = static_cast<float>(full_scale(file.planes[plane].type));
-  const bool is_ours = sources.notes && file.reader == &kNpyReader;
-  if (is_ours || std::any_of(alpha.begin(), alpha.end(),
-                             [&](float value) { return !(value >= 0.0f && value <= whole); })) {
-    return false;
+/// The planes of an EXR that are neither the colour nor its depth.
+std::vector<std::size_t> other_planes(const PictureSources& sources) {
+  std::vector<std::size_t> others;
+  const ColourLayer& colour = sources.colour;
+  for (std::size_t i = 0; i < sources.colour_file.planes.size(); ++i) {
+    const bool is_colour =
+        i == colour.red || i == colour.green || i == colour.blue || i == colour.alpha;
+    const bool is_depth = !sources.depth_file && i == sources.depth_plane;
+    if (!is_colour && !is_depth) others.push_back(i);
   }
-  const bool is_straight = file.reader != &kExrReader;
-  bool found = false;
-  std::size_t next = 0;
-  for (int y = 0; y < colour.height; ++y) {
-    const auto halves = row<std::uint16_t>(colour, y);
-    for (std::size_t i = 0; i < halves.size(); i += 4, ++next) {
-      if (alpha[next] == whole) continue;
-      found = true;
-      for (std::size_t c = 0; is_straight && c < 3; ++c) {
-        halves[i + c] = float_to_half(half_to_float(halves[i + c]) * (alpha[next] / whole),
-                                      HalfRounding::nearest_even);
-      }
+  return others;
+}
+
+bool is_exr(FileFormat format) {
+  return format == FileFormat::exr || format == FileFormat::exr_float;
+}
+bool has_alpha(FileFormat format) { return is_exr(format) || !needs_sidecar(format); }
+
+/// The file's bytes, and in EXR what else there is to tell.
+Bytes encoded(const RefocusOptions& options, const PictureSources& sources, const DepthMap& depth,
+              const UsedRefocus& used, const PictureOnItsWay& result, const PictureNotes& notes) {
+  PictureExtras extras{.alpha = result.opacity};
+  PlaneValues radii_px;
+  std::vector<std::size_t> kept;
+  if (is_exr(options.format) && options.show == RefocusShow::image) {
+    radii_px = circle_radii(depth, used);
+    extras.radii_px = radii_px;
+    extras.depth_m = depth.metres;
+    if (sources.colour_file.reader == &kExrReader) {
+      if (options.keep_layers) kept = other_planes(sources);
+      extras.source = &sources.colour_file;
+      extras.kept = kept;
     }
   }
-  return found;
+  return encode_with_notes(result.picture, options.format, notes, extras);
 }
 
 void warn(const std::string& text) { std::cerr << "softfocus: warning: " << text << '\n'; }
@@ -79,18 +85,20 @@ int refocus(const RefocusOptions& options) {
   constexpr std::uint64_t kBytesPerPixel = 64;
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
                kBytesPerPixel);
-  Image colour = read_colour(sources.colour_file, sources.colour, false).image;
-  const bool is_transparent = multiply_by_alpha(sources, colour);
-  const ReadDepth depth = read_depth(sources, colour, options.reading, options.photo, pool);
+  PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
+  source.opacity = take_opacity(sources, source.picture);
+  const bool loses_alpha = is_transparent(source.opacity) && !has_alpha(options.format);
+  if (loses_alpha) source.opacity.clear();
+  const ReadDepth depth = read_depth(sources, source.picture, options.reading, options.photo, pool);
   UsedRefocus used;
   used.lens =
       settle_lens(options.photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
-  const Image picture = refocused(std::move(colour), depth.map, options, used, pool);
+  const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
 
   progress.show("writing");
-  const PictureNotes notes = refocus_notes(options, used, picture);
-  const Bytes bytes = encode_with_notes(picture, options.format, notes);
+  const PictureNotes notes = refocus_notes(options, used, result.picture);
+  const Bytes bytes = encoded(options, sources, depth.map, used, result, notes);
   auto sidecar = sidecar_place(options);
   const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
   std::optional<WholeFile> picture_file, sidecar_file;
@@ -108,10 +116,10 @@ int refocus(const RefocusOptions& options) {
          "' is no sidecar of a picture and stays as it is: the picture's "
          "lens is written nowhere");
   }
-  if (is_transparent) {
+  if (loses_alpha) {
     warn("'" + options.colour +
-         "' is transparent in places; the result has no alpha, and black "
-         "there");
+         "' is transparent in places; the result's format has no alpha, and black there; .exr and "
+         ".png have");
   }
   if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
     warn("circles of more than " + std::to_string(static_cast<int>(kLargestMaxCoc)) +
