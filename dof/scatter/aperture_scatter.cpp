@@ -45,15 +45,29 @@ struct StampSources {
   }
 };
 
+// A row of the picture: red, green, blue and radius, `stride` apart.
+struct PictureRow {
+  std::ptrdiff_t stride;
+  std::vector<float> values;
+
+  PictureRow(const DofInput& input, int y, Isa isa)
+      : stride(plane_stride(input.scene.width)), values(static_cast<std::size_t>(4 * stride)) {
+    split_picture_row(input, y, values.data(), stride, static_cast<int>(stride), isa);
+  }
+  float at(int channel, int x) const {
+    return values[static_cast<std::size_t>(channel * stride + x)];
+  }
+};
+
 StampSources make_stamp_sources(const Aperture& aperture, const DofInput& input, ThreadPool& pool) {
-  const Planes planes = split_picture(input, pool);
-  StampSources sources{planes.width, planes.height};
+  StampSources sources{input.scene.width, input.scene.height};
   const std::size_t pixels = sources.at(0, sources.height);
+  const bool upside_down_differs = differs_upside_down(aperture);
   sources.stamp.resize(pixels);
   pool.for_each(sources.height, [&](int y) {
-    const float* radius = plane_row(planes, 3, y);
+    const PictureRow row{input, y, pool.isa()};
     for (int x = 0; x < sources.width; ++x) {
-      sources.stamp[sources.at(x, y)] = stamp_number(radius[x], differs_upside_down(aperture));
+      sources.stamp[sources.at(x, y)] = stamp_number(row.at(3, x), upside_down_differs);
     }
   });
   sources.stamps = make_stamps(sources.stamp, aperture, pool);
@@ -62,15 +76,15 @@ StampSources make_stamp_sources(const Aperture& aperture, const DofInput& input,
   sources.reach.resize(static_cast<std::size_t>(sources.height));
   sources.in_slab.resize(static_cast<std::size_t>(sources.height));
   pool.for_each(sources.height, [&](int y) {
-    const float* from = plane_row(planes, 0, y);
+    const PictureRow row{input, y, pool.isa()};
     std::uint32_t in_slab = 0;
     int reach = 0;
     for (int x = 0; x < sources.width; ++x) {
       const std::size_t at = sources.at(x, y);
       const Stamp& stamp = sources.stamps.stamps[sources.stamp[at]];
-      const int slab = slab_of(from[3 * planes.plane + x]);
+      const int slab = slab_of(row.at(3, x));
       float* light = &sources.light[4 * at];
-      for (int i = 0; i < 3; ++i) light[i] = from[i * planes.plane + x] * stamp.weight;
+      for (int i = 0; i < 3; ++i) light[i] = row.at(i, x) * stamp.weight;
       light[3] = stamp.weight;
       sources.slab[at] = static_cast<std::uint8_t>(slab);
       in_slab |= 1u << slab;

@@ -39,6 +39,7 @@ Bytes written(const std::vector<ExrPlane>& planes, int width, int height, Imf::H
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const ExrPlane& plane : planes) header.channels().insert(plane.name, {plane.type});
   std::vector<std::vector<std::byte>> bands;
+  bands.reserve(planes.size());
   for (const ExrPlane& plane : planes) {
     bands.emplace_back(bytes_of(plane.type) * static_cast<std::size_t>(width) *
                        static_cast<std::size_t>(std::min(kBandRows, height)));

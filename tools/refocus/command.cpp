@@ -80,16 +80,20 @@ int refocus(const RefocusOptions& options) {
   Progress progress;
   ThreadPool pool{options.pool.threads, options.pool.isa};
   progress.show("reading");
-  const PictureSources sources = open_sources(options.colour, options.depth, options.reading);
-  // The colour as planes and as a picture, the depth, the filtered picture and one between.
-  constexpr std::uint64_t kBytesPerPixel = 64;
+  PictureSources sources = open_sources(options.colour, options.depth, options.reading);
+  // The file, its colour as planes and as a picture; then the picture, its depth, the result, and
+  // what the method keeps.
+  const bool keeps_little = options.method.name() == "two-pass";
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
-               kBytesPerPixel);
+               keeps_little ? 40 : 64);
   PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
   source.opacity = take_opacity(sources, source.picture);
   const bool loses_alpha = is_transparent(source.opacity) && !has_alpha(options.format);
   if (loses_alpha) source.opacity.clear();
   const ReadDepth depth = read_depth(sources, source.picture, options.reading, options.photo, pool);
+  // What was read is not needed again, but for an EXR's other layers. `= {}` would keep the memory.
+  if (sources.depth_file) sources.depth_file->bytes = Bytes{};
+  if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
   UsedRefocus used;
   used.lens =
       settle_lens(options.photo, sources.notes, options.reading.numbers.focal_px, depth.map);

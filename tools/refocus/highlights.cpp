@@ -36,7 +36,7 @@ void bend(const PlaneValues& opacity, Image& picture, const Curve& raised) {
 
 }  // namespace
 
-Highlights parse_highlights(const std::string& text) {
+HighlightCurve parse_highlights(const std::string& text) {
   constexpr const char* kWanted =
       "a gain from 1 and a threshold from 0 as GAIN,THRESHOLD, such as 8,0.9";
   const auto comma = text.find(',');
@@ -45,13 +45,15 @@ Highlights parse_highlights(const std::string& text) {
           parse_number("--highlights", text.substr(comma + 1), 0.0, 1e4, kWanted)};
 }
 
-void raise_highlights(const Highlights& highlights, const PlaneValues& opacity, Image& picture) {
+void raise_highlights(const HighlightCurve& highlights, const PlaneValues& opacity,
+                      Image& picture) {
   bend(opacity, picture, [&](double luminance) {
     return luminance + (highlights.gain - 1.0) * std::max(luminance - highlights.threshold, 0.0);
   });
 }
 
-void lower_highlights(const Highlights& highlights, const PlaneValues& opacity, Image& picture) {
+void lower_highlights(const HighlightCurve& highlights, const PlaneValues& opacity,
+                      Image& picture) {
   bend(opacity, picture, [&](double luminance) {
     const double above = luminance - highlights.threshold;
     return above > 0.0 ? highlights.threshold + above / highlights.gain : luminance;

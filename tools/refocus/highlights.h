@@ -12,16 +12,16 @@ namespace softfocus {
 ///   L' = L + (gain - 1) max(L - threshold, 0)
 ///
 /// It rises with L, and so has an inverse.
-struct Highlights {
+struct HighlightCurve {
   double gain = 1.0;       ///< 1 or more
   double threshold = 1.0;  ///< 0 or more
 };
 
 /// GAIN,THRESHOLD. Throws UsageError.
-Highlights parse_highlights(const std::string& text);
+HighlightCurve parse_highlights(const std::string& text);
 
 /// `opacity` is empty or has a number a pixel, by which the colours are multiplied.
-void raise_highlights(const Highlights& highlights, const PlaneValues& opacity, Image& picture);
-void lower_highlights(const Highlights& highlights, const PlaneValues& opacity, Image& picture);
+void raise_highlights(const HighlightCurve& highlights, const PlaneValues& opacity, Image& picture);
+void lower_highlights(const HighlightCurve& highlights, const PlaneValues& opacity, Image& picture);
 
 }  // namespace softfocus

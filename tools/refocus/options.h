@@ -34,7 +34,7 @@ struct RefocusOptions {
   RefocusShow show = RefocusShow::image;
   bool keep_layers = true;  ///< of an EXR, in an EXR
   Aperture aperture;
-  std::optional<Highlights> highlights;
+  std::optional<HighlightCurve> highlights;
   Border border = Border::by_method;
   Profile profile;
   std::string profile_name = "ieee";

@@ -15,7 +15,7 @@ namespace softfocus {
 namespace {
 
 /// The largest depth that a 16-bit float holds.
-constexpr float kFarthestHalf_m = 65504.0f;
+constexpr float kFarthestHalf = 65504.0f;
 
 /// Auto's choice among the filters, for there is no scene to look at anew.
 AutoMethod chosen_filter(const Image& picture, const RefocusOptions& options, const PixelCoc& coc,
@@ -113,7 +113,7 @@ PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
   DepthMap seen = depth;
   if (used.lens.range) move_range_into_focus(seen, *used.lens.range);
   // (z - focus) / z is NaN at infinity, and NaN has the largest circle. The horizon has its own.
-  for (float& metres : seen.metres) metres = std::min(metres, kFarthestHalf_m);
+  for (float& metres : seen.metres) metres = std::min(metres, kFarthestHalf);
   put_in_alpha(seen.metres, colour);
   const CircleSizes sizes = circle_sizes(colour, used.settings.coc, 0.0f, pool);
   used.largest_circle_px = sizes.largest_px;
