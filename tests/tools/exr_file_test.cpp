@@ -14,6 +14,7 @@
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <doctest/doctest.h>
 
@@ -151,6 +152,7 @@ TEST_CASE("EXR: layers of another file are kept as they are, in their types") {
   header.channels().insert("mask.V", Imf::Channel(Imf::HALF));
   header.channels().insert("Z", Imf::Channel(Imf::HALF));
   Imf::addOwner(header, "a studio");
+  header.insert("focus", Imf::StringAttribute("the actor"));
   Imf::FrameBuffer buffer;
   buffer.insert("id", Imf::Slice::Make(Imf::UINT, ids.data(), data.min, static_cast<int>(columns),
                                        static_cast<int>(rows)));
@@ -166,10 +168,11 @@ TEST_CASE("EXR: layers of another file are kept as they are, in their types") {
   const PictureFile source = open_picture_file(directory.file("a.exr"));
   const std::vector<std::size_t> kept{0, 1, 2};
   const Bytes bytes = encode_exr(make_image(Format::rgba16f, kColumns, kRows), ExrNumbers::half, "",
-                                 {.source = &source, .kept = kept});
+                                 {.lens = ThinLens{}, .source = &source, .kept = kept});
   write_file(directory.file("b.exr"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   Imf::InputFile exr{directory.file("b.exr").c_str()};
   CHECK(Imf::owner(exr.header()) == "a studio");
+  CHECK(Imf::focus(exr.header()) == 2.0f);
   CHECK(exr.header().channels()["Z"].type == Imf::FLOAT);  // the picture's own
   REQUIRE(exr.header().channels()["id"].type == Imf::UINT);
   REQUIRE(exr.header().channels()["mask.V"].type == Imf::HALF);
@@ -192,6 +195,27 @@ TEST_CASE("EXR: layers of another file are kept as they are, in their types") {
     }
   }
   CHECK(wrong == 0);
+}
+
+TEST_CASE("EXR: refocus keeps other layers, or leaves them out") {
+  const TemporaryDirectory directory;
+  const std::vector<std::string> names{"B", "G", "R", "Z", "view.mask.V"};
+  Planes3 planes{kDisplay, 5};
+  {
+    Imf::OutputFile exr{directory.file("a.exr").c_str(), header_with(names)};
+    exr.setFrameBuffer(planes.buffer(names));
+    exr.writePixels(kRows);
+  }
+  std::vector<std::string> words{"refocus", directory.file("a.exr"), "-o", directory.file("b.exr")};
+  words.insert(words.end(), {"--depth-encoding", "metres", "--f-number", "16"});
+  CHECK(run_program(words).err == "");
+  const PictureFile kept = open_picture_file(directory.file("b.exr"));
+  CHECK(plane_names(kept) == "B, G, R, Z, coc, view.mask.V");
+  CHECK(wrong_values(kept, 5, 4) == 0);
+  CHECK(wrong_values(kept, 3, 3) == 0);  // the depth's floats
+  words.emplace_back("--no-layers");
+  CHECK(run_program(words).err == "");
+  CHECK(plane_names(open_picture_file(directory.file("b.exr"))) == "B, G, R, Z, coc");
 }
 
 TEST_CASE("EXR: every compression is read") {

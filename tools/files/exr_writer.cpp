@@ -23,8 +23,14 @@
 namespace softfocus {
 namespace {
 
-/// Rows that are written at a time: those of the largest block.
-constexpr int kBandRows = 256;
+/// Rows that are written at a time: those of the largest block, or fewer, so that a hundred layers
+/// take no more than a few.
+int band_rows(std::size_t planes, int width) {
+  constexpr std::size_t kMostValues = std::size_t{1} << 25;
+  int rows = 256;
+  while (rows > 16 && planes * static_cast<std::size_t>(width * rows) > kMostValues) rows /= 2;
+  return rows;
+}
 
 std::size_t bytes_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
 
@@ -38,18 +44,19 @@ struct ExrPlane {
 Bytes written(const std::vector<ExrPlane>& planes, int width, int height, Imf::Header header) {
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const ExrPlane& plane : planes) header.channels().insert(plane.name, {plane.type});
+  const int band = band_rows(planes.size(), width);
   std::vector<std::vector<std::byte>> bands;
   bands.reserve(planes.size());
   for (const ExrPlane& plane : planes) {
     bands.emplace_back(bytes_of(plane.type) * static_cast<std::size_t>(width) *
-                       static_cast<std::size_t>(std::min(kBandRows, height)));
+                       static_cast<std::size_t>(std::min(band, height)));
   }
   Bytes bytes;
   ExrOutput stream{bytes};
   {
     Imf::OutputFile exr{stream, header, 1};
-    for (int y = 0; y < height; y += kBandRows) {
-      const int rows = std::min(kBandRows, height - y);
+    for (int y = 0; y < height; y += band) {
+      const int rows = std::min(band, height - y);
       Imf::FrameBuffer buffer;
       for (std::size_t i = 0; i < planes.size(); ++i) {
         planes[i].fill(y, rows, bands[i].data());
@@ -108,7 +115,7 @@ class SourcePlanes {
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       planes.push_back(
           {kept_[i].info->name, kept_[i].type, [this, i](int y, int rows, std::byte* to) {
-             if (y != loaded_y_) load(y, rows);
+             if (y != loaded_y_) load_or_refuse(y, rows);
              copy(kept_[i], y, rows, to);
            }});
     }
@@ -138,6 +145,16 @@ class SourcePlanes {
             static_cast<std::size_t>(data.max.x - data.min.x + 1),
             data.min,
             display};
+  }
+
+  void load_or_refuse(int y, int rows) {
+    try {
+      load(y, rows);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw FileError("cannot read '" + file_.path.string() + "': " + error.what());
+    }
   }
 
   void load(int y, int rows) {
@@ -218,6 +235,8 @@ void copy_attributes(const Imf::Header& from, Imf::Header& to) {
 }
 
 void add_lens(const ThinLens& lens, Imf::Header& header) {
+  // A copied one may have another type.
+  for (const char* name : {"focus", "aperture", "nominalFocalLength"}) header.erase(name);
   Imf::addFocus(header, static_cast<float>(lens.focus_m));
   Imf::addAperture(header, static_cast<float>(lens.f_number));
   // Of OpenEXR 3.2; older libraries have no function for it.

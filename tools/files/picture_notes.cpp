@@ -107,7 +107,7 @@ Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNote
     return encode_exr(image, format == FileFormat::exr ? ExrNumbers::half : ExrNumbers::single,
                       json_text(notes_json(notes)), all);
   }
-  if (needs_sidecar(format)) return encode(image, format);
+  if (format != FileFormat::png && format != FileFormat::png_16) return encode(image, format);
   const Bytes bytes = format == FileFormat::png ? encode_png(image, extras.alpha)
                                                 : encode_png_16(image, extras.alpha);
   return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION},

@@ -10,6 +10,7 @@
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/refocus/opacity.h"
+#include "tools/refocus/refocused_file.h"
 #include "tools/refocus/report.h"
 
 namespace softfocus {
@@ -36,43 +37,6 @@ void check_outputs(const RefocusOptions& options) {
   if (const auto sidecar = sidecar_place(options)) check_not_read("-o", *sidecar, inputs);
 }
 
-/// The planes of an EXR that are neither the colour nor its depth.
-std::vector<std::size_t> other_planes(const PictureSources& sources) {
-  std::vector<std::size_t> others;
-  const ColourLayer& colour = sources.colour;
-  for (std::size_t i = 0; i < sources.colour_file.planes.size(); ++i) {
-    const bool is_colour =
-        i == colour.red || i == colour.green || i == colour.blue || i == colour.alpha;
-    const bool is_depth = !sources.depth_file && i == sources.depth_plane;
-    if (!is_colour && !is_depth) others.push_back(i);
-  }
-  return others;
-}
-
-bool is_exr(FileFormat format) {
-  return format == FileFormat::exr || format == FileFormat::exr_float;
-}
-bool has_alpha(FileFormat format) { return is_exr(format) || !needs_sidecar(format); }
-
-/// The file's bytes, and in EXR what else there is to tell.
-Bytes encoded(const RefocusOptions& options, const PictureSources& sources, const DepthMap& depth,
-              const UsedRefocus& used, const PictureOnItsWay& result, const PictureNotes& notes) {
-  PictureExtras extras{.alpha = result.opacity};
-  PlaneValues radii_px;
-  std::vector<std::size_t> kept;
-  if (is_exr(options.format) && options.show == RefocusShow::image) {
-    radii_px = circle_radii(depth, used);
-    extras.radii_px = radii_px;
-    extras.depth_m = depth.metres;
-    if (sources.colour_file.reader == &kExrReader) {
-      if (options.keep_layers) kept = other_planes(sources);
-      extras.source = &sources.colour_file;
-      extras.kept = kept;
-    }
-  }
-  return encode_with_notes(result.picture, options.format, notes, extras);
-}
-
 void warn(const std::string& text) { std::cerr << "softfocus: warning: " << text << '\n'; }
 
 int refocus(const RefocusOptions& options) {
@@ -88,7 +52,7 @@ int refocus(const RefocusOptions& options) {
                keeps_little ? 40 : 64);
   PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
   source.opacity = take_opacity(sources, source.picture);
-  const bool loses_alpha = is_transparent(source.opacity) && !has_alpha(options.format);
+  const bool loses_alpha = is_transparent(source.opacity) && !keeps_alpha(options.format);
   if (loses_alpha) source.opacity.clear();
   const ReadDepth depth = read_depth(sources, source.picture, options.reading, options.photo, pool);
   // What was read is not needed again, but for an EXR's other layers. `= {}` would keep the memory.
@@ -102,7 +66,7 @@ int refocus(const RefocusOptions& options) {
 
   progress.show("writing");
   const PictureNotes notes = refocus_notes(options, used, result.picture);
-  const Bytes bytes = encoded(options, sources, depth.map, used, result, notes);
+  const Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes);
   auto sidecar = sidecar_place(options);
   const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
   std::optional<WholeFile> picture_file, sidecar_file;

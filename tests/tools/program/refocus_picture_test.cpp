@@ -302,10 +302,18 @@ TEST_CASE("refocus: an EXR has alpha, depth in floats, circles, and the layers t
   }
   CHECK(largest < 0.0005);  // multiplied, and both halves
 
-  // Again from EXR to EXR: circles and notes are ours, so a copy under another name shows.
+  // From EXR to EXR: multiplied colours stay multiplied.
   const ProgramRun run = run_program(with({"refocus", directory.file("b.exr"), "-o",
                                            directory.file("c.exr"), "--depth-encoding", "metres"},
                                           kBlur));
   CHECK(run.err == "");
   CHECK(plane_names(open_picture_file(directory.file("c.exr"))) == "A, B, G, R, Z, coc");
+  const PlaneValues red_again = read_plane(directory, "c.exr", "R");
+  const PlaneValues alpha_again = read_plane(directory, "c.exr", "A");
+  largest = 0.0;
+  for (std::size_t i = 0; i < red_again.size(); ++i) {
+    largest =
+        std::max(largest, static_cast<double>(std::fabs(red_again[i] - 0.5f * alpha_again[i])));
+  }
+  CHECK(largest < 0.001);
 }
