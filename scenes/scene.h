@@ -26,9 +26,23 @@ struct Camera {
   double orbit_degrees_per_frame = 0.0;
 };
 
+/// From `frame` on, and until the next key's, a value is on its way from `value`.
+struct Keyframe {
+  double frame = 0.0;
+  double value = 0.0;
+  bool operator==(const Keyframe&) const = default;
+};
+
+/// The way from key to key (draw/keyframes.h).
+enum class Easing : std::uint8_t { linear, smooth };
+
 /// The lens that the scene suggests; the command line can overrule every value.
 struct SceneLens {
-  ThinLens lens;
+  ThinLens lens;  ///< at frame 0; lens_at() gives it at others
+  /// If not empty: frames from 0 on, increasing.
+  std::vector<Keyframe> focus_m_by_frame{};
+  std::vector<Keyframe> f_number_by_frame{};
+  Easing easing = Easing::linear;
   double coc_scale = 1.0;
   /// Largest CoC as a radius in pixels of a picture 1024 rows high; scaled with the
   /// height, so that a picture looks the same at every size.

@@ -34,6 +34,12 @@ foreach(internal dof/method.cpp dof/weights.h dof/picture_planes.h raster/lanes/
     message(FATAL_ERROR "${internal} is internal, and installed")
   endif()
 endforeach()
+foreach(installed man/man1/softfocus.1 man/man1/softfocus-render.1 bash-completion/completions/softfocus
+                  zsh/site-functions/_softfocus fish/vendor_completions.d/softfocus.fish)
+  if(NOT EXISTS ${work}/prefix/share/${installed})
+    message(FATAL_ERROR "share/${installed} is not installed")
+  endif()
+endforeach()
 run(${CMAKE_COMMAND} -S ${SOURCE}/docs/examples/embedding -B ${work}/build
     -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${work}/prefix)
 run(${CMAKE_COMMAND} --build ${work}/build -j 2)

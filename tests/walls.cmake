@@ -9,7 +9,7 @@ set(order
   dof/methods dof/fixed_pictures dof/method.cpp dof/measure dof/auto
   scenes/scene.h scenes/make scenes/random scenes/load scenes/draw scenes/lens_views scenes/filtered_views
   scenes/surface_splatting scenes/lens_views/lens_view_method.cpp scenes/auto scenes/scenes.h
-  tools/cli tools/files tools/gl tools/options tools/info tools/render tools/refocus tools/compare tools/bench
+  tools/cli tools/files tools/gl tools/options tools/info tools/sequence tools/render tools/refocus tools/compare tools/bench
   tools/golden tools/report tools/chart tools/chart/report tools/chart/command.cpp tools/stress
   tools/crosscheck tools/boards tools/page tools)
 

@@ -22,10 +22,12 @@ int report(std::string message, int status) {
   return status;
 }
 
-/// A status, unless standard output could not take all that was written.
+/// A status, unless standard output could not take all that was written. A reader such as `head`
+/// that needs no more is no failure.
 int finish(int status, int failed) {
   std::cout.flush();
-  if (!std::cout) return report("standard output: not everything could be written", failed);
+  if (!std::cout && !is_reader_gone(kStandardOutput))
+    return report("standard output: not everything could be written", failed);
   return status;
 }
 
@@ -48,14 +50,16 @@ int run(std::vector<std::string> arguments) {
   const auto program =
       make_program("softfocus", SOFTFOCUS_VERSION, "Renders scenes with depth of field.");
   const std::vector<Command> commands{
-      add_render_command(*program),   add_refocus_command(*program),
-      add_inspect_command(*program),  add_scenes_command(*program),
-      add_methods_command(*program),  add_candidates_command(*program),
-      add_profiles_command(*program), add_lens_command(*program),
-      add_compare_command(*program),  add_crosscheck_command(*program),
-      add_probe_command(*program),    add_shaders_command(*program),
-      add_bench_command(*program),    add_chart_command(*program),
-      add_stress_command(*program),   add_selftest_command(*program)};
+      add_render_command(*program),       add_join_command(*program),
+      add_refocus_command(*program),      add_inspect_command(*program),
+      add_scenes_command(*program),       add_methods_command(*program),
+      add_candidates_command(*program),   add_profiles_command(*program),
+      add_lens_command(*program),         add_compare_command(*program),
+      add_crosscheck_command(*program),   add_probe_command(*program),
+      add_shaders_command(*program),      add_bench_command(*program),
+      add_chart_command(*program),        add_stress_command(*program),
+      add_selftest_command(*program),     add_help_command(*program),
+      add_documentation_command(*program)};
   try {
     const Parsed parsed = parse(*program, with_autofocus_joined(std::move(arguments)));
     if (parsed.answered) return finish(kDone, kFailed);

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "scenes/load/model_scene.h"
+#include "scenes/load/nearest_name.h"
 #include "scenes/load/obj_model.h"
 #include "scenes/load/scene_file.h"
 #include "scenes/random/random_scene.h"
@@ -20,39 +21,18 @@ bool has_extension(std::string_view path, std::string_view extension) {
   });
 }
 
-// How many letters to insert, drop or replace to get from one name to the other
-// (Levenshtein 1966).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> costs(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) costs[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = costs[0];
-    costs[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1] ? 1 : 0);
-      diagonal = costs[j];
-      costs[j] = std::min({replaced, costs[j] + 1, costs[j - 1] + 1});
-    }
-  }
-  return costs[b.size()];
-}
-
 [[noreturn]] void fail_unknown(std::string_view name, const std::vector<SceneListing>& listings) {
+  std::vector<std::string> there;
   std::string names;
-  std::string nearest;
-  std::size_t least = 3;  // farther off is no slip of the finger
   for (const SceneListing& listing : listings) {
+    there.push_back(listing.name);
     names += (names.empty() ? "" : ", ") + listing.name;
-    const std::size_t distance = edit_distance(name, listing.name);
-    if (distance < least) {
-      least = distance;
-      nearest = "; did you mean " + listing.name + "?";
-    }
   }
-  throw SceneError("there is no scene \"" + std::string(name) + "\"" + nearest +
+  throw SceneError("there is no scene \"" + std::string(name) + "\"" +
                    (names.empty() ? "; no scenes were found at all: give a .toml or .obj file"
                                   : "; there are " + names +
-                                        ", random:SEED, and any .toml or .obj file can be given"));
+                                        ", random:SEED, and any .toml or .obj file can be given") +
+                   did_you_mean(name, there));
 }
 
 constexpr std::string_view kRandom = "random:";

@@ -1,5 +1,6 @@
 #include "scenes/load/scene_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -53,17 +54,47 @@ Camera read_camera(Section section) {
   return camera;
 }
 
+/// A number, or an array of [frame, number]: then the first number, and all of them in `keys`.
+double read_keyed_number(Section& section, std::string_view key, double fallback, Range range,
+                         std::vector<Keyframe>& keys) {
+  const toml::node* node = find_key(section, key);
+  if (node == nullptr || !node->is_array()) return read_number(section, key, fallback, range);
+  constexpr Range kFramesAndValues{0.0, 1e9};
+  for (const auto& row : read_rows(section, key, 2, kFramesAndValues)) {
+    const Keyframe next{row[0], row[1]};
+    if (!keys.empty() && next.frame <= keys.back().frame) {
+      fail_at(section, key, "has frames that do not increase; [[0, 2], [48, 6]] would be right");
+    }
+    if (next.value < range.low || next.value > range.high) {
+      fail_at(section, key, "has a value out of range; docs/scene-format.md has the range");
+    }
+    keys.push_back(next);
+  }
+  if (keys.empty()) {
+    fail_at(section, key, "is empty; a number, or [frame, number] at some frames, would be right");
+  }
+  return keys.front().value;
+}
+
 SceneLens read_lens(Section section) {
+  static constexpr std::array<std::string_view, 2> kWays = {"linear", "smooth"};
   SceneLens lens;
   constexpr Range kPositive{1e-6, 1e9};
   lens.lens.focal_length_mm =
       read_number(section, "focal_length_mm", lens.lens.focal_length_mm, kPositive);
-  lens.lens.f_number = read_number(section, "f_number", lens.lens.f_number, kPositive);
-  lens.lens.focus_m = read_number(section, "focus_m", lens.lens.focus_m, kAnySize);
+  lens.lens.f_number =
+      read_keyed_number(section, "f_number", lens.lens.f_number, kPositive, lens.f_number_by_frame);
+  lens.lens.focus_m =
+      read_keyed_number(section, "focus_m", lens.lens.focus_m, kAnySize, lens.focus_m_by_frame);
+  lens.easing = static_cast<Easing>(read_choice(section, "keyframes", 0, kWays));
   lens.coc_scale = read_number(section, "coc_scale", lens.coc_scale, {0.0, 1000.0});
   lens.max_coc_px_at_1024 =
       read_number(section, "max_coc_px", lens.max_coc_px_at_1024, {0.0, kLargestMaxCoc});
-  if (const char* error = lens_error(lens.lens)) fail_at(section, "focus_m", error);
+  ThinLens nearest = lens.lens;
+  for (const Keyframe& key : lens.focus_m_by_frame) {
+    nearest.focus_m = std::min(nearest.focus_m, key.value);
+  }
+  if (const char* error = lens_error(nearest)) fail_at(section, "focus_m", error);
   finish_section(section);
   return lens;
 }

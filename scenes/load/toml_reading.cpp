@@ -81,12 +81,27 @@ std::vector<double> numbers_of(const Section& section, std::string_view key, con
   return numbers;
 }
 
+/// A key in American spelling, "color" of "colour"; empty if it has no other.
+std::string american(std::string_view key) {
+  constexpr std::string_view kColour = "colour", kColor = "color";
+  const auto at = key.find(kColour);
+  if (at == key.npos) return {};
+  return std::string(key).replace(at, kColour.size(), kColor);
+}
+
+/// The node of a key in either spelling, or nullptr.
+const toml::node* node_of(const Section& section, std::string_view key) {
+  if (section.table == nullptr) return nullptr;
+  const toml::node* node = section.table->get(key);
+  return node != nullptr ? node : section.table->get(american(key));
+}
+
 }  // namespace
 
 void fail_at(const Section& section, std::string_view key, const std::string& reason) {
   toml::source_index line = 0;
   if (section.table != nullptr) {
-    const toml::node* node = section.table->get(key);
+    const toml::node* node = node_of(section, key);
     line = (node != nullptr ? node->source() : section.table->source()).begin.line;
   }
   fail_at_line(section, line, key, reason);
@@ -94,8 +109,15 @@ void fail_at(const Section& section, std::string_view key, const std::string& re
 
 const toml::node* find_key(Section& section, std::string_view key) {
   auto& known = section.known_keys;
-  if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);
-  return section.table != nullptr ? section.table->get(key) : nullptr;
+  if (std::find(known.begin(), known.end(), key) != known.end()) return node_of(section, key);
+  known.emplace_back(key);
+  const std::string other = american(key);
+  if (section.table == nullptr || !section.table->contains(other)) return node_of(section, key);
+  if (section.table->contains(key)) {
+    fail_at(section, other, "is there as " + std::string(key) + " too; one of them would be right");
+  }
+  known.push_back(other);
+  return section.table->get(other);
 }
 
 bool has_key(Section& section, std::string_view key) { return find_key(section, key) != nullptr; }

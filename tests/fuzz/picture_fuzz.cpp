@@ -1,4 +1,5 @@
-// Any bytes as each kind of picture: a picture, or the error that is meant for the user.
+// Any bytes as each kind of picture, and as a shard's sums: a picture, or the error that is meant
+// for the user.
 
 #include "scenes/load/scene_error.h"
 #include "scenes/load/texture_file.h"
@@ -6,6 +7,7 @@
 #include "tools/cli/errors.h"
 #include "tools/files/image_file.h"
 #include "tools/files/picture_file.h"
+#include "tools/files/sums_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softfocus;
@@ -19,6 +21,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const PictureFile file = open_picture_file({bytes.begin(), bytes.end()}, "fuzz");
     for (std::size_t i = 0; i < file.planes.size() && i < 4; ++i) read_planes(file, {&i, 1}, 0.0f);
+  } catch (const FileError&) {
+  }
+  try {
+    check_sums_file(open_sums_file(fuzz_file(data, size, ".sum")));
   } catch (const FileError&) {
   }
   try {

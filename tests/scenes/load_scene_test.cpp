@@ -164,7 +164,7 @@ TEST_CASE("an unknown scene is answered with the names there are") {
   const std::string message = scene_error_of([] { built_in("forest"); });
   CHECK(
       contains(message, "there is no scene \"forest\"; there are bright-edges, canopy, clutter, "));
-  CHECK(contains(scene_error_of([] { built_in("figure"); }), "did you mean figures?"));
+  CHECK(contains(scene_error_of([] { built_in("figure"); }), "did you mean 'figures'?"));
   CHECK(contains(scene_error_of([] { load_scene("x", {}); }), "no scenes were found at all"));
 }
 

@@ -77,6 +77,35 @@ max_coc_px = 12
   CHECK(scene.lens.max_coc_px_at_1024 == 12);
 }
 
+TEST_CASE("a lens may have its focus and f-number by frames") {
+  const SceneLens lens =
+      read("[lens]\nfocus_m = [[0, 2], [48, 6.5]]\nf_number = [[12, 4]]\nkeyframes = \"smooth\"\n")
+          .lens;
+  CHECK(lens.focus_m_by_frame == std::vector<Keyframe>{{0, 2}, {48, 6.5}});
+  CHECK(lens.f_number_by_frame == std::vector<Keyframe>{{12, 4}});
+  CHECK(lens.easing == Easing::smooth);
+  CHECK(lens.lens.focus_m == 2);
+  CHECK(lens.lens.f_number == 4);
+  CHECK(read("[lens]\nfocus_m = [[0, 2]]\n").lens.easing == Easing::linear);
+}
+
+TEST_CASE("keys that cannot be are complaints with their line") {
+  const auto of_focus = [](const std::string& keys) {
+    return complaint("[lens]\nfocus_m = " + keys + "\n");
+  };
+  for (const char* keys : {"[[5, 2], [5, 3]]", "[[5, 2], [4, 3]]"}) {
+    CHECK(contains(of_focus(keys), "a.toml:2: lens.focus_m: has frames that do not increase"));
+  }
+  CHECK(contains(of_focus("[[0, 2], [5, 0]]"), "a.toml:2: lens.focus_m: has a value out of range"));
+  CHECK(contains(of_focus("[]"), "a.toml:2: lens.focus_m: is empty"));
+  CHECK(contains(of_focus("[[0, 2], [5, 0.04]]"), "a.toml:2: lens.focus_m: "));
+  for (const char* keys :
+       {"[1, 2]", "[[1, 2, 3]]", "[[-1, 2]]", "[[0, \"a\"]]", "[[nan, 2]]", "[[2e9, 2]]"}) {
+    CHECK(contains(of_focus(keys), "a.toml:2: lens.focus_m: "));
+  }
+  CHECK(contains(complaint("[lens]\nkeyframes = \"cubic\"\n"), "there are linear and smooth"));
+}
+
 TEST_CASE("lights are read, of both kinds") {
   const Scene scene = read(
       "[[light]]\nkind = \"directional\"\ndirection = [1, 2, 3]\n"
@@ -88,6 +117,19 @@ TEST_CASE("lights are read, of both kinds") {
   CHECK(scene.lights[1].kind == LightKind::point);
   CHECK(scene.lights[1].position_or_direction == glm::vec3{4, 5, 6});
   CHECK(scene.lights[1].colour == glm::vec3{7, 8, 9});
+}
+
+TEST_CASE("a colour may be a color, but not both") {
+  const Scene scene = read(
+      "[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\ncolor = [7, 8, 9]\n"
+      "[texture.t]\nkind = \"dots\"\nsize = 16\ncolors = [[1, 0, 0], [0, 0, 1]]\n");
+  CHECK(scene.lights[0].colour == glm::vec3{7, 8, 9});
+  CHECK(complaint("[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\ncolour = [1, 1, 1]\n"
+                  "color = [1, 1, 1]\n") ==
+        "a.toml:5: light.color: is there as colour too; one of them would be right");
+  CHECK(contains(complaint("[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\n\ncolor = 7\n"),
+                 "a.toml:5: light.colour: is a number"));
+  CHECK(contains(complaint("[lens]\ncolor = 7\n"), "a.toml:2: lens.color: there is no such key"));
 }
 
 TEST_CASE("a material has what its table says, and ambient like diffuse if it says nothing") {
@@ -266,7 +308,7 @@ TEST_CASE("every unknown key is an error that names the line and the keys there 
   CHECK(contains(complaint("mm = 1\nzz = 2\naa = 3\n"), "a.toml:1: mm: there is no such key"));
   CHECK(complaint("[lens]\nfocus_m = 2\nfocus = 3\n") ==
         "a.toml:3: lens.focus: there is no such key; here are focal_length_mm, f_number, "
-        "focus_m, coc_scale and max_coc_px");
+        "focus_m, keyframes, coc_scale and max_coc_px");
   for (const std::string& text :
        {std::string("[camera]\nxyz = 1\n"), std::string("[material.m]\nxyz = 1\n"),
         std::string("[texture.t]\nkind = \"dots\"\nxyz = 1\ncolours = [[0, 0, 0], [1, 1, 1]]\n"),

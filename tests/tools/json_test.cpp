@@ -35,6 +35,17 @@ TEST_CASE("json: what is no UTF-8 is replaced, and what is no number is null") {
   CHECK(number_or_null(std::numeric_limits<double>::infinity()).is_null());
 }
 
+TEST_CASE("json: 64 levels are read, and a file of brackets ends no stack") {
+  const auto nested = [](std::size_t levels) {
+    return std::string(levels, '[') + std::string(levels, ']');
+  };
+  CHECK(parse_json(nested(64)));
+  CHECK(parse_json(std::string(64, '[') + "1" + std::string(64, ']')));
+  CHECK_FALSE(parse_json(nested(65)));
+  CHECK_FALSE(parse_json(nested(1'000'000)));
+  CHECK_FALSE(parse_json(std::string(1'000'000, '[')));
+}
+
 TEST_CASE("json: a value of another kind or a missing one is an error") {
   const auto parsed = parse_json(R"({"a": [1]})");
   REQUIRE(parsed);

@@ -1,4 +1,4 @@
-#include "tools/report/time_left.h"
+#include "tools/cli/time_left.h"
 
 #include <doctest/doctest.h>
 

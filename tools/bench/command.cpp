@@ -133,7 +133,7 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
 }
 
 int bench(const BenchOptions& options) {
-  Progress progress;
+  Progress progress{options.quiet};
   const auto show_run = [&](int run) {
     progress.show("run " + std::to_string(run + 1) + " of " + std::to_string(options.runs));
   };

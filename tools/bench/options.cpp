@@ -45,6 +45,8 @@ void check_method(BenchOptions& options, const CLI::App& parser) {
 
 void add_subject_options(CLI::App& parser, BenchOptions& options) {
   add_optional_argument(parser, "SCENE", "A scene or a file, as render takes it", options.scene);
+  offer(parser, "SCENE", known_scenes);
+  begin_group(parser, "What is timed");
   const std::string numbers =
       std::to_string(kLeastFieldTriangles) + " to " + std::to_string(kMostFieldTriangles);
   add_value(parser, "--triangles", "N",
@@ -65,12 +67,17 @@ void add_subject_options(CLI::App& parser, BenchOptions& options) {
 
 void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_subject_options(parser, options);
+  begin_group(parser, "Lens");
+  add_lens_options(parser, options.lens);
+  begin_group(parser, "Method");
   add_method_option(parser, options.method);
   add_arithmetic_option(parser, options.arithmetic);
-  add_lens_options(parser, options.lens);
   add_max_coc_option(parser, options.max_coc_px);
+  begin_group(parser, "Methods that sample the lens");
   add_sampling_options(parser, options.sampling);
+  begin_group(parser, "The method auto");
   add_auto_options(parser, options.goal, options.verify);
+  begin_group(parser, "Run");
   add_profile_option(parser, options.profile, options.profile_name);
   add_pool_options(parser, options.pool, "the picture is the same");
   add_value(parser, "--runs", "N", "Times that each is run and timed, 10 to 1000 (default: 15)",
@@ -80,7 +87,9 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
             });
   add_value(parser, "--vs", "DRIVER", "Time this GL driver too, in turn: " + names_of(drivers()),
             [&options](const std::string& text) { options.versus = &parse_driver("--vs", text); });
+  offer(parser, "--vs", [] { return names_in(drivers()); });
   add_flag(parser, "--json", "Print JSON", options.json);
+  add_quiet_option(parser, options.quiet);
 }
 
 void complete(BenchOptions& options, const CLI::App& parser) {

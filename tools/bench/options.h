@@ -39,6 +39,7 @@ struct BenchOptions {
   int runs = 15;
   const Driver* versus = nullptr;
   bool json = false;
+  bool quiet = false;
 };
 
 void add_bench_options(CLI::App& parser, BenchOptions& options);

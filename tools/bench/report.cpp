@@ -5,6 +5,7 @@
 
 #include "tools/bench/timing.h"
 #include "tools/cli/machine.h"
+#include "tools/cli/option_values.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
@@ -40,8 +41,9 @@ Spread ratio_of(const BenchRecord& record, std::size_t stage) {
 // ", max-coc 16", ", 256 samples", ": two-pass, radius 8".
 std::string setting_of(const BenchRecord& record) {
   if (record.choice) return ": " + setting_text(*record.choice);
-  if (record.work.method.of_scene != nullptr)
-    return ", " + std::to_string(record.samples_taken) + " samples";
+  if (const LensViewMethod* of_scene = record.work.method.of_scene) {
+    return of_scene->samples_lens ? ", " + count_text(record.samples_taken, "sample") : "";
+  }
   return ", max-coc " + short_number(static_cast<double>(record.work.settings.max_coc_px));
 }
 

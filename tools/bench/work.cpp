@@ -1,5 +1,6 @@
 #include "tools/bench/work.h"
 
+#include "scenes/draw/keyframes.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/make/sphere_field.h"
 #include "tools/bench/picture.h"
@@ -69,7 +70,9 @@ BenchWork make_work(const BenchOptions& options) {
   const Scene& scene = work.scene.emplace(chosen_scene(options));
   print_scene_warnings(scene.warnings, false);
   work.name = scene.name;
-  set_lens(work, options, {scene.lens, scene.camera.fov_y_degrees});
+  SceneLens lens = scene.lens;
+  lens.lens = lens_at(scene.lens, work.frame);
+  set_lens(work, options, {lens, scene.camera.fov_y_degrees});
   work.view = camera_matrices(scene.camera, work.frame, width, height);
   return work;
 }

@@ -20,6 +20,7 @@
 #include "tools/chart/work.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/interrupts.h"
 #include "tools/cli/platform.h"
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
@@ -54,6 +55,7 @@ using PlotScript =
 
 std::string plotted(const PlotScript& script, const char* terminal, const ChartOptions& options) {
   const std::filesystem::path scratch = scratch_file(options.directory / "cache");
+  const RemovedByInterrupt removed{scratch};
   std::string bytes;
   try {
     run_gnuplot(script(terminal, scratch));

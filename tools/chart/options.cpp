@@ -25,9 +25,7 @@ std::vector<std::string> known_methods(const std::string& text) {
   std::vector<std::string> wanted = listed_names("--methods", text);
   for (const std::string& name : wanted) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    std::string list;
-    for (const std::string& one : known) list.append(list.empty() ? "" : ", ").append(one);
-    throw UsageError(std::string{"--methods '"}.append(name).append("': there are ").append(list));
+    refuse_name("--methods", name, known);
   }
   return wanted;
 }
@@ -35,16 +33,20 @@ std::vector<std::string> known_methods(const std::string& text) {
 }  // namespace
 
 void add_chart_options(CLI::App& parser, ChartOptions& options) {
+  begin_group(parser, "Output");
   add_value(parser, "-o,--output", "DIR", "Where the chart and what was measured go; required",
             [&options](const std::string& text) { options.directory = text; });
+  begin_group(parser, "What is measured");
   add_value(parser, "--scenes", "A,B,...",
             "Scenes or files, as render takes them, and ranges such as random:64..127 (default: "
             "all that have a file)",
             [&options](const std::string& text) { options.scenes = scene_names(text); });
+  offer(parser, "--scenes", known_scenes);
   add_value(parser, "--methods", "A,B,...",
             "Methods beside the pinhole (default: all filters, accumulation, filtered-views, "
             "surface-splatting, auto)",
             [&options](const std::string& text) { options.methods = known_methods(text); });
+  offer(parser, "--methods", chart_methods);
   add_value(
       parser, "--size", "WxH",
       "Width and height in pixels (default: 1024x1024; 256x256 with --quick)",
@@ -71,8 +73,10 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
             });
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
+  begin_group(parser, "Run");
   add_pool_options(parser, options.pool, "the pictures are the same");
   add_flag(parser, "--again", "Measure all anew, whatever DIR holds", options.again);
+  add_quiet_option(parser, options.quiet);
 }
 
 void complete(ChartOptions& options) {

@@ -23,6 +23,7 @@ struct ChartOptions {
   double frame = 0.0;
   bool quick = false;
   bool again = false;
+  bool quiet = false;
   PoolOptions pool;
 
   // Settled by complete().

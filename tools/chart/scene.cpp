@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dof/measure/regions.h"
+#include "scenes/draw/keyframes.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
 #include "tools/options/lens_options.h"
@@ -35,7 +36,7 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
   print_scene_warnings(chart.scene.warnings, false);
   chart.frame = options.frame;
   chart.view = camera_matrices(chart.scene.camera, chart.frame, width, height);
-  chart.lens = chart.scene.lens.lens;
+  chart.lens = lens_at(chart.scene.lens, chart.frame);
   check_lens(chart.lens, {}, name);
   const double coc_scale = chart.scene.lens.coc_scale;
   chart.coc = checked_pixel_coc(chart.lens, chart.scene.camera.fov_y_degrees, height, coc_scale);

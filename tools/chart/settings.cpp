@@ -133,7 +133,7 @@ std::string settings_text(const ChartEntry& entry) {
 std::string setting_within_series(const ChartEntry& entry) {
   if (entry.max_error) return "max-error " + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return "";
-  if (entry.filter == nullptr) return std::to_string(entry.samples) + " samples";
+  if (entry.filter == nullptr) return count_text(entry.samples, "sample");
   return entry.max_coc_px ? "max-coc " + short_number(double{*entry.max_coc_px}) : "";
 }
 

@@ -11,9 +11,9 @@
 #include "tools/chart/scene_names.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/time_left.h"
 #include "tools/golden/hashes.h"
 #include "tools/report/report_files.h"
-#include "tools/report/time_left.h"
 
 namespace softfocus {
 namespace {
@@ -45,7 +45,7 @@ struct Work {
   std::vector<ChartEntry> entries;
   std::uint64_t measures;  ///< measures_hash()
   ChartFindings findings{};
-  Progress progress{};
+  Progress progress{options.quiet};
   TimeLeft left{};
 
   void show(const std::string& stage) {

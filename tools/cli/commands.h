@@ -19,6 +19,7 @@ struct Command {
 };
 
 Command add_render_command(CLI::App& program);
+Command add_join_command(CLI::App& program);
 Command add_refocus_command(CLI::App& program);
 Command add_inspect_command(CLI::App& program);
 Command add_scenes_command(CLI::App& program);
@@ -34,5 +35,7 @@ Command add_bench_command(CLI::App& program);
 Command add_chart_command(CLI::App& program);
 Command add_stress_command(CLI::App& program);
 Command add_selftest_command(CLI::App& program);
+Command add_help_command(CLI::App& program);
+Command add_documentation_command(CLI::App& program);
 
 }  // namespace softfocus

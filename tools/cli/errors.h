@@ -16,4 +16,9 @@ struct FileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// It is the writing that failed.
+struct WriteError : FileError {
+  using FileError::FileError;
+};
+
 }  // namespace softfocus

@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "raster/images/image.h"
+#include "scenes/load/load_scene.h"
+#include "scenes/load/nearest_name.h"
 #include "tools/cli/errors.h"
 
 namespace softfocus {
@@ -28,9 +30,20 @@ std::optional<int> whole(std::string_view text) {
 
 }  // namespace
 
+void refuse_name(std::string_view option, const std::string& text,
+                 const std::vector<std::string>& there, const std::string& also) {
+  std::string list;
+  for (const std::string& name : there) list += (list.empty() ? "" : ", ") + name;
+  throw UsageError(std::string{option} + " '" + text + "': there are " + list + also +
+                   did_you_mean(text, there));
+}
+
+std::vector<std::string> known_scenes() { return names_in(list_scenes(scene_search_path({}))); }
+
 void add_scene_argument(CLI::App& parser, std::string& scene) {
   add_argument(parser, "SCENE",
                "Name of a scene (softfocus scenes), random:SEED, a .toml or an .obj file", scene);
+  offer(parser, "SCENE", known_scenes);
 }
 
 void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& directories) {
@@ -80,7 +93,7 @@ int parse_whole(std::string_view option, const std::string& text, int least, int
 }
 
 PictureSize parse_size(std::string_view option, const std::string& text) {
-  const auto cross = text.find('x');
+  const auto cross = text.find_first_of("xX");
   const auto side = [&](std::string_view part) {
     const auto value = whole(part);
     if (!value || *value < 1 || *value > kMaxImageSize) {
@@ -112,6 +125,10 @@ std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
+}
+
+std::string count_text(int count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
 std::string exact_number(double value) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,9 @@ struct Pixel {
   int x = 0;
   int y = 0;
 };
+
+/// The names of the scenes that come along.
+std::vector<std::string> known_scenes();
 
 /// Adds SCENE, as load_scene() takes it.
 void add_scene_argument(CLI::App& parser, std::string& scene);
@@ -55,8 +59,25 @@ Pixel parse_pixel(std::string_view option, const std::string& text);
 /// `value` as short as it can be told from its neighbours by eye: at most 6 digits.
 std::string short_number(double value);
 
+/// "1 sample", "2 samples".
+std::string count_text(int count, const std::string& thing);
+
 /// Every bit of `value`, readable: 17 digits.
 std::string exact_number(double value);
+
+/// Throws UsageError for a name that there is not: "OPTION 'TEXT': there are A, B", then `also`,
+/// then the one that was probably meant.
+[[noreturn]] void refuse_name(std::string_view option, const std::string& text,
+                              const std::vector<std::string>& there, const std::string& also = "");
+
+/// The names of things that have one.
+template <class Range>
+std::vector<std::string> names_in(const Range& things) {
+  std::vector<std::string> names;
+  names.reserve(std::size(things));
+  for (const auto& thing : things) names.emplace_back(thing.name);
+  return names;
+}
 
 /// "a, b, c" of things that have a name.
 template <class Range>

@@ -13,6 +13,8 @@
 #include <windows.h>
 #else
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,6 +24,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 
 namespace softfocus {
 namespace {
@@ -30,16 +33,36 @@ namespace {
 constexpr const char* kDropped = " >NUL 2>NUL";
 std::FILE* open_pipe(const char* command) { return ::_popen(command, "wb"); }
 int close_pipe(std::FILE* pipe) { return ::_pclose(pipe); }
+
+int terminal_columns(int descriptor) {
+  CONSOLE_SCREEN_BUFFER_INFO info{};
+  const auto handle = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
+  return ::GetConsoleScreenBufferInfo(handle, &info) ? info.dwSize.X : 0;
+}
 #else
 constexpr const char* kDropped = " >/dev/null 2>&1";
 std::FILE* open_pipe(const char* command) { return ::popen(command, "w"); }
 int close_pipe(std::FILE* pipe) { return ::pclose(pipe); }
+
+/// 0 if it is no terminal.
+int terminal_columns(int descriptor) {
+  winsize size{};
+  return ::ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
 #endif
 
 // Linux writes at most 2^31 - 4096 bytes a call, Windows counts them in 32 bits.
 constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
 
 }  // namespace
+
+int columns_of(int descriptor) {
+  constexpr int kUsualColumns = 80, kMostColumns = 100;
+  const char* given = std::getenv("COLUMNS");
+  const long said = given != nullptr ? std::strtol(given, nullptr, 10) : 0;
+  const long columns = said > 0 ? said : terminal_columns(descriptor);
+  return static_cast<int>(std::min<long>(columns > 0 ? columns : kUsualColumns, kMostColumns));
+}
 
 bool run_with_input(const std::string& program, std::string_view input, Said said) {
   const std::string command = program + (said == Said::dropped ? kDropped : "");
@@ -63,6 +86,8 @@ std::optional<std::uint64_t> memory_bytes() {
 }
 
 bool is_terminal(int descriptor) { return ::_isatty(descriptor) != 0; }
+
+bool is_reader_gone(int) { return false; }
 
 int open_existing(const std::filesystem::path& file) {
   return ::_wopen(file.c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
@@ -109,6 +134,11 @@ std::optional<std::uint64_t> memory_bytes() {
 }
 
 bool is_terminal(int descriptor) { return ::isatty(descriptor) != 0; }
+
+bool is_reader_gone(int descriptor) {
+  pollfd end{.fd = descriptor, .events = POLLOUT, .revents = 0};
+  return ::poll(&end, 1, 0) == 1 && (end.revents & (POLLERR | POLLHUP)) != 0;
+}
 
 int open_existing(const std::filesystem::path& file) {
   return ::open(file.c_str(), O_WRONLY | O_CLOEXEC);

@@ -26,6 +26,13 @@ inline constexpr int kStandardError = 2;
 
 bool is_terminal(int descriptor);
 
+/// The columns to print text in: COLUMNS says it, or the terminal, or it is 80; at most 100, for
+/// longer lines are hard to read.
+int columns_of(int descriptor);
+
+/// Whether it is a pipe that nobody reads any more. False on Windows.
+bool is_reader_gone(int descriptor);
+
 /// A descriptor to write bytes to what is there, or -1 with errno set.
 int open_existing(const std::filesystem::path& file);
 

@@ -11,7 +11,7 @@ constexpr std::string_view kEraseLine = "\r\x1b[K";
 
 }  // namespace
 
-Progress::Progress() : on_terminal_(is_terminal(kStandardError)) {}
+Progress::Progress(bool quiet) : on_terminal_(!quiet && is_terminal(kStandardError)) {}
 
 Progress::~Progress() { clear(); }
 

@@ -5,10 +5,10 @@
 
 namespace softfocus {
 
-/// Silent where standard error is no terminal.
+/// Silent where standard error is no terminal, or if `quiet` (--quiet).
 class Progress {
  public:
-  Progress();
+  explicit Progress(bool quiet = false);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -79,6 +79,8 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
                         options.first);
   add_optional_argument(parser, "B", "What it should be: a picture of the same size",
                         options.second);
+  begin_group(parser, "Output");
+  add_flag(parser, "--json", "Print JSON", options.json);
   add_map(parser, "--diff",
           "Write a map of FLIP, what a viewer sees of the differences: black 0 over purple, red "
           "and orange to pale yellow 1",
@@ -86,6 +88,7 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_map(parser, "--diff-ulps",
           "Write a map of differing bits: black equal, blue 1 half-ULP to red 2^15",
           options.ulp_map_file);
+  begin_group(parser, "Measures");
   add_flag(parser, "--hdr", "HDR-FLIP too: the largest over all exposures of B",
            options.measures.hdr_flip);
   add_value(parser, "--pixels-per-degree", "N",
@@ -94,6 +97,7 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
               options.measures.pixels_per_degree = parse_number(
                   "--pixels-per-degree", text, 1.0, 500.0, "pixels per degree from 1 to 500");
             });
+  begin_group(parser, "Regions");
   add_flag(parser, "--regions",
            "Measure by region too: silhouette band, near field, focus, far field, by the "
            "depth in B's alpha and the lens",
@@ -104,9 +108,11 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_value(parser, "--scene", "NAME",
             "Scene whose lens and field of view make the regions (default: what B or A carries)",
             [&options](const std::string& text) { options.scene = text; });
+  offer(parser, "--scene", known_scenes);
   add_scene_path(parser, options.scene_path);
   add_compared_lens_options(parser, options.lens,
                             [&options](double degrees) { options.fov_y_degrees = degrees; });
+  begin_group(parser, "Tolerance");
   add_value(parser, "--max-ulps", "N",
             "Tolerance: status 0 up to so many half-ULPs between any two values, 0 to 65535",
             [&tolerance = options.tolerance](const std::string& text) {
@@ -124,6 +130,7 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
               tolerance.max_error = parse_number("--max-error", text, 0.0, 1e6,
                                                  "a difference from 0 to 1000000, such as 0.01");
             });
+  begin_group(parser, "Measures");
   add_value(parser, "--point", "PIXELS",
             "The pictures are of one bright point on black: compare light and shape with the disc "
             "of this radius",
@@ -135,7 +142,6 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
              options.frames);
   add_frames(parser, "--against", "The same frames of the ground truth, for --flicker",
              options.truth);
-  add_flag(parser, "--json", "Print JSON", options.json);
 }
 
 void check_maps(const CompareOptions& options, const std::vector<ReadFile>& inputs) {

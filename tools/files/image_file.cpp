@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <system_error>
 
@@ -32,7 +33,9 @@ constexpr std::array kFormats{NamedFormat{"png", FileFormat::png},
                               NamedFormat{"npy", FileFormat::npy},
                               NamedFormat{"hdr", FileFormat::hdr},
                               NamedFormat{"exr", FileFormat::exr},
-                              NamedFormat{"exr-float", FileFormat::exr_float}};
+                              NamedFormat{"exr-float", FileFormat::exr_float},
+                              NamedFormat{"rgb24", FileFormat::rgb24},
+                              NamedFormat{"rgb48le", FileFormat::rgb48le}};
 
 }  // namespace
 
@@ -56,6 +59,10 @@ std::string_view missing_format(FileFormat format) {
                                                                       : std::string_view{};
 }
 
+bool is_raw_video(FileFormat format) {
+  return format == FileFormat::rgb24 || format == FileFormat::rgb48le;
+}
+
 std::optional<FileFormat> format_by_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   if (extension.empty()) return std::nullopt;
@@ -63,7 +70,8 @@ std::optional<FileFormat> format_by_extension(const std::filesystem::path& file)
   for (char& c : extension) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  return format_by_name(extension);
+  const auto format = format_by_name(extension);
+  return format && is_raw_video(*format) ? std::nullopt : format;
 }
 
 Bytes encode(const Image& image, FileFormat format) {
@@ -75,6 +83,8 @@ Bytes encode(const Image& image, FileFormat format) {
     case FileFormat::hdr: return encode_hdr(image);
     case FileFormat::exr: return encode_exr(image, ExrNumbers::half, "");
     case FileFormat::exr_float: return encode_exr(image, ExrNumbers::single, "");
+    case FileFormat::rgb24: return encode_rgb24(image);
+    case FileFormat::rgb48le: return encode_rgb48le(image);
   }
   return {};
 }
@@ -94,9 +104,9 @@ Bytes encode_depth(std::span<const float> metres, int width, int height, FileFor
     case FileFormat::npy: return encode_grey_npy(metres, width, height);
     case FileFormat::exr:
     case FileFormat::exr_float: return encode_depth_exr(metres, width, height);
-    case FileFormat::hdr: break;
+    default: break;
   }
-  throw FileError("HDR has no depth; give a .pfm, .exr, .npy or .png file");
+  throw FileError("such a file has no depth; give a .pfm, .exr, .npy or .png file");
 }
 
 Picture decode(std::span<const std::byte> bytes, FileFormat format) {
@@ -125,6 +135,18 @@ Picture decode_other(std::span<const std::byte> bytes, const std::filesystem::pa
   return picture;
 }
 
+namespace {
+
+/// Half of the machine's memory; 16 GB where the system does not tell.
+std::size_t most_picture_bytes() {
+  const std::uint64_t most = memory_bytes().value_or(std::uint64_t{1} << 35) / 2;
+  // On 32 bits a buffer of more could not grow.
+  return static_cast<std::size_t>(
+      std::min<std::uint64_t>(most, std::numeric_limits<std::size_t>::max() / 4));
+}
+
+}  // namespace
+
 Bytes read_picture_bytes(const std::filesystem::path& file) {
   const auto refuse = [&](int error) {
     throw FileError("cannot read '" + file.string() +
@@ -143,7 +165,12 @@ Bytes read_picture_bytes(const std::filesystem::path& file) {
     if (stream.bad()) refuse(EIO);
     // Of what is no picture the first part is enough to be refused by: it may have no end.
     if (!stream || !begins_as_picture(bytes)) return bytes;
-    if (const auto there = memory_bytes(); there && bytes.size() > *there / 2) refuse(EFBIG);
+    // A device that begins as a picture need not end either.
+    const std::size_t most = most_picture_bytes();
+    if (bytes.size() > most) {
+      throw FileError("cannot read '" + file.string() + "': has more than " + std::to_string(most) +
+                      " bytes; give a smaller file");
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 //   HDR   Radiance's RGBE, linear
 //   EXR   R, G, B in halves or floats, linear, and the depth as the float channel Z (exr_file.h)
 //   NPY   version 1.0, '<f2', shape (height, width, 4): the image's own bits
+//   RGB24, RGB48LE   raw video, as ffmpeg names it: a PNG's colours, row by row, nothing else
 
 #include <cstddef>
 #include <filesystem>
@@ -19,17 +20,19 @@
 
 namespace softfocus {
 
-enum class FileFormat : std::uint8_t { png, png_16, pfm, npy, hdr, exr, exr_float };
+enum class FileFormat : std::uint8_t { png, png_16, pfm, npy, hdr, exr, exr_float, rgb24, rgb48le };
 
 using Bytes = std::vector<std::byte>;
 
 /// The format that a name asks for: one of format_names(). As an extension, in any case: png, pfm,
 /// npy, hdr or exr.
 std::optional<FileFormat> format_by_name(std::string_view name);
-/// "png, png-16, pfm, npy, hdr, exr, exr-float"; with another text between them.
+/// "png, png-16, pfm, npy, hdr, exr, exr-float, rgb24, rgb48le"; with another text between them.
 std::string format_names(std::string_view between = ", ");
 /// Why this build cannot write it, as a sentence; empty if it can.
 std::string_view missing_format(FileFormat format);
+/// Whether it is colours alone, one frame after the other.
+bool is_raw_video(FileFormat format);
 std::optional<FileFormat> format_by_extension(const std::filesystem::path& file);
 
 /// A picture as read. Without alpha in the file, alpha is 0 here.
@@ -40,10 +43,13 @@ struct Picture {
 
 /// An RGBA16F image as the bytes of a file, the same on every machine.
 Bytes encode(const Image& image, FileFormat format);
-/// `alpha`, if any, has a number from 0 to 1 for each pixel, by which its colour was multiplied: the
-/// file then has RGBA, with colours that are not.
+/// `alpha`, if any, has a number from 0 to 1 for each pixel, by which its colour was multiplied:
+/// the file then has RGBA, with colours that are not.
 Bytes encode_png(const Image& image, std::span<const float> alpha = {});
 Bytes encode_png_16(const Image& image, std::span<const float> alpha = {});
+Bytes encode_rgb24(const Image& image);
+/// Each number's low byte first.
+Bytes encode_rgb48le(const Image& image);
 Bytes encode_hdr(const Image& image);
 Bytes encode_pfm(const Image& image);
 /// Takes every format, value by value as it is: (height, width, channels) of bytes, halves or
@@ -71,7 +77,8 @@ Picture decode_npy(std::span<const std::byte> bytes);
 Picture decode_other(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 /// The bytes of a picture's file, and the picture in them, of any kind that picture_file.h reads,
-/// told by the first bytes; of an EXR its first colour, with Z in alpha. FileError names the file.
+/// told by the first bytes; of an EXR its first colour, with Z in alpha. FileError names the file,
+/// also for one of more bytes than half of the machine's memory: a device need not end.
 Bytes read_picture_bytes(const std::filesystem::path& file);
 Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::path& file);
 

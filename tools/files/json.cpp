@@ -156,8 +156,17 @@ std::string json_text(const Json& json, int indent) {
 }
 
 std::optional<Json> parse_json(std::string_view text) {
-  const Library library = Library::parse(text, nullptr, false);
-  if (library.is_discarded()) return std::nullopt;
+  // Each level is a call of from_library() within another: a file of brackets could end the stack.
+  constexpr int kMostLevels = 64;
+  bool too_deep = false;
+  using Event = Library::parse_event_t;
+  const auto is_wanted = [&](int levels_around, Event event, const Library&) {
+    const bool is_level = event == Event::array_start || event == Event::object_start;
+    too_deep = too_deep || (is_level && levels_around == kMostLevels);
+    return !too_deep;
+  };
+  const Library library = Library::parse(text, is_wanted, false);
+  if (too_deep || library.is_discarded()) return std::nullopt;
   return JsonConversion::from_library(library);
 }
 

@@ -91,7 +91,7 @@ class Json {
 /// name of a file may have, become U+FFFD.
 std::string json_text(const Json& json, int indent = -1);
 
-/// A text's value, or nullopt if it is not JSON.
+/// A text's value, or nullopt if it is not JSON, or has more than 64 levels of arrays and objects.
 std::optional<Json> parse_json(std::string_view text);
 
 /// A number, or null for NaN and infinity, which JSON does not have.

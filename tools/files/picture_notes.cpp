@@ -123,6 +123,16 @@ std::filesystem::path sidecar_of(const std::filesystem::path& picture) {
   return sidecar += ".json";
 }
 
+std::optional<std::filesystem::path> sidecar_place(const std::string& output, FileFormat format) {
+  if (output == "-" || !needs_sidecar(format)) return std::nullopt;
+  std::error_code error;
+  const auto status = std::filesystem::status(output, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return std::nullopt;
+  }
+  return sidecar_of(output);
+}
+
 std::string sidecar_text(const PictureNotes& notes, const Bytes& picture) {
   Json json = notes_json(notes);
   json["file_hash"] = hash_of_file(picture);

@@ -57,6 +57,10 @@ bool needs_sidecar(FileFormat format);
 /// The picture's name and ".json".
 std::filesystem::path sidecar_of(const std::filesystem::path& picture);
 
+/// The sidecar of an output, if its format has one. There is none beside standard output, a device
+/// or a pipe.
+std::optional<std::filesystem::path> sidecar_place(const std::string& output, FileFormat format);
+
 /// What is to be written beside a picture with these bytes.
 std::string sidecar_text(const PictureNotes& notes, const Bytes& picture);
 

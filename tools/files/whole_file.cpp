@@ -29,8 +29,8 @@ const char* remedy(int error) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, int error) {
-  throw FileError("cannot write '" + file.string() +
-                  "': " + std::generic_category().message(error) + remedy(error));
+  throw WriteError("cannot write '" + file.string() +
+                   "': " + std::generic_category().message(error) + remedy(error));
 }
 
 /// What `file` leads to, links followed; of type not_found if there is nothing yet.
@@ -140,12 +140,14 @@ void check_writable(const std::filesystem::path& target) {
   }
 }
 
-void write_to_standard_output(std::span<const std::byte> bytes) {
+bool write_to_standard_output(std::span<const std::byte> bytes) {
   try {
     write_all(kStandardOutput, bytes);
   } catch (const std::system_error& error) {
+    if (error.code().value() == EPIPE) return false;  // whoever reads it has enough
     refuse("standard output", error.code().value());
   }
+  return true;
 }
 
 }  // namespace softfocus

@@ -12,7 +12,7 @@
 
 namespace softfocus {
 
-/// Bytes on their way to a file. Every call throws FileError, which names the file.
+/// Bytes on their way to a file. Every call throws WriteError, which names the file.
 class WholeFile {
  public:
   /// Opens the temporary file. A symbolic link is followed; what exists and is no
@@ -44,7 +44,7 @@ class WholeFile {
 /// not be done in vain. Leaves everything as it was.
 void check_writable(const std::filesystem::path& target);
 
-/// Writes to standard output. Throws FileError.
-void write_to_standard_output(std::span<const std::byte> bytes);
+/// Writes to standard output. False if it is a pipe that nobody reads any more. Throws FileError.
+bool write_to_standard_output(std::span<const std::byte> bytes);
 
 }  // namespace softfocus

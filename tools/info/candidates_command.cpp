@@ -16,6 +16,7 @@
 #include "dof/measure/flip.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/draw/keyframes.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/few_lens_points.h"
 #include "scenes/load/load_scene.h"
@@ -25,6 +26,7 @@
 #include "tools/info/candidate_table.h"
 #include "tools/info/candidates.h"
 #include "tools/options/lens_options.h"
+#include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -63,7 +65,7 @@ Subject make_subject(const CandidatesOptions& options, ThreadPool& pool) {
   print_scene_warnings(scene.warnings, false);
   subject.view = camera_matrices(scene.camera, options.frame, width, height);
   subject.frame = options.frame;
-  subject.lens = overruled(scene.lens.lens, options.lens);
+  subject.lens = overruled(lens_at(scene.lens, options.frame), options.lens);
   check_lens(subject.lens, options.lens, options.scene);
   const double coc_scale = options.lens.coc_scale.value_or(scene.lens.coc_scale);
   subject.coc = checked_pixel_coc(subject.lens, scene.camera.fov_y_degrees, height, coc_scale);
@@ -285,10 +287,13 @@ Command add_candidates_command(CLI::App& program) {
                                  "List what --method auto chooses from: predicted time and error");
   const auto options = std::make_shared<CandidatesOptions>();
   add_scene_argument(*parser, options->scene);
+  begin_group(*parser, "Picture");
   add_scene_path(*parser, options->scene_path);
   add_size(*parser, options->size);
   add_frame(*parser, options->frame);
+  begin_group(*parser, "Lens");
   add_lens_options(*parser, options->lens);
+  begin_group(*parser, "Candidates");
   add_value(*parser, "--measure", "N",
             "Measure each error too, against N views of the lens: a multiple of 16 from 32 on",
             [options](const std::string& text) {
@@ -310,9 +315,11 @@ Command add_candidates_command(CLI::App& program) {
   add_repeatable_value(*parser, "--only", "METHOD",
                        "List and measure this method alone; may be repeated",
                        [options](const std::string& text) { options->only.push_back(text); });
+  offer(*parser, "--only", all_methods);
   add_value(*parser, "--table", "FILE",
             "Coefficients in place of auto's own: JSON, {\"two-pass:8\": [seven numbers], ...}",
             [options](const std::string& text) { options->table = text; });
+  begin_group(*parser, "Run");
   add_flag(*parser, "--json", "Print JSON", options->json);
   add_pool_options(*parser, options->pool, "what is printed is the same");
   return {parser, [options] { return list_candidates(*options); }};

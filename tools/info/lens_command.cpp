@@ -122,8 +122,10 @@ void print_lens_json(const LensFigures& f, const LensCommandOptions& options) {
 }
 
 void add_options(CLI::App& parser, LensCommandOptions& options) {
+  begin_group(parser, "Lens");
   add_own_lens_options(parser, options.lens,
                        [&options](double degrees) { options.fov_y_degrees = degrees; });
+  begin_group(parser, "Output");
   add_value(parser, "--height", "PIXELS", "Height of the picture (default: 1024)",
             [&options](const std::string& text) {
               options.height_px =
@@ -136,7 +138,7 @@ void add_options(CLI::App& parser, LensCommandOptions& options) {
               options.largest_coc_mm = parse_number("--max-coc-film", text, 1e-9, 1e3,
                                                     "a diameter in millimetres above 0");
             });
-  add_value_list(parser, "--at", "METRES ...",
+  add_value_list(parser, "--at", "METRES",
                  "Distances to tell the circle for (default: 1/4 to 10 times the focus)",
                  [&options](const std::vector<std::string>& texts) {
                    for (const std::string& text : texts) {

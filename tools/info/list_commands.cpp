@@ -12,12 +12,24 @@
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/json.h"
 #include "tools/options/method_options.h"
 
 namespace softfocus {
 namespace {
 
 using Row = std::vector<std::string>;
+
+/// A list of objects with these keys, a row each.
+void print_json(const std::vector<Row>& rows, const Row& keys) {
+  Json list = Json::array();
+  for (const Row& row : rows) {
+    Json object = Json::object();
+    for (std::size_t i = 0; i < keys.size(); ++i) object[keys[i]] = row[i];
+    list.push_back(std::move(object));
+  }
+  std::cout << json_text(list, 2) << '\n';
+}
 
 /// Columns two blanks apart, the last one ragged.
 void print_aligned(const std::vector<Row>& rows) {
@@ -34,16 +46,27 @@ void print_aligned(const std::vector<Row>& rows) {
   }
 }
 
+std::shared_ptr<bool> add_json_flag(CLI::App& parser) {
+  auto json = std::make_shared<bool>(false);
+  add_flag(parser, "--json", "Print JSON", *json);
+  return json;
+}
+
 }  // namespace
 
 Command add_scenes_command(CLI::App& program) {
   CLI::App* parser = add_command(program, "scenes", "List the scenes: name, title");
   const auto path = std::make_shared<std::vector<std::filesystem::path>>();
   add_scene_path(*parser, *path);
-  return {parser, [path] {
+  const auto json = add_json_flag(*parser);
+  return {parser, [path, json] {
             std::vector<Row> rows;
             for (const SceneListing& scene : list_scenes(scene_search_path(*path))) {
               rows.push_back({scene.name, scene.title});
+            }
+            if (*json) {
+              print_json(rows, {"name", "title"});
+              return kDone;
             }
             rows.push_back({"random:SEED", "A scene drawn from the number SEED, 0 to 2^64 - 1"});
             print_aligned(rows);
@@ -54,7 +77,8 @@ Command add_scenes_command(CLI::App& program) {
 Command add_methods_command(CLI::App& program) {
   CLI::App* parser =
       add_command(program, "methods", "List the depth-of-field methods: name, needs, summary");
-  return {parser, [] {
+  const auto json = add_json_flag(*parser);
+  return {parser, [json] {
             std::vector<Row> rows;
             for (const Method& method : methods()) {
               rows.push_back({std::string{method.name}, std::string{method.needs},
@@ -67,19 +91,28 @@ Command add_methods_command(CLI::App& program) {
             }
             rows.push_back({std::string{kAutoMethod}, "the scene",
                             "the cheapest of these that the scene needs for an error"});
-            print_aligned(rows);
+            if (*json) {
+              print_json(rows, {"name", "needs", "summary"});
+            } else {
+              print_aligned(rows);
+            }
             return kDone;
           }};
 }
 
 Command add_profiles_command(CLI::App& program) {
   CLI::App* parser = add_command(program, "profiles", "List the GPUs to agree with: name, summary");
-  return {parser, [] {
+  const auto json = add_json_flag(*parser);
+  return {parser, [json] {
             std::vector<Row> rows;
             for (const NamedProfile& profile : profiles()) {
               rows.push_back({std::string{profile.name}, std::string{profile.summary}});
             }
-            print_aligned(rows);
+            if (*json) {
+              print_json(rows, {"name", "summary"});
+            } else {
+              print_aligned(rows);
+            }
             return kDone;
           }};
 }

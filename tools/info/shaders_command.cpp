@@ -8,6 +8,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/json.h"
 #include "tools/files/whole_file.h"
 #include "tools/gl/shaders.h"
 
@@ -46,8 +47,18 @@ Command add_shaders_command(CLI::App& program) {
   const auto folder = std::make_shared<std::optional<std::string>>();
   add_value(*parser, "-o,--output", "DIR", "Write every shader into this folder",
             [folder](const std::string& text) { *folder = text; });
-  return {parser, [folder] {
+  const auto json = std::make_shared<bool>(false);
+  add_flag(*parser, "--json", "Print the list as JSON", *json);
+  return {parser, [folder, json] {
             if (*folder) return write_shaders(**folder);
+            if (*json) {
+              Json list = Json::array();
+              for (const Shader& shader : built_in_shaders()) {
+                list.push_back({{"name", shader.name}});
+              }
+              std::cout << json_text(list, 2) << '\n';
+              return kDone;
+            }
             for (const Shader& shader : built_in_shaders()) std::cout << shader.name << '\n';
             return kDone;
           }};

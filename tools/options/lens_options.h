@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dof/lens.h"
+#include "scenes/scene.h"
 #include "tools/cli/parser.h"
 
 namespace softfocus {
@@ -17,11 +19,28 @@ struct LensOptions {
   std::optional<double> f_number;
   std::optional<double> focus_m;
   std::optional<double> coc_scale;
+  /// Of commands that animate, in place of one value if not empty: frames from 0 on, increasing.
+  std::vector<Keyframe> focus_m_by_frame{};
+  std::vector<Keyframe> f_number_by_frame{};
+  Easing easing = Easing::linear;
 };
+
+/// The same with the values at a frame in place of keys.
+LensOptions at_frame(LensOptions options, double frame);
+
+/// The values that --focus and --f-number gave, every bit of them.
+std::string lens_text(const LensOptions& options);
+
+/// Throws UsageError if there are keys: of a picture that is no frame.
+void check_no_keys(const LensOptions& options);
 
 /// Adds --focus, --focal-length, --f-number and --coc-scale, whose defaults are the scene's. A
 /// value that no lens can have is refused as it is read.
 void add_lens_options(CLI::App& parser, LensOptions& options);
+
+/// Likewise of a command that animates: --focus and --f-number may have keys, such as
+/// '1:2m 48:6m', and --keyframes is added.
+void add_animated_lens_options(CLI::App& parser, LensOptions& options);
 
 /// Likewise for a command without a scene: the defaults are ThinLens's, and --fov is added.
 void add_own_lens_options(CLI::App& parser, LensOptions& options,
@@ -31,7 +50,7 @@ void add_own_lens_options(CLI::App& parser, LensOptions& options,
 void add_compared_lens_options(CLI::App& parser, LensOptions& options,
                                std::function<void(double degrees)> on_fov);
 
-/// Likewise for a picture to refocus, which may carry a lens.
+/// Likewise for a picture to refocus, which may carry a lens, and for many, with keys.
 void add_refocus_lens_options(CLI::App& parser, LensOptions& options,
                               std::function<void(double degrees)> on_fov);
 

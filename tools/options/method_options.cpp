@@ -31,15 +31,22 @@ constexpr std::array kSamplingOptions{"--samples", "--jitter", "--until", "--ape
 
 }  // namespace
 
+std::vector<std::string> all_methods() {
+  std::vector<std::string> names = names_in(methods());
+  const std::vector<std::string> of_scenes = names_in(lens_view_methods());
+  names.insert(names.end(), of_scenes.begin(), of_scenes.end());
+  names.emplace_back(kAutoMethod);
+  return names;
+}
+
 void add_method_option(CLI::App& parser, const Method*& method) {
   add_value(parser, "--method", "NAME",
             "Depth-of-field method (default: " + std::string{method->name} + ")",
             [&method](const std::string& text) {
               method = find_method(text);
-              if (method == nullptr) {
-                throw UsageError("--method '" + text + "': there are " + names_of(methods()));
-              }
+              if (method == nullptr) refuse_name("--method", text, names_in(methods()));
             });
+  offer(parser, "--method", [] { return names_in(methods()); });
 }
 
 void add_method_option(CLI::App& parser, MethodChoice& method) {
@@ -48,15 +55,12 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
             [&method](const std::string& text) {
               method = {find_method(text), find_lens_view_method(text)};
               if (method.filter != nullptr || text == kAutoMethod) return;
-              if (method.of_scene == nullptr) {
-                throw UsageError("--method '" + text + "': there are " + names_of(methods()) +
-                                 ", " + names_of(lens_view_methods()) + ", " +
-                                 std::string{kAutoMethod});
-              }
+              if (method.of_scene == nullptr) refuse_name("--method", text, all_methods());
               if (!method.of_scene->missing.empty()) {
                 throw UsageError("--method " + text + ": " + std::string{method.of_scene->missing});
               }
             });
+  offer(parser, "--method", all_methods);
 }
 
 void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px,
@@ -108,7 +112,7 @@ void add_arithmetic_option(CLI::App& parser, Arithmetic& arithmetic) {
                   return;
                 }
               }
-              throw UsageError("--arithmetic '" + text + "': there are float, fixed, fixed-8");
+              refuse_name("--arithmetic", text, {"float", "fixed", "fixed-8"});
             });
 }
 

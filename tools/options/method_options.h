@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dof/auto/auto_method.h"
 #include "dof/dof.h"
@@ -33,6 +34,9 @@ struct MethodChoice {
     return is_auto() ? kAutoMethod : filter != nullptr ? filter->name : of_scene->name;
   }
 };
+
+/// The names of both tables, then `auto`.
+std::vector<std::string> all_methods();
 
 /// Adds --method for filters; `method` holds the default.
 void add_method_option(CLI::App& parser, const Method*& method);

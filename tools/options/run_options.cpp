@@ -19,11 +19,14 @@ std::string isa_names() {
   return list;
 }
 
+// What this CPU has does not matter to a man page.
+constexpr const char* kIsas = "scalar, baseline, avx2 or avx512";
+
 ChosenProfile profile_of(const std::string& text) {
   if (const auto known = find_profile(text)) return {text, "", *known};
   if (text.find_first_of("/\\.") == std::string::npos) {
-    throw UsageError("--profile '" + text + "': there are " + names_of(profiles()) +
-                     "; or give a profile's file, such as ./mine.toml");
+    refuse_name("--profile", text, names_in(profiles()),
+                "; or give a profile's file, such as ./mine.toml");
   }
   try {
     ChosenProfile chosen = load_profile(text);
@@ -54,18 +57,37 @@ void add_pool_options(CLI::App& parser, PoolOptions& options, const std::string&
               options.threads = parse_whole("--threads", text, 1, 256, "a number from 1 to 256");
             });
   add_value(parser, "--isa", "NAME",
-            "Vector unit: of this CPU " + isa_names() + "; " + same + " (default: the widest)",
+            "Vector unit, one that this CPU has: " + std::string{kIsas} + "; " + same +
+                " (default: the widest)",
             [&options](const std::string& text) {
               const auto isa = find_isa(text);
               if (!isa) throw UsageError("--isa '" + text + "': this CPU has " + isa_names());
               options.isa = *isa;
             });
+  offer(parser, "--isa", [] {
+    return std::vector<std::string>{"scalar", "baseline", "avx2", "avx512"};
+  });
+}
+
+void add_shard_option(CLI::App& parser, std::optional<Shard>& shard, const std::string& help) {
+  add_value(parser, "--shard", "I/N", help, [&shard](const std::string& text) {
+    const std::string wanted =
+        "I/N, both from 1 to " + std::to_string(kMostSamples) + ", I at most N, such as 1/8";
+    const auto refuse = [&] { throw UsageError("--shard '" + text + "': give " + wanted); };
+    const auto slash = text.find('/');
+    if (slash == text.npos) refuse();
+    const auto number = [&](const std::string& part) {
+      return parse_whole("--shard", part, 1, kMostSamples, wanted);
+    };
+    shard = Shard{number(text.substr(0, slash)), number(text.substr(slash + 1))};
+    if (shard->number > shard->count) refuse();
+  });
 }
 
 const Driver& parse_driver(std::string_view option, const std::string& text) {
   const Driver* driver = find_driver(text);
   if (driver == nullptr) {
-    throw UsageError(std::string(option) + " '" + text + "': there are " + names_of(drivers()));
+    refuse_name(option, text, names_in(drivers()));
   }
   return *driver;
 }
@@ -75,6 +97,7 @@ void add_driver_option(CLI::App& parser, const std::string& help,
   add_repeatable_value(
       parser, "--driver", "NAME", help,
       [take = std::move(take)](const std::string& name) { take(parse_driver("--driver", name)); });
+  offer(parser, "--driver", [] { return names_in(drivers()); });
 }
 
 void add_shaders_option(CLI::App& parser, Shaders& shaders) {
@@ -87,6 +110,7 @@ void add_profile_option(CLI::App& parser, const std::string& help,
                         std::function<void(const ChosenProfile&)> take) {
   add_value(parser, "--profile", "NAME|FILE", help,
             [take = std::move(take)](const std::string& text) { take(profile_of(text)); });
+  offer(parser, "--profile", [] { return names_in(profiles()); });
 }
 
 void add_profile_option(CLI::App& parser, Profile& profile, std::string& name) {
@@ -126,6 +150,23 @@ void settle_format(const CLI::App& parser, const std::string& output, FileFormat
   if (!missing_format(format).empty()) {
     throw UsageError("-o '" + output + "': " + std::string{missing_format(format)});
   }
+}
+
+void add_quiet_option(CLI::App& parser, bool& quiet) {
+  begin_group(parser, kGeneralGroup);
+  add_flag(parser, "-q,--quiet", "No progress and no notes on standard error; warnings stay",
+           quiet);
+}
+
+void add_talk_options(CLI::App& parser, bool& verbose, bool& quiet) {
+  begin_group(parser, kGeneralGroup);
+  add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", verbose);
+  add_quiet_option(parser, quiet);
+}
+
+void check_talk(const CLI::App& parser) {
+  if (!is_given(parser, "--verbose") || !is_given(parser, "--quiet")) return;
+  throw UsageError("-v and -q exclude each other; give one");
 }
 
 void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel) {

@@ -1,14 +1,16 @@
 #pragma once
-// What a command runs on, and what it says before it does: --threads and --isa, --driver,
+// What a command runs on, and what it says before it does: --threads and --isa, --shard, --driver,
 // --shaders, --profile, --format, too little memory, what a scene lacks.
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "raster/threads/parallel.h"
+#include "scenes/lens_views/shard.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
 #include "tools/files/image_file.h"
@@ -25,6 +27,9 @@ struct PoolOptions {
 
 /// Adds --threads and --isa. `same` ends the help of the first: what does not depend on it.
 void add_pool_options(CLI::App& parser, PoolOptions& options, const std::string& same);
+
+/// Adds --shard I/N. `help` says what is shared out.
+void add_shard_option(CLI::App& parser, std::optional<Shard>& shard, const std::string& help);
 
 /// The driver of that name; throws UsageError, listing those there are.
 const Driver& parse_driver(std::string_view option, const std::string& text);
@@ -54,6 +59,15 @@ void settle_format(const CLI::App& parser, const std::string& output, FileFormat
 /// Throws UsageError, naming the option that gave the size, if the machine has less memory
 /// than so many bytes a pixel. Where the system does not tell, allocation decides.
 void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel);
+
+/// Adds -q, beside --help.
+void add_quiet_option(CLI::App& parser, bool& quiet);
+
+/// Adds -v and -q, beside --help.
+void add_talk_options(CLI::App& parser, bool& verbose, bool& quiet);
+
+/// Throws UsageError if both were given.
+void check_talk(const CLI::App& parser);
 
 /// A line each. A model may lack a hundred textures: three at most, unless `all`.
 void print_scene_warnings(const std::vector<std::string>& warnings, bool all);

@@ -7,6 +7,7 @@
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_parts.h"
+#include "scenes/draw/keyframes.h"
 #include "tools/cli/errors.h"
 #include "tools/stress/make_frame.h"
 
@@ -112,7 +113,7 @@ FrameLens frame_lens(const Opened& opened, const Drawn& drawn, const FrameSettin
                      ThreadPool& pool) {
   const SceneLens& of_scene = opened.scene.lens;
   FrameLens used;
-  used.lens = overruled(of_scene.lens, settings.lens);
+  used.lens = overruled(lens_at(of_scene, settings.frame), settings.lens);
   if (settings.focus_at) {
     used.lens.focus_m = static_cast<double>(focus_depth(drawn.picture, *settings.focus_at));
   }

@@ -10,22 +10,19 @@
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/refocus/opacity.h"
+#include "tools/refocus/refocus_frames.h"
 #include "tools/refocus/refocused_file.h"
 #include "tools/refocus/report.h"
 
 namespace softfocus {
 namespace {
 
-/// The sidecar of -o, if its format has one and there is room for it.
-std::optional<std::filesystem::path> sidecar_place(const RefocusOptions& options) {
-  if (options.output == "-" || !needs_sidecar(options.format)) return std::nullopt;
-  std::error_code error;
-  const auto status = std::filesystem::status(options.output, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return std::nullopt;
-  }
-  return sidecar_of(options.output);
-}
+/// What is said once the files are there.
+struct Refocused {
+  Bytes picture;  ///< of -o -
+  std::vector<std::string> warnings;
+  std::string report, json;
+};
 
 void check_outputs(const RefocusOptions& options) {
   if (options.output == "-") return;
@@ -34,15 +31,11 @@ void check_outputs(const RefocusOptions& options) {
   if (!options.depth.empty()) inputs.push_back({options.depth, "its depth"});
   if (options.reading.mask) inputs.push_back({*options.reading.mask, "the mask"});
   check_not_read("-o", options.output, inputs);
-  if (const auto sidecar = sidecar_place(options)) check_not_read("-o", *sidecar, inputs);
+  if (const auto sidecar = sidecar_place(options.output, options.format))
+    check_not_read("-o", *sidecar, inputs);
 }
 
-void warn(const std::string& text) { std::cerr << "softfocus: warning: " << text << '\n'; }
-
-int refocus(const RefocusOptions& options) {
-  check_outputs(options);
-  Progress progress;
-  ThreadPool pool{options.pool.threads, options.pool.isa};
+Refocused make_refocused(const RefocusOptions& options, Progress& progress, ThreadPool& pool) {
   progress.show("reading");
   PictureSources sources = open_sources(options.colour, options.depth, options.reading);
   // The file, its colour as planes and as a picture; then the picture, its depth, the result, and
@@ -66,19 +59,20 @@ int refocus(const RefocusOptions& options) {
 
   progress.show("writing");
   const PictureNotes notes = refocus_notes(options, used, result.picture);
-  const Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes);
-  auto sidecar = sidecar_place(options);
+  Refocused made;
+  Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes);
+  auto sidecar = sidecar_place(options.output, options.format);
   const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
   std::optional<WholeFile> picture_file, sidecar_file;
+  if (sidecar && has_room) sidecar_file.emplace(*sidecar).write(sidecar_text(notes, bytes));
   if (options.output == "-") {
-    write_to_standard_output(bytes);
+    made.picture = std::move(bytes);
   } else {
     picture_file.emplace(options.output).write(bytes);
+    picture_file->commit();
   }
-  if (sidecar && has_room) sidecar_file.emplace(*sidecar).write(sidecar_text(notes, bytes));
-  if (picture_file) picture_file->commit();
   if (sidecar_file) sidecar_file->commit();
-  progress.clear();
+  const auto warn = [&made](std::string text) { made.warnings.push_back(std::move(text)); };
   if (!has_room) {
     warn("'" + sidecar->string() +
          "' is no sidecar of a picture and stays as it is: the picture's "
@@ -93,8 +87,23 @@ int refocus(const RefocusOptions& options) {
     warn("circles of more than " + std::to_string(static_cast<int>(kLargestMaxCoc)) +
          " pixels are cut to that; a larger --f-number has smaller ones");
   }
-  if (options.json) std::cout << refocus_json(options, sources, depth, used, notes.picture_hash);
-  if (options.verbose) std::cerr << refocus_text(options, sources, depth, used);
+  made.report = refocus_text(options, sources, depth, used);
+  made.json = refocus_json(options, sources, depth, used, notes.picture_hash);
+  return made;
+}
+
+int refocus(const RefocusOptions& options) {
+  check_outputs(options);
+  Progress progress{options.quiet};
+  ThreadPool pool{options.pool.threads, options.pool.isa};
+  const Refocused made = make_refocused(options, progress, pool);
+  if (options.output == "-") write_to_standard_output(made.picture);
+  progress.clear();
+  for (const std::string& warning : made.warnings) {
+    std::cerr << "softfocus: warning: " << warning << '\n';
+  }
+  if (options.json) std::cout << made.json;
+  if (options.verbose) std::cerr << made.report;
   return kDone;
 }
 
@@ -106,7 +115,23 @@ Command add_refocus_command(CLI::App& program) {
   const auto options = std::make_shared<RefocusOptions>();
   add_refocus_options(*parser, *options);
   return {parser, [parser, options] {
+            const auto files = frame_files(*options);
             complete(*options, *parser);
+            if (is_sequence(*options, files)) {
+              return refocus_frames(*options, *parser, files,
+                                    [](const RefocusOptions& frame, FrameRun& run) {
+                                      Progress silent{true};
+                                      Refocused made = make_refocused(frame, silent, run.pool);
+                                      run.picture = std::move(made.picture);
+                                      run.warnings = std::move(made.warnings);
+                                      run.report = std::move(made.report);
+                                    });
+            }
+            check_single_picture(*parser, options->output);
+            if (options->sequence.shard) {
+              throw UsageError("--shard: it is of many frames; give --frames A..B");
+            }
+            check_no_keys(options->photo.lens);
             return refocus(*options);
           }};
 }

@@ -21,6 +21,7 @@ struct InspectOptions {
   std::vector<std::string> files;
   RefocusOptions preview;  ///< only its output, format, reading and lens are used
   bool json = false;
+  bool quiet = false;
 };
 
 struct InspectedPlane {
@@ -205,6 +206,7 @@ void write_circles(const InspectOptions& options) {
   WholeFile file{preview.output};
   file.write(encode(circles, preview.format));
   file.commit();
+  if (options.quiet) return;
   std::cerr << "circles in " << preview.output << ": black is sharp, white a radius of "
             << short_number(static_cast<double>(used.settings.max_coc_px)) << " px\n"
             << refocus_text(preview, sources, depth, used);
@@ -233,17 +235,20 @@ Command add_inspect_command(CLI::App& program) {
   const auto options = std::make_shared<InspectOptions>();
   add_value_list(*parser, "FILES", "", "Pictures, depths, or both",
                  [options](const std::vector<std::string>& names) { options->files = names; });
+  begin_group(*parser, "Output");
   add_value(*parser, "-o,--output", "FILE",
             "A grey picture of the circles of confusion, of one file or of a colour and its depth",
             [options](const std::string& text) { options->preview.output = text; });
+  add_flag(*parser, "--json", "Print JSON", options->json);
   add_depth_options(*parser, options->preview.reading);
   add_photo_lens_options(*parser, options->preview.photo);
-  add_flag(*parser, "--json", "Print JSON", options->json);
+  add_quiet_option(*parser, options->quiet);
   return {parser, [parser, options] {
             if (options->files.empty()) {
               throw UsageError("FILES is missing: give pictures, softfocus inspect a.exr");
             }
             check_photo_lens(*parser);
+            check_no_keys(options->preview.photo.lens);
             RefocusOptions& preview = options->preview;
             if (!preview.output.empty()) {
               if (options->files.size() > 2) {

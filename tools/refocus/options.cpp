@@ -81,6 +81,7 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
                options.colour);
   add_optional_argument(parser, "DEPTH", "Its depth, unless COLOUR has it: any of these",
                         options.depth);
+  begin_group(parser, "Output");
   add_value(parser, "-o,--output", "FILE",
             "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
             [&options](const std::string& text) { options.output = text; });
@@ -93,12 +94,14 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
                 options.show = known.show;
                 return;
               }
-              throw UsageError("--show '" + text + "': there are " + names_of(kShows));
+              refuse_name("--show", text, names_in(kShows));
             });
   add_flag(parser, "--no-layers", "From EXR to EXR: leave out the other layers that came in",
            [&options] { options.keep_layers = false; });
+  add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
   add_depth_options(parser, options.reading);
   add_photo_lens_options(parser, options.photo);
+  begin_group(parser, "Bokeh");
   add_aperture_options(parser, options.aperture);
   add_value(
       parser, "--highlights", "GAIN,THRESHOLD",
@@ -106,18 +109,21 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
       "filtered: for lamps that were clipped",
       [&options](const std::string& text) { options.highlights = parse_highlights(text); });
   add_border_option(parser, options.border);
+  begin_group(parser, "Method");
   add_method_option(parser, options.method);
   add_arithmetic_option(parser, options.arithmetic);
   add_max_coc_option(parser, options.max_coc_px, "the picture's largest circle");
   add_weight_options(parser, options.leak, options.budget);
   add_goal_options(parser, options.goal);
+  add_sequence_options(parser, options.sequence, "Of the frames only every N-th, from the I-th on");
+  begin_group(parser, "Run");
   add_profile_option(parser, options.profile, options.profile_name);
   add_pool_options(parser, options.pool, "the picture is the same");
-  add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
-  add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);
+  add_talk_options(parser, options.verbose, options.quiet);
 }
 
 void complete(RefocusOptions& options, const CLI::App& parser) {
+  check_talk(parser);
   settle_format(parser, options.output, options.format);
   const bool to_standard_output = options.output == "-";
   if (to_standard_output && options.json) {

@@ -12,6 +12,7 @@
 #include "tools/refocus/borders.h"
 #include "tools/refocus/highlights.h"
 #include "tools/refocus/picture_with_depth.h"
+#include "tools/sequence/sequence_options.h"
 
 namespace softfocus {
 
@@ -39,8 +40,10 @@ struct RefocusOptions {
   Profile profile;
   std::string profile_name = "ieee";
   PoolOptions pool;
+  SequenceOptions sequence;  ///< of many pictures
   bool json = false;
   bool verbose = false;
+  bool quiet = false;
 };
 
 void add_refocus_options(CLI::App& parser, RefocusOptions& options);

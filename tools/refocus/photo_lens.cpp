@@ -25,14 +25,16 @@ Sensor parse_sensor(const std::string& text) {
   for (const NamedSensor& known : kSensors) {
     if (known.name == text) return {text, known.width_mm, known.height_mm};
   }
-  const auto cross = text.find('x');
-  const std::string wanted = names_of(kSensors) + ", or millimetres as WxH, such as 36x24mm";
-  if (cross == text.npos) throw UsageError("--sensor '" + text + "': there are " + wanted);
+  const auto cross = text.find_first_of("xX");
+  const std::string wanted = ", or millimetres as WxH, such as 36x24mm";
+  const auto refuse = [&] { refuse_name("--sensor", text, names_in(kSensors), wanted); };
+  if (cross == text.npos) refuse();
   try {
     return {text, parse_millimetres("", text.substr(0, cross), 0.1, 1e4, wanted),
             parse_millimetres("", text.substr(cross + 1), 0.1, 1e4, wanted)};
   } catch (const UsageError&) {  // which knows one side alone
-    throw UsageError("--sensor '" + text + "': there are " + wanted);
+    refuse();
+    throw;
   }
 }
 
@@ -176,6 +178,7 @@ double focus_of(const PhotoLens& photo, const DepthMap& depth, std::string& from
 }  // namespace
 
 void add_photo_lens_options(CLI::App& parser, PhotoLens& photo) {
+  begin_group(parser, "Lens");
   add_refocus_lens_options(parser, photo.lens,
                            [&photo](double degrees) { photo.fov_y_degrees = degrees; });
   add_value(
@@ -189,6 +192,7 @@ void add_photo_lens_options(CLI::App& parser, PhotoLens& photo) {
             "The sensor, which with the focal length gives the field of view: " +
                 names_of(kSensors) + " (default: the picture's field of view, or full-frame)",
             [&photo](const std::string& text) { photo.sensor = parse_sensor(text); });
+  offer(parser, "--sensor", [] { return names_in(kSensors); });
   add_value(parser, "--blur-at-infinity", "PIXELS",
             "In place of a lens: the radius of the circle of what is infinitely far",
             [&photo](const std::string& text) {

@@ -42,7 +42,7 @@ void add_mending_options(CLI::App& parser, Mending& mending) {
             "pixel (default: colour)",
             [&mending](const std::string& text) {
               if (text != "colour" && text != "nearest") {
-                throw UsageError("--upsample '" + text + "': there are colour, nearest");
+                refuse_name("--upsample", text, {"colour", "nearest"});
               }
               mending.by_colour = text == "colour";
             });
@@ -78,6 +78,7 @@ void check_shape(const PictureFile& colour, const PictureFile& depth) {
 }  // namespace
 
 void add_depth_options(CLI::App& parser, DepthOptions& options) {
+  begin_group(parser, "Depth");
   add_value(parser, "--layer", "NAME", "Layer of COLOUR (default: R G B, Combined or the first)",
             [&options](const std::string& text) { options.layer = text; });
   add_value(parser, "--depth-layer", "NAME",
@@ -89,17 +90,17 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
             [&options](const std::string& text) {
               options.encoding = find_depth_encoding(text);
               if (options.encoding == nullptr) {
-                throw UsageError("--depth-encoding '" + text + "': there are " +
-                                 names_of(depth_encodings()));
+                refuse_name("--depth-encoding", text, names_in(depth_encodings()));
               }
             });
+  offer(parser, "--depth-encoding", [] { return names_in(depth_encodings()); });
   add_number_options(parser, options.numbers);
   add_value(parser, "--depth-along", "axis|ray",
             "Whether depth is measured along the camera's axis or the pixel's ray (default: the "
             "encoding's, axis but for blender-mist)",
             [&options](const std::string& text) {
               if (text != "axis" && text != "ray") {
-                throw UsageError("--depth-along '" + text + "': there are axis, ray");
+                refuse_name("--depth-along", text, {"axis", "ray"});
               }
               options.along = text == "axis" ? DepthAlong::axis : DepthAlong::ray;
             });
@@ -116,7 +117,7 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
             "What is not known is filled from the far side, or refused (default: far)",
             [&options](const std::string& text) {
               if (text != "far" && text != "refuse") {
-                throw UsageError("--holes '" + text + "': there are far, refuse");
+                refuse_name("--holes", text, {"far", "refuse"});
               }
               options.holes = text == "far" ? Holes::from_far_side : Holes::refused;
             });

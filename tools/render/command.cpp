@@ -14,6 +14,7 @@
 #include "raster/images/texel.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/frame_parts.h"
+#include "scenes/draw/keyframes.h"
 #include "scenes/draw/object_numbers.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/load/load_scene.h"
@@ -27,6 +28,8 @@
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
+#include "tools/render/render_frames.h"
+#include "tools/render/shard_file.h"
 
 namespace softfocus {
 namespace {
@@ -54,7 +57,7 @@ bool needs_lens(const RenderOptions& options) {
 UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene,
                      double fov_y_degrees) {
   UsedLens used;
-  used.lens = overruled(of_scene.lens, options.lens);
+  used.lens = overruled(lens_at(of_scene, options.frame), options.lens);
   used.coc_scale = options.lens.coc_scale.value_or(of_scene.coc_scale);
   const auto scale = static_cast<float>(options.supersample);
   used.settings.max_coc_px = std::min(
@@ -120,22 +123,35 @@ Image halved(const Image& picture, const RenderOptions& options, double fov_y_de
   return halve(picture, options.profile, pool);
 }
 
-/// The method that draws the scene itself, from many points of the lens.
-Image sampled_picture(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
-                      PreparedScene* prepared, const RenderOptions& options, RenderRecord& record,
-                      Progress& progress, ThreadPool& pool) {
+/// What a method works from that draws the scene itself, from many points of the lens.
+LensViewInput lens_view_input(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
+                              PreparedScene* prepared, const RenderOptions& options,
+                              const RenderRecord& record, Progress& progress) {
   const UsedLens& used = *record.lens;
   const Sampling& sampling = record.used.sampling;
-  const auto tell = [&](int samples) {
-    progress.show("sampling the lens, " + std::to_string(samples) + " of " +
-                  (sampling.until || sampling.by_tile ? "at most " : "") +
-                  std::to_string(sampling.samples));
-  };
-  SampledPicture sampled = record.used.method.of_scene->render(
-      {scene, view, options.frame, pinhole, used.lens.focus_m,
-       aperture_radius_m(used.lens, used.coc_scale), sampling, options.profile, tell, prepared},
-      pool);
-  record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
+  const SampleRange range = samples_of(options.shard.value_or(Shard{}), sampling.samples);
+  const std::string of_all = std::string{" of "} +
+                             (sampling.until || sampling.by_tile ? "at most " : "") +
+                             std::to_string(range.end - range.begin);
+  return {scene,
+          view,
+          options.frame,
+          pinhole,
+          used.lens.focus_m,
+          aperture_radius_m(used.lens, used.coc_scale),
+          sampling,
+          options.profile,
+          [&progress, of_all](int samples) {
+            progress.show("sampling the lens, " + std::to_string(samples) + of_all);
+          },
+          prepared};
+}
+
+Image sampled_picture(const LensViewInput& input, RenderRecord& record, ThreadPool& pool) {
+  SampledPicture sampled = record.used.method.of_scene->render(input, pool);
+  if (record.used.method.of_scene->samples_lens) {
+    record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
+  }
   return std::move(sampled.picture);
 }
 
@@ -148,7 +164,7 @@ std::string until_warning(const RenderRecord& record) {
   const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
                                     : "half-sets are compared from 16 samples on";
   return "--until " + short_number(*sampling.until) + ": not reached with " +
-         std::to_string(record.sampled->samples) + " samples: " + found;
+         count_text(record.sampled->samples, "sample") + ": " + found;
 }
 
 /// What auto was to keep to and predicts that it will not, as a line, or nothing.
@@ -281,24 +297,19 @@ void write_layers(std::vector<Image>& behind, const RenderOptions& options,
   }
 }
 
-int render(const RenderOptions& options) {
-  const bool to_standard_output = options.output == "-";
-  if (!to_standard_output) check_writable(options.output);
-  if (options.report) check_writable(*options.report);
-  if (options.depth_output) check_writable(*options.depth_output);
+/// What is said once the files are there.
+struct Rendered {
+  Bytes picture{};  ///< of -o -
+  std::vector<std::string> warnings{};
+  std::string report{}, json{};
+};
 
+Rendered make_rendered(const RenderOptions& options, const Scene& scene, double load_ms,
+                       Progress& progress, ThreadPool& pool) {
+  const bool to_standard_output = options.output == "-";
   RenderRecord record;
   StageTimes& ms = record.ms;
-  Progress progress;
-  ThreadPool pool{options.pool.threads, options.pool.isa};
-
-  const Scene scene = timed(progress, "loading", ms.load, [&] {
-    return load_scene(options.scene, scene_search_path(options.scene_path));
-  });
-  progress.clear();
-  print_scene_warnings(scene.warnings, options.verbose);
-  check_outputs(options, scene);
-  if (has_transparent(scene)) check_transparent_memory(options);
+  ms.load = load_ms;
   record.scene_name = scene.name;
   record.scene_title = scene.title;
   record.triangles = triangle_count(scene);
@@ -359,7 +370,9 @@ int render(const RenderOptions& options) {
       return auto_drawn(scene, view, parts.picture, ready, options, record, progress, pool);
     }
     if (from_lens) {
-      return sampled_picture(scene, view, parts.picture, ready, options, record, progress, pool);
+      return sampled_picture(
+          lens_view_input(scene, view, parts.picture, ready, options, record, progress), record,
+          pool);
     }
     return shown_picture(
         std::move(parts), objects,
@@ -367,6 +380,17 @@ int render(const RenderOptions& options) {
         options, record.used.method.filter, scene.camera, settings, on_gl ? &*on_gl : nullptr,
         pool);
   };
+  if (options.shard) {
+    timed(progress, "sampling", ms.filter, [&] {
+      record.sampled = {options.sampling.samples, {}, {}};
+      write_shard(
+          lens_view_input(scene, view, parts.picture, &*prepared, options, record, progress),
+          options, record, pool);
+    });
+    progress.clear();
+    std::erase(warnings, "");
+    return {.warnings = std::move(warnings)};
+  }
   Image picture =
       is_auto ? make_picture()  // which times its stages itself
               : timed(progress, from_lens ? "sampling" : "filtering", ms.filter, make_picture);
@@ -388,7 +412,7 @@ int render(const RenderOptions& options) {
     sidecar.reset();
   }
 
-  const Bytes bytes = timed(progress, "encoding", ms.encode, [&] {
+  Bytes bytes = timed(progress, "encoding", ms.encode, [&] {
     record.picture_hash = hash_image(picture);
     return encode_with_notes(picture, options.format, notes_of(options, record));
   });
@@ -397,11 +421,7 @@ int render(const RenderOptions& options) {
   // The files get their names together, when nothing can fail but the naming.
   std::optional<WholeFile> picture_file, sidecar_file, report_file, depth_file;
   timed(progress, "writing", ms.write, [&] {
-    if (to_standard_output) {
-      write_to_standard_output(bytes);
-    } else {
-      picture_file.emplace(options.output).write(bytes);
-    }
+    if (!to_standard_output) picture_file.emplace(options.output).write(bytes);
     if (sidecar) {
       sidecar_file.emplace(*sidecar).write(sidecar_text(notes_of(options, record), bytes));
     }
@@ -409,21 +429,62 @@ int render(const RenderOptions& options) {
       depth_file.emplace(*options.depth_output).write(depth_bytes(options, picture));
     }
   });
-  const std::string report = text_report(options, record);
-  if (options.report) report_file.emplace(*options.report).write(report);
+  Rendered made{.report = text_report(options, record), .json = json_report(options, record)};
+  if (options.report) report_file.emplace(*options.report).write(made.report);
   if (picture_file) picture_file->commit();
   for (const auto& file : layer_files) file->commit();
   if (sidecar_file) sidecar_file->commit();
   if (depth_file) depth_file->commit();
   if (report_file) report_file->commit();
-  progress.clear();
-  for (const std::string& warning : warnings) {
-    if (!warning.empty()) std::cerr << "softfocus: warning: " << warning << '\n';
-  }
+  if (to_standard_output) made.picture = std::move(bytes);
+  std::erase(warnings, "");
+  made.warnings = std::move(warnings);
+  return made;
+}
 
-  if (options.json) std::cout << json_report(options, record);
-  if (options.verbose) std::cerr << report;
+Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms) {
+  Scene scene = timed(progress, "loading", ms, [&] {
+    return load_scene(options.scene, scene_search_path(options.scene_path));
+  });
+  progress.clear();
+  print_scene_warnings(scene.warnings, options.verbose);
+  if (has_transparent(scene)) check_transparent_memory(options);
+  return scene;
+}
+
+int render(const RenderOptions& options) {
+  const bool to_standard_output = options.output == "-";
+  if (!to_standard_output) check_writable(options.output);
+  if (options.report) check_writable(*options.report);
+  if (options.depth_output) check_writable(*options.depth_output);
+
+  Progress progress{options.quiet};
+  ThreadPool pool{options.pool.threads, options.pool.isa};
+  double load_ms = 0.0;
+  const Scene scene = loaded_scene(options, progress, load_ms);
+  check_outputs(options, scene);
+  const Rendered made = make_rendered(options, scene, load_ms, progress, pool);
+  if (to_standard_output) write_to_standard_output(made.picture);
+  progress.clear();
+  for (const std::string& warning : made.warnings) {
+    std::cerr << "softfocus: warning: " << warning << '\n';
+  }
+  if (options.json) std::cout << made.json;
+  if (options.verbose) std::cerr << made.report;
   return kDone;
+}
+
+int render_many(const RenderOptions& options, const CLI::App& parser) {
+  Progress progress{options.quiet};
+  double load_ms = 0.0;
+  const Scene scene = loaded_scene(options, progress, load_ms);
+  return render_frames(options, parser, scene, [&](const RenderOptions& frame, FrameRun& run) {
+    Progress silent{true};
+    Rendered made = make_rendered(frame, scene, load_ms, silent, run.pool);
+    run.picture = std::move(made.picture);
+    run.warnings = std::move(made.warnings);
+    run.report = std::move(made.report);
+  });
 }
 
 }  // namespace
@@ -434,6 +495,9 @@ Command add_render_command(CLI::App& program) {
   add_render_options(*parser, *options);
   return {parser, [parser, options] {
             complete(*options, *parser);
+            if (options->sequence.frames) return render_many(*options, *parser);
+            check_single_picture(*parser, options->output);
+            options->lens = at_frame(options->lens, options->frame);
             return render(*options);
           }};
 }

@@ -11,6 +11,7 @@
 #include "tools/files/same_file.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/render/shard_file.h"
 
 namespace softfocus {
 namespace {
@@ -23,13 +24,8 @@ constexpr std::array kShowChoices{ShowChoice{"image", Show::image},
                                   ShowChoice{"pinhole", Show::pinhole},
                                   ShowChoice{"coc", Show::coc}, ShowChoice{"depth", Show::depth}};
 
-template <class Range>
-[[noreturn]] void refuse_name(std::string_view option, const std::string& text,
-                              const Range& choices) {
-  throw UsageError(std::string{option} + " '" + text + "': there are " + names_of(choices));
-}
-
 void add_picture_options(CLI::App& parser, RenderOptions& options) {
+  begin_group(parser, "Output");
   add_value(parser, "-o,--output", "FILE",
             "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
             [&options](const std::string& text) { options.output = text; });
@@ -49,6 +45,10 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
               }
               options.depth_output = text;
             });
+  add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
+            [&options](const std::string& text) { options.report = text; });
+  add_flag(parser, "--json", "Print the report as JSON on standard output", options.json);
+  begin_group(parser, "Picture");
   add_size(parser, options.size);
   add_value(
       parser, "--supersample", "1|2",
@@ -65,7 +65,7 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
                   return;
                 }
               }
-              refuse_name("--show", text, kShowChoices);
+              refuse_name("--show", text, names_in(kShowChoices));
             });
   add_value(parser, "--layers", "K",
             "The K nearest surfaces of each pixel, 1 to 4: what layered works from (default: 2); "
@@ -77,14 +77,18 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
 }
 
 void add_scene_options(CLI::App& parser, RenderOptions& options) {
+  begin_group(parser, "Scene");
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
+  add_sequence_options(parser, options.sequence,
+                       "Of --frames only every N-th, from the I-th on; without them, of "
+                       "accumulation, the I-th of N parts of the samples: FILE, a .sum, gets their "
+                       "sums, which softfocus join joins");
 }
 
-void add_method_options(CLI::App& parser, RenderOptions& options) {
-  add_method_option(parser, options.method);
-  add_arithmetic_option(parser, options.arithmetic);
-  add_lens_options(parser, options.lens);
+void add_lens_and_method_options(CLI::App& parser, RenderOptions& options) {
+  begin_group(parser, "Lens");
+  add_animated_lens_options(parser, options.lens);
   add_value(parser, "--autofocus", "[X,Y]",
             "Focus on what is at this pixel, from the top left (default: the centre)",
             [&options](const std::string& text) {
@@ -92,13 +96,19 @@ void add_method_options(CLI::App& parser, RenderOptions& options) {
               if (text != "centre") options.autofocus_pixel = parse_pixel("--autofocus", text);
             });
   add_sharp_depths_option(parser, options.sharp_depths);
+  begin_group(parser, "Method");
+  add_method_option(parser, options.method);
+  add_arithmetic_option(parser, options.arithmetic);
   add_max_coc_option(parser, options.max_coc_px);
   add_weight_options(parser, options.leak, options.budget);
+  begin_group(parser, "Methods that sample the lens");
   add_sampling_options(parser, options.sampling);
+  begin_group(parser, "The method auto");
   add_auto_options(parser, options.goal, options.verify);
 }
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
+  begin_group(parser, "Run");
   add_profile_option(parser, "GPU to agree with to the bit (default: " + options.profile_name + ")",
                      [&options](const ChosenProfile& chosen) {
                        options.profile = chosen.profile;
@@ -107,12 +117,10 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
                      });
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
+  offer(parser, "--gl", [] { return names_in(drivers()); });
   add_shaders_option(parser, options.shaders);
   add_pool_options(parser, options.pool, "the picture is the same");
-  add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
-            [&options](const std::string& text) { options.report = text; });
-  add_flag(parser, "--json", "Print the report as JSON on standard output", options.json);
-  add_flag(parser, "-v,--verbose", "Say on standard error what was chosen", options.verbose);
+  add_talk_options(parser, options.verbose, options.quiet);
 }
 
 // Files of their own, or a method that reads them.
@@ -250,17 +258,29 @@ std::size_t layers_of(const RenderOptions& options) {
   return options.layers.value_or(filters ? filter->layers : 1);
 }
 
+std::uint64_t bytes_of_a_frame(const RenderOptions& options) {
+  const auto [width, height] = drawn_size(options);
+  return (bytes_per_pixel(options) + kTransparentBytesPerPixel) *
+         static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
 void add_render_options(CLI::App& parser, RenderOptions& options) {
   add_scene_argument(parser, options.scene);
-  add_picture_options(parser, options);
   add_scene_options(parser, options);
-  add_method_options(parser, options);
+  add_picture_options(parser, options);
+  add_lens_and_method_options(parser, options);
   add_run_options(parser, options);
 }
 
 void complete(RenderOptions& options, const CLI::App& parser) {
+  check_talk(parser);
   const bool to_standard_output = options.output == "-";
-  settle_format(parser, options.output, options.format);
+  if (!options.sequence.frames) options.shard = options.sequence.shard;
+  if (options.shard) {
+    check_shard_options(options, parser);
+  } else {
+    settle_format(parser, options.output, options.format);
+  }
   if (to_standard_output && options.json) {
     throw UsageError("--json and -o - would both write to standard output; give -o a file");
   }
@@ -275,7 +295,10 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     throw UsageError("--report and -o name the same file; give two");
   }
   check_depth_output(options);
-  if (options.autofocus && options.lens.focus_m) {
+  if (options.sequence.frames && is_given(parser, "--frame")) {
+    throw UsageError("--frame and --frames exclude each other; give one");
+  }
+  if (options.autofocus && is_given(parser, "--focus")) {
     throw UsageError("--focus and --autofocus exclude each other; give one");
   }
   if (options.autofocus_pixel) {
@@ -298,15 +321,18 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   } else if (!options.method.is_auto()) {
     refuse_sampling_options(parser, options.method.name());
   }
+  if (options.shard) check_shard_count(*options.shard, options.sampling.samples);
   check_supersample(options);
   check_render_memory(options, bytes_per_pixel(options));
 }
 
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments) {
   std::vector<std::string> joined;
+  bool is_option = true;  // until `--`
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     joined.push_back(std::move(arguments[i]));
-    if (joined.back() != "--autofocus") continue;
+    if (joined.back() == "--") is_option = false;
+    if (!is_option || joined.back() != "--autofocus") continue;
     const bool has_next = i + 1 < arguments.size();
     const std::string next = has_next ? arguments[i + 1] : "";
     // No scene is named with these characters alone; a mistyped pixel is.

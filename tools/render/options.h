@@ -20,6 +20,7 @@
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 #include "tools/render/sharp_depths_option.h"
+#include "tools/sequence/sequence_options.h"
 
 namespace softfocus {
 
@@ -34,6 +35,7 @@ struct RenderOptions {
   PictureSize size;
   int supersample = 1;  ///< what is drawn and filtered has so many times the width and height
   double frame = 0.0;
+  SequenceOptions sequence;  ///< of many pictures
   Profile profile;
   std::string profile_name = "ieee";
   std::filesystem::path profile_file;  ///< empty if the profile is a known one
@@ -42,8 +44,9 @@ struct RenderOptions {
   PoolOptions pool;
   MethodChoice method{.filter = find_method("two-pass")};
   Arithmetic arithmetic = Arithmetic::floats;
-  Sampling sampling;  ///< of a method that draws the scene
-  AutoGoal goal;      ///< of auto
+  Sampling sampling;           ///< of a method that draws the scene
+  std::optional<Shard> shard;  ///< the samples of this alone: `output` gets their sums
+  AutoGoal goal;               ///< of auto
   Verify verify = Verify::in_doubt;
   LensOptions lens;
   bool autofocus = false;
@@ -58,6 +61,7 @@ struct RenderOptions {
   std::optional<std::string> depth_output;
   bool json = false;
   bool verbose = false;
+  bool quiet = false;
 };
 
 /// The size that is drawn.
@@ -65,6 +69,9 @@ PictureSize drawn_size(const RenderOptions& options);
 
 /// How many surfaces of each pixel are drawn: as many as were asked for, or as the method needs.
 std::size_t layers_of(const RenderOptions& options);
+
+/// The memory that a picture takes while it is made, without the scene.
+std::uint64_t bytes_of_a_frame(const RenderOptions& options);
 
 void add_render_options(CLI::App& parser, RenderOptions& options);
 

@@ -155,8 +155,11 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
     if (!options.sharp_depths.empty()) {
       text += line("Sharp depths", ranges_text(options.sharp_depths) + " m");
     }
-    text += record.sampled ? sampling_lines(record.used.sampling, *record.sampled)
-                           : filter_lines(*record.lens);
+    if (record.sampled) {
+      text += sampling_lines(record.used.sampling, *record.sampled);
+    } else if (record.used.method.of_scene == nullptr) {
+      text += filter_lines(*record.lens);
+    }
     text += "\n";
   }
 

@@ -57,7 +57,7 @@ struct RenderRecord {
   std::string gl_renderer;         ///< of --gl; else empty
   UsedMethod used;
   std::optional<UsedLens> lens;        ///< none where the picture needs none
-  std::optional<UsedSamples> sampled;  ///< none of a filter
+  std::optional<UsedSamples> sampled;  ///< if the method samples the lens
   StageTimes ms;
 };
 

@@ -35,7 +35,7 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
     }
     json["jitter"] = record.used.sampling.jitter;
     json["aperture_blades"] = record.used.sampling.aperture.blades;
-  } else if (record.lens) {
+  } else if (record.lens && method.of_scene == nullptr) {
     json["max_coc_px"] = record.lens->settings.max_coc_px;
     json["leak"] = record.lens->settings.leak;
     if (method.name() == kBudgetMethod) json["budget"] = record.lens->settings.budget;
@@ -122,13 +122,7 @@ Bytes depth_bytes(const RenderOptions& options, const Image& picture) {
 }
 
 std::optional<std::filesystem::path> sidecar_place(const RenderOptions& options) {
-  if (options.output == "-" || !needs_sidecar(options.format)) return std::nullopt;
-  std::error_code error;
-  const auto status = std::filesystem::status(options.output, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return std::nullopt;
-  }
-  return sidecar_of(options.output);
+  return sidecar_place(options.output, options.format);
 }
 
 bool cuts_by_default(const RenderOptions& options) {

@@ -32,6 +32,8 @@ void write_json(const std::filesystem::path& file, const Json& json) {
 }
 
 std::optional<Json> read_json(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) return {};  // a device need not end
   std::ifstream stream{file, std::ios::binary};
   const std::string text{std::istreambuf_iterator<char>{stream}, {}};
   auto json = parse_json(text);

@@ -8,7 +8,7 @@
 
 #include "tools/cli/option_values.h"
 #include "tools/cli/progress.h"
-#include "tools/report/time_left.h"
+#include "tools/cli/time_left.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/stress_pictures.h"
 #include "tools/stress/trial_record.h"
@@ -34,8 +34,8 @@ struct StressWork {
   const StressOptions& options;
   ThreadPool& pool;
   StressFindings findings;
-  Progress progress{};
-  TimeLeft left;
+  Progress progress{options.quiet};
+  TimeLeft left{};
 
   void show(const StressResult& result, double severity, const std::string& method) {
     const double seconds = left.seconds();
@@ -202,7 +202,7 @@ StressFindings measure_stress(const StressOptions& options, ThreadPool& pool) {
   const std::vector<CaseGroup> groups = case_groups(results);
   std::size_t trials = 0;
   for (const CaseGroup& group : groups) trials += results[group.front()].severities.size();
-  StressWork work{options, pool, {std::move(results), 0, 0}, {}, TimeLeft{}};
+  StressWork work{options, pool, {std::move(results), 0, 0}};
   // Views of the lens take about as long as fifty filters.
   for (const std::string& method : options.methods) {
     work.left.plan(method, static_cast<double>(trials),

@@ -12,12 +12,6 @@ namespace {
 constexpr int kSmallestStressPx = 64, kLargestStressPx = 1024, kSizeStep = 16;
 constexpr int kUsualStressPx = 256, kQuickStressPx = 128;
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 std::vector<std::string> case_names() {
   std::vector<std::string> names;
   for (const StressCase& of : stress_cases()) names.emplace_back(of.name);
@@ -34,7 +28,7 @@ void check_name(const std::string& option, const std::string& text, const std::s
     throw UsageError(option + " '" + text + "': '" + name + "' stands there twice");
   }
   if (std::find(known.begin(), known.end(), name) == known.end()) {
-    throw UsageError(option + " '" + name + "': there are " + joined(known));
+    refuse_name(option, name, known);
   }
 }
 
@@ -55,17 +49,22 @@ std::vector<std::string> known_names(const std::string& option, const std::strin
 }  // namespace
 
 void add_stress_options(CLI::App& parser, StressOptions& options) {
+  begin_group(parser, "Output");
+  add_flag(parser, "--json", "Print what stress.json holds, and nothing else", options.json);
   add_value(parser, "-o,--output", "DIR", "Where the atlas and what was measured go; required",
             [&options](const std::string& text) { options.directory = text; });
+  begin_group(parser, "What is measured");
   add_value(parser, "--methods", "A,B,...",
             "Methods (default: all filters, accumulation, surface-splatting, auto)",
             [&options](const std::string& text) {
               options.methods = known_names("--methods", text, stress_methods());
             });
+  offer(parser, "--methods", stress_methods);
   add_value(parser, "--cases", "A,B,...", "Cases (default: all)",
             [&options](const std::string& text) {
               options.cases = known_names("--cases", text, case_names());
             });
+  offer(parser, "--cases", case_names);
   add_value(parser, "--size", "N",
             "Width and height of the pictures, a multiple of 16 from 64 to 1024 (default: 256; 128 "
             "with --quick); circles larger than a quarter of it are left out",
@@ -79,8 +78,9 @@ void add_stress_options(CLI::App& parser, StressOptions& options) {
             });
   add_flag(parser, "--quick", "Small pictures, three severities a case: under a minute",
            options.quick);
-  add_flag(parser, "--json", "Print what stress.json holds, and nothing else", options.json);
+  begin_group(parser, "Run");
   add_pool_options(parser, options.pool, "the results are the same");
+  add_quiet_option(parser, options.quiet);
 }
 
 void complete(StressOptions& options) {

@@ -17,6 +17,7 @@ struct StressOptions {
   int size_px = 0;                   ///< 0: 256, or 128 with `quick`
   bool quick = false;
   bool json = false;
+  bool quiet = false;
   PoolOptions pool;
 };
 

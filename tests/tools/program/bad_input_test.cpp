@@ -103,7 +103,9 @@ TEST_CASE("bad input: options that are unknown, twice there or without their val
   check_option_refused({"figures"}, {"'figures'"});
   check_option_refused({"scenes"}, {"'scenes'"});
   check_option_refused({"--size", "3x3", "--size", "4x4"}, {"--size", "twice"});
-  check_option_refused({"--focus"}, {"--focus", "needs a value"});
+  check_option_refused({"--focus"}, {"--focus", "needs a value; softfocus render --help"});
+  check_option_refused({"--json=5"}, {"--json takes no value"});
+  check_option_refused({"--no-verify=no"}, {"--no-verify takes no value"});
   check_option_refused({"--focus", "--json"}, {"--focus", "needs a value", "'--json'"});
   check_option_refused({"--scene-path", "/nowhere/at/all"}, {"--scene-path", "/nowhere/at/all"});
 }

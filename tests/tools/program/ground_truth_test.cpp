@@ -70,6 +70,7 @@ TEST_CASE("ground truth: the report says how many samples there were and how the
   CHECK(until["sampling"]["samples"] >= 16);
   CHECK(until["sampling"]["half_set_rms"] <= 0.02);
   CHECK(!rendered_json("figures", {}).contains("sampling"));
+  CHECK(!rendered_json("figures", {"--method", "surface-splatting"}).contains("sampling"));
 
   const TemporaryDirectory directory;
   const std::string report = directory.file("report.txt");

@@ -34,12 +34,14 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--jitter",
                        "--until ERROR",
                        "--aperture-blades N",
+                       "--shard I/N",
                        "--profile NAME",
                        "--threads N",
                        "--isa NAME",
                        "--report FILE",
                        "--json",
                        "-v,--verbose"});
+  names_all("join", {"PARTS", "-o,--output FILE", "--format png", "--check"});
   names_all("refocus", {"COLOUR",
                         "DEPTH",
                         "-o,--output FILE",
