@@ -20,6 +20,7 @@
 #include "dof/one_pass/one_pass.h"
 #include "dof/ray_distribution/ray_distribution.h"
 #include "dof/ring_bucket/ring_bucket.h"
+#include "dof/scatter/aperture_scatter.h"
 #include "dof/scatter/layers.h"
 #include "dof/scatter/scatter.h"
 #include "dof/transparent.h"
@@ -47,6 +48,9 @@ constexpr std::array kMethods{
            kColourAndDepth, scatter_unsorted},
     Method{"scatter-sorted", "scatter in slabs of depth, one over the other", kColourAndDepth,
            scatter_sorted},
+    Method{"scatter-aperture",
+           "scatter-sorted with the aperture's exact image: round, bladed, stretched",
+           kColourAndDepth, scatter_aperture},
     Method{"layers", "near, middle and far, each blurred by itself, after Scofield 1992",
            kColourAndDepth, layers},
     Method{"ray-distribution-buffer",

@@ -13,6 +13,7 @@
 
 #include "dof/picture_planes.h"
 #include "dof/scatter/scatter_discs.h"
+#include "dof/scatter/slabs.h"
 #include "raster/images/image.h"
 #include "raster/threads/scratch_shelf.h"
 
@@ -28,19 +29,8 @@ constexpr float kUnitsOfLight = 0x1p34f;
 
 constexpr int kTaskRows = 8;
 
-// The radii at which slabs begin on either side of the one in focus.
-constexpr std::array kSlabBegins{0.5f,  1.5f,  3.0f,   6.0f,   12.0f, 24.0f,
-                                 48.0f, 96.0f, 192.0f, 384.0f, 768.0f};
-constexpr int kSlabs = 2 * static_cast<int>(kSlabBegins.size()) + 1;
-
-// The slab's number, the nearest first.
 int slab_of(SlabRule rule, float radius_px) {
-  if (rule == SlabRule::one) return 0;
-  const float magnitude = std::fabs(radius_px);
-  int steps = 0;
-  for (const float begin : kSlabBegins) steps += magnitude > begin ? 1 : 0;
-  const int focus = static_cast<int>(kSlabBegins.size());
-  return radius_px < 0.0f ? focus - steps : focus + steps;
+  return rule == SlabRule::one ? 0 : softfocus::slab_of(radius_px);
 }
 
 int slab_count(SlabRule rule) { return rule == SlabRule::one ? 1 : kSlabs; }
@@ -104,41 +94,16 @@ Sources make_sources(const DofInput& input, SlabRule rule, ThreadPool& pool) {
   return sources;
 }
 
-// The colour of slabs that are added one by one, the nearest first.
-struct Over {
-  double transmitted = 1.0;
-  double previous = 0.0;  // a' of the slab before
-  double r = 0.0, g = 0.0, b = 0.0, opacity = 0.0;
-};
-
 void add_slab(Over& over, const Light& light) {
   if (light[3] == 0) {
     over.previous = 0.0;
     return;
   }
-  const auto number = [](std::uint64_t units) {
-    return static_cast<double>(static_cast<std::int64_t>(units));
-  };
-  const double weight = number(light[3]);
-  const double opacity = std::min(weight * 0x1p-34, 1.0);
-  const double room = 1.0 - over.previous;
-  const double alone = opacity < room ? opacity / room : 1.0;
-  const double share = over.transmitted * alone;
-  const double scale = share / weight;
-  over.r += number(light[0]) * scale;
-  over.g += number(light[1]) * scale;
-  over.b += number(light[2]) * scale;
-  over.opacity += share;
-  over.transmitted *= 1.0 - alone;
-  over.previous = alone;
-}
-
-struct Colour {
-  float r, g, b;
-};
-Colour resolve(const Over& over) {
-  return {static_cast<float>(over.r / over.opacity), static_cast<float>(over.g / over.opacity),
-          static_cast<float>(over.b / over.opacity)};
+  std::array<double, 4> numbers{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    numbers[i] = static_cast<double>(static_cast<std::int64_t>(light[i]));
+  }
+  add_slab(over, numbers, 0x1p-34);
 }
 
 std::uint64_t units(double value) {
@@ -180,7 +145,7 @@ void scatter_in_slabs_oracle(const DofInput& input, const ImageView& result, Sla
       for (int slab = 0; slab < slabs; ++slab) {
         add_slab(over, sums[static_cast<std::size_t>(slab * width + x)]);
       }
-      const Colour out = resolve(over);
+      const SlabColour out = resolve(over);
       const auto at = static_cast<std::size_t>(x), step = static_cast<std::size_t>(width);
       colour[at] = out.r;
       colour[at + step] = out.g;
@@ -249,7 +214,7 @@ void scatter_lanes(const DofInput& input, const ImageView& result, SlabRule rule
           add_slab(over, sum);
         }
         if (x < 0) continue;
-        const Colour out = resolve(over);
+        const SlabColour out = resolve(over);
         colour[x] = out.r;
         colour[padded + x] = out.g;
         colour[2 * padded + x] = out.b;

@@ -49,6 +49,7 @@ constexpr std::array kClaims{
     Claims{"importance-ordered", 1, 0.01, 0.07, 0.01},
     Claims{"scatter", 1, 0.002, 0.01, 0.0, 1, false, true},
     Claims{"scatter-sorted", 1, 0.002, 0.01, 0.0},
+    Claims{"scatter-aperture", 1, 0.002, 0.01, kHalfUlpBelowOne},
     Claims{"layers", 1, 0.002, 0.01, 0.0},
     Claims{"diffusion", 1, 0.002, 0.01, kHalfUlpBelowOne},
     Claims{"generalised-diffusion", 1, 0.002, 0.01, kHalfUlpBelowOne, 1, true, false},

@@ -5,12 +5,16 @@
 
 #include <ImfChannelList.h>
 #include <ImfDeepScanLineOutputFile.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <doctest/doctest.h>
 
@@ -118,6 +122,100 @@ TEST_CASE("EXR: notes stand in an attribute") {
   const Bytes bytes = encode_exr(make_image(Format::rgba16f, 2, 2), ExrNumbers::half, "{\"a\": 1}");
   CHECK(find_exr_notes(bytes) == "{\"a\": 1}");
   CHECK_FALSE(find_exr_notes(encode_exr(make_image(Format::rgba16f, 2, 2), ExrNumbers::half, "")));
+}
+
+TEST_CASE("EXR: the lens stands in attributes") {
+  const TemporaryDirectory directory;
+  const Bytes bytes = encode_exr(make_image(Format::rgba16f, 2, 2), ExrNumbers::half, "",
+                                 {.lens = ThinLens{85.0, 1.5, 2.5}});
+  write_file(directory.file("a.exr"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const Imf::InputFile exr{directory.file("a.exr").c_str()};
+  CHECK(Imf::focus(exr.header()) == 2.5f);
+  CHECK(Imf::aperture(exr.header()) == 1.5f);
+  CHECK(exr.header().typedAttribute<Imf::FloatAttribute>("nominalFocalLength").value() == 85.0f);
+}
+
+TEST_CASE("EXR: layers of another file are kept as they are, in their types") {
+  const TemporaryDirectory directory;
+  const Imath::Box2i data{{3, -7}, {kColumns + 4, 280}};  // beyond the picture and within it
+  const auto columns = static_cast<std::size_t>(data.max.x - data.min.x + 1);
+  const auto rows = static_cast<std::size_t>(data.max.y - data.min.y + 1);
+  std::vector<std::uint32_t> ids;
+  std::vector<Imath::half> masks;
+  for (std::size_t i = 0; i < columns * rows; ++i) {
+    ids.push_back(static_cast<std::uint32_t>(0xFFFF0000u + i));  // no float has it
+    masks.emplace_back(static_cast<float>(i % 2000) * 0.25f);
+  }
+  Imf::Header header{kDisplay, data};
+  header.compression() = Imf::PIZ_COMPRESSION;
+  header.channels().insert("id", Imf::Channel(Imf::UINT));
+  header.channels().insert("mask.V", Imf::Channel(Imf::HALF));
+  header.channels().insert("Z", Imf::Channel(Imf::HALF));
+  Imf::addOwner(header, "a studio");
+  header.insert("focus", Imf::StringAttribute("the actor"));
+  Imf::FrameBuffer buffer;
+  buffer.insert("id", Imf::Slice::Make(Imf::UINT, ids.data(), data.min, static_cast<int>(columns),
+                                       static_cast<int>(rows)));
+  for (const char* name : {"mask.V", "Z"}) {
+    buffer.insert(name, Imf::Slice::Make(Imf::HALF, masks.data(), data.min,
+                                         static_cast<int>(columns), static_cast<int>(rows)));
+  }
+  {
+    Imf::OutputFile exr{directory.file("a.exr").c_str(), header};
+    exr.setFrameBuffer(buffer);
+    exr.writePixels(static_cast<int>(rows));
+  }
+  const PictureFile source = open_picture_file(directory.file("a.exr"));
+  const std::vector<std::size_t> kept{0, 1, 2};
+  const Bytes bytes = encode_exr(make_image(Format::rgba16f, kColumns, kRows), ExrNumbers::half, "",
+                                 {.lens = ThinLens{}, .source = &source, .kept = kept});
+  write_file(directory.file("b.exr"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  Imf::InputFile exr{directory.file("b.exr").c_str()};
+  CHECK(Imf::owner(exr.header()) == "a studio");
+  CHECK(Imf::focus(exr.header()) == 2.0f);
+  CHECK(exr.header().channels()["Z"].type == Imf::FLOAT);  // the picture's own
+  REQUIRE(exr.header().channels()["id"].type == Imf::UINT);
+  REQUIRE(exr.header().channels()["mask.V"].type == Imf::HALF);
+  std::vector<std::uint32_t> got_ids(static_cast<std::size_t>(kColumns * kRows), 1u);
+  std::vector<Imath::half> got_masks(got_ids.size());
+  Imf::FrameBuffer back;
+  back.insert("id", Imf::Slice::Make(Imf::UINT, got_ids.data(), kDisplay));
+  back.insert("mask.V", Imf::Slice::Make(Imf::HALF, got_masks.data(), kDisplay));
+  exr.setFrameBuffer(back);
+  exr.readPixels(0, kRows - 1);
+  int wrong = 0;
+  for (int y = 0; y < kRows; ++y) {
+    for (int x = 0; x < kColumns; ++x) {
+      const auto at = static_cast<std::size_t>(y * kColumns + x);
+      const bool has_data = x >= data.min.x && y <= data.max.y;
+      const std::size_t from = static_cast<std::size_t>(y - data.min.y) * columns +
+                               static_cast<std::size_t>(x - data.min.x);
+      wrong += got_ids[at] != (has_data ? ids[from] : 0u);
+      wrong += got_masks[at].bits() != (has_data ? masks[from].bits() : 0u);
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("EXR: refocus keeps other layers, or leaves them out") {
+  const TemporaryDirectory directory;
+  const std::vector<std::string> names{"B", "G", "R", "Z", "view.mask.V"};
+  Planes3 planes{kDisplay, 5};
+  {
+    Imf::OutputFile exr{directory.file("a.exr").c_str(), header_with(names)};
+    exr.setFrameBuffer(planes.buffer(names));
+    exr.writePixels(kRows);
+  }
+  std::vector<std::string> words{"refocus", directory.file("a.exr"), "-o", directory.file("b.exr")};
+  words.insert(words.end(), {"--depth-encoding", "metres", "--f-number", "16"});
+  CHECK(run_program(words).err == "");
+  const PictureFile kept = open_picture_file(directory.file("b.exr"));
+  CHECK(plane_names(kept) == "B, G, R, Z, coc, view.mask.V");
+  CHECK(wrong_values(kept, 5, 4) == 0);
+  CHECK(wrong_values(kept, 3, 3) == 0);  // the depth's floats
+  words.emplace_back("--no-layers");
+  CHECK(run_program(words).err == "");
+  CHECK(plane_names(open_picture_file(directory.file("b.exr"))) == "B, G, R, Z, coc");
 }
 
 TEST_CASE("EXR: every compression is read") {

@@ -3,22 +3,18 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
 
 #include <algorithm>
-#include <cstring>
 #include <exception>
-#include <new>
 #include <vector>
 
-#include "raster/images/texel.h"
 #include "tools/cli/errors.h"
+#include "tools/files/exr_streams.h"
 #include "tools/files/picture_file.h"
 
 namespace softfocus {
@@ -30,61 +26,6 @@ constexpr const char* kNotes = "softfocus";
 constexpr std::size_t kMostChannels = 4096;
 /// Flat colour in DWAB and PIZ shrinks to about a ten-thousandth. Beyond this no file is one.
 constexpr std::uint64_t kMostOfCompression = 50000;
-
-class MemoryInput : public Imf::IStream {
- public:
-  explicit MemoryInput(std::span<const std::byte> bytes) : IStream("picture"), bytes_(bytes) {}
-
-  bool read(char c[], int n) override {
-    const auto count = static_cast<std::size_t>(n);
-    if (n < 0 || count > bytes_.size() - at_) throw FileError("the EXR is cut short");
-    std::memcpy(c, bytes_.data() + at_, count);
-    at_ += count;
-    return at_ < bytes_.size();
-  }
-  std::uint64_t tellg() override { return at_; }
-  void seekg(std::uint64_t place) override {
-    if (place > bytes_.size()) throw FileError("the EXR is cut short");
-    at_ = static_cast<std::size_t>(place);
-  }
-  void clear() override {}
-
- private:
-  std::span<const std::byte> bytes_;
-  std::size_t at_ = 0;
-};
-
-class MemoryOutput : public Imf::OStream {
- public:
-  explicit MemoryOutput(Bytes& bytes) : OStream("picture"), bytes_(bytes) {}
-
-  void write(const char c[], int n) override {
-    const auto count = static_cast<std::size_t>(n);
-    if (bytes_.size() < at_ + count) bytes_.resize(at_ + count);
-    std::memcpy(bytes_.data() + at_, c, count);
-    at_ += count;
-  }
-  std::uint64_t tellp() override { return at_; }
-  void seekp(std::uint64_t place) override { at_ = static_cast<std::size_t>(place); }
-
- private:
-  Bytes& bytes_;
-  std::size_t at_ = 0;
-};
-
-/// Does what may throw the library's exceptions.
-template <class Work>
-auto guarded(Work work) {
-  try {
-    return work();
-  } catch (const FileError&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw FileError(std::string{"the EXR is damaged: "} + error.what());
-  }
-}
 
 NumberType type_of(Imf::PixelType type) {
   switch (type) {
@@ -164,8 +105,8 @@ void list_part(PictureFile& file, const Imf::Header& header, int part, int parts
 }
 
 void list_exr(PictureFile& file) {
-  guarded([&] {
-    MemoryInput stream{file.bytes};
+  guarded_exr([&] {
+    ExrInput stream{file.bytes};
     const Imf::MultiPartInputFile exr{stream, 1, false};
     for (int part = 0; part < exr.parts(); ++part) {
       list_part(file, exr.header(part), part, exr.parts());
@@ -227,40 +168,10 @@ void read_part(Imf::MultiPartInputFile& exr, int part, const PictureFile& file,
 
 void read_exr(const PictureFile& file, std::span<const std::size_t> planes,
               std::span<PlaneValues> values) {
-  guarded([&] {
-    MemoryInput stream{file.bytes};
+  guarded_exr([&] {
+    ExrInput stream{file.bytes};
     Imf::MultiPartInputFile exr{stream, 1, false};
     for (int part = 0; part < exr.parts(); ++part) read_part(exr, part, file, planes, values);
-  });
-}
-
-/// One plane to write.
-struct ExrPlane {
-  const char* name;
-  Imf::PixelType type;
-  std::vector<std::byte> values;
-};
-
-Bytes written(std::vector<ExrPlane>& planes, int width, int height, const std::string& notes) {
-  return guarded([&] {
-    Imf::Header header{width, height};
-    header.compression() = Imf::ZIP_COMPRESSION;
-    if (!notes.empty()) header.insert(kNotes, Imf::StringAttribute(notes));
-    Imf::FrameBuffer buffer;
-    for (ExrPlane& plane : planes) {
-      const std::size_t bytes = plane.type == Imf::HALF ? 2 : 4;
-      header.channels().insert(plane.name, Imf::Channel(plane.type));
-      buffer.insert(plane.name, Imf::Slice(plane.type, reinterpret_cast<char*>(plane.values.data()),
-                                           bytes, bytes * static_cast<std::size_t>(width)));
-    }
-    Bytes bytes;
-    MemoryOutput stream{bytes};
-    {
-      Imf::OutputFile exr{stream, header, 1};
-      exr.setFrameBuffer(buffer);
-      exr.writePixels(height);
-    }
-    return bytes;
   });
 }
 
@@ -268,43 +179,9 @@ Bytes written(std::vector<ExrPlane>& planes, int width, int height, const std::s
 
 std::string_view missing_exr() { return {}; }
 
-Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes) {
-  const auto pixels =
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  std::vector<ExrPlane> planes;
-  constexpr const char* kNames[] = {"R", "G", "B", "Z"};
-  for (std::size_t c = 0; c < 4; ++c) {
-    const bool is_half = c < 3 && numbers == ExrNumbers::half;
-    const std::size_t bytes = is_half ? 2 : 4;
-    ExrPlane plane{kNames[c], is_half ? Imf::HALF : Imf::FLOAT,
-                   std::vector<std::byte>(bytes * pixels)};
-    std::byte* to = plane.values.data();
-    for (int y = 0; y < image.height; ++y) {
-      const auto from = row<std::uint16_t>(image, y);
-      for (std::size_t i = c; i < from.size(); i += 4, to += bytes) {
-        const float value = half_to_float(from[i]);
-        if (is_half) {
-          std::memcpy(to, &from[i], bytes);
-        } else {
-          std::memcpy(to, &value, bytes);
-        }
-      }
-    }
-    planes.push_back(std::move(plane));
-  }
-  return written(planes, image.width, image.height, notes);
-}
-
-Bytes encode_depth_exr(std::span<const float> values, int width, int height) {
-  const auto bytes = std::as_bytes(values);
-  std::vector<ExrPlane> planes;
-  planes.push_back({"Z", Imf::FLOAT, {bytes.begin(), bytes.end()}});
-  return written(planes, width, height, "");
-}
-
 std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes) {
   try {
-    MemoryInput stream{bytes};
+    ExrInput stream{bytes};
     const Imf::MultiPartInputFile exr{stream, 1, false};
     const auto* notes = exr.header(0).findTypedAttribute<Imf::StringAttribute>(kNotes);
     if (notes != nullptr) return notes->value();

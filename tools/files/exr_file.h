@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "dof/lens.h"
 #include "tools/files/image_file.h"
 
 namespace softfocus {
@@ -16,10 +17,24 @@ std::string_view missing_exr();
 
 enum class ExrNumbers : std::uint8_t { half, single };
 
+struct PictureFile;
+
+/// What there is to write beside a picture, and its depth in alpha. Each may be empty; the planes
+/// have a number a pixel. PNG takes the alpha alone, EXR all, other formats nothing.
+struct PictureExtras {
+  std::span<const float> alpha{};       ///< 0 to 1: the picture's colour is multiplied by it
+  std::span<const float> depth_m{};     ///< channel Z, in place of the picture's own halves
+  std::span<const float> radii_px{};    ///< channel coc, negative nearer than the focus
+  std::optional<ThinLens> lens{};       ///< attributes focus, aperture, nominalFocalLength
+  const PictureFile* source = nullptr;  ///< an EXR: its attributes, and of its planes
+  std::span<const std::size_t> kept{};  ///< these, as they are, unless a name above is theirs
+};
+
 /// An RGBA16F picture: R, G, B in halves or floats, and alpha, the depth in metres, as the float
 /// channel Z. `notes`, if any, become the attribute `softfocus`. ZIP-compressed: the values are the
 /// same everywhere, the file's bytes are zlib's. Throws FileError.
-Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes);
+Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes,
+                 const PictureExtras& extras = {});
 
 /// A depth in metres as the float channel Z.
 Bytes encode_depth_exr(std::span<const float> values, int width, int height);

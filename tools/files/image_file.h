@@ -43,8 +43,10 @@ struct Picture {
 
 /// An RGBA16F image as the bytes of a file, the same on every machine.
 Bytes encode(const Image& image, FileFormat format);
-Bytes encode_png(const Image& image);
-Bytes encode_png_16(const Image& image);
+/// `alpha`, if any, has a number from 0 to 1 for each pixel, by which its colour was multiplied:
+/// the file then has RGBA, with colours that are not.
+Bytes encode_png(const Image& image, std::span<const float> alpha = {});
+Bytes encode_png_16(const Image& image, std::span<const float> alpha = {});
 Bytes encode_rgb24(const Image& image);
 /// Each number's low byte first.
 Bytes encode_rgb48le(const Image& image);

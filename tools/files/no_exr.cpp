@@ -20,7 +20,7 @@ std::string_view missing_exr() {
   return "this build has no OpenEXR; install the library (libopenexr-dev) and build again";
 }
 
-Bytes encode_exr(const Image&, ExrNumbers, const std::string&) { refuse(); }
+Bytes encode_exr(const Image&, ExrNumbers, const std::string&, const PictureExtras&) { refuse(); }
 Bytes encode_depth_exr(std::span<const float>, int, int) { refuse(); }
 std::optional<std::string> find_exr_notes(std::span<const std::byte>) { return std::nullopt; }
 

@@ -319,6 +319,6 @@ void read_npy(const PictureFile& file, std::span<const std::size_t> planes,
 
 }  // namespace
 
-const PictureFileReader kNpyReader{"NumPy", begins_as_npy, list_npy, read_npy};
+const PictureFileReader kNpyReader{"NumPy", begins_as_npy, list_npy, read_npy, true};
 
 }  // namespace softfocus

@@ -171,6 +171,6 @@ void read_pfm(const PictureFile& file, std::span<const std::size_t> planes,
 
 }  // namespace
 
-const PictureFileReader kPfmReader{"PFM", begins_as_pfm, list_pfm, read_pfm};
+const PictureFileReader kPfmReader{"PFM", begins_as_pfm, list_pfm, read_pfm, true};
 
 }  // namespace softfocus

@@ -210,11 +210,10 @@ Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with
   if (layer.green != layer.red) planes.insert(planes.end(), {layer.green, layer.blue});
   const bool has_alpha = with_alpha && layer.alpha;
   if (has_alpha) planes.push_back(*layer.alpha);
-  const std::vector<PlaneValues> values = read_planes(file, planes, 0.0f);
   Picture picture{make_image(Format::rgba16f, file.width, file.height), has_alpha};
-  const auto put = [&](const PlaneValues& from, const PlaneInfo& plane, bool is_srgb,
-                       std::size_t first, std::size_t last) {
-    const ToHalf to_half{plane.type, is_srgb};
+  const auto put = [&](const PlaneValues& from, std::size_t plane, std::size_t first,
+                       std::size_t last) {
+    const ToHalf to_half{file.planes[plane].type, file.is_srgb && first < 3};
     std::size_t next = 0;
     for (int y = 0; y < file.height; ++y) {
       const auto to = row<std::uint16_t>(picture.image, y);
@@ -224,14 +223,17 @@ Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with
       }
     }
   };
-  if (layer.green == layer.red) {
-    put(values[0], file.planes[layer.red], file.is_srgb, 0, 2);
-  } else {
-    for (std::size_t c = 0; c < 3; ++c) {
-      put(values[c], file.planes[planes[c]], file.is_srgb, c, c);
+  const std::size_t at_once = file.reader->reads_apart ? 1 : planes.size();
+  for (std::size_t i = 0; i < planes.size(); i += at_once) {
+    const std::vector<PlaneValues> values =
+        read_planes(file, std::span{planes}.subspan(i, at_once), 0.0f);
+    for (std::size_t p = i; p < i + at_once; ++p) {
+      const bool is_alpha = has_alpha && p + 1 == planes.size();
+      const bool is_grey = !is_alpha && layer.green == layer.red;
+      const std::size_t channel = is_alpha ? 3 : p;
+      put(values[p - i], planes[p], channel, is_grey ? 2 : channel);
     }
   }
-  if (has_alpha) put(values.back(), file.planes[planes.back()], false, 3, 3);
   return picture;
 }
 

@@ -71,6 +71,8 @@ struct PictureFileReader {
   void (*list)(PictureFile& file);
   void (*read)(const PictureFile& file, std::span<const std::size_t> planes,
                std::span<PlaneValues> values);
+  /// Whether planes may as well be read one after the other, in a third of the memory.
+  bool reads_apart = false;
 };
 
 extern const PictureFileReader kPngReader, kJpegReader, kHdrReader, kPfmReader, kNpyReader,

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "raster/numbers/hash.h"
-#include "tools/files/exr_file.h"
 #include "tools/files/hash_text.h"
 #include "tools/files/png_text.h"
 
@@ -100,13 +99,17 @@ std::optional<PictureNotes> parse_notes(std::string_view text) {
   }
 }
 
-Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes) {
+Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes,
+                        const PictureExtras& extras) {
   if (format == FileFormat::exr || format == FileFormat::exr_float) {
+    PictureExtras all = extras;
+    if (!all.lens && notes.lens) all.lens = notes.lens->lens;
     return encode_exr(image, format == FileFormat::exr ? ExrNumbers::half : ExrNumbers::single,
-                      json_text(notes_json(notes)));
+                      json_text(notes_json(notes)), all);
   }
-  Bytes bytes = encode(image, format);
-  if (needs_sidecar(format) || is_raw_video(format)) return bytes;
+  if (format != FileFormat::png && format != FileFormat::png_16) return encode(image, format);
+  const Bytes bytes = format == FileFormat::png ? encode_png(image, extras.alpha)
+                                                : encode_png_16(image, extras.alpha);
   return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION},
                                 {kKeyword, json_text(notes_json(notes))}});
 }

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "dof/lens.h"
-#include "tools/files/image_file.h"
+#include "tools/files/exr_file.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
@@ -47,8 +47,9 @@ Json notes_json(const PictureNotes& notes);
 /// The notes in a JSON text, or nullopt if it is not one that notes_json() gave.
 std::optional<PictureNotes> parse_notes(std::string_view text);
 
-/// A picture's file with its notes in it, if the format can.
-Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes);
+/// A picture's file with its notes and the extras in it, as far as the format can.
+Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes,
+                        const PictureExtras& extras = {});
 
 /// Whether a format keeps its notes in a sidecar.
 bool needs_sidecar(FileFormat format);

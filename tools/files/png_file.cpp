@@ -2,6 +2,7 @@
 
 #include <stb_image.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <memory>
@@ -46,18 +47,40 @@ void* allocated(std::size_t size) { return std::malloc(size > 0 ? size : 1); }
 
 namespace softfocus {
 
-Bytes encode_png(const Image& image) {
-  std::vector<std::uint8_t> rgb;
-  rgb.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
+namespace {
+
+/// A colour that was multiplied by `alpha`, as it was before.
+float divided(float colour, float alpha) { return alpha > 0.0f ? colour / alpha : 0.0f; }
+
+/// 0 to `full` for 0 to 1.
+float code_of_share(float alpha, float full) {
+  return alpha > 0.0f ? std::min(alpha, 1.0f) * full + 0.5f : 0.0f;
+}
+
+}  // namespace
+
+Bytes encode_png(const Image& image, std::span<const float> alpha) {
+  const int channels = alpha.empty() ? 3 : 4;
+  std::vector<std::uint8_t> values;
+  values.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                 static_cast<std::size_t>(channels));
+  std::size_t pixel = 0;
   for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
+    for (int x = 0; x < image.width; ++x, ++pixel) {
       const glm::vec4 colour = load_texel<Format::rgba16f>(image, x, y);
-      for (int c = 0; c < 3; ++c) rgb.push_back(linear_to_srgb8(colour[c]));
+      for (int c = 0; c < 3; ++c) {
+        values.push_back(
+            linear_to_srgb8(alpha.empty() ? colour[c] : divided(colour[c], alpha[pixel])));
+      }
+      if (!alpha.empty()) {
+        values.push_back(static_cast<std::uint8_t>(code_of_share(alpha[pixel], 255.0f)));
+      }
     }
   }
   int size = 0;
   const std::unique_ptr<unsigned char, decltype(&std::free)> png{
-      stbi_write_png_to_mem(rgb.data(), 3 * image.width, image.width, image.height, 3, &size),
+      stbi_write_png_to_mem(values.data(), channels * image.width, image.width, image.height,
+                            channels, &size),
       std::free};
   if (!png) throw std::bad_alloc{};
   const auto* start = reinterpret_cast<const std::byte*>(png.get());
@@ -96,9 +119,9 @@ Bytes png_of_wide_rows(std::span<const std::uint16_t> values, int width, int hei
   for (const int side : {width, height}) {
     for (int shift = 24; shift >= 0; shift -= 8) header += static_cast<char>(side >> shift & 0xFF);
   }
-  header += static_cast<char>(16);                     // bits
-  header += static_cast<char>(channels == 1 ? 0 : 2);  // grey or RGB
-  header += std::string(3, '\0');                      // the one compression, filter, no interlace
+  header += static_cast<char>(16);                                         // bits
+  header += static_cast<char>(channels == 1 ? 0 : channels == 3 ? 2 : 6);  // grey, RGB or RGBA
+  header += std::string(3, '\0');  // the one compression, filter, no interlace
   Bytes bytes;
   for (const char c : kPngSignature) bytes.push_back(static_cast<std::byte>(c));
   append_png_chunk(bytes, "IHDR", header);
@@ -110,17 +133,29 @@ Bytes png_of_wide_rows(std::span<const std::uint16_t> values, int width, int hei
 
 }  // namespace
 
-Bytes encode_png_16(const Image& image) {
+Bytes encode_png_16(const Image& image, std::span<const float> alpha) {
   const std::vector<std::uint16_t> encoded = srgb16_of_halves();
-  std::vector<std::uint16_t> rgb;
-  rgb.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
+  const std::size_t channels = alpha.empty() ? 3 : 4;
+  std::vector<std::uint16_t> values;
+  values.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                 channels);
+  std::size_t pixel = 0;
   for (int y = 0; y < image.height; ++y) {
     const auto halves = row<std::uint16_t>(image, y);
-    for (std::size_t i = 0; i < halves.size(); ++i) {
-      if (i % 4 != 3) rgb.push_back(encoded[halves[i]]);
+    for (std::size_t i = 0; i < halves.size(); i += 4, ++pixel) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint16_t half =
+            alpha.empty() ? halves[i + c]
+                          : float_to_half(divided(half_to_float(halves[i + c]), alpha[pixel]),
+                                          HalfRounding::nearest_even);
+        values.push_back(encoded[half]);
+      }
+      if (!alpha.empty()) {
+        values.push_back(static_cast<std::uint16_t>(code_of_share(alpha[pixel], 65535.0f)));
+      }
     }
   }
-  return png_of_wide_rows(rgb, image.width, image.height, 3);
+  return png_of_wide_rows(values, image.width, image.height, channels);
 }
 
 Bytes encode_grey_png_16(std::span<const std::uint16_t> values, int width, int height) {

@@ -135,6 +135,15 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings) {
   }
 }
 
+int parse_blades(const char* option, const std::string& text) {
+  constexpr const char* kWanted = "0 for a disc or a whole number from 3 to 64";
+  const int blades = parse_whole(option, text, 0, kMostBlades, kWanted);
+  if (blades == 1 || blades == 2) {
+    throw UsageError(std::string{option} + " '" + text + "': give " + kWanted);
+  }
+  return blades;
+}
+
 void add_sampling_options(CLI::App& parser, Sampling& sampling) {
   add_value(parser, "--samples", "N|auto[:N]",
             "Of accumulation, filtered-views and ray-traced: points on the lens, 1 to 65536 "
@@ -166,11 +175,7 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
   add_value(parser, "--aperture-blades", "N",
             "Of the same: an aperture of 3 to 64 straight blades, 0 = round (default: 0)",
             [&blades = sampling.aperture.blades](const std::string& text) {
-              constexpr const char* kWanted = "0 for a disc or a whole number from 3 to 64";
-              blades = parse_whole("--aperture-blades", text, 0, kMostBlades, kWanted);
-              if (blades == 1 || blades == 2) {
-                throw UsageError("--aperture-blades '" + text + "': give " + kWanted);
-              }
+              blades = parse_blades("--aperture-blades", text);
             });
 }
 

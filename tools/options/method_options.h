@@ -66,6 +66,9 @@ void check_arithmetic(Arithmetic arithmetic, std::string_view method, bool on_dr
 /// Throws UsageError for settings that integers cannot have.
 void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings);
 
+/// 0, or 3 to kMostBlades. Throws UsageError.
+int parse_blades(const char* option, const std::string& text);
+
 void add_sampling_options(CLI::App& parser, Sampling& sampling);
 
 /// Once all options are read: without --samples, those of the method; with --until, kMostSamples.

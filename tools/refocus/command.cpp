@@ -9,7 +9,9 @@
 #include "tools/cli/progress.h"
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
+#include "tools/refocus/opacity.h"
 #include "tools/refocus/refocus_frames.h"
+#include "tools/refocus/refocused_file.h"
 #include "tools/refocus/report.h"
 
 namespace softfocus {
@@ -33,56 +35,32 @@ void check_outputs(const RefocusOptions& options) {
     check_not_read("-o", *sidecar, inputs);
 }
 
-/// Colours of a file whose alpha is no depth are multiplied by it, if they are not already.
-/// Returns whether anything is transparent. Alphas beyond 0 and 1, as of a NumPy file that we
-/// wrote, are depths.
-bool multiply_by_alpha(const PictureSources& sources, Image& colour) {
-  if (!sources.colour.alpha) return false;
-  const std::size_t plane = *sources.colour.alpha;
-  if (!sources.depth_file && sources.depth_plane == plane) return false;
-  const PictureFile& file = sources.colour_file;
-  const PlaneValues alpha = read_planes(file, {&plane, 1}, 0.0f)[0];
-  const auto whole = static_cast<float>(full_scale(file.planes[plane].type));
-  const bool is_ours = sources.notes && file.reader == &kNpyReader;
-  if (is_ours || std::any_of(alpha.begin(), alpha.end(),
-                             [&](float value) { return !(value >= 0.0f && value <= whole); })) {
-    return false;
-  }
-  const bool is_straight = file.reader != &kExrReader;
-  bool found = false;
-  std::size_t next = 0;
-  for (int y = 0; y < colour.height; ++y) {
-    const auto halves = row<std::uint16_t>(colour, y);
-    for (std::size_t i = 0; i < halves.size(); i += 4, ++next) {
-      if (alpha[next] == whole) continue;
-      found = true;
-      for (std::size_t c = 0; is_straight && c < 3; ++c) {
-        halves[i + c] = float_to_half(half_to_float(halves[i + c]) * (alpha[next] / whole),
-                                      HalfRounding::nearest_even);
-      }
-    }
-  }
-  return found;
-}
-
 Refocused make_refocused(const RefocusOptions& options, Progress& progress, ThreadPool& pool) {
   progress.show("reading");
-  const PictureSources sources = open_sources(options.colour, options.depth, options.reading);
+  PictureSources sources = open_sources(options.colour, options.depth, options.reading);
+  // The file, its colour as planes and as a picture; then the picture, its depth, the result, and
+  // what the method keeps.
+  const bool keeps_little = options.method.name() == "two-pass";
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
-               kRefocusBytesPerPixel);
-  Image colour = read_colour(sources.colour_file, sources.colour, false).image;
-  const bool is_transparent = multiply_by_alpha(sources, colour);
-  const ReadDepth depth = read_depth(sources, colour, options.reading, options.photo, pool);
+               keeps_little ? 40 : 64);
+  PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
+  source.opacity = take_opacity(sources, source.picture);
+  const bool loses_alpha = is_transparent(source.opacity) && !keeps_alpha(options.format);
+  if (loses_alpha) source.opacity.clear();
+  const ReadDepth depth = read_depth(sources, source.picture, options.reading, options.photo, pool);
+  // What was read is not needed again, but for an EXR's other layers. `= {}` would keep the memory.
+  if (sources.depth_file) sources.depth_file->bytes = Bytes{};
+  if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
   UsedRefocus used;
   used.lens =
       settle_lens(options.photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
-  const Image picture = refocused(std::move(colour), depth.map, options, used, pool);
+  const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
 
   progress.show("writing");
-  const PictureNotes notes = refocus_notes(options, used, picture);
+  const PictureNotes notes = refocus_notes(options, used, result.picture);
   Refocused made;
-  Bytes bytes = encode_with_notes(picture, options.format, notes);
+  Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes);
   auto sidecar = sidecar_place(options.output, options.format);
   const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
   std::optional<WholeFile> picture_file, sidecar_file;
@@ -100,10 +78,10 @@ Refocused make_refocused(const RefocusOptions& options, Progress& progress, Thre
          "' is no sidecar of a picture and stays as it is: the picture's "
          "lens is written nowhere");
   }
-  if (is_transparent) {
+  if (loses_alpha) {
     warn("'" + options.colour +
-         "' is transparent in places; the result has no alpha, and black "
-         "there");
+         "' is transparent in places; the result's format has no alpha, and black there; .exr and "
+         ".png have");
   }
   if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
     warn("circles of more than " + std::to_string(static_cast<int>(kLargestMaxCoc)) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace softfocus {
 namespace {
@@ -48,7 +49,7 @@ void sweep(const std::vector<float>& metres, std::vector<float>& farthest, std::
 
 }  // namespace
 
-DepthMap depth_of_codes(const PlaneValues& codes, NumberType type, int width, int height,
+DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
                         const DepthReading& reading, const PlaneValues& mask) {
   const DepthEncoding& encoding = *reading.encoding;
   const double largest = largest_of(type, encoding);
@@ -66,11 +67,13 @@ DepthMap depth_of_codes(const PlaneValues& codes, NumberType type, int width, in
   full.numbers.least_code = least;
   full.numbers.largest_code = most > least ? most : least + 1.0;
 
-  DepthMap map{width, height, std::vector<float>(codes.size(), kMissing)};
+  // Each code gives way to its depth.
+  DepthMap map{width, height, std::move(codes)};
   std::size_t i = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x, ++i) {
-      const double raw = static_cast<double>(codes[i]);
+      const double raw = static_cast<double>(map.metres[i]);
+      map.metres[i] = kMissing;
       if (means_missing(raw, reading) || (!mask.empty() && mask[i] == 0.0f)) continue;
       double metres = encoding.distance_m(raw / largest, full.numbers);
       if (reading.along == DepthAlong::ray) {

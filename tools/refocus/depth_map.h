@@ -30,7 +30,7 @@ struct DepthReading {
 
 /// `codes` are width x height numbers of that type. `mask`, empty or as many, is 0 where the depth
 /// is missing.
-DepthMap depth_of_codes(const PlaneValues& codes, NumberType type, int width, int height,
+DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
                         const DepthReading& reading, const PlaneValues& mask);
 
 /// The codes of a map: the inverse, which tests compare with. Missing depths become NaN.

@@ -197,12 +197,12 @@ void write_circles(const InspectOptions& options) {
   }
   ThreadPool pool{preview.pool.threads, preview.pool.isa};
   const PictureSources sources = open_sources(preview.colour, preview.depth, preview.reading);
-  const Image colour = read_colour(sources.colour_file, sources.colour, false).image;
+  Image colour = read_colour(sources.colour_file, sources.colour, false).image;
   const ReadDepth depth = read_depth(sources, colour, preview.reading, preview.photo, pool);
   UsedRefocus used;
   used.lens =
       settle_lens(preview.photo, sources.notes, preview.reading.numbers.focal_px, depth.map);
-  const Image circles = refocused(colour, depth.map, preview, used, pool);
+  const Image circles = refocused({std::move(colour), {}}, depth.map, preview, used, pool).picture;
   WholeFile file{preview.output};
   file.write(encode(circles, preview.format));
   file.commit();

@@ -16,6 +16,55 @@ constexpr std::array kShows{NamedShow{"image", RefocusShow::image},
                             NamedShow{"coc", RefocusShow::coc},
                             NamedShow{"depth", RefocusShow::depth}};
 
+constexpr std::array kBorders{Border::clamp, Border::mirror, Border::black};
+
+constexpr std::array kApertureOptions{"--aperture-blades", "--aperture-turn", "--anamorphic"};
+
+void add_aperture_options(CLI::App& parser, Aperture& aperture) {
+  add_value(parser, "--aperture-blades", "N",
+            "An aperture of 3 to 64 straight blades, 0 = round (default: 0)",
+            [&aperture](const std::string& text) {
+              aperture.blades = parse_blades("--aperture-blades", text);
+            });
+  add_value(parser, "--aperture-turn", "DEGREES",
+            "Turns it counter-clockwise (default: 0, a corner up)",
+            [&aperture](const std::string& text) {
+              aperture.turn_degrees = static_cast<float>(parse_number(
+                  "--aperture-turn", text, -360.0, 360.0, "an angle from -360 to 360 degrees"));
+            });
+  add_value(parser, "--anamorphic", "RATIO",
+            "Height over width of what is out of focus, 1/16 to 16 (default: 1)",
+            [&aperture](const std::string& text) {
+              constexpr double kMost = static_cast<double>(kMostApertureStretch);
+              aperture.stretch = static_cast<float>(
+                  parse_number("--anamorphic", text, 1.0 / kMost, kMost,
+                               "height over width from 0.0625 to 16, such as 2"));
+            });
+}
+
+void check_aperture(const RefocusOptions& options, const CLI::App& parser) {
+  if (options.method.name() == kApertureMethod) return;
+  for (const char* option : kApertureOptions) {
+    if (!is_given(parser, option)) continue;
+    throw UsageError(std::string{option} + ": the method " + std::string{options.method.name()} +
+                     " has a round aperture alone; give --method " + std::string{kApertureMethod});
+  }
+}
+
+void add_border_option(CLI::App& parser, Border& border) {
+  add_value(parser, "--border", "clamp|mirror|black",
+            "What the filter sees beyond the picture: its edge, its mirror image, nothing "
+            "(default: the method's own, mostly clamp)",
+            [&border](const std::string& text) {
+              for (const Border known : kBorders) {
+                if (name_of(known) != text) continue;
+                border = known;
+                return;
+              }
+              throw UsageError("--border '" + text + "': there are clamp, mirror, black");
+            });
+}
+
 void check_method(const RefocusOptions& options) {
   if (options.method.of_scene == nullptr) return;
   throw UsageError("--method " + std::string{options.method.name()} +
@@ -47,9 +96,19 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
               }
               refuse_name("--show", text, names_in(kShows));
             });
+  add_flag(parser, "--no-layers", "From EXR to EXR: leave out the other layers that came in",
+           [&options] { options.keep_layers = false; });
   add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
   add_depth_options(parser, options.reading);
   add_photo_lens_options(parser, options.photo);
+  begin_group(parser, "Bokeh");
+  add_aperture_options(parser, options.aperture);
+  add_value(
+      parser, "--highlights", "GAIN,THRESHOLD",
+      "Raises what is brighter than THRESHOLD (white is 1), by GAIN for each step, while it is "
+      "filtered: for lamps that were clipped",
+      [&options](const std::string& text) { options.highlights = parse_highlights(text); });
+  add_border_option(parser, options.border);
   begin_group(parser, "Method");
   add_method_option(parser, options.method);
   add_arithmetic_option(parser, options.arithmetic);
@@ -75,6 +134,7 @@ void complete(RefocusOptions& options, const CLI::App& parser) {
   }
   check_photo_lens(parser);
   check_method(options);
+  check_aperture(options, parser);
   check_budget(parser, options.method.name());
   for (const char* option : {"--max-error", "--max-time"}) {
     if (!is_given(parser, option) || options.method.is_auto()) continue;
@@ -85,6 +145,11 @@ void complete(RefocusOptions& options, const CLI::App& parser) {
     throw UsageError("--max-error and --max-time exclude each other; give one");
   }
   check_arithmetic(options.arithmetic, options.method.name(), false);
+  if (options.highlights && options.arithmetic == Arithmetic::fixed_8) {
+    throw UsageError(
+        "--highlights and --arithmetic fixed-8 exclude each other: fixed-8 cuts what is brighter "
+        "than white");
+  }
 }
 
 }  // namespace softfocus

@@ -4,10 +4,13 @@
 #include <optional>
 #include <string>
 
+#include "dof/aperture.h"
 #include "dof/fixed_pictures/arithmetic.h"
 #include "tools/files/image_file.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/refocus/borders.h"
+#include "tools/refocus/highlights.h"
 #include "tools/refocus/picture_with_depth.h"
 #include "tools/sequence/sequence_options.h"
 
@@ -30,6 +33,10 @@ struct RefocusOptions {
   float leak = DofSettings{}.leak;
   float budget = DofSettings{}.budget;
   RefocusShow show = RefocusShow::image;
+  bool keep_layers = true;  ///< of an EXR, in an EXR
+  Aperture aperture;
+  std::optional<HighlightCurve> highlights;
+  Border border = Border::by_method;
   Profile profile;
   std::string profile_name = "ieee";
   PoolOptions pool;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
@@ -138,7 +139,7 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
   const PictureFile& file = sources.of_depth();
   check_shape(sources.colour_file, file);
   const NumberType type = file.planes[sources.depth_plane].type;
-  const PlaneValues codes = depth_codes(file, sources.depth_plane);
+  PlaneValues codes = depth_codes(file, sources.depth_plane);
   const PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
 
   ReadDepth read{.seen = numbers_seen(codes, type),
@@ -166,11 +167,9 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
                                                   colour.width, colour.height) *
                                file.height / colour.height;
   const bool has_bands = options.mending.bands && full_scale(type) > 1.0;
-  const PlaneValues mended_codes =
-      has_bands ? without_bands(codes, file.width, file.height, pool) : PlaneValues{};
+  if (has_bands) codes = without_bands(codes, file.width, file.height, pool);
   read.mended.bands = has_bands;
-  read.map = depth_of_codes(has_bands ? mended_codes : codes, type, file.width, file.height,
-                            reading, mask);
+  read.map = depth_of_codes(std::move(codes), type, file.width, file.height, reading, mask);
   read.filled = missing_depths(read.map);
   const std::size_t all = read.map.metres.size();
   if (read.filled == all) {

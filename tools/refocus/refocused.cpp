@@ -5,14 +5,17 @@
 #include <vector>
 
 #include "dof/circle_sizes.h"
+#include "dof/scatter/aperture_scatter.h"
 #include "dof/show.h"
 #include "tools/cli/errors.h"
+#include "tools/refocus/finer_depths.h"
+#include "tools/refocus/opacity.h"
 
 namespace softfocus {
 namespace {
 
 /// The largest depth that a 16-bit float holds.
-constexpr float kFarthestHalf_m = 65504.0f;
+constexpr float kFarthestHalf = 65504.0f;
 
 /// The nearest and farthest finite depths, apart.
 struct DepthBounds {
@@ -38,14 +41,60 @@ Image filtered(const Image& picture, const RefocusOptions& options, const UsedRe
     two_pass_in(options.arithmetic, {picture, used.settings, options.profile}, result, pool);
     return result;
   }
-  return apply(*used.method,
-               {.scene = picture, .settings = used.settings, .profile = options.profile}, pool);
+  const DofInput input{.scene = picture, .settings = used.settings, .profile = options.profile};
+  if (used.method->name != kApertureMethod) return apply(*used.method, input, pool);
+  Image result = make_image(picture.format, picture.width, picture.height);
+  scatter_aperture_of(options.aperture, input, result, pool);
+  return result;
+}
+
+/// Colour and opacity, each filtered.
+PictureOnItsWay both_filtered(PictureOnItsWay source, const RefocusOptions& options,
+                              const UsedRefocus& used, ThreadPool& pool) {
+  PictureOnItsWay result{filtered(source.picture, options, used, pool)};
+  if (!is_transparent(source.opacity)) {
+    result.opacity = std::move(source.opacity);
+    return result;
+  }
+  source.picture = opacity_picture(source.opacity, source.picture);
+  result.opacity = opacity_of(filtered(source.picture, options, used, pool));
+  return result;
+}
+
+/// The same with pixels beyond the borders, as far as the largest circle reaches.
+PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions& options,
+                                   const UsedRefocus& used, ThreadPool& pool) {
+  const float reach_px = std::min(used.largest_circle_px, used.settings.max_coc_px);
+  const int margin = static_cast<int>(std::ceil(reach_px));
+  const int width = source.picture.width, height = source.picture.height;
+  if (options.border == Border::by_method || margin == 0) {
+    return both_filtered(std::move(source), options, used, pool);
+  }
+  if (std::max(width, height) + 2 * margin > kMaxImageSize) {
+    throw UsageError("--border: with a border of " + std::to_string(margin) +
+                     " pixels the picture is larger than " + std::to_string(kMaxImageSize) +
+                     "; give a smaller --max-coc, or no --border");
+  }
+  PictureOnItsWay wide{with_border(source.picture, margin, options.border)};
+  if (!source.opacity.empty()) {
+    wide.opacity = with_border(source.opacity, width, height, margin, options.border);
+  }
+  const bool has_opacity = !source.opacity.empty();
+  source = {};
+  PictureOnItsWay result = both_filtered(std::move(wide), options, used, pool);
+  result.picture = without_border(result.picture, margin);
+  if (has_opacity) {
+    result.opacity =
+        without_border(result.opacity, width + 2 * margin, height + 2 * margin, margin);
+  }
+  return result;
 }
 
 }  // namespace
 
-Image refocused(Image colour, const DepthMap& depth, const RefocusOptions& options,
-                UsedRefocus& used, ThreadPool& pool) {
+PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
+                          const RefocusOptions& options, UsedRefocus& used, ThreadPool& pool) {
+  Image& colour = source.picture;
   used.method = options.method.filter;
   used.settings.coc = used.lens.coc;
   used.settings.leak = options.leak;
@@ -53,26 +102,47 @@ Image refocused(Image colour, const DepthMap& depth, const RefocusOptions& optio
   DepthMap seen = depth;
   if (used.lens.range) move_range_into_focus(seen, *used.lens.range);
   // (z - focus) / z is NaN at infinity, and NaN has the largest circle. The horizon has its own.
-  for (float& metres : seen.metres) metres = std::min(metres, kFarthestHalf_m);
+  for (float& metres : seen.metres) metres = std::min(metres, kFarthestHalf);
   put_in_alpha(seen.metres, colour);
   const CircleSizes sizes = circle_sizes(colour, used.settings.coc, 0.0f, pool);
   used.largest_circle_px = sizes.largest_px;
   used.settings.max_coc_px = options.max_coc_px.value_or(std::ceil(sizes.largest_px));
   if (options.show == RefocusShow::coc) {
-    return show_coc(colour, used.settings.coc, std::max(used.settings.max_coc_px, 1e-3f));
+    return {show_coc(colour, used.settings.coc, std::max(used.settings.max_coc_px, 1e-3f))};
   }
   if (options.show == RefocusShow::depth) {
     const DepthBounds bounds = bounds_of(depth);
-    return show_depth(colour, bounds.near_m, bounds.far_m);
+    return {show_depth(colour, bounds.near_m, bounds.far_m)};
   }
   if (options.method.is_auto()) {
     used.choice = auto_filter(colour, used.settings.coc, options.goal, options.max_coc_px, pool);
     used.method = find_method(used.choice->method);
     if (!is_sharp(*used.choice)) used.settings.max_coc_px = used.choice->radius_px;
   }
-  Image result = filtered(colour, options, used, pool);
-  put_in_alpha(depth.metres, result);
+  if (const std::optional<PixelCoc> finer = with_finer_depths(seen, used.settings.coc)) {
+    used.settings.coc = *finer;
+    put_in_alpha(seen.metres, colour);
+  }
+  seen = {};
+  if (options.highlights) raise_highlights(*options.highlights, source.opacity, colour);
+  PictureOnItsWay result = filtered_in_border(std::move(source), options, used, pool);
+  if (options.highlights) {
+    lower_highlights(*options.highlights, result.opacity, result.picture);
+  }
+  put_in_alpha(depth.metres, result.picture);
   return result;
+}
+
+PlaneValues circle_radii(const DepthMap& depth, const UsedRefocus& used) {
+  DepthMap map = depth;
+  if (used.lens.range) move_range_into_focus(map, *used.lens.range);
+  const float most = used.settings.max_coc_px;
+  for (float& value : map.metres) {
+    value = std::isinf(value) ? used.lens.coc.radius_at_infinity_px
+                              : coc_radius_px(used.lens.coc, value);
+    value = std::clamp(value, -most, most);
+  }
+  return std::move(map.metres);
 }
 
 }  // namespace softfocus

@@ -17,9 +17,18 @@ struct UsedRefocus {
   float largest_circle_px = 0.0f;
 };
 
-/// `colour` is RGBA16F; its alpha becomes the depth, here and in the result. The picture or the map
-/// that `options.show` asks for.
-Image refocused(Image colour, const DepthMap& depth, const RefocusOptions& options,
-                UsedRefocus& used, ThreadPool& pool);
+/// A picture with depth. RGBA16F, depth in alpha, its colour times its opacity.
+struct PictureOnItsWay {
+  Image picture{};
+  PlaneValues opacity{};  ///< 0 to 1, a number a pixel; empty: all is opaque
+};
+
+/// The alpha of `source` becomes the depth, here and in the result. The picture or the map that
+/// `options.show` asks for; a map has no opacity.
+PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
+                          const RefocusOptions& options, UsedRefocus& used, ThreadPool& pool);
+
+/// The circles that were used, in pixels, negative nearer than the focus.
+PlaneValues circle_radii(const DepthMap& depth, const UsedRefocus& used);
 
 }  // namespace softfocus

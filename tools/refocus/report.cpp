@@ -141,6 +141,16 @@ PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& use
                     {"leak", used.settings.leak},
                     {"arithmetic", arithmetic_name(options.arithmetic)},
                     {"profile", options.profile_name}};
+    if (options.aperture != Aperture{}) {
+      notes.method["aperture"] = {{"blades", options.aperture.blades},
+                                  {"turn_degrees", options.aperture.turn_degrees},
+                                  {"stretch", options.aperture.stretch}};
+    }
+    if (options.highlights) {
+      notes.method["highlights"] = {{"gain", options.highlights->gain},
+                                    {"threshold", options.highlights->threshold}};
+    }
+    if (options.border != Border::by_method) notes.method["border"] = name_of(options.border);
   }
   if (used.lens.has_lens) notes.lens = {used.lens.lens, used.lens.coc_scale, notes.fov_y_degrees};
   return notes;

@@ -115,11 +115,11 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
                    "portrait", "sphere-world", "random:SEED"});
   // clang-format off
   lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "importance-ordered",
-                    "scatter", "scatter-sorted", "layers", "ray-distribution-buffer", "diffusion",
-                    "generalised-diffusion", "anisotropic-diffusion", "ring-bucket", "circular-1",
-                    "circular-2", "disc-layers", "layered", "object-identification",
-                    "post-process", "mipmap", "accumulation", "filtered-views", "ray-traced",
-                    "surface-splatting", "auto"});
+                    "scatter", "scatter-sorted", "scatter-aperture", "layers",
+                    "ray-distribution-buffer", "diffusion", "generalised-diffusion",
+                    "anisotropic-diffusion", "ring-bucket", "circular-1", "circular-2",
+                    "disc-layers", "layered", "object-identification", "post-process", "mipmap",
+                    "accumulation", "filtered-views", "ray-traced", "surface-splatting", "auto"});
   // clang-format on
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe", "swiftshader"});
 }

@@ -1,0 +1,76 @@
+#include "tools/refocus/opacity.h"
+
+#include <algorithm>
+
+#include "raster/images/image.h"
+#include "raster/numbers/half.h"
+
+namespace softfocus {
+namespace {
+
+void multiply(const PlaneValues& opacity, Image& colour) {
+  std::size_t pixel = 0;
+  for (int y = 0; y < colour.height; ++y) {
+    const auto halves = row<std::uint16_t>(colour, y);
+    for (std::size_t i = 0; i < halves.size(); i += 4, ++pixel) {
+      if (opacity[pixel] == 1.0f) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        halves[i + c] = float_to_half(half_to_float(halves[i + c]) * opacity[pixel],
+                                      HalfRounding::nearest_even);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+PlaneValues take_opacity(const PictureSources& sources, Image& colour) {
+  if (!sources.colour.alpha) return {};
+  const std::size_t plane = *sources.colour.alpha;
+  if (!sources.depth_file && sources.depth_plane == plane) return {};
+  const PictureFile& file = sources.colour_file;
+  PlaneValues opacity = std::move(read_planes(file, {&plane, 1}, 0.0f)[0]);
+  const auto whole = static_cast<float>(full_scale(file.planes[plane].type));
+  const bool is_ours = sources.notes && file.reader == &kNpyReader;
+  if (is_ours || std::any_of(opacity.begin(), opacity.end(),
+                             [&](float value) { return !(value >= 0.0f && value <= whole); })) {
+    return {};
+  }
+  for (float& value : opacity) value /= whole;
+  if (file.reader != &kExrReader) multiply(opacity, colour);
+  return opacity;
+}
+
+bool is_transparent(const PlaneValues& opacity) {
+  return std::any_of(opacity.begin(), opacity.end(), [](float value) { return value < 1.0f; });
+}
+
+Image opacity_picture(const PlaneValues& opacity, const Image& like) {
+  Image picture = make_image(like.format, like.width, like.height);
+  std::size_t pixel = 0;
+  for (int y = 0; y < like.height; ++y) {
+    const auto from = row<std::uint16_t>(like, y);
+    const auto to = row<std::uint16_t>(picture, y);
+    for (std::size_t i = 0; i < to.size(); i += 4, ++pixel) {
+      const std::uint16_t half = float_to_half(opacity[pixel], HalfRounding::nearest_even);
+      to[i] = to[i + 1] = to[i + 2] = half;
+      to[i + 3] = from[i + 3];
+    }
+  }
+  return picture;
+}
+
+PlaneValues opacity_of(const Image& picture) {
+  PlaneValues opacity;
+  opacity.reserve(static_cast<std::size_t>(picture.width) *
+                  static_cast<std::size_t>(picture.height));
+  for (int y = 0; y < picture.height; ++y) {
+    const auto halves = row<std::uint16_t>(picture, y);
+    for (std::size_t i = 0; i < halves.size(); i += 4) {
+      opacity.push_back(std::clamp(half_to_float(halves[i]), 0.0f, 1.0f));
+    }
+  }
+  return opacity;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,18 @@
+#pragma once
+// What is written of a refocused picture.
+
+#include "tools/refocus/refocused.h"
+
+namespace softfocus {
+
+/// Whether a file of that format has a place for alpha.
+bool keeps_alpha(FileFormat format);
+
+/// The file's bytes: the picture with its notes and, if the format can, its alpha. An EXR has the
+/// depth in floats and the circles too, and from an EXR its attributes and, unless
+/// `options.keep_layers` is off, its other layers.
+Bytes refocused_file(const RefocusOptions& options, const PictureSources& sources,
+                     const DepthMap& depth, const UsedRefocus& used, const PictureOnItsWay& result,
+                     const PictureNotes& notes);
+
+}  // namespace softfocus
