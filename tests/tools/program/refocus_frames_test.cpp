@@ -226,6 +226,7 @@ TEST_CASE("refocus: a run that is killed goes on where it stopped, with the same
   const Words words = refocus(directory, "o_%04d.png", {"--threads", "2"});
   std::vector<std::string> arguments = joined({SOFTFOCUS_PROGRAM}, words);
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const pid_t child = ::fork();
