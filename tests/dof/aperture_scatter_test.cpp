@@ -57,8 +57,7 @@ std::vector<double> covers_of(const Aperture& aperture, bool upside_down, double
   std::vector<double> covers(static_cast<std::size_t>(side * side));
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int i = 0; i < kHeightsOfPixel; ++i) {
-      const Chord at =
-          chord(aperture, upside_down, radius, dy - 0.5 + (i + 0.5) / kHeightsOfPixel);
+      const Chord at = chord(aperture, upside_down, radius, dy - 0.5 + (i + 0.5) / kHeightsOfPixel);
       for (int dx = -reach; dx <= reach; ++dx) {
         covers[static_cast<std::size_t>((dy + reach) * side + dx + reach)] +=
             std::fmax(0.0, std::fmin(at.right, dx + 0.5) - std::fmax(at.left, dx - 0.5)) /
