@@ -50,9 +50,12 @@ std::vector<SumsFile> opened_parts(const std::vector<std::string>& paths) {
     throw FileError("cannot join " + in_quotes(path) + " with " + in_quotes(paths.front()) +
                     ": they are of different pictures: its " + other);
   }
-  const auto number = [](const SumsFile& file) { return file.shard.number; };
-  std::ranges::stable_sort(files, {}, number);
-  const auto twice = std::ranges::adjacent_find(files, {}, number);
+  std::stable_sort(files.begin(), files.end(), [](const SumsFile& a, const SumsFile& b) {
+    return a.shard.number < b.shard.number;
+  });
+  const auto twice = std::adjacent_find(
+      files.begin(), files.end(),
+      [](const SumsFile& a, const SumsFile& b) { return a.shard.number == b.shard.number; });
   if (twice != files.end()) {
     throw FileError("cannot join " + in_quotes(twice[0].path) + " and " + in_quotes(twice[1].path) +
                     ": both are shard " + std::to_string(twice->shard.number) + "; give it once");

@@ -11,6 +11,7 @@
 
 using namespace softfocus;
 
+#ifdef SOFTFOCUS_LIBRARY
 namespace {
 
 // A Python that has NumPy, or nothing. Debian's first: another may stand before it without.
@@ -22,7 +23,6 @@ std::string python_with_numpy() {
   return {};
 }
 
-#ifdef SOFTFOCUS_LIBRARY
 /// Whether a command of these words, the second in quotes, ends well.
 bool done(const std::string& program, const std::string& quoted,
           const std::vector<std::string>& words) {
@@ -30,9 +30,8 @@ bool done(const std::string& program, const std::string& quoted,
   for (const std::string& word : words) command.append(1, ' ').append(word);
   return std::system(command.c_str()) == 0;
 }
-#endif
-
 }  // namespace
+#endif
 
 TEST_CASE("refocus.py gives what the program writes, to the bit") {
 #ifdef SOFTFOCUS_LIBRARY
