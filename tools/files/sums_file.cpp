@@ -172,7 +172,7 @@ void write_sums_file(const std::filesystem::path& path, const Shard& shard,
   };
   const std::string header = json_text(header_json(shard, origin));
   const auto append_text = [&](std::string_view text) {
-    const auto more = std::as_bytes(std::span{text});
+    const auto more = std::as_bytes(std::span{text.data(), text.size()});
     bytes.insert(bytes.end(), more.begin(), more.end());
   };
   append_text(kSumsMagic);
@@ -211,7 +211,7 @@ SumsFile open_sums_file(const std::filesystem::path& path) {
       little_endian<std::uint32_t>(std::span{begin}.subspan(kSumsMagic.size()));
   if (header_bytes > kMostHeaderBytes) refuse(path, "its header is damaged; make it again");
   std::string text(header_bytes, '\0');
-  if (!read_bytes(stream, std::as_writable_bytes(std::span{text}))) {
+  if (!read_bytes(stream, std::as_writable_bytes(std::span{text.data(), text.size()}))) {
     refuse(path, "it is cut short; make it again");
   }
   SumsFile file{.path = path, .shard = {}, .origin = {}, .header = std::move(text)};
