@@ -161,7 +161,7 @@ std::vector<PlaneValues> read_planes(const PictureFile& file, std::span<const st
                       " pixels, more than fit into memory; give a smaller picture");
     }
     std::vector<PlaneValues> values(planes.size());
-    for (PlaneValues& plane : values) plane.assign(pixels, outside);
+    for (PlaneValues& plane : values) plane.assign(static_cast<std::size_t>(pixels), outside);
     file.reader->read(file, planes, values);
     return values;
   } catch (const FileError& error) {
