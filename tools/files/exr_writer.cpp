@@ -205,8 +205,11 @@ class SourcePlanes {
   int loaded_y_ = -1;
 };
 
-/// What a camera or a program wrote into another file's header, but for its form.
-void copy_attributes(const Imf::Header& from, Imf::Header& to) {
+constexpr std::array<std::string_view, 3> kLensNames{"focus", "aperture", "nominalFocalLength"};
+
+/// What a camera or a program wrote into another file's header, but for its form and, where the
+/// picture has a lens of its own, that.
+void copy_attributes(const Imf::Header& from, Imf::Header& to, bool keeps_lens) {
   constexpr std::array<std::string_view, 21> kForm{"channels",
                                                    "compression",
                                                    "dataWindow",
@@ -229,14 +232,17 @@ void copy_attributes(const Imf::Header& from, Imf::Header& to) {
                                                    "originalDataWindow",
                                                    "wrapmodes"};
   for (auto attribute = from.begin(); attribute != from.end(); ++attribute) {
-    if (std::find(kForm.begin(), kForm.end(), attribute.name()) != kForm.end()) continue;
+    const std::string_view name = attribute.name();
+    if (std::find(kForm.begin(), kForm.end(), name) != kForm.end()) continue;
+    // Left out here, for they may have another type, and Header::erase leaks what it erases.
+    if (!keeps_lens && std::find(kLensNames.begin(), kLensNames.end(), name) != kLensNames.end()) {
+      continue;
+    }
     to.insert(attribute.name(), attribute.attribute());
   }
 }
 
 void add_lens(const ThinLens& lens, Imf::Header& header) {
-  // A copied one may have another type.
-  for (const char* name : {"focus", "aperture", "nominalFocalLength"}) header.erase(name);
   Imf::addFocus(header, static_cast<float>(lens.focus_m));
   Imf::addAperture(header, static_cast<float>(lens.f_number));
   // Of OpenEXR 3.2; older libraries have no function for it.
@@ -261,7 +267,7 @@ Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& note
     std::optional<SourcePlanes> source;
     if (extras.source != nullptr) {
       source.emplace(*extras.source, extras.kept);
-      copy_attributes(source->header(), header);
+      copy_attributes(source->header(), header, !extras.lens);
       const std::vector<ExrPlane> own = planes;
       for (ExrPlane& plane : source->planes()) {
         const auto has_name = [&](const ExrPlane& other) { return other.name == plane.name; };
