@@ -78,10 +78,9 @@ std::vector<float> thinned(const std::vector<float>& values, const Image& pictur
   return thin;
 }
 
-std::shared_ptr<const Drawn> as_drawn(Image picture, double ms) {
+std::shared_ptr<const Drawn> as_drawn(Image picture) {
   auto drawn = std::make_shared<Drawn>();
   drawn->picture = std::move(picture);
-  drawn->ms = ms;
   return drawn;
 }
 
@@ -93,7 +92,7 @@ const PictureAtSize& at_size(OpenedPicture& opened, int preview) {
   Image thin = thinned(picture, preview);
   DepthMap depth{thin.width, thin.height, thinned(whole.depth.metres, picture, preview)};
   opened.coarse = {.preview = preview,
-                   .drawn = as_drawn(std::move(thin), 0.0),
+                   .drawn = as_drawn(std::move(thin)),
                    .opacity = thinned(whole.opacity, picture, preview),
                    .depth = std::move(depth)};
   return *opened.coarse;
@@ -157,7 +156,6 @@ RefocusOptions options_of(const OpenedPicture& opened, const FrameSettings& sett
 }  // namespace
 
 OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
-  const auto start = std::chrono::steady_clock::now();
   auto picture = std::make_shared<OpenedPicture>();
   RefocusOptions& options = picture->options;
   options.colour = request.at("picture").text();
@@ -184,7 +182,7 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
     put_in_alpha(whole.depth.metres, source.picture);
   }
   whole.opacity = std::move(source.opacity);
-  whole.drawn = as_drawn(std::move(source.picture), milliseconds_since(start));
+  whole.drawn = as_drawn(std::move(source.picture));
 
   OpenedWithReply made{std::make_unique<Opened>(), {}};
   made.opened->source = options.colour;

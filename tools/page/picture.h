@@ -34,13 +34,14 @@ struct RefocusedFrame {
   PlaneValues opacity;
 };
 
-/// Opens `request`'s `picture` and `depth`, read as it says. An encoding that cannot be told or
-/// lacks numbers is no error: the picture is then there without depth. Throws FileError,
-/// UsageError. The second is what there is to tell of it.
 struct OpenedWithReply {
   std::unique_ptr<Opened> opened;
-  Json reply;
+  Json reply;  ///< what there is to tell of it
 };
+
+/// Opens `request`'s `picture` and `depth`, read as it says. An encoding that cannot be told or
+/// lacks numbers is no error: the picture is then there without depth. Throws FileError,
+/// UsageError.
 OpenedWithReply open_picture(const Json& request, ThreadPool& pool);
 
 /// The opened picture with these settings. Its size is the file's, divided by `preview`.
