@@ -171,13 +171,25 @@ test("a model that is dropped is drawn; a broken one is a line, and nothing is l
   assert.notStrictEqual(await drawn(page), first);
 });
 
+/** Drops files of the work folder on the page. */
+function drop(page, names) {
+  const files = names.map((name) => [name, fs.readFileSync(path.join(work, name)).toString("base64")]);
+  return page.evaluate((given) => {
+    const transfer = new DataTransfer();
+    for (const [name, text] of given) {
+      transfer.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
+    }
+    document.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, cancelable: true }));
+  }, files);
+}
+
 test("a picture and its depth are refocused with the program's bits, and scenes come back", async (page) => {
   const first = await drawn(page);
   const run = (...words) => execFileSync(program, words, { cwd: work, stdio: "ignore" });
   run("render", "figures", "--size", "240x160", "--show", "pinhole", "-o", "photo.png",
       "--depth-output", "photo_depth.png");
   run("render", "figures", "--size", "240x160", "--show", "depth", "-o", "grey.png");
-  await page.locator("#files").setInputFiles(["photo_depth.png", "photo.png"].map((name) => path.join(work, name)));
+  await drop(page, ["photo_depth.png", "photo.png"]);
   await page.waitForSelector("#depth-part:not([hidden])");
   await equals_program(page);
   assert.match(await text_of(page, "command"), /^softfocus refocus photo\.png photo_depth\.png /);

@@ -264,9 +264,10 @@ async function open(what, { words = null, read = null } = {}) {
 }
 
 let own_picture = null;  // the last that was opened
-function open_picture(what, read = null) {
-  own_picture = what;
-  return open(what, { read });
+async function open_picture(what, read = null) {
+  const warnings = await open(what, { read });
+  if (warnings) own_picture = what;
+  return warnings;
 }
 
 // While a case is opened at one severity, the slider moves on: only the newest is opened next.
