@@ -1,0 +1,84 @@
+// Stage `kernel`: the same picture filtered by both sides with a table of weights.
+
+#include <array>
+
+#include "raster/images/image.h"
+#include "raster/passes/kernel.h"
+#include "tools/crosscheck/cases.h"
+#include "tools/gl/objects.h"
+
+namespace softfocus {
+namespace {
+
+/// Halves of any bits, or of colours alone.
+Image random_picture(int width, int height, unsigned seed, bool any_bits) {
+  RandomNumbers random{seed};
+  Image image = make_image(Format::rgba16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(image, y)) {
+      value = any_bits && random.below(16) == 0
+                  ? static_cast<std::uint16_t>(random.word())
+                  : float_to_half(random.between(0.0f, 3.0f), HalfRounding::nearest_even);
+    }
+  }
+  return image;
+}
+
+Image weight_image(const Kernel& kernel) {
+  Image image = make_image(Format::r32f, kernel.width, kernel.height);
+  const float* weight = kernel.weights.data();
+  for (int y = 0; y < kernel.height; ++y) {
+    for (float& value : row<float>(image, y)) value = *weight++;
+  }
+  return image;
+}
+
+struct KernelCase {
+  Kernel kernel;
+  int width;
+  int height;
+  glm::ivec2 guard{0, 0};
+  bool any_bits = false;
+};
+
+void convolve_both(const Bench& bench, Tally& tally, const KernelCase& what) {
+  const Image source = random_picture(what.width + 2 * what.guard.x, what.height + 2 * what.guard.y,
+                                      2047, what.any_bits);
+  const GlTexture picture = upload(source), weights = upload(weight_image(what.kernel));
+  const GlTarget target = make_target(std::array{Format::rgba16f}, what.width, what.height, false);
+  const GlProgram program = link_program(bench.gl, bench.shaders, "fullscreen.vert", "kernel.frag");
+  set_texture(program, "source", 0, picture);
+  set_texture(program, "weights", 1, weights);
+  set_uniform(program, "guard", what.guard);
+  draw_fullscreen(target, program);
+
+  Image emulated = make_image(Format::rgba16f, what.width, what.height);
+  convolve(what.kernel, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
+}  // namespace
+
+void add_kernel_cases(std::vector<Case>& cases) {
+  const auto add = [&](const std::string& name, bool quick, bool slow_too, const KernelCase& what) {
+    cases.push_back({"kernel", name, quick, slow_too,
+                     [=](const Bench& bench, Tally& tally) { convolve_both(bench, tally, what); }});
+  };
+  for (const NamedKernel& named : kernels()) {
+    const std::string name{named.name};
+    add(name + "-61x43", true, true, {named.kernel, 61, 43});
+    add(name + "-512x512", false, false, {named.kernel, 512, 512});
+    add(name + "-any-bits", false, true, {named.kernel, 97, 64, {0, 0}, true});
+  }
+  add("guard-band-40x30", true, true, {*find_kernel("gaussian-5"), 40, 30, {7, 3}});
+  for (const double sigma : {0.6, 4.0, 20.0}) {
+    const std::string name = "gaussian-" + std::to_string(static_cast<int>(sigma * 10.0));
+    add(name + "-tenths-across", sigma < 1.0, sigma < 10.0,
+        {row_kernel(gaussian_weights(sigma)), 160, 120});
+    add(name + "-tenths-down", sigma < 1.0, sigma < 10.0,
+        {column_kernel(gaussian_weights(sigma)), 160, 120});
+  }
+  add("one-pixel", true, true, {*find_kernel("gaussian-5"), 1, 1});
+}
+
+}  // namespace softfocus
