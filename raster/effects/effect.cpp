@@ -1,0 +1,57 @@
+#include "raster/effects/effect.h"
+
+#include <array>
+#include <cassert>
+
+#include "raster/passes/kernel.h"
+#include "raster/threads/float_environment.h"
+
+namespace softfocus {
+namespace {
+
+void by_kernel(const Effect& effect, const EffectInput& input, const ImageView& result,
+               ThreadPool& pool) {
+  convolve(*find_kernel(effect.name), input.picture, result, input.profile, pool);
+}
+
+void gaussian(const Effect&, const EffectInput& input, const ImageView& result, ThreadPool& pool) {
+  const std::vector<float> weights = gaussian_weights(input.parameters[0]);
+  Image across = make_image(Format::rgba16f, result.width, result.height);
+  convolve(row_kernel(weights), input.picture, across, input.profile, pool);
+  convolve(column_kernel(weights), across, result, input.profile, pool);
+}
+
+constexpr std::array kGaussian{
+    EffectParameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 2.0}};
+
+constexpr std::array kEffects{
+    Effect{"edge-detection", "a pixel eight times, less its eight neighbours", {}, by_kernel},
+    Effect{"sharpen", "a pixel five times, less the four beside it", {}, by_kernel},
+    Effect{"box-3", "the mean of 3x3 pixels", {}, by_kernel, true},
+    Effect{"gaussian-3", "3x3 pixels weighed by binomials", {}, by_kernel, true},
+    Effect{"gaussian-5", "5x5 pixels weighed by binomials", {}, by_kernel, true},
+    Effect{"gaussian", "a Gaussian of any width, along x and then along y", kGaussian, gaussian,
+           true},
+};
+
+}  // namespace
+
+std::span<const Effect> effects() { return kEffects; }
+
+const Effect* find_effect(std::string_view name) {
+  for (const Effect& effect : kEffects) {
+    if (effect.name == name) return &effect;
+  }
+  return nullptr;
+}
+
+Image apply(const Effect& effect, const EffectInput& input, ThreadPool& pool) {
+  assert(input.picture.format == Format::rgba16f);
+  assert(input.parameters.size() == effect.parameters.size());
+  const DefaultFloatEnvironment environment;
+  Image result = make_image(Format::rgba16f, input.picture.width, input.picture.height);
+  effect.filter(effect, input, result, pool);
+  return result;
+}
+
+}  // namespace softfocus
