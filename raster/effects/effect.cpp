@@ -3,6 +3,7 @@
 #include <array>
 #include <cassert>
 
+#include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
 #include "raster/threads/float_environment.h"
 
@@ -24,6 +25,20 @@ void gaussian(const Effect&, const EffectInput& input, const ImageView& result, 
 constexpr std::array kGaussian{
     EffectParameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 2.0}};
 
+void bilateral_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                      ThreadPool& pool) {
+  bilateral({input.parameters[0], static_cast<float>(input.parameters[1]),
+             static_cast<float>(input.parameters[2])},
+            input.picture, result, input.profile, pool);
+}
+
+constexpr std::array kBilateral{
+    EffectParameter{"sigma", "standard deviation of the distance in pixels", 0.0, 20.0, 2.0},
+    EffectParameter{"colour", "distance of unlike colours in linear light, 0 = none", 0.0, 1000.0,
+                    0.1},
+    EffectParameter{"depth", "distance of unlike depths over the pixel's depth, 0 = none", 0.0,
+                    1000.0, 0.0}};
+
 constexpr std::array kEffects{
     Effect{"edge-detection", "a pixel eight times, less its eight neighbours", {}, by_kernel},
     Effect{"sharpen", "a pixel five times, less the four beside it", {}, by_kernel},
@@ -32,6 +47,8 @@ constexpr std::array kEffects{
     Effect{"gaussian-5", "5x5 pixels weighed by binomials", {}, by_kernel, true},
     Effect{"gaussian", "a Gaussian of any width, along x and then along y", kGaussian, gaussian,
            true},
+    Effect{"bilateral", "a Gaussian that leaves out unlike colours and depths", kBilateral,
+           bilateral_effect},
 };
 
 }  // namespace

@@ -1,8 +1,9 @@
-// Stage `kernel`: the same picture filtered by both sides with a table of weights.
+// Stages `kernel` and `bilateral`: the same picture filtered by both sides.
 
 #include <array>
 
 #include "raster/images/image.h"
+#include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/objects.h"
@@ -19,6 +20,18 @@ Image random_picture(int width, int height, unsigned seed, bool any_bits) {
       value = any_bits && random.below(16) == 0
                   ? static_cast<std::uint16_t>(random.word())
                   : float_to_half(random.between(0.0f, 3.0f), HalfRounding::nearest_even);
+    }
+  }
+  return image;
+}
+
+/// Depths in steps, so that some are unlike.
+Image with_steps(Image image) {
+  for (int y = 0; y < image.height; ++y) {
+    const auto values = row<std::uint16_t>(image, y);
+    for (std::size_t i = 3; i < values.size(); i += 4) {
+      values[i] = static_cast<std::uint16_t>(
+          0x3C00 + (i / 4 / 9 + static_cast<std::size_t>(y) / 7) % 3 * 0x200);
     }
   }
   return image;
@@ -57,6 +70,41 @@ void convolve_both(const Bench& bench, Tally& tally, const KernelCase& what) {
   add_pictures(tally, read_colour(target, 0), emulated);
 }
 
+void smooth_both(const Bench& bench, Tally& tally, const BilateralSettings& settings, int width,
+                 int height, bool any_bits) {
+  const Image source = with_steps(random_picture(width, height, 2048, any_bits));
+  const GlTexture picture = upload(source);
+  const GlTexture weights = upload(weight_image(row_kernel(gaussian_weights(settings.sigma_px))));
+  const GlTarget target = make_target(std::array{Format::rgba16f}, width, height, false);
+  const GlProgram program =
+      link_program(bench.gl, bench.shaders, "fullscreen.vert", "bilateral.frag");
+  set_texture(program, "source", 0, picture);
+  set_texture(program, "weights", 1, weights);
+  set_uniform(program, "colour_factor", bilateral_colour_factor(settings));
+  set_uniform(program, "depth_tolerance", settings.depth_tolerance);
+  draw_fullscreen(target, program);
+
+  Image emulated = make_image(Format::rgba16f, width, height);
+  bilateral(settings, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
+void add_bilateral_cases(std::vector<Case>& cases) {
+  const auto add = [&](const char* name, bool quick, bool slow_too,
+                       const BilateralSettings& settings, int width, int height,
+                       bool any_bits = false) {
+    cases.push_back({"bilateral", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
+                       smooth_both(bench, tally, settings, width, height, any_bits);
+                     }});
+  };
+  add("colour-61x43", true, true, {1.5, 1.5f, 0.0f}, 61, 43);
+  add("depth-61x43", true, true, {1.5, 0.0f, 0.4f}, 61, 43);
+  add("both-256x256", false, false, {3.0, 2.0f, 0.6f}, 256, 256);
+  add("no-tolerance", false, true, {2.0, 0.0f, 0.0f}, 64, 64);
+  add("any-bits", true, true, {1.0, 2.0f, 0.6f}, 64, 64, true);
+  add("one-pixel", true, true, {1.0, 2.0f, 0.6f}, 1, 1);
+}
+
 }  // namespace
 
 void add_kernel_cases(std::vector<Case>& cases) {
@@ -79,6 +127,7 @@ void add_kernel_cases(std::vector<Case>& cases) {
         {column_kernel(gaussian_weights(sigma)), 160, 120});
   }
   add("one-pixel", true, true, {*find_kernel("gaussian-5"), 1, 1});
+  add_bilateral_cases(cases);
 }
 
 }  // namespace softfocus
