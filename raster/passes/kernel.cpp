@@ -1,6 +1,3 @@
-#ifndef SOFTFOCUS_ISA
-// Kernels of vectors, below #else, are compiled once for each vector unit (for_each_isa.inl).
-
 #include "raster/passes/kernel.h"
 
 #include <algorithm>
@@ -13,30 +10,8 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
 #include "raster/passes/fullscreen_pass.h"
+#include "raster/passes/row_sums.h"
 #include "raster/threads/scratch_shelf.h"
-
-namespace softfocus {
-
-/// A row of the result, four values a pixel as they lie in memory.
-struct ConvolvedRow {
-  const float* const* rows;  ///< the kernel's rows of the source, from the first pixel's first tap
-  const float* weights;
-  int columns, height;  ///< of the kernel
-  int values;
-  int whole_values;  ///< of them in whole vectors of the widest unit
-  float* sums;       ///< up to whole groups of vectors
-  const std::uint16_t* source;
-  std::uint16_t* result;
-  HalfRounding rounding;
-};
-
-/// Vectors whose sums run side by side, so that additions need not wait for each other.
-inline constexpr int kVectorsAtOnce = 4;
-
-}  // namespace softfocus
-
-#define SOFTFOCUS_KERNELS "raster/passes/kernel.cpp"
-#include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {
@@ -69,33 +44,15 @@ bool fit(const Kernel& kernel, const ConstImageView& source, const ImageView& re
          source.height >= result.height && (source.height - result.height) % 2 == 0;
 }
 
-/// `count` pixels from column `first` on, which may lie beyond the row.
-void decode_row(std::span<const std::uint16_t> from, int first, int count, float* to, Isa isa) {
-  const int width = static_cast<int>(from.size() / 4);
-  const int begin = std::clamp(-first, 0, count), end = std::clamp(width - first, begin, count);
-  SOFTFOCUS_KERNEL(isa, decode_halves)
-  (from.data() + 4 * (first + begin), 4 * (end - begin), to + 4 * begin);
-  const auto repeat = [&](int column, int from_x, int to_x) {
-    for (int x = from_x; x < to_x; ++x) {
-      for (int c = 0; c < 4; ++c) {
-        to[4 * x + c] = half_to_float(from[static_cast<std::size_t>(4 * column + c)]);
-      }
-    }
-  };
-  repeat(0, 0, begin);
-  repeat(width - 1, end, count);
-}
-
 void convolve_band(const Kernel& kernel, const ConstImageView& source, const ImageView& result,
                    const Profile& profile, int first, int end, RowRing& ring, Isa isa) {
   const Margins margins = margins_of(kernel, source, result);
   const int values = 4 * result.width;
   const int columns = result.width + kernel.width - 1;
-  const std::size_t row_length =
-      static_cast<std::size_t>(4 * columns + kVectorsAtOnce * kMostLanes);
+  const std::size_t row_length = static_cast<std::size_t>(4 * columns + kValuesAtOnce);
   ring.decoded.resize(row_length * static_cast<std::size_t>(kernel.height));
   ring.rows.resize(static_cast<std::size_t>(kernel.height));
-  ring.sums.resize(static_cast<std::size_t>(values + kVectorsAtOnce * kMostLanes));
+  ring.sums.resize(static_cast<std::size_t>(values + kValuesAtOnce));
   const int top = first + margins.guard_y - margins.reach_y;
   const auto place = [&](int y) {
     return ring.decoded.data() + row_length * static_cast<std::size_t>((y - top) % kernel.height);
@@ -111,17 +68,11 @@ void convolve_band(const Kernel& kernel, const ConstImageView& source, const Ima
     for (int j = 0; j < kernel.height; ++j) {
       ring.rows[static_cast<std::size_t>(j)] = place(upper + j);
     }
-    const std::uint16_t* own =
-        row<std::uint16_t>(source, y + margins.guard_y).data() + 4 * margins.guard_x;
-    std::uint16_t* to = row<std::uint16_t>(result, y).data();
-    const int whole_values = values - values % kMostLanes;
-    SOFTFOCUS_KERNEL(isa, convolve_row)
-    ({ring.rows.data(), kernel.weights.data(), kernel.width, kernel.height, values, whole_values,
-      ring.sums.data(), own, to, profile.half_store});
-    for (int i = whole_values; i < values; ++i) {
-      const float sum = ring.sums[static_cast<std::size_t>(i)];
-      to[i] = float_to_half(i % 4 == 3 ? half_to_float(own[i]) : sum, profile.half_store);
-    }
+    const float* own = place(y + margins.guard_y) + 4 * margins.reach_x;
+    sum_rows({ring.rows.data(), kernel.height, kernel.width, kernel.weights.data()}, values,
+             ring.sums.data(), isa);
+    store_row(ring.sums.data(), own, values, profile.half_store,
+              row<std::uint16_t>(result, y).data(), isa);
   }
 }
 
@@ -223,53 +174,3 @@ void convolve(const Kernel& kernel, const ConstImageView& source, const ImageVie
 }
 
 }  // namespace softfocus
-
-#else  // the kernels
-
-void decode_halves(const std::uint16_t* from, int count, float* to) {
-  int i = 0;
-  for (; i + kLanes <= count; i += kLanes) store(to + i, load_halves(from + i));
-  for (; i < count; ++i) to[i] = ::softfocus::half_to_float(from[i]);
-}
-
-namespace {
-
-SOFTFOCUS_INLINE void sum_taps(const ConvolvedRow& row, int i) {
-  Floats sums[kVectorsAtOnce];
-  for (Floats& sum : sums) sum = splat(0.0f);
-  const float* weight = row.weights;
-  for (int j = 0; j < row.height; ++j) {
-    const float* from = row.rows[j] + i;
-    for (int tap = 0; tap < row.columns; ++tap, from += 4) {
-      const Floats share = splat(*weight++);
-      for (int v = 0; v < kVectorsAtOnce; ++v) sums[v] += share * load(from + v * kLanes);
-    }
-  }
-  for (int v = 0; v < kVectorsAtOnce; ++v) store(row.sums + i + v * kLanes, sums[v]);
-}
-
-template <HalfRounding rounding>
-SOFTFOCUS_INLINE void store_colours(const ConvolvedRow& row) {
-  using Halves [[gnu::vector_size(2 * kLanes)]] = std::uint16_t;
-  const Mask is_alpha = (lane_numbers() & 3) == 3;
-  for (int i = 0; i < row.whole_values; i += kLanes) {
-    const Floats values = select(is_alpha, load_halves(row.source + i), load(row.sums + i));
-    const Halves halves = __builtin_convertvector(float_to_half<rounding>(values), Halves);
-    std::memcpy(row.result + i, &halves, sizeof halves);
-  }
-}
-
-}  // namespace
-
-/// Leaves the values after `whole_values` to the caller, as sums.
-void convolve_row(const ConvolvedRow& row) {
-  for (int i = 0; i < row.values; i += kVectorsAtOnce * kLanes) sum_taps(row, i);
-  using enum HalfRounding;
-  switch (row.rounding) {
-    case nearest_even: return store_colours<nearest_even>(row);
-    case toward_zero: return store_colours<toward_zero>(row);
-    case swiftshader: return store_colours<swiftshader>(row);
-  }
-}
-
-#endif

@@ -1,10 +1,11 @@
-// Stages `kernel` and `bilateral`: the same picture filtered by both sides.
+// Stages `kernel`, `pyramid` and `bilateral`: the same picture filtered by both sides.
 
 #include <array>
 
 #include "raster/images/image.h"
 #include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
+#include "raster/passes/pyramid.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/objects.h"
 
@@ -70,6 +71,46 @@ void convolve_both(const Bench& bench, Tally& tally, const KernelCase& what) {
   add_pictures(tally, read_colour(target, 0), emulated);
 }
 
+/// Down and up again.
+void halve_and_double_both(const Bench& bench, Tally& tally, int width, int height, bool any_bits) {
+  const Image source = random_picture(width, height, 2049, any_bits);
+  const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+  const GlTexture picture = upload(source);
+  const GlTarget half = make_target(std::array{Format::rgba16f}, half_width, half_height, false);
+  const GlTarget whole = make_target(std::array{Format::rgba16f}, width, height, false);
+  const GlProgram down =
+      link_program(bench.gl, bench.shaders, "fullscreen.vert", "downsample.frag");
+  set_texture(down, "source", 0, picture);
+  draw_fullscreen(half, down);
+  const GlProgram up = link_program(bench.gl, bench.shaders, "fullscreen.vert", "upsample.frag");
+  constexpr float kShare = 0.7f;
+  set_texture(up, "source", 0, half.colour[0]);
+  set_texture(up, "own", 1, picture);
+  set_uniform(up, "share", kShare);
+  draw_fullscreen(whole, up);
+
+  Image small = make_image(Format::rgba16f, half_width, half_height);
+  Image large = make_image(Format::rgba16f, width, height);
+  downsample(source, small, bench.profile, bench.pool);
+  upsample(small, source, kShare, large, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(half, 0), small, "half");
+  add_pictures(tally, read_colour(whole, 0), large, "whole");
+}
+
+void add_pyramid_cases(std::vector<Case>& cases) {
+  const auto add = [&](const char* name, bool quick, bool slow_too, int width, int height,
+                       bool any_bits = false) {
+    cases.push_back({"pyramid", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
+                       halve_and_double_both(bench, tally, width, height, any_bits);
+                     }});
+  };
+  add("64x48", true, true, 64, 48);
+  add("odd-61x43", true, true, 61, 43);
+  add("512x512", false, false, 512, 512);
+  add("any-bits", false, true, 64, 64, true);
+  add("one-pixel", true, true, 1, 1);
+}
+
 void smooth_both(const Bench& bench, Tally& tally, const BilateralSettings& settings, int width,
                  int height, bool any_bits) {
   const Image source = with_steps(random_picture(width, height, 2048, any_bits));
@@ -127,6 +168,7 @@ void add_kernel_cases(std::vector<Case>& cases) {
         {column_kernel(gaussian_weights(sigma)), 160, 120});
   }
   add("one-pixel", true, true, {*find_kernel("gaussian-5"), 1, 1});
+  add_pyramid_cases(cases);
   add_bilateral_cases(cases);
 }
 
