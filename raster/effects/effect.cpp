@@ -3,6 +3,7 @@
 #include <array>
 #include <cassert>
 
+#include "raster/effects/bloom.h"
 #include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
 #include "raster/threads/float_environment.h"
@@ -39,6 +40,23 @@ constexpr std::array kBilateral{
     EffectParameter{"depth", "distance of unlike depths over the pixel's depth, 0 = none", 0.0,
                     1000.0, 0.0}};
 
+void bloom_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                  ThreadPool& pool) {
+  const auto number = [&](std::size_t i) { return static_cast<float>(input.parameters[i]); };
+  bloom({number(0), number(1), number(2), static_cast<int>(input.parameters[3]), number(4),
+         input.parameters[5] >= 0.5},
+        input.picture, result, input.profile, pool);
+}
+
+constexpr std::array kBloom{
+    EffectParameter{"threshold", "what is darker does not bloom, white is 1", 0.0, 65504.0, 1.0},
+    EffectParameter{"knee", "half the way from nothing to all that blooms", 0.0, 65504.0, 0.5},
+    EffectParameter{"strength", "share of the bright light that is scattered", 0.0, 1.0, 0.1},
+    EffectParameter{"levels", "halvings: the widest reaches some 2^levels pixels", 1.0, 12.0, 6.0},
+    EffectParameter{"spread", "how much of each level comes from wider ones", 0.0, 1.0, 0.6},
+    EffectParameter{"steady", "1: bright pixels do not flicker as they move, and lose light", 0.0,
+                    1.0, 0.0}};
+
 constexpr std::array kEffects{
     Effect{"edge-detection", "a pixel eight times, less its eight neighbours", {}, by_kernel},
     Effect{"sharpen", "a pixel five times, less the four beside it", {}, by_kernel},
@@ -49,6 +67,8 @@ constexpr std::array kEffects{
            true},
     Effect{"bilateral", "a Gaussian that leaves out unlike colours and depths", kBilateral,
            bilateral_effect},
+    Effect{"bloom", "bright light scattered over its surroundings, after Jimenez 2014", kBloom,
+           bloom_effect},
 };
 
 }  // namespace
