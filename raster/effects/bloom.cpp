@@ -15,15 +15,6 @@
 
 namespace softfocus {
 
-/// What the bright pass computes with.
-struct BrightPass {
-  float threshold, knee;
-  float begin;          ///< threshold - knee
-  float double_knee;    ///< 2 knee
-  float square_factor;  ///< 1 / (4 knee), or 0
-  bool is_steady;
-};
-
 inline constexpr float kLargestHalf = 65504.0f;
 
 }  // namespace softfocus
@@ -33,16 +24,6 @@ inline constexpr float kLargestHalf = 65504.0f;
 
 namespace softfocus {
 namespace {
-
-BrightPass bright_pass_of(const BloomSettings& settings) {
-  const float knee = std::min(settings.knee, settings.threshold);
-  return {settings.threshold,
-          knee,
-          settings.threshold - knee,
-          2.0f * knee,
-          knee > 0.0f ? 1.0f / (4.0f * knee) : 0.0f,
-          settings.is_steady};
-}
 
 // The order of operations of these is that of the kernels and of the shaders.
 
@@ -140,6 +121,16 @@ Image half_of(const Image& image) {
 }
 
 }  // namespace
+
+BrightPass bright_pass_of(const BloomSettings& settings) {
+  const float knee = std::min(settings.knee, settings.threshold);
+  return {settings.threshold,
+          knee,
+          settings.threshold - knee,
+          2.0f * knee,
+          knee > 0.0f ? 1.0f / (4.0f * knee) : 0.0f,
+          settings.is_steady};
+}
 
 void bloom(const BloomSettings& settings, const ConstImageView& picture, const ImageView& result,
            const Profile& profile, ThreadPool& pool) {

@@ -19,6 +19,16 @@ struct BloomSettings {
   bool is_steady = false;
 };
 
+/// What the bright pass computes with; the shaders get it so.
+struct BrightPass {
+  float threshold, knee;
+  float begin;          ///< threshold - knee
+  float double_knee;    ///< 2 knee
+  float square_factor;  ///< 1 / (4 knee), or 0
+  bool is_steady;
+};
+BrightPass bright_pass_of(const BloomSettings& settings);
+
 /// picture + strength (scattered - bright). So light is moved, and its sum stays but for what the
 /// edges repeat and `is_steady` takes. With m the largest of red, green and blue:
 ///
