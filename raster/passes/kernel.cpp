@@ -84,7 +84,7 @@ std::vector<float> divided(std::vector<float> weights, float by) {
 }  // namespace
 
 std::span<const NamedKernel> kernels() {
-  static const std::array kKernels{
+  static const std::array named_kernels{
       NamedKernel{"edge-detection",
                   "8 of the pixel less its eight neighbours",
                   {3, 3, {-1, -1, -1, -1, 8, -1, -1, -1, -1}}},
@@ -103,7 +103,7 @@ std::span<const NamedKernel> kernels() {
                             24, 6, 4, 16, 24, 16, 4,  1,  4,  6, 4, 1},
                            256.0f)}},
   };
-  return kKernels;
+  return named_kernels;
 }
 
 const Kernel* find_kernel(std::string_view name) {

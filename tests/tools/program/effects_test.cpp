@@ -66,6 +66,7 @@ TEST_CASE("apply: opacity goes where light goes, and stays where it does not") {
     REQUIRE(run_program(applied(from, to, {"--effect", effect})).status == 0);
     const Image result = read_image_file(to).image;
     std::vector<float> values;
+    values.reserve(9);
     for (int x = 0; x < 9; ++x) {
       values.push_back(
           half_to_float(row<std::uint16_t>(result, 0)[static_cast<std::size_t>(4 * x + 3)]));
