@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "raster/effects/bloom.h"
+#include "raster/effects/tone_map.h"
 #include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
 #include "raster/threads/float_environment.h"
@@ -57,6 +58,20 @@ constexpr std::array kBloom{
     EffectParameter{"steady", "1: bright pixels do not flicker as they move, and lose light", 0.0,
                     1.0, 0.0}};
 
+void tone_map_effect(const Effect& effect, const EffectInput& input, const ImageView& result,
+                     ThreadPool& pool) {
+  tone_map(*find_tone_curve(effect.name), static_cast<float>(input.parameters[0]), input.picture,
+           result, input.profile, pool);
+}
+
+constexpr std::array kExposure{
+    EffectParameter{"exposure", "factor of the light", 0.0, 65504.0, 1.0}};
+
+/// The effect that a tone curve is.
+constexpr Effect of_curve(const NamedToneCurve& named) {
+  return {named.name, named.summary, kExposure, tone_map_effect};
+}
+
 constexpr std::array kEffects{
     Effect{"edge-detection", "a pixel eight times, less its eight neighbours", {}, by_kernel},
     Effect{"sharpen", "a pixel five times, less the four beside it", {}, by_kernel},
@@ -69,6 +84,9 @@ constexpr std::array kEffects{
            bilateral_effect},
     Effect{"bloom", "bright light scattered over its surroundings, after Jimenez 2014", kBloom,
            bloom_effect},
+    of_curve(kToneCurves[0]),
+    of_curve(kToneCurves[1]),
+    of_curve(kToneCurves[2]),
 };
 
 }  // namespace

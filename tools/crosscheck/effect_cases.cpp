@@ -1,4 +1,4 @@
-// Stage `bloom`: the same picture with the effect on both sides.
+// Stages `bloom` and `tone-map`: the same picture with the effect on both sides.
 
 #include <array>
 
@@ -41,6 +41,20 @@ void bloom_both(const Bench& bench, Tally& tally, const BloomCase& what) {
   add_pictures(tally, read_colour(target, 0), emulated);
 }
 
+void tone_map_both(const Bench& bench, Tally& tally, const ToneCurve& curve) {
+  Image source = make_image(Format::rgba16f, 256, 64);
+  std::uint16_t next = 0;
+  for (int y = 0; y < source.height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(source, y)) value = next++;
+  }
+  constexpr float kExposure = 1.3f;
+  const GlTarget target = tone_map_on_gl(bench.gl, bench.shaders, curve, kExposure, upload(source),
+                                         source.width, source.height);
+  Image emulated = make_image(Format::rgba16f, source.width, source.height);
+  tone_map(curve, kExposure, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
 }  // namespace
 
 void add_effect_cases(std::vector<Case>& cases) {
@@ -56,6 +70,12 @@ void add_effect_cases(std::vector<Case>& cases) {
   add("any-bits", false, true, {{.levels = 3}, 64, 64, true});
   add("any-bits-steady", false, true, {{.levels = 3, .is_steady = true}, 64, 64, true});
   add("one-pixel", true, true, {{.levels = 3}, 1, 1});
+  for (const NamedToneCurve& named : kToneCurves) {
+    cases.push_back({"tone-map", std::string{named.name} + "-every-half", true, true,
+                     [curve = named.curve](const Bench& bench, Tally& tally) {
+                       tone_map_both(bench, tally, curve);
+                     }});
+  }
 }
 
 }  // namespace softfocus

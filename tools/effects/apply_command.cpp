@@ -24,7 +24,7 @@ struct ApplyOptions {
   std::string output;
   FileFormat format = FileFormat::png;
   std::optional<std::string> layer;
-  std::vector<ChosenEffect> effects;
+  EffectOptions effects;
   Profile profile{};
   std::string profile_name = "ieee";
   PoolOptions pool;
@@ -60,14 +60,15 @@ OpenedPicture read_picture(const ApplyOptions& options) {
 /// Opacity goes where light goes.
 void apply_effects(const ApplyOptions& options, OpenedPicture& opened, ThreadPool& pool) {
   std::vector<ChosenEffect> spreading;
-  for (const ChosenEffect& chosen : options.effects) {
+  for (const ChosenEffect& chosen : all_effects(options.effects)) {
     if (chosen.effect->spreads) spreading.push_back(chosen);
   }
   if (is_transparent(opened.opacity)) {
     opened.opacity = opacity_of(with_effects(opacity_picture(opened.opacity, opened.colour),
                                              spreading, options.profile, pool));
   }
-  opened.colour = with_effects(std::move(opened.colour), options.effects, options.profile, pool);
+  opened.colour =
+      with_effects(std::move(opened.colour), all_effects(options.effects), options.profile, pool);
 }
 
 PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) {
@@ -81,7 +82,7 @@ PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) 
   notes.width = opened.colour.width;
   notes.height = opened.colour.height;
   notes.picture_hash = hash_image(opened.colour);
-  for (const ChosenEffect& chosen : options.effects) {
+  for (const ChosenEffect& chosen : all_effects(options.effects)) {
     notes.effects.push_back(effect_text(chosen));
   }
   return notes;
@@ -151,7 +152,7 @@ Command add_apply_command(CLI::App& program) {
                "PNG and JPEG (sRGB), EXR, HDR, PFM (linear), NPY (linear; whole numbers sRGB)",
                options->picture);
   begin_group(*parser, "Effects");
-  add_effect_option(*parser, options->effects);
+  add_effect_options(*parser, options->effects);
   add_value(*parser, "--layer", "NAME", "The colour's layer of an EXR",
             [options](const std::string& text) { options->layer = text; });
   begin_group(*parser, "Output");
@@ -165,8 +166,9 @@ Command add_apply_command(CLI::App& program) {
   return {
       parser, [parser, options] {
         settle_format(*parser, options->output, options->format);
-        if (options->effects.empty()) {
-          throw UsageError("there is nothing to apply; give --effect (softfocus effects)");
+        if (all_effects(options->effects).empty()) {
+          throw UsageError(
+              "there is nothing to apply; give --effect (softfocus effects) or --tone-map");
         }
         if (options->output == "-" && is_terminal(kStandardOutput)) {
           throw UsageError("-o -: standard output is a terminal; send it to a file or a program");

@@ -68,4 +68,18 @@ GlTarget bloom_on_gl(const GlContext& context, const Shaders& shaders,
   return result;
 }
 
+GlTarget tone_map_on_gl(const GlContext& context, const Shaders& shaders, const ToneCurve& curve,
+                        float exposure, const GlTexture& picture, int width, int height) {
+  GlTarget result = colour_target(width, height);
+  const GlProgram program = link_program(context, shaders, "fullscreen.vert", "tone_map.frag");
+  set_uniform(program, "exposure", exposure);
+  set_uniform(program, "numerator", glm::vec3{curve.a, curve.b, curve.c});
+  set_uniform(program, "denominator", glm::vec3{curve.d, curve.e, curve.f});
+  set_uniform(program, "offset", curve.g);
+  set_uniform(program, "factor", curve.h);
+  set_texture(program, "source", 0, picture);
+  draw_fullscreen(result, program);
+  return result;
+}
+
 }  // namespace softfocus

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "raster/effects/tone_map.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 
@@ -62,12 +63,32 @@ std::string effect_text(const ChosenEffect& chosen) {
   return text;
 }
 
-void add_effect_option(CLI::App& parser, std::vector<ChosenEffect>& effects) {
-  add_repeatable_value(
-      parser, "--effect", "NAME:KEY=VALUE,...",
-      "An effect on the picture (softfocus effects); several come in their order",
-      [&effects](const std::string& text) { effects.push_back(parse_effect("--effect", text)); });
-  offer(parser, "--effect", [] { return names_in(softfocus::effects()); });
+void add_effect_options(CLI::App& parser, EffectOptions& options) {
+  add_repeatable_value(parser, "--effect", "NAME:KEY=VALUE,...",
+                       "An effect on the picture (softfocus effects); several come in their order",
+                       [&options](const std::string& text) {
+                         options.effects.push_back(parse_effect("--effect", text));
+                       });
+  offer(parser, "--effect", [] { return names_in(effects()); });
+  add_value(parser, "--tone-map", "none|reinhard|aces|hable",
+            "Last of all: light of any strength becomes 0 to 1 by a curve (default: none, which "
+            "cuts it)",
+            [&options](const std::string& text) {
+              options.tone_map.reset();
+              if (text == "none") return;
+              if (find_tone_curve(text) == nullptr) {
+                std::vector<std::string> names = names_in(kToneCurves);
+                names.insert(names.begin(), "none");
+                refuse_name("--tone-map", text, names);
+              }
+              options.tone_map = parse_effect("--tone-map", text);
+            });
+}
+
+std::vector<ChosenEffect> all_effects(const EffectOptions& options) {
+  std::vector<ChosenEffect> all = options.effects;
+  if (options.tone_map) all.push_back(*options.tone_map);
+  return all;
 }
 
 Image with_effects(Image picture, const std::vector<ChosenEffect>& effects, const Profile& profile,

@@ -1,6 +1,7 @@
 #pragma once
 // Effects on a command line: --effect NAME:key=value,..., one after the other.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,16 @@ ChosenEffect parse_effect(std::string_view option, const std::string& text);
 /// "gaussian:sigma=2": as parse_effect() reads it.
 std::string effect_text(const ChosenEffect& chosen);
 
-/// Adds --effect, which may be repeated.
-void add_effect_option(CLI::App& parser, std::vector<ChosenEffect>& effects);
+struct EffectOptions {
+  std::vector<ChosenEffect> effects;     ///< in their order
+  std::optional<ChosenEffect> tone_map;  ///< after all others
+};
+
+/// Adds --effect, which may be repeated, and --tone-map.
+void add_effect_options(CLI::App& parser, EffectOptions& options);
+
+/// Both, in the order in which they come.
+std::vector<ChosenEffect> all_effects(const EffectOptions& options);
 
 /// The picture with all of them, in their order.
 Image with_effects(Image picture, const std::vector<ChosenEffect>& effects, const Profile& profile,

@@ -403,10 +403,10 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
     });
     ms.filter += halve_ms;
   }
-  if (!options.effects.empty()) {
+  if (!all_effects(options.effects).empty()) {
     double effects_ms = 0.0;
     picture = timed(progress, "effects", effects_ms, [&] {
-      return with_effects(std::move(picture), options.effects, options.profile, pool);
+      return with_effects(std::move(picture), all_effects(options.effects), options.profile, pool);
     });
     ms.filter += effects_ms;
   }

@@ -34,7 +34,7 @@ struct RenderOptions {
   FileFormat format = FileFormat::png;
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
-  std::vector<ChosenEffect> effects;  ///< on the finished picture
+  EffectOptions effects;  ///< on the finished picture
   int supersample = 1;  ///< what is drawn and filtered has so many times the width and height
   double frame = 0.0;
   SequenceOptions sequence;  ///< of many pictures

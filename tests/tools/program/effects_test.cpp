@@ -51,6 +51,25 @@ TEST_CASE("render --effect: what apply gives") {
   CHECK_FALSE(equal(read_image_file(rendered).image, read_image_file(plain).image));
 }
 
+TEST_CASE("render and apply --tone-map: the curve comes last") {
+  const TemporaryDirectory directory;
+  const std::string plain = directory.file("a.npy"), first = directory.file("b.npy"),
+                    last = directory.file("c.npy"), rendered = directory.file("d.npy");
+  REQUIRE(run_program(render("figures", plain)).status == 0);
+  REQUIRE(
+      run_program(applied(plain, first, {"--tone-map", "aces", "--effect", "sharpen"})).status ==
+      0);
+  REQUIRE(run_program(applied(plain, last, {"--effect", "sharpen", "--effect", "aces"})).status ==
+          0);
+  REQUIRE(run_program(render("figures", rendered, {"--tone-map", "aces", "--effect", "sharpen"}))
+              .status == 0);
+  CHECK(equal(read_image_file(first).image, read_image_file(last).image));
+  CHECK(equal(read_image_file(rendered).image, read_image_file(last).image));
+  const ProgramRun wrong = run_program(applied(plain, last, {"--tone-map", "filmic"}));
+  CHECK(wrong.status == 2);
+  CHECK(contains(wrong.err, "there are none, reinhard, aces, hable"));
+}
+
 TEST_CASE("apply: opacity goes where light goes, and stays where it does not") {
   const TemporaryDirectory directory;
   Image picture = make_image(Format::rgba16f, 9, 1);
