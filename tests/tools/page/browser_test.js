@@ -233,6 +233,7 @@ test("a picture and its depth are refocused with the program's bits, and scenes 
 
   await page.locator("#scene").selectOption("figures");
   await page.waitForSelector("#depth-part", { state: "hidden" });
+  await page.locator("#method").selectOption("two-pass");
   assert.strictEqual(await drawn(page), first);
   await equals_program(page);
 });

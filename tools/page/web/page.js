@@ -502,7 +502,7 @@ async function start(ready) {
     engine, encodings: listing.encodings,
     change: (reading) => {
       const { scene, picture: now } = store.get();
-      open_picture({ scene, picture: { ...now, ...reading } });
+      return open_picture({ scene, picture: { ...now, ...reading } });
     },
     stem: () => store.get().scene.replace(/^.*\//, "").replace(/\.[^.]*$/, ""),
   });

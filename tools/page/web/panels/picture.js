@@ -34,27 +34,36 @@ export function depth_words({ encoding, numbers }, encodings) {
 }
 
 /**
- * The controls of the depth map. `change({encoding, numbers})` reads it anew. `encodings` are those
- * of the `scenes` reply.
+ * The controls of the depth map. `change({encoding, numbers})` reads it anew and resolves when that
+ * is done. `encodings` are those of the `scenes` reply.
  */
 export function make_picture({ engine, encodings, change, stem }) {
   const choice = by_id("encoding");
   const numbers_part = by_id("encoding-numbers");
   let state = null;   // the picture of the state
   let opened = null;  // and of the reply
+  let reading = { encoding: null, numbers: {} };  // as last chosen, which the state may not be yet
+  let changes = 0;    // under way
 
   const believed_option = element("option", { value: "" }, "");
   choice.replaceChildren(believed_option, ...encodings.map(
       ({ name, summary }) => element("option", { value: name, title: summary }, name)));
-  choice.addEventListener("change", () => change({ encoding: choice.value || null }));
+  async function read(patch) {
+    reading = { ...reading, ...patch };
+    changes++;
+    await change(reading);
+    changes--;
+    if (changes === 0) show(state, opened);
+  }
+  choice.addEventListener("change", () => read({ encoding: choice.value || null }));
 
   function number_field(word) {
     const [key, unit] = kNumbers[word];
     const field = element("input", { type: "number", step: "any", id: `encoding-${word}` });
-    field.value = state.numbers[key] ?? "";
+    field.value = reading.numbers[key] ?? "";
     field.addEventListener("change", () => {
       const value = field.value === "" ? undefined : field.valueAsNumber;
-      change({ numbers: { ...state.numbers, [key]: value } });
+      read({ numbers: { ...reading.numbers, [key]: value } });
     });
     return element("div", { class: "line" },
                    element("label", { for: `encoding-${word}` }, word),
@@ -68,27 +77,28 @@ export function make_picture({ engine, encodings, change, stem }) {
     else save_file(`${stem()}-refocused.${format.replace("-16", "")}`, file);
   });
 
-  return {
-    /** Shows the picture of the state and of the `open` reply, or hides everything for null. */
-    show(of_state, of_reply) {
-      state = of_state;
-      opened = of_reply;
-      by_id("depth-part").hidden = !state;
-      by_id("no-scene").hidden = !state;
-      for (const part of document.querySelectorAll("[data-scene]")) part.inert = Boolean(state);
-      if (!state) return;
-      believed_option.textContent = opened.believed ? `by its numbers: ${opened.believed}` : "choose…";
-      choice.value = state.encoding ?? "";
-      const used = encodings.find(({ name }) => name === opened.encoding);
-      by_id("encoding-why").textContent = opened.lacks ||
-          (state.encoding ? used?.summary : opened.why) || "";
-      const range = `${opened.type}, ${opened.least} to ${opened.largest}`;
-      const filled = opened.filled_pixels ? `; ${opened.filled_pixels} pixels without a depth` : "";
-      by_id("depth-seen").textContent = `${range}${filled}`;
-      by_id("save-picture").disabled = Boolean(opened.lacks);
-      const words = used ? words_of(used) : [];
-      const there = [...numbers_part.querySelectorAll("input")].map(({ id }) => id.slice(9));
-      if (words.join() !== there.join()) numbers_part.replaceChildren(...words.map(number_field));
-    },
-  };
+  function show(of_state, of_reply) {
+    state = of_state;
+    opened = of_reply;
+    by_id("depth-part").hidden = !state;
+    by_id("no-scene").hidden = !state;
+    for (const part of document.querySelectorAll("[data-scene]")) part.inert = Boolean(state);
+    if (!state || changes > 0) return;
+    reading = { encoding: state.encoding, numbers: state.numbers };
+    believed_option.textContent = opened.believed ? `by its numbers: ${opened.believed}` : "choose…";
+    choice.value = state.encoding ?? "";
+    const used = encodings.find(({ name }) => name === opened.encoding);
+    by_id("encoding-why").textContent = opened.lacks ||
+        (state.encoding ? used?.summary : opened.why) || "";
+    const range = `${opened.type}, ${opened.least} to ${opened.largest}`;
+    const filled = opened.filled_pixels ? `; ${opened.filled_pixels} pixels without a depth` : "";
+    by_id("depth-seen").textContent = `${range}${filled}`;
+    by_id("save-picture").disabled = Boolean(opened.lacks);
+    const words = used ? words_of(used) : [];
+    const there = [...numbers_part.querySelectorAll("input")].map(({ id }) => id.slice(9));
+    if (words.join() !== there.join()) numbers_part.replaceChildren(...words.map(number_field));
+  }
+
+  /** Shows the picture of the state and of the `open` reply, or hides everything for null. */
+  return { show };
 }
