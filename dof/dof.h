@@ -10,6 +10,7 @@
 #include <span>
 #include <string_view>
 
+#include "dof/aperture.h"
 #include "dof/lens.h"
 #include "dof/pack.h"
 #include "dof/shaders.h"
@@ -49,6 +50,8 @@ struct DofSettings {
   float leak = 1.0f;
   /// The share, 0 to 1, of one-pass's work that importance-ordered spends.
   float budget = 0.25f;
+  /// Of scatter-aperture, one without an aperture_error(); the others know round ones alone.
+  Aperture aperture{};
 };
 
 /// A picture and how to blur it.

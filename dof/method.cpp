@@ -158,6 +158,7 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
     return "leak is not 0 or more";
   }
   if (!(settings.budget >= 0.0f && settings.budget <= 1.0f)) return "budget is not from 0 to 1";
+  if (const char* error = aperture_error(settings.aperture)) return error;
   if (!std::isfinite(settings.coc.radius_at_infinity_px) || !(settings.coc.focus_m > 0.0f)) {
     return "the circle of confusion has no finite radius or no focus above 0";
   }

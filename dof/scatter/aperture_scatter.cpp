@@ -59,7 +59,8 @@ struct PictureRow {
   }
 };
 
-StampSources make_stamp_sources(const Aperture& aperture, const DofInput& input, ThreadPool& pool) {
+StampSources make_stamp_sources(const DofInput& input, ThreadPool& pool) {
+  const Aperture& aperture = input.settings.aperture;
   StampSources sources{input.scene.width, input.scene.height};
   const std::size_t pixels = sources.at(0, sources.height);
   const bool upside_down_differs = differs_upside_down(aperture);
@@ -118,13 +119,8 @@ SlabList slabs_in(std::uint32_t set) {
 }  // namespace
 
 void scatter_aperture(const DofInput& input, const ImageView& result, ThreadPool& pool) {
-  scatter_aperture_of(Aperture{}, input, result, pool);
-}
-
-void scatter_aperture_of(const Aperture& aperture, const DofInput& input, const ImageView& result,
-                         ThreadPool& pool) {
   const DefaultFloatEnvironment environment;
-  const StampSources sources = make_stamp_sources(aperture, input, pool);
+  const StampSources sources = make_stamp_sources(input, pool);
   const int width = sources.width, height = sources.height;
   const int margin = sources.stamps.reach;
   const std::ptrdiff_t slab_stride = 4 * (static_cast<std::ptrdiff_t>(width) + 2 * margin);

@@ -14,16 +14,11 @@
 //
 // There is no scalar form: Isa::scalar runs the baseline kernels, which need no vector unit.
 
-#include "dof/aperture.h"
 #include "dof/dof.h"
 
 namespace softfocus {
 
-/// A Method's apply (dof.h), with a round aperture.
+/// A Method's apply (dof.h), with the aperture of the settings.
 void scatter_aperture(const DofInput& input, const ImageView& result, ThreadPool& pool);
-
-/// The same with any. Needs one without an aperture_error().
-void scatter_aperture_of(const Aperture& aperture, const DofInput& input, const ImageView& result,
-                         ThreadPool& pool);
 
 }  // namespace softfocus

@@ -81,11 +81,11 @@ double error_of(const Aperture& aperture, float radius) {
   }
   // r = 64 (z - 2) / z, of a depth that halves have: so the radius is near the one asked for.
   set_depth(scene, [&](int, int) { return 128.0f / (64.0f - radius); });
-  const DofSettings settings{.coc = {64.0f, 2.0f}, .max_coc_px = 64.0f};
+  const DofSettings settings{.coc = {64.0f, 2.0f}, .max_coc_px = 64.0f, .aperture = aperture};
   const double used = static_cast<double>(coc_radius_px(settings.coc, load_texel(scene, 0, 0).w));
   Image result = make_image(scene.format, kSide, kSide);
   ThreadPool pool(2);
-  scatter_aperture_of(aperture, {scene, settings, {}}, result, pool);
+  scatter_aperture({scene, settings, {}}, result, pool);
 
   const int reach = static_cast<int>(std::ceil(std::fabs(used) + 0.5));
   const std::vector<double> covers = covers_of(aperture, used < 0.0, std::fabs(used), reach);
@@ -136,13 +136,13 @@ TEST_CASE("scatter-aperture: blades, their turn and a stretch likewise") {
 
 TEST_CASE("scatter-aperture: a triangle points up behind the focus, and down before it") {
   ThreadPool pool(1);
-  const DofSettings settings{.coc = {16.0f, 2.0f}, .max_coc_px = 16.0f};
+  const DofSettings settings{.coc = {16.0f, 2.0f}, .max_coc_px = 16.0f, .aperture = {.blades = 3}};
   for (const float depth_m : {4.0f, 4.0f / 3.0f}) {  // radii of 8 and -8
     Image scene = make_image(Format::rgba16f, 41, 41);
     set_depth(scene, [&](int, int) { return depth_m; });
     store_texel(scene, 20, 20, {1000.0f, 1000.0f, 1000.0f, depth_m}, {});
     Image result = make_image(scene.format, 41, 41);
-    scatter_aperture_of({.blades = 3}, {scene, settings, {}}, result, pool);
+    scatter_aperture({scene, settings, {}}, result, pool);
     const auto light_in = [&](int from, int to) {
       double light = 0.0;
       for (int y = from; y <= to; ++y) {
@@ -159,15 +159,16 @@ TEST_CASE("scatter-aperture: a triangle points up behind the focus, and down bef
 
 TEST_CASE("scatter-aperture: the same bits on every vector unit, by any number of threads") {
   const Image scene = random_scene_image(71, 53, 8);
-  const DofSettings settings{.coc = {12.0f, 2.0f}, .max_coc_px = 9.5f};
-  const Aperture aperture{.blades = 5, .turn_degrees = 10.0f, .stretch = 1.3f};
+  const DofSettings settings{.coc = {12.0f, 2.0f},
+                             .max_coc_px = 9.5f,
+                             .aperture = {.blades = 5, .turn_degrees = 10.0f, .stretch = 1.3f}};
   ThreadPool one(1, Isa::baseline);
   Image expected = make_image(scene.format, scene.width, scene.height);
-  scatter_aperture_of(aperture, {scene, settings, {}}, expected, one);
+  scatter_aperture({scene, settings, {}}, expected, one);
   for (const Isa isa : available_isas()) {
     ThreadPool pool(3, isa);
     Image actual = random_scene_image(scene.width, scene.height, 99);
-    scatter_aperture_of(aperture, {scene, settings, {}}, actual, pool);
+    scatter_aperture({scene, settings, {}}, actual, pool);
     CAPTURE(std::string{isa_name(isa)});
     CHECK(equal(actual, expected));
   }

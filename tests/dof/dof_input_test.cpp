@@ -63,3 +63,14 @@ TEST_CASE("layers behind a picture are at most three, of its size and format") {
         "a layer has not the scene's size and format");
   CHECK(error_with({ConstImageView{Format::rgba16f, 6, 4, 48, nullptr}}) == "there is no memory");
 }
+
+TEST_CASE("an aperture that cannot be is an error") {
+  const Image scene = random_scene_image(6, 4, 1);
+  const auto error_with = [&](const Aperture& aperture) {
+    DofSettings settings;
+    settings.aperture = aperture;
+    return error_of({scene, settings, {}});
+  };
+  CHECK(error_with({.blades = 5, .stretch = 2.0f}) == "");
+  CHECK(error_with({.blades = 2}) != "");
+}

@@ -19,6 +19,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "raster/images/texel.h"
 #include "tests/support/run_program.h"
@@ -133,6 +134,123 @@ TEST_CASE("EXR: the lens stands in attributes") {
   CHECK(Imf::focus(exr.header()) == 2.5f);
   CHECK(Imf::aperture(exr.header()) == 1.5f);
   CHECK(exr.header().typedAttribute<Imf::FloatAttribute>("nominalFocalLength").value() == 85.0f);
+}
+
+namespace {
+
+constexpr const char* kLensNames[] = {"focus", "aperture", "nominalFocalLength"};
+
+/// Grey columns with depths of 1 to 4 m, and a header with these attributes.
+void write_with(const std::string& name, const std::function<void(Imf::Header&)>& add) {
+  constexpr int kSide = 24;
+  const Imath::Box2i window{{0, 0}, {kSide - 1, kSide - 1}};
+  Imf::Header header{window, window};
+  for (const char* channel : {"R", "G", "B", "Z"}) {
+    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  }
+  add(header);
+  std::vector<float> grey, depth;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    grey.push_back(i % 3 == 0 ? 1.0f : 0.0f);
+    depth.push_back(1.0f + 3.0f * static_cast<float>(i % kSide) / (kSide - 1));
+  }
+  Imf::FrameBuffer buffer;
+  for (const char* channel : {"R", "G", "B", "Z"}) {
+    buffer.insert(channel,
+                  Imf::Slice::Make(Imf::FLOAT, channel[0] == 'Z' ? depth.data() : grey.data(),
+                                   window.min, kSide, kSide, sizeof(float), kSide * sizeof(float)));
+  }
+  Imf::OutputFile file{name.c_str(), header};
+  file.setFrameBuffer(buffer);
+  file.writePixels(kSide);
+}
+
+std::function<void(Imf::Header&)> lens_of(float focus, float aperture, float focal_length) {
+  return [=](Imf::Header& header) {
+    const float values[] = {focus, aperture, focal_length};
+    for (int i = 0; i < 3; ++i) header.insert(kLensNames[i], Imf::FloatAttribute(values[i]));
+  };
+}
+
+}  // namespace
+
+TEST_CASE("EXR: the header's lens is read, and what no lens can have is a fault") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  write_with(name, lens_of(1.5f, 4.0f, 85.0f));
+  const HeaderLens lens = find_exr_lens(read_picture_bytes(name));
+  CHECK(lens.focus_m == 1.5);
+  CHECK(lens.f_number == 4.0);
+  CHECK(lens.focal_length_mm == 85.0);
+  CHECK(lens.faults.empty());
+  for (const float wrong : {NAN, INFINITY, -2.0f, 0.0f}) {
+    write_with(name, lens_of(wrong, wrong, wrong));
+    const HeaderLens none = find_exr_lens(read_picture_bytes(name));
+    CHECK_FALSE(none.focus_m);
+    CHECK_FALSE(none.f_number);
+    CHECK_FALSE(none.focal_length_mm);
+    CHECK(none.faults.size() == 3);
+  }
+  write_with(name, lens_of(0.05f, 4.0f, 85.0f));  // nearer than the focal length
+  CHECK_FALSE(find_exr_lens(read_picture_bytes(name)).focus_m);
+  CHECK(find_exr_lens(read_picture_bytes(name)).faults.size() == 1);
+  write_with(name,
+             [](Imf::Header& header) { header.insert("aperture", Imf::StringAttribute("f/4")); });
+  REQUIRE(find_exr_lens(read_picture_bytes(name)).faults.size() == 1);
+  CHECK(contains(find_exr_lens(read_picture_bytes(name)).faults[0], "aperture is a string"));
+  CHECK(find_exr_lens({}).faults.empty());
+}
+
+TEST_CASE("refocus: an EXR's own lens is the default, options overrule it, and -v says so") {
+  const TemporaryDirectory directory;
+  const std::string with = directory.file("with.exr"), without = directory.file("without.exr");
+  const std::string out = directory.file("out.npy");
+  write_with(with, lens_of(1.5f, 1.25f, 85.0f));
+  write_with(without, [](Imf::Header&) {});
+  const auto refocus = [&](const std::string& file, std::vector<std::string> more) {
+    more.insert(more.begin(), {"refocus", file, "-o", out, "--coc-scale", "9"});
+    ProgramRun run = run_program(more);
+    CHECK(run.status == 0);
+    return run;
+  };
+  const auto hash_after = [&](const std::string& file, const std::vector<std::string>& more) {
+    CHECK(refocus(file, more).err == "");
+    return hash_image(read_image_file(out).image);
+  };
+  const auto own = hash_after(with, {});
+  CHECK(own ==
+        hash_after(without, {"--focus", "1.5", "--f-number", "1.25", "--focal-length", "85"}));
+  CHECK(own != hash_after(without, {}));
+  CHECK(hash_after(with, {"--focus-at", "20,4", "--f-number", "2", "--focal-length", "50"}) ==
+        hash_after(without, {"--focus-at", "20,4"}));
+  CHECK(hash_after(with, {"--focus-nearest"}) ==
+        hash_after(without, {"--focus-nearest", "--f-number", "1.25", "--focal-length", "85"}));
+  CHECK(contains(refocus(with, {"-v"}).err, "1.5 m, by the file's focus"));
+  CHECK(contains(refocus(with, {"-v", "--f-number", "2"}).err,
+                 "by the file's nominalFocalLength, --f-number"));
+  CHECK(
+      contains(refocus(without, {"-v"}).err, "by the default focal length, the default f-number"));
+
+  // A picture of ours has notes, which come first.
+  CHECK(
+      run_program({"refocus", with, "-o", directory.file("ours.exr"), "--f-number", "3"}).status ==
+      0);
+  CHECK(contains(refocus(directory.file("ours.exr"), {"-v"}).err, "by what the picture says"));
+
+  CHECK(contains(run_program({"inspect", with}).out, "lens: 85 mm, f/1.25, focus 1.5 m"));
+  CHECK(contains(run_program({"inspect", with, "--json"}).out, "\"f_number\": 1.25"));
+  CHECK_FALSE(contains(run_program({"inspect", without}).out, "lens:"));
+}
+
+TEST_CASE("refocus: attributes that no lens can have are ignored with a warning") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr"), out = directory.file("out.npy");
+  write_with(name, lens_of(NAN, -2.0f, 85.0f));
+  const ProgramRun run = run_program({"refocus", name, "-o", out});
+  CHECK(run.status == 0);
+  CHECK(contains(run.err, "its attribute focus is nan, which no lens has; it is ignored"));
+  CHECK(contains(run.err, "its attribute aperture is -2, which no lens has; it is ignored"));
+  CHECK(contains(run_program({"inspect", name}).out, "its attribute aperture is -2"));
 }
 
 TEST_CASE("EXR: layers of another file are kept as they are, in their types") {

@@ -1,6 +1,7 @@
 #include "tools/files/exr_file.h"
 
 #include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputPart.h>
@@ -10,10 +11,13 @@
 #include <ImfTileDescription.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <exception>
 #include <vector>
 
 #include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
 #include "tools/files/exr_streams.h"
 #include "tools/files/picture_file.h"
 
@@ -175,6 +179,45 @@ void read_exr(const PictureFile& file, std::span<const std::size_t> planes,
   });
 }
 
+struct LensAttribute {
+  const char* name;
+  std::optional<double> HeaderLens::*value;
+};
+constexpr std::array kLensAttributes{
+    LensAttribute{"focus", &HeaderLens::focus_m}, LensAttribute{"aperture", &HeaderLens::f_number},
+    LensAttribute{"nominalFocalLength", &HeaderLens::focal_length_mm}};
+
+void take_lens_attribute(const Imf::Header& header, const LensAttribute& attribute,
+                         HeaderLens& lens) {
+  const auto found = header.find(attribute.name);
+  if (found == header.end()) return;
+  const std::string name = "its attribute " + std::string{attribute.name};
+  const auto* number = header.findTypedAttribute<Imf::FloatAttribute>(attribute.name);
+  if (number == nullptr) {
+    lens.faults.push_back(name + " is a " + found.attribute().typeName() + " and no float");
+    return;
+  }
+  const auto value = static_cast<double>(number->value());
+  if (std::isfinite(value) && value > 0.0) {
+    lens.*attribute.value = value;
+  } else {
+    lens.faults.push_back(name + " is " + short_number(value) + ", which no lens has");
+  }
+}
+
+/// A lens cannot focus nearer than its focal length.
+void drop_impossible_focus(HeaderLens& lens) {
+  if (!lens.focus_m) return;
+  ThinLens whole;
+  whole.focus_m = *lens.focus_m;
+  whole.f_number = lens.f_number.value_or(whole.f_number);
+  whole.focal_length_mm = lens.focal_length_mm.value_or(whole.focal_length_mm);
+  const char* const error = lens_error(whole);
+  if (error == nullptr) return;
+  lens.faults.push_back("its attribute focus is " + short_number(*lens.focus_m) + " m: " + error);
+  lens.focus_m.reset();
+}
+
 }  // namespace
 
 std::string_view missing_exr() { return {}; }
@@ -188,6 +231,22 @@ std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes) {
   } catch (const std::exception&) {  // what cannot be read has no notes
   }
   return std::nullopt;
+}
+
+HeaderLens find_exr_lens(std::span<const std::byte> bytes) {
+  HeaderLens lens;
+  if (!is_exr(bytes)) return lens;
+  try {
+    ExrInput stream{bytes};
+    const Imf::MultiPartInputFile exr{stream, 1, false};
+    for (const LensAttribute& attribute : kLensAttributes) {
+      take_lens_attribute(exr.header(0), attribute, lens);
+    }
+  } catch (const std::exception&) {  // what cannot be read has no lens
+    return {};
+  }
+  drop_impossible_focus(lens);
+  return lens;
 }
 
 const PictureFileReader kExrReader{"OpenEXR", is_exr, list_exr, read_exr};

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dof/lens.h"
 #include "tools/files/image_file.h"
@@ -42,6 +43,18 @@ Bytes encode_depth_exr(std::span<const float> values, int width, int height);
 
 /// The attribute `softfocus` of such a file, or nothing.
 std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes);
+
+/// What a file's header says of the lens, each if it does: the standard attributes `focus`,
+/// `aperture` and `nominalFocalLength`.
+struct HeaderLens {
+  std::optional<double> focus_m{};
+  std::optional<double> f_number{};
+  std::optional<double> focal_length_mm{};
+  std::vector<std::string> faults{};  ///< attributes that no lens can have, as clauses
+};
+
+/// Of an EXR; else nothing. Does not throw.
+HeaderLens find_exr_lens(std::span<const std::byte> bytes);
 
 /// By the first bytes.
 inline bool is_exr(std::span<const std::byte> bytes) {

@@ -157,7 +157,7 @@ void add_compared_lens_options(CLI::App& parser, LensOptions& options,
 void add_refocus_lens_options(CLI::App& parser, LensOptions& options,
                               std::function<void(double degrees)> on_fov) {
   add_lens_options(parser, options,
-                   {.focus = "what is in the middle",
+                   {.focus = "an EXR's own, or what is in the middle",
                     .focal_length = "the picture's or 50",
                     .f_number = "the picture's or 2",
                     .coc_scale = "the picture's or 1"},

@@ -15,15 +15,6 @@ std::string given(Arithmetic arithmetic) {
   return "--arithmetic " + std::string{arithmetic_name(arithmetic)};
 }
 
-std::string names_of_sampling_methods() {
-  std::string names;
-  for (const LensViewMethod& method : lens_view_methods()) {
-    if (!method.samples_lens) continue;
-    names += (names.empty() ? "" : ", ") + std::string{method.name};
-  }
-  return names;
-}
-
 // Of Sampling::by_tile: the method's own.
 constexpr int kMostUsual = 0;
 
@@ -144,6 +135,49 @@ int parse_blades(const char* option, const std::string& text) {
   return blades;
 }
 
+void add_aperture_options(CLI::App& parser, Aperture& aperture) {
+  add_value(parser, "--aperture-turn", "DEGREES",
+            "Turns it counter-clockwise (default: 0, a corner up)",
+            [&aperture](const std::string& text) {
+              aperture.turn_degrees = static_cast<float>(parse_number(
+                  "--aperture-turn", text, -360.0, 360.0, "an angle from -360 to 360 degrees"));
+            });
+  add_value(parser, "--anamorphic", "RATIO",
+            "Height over width of what is out of focus, 1/16 to 16 (default: 1)",
+            [&aperture](const std::string& text) {
+              constexpr double kMost = static_cast<double>(kMostApertureStretch);
+              aperture.stretch = static_cast<float>(
+                  parse_number("--anamorphic", text, 1.0 / kMost, kMost,
+                               "height over width from 0.0625 to 16, such as 2"));
+            });
+}
+
+void check_aperture(const CLI::App& parser, std::string_view method, const std::string& others) {
+  if (method == kApertureMethod) return;
+  for (const char* option : {"--aperture-blades", "--aperture-turn", "--anamorphic"}) {
+    if (!is_given(parser, option)) continue;
+    const bool is_blades = option == std::string_view{"--aperture-blades"};
+    throw UsageError(std::string{option} + ": the method " + std::string{method} +
+                     " has a round aperture alone; give --method " + std::string{kApertureMethod} +
+                     (is_blades && !others.empty() ? ", " + others : ""));
+  }
+}
+
+Json aperture_json(const Aperture& aperture) {
+  return {{"blades", aperture.blades},
+          {"turn_degrees", aperture.turn_degrees},
+          {"stretch", aperture.stretch}};
+}
+
+std::string names_of_sampling_methods() {
+  std::string names;
+  for (const LensViewMethod& method : lens_view_methods()) {
+    if (!method.samples_lens) continue;
+    names += (names.empty() ? "" : ", ") + std::string{method.name};
+  }
+  return names;
+}
+
 void add_sampling_options(CLI::App& parser, Sampling& sampling) {
   add_value(parser, "--samples", "N|auto[:N]",
             "Of accumulation, filtered-views and ray-traced: points on the lens, 1 to 65536 "
@@ -172,11 +206,13 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
               sampling.until =
                   parse_number("--until", text, 1e-9, 1e9, "an error above 0, such as 0.001");
             });
-  add_value(parser, "--aperture-blades", "N",
-            "Of the same: an aperture of 3 to 64 straight blades, 0 = round (default: 0)",
-            [&blades = sampling.aperture.blades](const std::string& text) {
-              blades = parse_blades("--aperture-blades", text);
-            });
+  add_value(
+      parser, "--aperture-blades", "N",
+      "Of the same and of scatter-aperture: an aperture of 3 to 64 straight blades, 0 = round "
+      "(default: 0)",
+      [&blades = sampling.aperture.blades](const std::string& text) {
+        blades = parse_blades("--aperture-blades", text);
+      });
 }
 
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser) {
@@ -198,6 +234,7 @@ void complete_sampling(Sampling& sampling, const LensViewMethod& method, const C
 void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
   for (const char* option : kSamplingOptions) {
     if (!is_given(parser, option)) continue;
+    if (method == kApertureMethod && option == std::string_view{"--aperture-blades"}) continue;
     throw UsageError(std::string{option} + ": the method " + std::string{method} +
                      " does not sample the lens; give --method " + names_of_sampling_methods());
   }

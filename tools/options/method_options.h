@@ -14,6 +14,7 @@
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
 #include "tools/cli/parser.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 
@@ -69,13 +70,26 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings);
 /// 0, or 3 to kMostBlades. Throws UsageError.
 int parse_blades(const char* option, const std::string& text);
 
+/// Adds --aperture-turn and --anamorphic. The blades are an option of the sampling methods, too.
+void add_aperture_options(CLI::App& parser, Aperture& aperture);
+
+/// Throws UsageError if one of them or --aperture-blades was given and the method is another than
+/// kApertureMethod. `others`: methods that have blades, for the message; or empty.
+void check_aperture(const CLI::App& parser, std::string_view method, const std::string& others);
+
+/// For notes and reports.
+Json aperture_json(const Aperture& aperture);
+
+std::string names_of_sampling_methods();
+
 void add_sampling_options(CLI::App& parser, Sampling& sampling);
 
 /// Once all options are read: without --samples, those of the method; with --until, kMostSamples.
 /// Throws UsageError for --samples auto of a method that cannot, or with --until.
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser);
 
-/// Throws UsageError if one of them was given, for a filter does not sample the lens.
+/// Throws UsageError if one of them was given, for a filter does not sample the lens; but for
+/// --aperture-blades of kApertureMethod.
 void refuse_sampling_options(const CLI::App& parser, std::string_view method);
 
 /// Adds --max-error and --max-time.

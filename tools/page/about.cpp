@@ -4,6 +4,7 @@
 
 #include "scenes/load/load_scene.h"
 #include "tools/page/requests.h"
+#include "tools/refocus/depth_encodings.h"
 
 namespace softfocus {
 namespace {
@@ -44,6 +45,17 @@ Json methods_json() {
   return list;
 }
 
+Json encodings_json() {
+  Json list = Json::array();
+  for (const DepthEncoding& encoding : depth_encodings()) {
+    list.push_back({{"name", encoding.name},
+                    {"summary", encoding.summary},
+                    {"needs", encoding.needs},
+                    {"takes", encoding.takes}});
+  }
+  return list;
+}
+
 }  // namespace
 
 Json answer_start(Page& page, const Json& request) {
@@ -74,7 +86,10 @@ Json answer_scenes(Page& /*page*/, const Json& /*request*/) {
   for (const SceneListing& scene : list_scenes(scene_search_path({}))) {
     scenes.push_back({{"name", scene.name}, {"title", scene.title}});
   }
-  return {{"scenes", scenes}, {"cases", cases_json()}, {"methods", methods_json()}};
+  return {{"scenes", scenes},
+          {"cases", cases_json()},
+          {"methods", methods_json()},
+          {"encodings", encodings_json()}};
 }
 
 }  // namespace softfocus

@@ -13,13 +13,21 @@ struct Request {
   Json (*answer)(Page& page, const Json& request);
 };
 constexpr std::array kRequests{
-    Request{"start", answer_start},       Request{"about", answer_about},
-    Request{"scenes", answer_scenes},     Request{"open", answer_open},
-    Request{"frame", answer_frame},       Request{"pixel", answer_pixel},
-    Request{"truth", answer_truth},       Request{"compare_methods", answer_compare_methods},
-    Request{"selftest", answer_selftest}, Request{"file", answer_file},
-    Request{"gl_open", answer_gl_open},   Request{"gl_frame", answer_gl_frame},
-    Request{"gl_probe", answer_gl_probe}, Request{"gl_crosscheck", answer_gl_crosscheck},
+    Request{"start", answer_start},
+    Request{"about", answer_about},
+    Request{"scenes", answer_scenes},
+    Request{"open", answer_open},
+    Request{"frame", answer_frame},
+    Request{"pixel", answer_pixel},
+    Request{"truth", answer_truth},
+    Request{"compare_methods", answer_compare_methods},
+    Request{"selftest", answer_selftest},
+    Request{"file", answer_file},
+    Request{"save", answer_save},
+    Request{"gl_open", answer_gl_open},
+    Request{"gl_frame", answer_gl_frame},
+    Request{"gl_probe", answer_gl_probe},
+    Request{"gl_crosscheck", answer_gl_crosscheck},
 };
 
 Json answered(Page& page, std::string_view text) {

@@ -9,6 +9,7 @@
 #include "scenes/draw/frame_parts.h"
 #include "scenes/draw/keyframes.h"
 #include "tools/cli/errors.h"
+#include "tools/page/picture.h"
 #include "tools/stress/make_frame.h"
 
 namespace softfocus {
@@ -93,6 +94,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& settings) {
   if (!page.opened) throw UsageError("nothing is open; the request 'open' opens a scene");
+  if (page.opened->picture) throw UsageError(kNoScene);
   for (std::size_t i = 0; i < page.drawn.size(); ++i) {
     if (page.drawn[i] && same_drawing(page.drawn[i]->settings, settings)) {
       std::swap(page.drawn[0], page.drawn[i]);

@@ -1,11 +1,14 @@
-// file: what the page hands out as text.
+// file and save: what the page hands out, as text and as a picture.
 
 #include <cstdio>
 
 #include "tools/cli/errors.h"
 #include "tools/files/hash_text.h"
+#include "tools/page/picture.h"
 #include "tools/page/requests.h"
 #include "tools/page/scene_text.h"
+#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/report.h"
 #include "tools/render/performance_report.h"
 
 namespace softfocus {
@@ -22,6 +25,7 @@ std::string vector_text(const glm::dvec3& v) {
 }
 
 std::string source_text(const Opened& opened) {
+  if (opened.picture) return "picture";
   if (!opened.stress_case) return opened.source;
   const StressCase& of = *opened.stress_case;
   return "case " + std::string{of.name} + ", " + std::string{of.parameter.name} + " " +
@@ -38,17 +42,26 @@ std::string lens_text(const FrameLens& used) {
                                  " pixels (largest CoC radius)");
 }
 
+/// Of the camera, or of what there is in its place.
+std::string seen_text(const Opened& opened, const ShownFrame& shown) {
+  if (const OpenedPicture* picture = opened.picture.get()) {
+    return line("Depth",
+                picture->reading ? std::string{picture->reading->encoding->name} : picture->lacks);
+  }
+  const Camera& camera = shown.drawn->camera;
+  return line("Frame", short_number(shown.settings.frame)) +
+         line("Camera", "from " + vector_text(camera.position) + " to " +
+                            vector_text(camera.target) + ", " + short_number(camera.fov_y_degrees) +
+                            " degrees");
+}
+
 std::string report_text(const Page& page, const ShownFrame& shown) {
   const Image& picture = shown.picture;
-  const Camera& camera = shown.drawn->camera;
   std::string text = "softfocus " SOFTFOCUS_VERSION ", the simulator\n\n";
   text += line("Scene", source_text(*page.opened) + ": " + page.opened->scene.title);
-  text += line("Frame", short_number(shown.settings.frame));
   text += line("Resolution",
                std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels");
-  text +=
-      line("Camera", "from " + vector_text(camera.position) + " to " + vector_text(camera.target) +
-                         ", " + short_number(camera.fov_y_degrees) + " degrees");
+  text += seen_text(*page.opened, shown);
   text += line("Picture", std::string{name_of(shown.settings.show)});
   if (shown.settings.show == Show::image) {
     text += line("Method", std::string{shown.settings.method.name()});
@@ -69,6 +82,30 @@ Json answer_file(Page& page, const Json& request) {
   if (name == "scene.toml") return {{"text", scene_text(*page.opened, *page.shown)}};
   if (name == "report.txt") return {{"text", report_text(page, *page.shown)}};
   throw UsageError("there is no file '" + name + "'; there are scene.toml, report.txt");
+}
+
+Json answer_save(Page& page, const Json& request) {
+  const std::string& name = request.at("format").text();
+  const std::optional<FileFormat> format = format_by_name(name);
+  if (!format || is_raw_video(*format)) {
+    throw UsageError("format '" + name + "': give png, png-16, hdr, pfm or npy");
+  }
+  if (const std::string_view missing = missing_format(*format); !missing.empty()) {
+    throw UsageError("format '" + name + "': " + std::string{missing});
+  }
+  if (!page.shown || !page.shown->refocused || page.shown->settings.preview != 1) {
+    throw UsageError(
+        "no refocused picture is shown: open a picture and its depth, and wait until "
+        "it is whole");
+  }
+  const RefocusedFrame& frame = *page.shown->refocused;
+  const OpenedPicture& opened = *page.opened->picture;
+  RefocusOptions options = frame.options;
+  options.format = *format;
+  page.saved = refocused_file(options, opened.sources, opened.whole.depth, frame.used,
+                              {page.shown->picture, frame.opacity},
+                              refocus_notes(options, frame.used, page.shown->picture));
+  return {{"saved_bytes", static_cast<std::int64_t>(page.saved.size())}};
 }
 
 }  // namespace softfocus

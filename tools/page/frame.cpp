@@ -7,6 +7,7 @@
 #include "raster/images/texel.h"
 #include "tools/cli/errors.h"
 #include "tools/page/drawing.h"
+#include "tools/page/picture.h"
 #include "tools/page/requests.h"
 #include "tools/page/screen.h"
 
@@ -66,15 +67,13 @@ void add_lens_figures(Json& reply, const FrameLens& used, const Drawn& drawn, Th
   reply["max_coc_px"] = used.settings.max_coc_px;
 }
 
-}  // namespace
-
-Json answer_frame(Page& page, const Json& request) {
-  const FrameSettings settings = read_frame_settings(request);
+ShownFrame scene_frame(Page& page, const FrameSettings& settings) {
   ShownFrame shown{.drawn = drawn_picture(page, settings),
                    .settings = settings,
                    .lens = {},
                    .picture = {},
-                   .flip = {}};
+                   .flip = {},
+                   .refocused = {}};
   stop_if_cancelled(page);
   const Drawn& drawn = *shown.drawn;
   const bool needs_lens = settings.show == Show::image || settings.show == Show::coc;
@@ -82,13 +81,27 @@ Json answer_frame(Page& page, const Json& request) {
   const auto start = std::chrono::steady_clock::now();
   shown.picture = wanted_picture(page, drawn, settings, shown.lens);
   shown.filter_ms = milliseconds_since(start);
+  return shown;
+}
+
+}  // namespace
+
+Json answer_frame(Page& page, const Json& request) {
+  const FrameSettings settings = read_frame_settings(request);
+  const bool is_picture = page.opened && page.opened->picture;
+  ShownFrame shown = is_picture ? refocused_frame(page, settings) : scene_frame(page, settings);
+  const Drawn& drawn = *shown.drawn;
   if (settings.hash) shown.hash = hash_image(shown.picture);
   Json reply{{"width", shown.picture.width},
              {"height", shown.picture.height},
              {"hash", settings.hash ? Json(hash_text(shown.hash)) : Json(nullptr)},
              {"draw_ms", drawn.ms},
              {"filter_ms", shown.filter_ms}};
-  if (shown.lens) add_lens_figures(reply, *shown.lens, drawn, *page.pool);
+  if (is_picture) {
+    add_refocus_figures(reply, shown);
+  } else if (shown.lens) {
+    add_lens_figures(reply, *shown.lens, drawn, *page.pool);
+  }
   show_on_screen(shown.picture, page.pixels, *page.pool);
   page.shown = std::move(shown);
   return reply;

@@ -1,5 +1,6 @@
 // The page as a WebAssembly module: what JavaScript calls, all from one worker.
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -33,6 +34,9 @@ const char* softfocus_reply() { return module().reply.c_str(); }
 /// The picture on the screen: RGBA of 8 bits, rows from the top, of the size that the last reply
 /// with a `width` told.
 const std::uint8_t* softfocus_pixels() { return module().page.pixels.rgba.data(); }
+
+/// The file that the last `save` made, of the bytes that its reply told.
+const std::byte* softfocus_saved() { return module().page.saved.data(); }
 
 /// 1 here, written from another thread, ends the request that runs.
 std::int32_t* softfocus_cancel() {

@@ -1,10 +1,11 @@
-// open: a scene, or a case of the atlas.
+// open: a scene, a case of the atlas, or a picture.
 
 #include <algorithm>
 #include <cmath>
 
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
+#include "tools/page/picture.h"
 #include "tools/page/requests.h"
 #include "tools/stress/make_frame.h"
 
@@ -76,9 +77,23 @@ Json warnings_json(const Scene& scene) {
   return warnings;
 }
 
+void put_in_place(Page& page, std::unique_ptr<Opened> opened) {
+  page.truth.reset();
+  page.shown.reset();
+  page.prepared.reset();
+  page.drawn = {};
+  page.gpu_scene.reset();
+  page.opened = std::move(opened);
+}
+
 }  // namespace
 
 Json answer_open(Page& page, const Json& request) {
+  if (request.find("picture") != nullptr) {
+    auto [opened, reply] = open_picture(request, *page.pool);
+    put_in_place(page, std::move(opened));
+    return reply;
+  }
   const bool is_case = request.find("case") != nullptr;
   std::unique_ptr<Opened> opened =
       is_case ? opened_case(request) : opened_scene(request.at("scene").text());
@@ -102,12 +117,7 @@ Json answer_open(Page& page, const Json& request) {
   } else {
     reply["lens"]["max_coc_px_at_1024"] = scene.lens.max_coc_px_at_1024;
   }
-  page.truth.reset();
-  page.shown.reset();
-  page.prepared.reset();
-  page.drawn = {};
-  page.gpu_scene.reset();
-  page.opened = std::move(opened);
+  put_in_place(page, std::move(opened));
   return reply;
 }
 

@@ -13,18 +13,25 @@
 #include "raster/threads/parallel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
+#include "tools/files/image_file.h"
 #include "tools/golden/hashes.h"
 #include "tools/page/settings.h"
 #include "tools/stress/stress_case.h"
 
 namespace softfocus {
 
-/// A scene, or a case of `softfocus stress`, whose pictures depend on their size.
+/// A picture with its depth, and a frame of it (picture.h).
+struct OpenedPicture;
+struct RefocusedFrame;
+
+/// A scene, a case of `softfocus stress`, whose pictures depend on their size, or a picture.
 struct Opened {
-  std::string source;  ///< as `softfocus render` takes it; empty for a case
-  Scene scene;         ///< of a case: empty but for the camera and the lens that stand for it
+  std::string source;  ///< as `softfocus render` takes it, or the picture's file; empty for a case
+  Scene scene;         ///< of a case: empty but for the camera and the lens that stand for it; of a
+                       ///< picture: its title alone
   std::optional<StressCase> stress_case;
   double severity = 0.0;
+  std::shared_ptr<OpenedPicture> picture;
 };
 
 /// A sharp picture, and what was drawn.
@@ -62,6 +69,7 @@ struct ShownFrame {
   std::uint64_t hash = 0;
   double filter_ms = 0.0;
   std::optional<KnownFlip> flip;
+  std::shared_ptr<const RefocusedFrame> refocused;  ///< of a picture with depth of field
 };
 
 /// Views of the lens that are taken step by step, of one frame.
@@ -96,6 +104,7 @@ struct Page {
   std::shared_ptr<Gpu> gpu;       ///< once the request 'gl_open' or another gl_* has come
   std::shared_ptr<GpuScene> gpu_scene;
   Pixels pixels;
+  Bytes saved;  ///< the file that `save` made
   /// Set from another thread: the request that runs ends soon. Each request clears it first.
   std::atomic<std::int32_t> cancel{0};
 };

@@ -8,6 +8,7 @@
 #include "scenes/load/file_bytes.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
+#include "tools/page/picture.h"
 
 namespace softfocus {
 namespace {
@@ -121,6 +122,7 @@ bool is_model(const std::string& source) {
 }  // namespace
 
 std::string scene_text(const Opened& opened, const ShownFrame& shown) {
+  if (opened.picture) throw UsageError(kNoScene);
   if (opened.stress_case) {
     throw UsageError("a case has no scene's file: its pictures are made for their size");
   }

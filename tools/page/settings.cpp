@@ -82,13 +82,12 @@ void read_focus(const Json& focus, FrameSettings& settings) {
   settings.lens.focus_m = checked_number(focus.at("m"), "focus.m", 1e-9, kLargestLens);
 }
 
-/// A member that is there and not null.
+}  // namespace
+
 const Json* given(const Json& request, std::string_view name) {
   const Json* value = request.find(name);
   return value != nullptr && !value->is_null() ? value : nullptr;
 }
-
-}  // namespace
 
 double checked_number(const Json& value, std::string_view name, double least, double most) {
   const double number = value.number();

@@ -45,6 +45,9 @@ FrameSettings read_frame_settings(const Json& request);
 /// through it.
 Camera chosen_camera(const Camera& of_scene, const std::optional<CameraChoice>& choice);
 
+/// A member that is there and not null, or nullptr.
+const Json* given(const Json& request, std::string_view name);
+
 /// A number from `least` to `most`: UsageError.
 double checked_number(const Json& value, std::string_view name, double least, double most);
 

@@ -8,6 +8,7 @@
 #include "dof/measure/heat_map.h"
 #include "tools/cli/errors.h"
 #include "tools/page/drawing.h"
+#include "tools/page/picture.h"
 #include "tools/page/requests.h"
 #include "tools/page/screen.h"
 
@@ -21,6 +22,7 @@ constexpr int kFirstComparison = 16;
 constexpr double kGoodEnough = 0.002;
 
 const ShownFrame& last_frame(const Page& page) {
+  if (page.opened && page.opened->picture) throw UsageError(kNoScene);
   if (!page.shown || !page.shown->lens) {
     throw UsageError("there is no frame with a lens yet; the request 'frame' makes one");
   }

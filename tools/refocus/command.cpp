@@ -47,13 +47,14 @@ Refocused make_refocused(const RefocusOptions& options, Progress& progress, Thre
   source.opacity = take_opacity(sources, source.picture);
   const bool loses_alpha = is_transparent(source.opacity) && !keeps_alpha(options.format);
   if (loses_alpha) source.opacity.clear();
-  const ReadDepth depth = read_depth(sources, source.picture, options.reading, options.photo, pool);
+  PhotoLens photo = options.photo;
+  photo.of_file = sources.lens;
+  const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
   // What was read is not needed again, but for an EXR's other layers. `= {}` would keep the memory.
   if (sources.depth_file) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
   UsedRefocus used;
-  used.lens =
-      settle_lens(options.photo, sources.notes, options.reading.numbers.focal_px, depth.map);
+  used.lens = settle_lens(photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
   const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
 
@@ -77,6 +78,9 @@ Refocused make_refocused(const RefocusOptions& options, Progress& progress, Thre
     warn("'" + sidecar->string() +
          "' is no sidecar of a picture and stays as it is: the picture's "
          "lens is written nowhere");
+  }
+  for (const std::string& fault : sources.lens.faults) {
+    warn("'" + options.colour + "': " + fault + "; it is ignored");
   }
   if (loses_alpha) {
     warn("'" + options.colour +

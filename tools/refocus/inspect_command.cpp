@@ -34,6 +34,7 @@ struct InspectedFile {
   std::vector<InspectedPlane> planes{};
   std::vector<ColourLayer> colours{};
   std::optional<PictureNotes> notes{};
+  HeaderLens lens{};  ///< if there are no notes
   std::optional<std::size_t> depth_plane{};
   BelievedEncoding believed{};
   std::optional<DepthHistogram>
@@ -58,6 +59,7 @@ InspectedFile inspected(const std::string& name, const DepthOptions& reading) {
   const PictureFile& file = found.file;
   found.colours = colour_layers(file);
   found.notes = find_notes(file.path, file.bytes).notes;
+  if (!found.notes) found.lens = find_exr_lens(file.bytes);
   found.depth_plane = likely_depth(file, reading);
   for (std::size_t i = 0; i < file.planes.size(); ++i) {
     const NumberType type = file.planes[i].type;
@@ -121,6 +123,21 @@ std::string histogram_text(const DepthHistogram& histogram, bool in_metres) {
   return text;
 }
 
+std::string lens_text(const HeaderLens& lens) {
+  std::string text;
+  const auto add = [&text](const std::optional<double>& value, const char* before,
+                           const char* after) {
+    if (!value) return;
+    text += (text.empty() ? "  lens: " : ", ") + (before + short_number(*value)) + after;
+  };
+  add(lens.focal_length_mm, "", " mm");
+  add(lens.f_number, "f/", "");
+  add(lens.focus_m, "focus ", " m");
+  if (!text.empty()) text += "\n";
+  for (const std::string& fault : lens.faults) text += "  " + fault + ": ignored\n";
+  return text;
+}
+
 std::string text_of(const InspectedFile& found) {
   const PictureFile& file = found.file;
   std::string text = file.path.string() + ": " + std::string{file.reader->name} + ", " +
@@ -141,6 +158,7 @@ std::string text_of(const InspectedFile& found) {
         (layer.alpha ? ", with alpha" : "") + "\n";
   }
   if (found.notes) text += "  notes: softfocus wrote it, of " + found.notes->scene + "\n";
+  text += lens_text(found.lens);
   if (!found.depth_plane) return text + "  depth: none that the channels' names tell\n";
   text += "  depth: " + found.planes[*found.depth_plane].info.name + ", ";
   text += found.believed.encoding != nullptr
@@ -151,6 +169,8 @@ std::string text_of(const InspectedFile& found) {
           std::to_string(found.planes[*found.depth_plane].seen.count) + " pixels without a depth\n";
   return text + histogram_text(*found.histogram, found.in_metres);
 }
+
+Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 Json json_of(const InspectedFile& found) {
   const PictureFile& file = found.file;
@@ -167,9 +187,22 @@ Json json_of(const InspectedFile& found) {
   }
   Json layers = Json::array();
   for (const ColourLayer& layer : found.colours) layers.push_back(layer.name);
-  Json json{{"file", file.path.string()}, {"kind", file.reader->name}, {"width", file.width},
-            {"height", file.height},      {"remark", file.remark},     {"srgb", file.is_srgb},
-            {"planes", planes},           {"colour_layers", layers},   {"depth", nullptr}};
+  Json json{{"file", file.path.string()},
+            {"kind", file.reader->name},
+            {"width", file.width},
+            {"height", file.height},
+            {"remark", file.remark},
+            {"srgb", file.is_srgb},
+            {"planes", planes},
+            {"colour_layers", layers},
+            {"lens", nullptr},
+            {"depth", nullptr}};
+  const HeaderLens& lens = found.lens;
+  if (lens.focus_m || lens.f_number || lens.focal_length_mm) {
+    json["lens"] = {{"focus_m", json_of(lens.focus_m)},
+                    {"f_number", json_of(lens.f_number)},
+                    {"focal_length_mm", json_of(lens.focal_length_mm)}};
+  }
   if (!found.depth_plane) return json;
   Json bins = Json::array();
   for (const DepthBin& bin : found.histogram->bins) {
@@ -198,6 +231,7 @@ void write_circles(const InspectOptions& options) {
   ThreadPool pool{preview.pool.threads, preview.pool.isa};
   const PictureSources sources = open_sources(preview.colour, preview.depth, preview.reading);
   Image colour = read_colour(sources.colour_file, sources.colour, false).image;
+  preview.photo.of_file = sources.lens;
   const ReadDepth depth = read_depth(sources, colour, preview.reading, preview.photo, pool);
   UsedRefocus used;
   used.lens =

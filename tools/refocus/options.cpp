@@ -18,39 +18,6 @@ constexpr std::array kShows{NamedShow{"image", RefocusShow::image},
 
 constexpr std::array kBorders{Border::clamp, Border::mirror, Border::black};
 
-constexpr std::array kApertureOptions{"--aperture-blades", "--aperture-turn", "--anamorphic"};
-
-void add_aperture_options(CLI::App& parser, Aperture& aperture) {
-  add_value(parser, "--aperture-blades", "N",
-            "An aperture of 3 to 64 straight blades, 0 = round (default: 0)",
-            [&aperture](const std::string& text) {
-              aperture.blades = parse_blades("--aperture-blades", text);
-            });
-  add_value(parser, "--aperture-turn", "DEGREES",
-            "Turns it counter-clockwise (default: 0, a corner up)",
-            [&aperture](const std::string& text) {
-              aperture.turn_degrees = static_cast<float>(parse_number(
-                  "--aperture-turn", text, -360.0, 360.0, "an angle from -360 to 360 degrees"));
-            });
-  add_value(parser, "--anamorphic", "RATIO",
-            "Height over width of what is out of focus, 1/16 to 16 (default: 1)",
-            [&aperture](const std::string& text) {
-              constexpr double kMost = static_cast<double>(kMostApertureStretch);
-              aperture.stretch = static_cast<float>(
-                  parse_number("--anamorphic", text, 1.0 / kMost, kMost,
-                               "height over width from 0.0625 to 16, such as 2"));
-            });
-}
-
-void check_aperture(const RefocusOptions& options, const CLI::App& parser) {
-  if (options.method.name() == kApertureMethod) return;
-  for (const char* option : kApertureOptions) {
-    if (!is_given(parser, option)) continue;
-    throw UsageError(std::string{option} + ": the method " + std::string{options.method.name()} +
-                     " has a round aperture alone; give --method " + std::string{kApertureMethod});
-  }
-}
-
 void add_border_option(CLI::App& parser, Border& border) {
   add_value(parser, "--border", "clamp|mirror|black",
             "What the filter sees beyond the picture: its edge, its mirror image, nothing "
@@ -102,6 +69,11 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_depth_options(parser, options.reading);
   add_photo_lens_options(parser, options.photo);
   begin_group(parser, "Bokeh");
+  add_value(parser, "--aperture-blades", "N",
+            "An aperture of 3 to 64 straight blades, 0 = round (default: 0)",
+            [&blades = options.aperture.blades](const std::string& text) {
+              blades = parse_blades("--aperture-blades", text);
+            });
   add_aperture_options(parser, options.aperture);
   add_value(
       parser, "--highlights", "GAIN,THRESHOLD",
@@ -134,7 +106,7 @@ void complete(RefocusOptions& options, const CLI::App& parser) {
   }
   check_photo_lens(parser);
   check_method(options);
-  check_aperture(options, parser);
+  check_aperture(parser, options.method.name(), {});
   check_budget(parser, options.method.name());
   for (const char* option : {"--max-error", "--max-time"}) {
     if (!is_given(parser, option) || options.method.is_auto()) continue;

@@ -74,7 +74,30 @@ double focal_length_mm(const PhotoLens& photo, const std::optional<PictureNotes>
   const ThinLens standard;
   const double noted =
       notes && notes->lens ? notes->lens->lens.focal_length_mm : standard.focal_length_mm;
-  return photo.lens.focal_length_mm.value_or(noted);
+  return photo.lens.focal_length_mm.value_or(photo.of_file.focal_length_mm.value_or(noted));
+}
+
+/// Who said it, in the order in which they are asked.
+std::string source_of(bool is_given, const char* option, bool is_in_header, const char* attribute,
+                      bool is_noted, const char* what) {
+  if (is_given) return option;
+  if (is_in_header) return "the file's " + std::string{attribute};
+  return is_noted ? "what the picture says" : "the default " + std::string{what};
+}
+
+/// `lens` with what the file's header and the options say.
+ThinLens settled_thin_lens(ThinLens lens, const PhotoLens& photo, bool is_noted,
+                           std::string& from) {
+  const HeaderLens& header = photo.of_file;
+  lens.focal_length_mm = header.focal_length_mm.value_or(lens.focal_length_mm);
+  lens.f_number = header.f_number.value_or(lens.f_number);
+  from = source_of(photo.lens.focal_length_mm.has_value(), "--focal-length",
+                   header.focal_length_mm.has_value(), "nominalFocalLength", is_noted,
+                   "focal length") +
+         ", " +
+         source_of(photo.lens.f_number.has_value(), "--f-number", header.f_number.has_value(),
+                   "aperture", is_noted, "f-number");
+  return overruled(lens, photo.lens);
 }
 
 /// The picture's height over the height that it shows at distance 1. `image_mm` lies between the
@@ -152,6 +175,10 @@ double focus_of(const PhotoLens& photo, const DepthMap& depth, std::string& from
     from = "the nearest thousandth";
     return ranked(all, all.size() / 1000);
   }
+  if (photo.of_file.focus_m && !photo.focus_at) {
+    from = "the file's focus";
+    return *photo.of_file.focus_m;
+  }
   const Pixel pixel = photo.focus_at.value_or(Pixel{depth.width / 2, depth.height / 2});
   if (pixel.x < 0 || pixel.x >= depth.width || pixel.y < 0 || pixel.y >= depth.height) {
     throw UsageError("--focus-at " + pixel_text(pixel) +
@@ -219,7 +246,8 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
     settled.lens = notes->lens->lens;
     settled.coc_scale = notes->lens->coc_scale;
   }
-  settled.lens = overruled(settled.lens, photo.lens);
+  const bool is_noted = notes && notes->lens;
+  settled.lens = settled_thin_lens(settled.lens, photo, is_noted, settled.lens_from);
   settled.coc_scale = photo.lens.coc_scale.value_or(settled.coc_scale);
   settled.lens.focus_m = focus_of(photo, depth, settled.focus_from);
   settled.range = photo.focus_range;

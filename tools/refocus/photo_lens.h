@@ -29,6 +29,7 @@ struct PhotoLens {
   bool focus_nearest = false;
   std::optional<SharpDepthRange> focus_range;
   std::optional<double> blur_at_infinity_px;  ///< a radius
+  HeaderLens of_file;                         ///< where nothing above says it
 };
 
 void add_photo_lens_options(CLI::App& parser, PhotoLens& photo);
@@ -45,6 +46,7 @@ struct SettledLens {
   bool has_lens = true;  ///< false: --blur-at-infinity alone says how much is blurred
   std::optional<SharpDepthRange> range{};
   std::string focus_from;   ///< "--focus", "the median around pixel 3,4"
+  std::string lens_from;    ///< "--focal-length and the default f-number"
   std::string camera_from;  ///< "--sensor full-frame", "the notes in a.exr"
 };
 

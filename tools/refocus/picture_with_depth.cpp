@@ -131,6 +131,7 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
   if (!depth.empty()) sources.depth_file = open_picture_file(depth);
   sources.depth_plane = choose_depth(sources.of_depth(), options.depth_layer, depth.empty());
   sources.notes = find_notes(sources.colour_file.path, sources.colour_file.bytes).notes;
+  if (!sources.notes) sources.lens = find_exr_lens(sources.colour_file.bytes);
   return sources;
 }
 

@@ -41,6 +41,7 @@ struct PictureSources {
   ColourLayer colour{};
   std::size_t depth_plane = 0;
   std::optional<PictureNotes> notes{};  ///< of the colour's file
+  HeaderLens lens{};                    ///< likewise, if there are no notes
 
   const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
 };

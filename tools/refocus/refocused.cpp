@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "dof/circle_sizes.h"
-#include "dof/scatter/aperture_scatter.h"
 #include "dof/show.h"
 #include "tools/cli/errors.h"
 #include "tools/refocus/finer_depths.h"
@@ -41,11 +40,7 @@ Image filtered(const Image& picture, const RefocusOptions& options, const UsedRe
     two_pass_in(options.arithmetic, {picture, used.settings, options.profile}, result, pool);
     return result;
   }
-  const DofInput input{.scene = picture, .settings = used.settings, .profile = options.profile};
-  if (used.method->name != kApertureMethod) return apply(*used.method, input, pool);
-  Image result = make_image(picture.format, picture.width, picture.height);
-  scatter_aperture_of(options.aperture, input, result, pool);
-  return result;
+  return apply(*used.method, {picture, used.settings, options.profile}, pool);
 }
 
 /// Colour and opacity, each filtered.
@@ -99,6 +94,7 @@ PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
   used.settings.coc = used.lens.coc;
   used.settings.leak = options.leak;
   used.settings.budget = options.budget;
+  used.settings.aperture = options.aperture;
   DepthMap seen = depth;
   if (used.lens.range) move_range_into_focus(seen, *used.lens.range);
   // (z - focus) / z is NaN at infinity, and NaN has the largest circle. The horizon has its own.

@@ -19,7 +19,7 @@ std::string lines_of_lens(const SettledLens& lens) {
   if (lens.has_lens) {
     text += "\nlens             " + short_number(lens.lens.focal_length_mm) + " mm, f/" +
             short_number(lens.lens.f_number) + ", coc scale " + short_number(lens.coc_scale) +
-            "\nfield of view    " + short_number(lens.fov_y_degrees) +
+            ", by " + lens.lens_from + "\nfield of view    " + short_number(lens.fov_y_degrees) +
             " degrees from top to bottom, by " + lens.camera_from;
   }
   return text + "\nblur at infinity " +
@@ -117,6 +117,7 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
     json["lens"] = {{"focal_length_mm", lens.lens.focal_length_mm},
                     {"f_number", lens.lens.f_number},
                     {"coc_scale", lens.coc_scale},
+                    {"lens_from", lens.lens_from},
                     {"fov_y_degrees", lens.fov_y_degrees},
                     {"camera_from", lens.camera_from}};
   }
@@ -142,9 +143,7 @@ PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& use
                     {"arithmetic", arithmetic_name(options.arithmetic)},
                     {"profile", options.profile_name}};
     if (options.aperture != Aperture{}) {
-      notes.method["aperture"] = {{"blades", options.aperture.blades},
-                                  {"turn_degrees", options.aperture.turn_degrees},
-                                  {"stretch", options.aperture.stretch}};
+      notes.method["aperture"] = aperture_json(options.aperture);
     }
     if (options.highlights) {
       notes.method["highlights"] = {{"gain", options.highlights->gain},

@@ -64,6 +64,7 @@ UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene,
       scale * used_max_coc_px(options.max_coc_px, of_scene, options.size.height), kLargestMaxCoc);
   used.settings.leak = options.leak;
   used.settings.budget = options.budget;
+  used.settings.aperture = options.aperture;
   if (options.autofocus) {
     used.autofocus_pixel =
         options.autofocus_pixel.value_or(Pixel{options.size.width / 2, options.size.height / 2});

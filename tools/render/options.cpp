@@ -104,6 +104,8 @@ void add_lens_and_method_options(CLI::App& parser, RenderOptions& options) {
   add_weight_options(parser, options.leak, options.budget);
   begin_group(parser, "Methods that sample the lens");
   add_sampling_options(parser, options.sampling);
+  begin_group(parser, "The method " + std::string{kApertureMethod});
+  add_aperture_options(parser, options.aperture);
   begin_group(parser, "The method auto");
   add_auto_options(parser, options.goal, options.verify);
 }
@@ -213,6 +215,23 @@ void check_supersample(const RenderOptions& options) {
   }
 }
 
+/// Blades are of the methods that sample the lens, too; turned and stretched are those of one
+/// alone.
+void check_blades(RenderOptions& options, const CLI::App& parser) {
+  options.aperture.blades = options.sampling.aperture.blades;
+  const LensViewMethod* of_scene = options.method.of_scene;
+  const bool has_blades = of_scene != nullptr && of_scene->samples_lens;
+  if (!has_blades) {
+    check_aperture(parser, options.method.name(), names_of_sampling_methods());
+    return;
+  }
+  for (const char* option : {"--aperture-turn", "--anamorphic"}) {
+    if (!is_given(parser, option)) continue;
+    throw UsageError(std::string{option} + ": the method " + std::string{of_scene->name} +
+                     " has blades alone; give --method " + std::string{kApertureMethod});
+  }
+}
+
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
 /// depth (4) and the largest encoding (12).
 constexpr std::uint64_t kRenderBytesPerPixel = 40;
@@ -317,6 +336,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   check_auto_options(parser, options.method);
   check_arithmetic(options.arithmetic, options.method.name(), options.gl != nullptr);
   const bool samples = options.method.of_scene != nullptr;
+  check_blades(options, parser);
   if (samples && options.method.of_scene->samples_lens) {
     complete_sampling(options.sampling, *options.method.of_scene, parser);
   } else if (!options.method.is_auto()) {

@@ -57,6 +57,7 @@ struct RenderOptions {
   std::optional<float> max_coc_px;
   float leak = DofSettings{}.leak;
   float budget = DofSettings{}.budget;
+  Aperture aperture;  ///< of kApertureMethod
   Show show = Show::image;
   std::optional<std::size_t> layers;  ///< of --layers
   std::optional<std::filesystem::path> report;

@@ -39,6 +39,9 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
     json["max_coc_px"] = record.lens->settings.max_coc_px;
     json["leak"] = record.lens->settings.leak;
     if (method.name() == kBudgetMethod) json["budget"] = record.lens->settings.budget;
+    if (method.name() == kApertureMethod && options.aperture != Aperture{}) {
+      json["aperture"] = aperture_json(options.aperture);
+    }
     json["arithmetic"] = arithmetic_name(options.arithmetic);
     if (!options.sharp_depths.empty()) {
       json["sharp_depths_m"] = ranges_json(options.sharp_depths);

@@ -45,7 +45,8 @@ async function hash_by_program(page) {
   const words = (await text_of(page, "command")).split(" ");
   assert.strictEqual(words.shift(), "softfocus", "the page names no command");
   words[words.indexOf("-o") + 1] = path.join(work, "picture.png");
-  const said = execFileSync(program, words, { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+  const said = execFileSync(program, words, { cwd: work, encoding: "utf8",
+                                              stdio: ["ignore", "pipe", "ignore"] });
   return JSON.parse(said).picture_hash;
 }
 
@@ -168,6 +169,72 @@ test("a model that is dropped is drawn; a broken one is a line, and nothing is l
   await page.locator("#files").setInputFiles([file("fine.obj", triangle)]);
   await page.waitForFunction(() => document.getElementById("scene").value === "/own/fine.obj");
   assert.notStrictEqual(await drawn(page), first);
+});
+
+/** Drops files of the work folder on the page. */
+function drop(page, names) {
+  const files = names.map((name) => [name, fs.readFileSync(path.join(work, name)).toString("base64")]);
+  return page.evaluate((given) => {
+    const transfer = new DataTransfer();
+    for (const [name, text] of given) {
+      transfer.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
+    }
+    document.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, cancelable: true }));
+  }, files);
+}
+
+test("a picture and its depth are refocused with the program's bits, and scenes come back", async (page) => {
+  const first = await drawn(page);
+  const run = (...words) => execFileSync(program, words, { cwd: work, stdio: "ignore" });
+  run("render", "figures", "--size", "240x160", "--show", "pinhole", "-o", "photo.png",
+      "--depth-output", "photo_depth.png");
+  run("render", "figures", "--size", "240x160", "--show", "depth", "-o", "grey.png");
+  await drop(page, ["photo_depth.png", "photo.png"]);
+  await page.waitForSelector("#depth-part:not([hidden])");
+  await equals_program(page);
+  assert.match(await text_of(page, "command"), /^softfocus refocus photo\.png photo_depth\.png /);
+  assert.match(await page.locator("#encoding option").first().textContent(), /millimetres/);
+  assert.ok(await page.locator("#no-scene").isVisible());
+  const seen = new Set([await drawn(page)]);
+  const changed = async (what) => {
+    await equals_program(page);
+    assert.ok(!seen.has(await drawn(page)), `${what} changed nothing`);
+    seen.add(await drawn(page));
+  };
+  await set_number(page, "coc-scale-part", 6);
+  await changed("scale");
+  const box = await page.locator("#picture").boundingBox();
+  await page.mouse.click(box.x + 0.2 * box.width, box.y + 0.9 * box.height);
+  await changed("a click");
+  await set_number(page, "f-number-part", 1.2);
+  await changed("f-number");
+  await page.locator("#method").selectOption("disc-layers");
+  await changed("method");
+  const [download] = await Promise.all([page.waitForEvent("download"),
+                                        page.locator("#save-picture").click()]);
+  const file = path.join(work, "saved.png");
+  await download.saveAs(file);
+  assert.strictEqual(download.suggestedFilename(), "photo-refocused.png");
+  execFileSync(program, ["compare", file, path.join(work, "picture.png")], { stdio: "ignore" });
+  await press(page, "ArrowLeft");  // no camera
+  assert.ok(seen.has(await drawn(page)));
+
+  // 8 bits do not tell what they are.
+  await page.locator("#files").setInputFiles(["photo.png", "grey.png"].map((name) => path.join(work, name)));
+  assert.match(await error_line(page), /choose/);
+  await page.locator("#encoding").selectOption("device");
+  await page.locator("#encoding-near").fill("0.5");
+  await page.locator("#encoding-near").press("Tab");
+  await page.locator("#encoding-far").fill("4");
+  await page.locator("#encoding-far").press("Tab");
+  await page.waitForFunction(() => document.getElementById("error").hidden, null, { timeout: kFrameMs });
+  await equals_program(page);
+  if (process.env.SHOT) await page.screenshot({ path: process.env.SHOT });
+
+  await page.locator("#scene").selectOption("figures");
+  await page.waitForSelector("#depth-part", { state: "hidden" });
+  assert.strictEqual(await drawn(page), first);
+  await equals_program(page);
 });
 
 test("the truth comes nearer, and the methods get their errors", async (page) => {

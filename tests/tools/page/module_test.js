@@ -89,6 +89,50 @@ const kTests = {
     assert.strictEqual(mine.hash, ask({ do: "frame", size: [64, 64] }).hash);
   },
 
+  "a picture and its depth have the hash and the file that `refocus` gives"({ module, ask }) {
+    const run = (...words) => execFileSync(program, words, { cwd: folder, encoding: "utf8",
+                                                             stdio: ["ignore", "pipe", "ignore"] });
+    const size = ["--size", "96x64"];
+    run("render", "figures", ...size, "--show", "pinhole", "-o", "a.png", "--depth-output", "d.png");
+    run("render", "figures", ...size, "--show", "pinhole", "-o", "a.pfm", "--depth-output", "d.pfm");
+    run("render", "figures", ...size, "--show", "pinhole", "-o", "a.hdr", "--depth-output", "d.npy");
+    run("render", "figures", ...size, "--show", "pinhole", "-o", "both.npy");
+    run("render", "figures", ...size, "--show", "depth", "-o", "grey.png");
+    for (const name of fs.readdirSync(folder)) {  // with the sidecars that tell the field of view
+      module.FS.writeFile(`/own/${name}`, fs.readFileSync(path.join(folder, name)));
+    }
+    const cases = [
+      { files: ["a.png", "d.png"], reading: {}, words: [] },
+      { files: ["a.pfm", "d.pfm"], reading: { encoding: "metres", scale: 2 },
+        words: ["--depth-encoding", "metres", "--scale", "2"] },
+      { files: ["a.hdr", "d.npy"], reading: {}, words: [] },
+      { files: ["both.npy"], reading: {}, words: [] },
+      { files: ["a.png", "grey.png"], reading: { encoding: "gdepth-inverse", near_m: 0.5, far_m: 4 },
+        words: ["--depth-encoding", "gdepth-inverse", "--near", "0.5", "--far", "4"] },
+    ];
+    const lens = { focus: { at: [0.5, 0.5] }, f_number: 1.4, focal_length_mm: 60, coc_scale: 4 };
+    for (const { files, reading, words } of cases) {
+      const [picture, depth] = files.map((name) => `/own/${name}`);
+      const opened = ask({ do: "open", picture, depth: depth ?? null, ...reading });
+      assert.strictEqual(opened.error, undefined, files.join(" "));
+      for (const method of ["two-pass", "disc-layers", "scatter-aperture"]) {
+        const frame = ask({ do: "frame", method, ...lens });
+        const said = JSON.parse(run(
+            "refocus", ...files, "-o", "result.npy", "--json", "--method", method, ...words,
+            "--focus-at", "48,32", "--f-number", "1.4", "--focal-length", "60", "--coc-scale", "4"));
+        assert.strictEqual(frame.hash, said.picture_hash, `${files.join(" ")} ${method}`);
+        const { saved_bytes } = ask({ do: "save", format: "npy" });
+        const begin = module._softfocus_saved();
+        const memory = module.wasmMemory?.buffer ?? module.HEAPU8.buffer;
+        assert.ok(fs.readFileSync(path.join(folder, "result.npy"))
+            .equals(Buffer.from(memory, begin, saved_bytes)), "the file");
+      }
+    }
+    module.FS.writeFile("/own/x.exr", Buffer.from([0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]));
+    assert.match(ask({ do: "open", picture: "/own/x.exr" }).error, /refocus IN\.exr .*OUT\.npy/);
+    assert.match(ask({ do: "truth", views: 4 }).error, /no scene/);
+  },
+
   "what is wrong is an error, and nothing has changed"({ ask }) {
     ask({ do: "open", scene: "figures" });
     const { hash } = ask({ do: "frame", size: [32, 32] });

@@ -125,6 +125,41 @@ test("of dropped files the scene is opened, else the model", async () => {
   assert.strictEqual(scene_among(["a.png"]), undefined);
 });
 
+test("of two dropped pictures one is the depth", async () => {
+  const { picture_among } = await module_of("panels/own_files.js");
+  const found = (...paths) => picture_among(paths);
+  assert.deepStrictEqual(found("b_depth.png", "b.jpg"), { picture: "b.jpg", depth: "b_depth.png" });
+  assert.deepStrictEqual(found("im0.png", "disp0.pfm"), { picture: "im0.png", depth: "disp0.pfm" });
+  assert.deepStrictEqual(found("a.z.png", "a.png"), { picture: "a.png", depth: "a.z.png" });
+  assert.deepStrictEqual(found("depths/a.png", "depths/b.png"), { picture: "depths/a.png", depth: "depths/b.png" });
+  assert.deepStrictEqual(found("a.npy", "a.npy.json"), { picture: "a.npy", depth: null });
+  assert.strictEqual(found("a.png", "b.png", "c.png"), undefined);
+  assert.strictEqual(found("notes.txt"), undefined);
+});
+
+test("a picture's request and its command have the numbers that its encoding takes", async () => {
+  const { picture_request } = await module_of("panels/picture.js");
+  const { command_of } = await module_of("panels/hashes.js");
+  const { first_side, first_state, with_picture } = await module_of("state.js");
+  const encodings = [{ name: "metres", needs: "", takes: "scale offset" },
+                     { name: "device", needs: "near far", takes: "" }];
+  const picture = { depth: "/own/my d.png", encoding: "device", numbers: { near_m: 1, far_m: 9, scale: 2 } };
+  assert.deepStrictEqual(picture_request("/own/a.png", picture, encodings, null), {
+    do: "open", picture: "/own/a.png", depth: "/own/my d.png", encoding: "device", near_m: 1, far_m: 9 });
+  const believed = picture_request("/own/a.png", { ...picture, encoding: null }, encodings, "metres");
+  assert.deepStrictEqual([believed.encoding, believed.scale, believed.near_m], [null, 2, undefined]);
+
+  const side = { ...first_side(), method: "accumulation", focus: { at: [0.5, 1] } };
+  const state = with_picture({ ...first_state(), scene: "/own/a.png", picture, show: "truth", sides: [side] },
+                             { width: 300, height: 200 }, [{ name: "two-pass", kind: "filter" }]);
+  assert.deepStrictEqual([state.show, state.sides[0].method], ["picture", "two-pass"]);
+  assert.strictEqual(
+      command_of(state, state.sides[0], encodings),
+      "softfocus refocus a.png 'my d.png' -o picture.png --json --depth-encoding device --near 1 --far 9 " +
+      "--method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --coc-scale 1");
+  assert.strictEqual(command_of(state, { ...side, dof: false }, encodings), null);
+});
+
 test("radii are read from a line of text", async () => {
   const { read_radii } = await module_of("panels/methods_table.js");
   assert.deepStrictEqual(read_radii("32, 8;8 x -1 2000"), [8, 32]);

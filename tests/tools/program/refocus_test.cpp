@@ -88,6 +88,47 @@ TEST_CASE("refocus: exact depth in any file gives the bits that render gives") {
   }
 }
 
+TEST_CASE("render: an aperture's blades, turn and stretch give the bits that refocus gives") {
+  const TemporaryDirectory directory;
+  draw(directory, "a.npy", "d.pfm");
+  const Words round = joined(kLens, {"--method", "scatter-aperture"});
+  std::vector<std::uint64_t> seen{hash_image(rendered_picture("figures", round).image)};
+  for (const Words& aperture :
+       {Words{"--aperture-blades", "5"}, Words{"--aperture-blades", "5", "--aperture-turn", "30"},
+        Words{"--anamorphic", "2"}}) {
+    CAPTURE(aperture.back());
+    const Words options = joined(round, aperture);
+    const Image rendered = rendered_picture("figures", options).image;
+    CHECK(equal(refocus_of(directory, {"a.npy"}, options), rendered));
+    seen.push_back(hash_image(rendered));
+    CHECK(std::count(seen.begin(), seen.end(), seen.back()) == 1);
+  }
+}
+
+TEST_CASE("render: transparent surfaces are blurred by the aperture's shape, too") {
+  const Words round{"--method", "scatter-aperture", "--coc-scale", "3"};
+  const Image disc = rendered_picture("glass", round).image;
+  const Image blades = rendered_picture("glass", joined(round, {"--aperture-blades", "3"})).image;
+  CHECK_FALSE(equal(disc, blades));
+}
+
+TEST_CASE("render: apertures are refused with who has them") {
+  const TemporaryDirectory directory;
+  const auto check_refused_render = [&](const Words& options, const Words& named) {
+    check_refused(directory, render("figures", directory.file("a.npy"), options), 2, named);
+  };
+  for (const std::string option : {"--aperture-blades", "--aperture-turn", "--anamorphic"}) {
+    check_refused_render({option, "3"}, {option, "two-pass has a round aperture alone",
+                                         "--method scatter-aperture"});
+  }
+  check_refused_render({"--method", "accumulation", "--anamorphic", "2"},
+                       {"--anamorphic", "accumulation", "--method scatter-aperture"});
+  check_refused_render({"--method", "scatter-aperture", "--samples", "4"},
+                       {"--samples", "scatter-aperture", "accumulation"});
+  check_refused_render({"--method", "scatter-aperture", "--anamorphic", "99"},
+                       {"--anamorphic", "0.0625 to 16"});
+}
+
 TEST_CASE(
     "refocus: a multi-layer EXR by Blender gives the picture of the same scene, within 50 dB") {
   if (!missing_exr().empty()) return;

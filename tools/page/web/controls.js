@@ -115,6 +115,8 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
     by_id("method").value = now.method;
     const method = methods.find(({ name }) => name === now.method);
     by_id("method-summary").textContent = method?.summary ?? "";
+    const of_scene = by_id("method").querySelector("optgroup:last-child");
+    if (of_scene) of_scene.disabled = Boolean(state.picture);
     by_id("samples-part").hidden = !kSampled.includes(now.method);
     by_id("compare").checked = state.sides.length > 1;
     by_id("side-part").hidden = state.sides.length < 2;
@@ -148,6 +150,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
       side({ f_number: kStops[Math.min(kStops.length - 1, Math.max(0, at + steps))] });
     },
     next_size() {
+      if (store.get().picture) return;  // which has a size of its own
       const at = kSizes.findIndex((size) => size.join() === store.get().size.join());
       store.change({ size: kSizes[(at + 1) % kSizes.length] });
     },

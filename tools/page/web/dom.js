@@ -47,7 +47,12 @@ export function paint_pixels(canvas, width, height, pixels) {
 
 /** Saves text as a file of the visitor's. */
 export function save_text(name, text, type = "text/plain") {
-  const url = URL.createObjectURL(new Blob([text], { type: `${type};charset=utf-8` }));
+  save_file(name, text, `${type};charset=utf-8`);
+}
+
+/** Likewise a text or an ArrayBuffer, of that type. */
+export function save_file(name, content, type = "application/octet-stream") {
+  const url = URL.createObjectURL(new Blob([content], { type }));
   const link = element("a", { href: url, download: name });
   document.body.append(link);
   link.click();

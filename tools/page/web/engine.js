@@ -4,9 +4,9 @@
 // To the worker: {id, request, files}. `files` ([{path, bytes}]) are written below /own/ first.
 // From the worker: {ready: true, build, missing, cancel} once (`cancel` is an Int32Array of one
 // number in shared memory, or absent), {failed: "one line"} if nothing can run, and then for each
-// request {id, reply, pixels}, `pixels` an ArrayBuffer of RGBA8 rows or absent. If the module
-// stops for good, {restarted: true, cancel} comes before that reply: a new module in which nothing
-// is open.
+// request {id, reply, pixels, file}, `pixels` an ArrayBuffer of RGBA8 rows, `file` of a file's bytes,
+// either perhaps absent. If the module stops for good, {restarted: true, cancel} comes before that
+// reply: a new module in which nothing is open.
 
 export const kUrgent = 0;
 export const kAsked = 1;
@@ -60,7 +60,7 @@ export function start_engine({ on_ready, on_failed, on_restarted }) {
     } else if (running && data.id === running.id) {
       const job = running;
       running = null;
-      job.done({ reply: data.reply, pixels: data.pixels });
+      job.done({ reply: data.reply, pixels: data.pixels, file: data.file });
       pump();
     }
   });
@@ -70,7 +70,7 @@ export function start_engine({ on_ready, on_failed, on_restarted }) {
   });
 
   return {
-    /** A promise of {reply, pixels}; a failed request gives reply.error, never an exception. */
+    /** A promise of {reply, pixels, file}; a failed request gives reply.error, never an exception. */
     ask(request, urgency = kAsked, files = []) {
       return new Promise((done) => {
         waiting.push({ id: next_id++, request, files, urgency, done });

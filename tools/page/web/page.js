@@ -14,10 +14,11 @@ import { lens_numbers, start_lens_view } from "./lens/lens_view.js";
 import { link_of, read_link, state_to_open, with_link } from "./link.js";
 import { make_methods_table } from "./panels/methods_table.js";
 import { start_own_files } from "./panels/own_files.js";
+import { kNoScene, make_picture, picture_request } from "./panels/picture.js";
 import { locked_fov_degrees } from "./lens/photographer.js";
 import { start_pointer } from "./pointer.js";
 import { save_report } from "./panels/report.js";
-import { first_state, make_store, with_scene } from "./state.js";
+import { first_state, make_store, with_picture, with_scene } from "./state.js";
 import { start_tabs } from "./tabs.js";
 import { start_theme } from "./theme.js";
 import { start_tips } from "./tips.js";
@@ -33,7 +34,7 @@ const known_max_coc = [16, 16];
 let opened = null;   // the reply of the last open
 let last_reply = null;
 let build = "";
-let listing = { scenes: [], cases: [], methods: [] };
+let listing = { scenes: [], cases: [], methods: [], encodings: [] };
 let playing = false;
 let quit = false;
 let read_own = async () => [];  // reads the visitor's files once more
@@ -48,7 +49,7 @@ const engine = start_engine({
   on_restarted: reopen,
 });
 
-const camera = () => (opened && !store.get().failure
+const camera = () => (opened && !store.get().failure && !store.get().picture
     ? store.get().camera ?? opened.camera : null);
 const focus_m = () => store.side().focus.m ?? known_focus_m[store.get().editing];
 const max_coc = () => store.side().max_coc_px ?? known_max_coc[store.get().editing];
@@ -85,6 +86,7 @@ const truth = make_truth({
 });
 let methods_table = { renew() {} };
 let cases = { show() {} };
+let picture = { show() {} };
 const gpu = start_gpu({ engine, store, settled: frames.settled });
 const tabs = start_tabs(document.querySelector("[role=tablist]"), (id) => {
   if (id === "tab-lens") show_lens();
@@ -92,8 +94,10 @@ const tabs = start_tabs(document.querySelector("[role=tablist]"), (id) => {
 
 function show_lens() {
   const state = store.get();
-  lens_view.show(lens_numbers(state, { ...store.side(), max_coc_px: max_coc() }, focus_m(),
-                              object_m(), camera()?.fov_y_degrees ?? opened?.camera?.fov_y_degrees ?? 40));
+  const size = state.picture?.size ?? state.size;
+  const fov = last_reply?.fov_y_degrees ?? camera()?.fov_y_degrees ?? opened?.camera?.fov_y_degrees;
+  lens_view.show(lens_numbers({ ...state, size }, { ...store.side(), max_coc_px: max_coc() }, focus_m(),
+                              object_m(), fov ?? 40));
 }
 
 function show_cross() {
@@ -135,6 +139,7 @@ store.listen((state, before) => {
   show_scene_choice(state);
   by_id("seed-part").hidden = !state.scene?.startsWith("random:");
   cases.show(state.failure);
+  picture.show(state.picture, opened?.picture);
   keep_link();
   const measured = state.show === "truth" || state.show === "error";
   if (measured && !truth.wanted()) truth.want(true);
@@ -169,7 +174,7 @@ function on_frame(reply, coarse, state, wall_ms) {
                          `${coarse ? ", coarse" : ""}`;
   document.title = `${fps} fps · ${ms_text(mean_ms)} ms · softfocus`;
   if (reply.focus_m && !coarse) keep_known(reply, state.editing);
-  show_hash(reply, state, state.sides[state.editing]);
+  show_hash(reply, state, state.sides[state.editing], listing.encodings);
   if (playing) {
     setTimeout(() => { if (playing) step(); }, Math.max(0, kFrameMs - wall_ms));
   } else if (!coarse && reply.hash === null) {
@@ -187,6 +192,9 @@ function show_scene_choice({ scene, failure }) {
 }
 
 function open_request(what) {
+  if (what.picture) {
+    return picture_request(what.scene, what.picture, listing.encodings, opened?.picture?.believed);
+  }
   return what.failure ? { do: "open", case: what.failure.name, value: what.failure.value }
                       : { do: "open", scene: what.scene };
 }
@@ -230,15 +238,18 @@ async function open(what, { words = null, read = null } = {}) {
   if (read) read_own = read;
   last_reply = null;
   by_id("over").textContent = "Drawing…";
-  // Another severity of the same case keeps the setting.
+  // Another severity of the same case, or another reading of the same depth, keeps the setting.
   const before = words ? what : store.get();
-  const same = what.failure && before.failure?.name === what.failure.name;
-  let next = { ...before, scene: what.scene ?? null, failure: what.failure ?? null };
+  const same = what.failure ? before.failure?.name === what.failure.name
+      : what.picture && before.picture && !read;
+  let next = { ...before, scene: what.scene ?? null, failure: what.failure ?? null,
+               picture: what.picture ?? null };
   if (!same || words) next = with_scene(next, reply);
+  if (next.picture) next = with_picture(next, reply.picture, listing.methods);
   if (words) next = with_link(next, words);
   next.sides.forEach((_, index) => { known_focus_m[index] = reply.lens?.focus_m ?? 1; });
   for (const id of ["play", "step", "time"]) by_id(id).disabled = is_still();
-  by_id("camera-home").disabled = Boolean(what.failure);
+  by_id("camera-home").disabled = Boolean(what.failure || what.picture);
   set_playing(false);
   store.set(next);
   frames.set_open(true);
@@ -247,7 +258,15 @@ async function open(what, { words = null, read = null } = {}) {
   announce(`${reply.title ?? "The scene"} is open.`);
   show_own_scene(next.scene);
   const warnings = reply.warnings ?? [];
+  if (reply.picture?.lacks) show_error(reply.picture.lacks);
   if (warnings.length > 0) show_error(warnings.slice(0, 3).join(" · "));
+  return warnings;
+}
+
+let own_picture = null;  // the last that was opened
+async function open_picture(what, read = null) {
+  const warnings = await open(what, { read });
+  if (warnings) own_picture = what;
   return warnings;
 }
 
@@ -303,7 +322,8 @@ function set_quit(on) {
 
 function reset() {
   if (!opened) return;
-  const fresh = { ...first_state(), scene: store.get().scene, failure: store.get().failure };
+  const fresh = { ...first_state(), scene: store.get().scene, failure: store.get().failure,
+                  picture: store.get().picture };
   store.set(with_scene(fresh, opened));
   if (performance.now() - restarted_at < kRestartMs) {
     restarted_at = -Infinity;
@@ -313,6 +333,10 @@ function reset() {
 }
 
 function toggle_show(kind) {
+  if (store.get().picture && (kind === "truth" || kind === "error")) {
+    show_error(kNoScene);
+    return;
+  }
   store.change({ show: store.get().show === kind ? "picture" : kind });
 }
 
@@ -412,6 +436,10 @@ by_id("help").addEventListener("click", () => tabs.choose("tab-keys"));
 by_id("error-close").addEventListener("click", () => show_error(""));
 by_id("truth-on").addEventListener("change", (event) => truth.want(event.target.checked));
 by_id("scene").addEventListener("change", ({ target }) => {
+  if (target.value === own_picture?.scene) {
+    open_picture(own_picture);
+    return;
+  }
   open({ scene: target.value === "random" ? `random:${by_id("seed").value}` : target.value });
 });
 by_id("seed").addEventListener("change", ({ target }) => {
@@ -434,6 +462,10 @@ start_hashes({ engine });
 start_own_files({
   on_error: show_error,
   open: (path, read) => open({ scene: `/own/${path}` }, { read }),
+  open_picture: (found, read) => open_picture({
+    scene: `/own/${found.picture}`,
+    picture: { depth: found.depth && `/own/${found.depth}`, encoding: null, numbers: {} },
+  }, read),
 });
 
 async function open_link(fragment) {
@@ -466,6 +498,14 @@ async function start(ready) {
   by_id("scene").disabled = false;
   controls.set_methods(listing.methods);
   cases = make_cases({ cases: listing.cases, open: (name, value) => open_newest({ failure: { name, value } }) });
+  picture = make_picture({
+    engine, encodings: listing.encodings,
+    change: (reading) => {
+      const { scene, picture: now } = store.get();
+      open_picture({ scene, picture: { ...now, ...reading } });
+    },
+    stem: () => store.get().scene.replace(/^.*\//, "").replace(/\.[^.]*$/, ""),
+  });
   methods_table = make_methods_table({
     engine, truth, settled: frames.settled,
     methods: listing.methods.filter(({ kind }) => kind === "filter"),

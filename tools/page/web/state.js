@@ -23,6 +23,8 @@ export function first_state() {
     /** A name, a file under /own/, or null while a failure case is open. */
     scene: "figures",
     failure: null,  // {name, value}
+    /** Of a picture, whose file is `scene`: {depth, size, encoding, numbers}; see panels/picture.js. */
+    picture: null,
     size: [512, 512],
     time: 0,
     camera: null,  // null: the scene's own, {position_m, target_m, fov_y_degrees}
@@ -35,7 +37,7 @@ export function first_state() {
   };
 }
 
-/** The state with the camera and lens that a scene asks for. */
+/** The state with the camera and lens that a scene or a picture asks for. */
 export function with_scene(state, opened) {
   const lens = opened.lens ?? {};
   const side = {
@@ -49,6 +51,17 @@ export function with_scene(state, opened) {
   const sides = state.sides.map((old) => ({ ...side, dof: old.dof, method: old.method,
                                             samples: old.samples }));
   return { ...state, camera: null, time: 0, object_m: null, sides };
+}
+
+/** The state of a picture of that size. It is shown by filters alone, and has no truth. */
+export function with_picture(state, { width, height }, methods) {
+  const filters = methods.filter(({ kind }) => kind === "filter").map(({ name }) => name);
+  return {
+    ...state, camera: null, picture: { ...state.picture, size: [width, height] },
+    show: ["truth", "error"].includes(state.show) ? "picture" : state.show,
+    sides: state.sides.map((side) => (
+        filters.includes(side.method) ? side : { ...side, method: "two-pass" })),
+  };
 }
 
 /**

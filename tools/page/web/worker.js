@@ -4,7 +4,8 @@
 // To the worker: {id, request, files}. `files` ([{path, bytes}]) are written below /own/ first.
 // From the worker: {ready: true, build, missing, cancel} once (`cancel` is an Int32Array of one
 // number in memory shared with the module, or null), or {failed: "one line"} if nothing can run.
-// Then {id, reply, pixels} for each request; `pixels` is an ArrayBuffer of RGBA8 rows, or absent.
+// Then {id, reply, pixels, file} for each request; `pixels` is an ArrayBuffer of RGBA8 rows, `file`
+// one of the file that was asked for; either may be absent.
 // If the module stops for good, the reply is {error}, and a new module takes its place, in which
 // nothing is open: {restarted: true, cancel}.
 //
@@ -104,6 +105,13 @@ function pixels_of(module, reply) {
   return bytes.slice().buffer;
 }
 
+/** A copy of the file, if the reply tells of one. */
+function file_of(module, reply) {
+  if (!reply.saved_bytes) return undefined;
+  const begin = module._softfocus_saved();
+  return new Uint8Array(memory_of(module), begin, reply.saved_bytes).slice().buffer;
+}
+
 /** What a page writes 1 to, to end a request early; null where it shares no memory. */
 function cancel_of(module) {
   const memory = memory_of(module);
@@ -130,11 +138,12 @@ async function run() {
   let queue = Promise.resolve();
 
   async function answer({ id, request, files }) {
-    let reply, pixels;
+    let reply, pixels, file;
     try {
-      for (const file of files ?? []) write_file(module, file);
+      for (const own of files ?? []) write_file(module, own);
       reply = ask(module, request);
       pixels = pixels_of(module, reply);
+      file = file_of(module, reply);
     } catch (error) {
       // Out of stack, or a mistake of ours: the module's memory is in no known state.
       reply = { error: `the module stopped: ${error.message ?? error}` };
@@ -142,7 +151,7 @@ async function run() {
       module = await make_module(build, bytes);
       self.postMessage({ restarted: true, cancel: cancel_of(module) });
     }
-    self.postMessage({ id, reply, pixels }, pixels ? [pixels] : []);
+    self.postMessage({ id, reply, pixels, file }, [pixels, file].filter(Boolean));
   }
 
   self.onmessage = ({ data }) => { queue = queue.then(() => answer(data)); };

@@ -3,24 +3,44 @@
 
 import { announce, by_id, copy_text, element, save_text, show_error } from "../dom.js";
 import { kBackground } from "../engine.js";
+import { depth_words } from "./picture.js";
 
 const kSlice = 8;  // golden hashes a request
 
 /** Whether only a scene's file can say what the command line cannot: a camera, a model of one's own. */
 function needs_file(state) {
+  if (state.picture) return false;
   return Boolean(state.camera) || state.scene.startsWith("/own/");
 }
 
 function lens_words(state, side) {
+  const size = state.picture?.size ?? state.size;
   const pixel = side.focus.at?.map((part, axis) => Math.min(
-      state.size[axis] - 1, Math.floor(part * state.size[axis])));
-  return [pixel ? `--autofocus ${pixel.join(",")}` : `--focus ${side.focus.m}`,
+      size[axis] - 1, Math.floor(part * size[axis])));
+  const at = state.picture ? "--focus-at" : "--autofocus";
+  return [pixel ? `${at} ${pixel.join(",")}` : `--focus ${side.focus.m}`,
           `--focal-length ${side.focal_length_mm}`, `--f-number ${side.f_number}`,
           `--coc-scale ${side.coc_scale}`];
 }
 
+const name_of = (path) => {
+  const name = path.replace(/^.*\//, "");
+  return /^[\w.+-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`;
+};
+
+function refocus_command(state, side, encodings) {
+  const { picture } = state;
+  if (!side.dof) return null;
+  const show = state.show === "coc" || state.show === "depth" ? [`--show ${state.show}`] : [];
+  return ["softfocus refocus", name_of(state.scene), ...(picture.depth ? [name_of(picture.depth)] : []),
+          "-o picture.png --json", ...depth_words(picture, encodings), ...show,
+          `--method ${side.method}`, ...lens_words(state, side),
+          ...(side.max_coc_px === null ? [] : [`--max-coc ${side.max_coc_px}`])].join(" ");
+}
+
 /** The command whose --json tells the same picture_hash, or null if there is none. */
-export function command_of(state, side) {
+export function command_of(state, side, encodings = []) {
+  if (state.picture) return refocus_command(state, side, encodings);
   if (state.failure || (state.camera && state.scene.startsWith("random:"))) return null;
   const show = state.show === "coc" || state.show === "depth" ? state.show
       : side.dof ? "image" : "pinhole";
@@ -41,6 +61,10 @@ export function command_of(state, side) {
 }
 
 function command_note(state, command) {
+  if (state.picture) {
+    return command ? "This command’s picture_hash is the same, beside your own files."
+                   : "Without depth of field it is the file itself.";
+  }
   if (state.failure) return "No command draws a case alone; softfocus stress draws them all.";
   if (!command) return "No command has the moved camera of a random scene.";
   if (!needs_file(state)) return "This command’s picture_hash is the same.";
@@ -48,15 +72,16 @@ function command_note(state, command) {
          (state.scene.startsWith("/own/") ? ", beside your own files." : ".");
 }
 
-export function show_hash(reply, state, side) {
-  const command = reply.hash ? command_of(state, side) : null;
+export function show_hash(reply, state, side, encodings) {
+  const has_lens = !state.picture || reply.focus_m;
+  const command = reply.hash && has_lens ? command_of(state, side, encodings) : null;
   by_id("hash").textContent = reply.hash ?? "–";
   by_id("hash-full").textContent = reply.hash ?? "–";
   by_id("command").textContent = command ?? "";
   by_id("command-note").textContent = reply.hash ? command_note(state, command)
                                                  : "A moving or coarse picture has no hash.";
   by_id("copy-command").disabled = !command;
-  by_id("save-scene").disabled = Boolean(state.failure) || state.scene.startsWith("random:");
+  by_id("save-scene").disabled = Boolean(state.failure) || Boolean(state.picture) || state.scene.startsWith("random:");
 }
 
 async function save_scene(engine) {

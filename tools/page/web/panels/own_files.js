@@ -1,4 +1,5 @@
-// The visitor's own scenes: dropped on the page or chosen. They go to the worker and no farther.
+// The visitor's own scenes and pictures: dropped on the page or chosen. They go to the worker and
+// no farther.
 
 import { by_id, element } from "../dom.js";
 
@@ -36,20 +37,42 @@ export function scene_among(paths) {
   return of(".toml") ?? of(".obj");
 }
 
+// The module reads a part of them, and says of the others what converts them.
+const kPicture = /\.(png|jpe?g|hdr|pfm|npy|exr|tiff?|hei[cf]|avif|webp|gif|bmp|psd|dpx|p[gp]m)$/i;
+const kDepthName = /depth|disp|(^|[^a-z])(z|dist|range|mist)([^a-z]|$)/i;
+
+/**
+ * The picture and its depth map: that with depth in its name, or the second of two. `depth` is null
+ * if there is one file alone. Undefined if there is none, or more than two.
+ */
+export function picture_among(paths) {
+  const files = paths.filter((path) => kPicture.test(path));
+  if (files.length < 1 || files.length > 2) return undefined;
+  if (files.length === 1) return { picture: files[0], depth: null };
+  const says_depth = (path) => kDepthName.test(path.replace(/^.*\//, ""));
+  const [first, second] = files;
+  return says_depth(first) && !says_depth(second) ? { picture: second, depth: first }
+                                                  : { picture: first, depth: second };
+}
+
 /**
  * `open(path, read)` opens /own/path after writing the files that `read()` resolves to, and
- * resolves to its warnings, or to null.
+ * resolves to its warnings, or to null; `open_picture({picture, depth}, read)` likewise.
  */
-export function start_own_files({ open, on_error }) {
+export function start_own_files({ open, open_picture, on_error }) {
   const messages = by_id("own-messages");
   const drop = by_id("drop");
 
   async function take(chosen) {
     on_error("");
-    const first = scene_among(chosen.map(({ path }) => path));
     if (chosen.length === 0) return;
+    const paths = chosen.map(({ path }) => path);
+    const scene = scene_among(paths);
+    const found = scene ? null : picture_among(paths);
+    const first = scene ?? found?.picture;
     if (!first) {
-      on_error("none of these files is a scene: give an .obj or a .toml, with what it needs");
+      on_error("these files are no scene and no picture: give an .obj or a .toml with what it needs, " +
+               "or a picture and its depth map");
       return;
     }
     const total = chosen.reduce((sum, { file }) => sum + file.size, 0);
@@ -60,7 +83,7 @@ export function start_own_files({ open, on_error }) {
     const read = () => Promise.all(
         chosen.map(async ({ path, file }) => ({ path, bytes: await file.arrayBuffer() })));
     try {
-      const warnings = await open(first, read);
+      const warnings = await (scene ? open(scene, read) : open_picture(found, read));
       if (!warnings) return;
       messages.replaceChildren(
           element("li", {}, `${first} is open.`),

@@ -1,0 +1,228 @@
+// The page's requests about a picture and its depth, answered natively: the bits of `refocus`.
+
+#include "tools/page/picture.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/support/cli_render.h"
+#include "tools/files/image_file.h"
+
+using namespace softfocus;
+
+namespace {
+
+/// figures as a picture: a.png, and its depth d.png in millimetres; both in a.npy; the depth as a
+/// grey picture grey.png.
+struct Files {
+  TemporaryDirectory directory;
+  std::string a = directory.file("a.png"), d = directory.file("d.png"),
+              both = directory.file("a.npy"), grey = directory.file("grey.png");
+
+  Files() {
+    const Words pinhole{"--show", "pinhole"};
+    CHECK(run_program(render("figures", a, {"--show", "pinhole", "--depth-output", d})).status ==
+          0);
+    CHECK(run_program(render("figures", both, pinhole)).status == 0);
+    CHECK(run_program(render("figures", grey, {"--show", "depth"})).status == 0);
+  }
+};
+
+Json ask(Page& page, const Json& request) { return *parse_json(answer(page, json_text(request))); }
+
+Json ask_well(Page& page, const Json& request) {
+  Json reply = ask(page, request);
+  const Json* error = reply.find("error");
+  REQUIRE_MESSAGE(error == nullptr, error->text());
+  return reply;
+}
+
+std::string error_of(Page& page, const Json& request) {
+  const Json reply = ask(page, request);
+  const Json* error = reply.find("error");
+  return error == nullptr ? "" : error->text();
+}
+
+/// What `refocus` says of the same files.
+nlohmann::json refocused_by_program(const Files& files, Words words) {
+  words.insert(words.begin(), "refocus");
+  words.insert(words.end(), {"-o", files.directory.file("result.npy"), "--json"});
+  const ProgramRun run = run_program(words);
+  REQUIRE_MESSAGE(run.status == 0, run.err);
+  return nlohmann::json::parse(run.out);
+}
+
+}  // namespace
+
+TEST_CASE("a picture's frame has the bits of refocus, by every setting") {
+  const Files files;
+  const Json pair{{"do", "open"}, {"picture", files.a}, {"depth", files.d}};
+  const Json both{{"do", "open"}, {"picture", files.both}};
+  const Json grey{{"do", "open"},         {"picture", files.a}, {"depth", files.grey},
+                  {"encoding", "device"}, {"near_m", 0.5},      {"far_m", 4.0}};
+  const Words of_pair{files.a, files.d}, of_both{files.both};
+  const Words of_grey{files.a, files.grey, "--depth-encoding", "device", "--near", "0.5",
+                      "--far", "4"};
+  struct Case {
+    Json open;
+    Words files;
+    Json frame;
+    Words options;
+  };
+  const std::vector<Case> cases{
+      {pair,
+       of_pair,
+       {{"do", "frame"}, {"focus", {{"at", {0.5, 0.5}}}}, {"coc_scale", 4.0}},
+       {"--coc-scale", "4", "--focus-at", "24,16"}},
+      {both,
+       of_both,
+       {{"do", "frame"},
+        {"focus", {{"m", 0.9}}},
+        {"f_number", 1.2},
+        {"focal_length_mm", 80.0},
+        {"method", "disc-layers"}},
+       {"--focus", "0.9", "--f-number", "1.2", "--focal-length", "80", "--method", "disc-layers"}},
+      {both,
+       of_both,
+       {{"do", "frame"}, {"focus", {{"at", {0.0, 1.0}}}}, {"show", "coc"}},
+       {"--focus-at", "0,31", "--show", "coc"}},
+      {grey,
+       of_grey,
+       {{"do", "frame"}, {"focus", {{"m", 2.0}}}, {"max_coc_px", 3.0}, {"coc_scale", 9.0}},
+       {"--focus", "2", "--max-coc", "3", "--coc-scale", "9"}},
+      {pair,
+       of_pair,
+       {{"do", "frame"}, {"focus", {{"m", 1.0}}}, {"show", "depth"}},
+       {"--focus", "1", "--show", "depth"}}};
+  for (const Case& one : cases) {
+    Page page;
+    ask_well(page, one.open);
+    const Json frame = ask_well(page, one.frame);
+    Words words = one.files;
+    words.insert(words.end(), one.options.begin(), one.options.end());
+    CAPTURE(words.back());
+    const auto expected = refocused_by_program(files, words);
+    CHECK(frame.at("hash").text() == expected["picture_hash"]);
+    CHECK(frame.at("focus_m").number() == doctest::Approx(expected["focus_m"].get<double>()));
+    CHECK(frame.at("max_coc_px").number() == expected["max_coc_px"].get<double>());
+  }
+}
+
+TEST_CASE("a picture's file is the one that refocus writes") {
+  const Files files;
+  Page page;
+  ask_well(page, {{"do", "open"}, {"picture", files.a}, {"depth", files.d}});
+  CHECK(error_of(page, {{"do", "save"}, {"format", "png"}}) != "");  // nothing is shown yet
+  ask_well(page, {{"do", "frame"}, {"focus", {{"m", 1.0}}}, {"coc_scale", 5.0}});
+  for (const std::string format : {"png", "png-16", "npy", "pfm", "hdr"}) {
+    CAPTURE(format);
+    const Json reply = ask_well(page, {{"do", "save"}, {"format", format}});
+    CHECK(reply.at("saved_bytes").integer() == static_cast<int>(page.saved.size()));
+    const std::string out = files.directory.file("r." + format.substr(0, 3));
+    CHECK(run_program({"refocus", files.a, files.d, "-o", out, "--format", format, "--focus", "1",
+                       "--coc-scale", "5"})
+              .status == 0);
+    CHECK(std::string{reinterpret_cast<const char*>(page.saved.data()), page.saved.size()} ==
+          read_file(out));
+  }
+  for (const std::string format : {"rgb24", "tiff", ""}) {
+    CHECK(error_of(page, {{"do", "save"}, {"format", format}}) != "");
+  }
+}
+
+TEST_CASE("a depth that cannot be told is asked for, and the picture is there meanwhile") {
+  const Files files;
+  Page page;
+  Json open{{"do", "open"}, {"picture", files.a}, {"depth", files.grey}};
+  Json about = ask_well(page, open).at("picture");
+  CHECK(about.at("believed").is_null());
+  CHECK(about.at("lacks").text().find("choose") != std::string::npos);
+  CHECK(about.at("type").text() == "8 bits");
+  const Json sharp = ask_well(page, {{"do", "frame"}});
+  CHECK(sharp.find("focus_m") == nullptr);
+  CHECK(sharp.at("width").integer() == 48);
+  open["encoding"] = "white-near";
+  CHECK(ask_well(page, open).at("picture").at("lacks").text() ==
+        "white-near needs numbers: near, far");
+  open["near_m"] = 4.0;
+  open["far_m"] = 1.0;
+  CHECK(ask_well(page, open).at("picture").at("lacks").text().find("less than") !=
+        std::string::npos);
+  open["near_m"] = 0.5;
+  CHECK(ask_well(page, open).at("picture").at("lacks").text() == "");
+  CHECK(ask_well(page, {{"do", "frame"}}).find("focus_m") != nullptr);
+}
+
+TEST_CASE("a coarse picture has a part of its pixels, and of its circles") {
+  const Files files;
+  Page page;
+  ask_well(page, {{"do", "open"}, {"picture", files.both}});
+  Json frame{{"do", "frame"}, {"focus", {{"m", 1.0}}}, {"coc_scale", 6.0}};
+  const Json whole = ask_well(page, frame);
+  frame["preview"] = 4;
+  const Json coarse = ask_well(page, frame);
+  CHECK(coarse.at("width").integer() == 12);
+  CHECK(coarse.at("height").integer() == 8);
+  CHECK(coarse.at("radius_at_infinity_px").number() ==
+        doctest::Approx(whole.at("radius_at_infinity_px").number() / 4.0));
+  CHECK(error_of(page, {{"do", "save"}, {"format", "png"}}) != "");
+  frame["preview"] = 1;
+  CHECK(ask_well(page, frame).at("hash").text() == whole.at("hash").text());
+}
+
+TEST_CASE("a pixel of a picture has its depth and its circle") {
+  const Files files;
+  Page page;
+  ask_well(page, {{"do", "open"}, {"picture", files.both}});
+  const Json frame = ask_well(page, {{"do", "frame"}, {"focus", {{"at", {0.5, 0.5}}}}});
+  const Json pixel = ask_well(page, {{"do", "pixel"}, {"x", 24}, {"y", 16}});
+  CHECK(pixel.at("depth_m").number() == doctest::Approx(frame.at("focus_m").number()).epsilon(0.1));
+  CHECK(!pixel.at("coc_radius_px").is_null());
+}
+
+TEST_CASE("what needs a scene is refused with why, and scenes are there again") {
+  const Files files;
+  Page page;
+  ask_well(page, {{"do", "open"}, {"picture", files.a}, {"depth", files.d}});
+  ask_well(page, {{"do", "frame"}});
+  for (const Json& request :
+       {Json{{"do", "truth"}, {"views", 4}}, Json{{"do", "file"}, {"name", "scene.toml"}},
+        Json{{"do", "compare_methods"}, {"methods", Json::array()}, {"radii", Json::array()}}}) {
+    CHECK(error_of(page, request) == kNoScene);
+  }
+  CHECK(error_of(page, {{"do", "frame"}, {"method", "accumulation"}}).find("draws a scene") !=
+        std::string::npos);
+  const std::string report =
+      ask_well(page, {{"do", "file"}, {"name", "report.txt"}}).at("text").text();
+  CHECK(report.find("millimetres") != std::string::npos);
+  ask_well(page, {{"do", "open"}, {"scene", "figures"}});
+  CHECK(ask_well(page, {{"do", "frame"}, {"size", {32, 32}}}).at("width").integer() == 32);
+  CHECK(error_of(page, {{"do", "save"}, {"format", "png"}}) != "");
+}
+
+TEST_CASE("files that are no picture and depth are one line, and the page is as before") {
+  const Files files;
+  Page page;
+  ask_well(page, {{"do", "open"}, {"picture", files.a}, {"depth", files.d}});
+  const std::string hash = ask_well(page, {{"do", "frame"}}).at("hash").text();
+  write_file(files.directory.file("cut.png"), read_file(files.a).substr(0, 90));
+  write_file(files.directory.file("x.tif"), std::string{"II*\0____", 8});
+  write_file(files.directory.file("wide.pfm"), "Pf\n2 1\n-1.0\n" + std::string(8, '\0'));
+  const auto file = [&](const char* name) { return Json{files.directory.file(name)}; };
+  const std::vector<Json> wrong{
+      {{"do", "open"}, {"picture", file("nothing.png")}},
+      {{"do", "open"}, {"picture", file("cut.png")}, {"depth", files.d}},
+      {{"do", "open"}, {"picture", file("x.tif")}, {"depth", files.d}},
+      {{"do", "open"}, {"picture", files.a}},  // no depth
+      {{"do", "open"}, {"picture", files.d}, {"depth", files.a}, {"encoding", "metres"}},
+      {{"do", "open"}, {"picture", files.a}, {"depth", file("wide.pfm")}, {"encoding", "metres"}},
+      {{"do", "open"}, {"picture", files.a}, {"depth", files.d}, {"encoding", "none"}},
+      {{"do", "open"}, {"picture", files.a}, {"depth", files.d}, {"near_m", -1.0}},
+      {{"do", "open"}, {"picture", 3}}};
+  for (const Json& request : wrong) {
+    const std::string error = error_of(page, request);
+    CAPTURE(json_text(request));
+    CHECK(error != "");
+    CHECK(error.find('\n') == std::string::npos);
+  }
+  CHECK(ask_well(page, {{"do", "frame"}}).at("hash").text() == hash);
+}

@@ -1,0 +1,94 @@
+// A picture of the visitor's and its depth map: what the map's numbers mean, and the result's file.
+
+import { by_id, element, save_file, show_error } from "../dom.js";
+import { kAsked } from "../engine.js";
+
+export const kNoScene = "a picture has no scene to draw: choose a scene for this";
+
+/** The numbers of encodings by their option: what they are called in a request, and their unit. */
+const kNumbers = {
+  near: ["near_m", "m"], far: ["far_m", "m"], scale: ["scale", ""], offset: ["offset", ""],
+  baseline: ["baseline_m", "m"], "focal-px": ["focal_px", "px"],
+};
+
+const words_of = ({ needs, takes }) => `${needs} ${takes}`.split(" ").filter(Boolean);
+
+/** `open`'s request. Numbers that the encoding makes no use of are kept, but not sent. */
+export function picture_request(path, { depth, encoding, numbers }, encodings, believed) {
+  const request = { do: "open", picture: path, depth, encoding };
+  const known = encodings.find(({ name }) => name === (encoding ?? believed));
+  for (const word of known ? words_of(known) : []) {
+    const [key] = kNumbers[word];
+    if (Number.isFinite(numbers[key])) request[key] = numbers[key];
+  }
+  return request;
+}
+
+/** The same as options of `softfocus refocus`. */
+export function depth_words({ encoding, numbers }, encodings) {
+  const known = encodings.find(({ name }) => name === encoding);
+  if (!known) return [];
+  return [`--depth-encoding ${encoding}`,
+          ...words_of(known).filter((word) => Number.isFinite(numbers[kNumbers[word][0]]))
+              .map((word) => `--${word} ${numbers[kNumbers[word][0]]}`)];
+}
+
+/**
+ * The controls of the depth map. `change({encoding, numbers})` reads it anew. `encodings` are those
+ * of the `scenes` reply.
+ */
+export function make_picture({ engine, encodings, change, stem }) {
+  const choice = by_id("encoding");
+  const numbers_part = by_id("encoding-numbers");
+  let state = null;   // the picture of the state
+  let opened = null;  // and of the reply
+
+  const believed_option = element("option", { value: "" }, "");
+  choice.replaceChildren(believed_option, ...encodings.map(
+      ({ name, summary }) => element("option", { value: name, title: summary }, name)));
+  choice.addEventListener("change", () => change({ encoding: choice.value || null }));
+
+  function number_field(word) {
+    const [key, unit] = kNumbers[word];
+    const field = element("input", { type: "number", step: "any", id: `encoding-${word}` });
+    field.value = state.numbers[key] ?? "";
+    field.addEventListener("change", () => {
+      const value = field.value === "" ? undefined : field.valueAsNumber;
+      change({ numbers: { ...state.numbers, [key]: value } });
+    });
+    return element("div", { class: "line" },
+                   element("label", { for: `encoding-${word}` }, word),
+                   element("span", { class: "field" }, field, element("span", { class: "unit" }, unit)));
+  }
+
+  by_id("save-picture").addEventListener("click", async () => {
+    const format = by_id("save-format").value;
+    const { reply, file } = await engine.ask({ do: "save", format }, kAsked);
+    if (reply.error) show_error(reply.error);
+    else save_file(`${stem()}-refocused.${format.replace("-16", "")}`, file);
+  });
+
+  return {
+    /** Shows the picture of the state and of the `open` reply, or hides everything for null. */
+    show(of_state, of_reply) {
+      state = of_state;
+      opened = of_reply;
+      by_id("depth-part").hidden = !state;
+      by_id("no-scene").hidden = !state;
+      for (const part of document.querySelectorAll("[data-scene]")) part.inert = Boolean(state);
+      if (!state) return;
+      believed_option.textContent = opened.believed ? `by its numbers: ${opened.believed}` : "choose…";
+      choice.value = state.encoding ?? "";
+      const used = encodings.find(({ name }) => name === opened.encoding);
+      by_id("encoding-why").textContent = opened.lacks ||
+          (state.encoding ? used?.summary : opened.why) || "";
+      const range = `${opened.type}, ${opened.least} to ${opened.largest}`;
+      const filled = opened.filled_pixels ? `; ${opened.filled_pixels} pixels without a depth` : "";
+      by_id("depth-seen").textContent = `${range}${filled}`;
+      by_id("save-picture").disabled = Boolean(opened.lacks);
+      const words = used ? words_of(used) : [];
+      const there = [...numbers_part.querySelectorAll("input")].map(({ id }) => id.slice(9));
+      if (words.join() !== there.join()) numbers_part.replaceChildren(...words.map(number_field));
+    },
+  };
+}
