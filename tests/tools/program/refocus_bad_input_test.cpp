@@ -202,3 +202,26 @@ TEST_CASE("bad input: a place that refocus cannot write, and a full disk") {
                  "--depth-encoding", "metres"},
                 1, {"/dev/full", "space"});
 }
+
+TEST_CASE("bad input: a PNG that is too wide is told its size") {
+  const SmallPair files;
+  const std::string file = files.directory.file("wide.png");
+  write_file(file, small_png(16385, 1, "data"));
+  check_refused(files.directory, {"refocus", file, files.depth, "-o", files.out}, 1,
+                {"wide.png", "16385x1", "1 to 16384"});
+  check_refused(files.directory, {"compare", file, file}, 2, {"wide.png", "16385x1"});
+}
+
+TEST_CASE("bad input: inspect writes over nothing that it reads, and says so before anything") {
+  const SmallPair files;
+  for (const std::string& file : {files.colour, files.depth}) {
+    check_refused(files.directory,
+                  {"inspect", files.colour, files.depth, "-o", file, "--format", "png"}, 2,
+                  {"-o", "write over"});
+  }
+  check_refused(files.directory, {"inspect", files.colour, files.depth, "-o", "-"}, 2,
+                {"-o -", "a file"});
+  check_refused(files.directory,
+                {"inspect", files.colour, files.depth, "-o", files.directory.file("no/such.png")},
+                1, {"no/such.png"});
+}
