@@ -45,8 +45,8 @@ struct PictureSources {
   const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
 };
 
-/// Opens COLOUR and, unless it is empty, DEPTH, and chooses layers. Throws FileError; UsageError for
-/// layers that are not there and a depth of another shape than the colour.
+/// Opens COLOUR and, unless it is empty, DEPTH, and chooses layers. Throws FileError; UsageError
+/// for layers that are not there and a depth of another shape than the colour.
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options);
 

@@ -215,8 +215,7 @@ TEST_CASE("bad input: a PNG that is too wide is told its size") {
 TEST_CASE("bad input: inspect writes over nothing that it reads, and says so before anything") {
   const SmallPair files;
   for (const std::string& file : {files.colour, files.depth}) {
-    check_refused(files.directory,
-                  {"inspect", files.colour, files.depth, "-o", file, "--format", "png"}, 2,
+    check_refused(files.directory, {"inspect", files.colour, files.depth, "-o", file}, 2,
                   {"-o", "write over"});
   }
   check_refused(files.directory, {"inspect", files.colour, files.depth, "-o", "-"}, 2,
