@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "raster/images/image.h"
+#include "raster/numbers/half.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 #include "tests/support/skip.h"
@@ -146,6 +147,25 @@ TEST_CASE("bad input: NaN, negative and infinite depths are missing or far, neve
                 {"refocus", files.colour, files.depth, "-o", files.directory.file("b.png"),
                  "--depth-encoding", "metres"},
                 2, {"d.pfm", "no depth that is known"});
+}
+
+TEST_CASE("bad input: depths of almost 0 stay numbers, in a smaller map too") {
+  const SmallPair files;
+  std::vector<float> metres(12, 16.5f);
+  metres[0] = 2.4e-32f;
+  metres[1] = 0.0f;
+  metres[4] = 9e-40f;
+  write_file(files.depth, text_of(encode_grey_pfm(metres, 4, 3)));
+  const std::string out = files.directory.file("out.npy");
+  const ProgramRun run = run_program(
+      {"refocus", files.colour, files.depth, "-o", out, "--depth-encoding", "metres", "-q"});
+  CHECK(run.status == 0);
+  const Image result = read_image_file(out).image;
+  for (int y = 0; y < result.height; ++y) {
+    for (const std::uint16_t half : row<std::uint16_t>(result, y)) {
+      CHECK(half_to_float(half) >= 0.0f);  // NaN is not
+    }
+  }
 }
 
 TEST_CASE("bad input: a layer that is not there is answered with those that are") {
