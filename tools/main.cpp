@@ -51,8 +51,9 @@ int run(std::vector<std::string> arguments) {
       make_program("softfocus", SOFTFOCUS_VERSION, "Renders scenes with depth of field.");
   const std::vector<Command> commands{
       add_render_command(*program),       add_join_command(*program),
-      add_refocus_command(*program),      add_inspect_command(*program),
-      add_scenes_command(*program),       add_methods_command(*program),
+      add_refocus_command(*program),      add_apply_command(*program),
+      add_inspect_command(*program),      add_scenes_command(*program),
+      add_methods_command(*program),      add_effects_command(*program),
       add_candidates_command(*program),   add_profiles_command(*program),
       add_lens_command(*program),         add_compare_command(*program),
       add_crosscheck_command(*program),   add_probe_command(*program),

@@ -21,9 +21,11 @@ struct Command {
 Command add_render_command(CLI::App& program);
 Command add_join_command(CLI::App& program);
 Command add_refocus_command(CLI::App& program);
+Command add_apply_command(CLI::App& program);
 Command add_inspect_command(CLI::App& program);
 Command add_scenes_command(CLI::App& program);
 Command add_methods_command(CLI::App& program);
+Command add_effects_command(CLI::App& program);
 Command add_candidates_command(CLI::App& program);
 Command add_profiles_command(CLI::App& program);
 Command add_lens_command(CLI::App& program);

@@ -14,6 +14,8 @@ std::vector<Case> crosscheck_cases() {
     add_peel_cases(cases);
     add_blend_cases(cases);
   }
+  add_kernel_cases(cases);
+  add_effect_cases(cases);
   add_filter_cases(cases);
   return cases;
 }

@@ -42,6 +42,8 @@ void add_triangle_cases(std::vector<Case>& cases);
 void add_scene_cases(std::vector<Case>& cases);
 void add_peel_cases(std::vector<Case>& cases);
 void add_blend_cases(std::vector<Case>& cases);
+void add_kernel_cases(std::vector<Case>& cases);
+void add_effect_cases(std::vector<Case>& cases);
 void add_filter_cases(std::vector<Case>& cases);
 
 /// Random numbers for making cases up.

@@ -24,6 +24,7 @@ struct PictureFile;
 struct PictureExtras {
   std::span<const float> alpha{};       ///< 0 to 1: the picture's colour is multiplied by it
   std::span<const float> depth_m{};     ///< channel Z, in place of the picture's own halves
+  bool has_depth = true;                ///< whether there is a channel Z at all
   std::span<const float> radii_px{};    ///< channel coc, negative nearer than the focus
   std::optional<ThinLens> lens{};       ///< attributes focus, aperture, nominalFocalLength
   const PictureFile* source = nullptr;  ///< an EXR: its attributes, and of its planes

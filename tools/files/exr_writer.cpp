@@ -261,8 +261,10 @@ Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& note
     constexpr std::array kNames{"R", "G", "B"};
     for (std::size_t c = 0; c < 3; ++c) planes.push_back(plane_of(kNames[c], image, c, type));
     if (!extras.alpha.empty()) planes.push_back(plane_of("A", extras.alpha, image.width));
-    planes.push_back(extras.depth_m.empty() ? plane_of("Z", image, 3, Imf::FLOAT)
-                                            : plane_of("Z", extras.depth_m, image.width));
+    if (extras.has_depth) {
+      planes.push_back(extras.depth_m.empty() ? plane_of("Z", image, 3, Imf::FLOAT)
+                                              : plane_of("Z", extras.depth_m, image.width));
+    }
     if (!extras.radii_px.empty()) planes.push_back(plane_of("coc", extras.radii_px, image.width));
     std::optional<SourcePlanes> source;
     if (extras.source != nullptr) {

@@ -50,6 +50,9 @@ PictureNotes notes_of(const Json& json) {
                   lens.at("coc_scale").number(),
                   notes.fov_y_degrees};
   }
+  if (const Json* effects = json.find("effects")) {
+    for (const Json& effect : effects->values()) notes.effects.push_back(effect.text());
+  }
   notes.picture_hash = std::stoull(json.at("picture_hash").text(), nullptr, 16);
   return notes;
 }
@@ -81,6 +84,7 @@ Json notes_json(const PictureNotes& notes) {
                     {"f_number", notes.lens->lens.f_number},
                     {"coc_scale", notes.lens->coc_scale}};
   }
+  for (const std::string& effect : notes.effects) json["effects"].push_back(effect);
   return json;
 }
 

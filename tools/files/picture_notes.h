@@ -37,9 +37,10 @@ struct PictureNotes {
   int height = 0;
   std::string show;
   double fov_y_degrees = 40.0;
-  std::optional<NotedLens> lens;   ///< none of a picture without one, as the pinhole's
-  Json method;                     ///< its name and settings; null if none was at work
-  std::uint64_t picture_hash = 0;  ///< hash_image() of the RGBA16F picture
+  std::optional<NotedLens> lens;       ///< none of a picture without one, as the pinhole's
+  Json method;                         ///< its name and settings; null if none was at work
+  std::vector<std::string> effects{};  ///< "gaussian:sigma=2", in the order in which they came
+  std::uint64_t picture_hash = 0;      ///< hash_image() of the RGBA16F picture
 };
 
 Json notes_json(const PictureNotes& notes);

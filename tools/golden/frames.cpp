@@ -3,6 +3,7 @@
 
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "raster/effects/effect.h"
 #include "scenes/draw/frame_parts.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
@@ -72,6 +73,19 @@ void add_layer_hashes(std::string_view scene, const std::vector<Image>& layers,
   for (std::size_t i = 1; i < layers.size(); ++i) {
     hashes.push_back(
         {entry_name(scene, "layer-" + std::to_string(i + 1), where), hash_image(layers[i])});
+  }
+}
+
+/// A line for each effect, with the numbers that it has by itself.
+void add_effect_hashes(std::string_view scene, const Image& picture, const Profile& profile,
+                       const std::string& where, std::vector<NamedHash>& hashes, ThreadPool& pool) {
+  for (const Effect& effect : effects()) {
+    std::vector<double> parameters;
+    for (const EffectParameter& parameter : effect.parameters) {
+      parameters.push_back(parameter.preset);
+    }
+    hashes.push_back({entry_name(scene, effect.name, where),
+                      hash_image(apply(effect, {picture, parameters, profile}, pool))});
   }
 }
 
@@ -152,6 +166,9 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
              pool))});
   }
   add_layer_hashes(name, layers, where, hashes);
+  if (width == kSizes[1].width) {
+    add_effect_hashes(name, picture, profile, where, hashes, pool);
+  }
   for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
     Image filtered = make_image(picture.format, width, height);
     two_pass_in(arithmetic, {picture, settings, profile}, filtered, pool);

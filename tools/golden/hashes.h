@@ -41,7 +41,7 @@ struct FrameSize {
 /// A size of whole tiles, and a smaller one with parts of tiles.
 std::span<const FrameSize> golden_sizes(GoldenSet set = GoldenSet::all);
 
-/// "SCENE METHOD PROFILE WIDTHxHEIGHT": every method.
+/// "SCENE METHOD PROFILE WIDTHxHEIGHT": every method and, at the smaller size, every effect.
 std::vector<NamedHash> frame_hashes(const GoldenScene& scene, const FrameSize& size,
                                     const NamedProfile& profile, ThreadPool& pool);
 

@@ -1,4 +1,4 @@
-// softfocus scenes | methods | profiles: what there is, a line each.
+// softfocus scenes | methods | effects | profiles: what there is, a line each.
 
 #include <algorithm>
 #include <iostream>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dof/dof.h"
+#include "raster/effects/effect.h"
 #include "raster/numbers/profile.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/load/load_scene.h"
@@ -50,6 +51,24 @@ std::shared_ptr<bool> add_json_flag(CLI::App& parser) {
   auto json = std::make_shared<bool>(false);
   add_flag(parser, "--json", "Print JSON", *json);
   return json;
+}
+
+Json effects_json() {
+  Json list = Json::array();
+  for (const Effect& effect : effects()) {
+    Json parameters = Json::array();
+    for (const EffectParameter& parameter : effect.parameters) {
+      parameters.push_back({{"name", parameter.name},
+                            {"summary", parameter.summary},
+                            {"least", parameter.least},
+                            {"most", parameter.most},
+                            {"default", parameter.preset}});
+    }
+    list.push_back({{"name", effect.name},
+                    {"summary", effect.summary},
+                    {"parameters", std::move(parameters)}});
+  }
+  return list;
 }
 
 }  // namespace
@@ -96,6 +115,29 @@ Command add_methods_command(CLI::App& program) {
             } else {
               print_aligned(rows);
             }
+            return kDone;
+          }};
+}
+
+Command add_effects_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "effects", "List the effects, each with its keys");
+  const auto json = add_json_flag(*parser);
+  return {parser, [json] {
+            if (*json) {
+              std::cout << json_text(effects_json(), 2) << '\n';
+              return kDone;
+            }
+            std::vector<Row> rows;
+            for (const Effect& effect : effects()) {
+              rows.push_back({std::string{effect.name}, std::string{effect.summary}});
+              for (const EffectParameter& parameter : effect.parameters) {
+                rows.push_back(
+                    {"  " + std::string{parameter.name} + "=" + short_number(parameter.preset),
+                     std::string{parameter.summary} + ", " + short_number(parameter.least) +
+                         " to " + short_number(parameter.most)});
+              }
+            }
+            print_aligned(rows);
             return kDone;
           }};
 }

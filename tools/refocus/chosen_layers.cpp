@@ -88,6 +88,13 @@ std::vector<std::size_t> depth_planes(const PictureFile& file) {
   return planes;
 }
 
+std::optional<std::size_t> find_depth_beside_colour(const PictureFile& file) {
+  const std::vector<std::size_t> by_name = depth_planes(file);
+  if (!by_name.empty()) return by_name.front();
+  const bool is_ours = file.reader == &kNpyReader && !file.is_srgb && file.planes.size() == 4;
+  return is_ours ? std::optional<std::size_t>{3} : std::nullopt;
+}
+
 std::size_t choose_depth(const PictureFile& file, const std::optional<std::string>& name,
                          bool beside_colour) {
   if (name) {
@@ -102,14 +109,13 @@ std::size_t choose_depth(const PictureFile& file, const std::optional<std::strin
     throw UsageError("--depth-layer '" + *name + "': '" + file.path.string() + "' has " +
                      plane_names(file));
   }
-  const std::vector<std::size_t> by_name = depth_planes(file);
-  if (!by_name.empty()) return by_name.front();
   if (beside_colour) {
-    const bool is_ours = file.reader == &kNpyReader && !file.is_srgb && file.planes.size() == 4;
-    if (is_ours) return 3;
+    if (const auto found = find_depth_beside_colour(file)) return *found;
     throw UsageError("'" + file.path.string() + "' has no depth that its names tell, but " +
                      plane_names(file) + "; give the depth as a second file, or say --depth-layer");
   }
+  const std::vector<std::size_t> by_name = depth_planes(file);
+  if (!by_name.empty()) return by_name.front();
   if (file.planes.size() <= 4 && file.reader != &kExrReader) return 0;
   if (file.planes.size() == 1) return 0;
   const auto layers = colour_layers(file);

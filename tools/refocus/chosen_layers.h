@@ -17,9 +17,13 @@ ColourLayer choose_colour(const PictureFile& file, const std::optional<std::stri
 /// Not Position.Z or Normal.Z.
 std::vector<std::size_t> depth_planes(const PictureFile& file);
 
-/// The plane of that name or of the layer of that name; without a name the first of
-/// depth_planes(), or in a file of depth alone its one plane. `beside_colour`: the file holds the
-/// colour too, and a NumPy file's alpha is its depth. Throws UsageError likewise.
+/// The depth in a file that holds a colour too: the first of depth_planes(), or a NumPy file's
+/// alpha.
+std::optional<std::size_t> find_depth_beside_colour(const PictureFile& file);
+
+/// The plane of that name or of the layer of that name; without a name
+/// find_depth_beside_colour() if it is `beside_colour`, else the first of depth_planes() or the
+/// file's one plane. Throws UsageError likewise.
 std::size_t choose_depth(const PictureFile& file, const std::optional<std::string>& name,
                          bool beside_colour);
 

@@ -5,13 +5,10 @@
 #include "tools/files/exr_file.h"
 
 namespace softfocus {
-namespace {
-
 bool is_of_exr(FileFormat format) {
   return format == FileFormat::exr || format == FileFormat::exr_float;
 }
 
-/// The planes that are neither the colour nor its depth.
 std::vector<std::size_t> other_planes(const PictureSources& sources) {
   std::vector<std::size_t> others;
   const ColourLayer& colour = sources.colour;
@@ -23,8 +20,6 @@ std::vector<std::size_t> other_planes(const PictureSources& sources) {
   }
   return others;
 }
-
-}  // namespace
 
 bool keeps_alpha(FileFormat format) {
   return is_of_exr(format) || format == FileFormat::png || format == FileFormat::png_16;

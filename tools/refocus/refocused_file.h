@@ -5,6 +5,12 @@
 
 namespace softfocus {
 
+/// Whether a file of this format is an EXR.
+bool is_of_exr(FileFormat format);
+
+/// The planes of the colour's file that are neither the colour nor its depth.
+std::vector<std::size_t> other_planes(const PictureSources& sources);
+
 /// Whether a file of that format has a place for alpha.
 bool keeps_alpha(FileFormat format);
 

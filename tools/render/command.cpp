@@ -402,6 +402,13 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
     });
     ms.filter += halve_ms;
   }
+  if (!all_effects(options.effects).empty()) {
+    double effects_ms = 0.0;
+    picture = timed(progress, "effects", effects_ms, [&] {
+      return with_effects(std::move(picture), all_effects(options.effects), options.profile, pool);
+    });
+    ms.filter += effects_ms;
+  }
   progress.clear();
   warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record)});
   auto sidecar = sidecar_place(options);

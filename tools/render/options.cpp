@@ -67,6 +67,7 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
               }
               refuse_name("--show", text, names_in(kShowChoices));
             });
+  add_effect_options(parser, options.effects);
   add_value(parser, "--layers", "K",
             "The K nearest surfaces of each pixel, 1 to 4: what layered works from (default: 2); "
             "with --show pinhole, coc or depth a FILE for each, FILE.layer2 and so on",
@@ -323,6 +324,15 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   }
   if (options.shard) check_shard_count(*options.shard, options.sampling.samples);
   check_supersample(options);
+  if (!all_effects(options.effects).empty() &&
+      (options.show == Show::coc || options.show == Show::depth)) {
+    throw UsageError(
+        "--effect: a map of circles or depths is no picture; give --show image or pinhole");
+  }
+  if (!all_effects(options.effects).empty() && options.shard) {
+    throw UsageError(
+        "--effect and --shard exclude each other; softfocus apply puts effects on what join gives");
+  }
   check_render_memory(options, bytes_per_pixel(options));
 }
 

@@ -16,6 +16,7 @@
 #include "tools/files/image_file.h"
 #include "tools/gl/driver.h"
 #include "tools/gl/shaders.h"
+#include "tools/options/effect_options.h"
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
@@ -33,6 +34,7 @@ struct RenderOptions {
   FileFormat format = FileFormat::png;
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
+  EffectOptions effects;  ///< on the finished picture
   int supersample = 1;  ///< what is drawn and filtered has so many times the width and height
   double frame = 0.0;
   SequenceOptions sequence;  ///< of many pictures

@@ -1,0 +1,46 @@
+#pragma once
+// Bloom: bright light that a lens and the eye scatter over its surroundings, by a pyramid (Jimenez
+// 2014).
+
+#include "raster/images/image.h"
+#include "raster/numbers/profile.h"
+#include "raster/threads/parallel.h"
+
+namespace softfocus {
+
+struct BloomSettings {
+  float threshold = 1.0f;  ///< what is darker does not bloom
+  float knee = 0.5f;       ///< half the width of the way from nothing to all, 0 to threshold
+  float strength = 0.1f;   ///< the share of the bright light that is scattered, 0 to 1
+  int levels = 6;          ///< of the pyramid, 1 to 12: the widest is 2^levels pixels
+  float spread = 0.6f;     ///< how much of each level comes from wider ones, 0 to 1
+  /// Whether bright pixels count less in the first mean, so that those that move by a part of a
+  /// pixel do not flicker (Karis 2013). They lose light by it.
+  bool is_steady = false;
+};
+
+/// What the bright pass computes with; the shaders get it so.
+struct BrightPass {
+  float threshold, knee;
+  float begin;          ///< threshold - knee
+  float double_knee;    ///< 2 knee
+  float square_factor;  ///< 1 / (4 knee), or 0
+  bool is_steady;
+};
+BrightPass bright_pass_of(const BloomSettings& settings);
+
+/// picture + strength (scattered - bright). So light is moved, and its sum stays but for what the
+/// edges repeat and `is_steady` takes. With m the largest of red, green and blue:
+///
+///   bright    = colour max(m - threshold, x^2 / (4 knee)) / m,  x = m - threshold + knee cut to 0
+///               and 2 knee
+///   D_1       = downsample(bright), D_i+1 = downsample(D_i); pyramid.h
+///   B_n       = D_n, B_i = D_i + spread (upsample(B_i+1) - D_i), scattered = upsample(B_1)
+///
+/// Steady: D_1 = downsample(w bright) / downsample(w), w = 1 / (1 + the largest of bright). A
+/// colour below 0 or NaN is 0 to bloom, one above the largest half that half. Alpha stays. Each
+/// picture is RGBA16F.
+void bloom(const BloomSettings& settings, const ConstImageView& picture, const ImageView& result,
+           const Profile& profile, ThreadPool& pool);
+
+}  // namespace softfocus

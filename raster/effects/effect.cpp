@@ -1,0 +1,112 @@
+#include "raster/effects/effect.h"
+
+#include <array>
+#include <cassert>
+
+#include "raster/effects/bloom.h"
+#include "raster/effects/tone_map.h"
+#include "raster/passes/bilateral.h"
+#include "raster/passes/kernel.h"
+#include "raster/threads/float_environment.h"
+
+namespace softfocus {
+namespace {
+
+void by_kernel(const Effect& effect, const EffectInput& input, const ImageView& result,
+               ThreadPool& pool) {
+  convolve(*find_kernel(effect.name), input.picture, result, input.profile, pool);
+}
+
+void gaussian(const Effect&, const EffectInput& input, const ImageView& result, ThreadPool& pool) {
+  const std::vector<float> weights = gaussian_weights(input.parameters[0]);
+  Image across = make_image(Format::rgba16f, result.width, result.height);
+  convolve(row_kernel(weights), input.picture, across, input.profile, pool);
+  convolve(column_kernel(weights), across, result, input.profile, pool);
+}
+
+constexpr std::array kGaussian{
+    EffectParameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 2.0}};
+
+void bilateral_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                      ThreadPool& pool) {
+  bilateral({input.parameters[0], static_cast<float>(input.parameters[1]),
+             static_cast<float>(input.parameters[2])},
+            input.picture, result, input.profile, pool);
+}
+
+constexpr std::array kBilateral{
+    EffectParameter{"sigma", "standard deviation of the distance in pixels", 0.0, 20.0, 2.0},
+    EffectParameter{"colour", "distance of unlike colours in linear light, 0 = none", 0.0, 1000.0,
+                    0.1},
+    EffectParameter{"depth", "distance of unlike depths over the pixel's depth, 0 = none", 0.0,
+                    1000.0, 0.0}};
+
+void bloom_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                  ThreadPool& pool) {
+  const auto number = [&](std::size_t i) { return static_cast<float>(input.parameters[i]); };
+  bloom({number(0), number(1), number(2), static_cast<int>(input.parameters[3]), number(4),
+         input.parameters[5] >= 0.5},
+        input.picture, result, input.profile, pool);
+}
+
+constexpr std::array kBloom{
+    EffectParameter{"threshold", "what is darker does not bloom, white is 1", 0.0, 65504.0, 1.0},
+    EffectParameter{"knee", "half the way from nothing to all that blooms", 0.0, 65504.0, 0.5},
+    EffectParameter{"strength", "share of the bright light that is scattered", 0.0, 1.0, 0.1},
+    EffectParameter{"levels", "halvings: the widest reaches some 2^levels pixels", 1.0, 12.0, 6.0},
+    EffectParameter{"spread", "how much of each level comes from wider ones", 0.0, 1.0, 0.6},
+    EffectParameter{"steady", "1: bright pixels do not flicker as they move, and lose light", 0.0,
+                    1.0, 0.0}};
+
+void tone_map_effect(const Effect& effect, const EffectInput& input, const ImageView& result,
+                     ThreadPool& pool) {
+  tone_map(*find_tone_curve(effect.name), static_cast<float>(input.parameters[0]), input.picture,
+           result, input.profile, pool);
+}
+
+constexpr std::array kExposure{
+    EffectParameter{"exposure", "factor of the light", 0.0, 65504.0, 1.0}};
+
+/// The effect that a tone curve is.
+constexpr Effect of_curve(const NamedToneCurve& named) {
+  return {named.name, named.summary, kExposure, tone_map_effect};
+}
+
+constexpr std::array kEffects{
+    Effect{"edge-detection", "a pixel eight times, less its eight neighbours", {}, by_kernel},
+    Effect{"sharpen", "a pixel five times, less the four beside it", {}, by_kernel},
+    Effect{"box-3", "the mean of 3x3 pixels", {}, by_kernel, true},
+    Effect{"gaussian-3", "3x3 pixels weighed by binomials", {}, by_kernel, true},
+    Effect{"gaussian-5", "5x5 pixels weighed by binomials", {}, by_kernel, true},
+    Effect{"gaussian", "a Gaussian of any width, along x and then along y", kGaussian, gaussian,
+           true},
+    Effect{"bilateral", "a Gaussian that leaves out unlike colours and depths", kBilateral,
+           bilateral_effect},
+    Effect{"bloom", "bright light scattered over its surroundings, after Jimenez 2014", kBloom,
+           bloom_effect},
+    of_curve(kToneCurves[0]),
+    of_curve(kToneCurves[1]),
+    of_curve(kToneCurves[2]),
+};
+
+}  // namespace
+
+std::span<const Effect> effects() { return kEffects; }
+
+const Effect* find_effect(std::string_view name) {
+  for (const Effect& effect : kEffects) {
+    if (effect.name == name) return &effect;
+  }
+  return nullptr;
+}
+
+Image apply(const Effect& effect, const EffectInput& input, ThreadPool& pool) {
+  assert(input.picture.format == Format::rgba16f);
+  assert(input.parameters.size() == effect.parameters.size());
+  const DefaultFloatEnvironment environment;
+  Image result = make_image(Format::rgba16f, input.picture.width, input.picture.height);
+  effect.filter(effect, input, result, pool);
+  return result;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,50 @@
+#pragma once
+// Image-space effects: what a camera or a program adds to a drawn picture (Akenine-Moller et al.
+// 2018, chapter 12). Depth of field has a room of its own (dof/dof.h).
+
+#include <span>
+#include <string_view>
+
+#include "raster/images/image.h"
+#include "raster/numbers/profile.h"
+#include "raster/threads/parallel.h"
+
+namespace softfocus {
+
+/// A number that an effect takes.
+struct EffectParameter {
+  std::string_view name;
+  std::string_view summary;  ///< with its unit
+  double least, most;
+  double preset;
+};
+
+struct Effect;
+
+struct EffectInput {
+  ConstImageView picture;              ///< RGBA16F: linear colour, and in alpha what stays there
+  std::span<const double> parameters;  ///< one for each of the effect's, within its limits
+  Profile profile;
+};
+
+/// An entry of the table.
+struct Effect {
+  std::string_view name;
+  std::string_view summary;
+  std::span<const EffectParameter> parameters;
+  /// Writes the picture's size of RGBA16F, the picture's alpha in alpha.
+  void (*filter)(const Effect& effect, const EffectInput& input, const ImageView& result,
+                 ThreadPool& pool);
+  /// Whether a pixel's light goes to its neighbours, and so its opacity, if it has one, with it.
+  bool spreads = false;
+};
+
+std::span<const Effect> effects();
+
+/// The effect of that name, or nullptr.
+const Effect* find_effect(std::string_view name);
+
+/// The picture with the effect. The bits depend on the input alone.
+Image apply(const Effect& effect, const EffectInput& input, ThreadPool& pool);
+
+}  // namespace softfocus

@@ -1,0 +1,45 @@
+#pragma once
+// Pictures of half and of twice the size, for wide blurs by a pyramid (Jimenez 2014): the way down
+// does not flicker and the way up shows no blocks. All four channels are filtered alike.
+
+#include <array>
+
+#include "raster/images/image_view.h"
+#include "raster/numbers/profile.h"
+#include "raster/threads/parallel.h"
+
+namespace softfocus {
+
+/// Weights of 6x6 pixels, in 128ths, with the result's pixel in their middle: five means of 4x4
+/// pixels, one in the middle that counts half and four that overlap around it (a GPU reads them as
+/// 13 bilinear samples). Symmetric: of the pixels at distances 1/2, 3/2 and 5/2 along each axis.
+inline constexpr std::array<std::array<int, 3>, 3> kDownsample128ths{
+    {{8, 6, 2}, {6, 5, 1}, {2, 1, 1}}};
+
+/// Halves each side, rounded up. `result` is RGBA16F of (width + 1) / 2 by (height + 1) / 2 and
+/// shares no memory with the source. At the edges pixels repeat.
+///
+/// Order: the sum begins with 0; row by row the products of columns 0, 2, 4 and then 1, 3, 5 are
+/// added, each product and sum rounded to binary32.
+void downsample(const ConstImageView& source, const ImageView& result, const Profile& profile,
+                ThreadPool& pool);
+
+/// Weights of 4 pixels along an axis, in 16ths: a tent of 3 bilinear samples, one pixel of the
+/// source apart, for a result's pixel of even number; reversed for an odd one.
+inline constexpr std::array kUpsample16ths{1, 5, 7, 3};
+
+/// The way back. `result` has width and height of which the source has the half, rounded up. A
+/// result's pixel (2k, 2m) is the weighted sum of the source's k - 2 to k + 1 and m - 2 to m + 1,
+/// an odd one of k - 1 to k + 2. At the edges pixels repeat. The sum s is mixed with `own`, of the
+/// result's size: own + share (s - own), operation by operation in binary32. The order of the sum
+/// is row by row.
+void upsample(const ConstImageView& source, const ConstImageView& own, float share,
+              const ImageView& result, const Profile& profile, ThreadPool& pool);
+
+/// The oracles, and the scalar forms: pixel by pixel. Equal to the bit.
+void downsample_oracle(const ConstImageView& source, const ImageView& result,
+                       const Profile& profile, ThreadPool& pool);
+void upsample_oracle(const ConstImageView& source, const ConstImageView& own, float share,
+                     const ImageView& result, const Profile& profile, ThreadPool& pool);
+
+}  // namespace softfocus

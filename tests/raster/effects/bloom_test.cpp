@@ -1,0 +1,136 @@
+#include "raster/effects/bloom.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+
+#include "raster/images/texel.h"
+#include "raster/numbers/random_bits.h"
+#include "tests/support/raster_helpers.h"
+
+using namespace softfocus;
+using test::profile_named;
+
+namespace {
+
+Image bloomed(const BloomSettings& settings, const Image& picture, ThreadPool& pool,
+              const Profile& profile = {}) {
+  Image result = make_image(Format::rgba16f, picture.width, picture.height);
+  bloom(settings, picture, result, profile, pool);
+  return result;
+}
+
+Image with_point(int size, int x, int y, float light) {
+  Image picture = make_image(Format::rgba16f, size, size);
+  store_texel(picture, x, y, glm::vec4{light, light, light, 1.0f}, {});
+  return picture;
+}
+
+double sum_of_red(const Image& picture) {
+  double sum = 0.0;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      sum += static_cast<double>(load_texel(picture, x, y).x);
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("bloom moves light and keeps its sum") {
+  ThreadPool pool{2};
+  const Image picture = with_point(256, 128, 127, 4000.0f);
+  for (const float spread : {0.0f, 0.6f, 1.0f}) {
+    const Image result = bloomed({.strength = 0.5f, .levels = 4, .spread = spread}, picture, pool);
+    CHECK(sum_of_red(result) == doctest::Approx(4000.0).epsilon(0.004));
+    CHECK(load_texel(result, 128, 127).x < 4000.0f);
+    CHECK(load_texel(result, 131, 127).x > 0.0f);
+  }
+}
+
+TEST_CASE("bloom leaves a picture alone that has nothing bright, or at a strength of 0") {
+  ThreadPool pool{1};
+  RandomSequence random{4};
+  Image dark = make_image(Format::rgba16f, 50, 41);
+  for (int y = 0; y < dark.height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(dark, y)) {
+      value = float_to_half(static_cast<float>(next_between(random, 0.0, 0.5)),
+                            HalfRounding::nearest_even);
+    }
+  }
+  CHECK(equal(bloomed({.strength = 1.0f}, dark, pool), dark));
+  const Image bright = with_point(40, 10, 10, 50.0f);
+  CHECK(equal(bloomed({.strength = 0.0f}, bright, pool), bright));
+}
+
+TEST_CASE("bloom begins softly at the threshold less the knee") {
+  ThreadPool pool{1};
+  const auto lost = [&](float light) {
+    const Image picture = with_point(64, 32, 32, light);
+    return light -
+           load_texel(bloomed({.threshold = 2.0f, .knee = 1.0f, .strength = 1.0f}, picture, pool),
+                      32, 32)
+               .x;
+  };
+  CHECK(lost(1.0f) == 0.0f);
+  CHECK(lost(1.5f) > 0.0f);
+  CHECK(lost(2.0f) > lost(1.5f));
+  CHECK(lost(2.0f) == doctest::Approx(0.25).epsilon(0.05));  // (2 - 1)^2 / 4, less what returns
+  CHECK(lost(4.0f) == doctest::Approx(2.0).epsilon(0.05));
+}
+
+TEST_CASE("steady bloom of one pixel is darker than plain, and of an even area as bright") {
+  ThreadPool pool{1};
+  const Image point = with_point(128, 64, 64, 1000.0f);
+  const BloomSettings plain{.strength = 1.0f}, steady{.strength = 1.0f, .is_steady = true};
+  CHECK(sum_of_red(bloomed(steady, point, pool)) < 0.2 * sum_of_red(bloomed(plain, point, pool)));
+  Image even = make_image(Format::rgba16f, 32, 32);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) store_texel(even, x, y, glm::vec4{3.0f, 4.0f, 5.0f, 1.0f}, {});
+  }
+  const glm::vec4 colour = load_texel(bloomed(steady, even, pool), 16, 16);
+  CHECK(colour.x == doctest::Approx(3.0).epsilon(0.005));
+  CHECK(colour.z == doctest::Approx(5.0).epsilon(0.005));
+}
+
+TEST_CASE("bloom takes what is not finite, and gives nothing else that is not") {
+  ThreadPool pool{2};
+  Image picture = with_point(40, 20, 20, 3.0f);
+  row<std::uint16_t>(picture, 5)[4 * 7] = 0x7C00;
+  row<std::uint16_t>(picture, 9)[4 * 3 + 1] = 0x7E00;
+  row<std::uint16_t>(picture, 30)[4 * 30 + 2] = 0xC400;
+  const Image result = bloomed({.strength = 0.3f}, picture, pool);
+  int not_finite = 0;
+  for (int y = 0; y < 40; ++y) {
+    for (const std::uint16_t value : row<std::uint16_t>(result, y)) {
+      not_finite += !std::isfinite(half_to_float(value));
+    }
+  }
+  CHECK(not_finite == 2);
+}
+
+TEST_CASE("bloom in vectors has the scalar form's bits") {
+  RandomSequence random{40};
+  for (const std::array<int, 2> size : {std::array{1, 1}, {3, 70}, {37, 18}, {64, 64}}) {
+    Image picture = make_image(Format::rgba16f, size[0], size[1]);
+    for (int y = 0; y < picture.height; ++y) {
+      for (std::uint16_t& value : row<std::uint16_t>(picture, y)) {
+        value = float_to_half(static_cast<float>(next_between(random, -0.5, 5.0)),
+                              HalfRounding::nearest_even);
+      }
+    }
+    for (const char* name : {"ieee", "d3d11", "swiftshader"}) {
+      for (const bool is_steady : {false, true}) {
+        const BloomSettings settings{.strength = 0.4f, .levels = 3, .is_steady = is_steady};
+        ThreadPool alone{1, Isa::scalar};
+        const Image expected = bloomed(settings, picture, alone, profile_named(name));
+        for (const Isa isa : available_isas()) {
+          ThreadPool pool{2, isa};
+          REQUIRE(equal(bloomed(settings, picture, pool, profile_named(name)), expected));
+        }
+      }
+    }
+  }
+}

@@ -1,0 +1,77 @@
+#include "raster/effects/effect.h"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "raster/images/texel.h"
+#include "raster/numbers/random_bits.h"
+#include "tests/support/raster_helpers.h"
+
+using namespace softfocus;
+
+namespace {
+
+std::vector<double> presets_of(const Effect& effect) {
+  std::vector<double> values;
+  for (const EffectParameter& parameter : effect.parameters) values.push_back(parameter.preset);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("effects have names of their own and presets within their limits") {
+  std::set<std::string_view> names;
+  for (const Effect& effect : effects()) {
+    CAPTURE(effect.name);
+    CHECK(names.insert(effect.name).second);
+    CHECK(find_effect(effect.name) == &effect);
+    for (const EffectParameter& parameter : effect.parameters) {
+      CHECK(parameter.least <= parameter.preset);
+      CHECK(parameter.preset <= parameter.most);
+    }
+  }
+  CHECK(find_effect("nothing") == nullptr);
+}
+
+TEST_CASE("an effect keeps alpha, and its bits do not depend on threads or vectors") {
+  RandomSequence random{17};
+  Image picture = make_image(Format::rgba16f, 75, 70);
+  for (int y = 0; y < picture.height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(picture, y)) {
+      value = float_to_half(static_cast<float>(next_between(random, 0.0, 9.0)),
+                            HalfRounding::nearest_even);
+    }
+  }
+  for (const Effect& effect : effects()) {
+    CAPTURE(effect.name);
+    const std::vector<double> parameters = presets_of(effect);
+    ThreadPool alone{1, Isa::scalar};
+    const Image expected = apply(effect, {picture, parameters, {}}, alone);
+    int wrong = 0;
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        wrong += load_texel(expected, x, y).w != load_texel(picture, x, y).w;
+      }
+    }
+    CHECK(wrong == 0);
+    for (const Isa isa : available_isas()) {
+      ThreadPool pool{3, isa};
+      CHECK(equal(apply(effect, {picture, parameters, {}}, pool), expected));
+    }
+  }
+}
+
+TEST_CASE("an effect that spreads light keeps what is even") {
+  Image picture = make_image(Format::rgba16f, 40, 30);
+  for (int y = 0; y < picture.height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(picture, y)) value = 0x3800;
+  }
+  ThreadPool pool{2};
+  for (const Effect& effect : effects()) {
+    if (!effect.spreads) continue;
+    CAPTURE(effect.name);
+    const std::vector<double> parameters = presets_of(effect);
+    CHECK(equal(apply(effect, {picture, parameters, {}}, pool), picture));
+  }
+}

@@ -1,0 +1,143 @@
+#include "raster/passes/pyramid.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "raster/images/image.h"
+#include "raster/images/texel.h"
+#include "raster/numbers/random_bits.h"
+#include "tests/support/raster_helpers.h"
+
+using namespace softfocus;
+using test::profile_named;
+
+namespace {
+
+Image random_picture(int width, int height, std::uint64_t seed) {
+  RandomSequence random{seed};
+  Image image = make_image(Format::rgba16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(image, y)) {
+      value = float_to_half(static_cast<float>(next_between(random, 0.0, 4.0)),
+                            HalfRounding::nearest_even);
+    }
+  }
+  return image;
+}
+
+Image half_of(const Image& image) {
+  return make_image(Format::rgba16f, (image.width + 1) / 2, (image.height + 1) / 2);
+}
+
+/// The mean of 4x4 pixels from (x, y) on.
+double mean_of_16(const Image& image, int x, int y) {
+  double sum = 0.0;
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 4; ++i) sum += static_cast<double>(load_texel(image, x + i, y + j).x);
+  }
+  return sum / 16.0;
+}
+
+}  // namespace
+
+TEST_CASE("the way down is five overlapping means, to half a step of the halves") {
+  ThreadPool pool{2};
+  const Image source = random_picture(40, 30, 1);
+  Image result = half_of(source);
+  downsample(source, result, {}, pool);
+  double worst = 0.0;
+  for (int y = 2; y < 13; ++y) {
+    for (int x = 2; x < 18; ++x) {
+      const int left = 2 * x - 2, top = 2 * y - 2;
+      const double exact =
+          0.5 * mean_of_16(source, left + 1, top + 1) +
+          0.125 * (mean_of_16(source, left, top) + mean_of_16(source, left + 2, top) +
+                   mean_of_16(source, left, top + 2) + mean_of_16(source, left + 2, top + 2));
+      worst = std::max(worst, std::fabs(exact - static_cast<double>(load_texel(result, x, y).x)));
+    }
+  }
+  CHECK(worst <= 0x1p-10 * 1.01);
+}
+
+TEST_CASE("the way up is a tent of bilinear samples, to half a step of the halves") {
+  ThreadPool pool{2};
+  const Image source = random_picture(20, 15, 2);
+  const Image own = make_image(Format::rgba16f, 40, 30);
+  Image result = make_image(Format::rgba16f, 40, 30);
+  upsample(source, own, 1.0f, result, {}, pool);
+  const auto bilinear = [&](double x, double y) {
+    const int column = static_cast<int>(std::floor(x)), line = static_cast<int>(std::floor(y));
+    const double u = x - column, v = y - line;
+    const auto at = [&](int i, int j) {
+      return static_cast<double>(load_texel(source, column + i, line + j).x);
+    };
+    return (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) + v * ((1 - u) * at(0, 1) + u * at(1, 1));
+  };
+  double worst = 0.0;
+  for (int y = 6; y < 24; ++y) {
+    for (int x = 6; x < 34; ++x) {
+      const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
+      double exact = 0.0;
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+          exact += (2 - std::abs(i)) * (2 - std::abs(j)) / 16.0 * bilinear(u + i, v + j);
+        }
+      }
+      worst = std::max(worst, std::fabs(exact - static_cast<double>(load_texel(result, x, y).x)));
+    }
+  }
+  CHECK(worst <= 0x1p-10 * 1.01);
+}
+
+TEST_CASE("a pyramid keeps what is even, and the sum of light away from the edges") {
+  ThreadPool pool{1};
+  Image even = make_image(Format::rgba16f, 21, 13);
+  for (int y = 0; y < 13; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(even, y)) value = 0x3A00;
+  }
+  Image down = half_of(even), up = make_image(Format::rgba16f, 21, 13);
+  downsample(even, down, {}, pool);
+  upsample(down, even, 1.0f, up, {}, pool);
+  CHECK(equal(up, even));
+
+  Image point = make_image(Format::rgba16f, 32, 32);
+  store_texel(point, 15, 17, glm::vec4{1024.0f}, {});
+  Image half = half_of(point), back = make_image(Format::rgba16f, 32, 32);
+  downsample(point, half, {}, pool);
+  upsample(half, make_image(Format::rgba16f, 32, 32), 1.0f, back, {}, pool);
+  double sum = 0.0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) sum += static_cast<double>(load_texel(back, x, y).x);
+  }
+  CHECK(sum == doctest::Approx(1024.0).epsilon(0.001));
+}
+
+TEST_CASE("upsample mixes by its share: with 0 nothing changes") {
+  ThreadPool pool{1};
+  const Image source = random_picture(9, 6, 3), own = random_picture(17, 12, 4);
+  Image result = make_image(Format::rgba16f, 17, 12);
+  upsample(source, own, 0.0f, result, {}, pool);
+  CHECK(equal(result, own));
+}
+
+TEST_CASE("a pyramid in vectors has the oracle's bits") {
+  for (const char* profile : {"ieee", "d3d11", "swiftshader"}) {
+    for (const Isa isa : available_isas()) {
+      ThreadPool pool{2, isa};
+      for (const int width : {1, 2, 3, 7, 16, 33, 64}) {
+        for (const int height : {1, 2, 5, 64, 131}) {
+          const Image source = random_picture(width, height, 5);
+          Image expected = half_of(source), result = expected;
+          downsample_oracle(source, expected, profile_named(profile), pool);
+          downsample(source, result, profile_named(profile), pool);
+          REQUIRE(equal(result, expected));
+          Image up = make_image(Format::rgba16f, width, height), expected_up = up;
+          upsample_oracle(expected, source, 0.4f, expected_up, profile_named(profile), pool);
+          upsample(expected, source, 0.4f, up, profile_named(profile), pool);
+          REQUIRE(equal(up, expected_up));
+        }
+      }
+    }
+  }
+}

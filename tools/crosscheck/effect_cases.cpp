@@ -1,0 +1,81 @@
+// Stages `bloom` and `tone-map`: the same picture with the effect on both sides.
+
+#include <array>
+
+#include "raster/effects/bloom.h"
+#include "raster/images/image.h"
+#include "tools/crosscheck/cases.h"
+#include "tools/gl/effects_on_gl.h"
+
+namespace softfocus {
+namespace {
+
+/// Mostly dark, with bright pixels, and if asked for halves of any bits.
+Image lights(int width, int height, unsigned seed, bool any_bits) {
+  RandomNumbers random{seed};
+  Image image = make_image(Format::rgba16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(image, y)) {
+      const float most = random.below(20) == 0 ? 50.0f : 1.5f;
+      value = any_bits && random.below(32) == 0
+                  ? static_cast<std::uint16_t>(random.word())
+                  : float_to_half(random.between(0.0f, most), HalfRounding::nearest_even);
+    }
+  }
+  return image;
+}
+
+struct BloomCase {
+  BloomSettings settings;
+  int width;
+  int height;
+  bool any_bits = false;
+};
+
+void bloom_both(const Bench& bench, Tally& tally, const BloomCase& what) {
+  const Image source = lights(what.width, what.height, 77, what.any_bits);
+  const GlTarget target =
+      bloom_on_gl(bench.gl, bench.shaders, what.settings, upload(source), what.width, what.height);
+  Image emulated = make_image(Format::rgba16f, what.width, what.height);
+  bloom(what.settings, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
+void tone_map_both(const Bench& bench, Tally& tally, const ToneCurve& curve) {
+  Image source = make_image(Format::rgba16f, 256, 64);
+  std::uint16_t next = 0;
+  for (int y = 0; y < source.height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(source, y)) value = next++;
+  }
+  constexpr float kExposure = 1.3f;
+  const GlTarget target = tone_map_on_gl(bench.gl, bench.shaders, curve, kExposure, upload(source),
+                                         source.width, source.height);
+  Image emulated = make_image(Format::rgba16f, source.width, source.height);
+  tone_map(curve, kExposure, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
+}  // namespace
+
+void add_effect_cases(std::vector<Case>& cases) {
+  const auto add = [&](const char* name, bool quick, bool slow_too, const BloomCase& what) {
+    cases.push_back({"bloom", name, quick, slow_too,
+                     [=](const Bench& bench, Tally& tally) { bloom_both(bench, tally, what); }});
+  };
+  add("64x48", true, true, {{.levels = 3}, 64, 48});
+  add("odd-61x43-steady", true, true, {{.levels = 4, .is_steady = true}, 61, 43});
+  add("no-knee", false, true, {{.threshold = 0.8f, .knee = 0.0f, .levels = 2}, 64, 64});
+  add("all-light", false, true, {{.threshold = 0.0f, .knee = 0.0f, .levels = 2}, 64, 64});
+  add("512x512", false, false, {{}, 512, 512});
+  add("any-bits", false, true, {{.levels = 3}, 64, 64, true});
+  add("any-bits-steady", false, true, {{.levels = 3, .is_steady = true}, 64, 64, true});
+  add("one-pixel", true, true, {{.levels = 3}, 1, 1});
+  for (const NamedToneCurve& named : kToneCurves) {
+    cases.push_back({"tone-map", std::string{named.name} + "-every-half", true, true,
+                     [curve = named.curve](const Bench& bench, Tally& tally) {
+                       tone_map_both(bench, tally, curve);
+                     }});
+  }
+}
+
+}  // namespace softfocus

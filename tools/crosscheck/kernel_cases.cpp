@@ -1,0 +1,175 @@
+// Stages `kernel`, `pyramid` and `bilateral`: the same picture filtered by both sides.
+
+#include <array>
+
+#include "raster/images/image.h"
+#include "raster/passes/bilateral.h"
+#include "raster/passes/kernel.h"
+#include "raster/passes/pyramid.h"
+#include "tools/crosscheck/cases.h"
+#include "tools/gl/objects.h"
+
+namespace softfocus {
+namespace {
+
+/// Halves of any bits, or of colours alone.
+Image random_picture(int width, int height, unsigned seed, bool any_bits) {
+  RandomNumbers random{seed};
+  Image image = make_image(Format::rgba16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(image, y)) {
+      value = any_bits && random.below(16) == 0
+                  ? static_cast<std::uint16_t>(random.word())
+                  : float_to_half(random.between(0.0f, 3.0f), HalfRounding::nearest_even);
+    }
+  }
+  return image;
+}
+
+/// Depths in steps, so that some are unlike.
+Image with_steps(Image image) {
+  for (int y = 0; y < image.height; ++y) {
+    const auto values = row<std::uint16_t>(image, y);
+    for (std::size_t i = 3; i < values.size(); i += 4) {
+      values[i] = static_cast<std::uint16_t>(
+          0x3C00 + (i / 4 / 9 + static_cast<std::size_t>(y) / 7) % 3 * 0x200);
+    }
+  }
+  return image;
+}
+
+Image weight_image(const Kernel& kernel) {
+  Image image = make_image(Format::r32f, kernel.width, kernel.height);
+  const float* weight = kernel.weights.data();
+  for (int y = 0; y < kernel.height; ++y) {
+    for (float& value : row<float>(image, y)) value = *weight++;
+  }
+  return image;
+}
+
+struct KernelCase {
+  Kernel kernel;
+  int width;
+  int height;
+  glm::ivec2 guard{0, 0};
+  bool any_bits = false;
+};
+
+void convolve_both(const Bench& bench, Tally& tally, const KernelCase& what) {
+  const Image source = random_picture(what.width + 2 * what.guard.x, what.height + 2 * what.guard.y,
+                                      2047, what.any_bits);
+  const GlTexture picture = upload(source), weights = upload(weight_image(what.kernel));
+  const GlTarget target = make_target(std::array{Format::rgba16f}, what.width, what.height, false);
+  const GlProgram program = link_program(bench.gl, bench.shaders, "fullscreen.vert", "kernel.frag");
+  set_texture(program, "source", 0, picture);
+  set_texture(program, "weights", 1, weights);
+  set_uniform(program, "guard", what.guard);
+  draw_fullscreen(target, program);
+
+  Image emulated = make_image(Format::rgba16f, what.width, what.height);
+  convolve(what.kernel, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
+/// Down and up again.
+void halve_and_double_both(const Bench& bench, Tally& tally, int width, int height, bool any_bits) {
+  const Image source = random_picture(width, height, 2049, any_bits);
+  const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+  const GlTexture picture = upload(source);
+  const GlTarget half = make_target(std::array{Format::rgba16f}, half_width, half_height, false);
+  const GlTarget whole = make_target(std::array{Format::rgba16f}, width, height, false);
+  const GlProgram down =
+      link_program(bench.gl, bench.shaders, "fullscreen.vert", "downsample.frag");
+  set_texture(down, "source", 0, picture);
+  draw_fullscreen(half, down);
+  const GlProgram up = link_program(bench.gl, bench.shaders, "fullscreen.vert", "upsample.frag");
+  constexpr float kShare = 0.7f;
+  set_texture(up, "source", 0, half.colour[0]);
+  set_texture(up, "own", 1, picture);
+  set_uniform(up, "share", kShare);
+  draw_fullscreen(whole, up);
+
+  Image small = make_image(Format::rgba16f, half_width, half_height);
+  Image large = make_image(Format::rgba16f, width, height);
+  downsample(source, small, bench.profile, bench.pool);
+  upsample(small, source, kShare, large, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(half, 0), small, "half");
+  add_pictures(tally, read_colour(whole, 0), large, "whole");
+}
+
+void add_pyramid_cases(std::vector<Case>& cases) {
+  const auto add = [&](const char* name, bool quick, bool slow_too, int width, int height,
+                       bool any_bits = false) {
+    cases.push_back({"pyramid", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
+                       halve_and_double_both(bench, tally, width, height, any_bits);
+                     }});
+  };
+  add("64x48", true, true, 64, 48);
+  add("odd-61x43", true, true, 61, 43);
+  add("512x512", false, false, 512, 512);
+  add("any-bits", false, true, 64, 64, true);
+  add("one-pixel", true, true, 1, 1);
+}
+
+void smooth_both(const Bench& bench, Tally& tally, const BilateralSettings& settings, int width,
+                 int height, bool any_bits) {
+  const Image source = with_steps(random_picture(width, height, 2048, any_bits));
+  const GlTexture picture = upload(source);
+  const GlTexture weights = upload(weight_image(row_kernel(gaussian_weights(settings.sigma_px))));
+  const GlTarget target = make_target(std::array{Format::rgba16f}, width, height, false);
+  const GlProgram program =
+      link_program(bench.gl, bench.shaders, "fullscreen.vert", "bilateral.frag");
+  set_texture(program, "source", 0, picture);
+  set_texture(program, "weights", 1, weights);
+  set_uniform(program, "colour_factor", bilateral_colour_factor(settings));
+  set_uniform(program, "depth_tolerance", settings.depth_tolerance);
+  draw_fullscreen(target, program);
+
+  Image emulated = make_image(Format::rgba16f, width, height);
+  bilateral(settings, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
+void add_bilateral_cases(std::vector<Case>& cases) {
+  const auto add = [&](const char* name, bool quick, bool slow_too,
+                       const BilateralSettings& settings, int width, int height,
+                       bool any_bits = false) {
+    cases.push_back({"bilateral", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
+                       smooth_both(bench, tally, settings, width, height, any_bits);
+                     }});
+  };
+  add("colour-61x43", true, true, {1.5, 1.5f, 0.0f}, 61, 43);
+  add("depth-61x43", true, true, {1.5, 0.0f, 0.4f}, 61, 43);
+  add("both-256x256", false, false, {3.0, 2.0f, 0.6f}, 256, 256);
+  add("no-tolerance", false, true, {2.0, 0.0f, 0.0f}, 64, 64);
+  add("any-bits", true, true, {1.0, 2.0f, 0.6f}, 64, 64, true);
+  add("one-pixel", true, true, {1.0, 2.0f, 0.6f}, 1, 1);
+}
+
+}  // namespace
+
+void add_kernel_cases(std::vector<Case>& cases) {
+  const auto add = [&](const std::string& name, bool quick, bool slow_too, const KernelCase& what) {
+    cases.push_back({"kernel", name, quick, slow_too,
+                     [=](const Bench& bench, Tally& tally) { convolve_both(bench, tally, what); }});
+  };
+  for (const NamedKernel& named : kernels()) {
+    const std::string name{named.name};
+    add(name + "-61x43", true, true, {named.kernel, 61, 43});
+    add(name + "-512x512", false, false, {named.kernel, 512, 512});
+    add(name + "-any-bits", false, true, {named.kernel, 97, 64, {0, 0}, true});
+  }
+  add("guard-band-40x30", true, true, {*find_kernel("gaussian-5"), 40, 30, {7, 3}});
+  for (const double sigma : {0.6, 4.0, 20.0}) {
+    const std::string name = "gaussian-" + std::to_string(static_cast<int>(sigma * 10.0));
+    add(name + "-tenths-across", sigma < 1.0, sigma < 10.0,
+        {row_kernel(gaussian_weights(sigma)), 160, 120});
+    add(name + "-tenths-down", sigma < 1.0, sigma < 10.0,
+        {column_kernel(gaussian_weights(sigma)), 160, 120});
+  }
+  add("one-pixel", true, true, {*find_kernel("gaussian-5"), 1, 1});
+  add_pyramid_cases(cases);
+  add_bilateral_cases(cases);
+}
+
+}  // namespace softfocus

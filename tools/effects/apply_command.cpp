@@ -1,0 +1,180 @@
+// softfocus apply: effects on a picture's file.
+
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
+#include "tools/files/picture_notes.h"
+#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
+#include "tools/options/effect_options.h"
+#include "tools/options/run_options.h"
+#include "tools/refocus/opacity.h"
+#include "tools/refocus/picture_with_depth.h"
+#include "tools/refocus/refocused_file.h"
+
+namespace softfocus {
+namespace {
+
+struct ApplyOptions {
+  std::string picture;
+  std::string output;
+  FileFormat format = FileFormat::png;
+  std::optional<std::string> layer;
+  EffectOptions effects;
+  Profile profile{};
+  std::string profile_name = "ieee";
+  PoolOptions pool;
+};
+
+/// A picture with what its file has beside the colour.
+struct OpenedPicture {
+  PictureSources sources;
+  std::optional<PlaneValues> depth{};  ///< as its codes stand in the file
+  PlaneValues opacity{};
+  Image colour{};
+};
+
+OpenedPicture read_picture(const ApplyOptions& options) {
+  constexpr std::size_t kNoPlane = ~std::size_t{0};
+  OpenedPicture opened{{.colour_file = open_picture_file(options.picture)}};
+  PictureSources& sources = opened.sources;
+  const PictureFile& file = sources.colour_file;
+  check_memory(options.picture, {file.width, file.height}, 64);
+  sources.colour = choose_colour(file, options.layer, "--layer");
+  sources.notes = find_notes(file.path, file.bytes).notes;
+  const std::optional<std::size_t> depth = find_depth_beside_colour(file);
+  sources.depth_plane = depth.value_or(kNoPlane);
+  opened.colour = read_colour(file, sources.colour, false).image;
+  opened.opacity = take_opacity(sources, opened.colour);
+  if (depth) {
+    opened.depth = std::move(read_planes(file, {&*depth, 1}, 0.0f)[0]);
+    put_in_alpha(*opened.depth, opened.colour);
+  }
+  return opened;
+}
+
+/// Opacity goes where light goes.
+void apply_effects(const ApplyOptions& options, OpenedPicture& opened, ThreadPool& pool) {
+  std::vector<ChosenEffect> spreading;
+  for (const ChosenEffect& chosen : all_effects(options.effects)) {
+    if (chosen.effect->spreads) spreading.push_back(chosen);
+  }
+  if (is_transparent(opened.opacity)) {
+    opened.opacity = opacity_of(with_effects(opacity_picture(opened.opacity, opened.colour),
+                                             spreading, options.profile, pool));
+  }
+  opened.colour =
+      with_effects(std::move(opened.colour), all_effects(options.effects), options.profile, pool);
+}
+
+PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) {
+  PictureNotes notes;
+  if (opened.sources.notes) {
+    notes = *opened.sources.notes;
+  } else {
+    notes.scene = opened.sources.colour_file.path.filename().string();
+    notes.show = "image";
+  }
+  notes.width = opened.colour.width;
+  notes.height = opened.colour.height;
+  notes.picture_hash = hash_image(opened.colour);
+  for (const ChosenEffect& chosen : all_effects(options.effects)) {
+    notes.effects.push_back(effect_text(chosen));
+  }
+  return notes;
+}
+
+Bytes picture_file(const ApplyOptions& options, const OpenedPicture& opened,
+                   const PictureNotes& notes) {
+  PictureExtras extras{.alpha = opened.opacity, .has_depth = opened.depth.has_value()};
+  std::vector<std::size_t> kept;
+  if (opened.depth) extras.depth_m = *opened.depth;
+  if (is_of_exr(options.format) && opened.sources.colour_file.reader == &kExrReader) {
+    kept = other_planes(opened.sources);
+    extras.source = &opened.sources.colour_file;
+    extras.kept = kept;
+  }
+  return encode_with_notes(opened.colour, options.format, notes, extras);
+}
+
+int apply_to_file(const ApplyOptions& options) {
+  const bool to_standard_output = options.output == "-";
+  const std::optional<std::filesystem::path> sidecar =
+      sidecar_place(options.output, options.format);
+  if (!to_standard_output) {
+    check_writable(options.output);
+    check_not_read("-o", options.output, {{options.picture, "the picture"}});
+    if (sidecar) check_not_read("-o", *sidecar, {{options.picture, "the picture"}});
+  }
+  ThreadPool pool{options.pool.threads, options.pool.isa};
+  OpenedPicture opened = read_picture(options);
+  const bool loses_alpha = is_transparent(opened.opacity) && !keeps_alpha(options.format);
+  apply_effects(options, opened, pool);
+  if (loses_alpha) opened.opacity.clear();
+  const PictureNotes notes = notes_of(options, opened);
+  const Bytes bytes = picture_file(options, opened, notes);
+  const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
+  if (to_standard_output) {
+    write_to_standard_output(bytes);
+  } else {
+    WholeFile picture{options.output};
+    std::optional<WholeFile> notes_file;
+    picture.write(bytes);
+    if (sidecar && has_room) notes_file.emplace(*sidecar).write(sidecar_text(notes, bytes));
+    picture.commit();
+    if (notes_file) notes_file->commit();
+  }
+  const auto warn = [](const std::string& text) {
+    std::cerr << "softfocus: warning: " << text << '\n';
+  };
+  if (!has_room) {
+    warn("'" + sidecar->string() +
+         "' is no sidecar of a picture and stays as it is: what was done is written nowhere");
+  }
+  if (loses_alpha) {
+    warn("'" + options.picture +
+         "' is transparent in places; the result's format has no alpha, and black there; .exr and "
+         ".png have");
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command add_apply_command(CLI::App& program) {
+  CLI::App* parser = add_command(program, "apply", "Put effects on a picture");
+  const auto options = std::make_shared<ApplyOptions>();
+  add_argument(*parser, "PICTURE",
+               "PNG and JPEG (sRGB), EXR, HDR, PFM (linear), NPY (linear; whole numbers sRGB)",
+               options->picture);
+  begin_group(*parser, "Effects");
+  add_effect_options(*parser, options->effects);
+  add_value(*parser, "--layer", "NAME", "The colour's layer of an EXR",
+            [options](const std::string& text) { options->layer = text; });
+  begin_group(*parser, "Output");
+  add_value(*parser, "-o,--output", "FILE",
+            "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
+            [options](const std::string& text) { options->output = text; });
+  add_format_option(*parser, options->format);
+  begin_group(*parser, "Run");
+  add_profile_option(*parser, options->profile, options->profile_name);
+  add_pool_options(*parser, options->pool, "the picture is the same");
+  return {
+      parser, [parser, options] {
+        settle_format(*parser, options->output, options->format);
+        if (all_effects(options->effects).empty()) {
+          throw UsageError(
+              "there is nothing to apply; give --effect (softfocus effects) or --tone-map");
+        }
+        if (options->output == "-" && is_terminal(kStandardOutput)) {
+          throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
+        }
+        return apply_to_file(*options);
+      }};
+}
+
+}  // namespace softfocus

@@ -1,0 +1,41 @@
+#pragma once
+// Effects on a command line: --effect NAME:key=value,..., one after the other.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raster/effects/effect.h"
+#include "tools/cli/parser.h"
+
+namespace softfocus {
+
+/// An effect with its numbers.
+struct ChosenEffect {
+  const Effect* effect;
+  std::vector<double> parameters;  ///< one for each of the effect's
+};
+
+/// Throws UsageError for an effect or a key that there is not, a key that comes twice, and a number
+/// beyond its limits.
+ChosenEffect parse_effect(std::string_view option, const std::string& text);
+
+/// "gaussian:sigma=2": as parse_effect() reads it.
+std::string effect_text(const ChosenEffect& chosen);
+
+struct EffectOptions {
+  std::vector<ChosenEffect> effects;     ///< in their order
+  std::optional<ChosenEffect> tone_map;  ///< after all others
+};
+
+/// Adds --effect, which may be repeated, and --tone-map.
+void add_effect_options(CLI::App& parser, EffectOptions& options);
+
+/// Both, in the order in which they come.
+std::vector<ChosenEffect> all_effects(const EffectOptions& options);
+
+/// The picture with all of them, in their order.
+Image with_effects(Image picture, const std::vector<ChosenEffect>& effects, const Profile& profile,
+                   ThreadPool& pool);
+
+}  // namespace softfocus
