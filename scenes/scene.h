@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dof/lens.h"
+#include "raster/effects/effect.h"
 #include "raster/images/sampler.h"
 
 namespace softfocus {
@@ -115,6 +116,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
+  std::vector<ChosenEffect> effects;  ///< on the finished picture
   /// What was missing, a line each: a model's texture, say.
   std::vector<std::string> warnings;
   /// What it was read from: the scene's file, models, material libraries, textures.

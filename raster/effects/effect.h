@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
@@ -37,6 +38,12 @@ struct Effect {
                  ThreadPool& pool);
   /// Whether a pixel's light goes to its neighbours, and so its opacity, if it has one, with it.
   bool spreads = false;
+};
+
+/// An effect with its numbers.
+struct ChosenEffect {
+  const Effect* effect;
+  std::vector<double> parameters;  ///< one for each of the effect's
 };
 
 std::span<const Effect> effects();

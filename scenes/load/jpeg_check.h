@@ -13,4 +13,8 @@ bool is_cut_jpeg(std::string_view bytes);
 /// them past the table's end.
 bool has_overfull_huffman_table(std::string_view bytes);
 
+/// Whether a scan of a JPEG names a Huffman table that does not come before it: stb_image decodes
+/// by whatever its memory holds.
+bool lacks_huffman_table(std::string_view bytes);
+
 }  // namespace softfocus

@@ -121,6 +121,25 @@ Light read_light(Section& section) {
   return light;
 }
 
+ChosenEffect read_effect(Section& section) {
+  const std::string name = read_text(section, "name", "");
+  const Effect* const effect = find_effect(name);
+  if (effect == nullptr) {
+    std::string there;
+    for (const Effect& known : effects()) {
+      there += (there.empty() ? "" : ", ") + std::string{known.name};
+    }
+    fail_at(section, "name", "is no effect; there are " + there);
+  }
+  ChosenEffect chosen{effect, {}};
+  for (const EffectParameter& parameter : effect->parameters) {
+    chosen.parameters.push_back(
+        read_number(section, parameter.name, parameter.preset, {parameter.least, parameter.most}));
+  }
+  finish_section(section);
+  return chosen;
+}
+
 }  // namespace
 
 Scene read_scene_text(std::string_view text, const std::filesystem::path& file) {
@@ -142,6 +161,7 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file) 
                 std::to_string(kMaxLights) + " would do");
   }
   for (Section& light : lights) scene.lights.push_back(read_light(light));
+  for (Section& effect : read_sections(top, "effect")) scene.effects.push_back(read_effect(effect));
 
   const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene);
   read_objects(top, file.parent_path(), surfaces, scene);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -9,6 +10,10 @@
 #include "scenes/load/jpeg_check.h"
 #include "scenes/load/scene_error.h"
 
+// What a damaged file leaves unset is 0 then, and not what was there before.
+#define STBI_MALLOC(size) std::calloc(1, size)
+#define STBI_REALLOC(memory, size) std::realloc(memory, size)
+#define STBI_FREE(memory) std::free(memory)
 // Its vector code gives other bits for JPEG than its scalar code.
 #define STBI_NO_SIMD
 #define STBI_ONLY_PNG
@@ -43,6 +48,10 @@ Texture load_texture(const std::filesystem::path& file) {
     fail(file,
          "is damaged (a Huffman table of more than 256 codes); a complete PNG or JPEG file "
          "would do");
+  }
+  if (lacks_huffman_table(bytes)) {
+    fail(file,
+         "is damaged (a scan without its Huffman table); a complete PNG or JPEG file would do");
   }
   int width = 0;
   int height = 0;

@@ -1,10 +1,8 @@
 // Any lens, settings and picture for the fixed-point filter: an error code, or the bits of
 // the plain evaluation in wide integers, row by row and on every vector unit.
 
-#include <cstdlib>
-#include <cstring>
-
 #include "dof/fixed_pictures/fixed_two_pass.h"
+#include "tests/fuzz/fuzz_input.h"
 #include "tests/support/fixed_oracle.h"
 
 namespace {
@@ -12,27 +10,8 @@ namespace {
 using namespace softfocus;
 using namespace softfocus::fixed;
 
-/// The input, number by number; zeros when it has ended.
-struct Input {
-  const std::uint8_t* data;
-  std::size_t size;
-
-  template <class Number>
-  Number next() {
-    Number number{};
-    const std::size_t some = std::min(size, sizeof number);
-    if (some > 0) std::memcpy(&number, data, some);
-    data += some;
-    size -= some;
-    return number;
-  }
-};
-
-void demand(bool holds) {
-  if (!holds) std::abort();
-}
-
-void check_picture(Input& input, const Settings& settings, const std::vector<Weights>& table) {
+void check_picture(FuzzNumbers& input, const Settings& settings,
+                   const std::vector<Weights>& table) {
   const int width = settings.width, height = settings.height;
   Image picture = make_image(Format::rgba8, width, height);
   Image rows = picture, lanes = picture;
@@ -79,7 +58,7 @@ void check_picture(Input& input, const Settings& settings, const std::vector<Wei
 }
 
 /// The same of RGBA16F.
-void check_halves(Input& input, const Settings& settings, const std::vector<Weights>& table) {
+void check_halves(FuzzNumbers& input, const Settings& settings, const std::vector<Weights>& table) {
   Image picture = make_image(Format::rgba16f, settings.width, settings.height);
   std::vector<std::uint8_t> codes;
   std::vector<Weights> weights;
@@ -113,7 +92,7 @@ void check_halves(Input& input, const Settings& settings, const std::vector<Weig
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input input{data, size};
+  FuzzNumbers input{data, size};
   const Camera camera{input.next<std::uint32_t>(), input.next<std::uint32_t>(),
                       input.next<std::uint32_t>(), input.next<std::uint32_t>(),
                       input.next<std::uint32_t>()};

@@ -63,3 +63,33 @@ TEST_CASE("a JPEG without its end marker is cut") {
   CHECK_FALSE(is_cut_jpeg(kStart + kFrame + "\xFF\xDA scan\xFF\xD9"));
   CHECK_FALSE(is_cut_jpeg("\x89PNG"));
 }
+
+TEST_CASE("a scan needs the Huffman tables that it names, and those before it alone") {
+  // Two components, tables 0 and 1 of each class; then where the coefficients begin and end.
+  const auto scan = [](const std::string& coefficients) {
+    return segment(0xDA, std::string("\2\1\x00\2\x11", 5) + coefficients) + "data\xFF\x00more";
+  };
+  const std::string whole = scan(std::string("\x00\x3F\x00", 3));
+  const auto tables = [](const std::string& numbers) {
+    std::string body;
+    for (const char number : numbers) body += number + huffman_table(3).substr(1);
+    return segment(0xC4, body);
+  };
+  const std::string all = tables(std::string("\x00\x01\x10\x11", 4)), frame = kStart + kFrame;
+  CHECK_FALSE(lacks_huffman_table(frame + all + whole));
+  CHECK_FALSE(lacks_huffman_table(frame + all + whole + "\xFF\xD3" + whole));
+  CHECK(lacks_huffman_table(frame + whole + all));
+  for (const char* three : {"\x01\x10\x11", "\x02\x01\x10\x11", "\x03\x10\x11\x01"}) {
+    CHECK(lacks_huffman_table(frame + tables(three) + whole));
+  }
+  CHECK(lacks_huffman_table(frame + tables(std::string("\x00\x01\x10\x12", 4)) + whole));
+  // Progressive: the first coefficient apart, once and again to refine it, and the others.
+  const std::string progressive = kStart + segment(0xC2, std::string(15, '\1'));
+  const std::string first = scan(std::string("\x00\x00\x01", 3));
+  const std::string refined = scan(std::string("\x00\x00\x10", 3)), others = scan("\1\5\1");
+  CHECK_FALSE(lacks_huffman_table(progressive + tables(std::string("\x00\x01", 2)) + first));
+  CHECK(lacks_huffman_table(progressive + tables("\x10\x11") + first));
+  CHECK_FALSE(lacks_huffman_table(progressive + refined));
+  CHECK_FALSE(lacks_huffman_table(progressive + tables("\x10\x11") + others));
+  CHECK(lacks_huffman_table(progressive + tables(std::string("\x00\x01", 2)) + others));
+}

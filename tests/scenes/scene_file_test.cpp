@@ -501,3 +501,11 @@ TEST_CASE("damaged text gives a complaint of one line or a scene, and nothing el
     }
   }
 }
+
+TEST_CASE("letters beyond ASCII stand in texts, and nowhere else") {
+  CHECK(read("title = \"\"\"\\\n  \u00e9t\u00e9\"\"\"\n").title == "\u00e9t\u00e9");
+  for (const char* letter : {"\u00e9", "\u00a0", "\u2028", "\u3042"}) {
+    const std::string text = std::string{"\ntitle = ["} + letter + "]\n";
+    CHECK(complaint(text).starts_with("a.toml:2: is no TOML"));
+  }
+}

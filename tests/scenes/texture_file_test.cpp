@@ -5,6 +5,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
+#include "scenes/load/jpeg_check.h"
 #include "tests/support/scene_test_files.h"
 
 using namespace softfocus;
@@ -104,4 +105,12 @@ TEST_CASE("a picture larger than a GPU's textures is refused before it is read")
   CHECK(contains(complaint(png), "16384"));
   png.replace(16, 8, std::string("\x00\x00\x40\x00\x00\x00\x40\x00", 8));
   CHECK(contains(complaint(png), "is 16384x16384 texels; up to 16384 along a side and 67108864"));
+}
+
+TEST_CASE("a JPEG without one of its Huffman tables is refused") {
+  std::string bytes = read_file(kJpeg);
+  CHECK_FALSE(lacks_huffman_table(bytes));
+  // The first table of class 1 becomes number 2.
+  bytes[bytes.find(std::string("\x10\x00\x02\x01\x03", 5))] = '\x12';
+  CHECK(complaint(bytes).starts_with("is damaged (a scan without its Huffman table)"));
 }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -37,12 +38,9 @@ struct RunSetting {
   std::optional<uid_t> user{};
 };
 
-inline ProgramRun run_program(const std::vector<std::string>& arguments,
-                              const RunSetting& setting = {}) {
-  int out[2], err[2];
-  if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) {
-    throw std::runtime_error("no pipe");
-  }
+/// Starts it; what it says goes to these descriptors, unless the setting names files.
+inline pid_t start_program(const std::vector<std::string>& arguments, const RunSetting& setting,
+                           int out, int err) {
   std::vector<std::string> words{SOFTFOCUS_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -51,14 +49,15 @@ inline ProgramRun run_program(const std::vector<std::string>& arguments,
   argv.push_back(nullptr);
 
   const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("no child");
   if (child == 0) {
     if (std::freopen("/dev/null", "r", stdin) == nullptr) ::_exit(125);
     const auto connect = [](int descriptor, const std::string& name, int pipe) {
       const int to = name.empty() ? pipe : ::open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
       if (::dup2(to, descriptor) < 0) ::_exit(125);
     };
-    connect(STDOUT_FILENO, setting.out_to, out[1]);
-    connect(STDERR_FILENO, setting.err_to, err[1]);
+    connect(STDOUT_FILENO, setting.out_to, out);
+    connect(STDERR_FILENO, setting.err_to, err);
     if (setting.file_size_limit) {
       const rlimit limit{*setting.file_size_limit, *setting.file_size_limit};
       ::setrlimit(RLIMIT_FSIZE, &limit);
@@ -67,9 +66,34 @@ inline ProgramRun run_program(const std::vector<std::string>& arguments,
     ::execv(SOFTFOCUS_PROGRAM, argv.data());
     ::_exit(126);
   }
+  return child;
+}
+
+/// Starts it in silence, sends it a signal once `is_time()`, and returns the signal that ended it;
+/// 0 if it ended by itself.
+template <class IsTime>
+int signal_that_ended(const std::vector<std::string>& arguments, int signal, IsTime is_time,
+                      const RunSetting& setting = {}) {
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const pid_t child = start_program(arguments, setting, nowhere, nowhere);
+  ::close(nowhere);
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (is_time()) ::kill(child, signal);
+    ::usleep(2000);
+  }
+  return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+inline ProgramRun run_program(const std::vector<std::string>& arguments,
+                              const RunSetting& setting = {}) {
+  int out[2], err[2];
+  if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) {
+    throw std::runtime_error("no pipe");
+  }
+  const pid_t child = start_program(arguments, setting, out[1], err[1]);
   ::close(out[1]);
   ::close(err[1]);
-  if (child < 0) throw std::runtime_error("no child");
 
   const auto read_all = [](int pipe) {
     std::string text;

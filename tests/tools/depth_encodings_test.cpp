@@ -146,6 +146,13 @@ TEST_CASE("depth encodings: NaN, what an encoding says and what the user says is
   CHECK(map.metres[1] == 1.0f);
 }
 
+TEST_CASE("depth encodings: what is nearer than a nanometre counts as so near") {
+  const DepthReading reading{.encoding = find_depth_encoding("metres")};
+  const DepthMap map =
+      depth_of_codes({1e-40f, 2e-32f, 1e-9f, 1e-6f}, NumberType::single, 4, 1, reading, {});
+  CHECK(map.metres == std::vector<float>{1e-9f, 1e-9f, 1e-9f, 1e-6f});
+}
+
 TEST_CASE("depth map: a hole is filled from the far side") {
   DepthMap map{5, 1, {1.0f, kNone, kNone, 7.0f, 2.0f}};
   fill_from_far_side(map);

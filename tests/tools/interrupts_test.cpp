@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #ifndef _WIN32
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,7 +11,10 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "tools/cli/platform.h"
 #include "tools/files/whole_file.h"
 
 using namespace softfocus;
@@ -65,5 +69,56 @@ TEST_CASE("an interrupt leaves files alone that have their name") {
   CHECK(WIFSIGNALED(status));
   CHECK(std::filesystem::exists(file));
   std::filesystem::remove(file);
+}
+
+TEST_CASE("what a killed process left is removed by the next that writes there, and nothing else") {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("softfocus-killed-" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const auto names = [&] {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator{folder}) {
+      found.push_back(entry.path().filename().string());
+    }
+    return found;
+  };
+  const pid_t child = ::fork();
+  if (child == 0) {
+    WholeFile file{folder / "picture.png"};
+    file.write("half of it");
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  CHECK(::waitpid(child, &status, 0) == child);
+  REQUIRE(names().size() == 1);
+  const std::string left = names()[0];
+  CHECK(left == ".softfocus-" + machine_name() + "-" + std::to_string(child) + "-0");
+
+  const std::string number = std::to_string(child);
+  const std::vector<std::string> others{
+      ".softfocus-another-machine-" + number + "-0", ".softfocus-" + machine_name() + "-" + number,
+      ".softfocus-" + machine_name() + "-" + number + "-0.png", ".softfocus-" + number + "-0"};
+  for (const std::string& other : others) std::ofstream{folder / other} << "mine";
+  WholeFile own{folder / "other.png"};
+  const std::size_t all = names().size();
+  check_writable(folder / "picture.png");
+  CHECK(names().size() == all - 1);
+  CHECK_FALSE(std::filesystem::exists(folder / left));
+
+  // The number of a process that has ended may be another container's.
+  std::ofstream{folder / left} << "half";
+  {
+    const int marked = ::open((folder / left).c_str(), O_WRONLY);
+    mark_in_use(marked);
+    check_writable(folder / "picture.png");
+    CHECK(std::filesystem::exists(folder / left));
+    ::close(marked);
+  }
+  check_writable(folder / "picture.png");
+  CHECK_FALSE(std::filesystem::exists(folder / left));
+  own.write("all");
+  own.commit();
+  CHECK(std::filesystem::exists(folder / "other.png"));
+  std::filesystem::remove_all(folder);
 }
 #endif

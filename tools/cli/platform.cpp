@@ -14,6 +14,7 @@
 #else
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -98,6 +99,14 @@ int create_file(const std::filesystem::path& file) {
                   _S_IREAD | _S_IWRITE);
 }
 
+std::string machine_name() { return "windows"; }
+
+bool is_running(int) { return true; }
+
+void mark_in_use(int) {}
+
+bool is_in_use(const std::filesystem::path&) { return true; }
+
 bool may_write(const std::filesystem::path& file) {
   constexpr int kForWriting = 2;
   return ::_waccess(file.c_str(), kForWriting) == 0;
@@ -146,6 +155,30 @@ int open_existing(const std::filesystem::path& file) {
 
 int create_file(const std::filesystem::path& file) {
   return ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+std::string machine_name() {
+  char name[256] = {};
+  if (::gethostname(name, sizeof name - 1) != 0) return "unknown";
+  std::string text = name;
+  for (char& c : text) {
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+                          (c >= 'A' && c <= 'Z') || c == '.' || c == '_' || c == '-';
+    if (!is_plain) c = '_';
+  }
+  return text;
+}
+
+bool is_running(int process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
+
+void mark_in_use(int descriptor) { ::flock(descriptor, LOCK_EX | LOCK_NB); }
+
+bool is_in_use(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return true;
+  const bool is_free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  ::close(descriptor);
+  return !is_free;
 }
 
 bool may_write(const std::filesystem::path& file) { return ::access(file.c_str(), W_OK) == 0; }

@@ -18,6 +18,12 @@ void prepare_process();
 /// The running program's number.
 int process_number();
 
+/// The machine's name, of letters, digits, '.', '_' and '-'.
+std::string machine_name();
+
+/// Whether a process of this machine has that number. True where the system does not tell.
+bool is_running(int process);
+
 /// The machine's memory, or nullopt where the system does not tell.
 std::optional<std::uint64_t> memory_bytes();
 
@@ -39,6 +45,13 @@ int open_existing(const std::filesystem::path& file);
 /// Likewise to a new file, with the permissions of the umask; EEXIST where the name is
 /// taken.
 int create_file(const std::filesystem::path& file);
+
+/// Tells is_in_use(), until the descriptor is closed, that somebody writes to the file.
+void mark_in_use(int descriptor);
+
+/// Whether a process, on this machine or on another, has marked a file; true where the file system
+/// does not tell.
+bool is_in_use(const std::filesystem::path& file);
 
 /// Whether an existing file may be written to; if not, errno says why.
 bool may_write(const std::filesystem::path& file);

@@ -171,10 +171,6 @@ Picture decode_png(std::span<const std::byte> bytes) {
   if (stbi_info_from_memory(data, data_size, &width, &height, &channels) == 0) {
     throw FileError(std::string{"the PNG is damaged: "} + stbi_failure_reason());
   }
-  if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize) {
-    throw FileError("the PNG is " + std::to_string(width) + "x" + std::to_string(height) +
-                    " pixels; each side may be 1 to " + std::to_string(kMaxImageSize));
-  }
   if (stbi_is_16_bit_from_memory(data, data_size) != 0) return decode_other(bytes, "the PNG");
   const bool has_alpha = channels == 2 || channels == 4;
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels{

@@ -107,6 +107,9 @@ void list_jpeg(PictureFile& file) {
   if (has_overfull_huffman_table(text)) {
     refuse_as_damaged("the JPEG", "a Huffman table has more than 256 codes");
   }
+  if (lacks_huffman_table(text)) {
+    refuse_as_damaged("the JPEG", "a scan lacks its Huffman table");
+  }
   if (is_cut_jpeg(text)) refuse_as_damaged("the JPEG", "its end is missing");
   list_channels(file, "the JPEG", NumberType::unsigned8);
   if (pixels_of(file) > kMostPixelsOfJpegByte * file.bytes.size()) {

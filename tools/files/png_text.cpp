@@ -6,13 +6,14 @@
 
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
+#include "tools/files/picture_file.h"
 
 namespace softfocus {
 namespace {
 
 constexpr std::size_t kFrame = 12;  // of a chunk: length, type, CRC
 constexpr std::size_t kHeaderEnd = 8 + kFrame + 13;
-constexpr std::uint32_t kIend = 0x49454E44;
+constexpr std::uint32_t kIhdr = 0x49484452, kIend = 0x49454E44;
 
 /// CRC-32 of ISO 3309, as the PNG specification's annex D gives it.
 std::uint32_t crc32(std::span<const std::byte> bytes) {
@@ -82,6 +83,12 @@ void check_png_chunks(std::span<const std::byte> png) {
     const auto type_and_data = rest.subspan(4, 4 + length);
     if (crc32(type_and_data) != big_endian<std::uint32_t>(rest.subspan(8 + length))) {
       throw FileError("the PNG is damaged: a checksum is wrong");
+    }
+    // stb would call a large one of no known type.
+    if (big_endian<std::uint32_t>(type_and_data) == kIhdr && length >= 8) {
+      const auto sides = type_and_data.subspan(4);
+      check_picture_size("the PNG", big_endian<std::uint32_t>(sides),
+                         big_endian<std::uint32_t>(sides.subspan(4)));
     }
     rest = rest.subspan(kFrame + length);
     if (big_endian<std::uint32_t>(type_and_data) != kIend) continue;

@@ -19,7 +19,7 @@ inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 void append_png_chunk(std::vector<std::byte>& bytes, std::string_view type, std::string_view data);
 
 /// Throws FileError for chunks that are cut short, have a wrong checksum, or do not end where the
-/// bytes do.
+/// bytes do, and for a side beyond kMaxImageSize.
 void check_png_chunks(std::span<const std::byte> png);
 
 struct PngText {

@@ -1,6 +1,7 @@
 #include "tools/files/whole_file.h"
 
 #include <cerrno>
+#include <charconv>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -54,6 +55,37 @@ std::filesystem::path links_followed(std::filesystem::path file) {
   }
 }
 
+/// Temporary files of this machine are called so, with the process and a number behind it.
+std::string temporary_start() { return ".softfocus-" + machine_name() + "-"; }
+
+/// The process in PROCESS-NUMBER.
+std::optional<int> process_in(std::string_view text) {
+  int process = 0, number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [dash, no_process] = std::from_chars(text.data(), end, process);
+  if (no_process != std::errc{} || process < 1 || dash == end || *dash != '-') return std::nullopt;
+  const auto [stop, no_number] = std::from_chars(dash + 1, end, number);
+  if (no_number != std::errc{} || stop != end) return std::nullopt;
+  return process;
+}
+
+/// Removes temporary files of processes that were killed. A number without a process is not
+/// enough: containers have numbers of their own. Nor is a missing mark: a new file has none yet.
+void remove_leftovers(const std::filesystem::path& folder) {
+  const std::string start = temporary_start();
+  std::error_code error;
+  std::filesystem::directory_iterator entries{folder.empty() ? "." : folder, error};
+  for (; !error && entries != std::filesystem::directory_iterator{}; entries.increment(error)) {
+    const std::string name = entries->path().filename().string();
+    if (!name.starts_with(start)) continue;
+    const auto process = process_in(std::string_view{name}.substr(start.size()));
+    std::error_code ignored;
+    if (process && !is_running(*process) && !is_in_use(entries->path())) {
+      std::filesystem::remove(entries->path(), ignored);
+    }
+  }
+}
+
 void write_all(int descriptor, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const std::ptrdiff_t written = write_some(descriptor, bytes);
@@ -78,8 +110,8 @@ WholeFile::WholeFile(const std::filesystem::path& target) : shown_(target), targ
   if (is_there && !may_write(target)) fail(errno);
   target_ = links_followed(target);
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = target_.parent_path() /
-                 (".softfocus-" + std::to_string(process_number()) + "-" + std::to_string(attempt));
+    temporary_ = target_.parent_path() / (temporary_start() + std::to_string(process_number()) +
+                                          "-" + std::to_string(attempt));
     descriptor_ = create_file(temporary_);
     if (descriptor_ < 0 && errno != EEXIST) {
       const int error = errno;
@@ -87,6 +119,7 @@ WholeFile::WholeFile(const std::filesystem::path& target) : shown_(target), targ
       fail(error);
     }
   }
+  mark_in_use(descriptor_);
   removed_.emplace(temporary_);
   // Best effort: some file systems know no permissions.
   std::error_code ignored;
@@ -131,6 +164,7 @@ void WholeFile::commit() {
 void check_writable(const std::filesystem::path& target) {
   const auto status = status_of(target);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) {
+    remove_leftovers(links_followed(target).parent_path());
     const WholeFile probe{target};
   } else if (std::filesystem::is_directory(status)) {
     refuse(target, EISDIR);

@@ -1,6 +1,6 @@
 #pragma once
 // A file that appears whole or not at all: the bytes go into a temporary file beside
-// it, which takes its name at the end. An interrupt removes it.
+// it, .softfocus-MACHINE-PROCESS-NUMBER, which takes its name at the end. An interrupt removes it.
 
 #include <cstddef>
 #include <filesystem>
@@ -41,7 +41,8 @@ class WholeFile {
 };
 
 /// Throws FileError if `target` could not be written now, so that a long work need
-/// not be done in vain. Leaves everything as it was.
+/// not be done in vain. Removes temporary files beside it of processes that were killed on this
+/// machine, and leaves all else as it was.
 void check_writable(const std::filesystem::path& target);
 
 /// Writes to standard output. False if it is a pipe that nobody reads any more. Throws FileError.

@@ -64,11 +64,15 @@ std::string effect_text(const ChosenEffect& chosen) {
 }
 
 void add_effect_options(CLI::App& parser, EffectOptions& options) {
-  add_repeatable_value(parser, "--effect", "NAME:KEY=VALUE,...",
-                       "An effect on the picture (softfocus effects); several come in their order",
-                       [&options](const std::string& text) {
-                         options.effects.push_back(parse_effect("--effect", text));
-                       });
+  add_repeatable_value(
+      parser, "--effect", "NAME:KEY=VALUE,...",
+      "An effect on the picture (softfocus effects); several come in their order; in place "
+      "of a scene's own; none: none",
+      [&options](const std::string& text) {
+        options.are_given = true;
+        if (text == "none") return;
+        options.effects.push_back(parse_effect("--effect", text));
+      });
   offer(parser, "--effect", [] { return names_in(effects()); });
   add_value(parser, "--tone-map", "none|reinhard|aces|hable",
             "Last of all: light of any strength becomes 0 to 1 by a curve (default: none, which "
@@ -85,8 +89,10 @@ void add_effect_options(CLI::App& parser, EffectOptions& options) {
             });
 }
 
-std::vector<ChosenEffect> all_effects(const EffectOptions& options) {
+std::vector<ChosenEffect> all_effects(const EffectOptions& options,
+                                      std::span<const ChosenEffect> of_scene) {
   std::vector<ChosenEffect> all = options.effects;
+  if (!options.are_given) all.assign(of_scene.begin(), of_scene.end());
   if (options.tone_map) all.push_back(*options.tone_map);
   return all;
 }

@@ -10,12 +10,6 @@
 
 namespace softfocus {
 
-/// An effect with its numbers.
-struct ChosenEffect {
-  const Effect* effect;
-  std::vector<double> parameters;  ///< one for each of the effect's
-};
-
 /// Throws UsageError for an effect or a key that there is not, a key that comes twice, and a number
 /// beyond its limits.
 ChosenEffect parse_effect(std::string_view option, const std::string& text);
@@ -24,15 +18,17 @@ ChosenEffect parse_effect(std::string_view option, const std::string& text);
 std::string effect_text(const ChosenEffect& chosen);
 
 struct EffectOptions {
+  bool are_given = false;                ///< --effect is: the scene's do not count
   std::vector<ChosenEffect> effects;     ///< in their order
   std::optional<ChosenEffect> tone_map;  ///< after all others
 };
 
-/// Adds --effect, which may be repeated, and --tone-map.
+/// Adds --effect, which may be repeated, and --tone-map. `none` is no effect.
 void add_effect_options(CLI::App& parser, EffectOptions& options);
 
-/// Both, in the order in which they come.
-std::vector<ChosenEffect> all_effects(const EffectOptions& options);
+/// All in the order in which they come. Those `of_scene` make way for given ones.
+std::vector<ChosenEffect> all_effects(const EffectOptions& options,
+                                      std::span<const ChosenEffect> of_scene = {});
 
 /// The picture with all of them, in their order.
 Image with_effects(Image picture, const std::vector<ChosenEffect>& effects, const Profile& profile,

@@ -10,6 +10,9 @@ namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
+/// Metres: what is nearer counts as so near, for single precision must hold 1/z.
+constexpr double kNearest = 1e-9;
+
 bool is_missing(float metres) { return metres != metres; }
 
 bool means_missing(double code, const DepthReading& reading) {
@@ -79,7 +82,7 @@ DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int heigh
       if (reading.along == DepthAlong::ray) {
         metres /= ray_length(x, y, width, height, reading.pixels_per_tangent);
       }
-      if (metres > 0.0) map.metres[i] = static_cast<float>(metres);
+      if (metres > 0.0) map.metres[i] = static_cast<float>(std::max(metres, kNearest));
     }
   }
   return map;

@@ -9,7 +9,7 @@
 
 namespace softfocus {
 
-/// Row by row from the top, width x height: metres above 0, infinity where nothing is; NaN where
+/// Row by row from the top, width x height: metres from 1e-9, infinity where nothing is; NaN where
 /// the depth is missing.
 struct DepthMap {
   int width = 0;

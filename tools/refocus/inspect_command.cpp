@@ -225,9 +225,6 @@ void write_circles(const InspectOptions& options) {
   preview.colour = options.files[0];
   preview.depth = options.files.size() > 1 ? options.files[1] : "";
   preview.show = RefocusShow::coc;
-  for (const std::string& file : options.files) {
-    check_not_read("-o", preview.output, {{file, "a file to inspect"}});
-  }
   ThreadPool pool{preview.pool.threads, preview.pool.isa};
   const PictureSources sources = open_sources(preview.colour, preview.depth, preview.reading);
   Image colour = read_colour(sources.colour_file, sources.colour, false).image;
@@ -247,6 +244,12 @@ void write_circles(const InspectOptions& options) {
 }
 
 int inspect(const InspectOptions& options) {
+  if (const std::string& output = options.preview.output; !output.empty()) {
+    check_writable(output);
+    for (const std::string& file : options.files) {
+      check_not_read("-o", output, {{file, "a file to inspect"}});
+    }
+  }
   Json all = Json::array();
   for (const std::string& name : options.files) {
     const InspectedFile found = inspected(name, options.preview.reading);
@@ -288,6 +291,9 @@ Command add_inspect_command(CLI::App& program) {
               if (options->files.size() > 2) {
                 throw UsageError("-o: it takes one file, or a colour and its depth; " +
                                  std::to_string(options->files.size()) + " are given");
+              }
+              if (preview.output == "-") {
+                throw UsageError("-o -: standard output has the text; give -o a file");
               }
               settle_format(*parser, preview.output, preview.format);
             }

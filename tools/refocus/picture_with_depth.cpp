@@ -128,7 +128,10 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options) {
   PictureSources sources{.colour_file = open_picture_file(colour)};
   sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
-  if (!depth.empty()) sources.depth_file = open_picture_file(depth);
+  if (!depth.empty()) {
+    sources.depth_file = open_picture_file(depth);
+    check_shape(sources.colour_file, *sources.depth_file);
+  }
   sources.depth_plane = choose_depth(sources.of_depth(), options.depth_layer, depth.empty());
   sources.notes = find_notes(sources.colour_file.path, sources.colour_file.bytes).notes;
   if (!sources.notes) sources.lens = find_exr_lens(sources.colour_file.bytes);
@@ -138,7 +141,6 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
 ReadDepth read_depth(const PictureSources& sources, const Image& colour,
                      const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool) {
   const PictureFile& file = sources.of_depth();
-  check_shape(sources.colour_file, file);
   const NumberType type = file.planes[sources.depth_plane].type;
   PlaneValues codes = depth_codes(file, sources.depth_plane);
   const PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};

@@ -46,7 +46,8 @@ struct PictureSources {
   const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
 };
 
-/// Opens COLOUR and, unless it is empty, DEPTH, and chooses layers. Throws FileError, UsageError.
+/// Opens COLOUR and, unless it is empty, DEPTH, and chooses layers. Throws FileError; UsageError
+/// for layers that are not there and a depth of another shape than the colour.
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options);
 
@@ -63,8 +64,8 @@ struct ReadDepth {
 };
 
 /// Reads the depth of `sources`, mends it beside `colour` (RGBA16F) and fills what is missing.
-/// Throws FileError; UsageError for an encoding that cannot be told or lacks numbers, a map of
-/// another shape than the colour, and missing depths that are not to be filled.
+/// Throws FileError; UsageError for an encoding that cannot be told or lacks numbers, and missing
+/// depths that are not to be filled.
 ReadDepth read_depth(const PictureSources& sources, const Image& colour,
                      const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool);
 

@@ -403,10 +403,13 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
     });
     ms.filter += halve_ms;
   }
-  if (!all_effects(options.effects).empty()) {
+  record.effects =
+      all_effects(options.effects, options.show == Show::image ? std::span{scene.effects}
+                                                               : std::span<const ChosenEffect>{});
+  if (!record.effects.empty()) {
     double effects_ms = 0.0;
     picture = timed(progress, "effects", effects_ms, [&] {
-      return with_effects(std::move(picture), all_effects(options.effects), options.profile, pool);
+      return with_effects(std::move(picture), record.effects, options.profile, pool);
     });
     ms.filter += effects_ms;
   }
@@ -471,6 +474,11 @@ int render(const RenderOptions& options) {
   double load_ms = 0.0;
   const Scene scene = loaded_scene(options, progress, load_ms);
   check_outputs(options, scene);
+  if (options.shard && !options.effects.are_given && !scene.effects.empty()) {
+    throw UsageError(
+        "--shard: the scene has effects, and a shard is no picture; give --effect none, and to "
+        "what join makes softfocus apply");
+  }
   const Rendered made = make_rendered(options, scene, load_ms, progress, pool);
   if (to_standard_output) write_to_standard_output(made.picture);
   progress.clear();

@@ -35,7 +35,7 @@ struct RenderOptions {
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
   EffectOptions effects;  ///< on the finished picture
-  int supersample = 1;  ///< what is drawn and filtered has so many times the width and height
+  int supersample = 1;    ///< what is drawn and filtered has so many times the width and height
   double frame = 0.0;
   SequenceOptions sequence;  ///< of many pictures
   Profile profile;

@@ -58,6 +58,7 @@ struct RenderRecord {
   UsedMethod used;
   std::optional<UsedLens> lens;        ///< none where the picture needs none
   std::optional<UsedSamples> sampled;  ///< if the method samples the lens
+  std::vector<ChosenEffect> effects;   ///< on the finished picture
   StageTimes ms;
 };
 

@@ -109,8 +109,7 @@ PictureNotes notes_of(const RenderOptions& options, const RenderRecord& record) 
   if (record.lens) {
     notes.lens = {record.lens->lens, record.lens->coc_scale, notes.fov_y_degrees};
   }
-  for (const ChosenEffect& chosen : all_effects(options.effects))
-    notes.effects.push_back(effect_text(chosen));
+  for (const ChosenEffect& chosen : record.effects) notes.effects.push_back(effect_text(chosen));
   return notes;
 }
 

@@ -70,6 +70,54 @@ TEST_CASE("render and apply --tone-map: the curve comes last") {
   CHECK(contains(wrong.err, "there are none, reinhard, aces, hable"));
 }
 
+TEST_CASE("effects in a scene file are those of --effect, which overrules them") {
+  const TemporaryDirectory directory;
+  const std::string scene = directory.file("a.toml"), plain_scene = directory.file("b.toml");
+  const std::string text = R"(
+[[light]]
+kind = "directional"
+direction = [0, 1, 1]
+[material.white]
+diffuse = [1, 1, 1]
+[[object]]
+shape = "sphere"
+material = "white"
+radius = 0.5
+)";
+  write_file(plain_scene, text);
+  write_file(scene,
+             text + "[[effect]]\nname = \"gaussian\"\nsigma = 3\n[[effect]]\nname = \"sharpen\"\n");
+  const auto picture = [&](const std::string& of, Words more) {
+    const std::string file = directory.file("c.npy");
+    more.insert(more.begin(), {"render", of, "--size", "40x30", "-o", file});
+    const ProgramRun run = run_program(more);
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    return read_image_file(file).image;
+  };
+  const Image plain = picture(plain_scene, {});
+  CHECK(equal(picture(scene, {}),
+              picture(plain_scene, {"--effect", "gaussian:sigma=3", "--effect", "sharpen"})));
+  CHECK_FALSE(equal(picture(scene, {}), plain));
+  CHECK(equal(picture(scene, {"--effect", "none"}), plain));
+  CHECK(equal(picture(scene, {"--effect", "sharpen"}),
+              picture(plain_scene, {"--effect", "sharpen"})));
+  CHECK(equal(picture(scene, {"--show", "pinhole"}), picture(plain_scene, {"--show", "pinhole"})));
+
+  const auto refused = [&](const std::string& effect, const std::string& what) {
+    write_file(scene, text + "[[effect]]\n" + effect);
+    const ProgramRun run = run_program({"render", scene, "-o", directory.file("d.png")});
+    CHECK(run.status != 0);
+    CAPTURE(run.err);
+    CHECK(contains(run.err, what));
+    CHECK(contains(run.err, "a.toml:"));
+  };
+  refused("name = \"blom\"\n", "is no effect; there are edge-detection");
+  refused("sigma = 2\n", "is no effect");
+  refused("name = \"gaussian\"\nsigma = -1\n", "sigma");
+  refused("name = \"sharpen\"\nsigma = 1\n", "sigma");
+}
+
 TEST_CASE("apply: opacity goes where light goes, and stays where it does not") {
   const TemporaryDirectory directory;
   Image picture = make_image(Format::rgba16f, 9, 1);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "raster/images/image.h"
+#include "raster/numbers/half.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 #include "tests/support/skip.h"
@@ -148,6 +149,25 @@ TEST_CASE("bad input: NaN, negative and infinite depths are missing or far, neve
                 2, {"d.pfm", "no depth that is known"});
 }
 
+TEST_CASE("bad input: depths of almost 0 stay numbers, in a smaller map too") {
+  const SmallPair files;
+  std::vector<float> metres(12, 16.5f);
+  metres[0] = 2.4e-32f;
+  metres[1] = 0.0f;
+  metres[4] = 9e-40f;
+  write_file(files.depth, text_of(encode_grey_pfm(metres, 4, 3)));
+  const std::string out = files.directory.file("out.npy");
+  const ProgramRun run = run_program(
+      {"refocus", files.colour, files.depth, "-o", out, "--depth-encoding", "metres", "-q"});
+  CHECK(run.status == 0);
+  const Image result = read_image_file(out).image;
+  for (int y = 0; y < result.height; ++y) {
+    for (const std::uint16_t half : row<std::uint16_t>(result, y)) {
+      CHECK(half_to_float(half) >= 0.0f);  // NaN is not
+    }
+  }
+}
+
 TEST_CASE("bad input: a layer that is not there is answered with those that are") {
   if (!missing_exr().empty()) return;
   const SmallPair files;
@@ -201,4 +221,26 @@ TEST_CASE("bad input: a place that refocus cannot write, and a full disk") {
                 {"refocus", files.colour, files.depth, "-o", "/dev/full", "--format", "npy",
                  "--depth-encoding", "metres"},
                 1, {"/dev/full", "space"});
+}
+
+TEST_CASE("bad input: a PNG that is too wide is told its size") {
+  const SmallPair files;
+  const std::string file = files.directory.file("wide.png");
+  write_file(file, small_png(16385, 1, "data"));
+  check_refused(files.directory, {"refocus", file, files.depth, "-o", files.out}, 1,
+                {"wide.png", "16385x1", "1 to 16384"});
+  check_refused(files.directory, {"compare", file, file}, 2, {"wide.png", "16385x1"});
+}
+
+TEST_CASE("bad input: inspect writes over nothing that it reads, and says so before anything") {
+  const SmallPair files;
+  for (const std::string& file : {files.colour, files.depth}) {
+    check_refused(files.directory, {"inspect", files.colour, files.depth, "-o", file}, 2,
+                  {"-o", "write over"});
+  }
+  check_refused(files.directory, {"inspect", files.colour, files.depth, "-o", "-"}, 2,
+                {"-o -", "a file"});
+  check_refused(files.directory,
+                {"inspect", files.colour, files.depth, "-o", files.directory.file("no/such.png")},
+                1, {"no/such.png"});
 }

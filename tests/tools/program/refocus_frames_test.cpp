@@ -1,10 +1,5 @@
 // softfocus refocus of many pictures: the frames of single runs, whatever stops a run.
 
-#include <signal.h>
-
-#include <chrono>
-#include <thread>
-
 #include "tests/support/cli_refused.h"
 #include "tests/support/frame_runs.h"
 
@@ -217,6 +212,32 @@ TEST_CASE("refocus: a full disk ends the run after three frames, and leaves none
   std::sort(after.begin(), after.end());
   CHECK(directory.listing() == after);
   check_run(refocus(directory, "o_%04d.npy"), 0, "6 frames: 6 made");
+  check_run(refocus(directory, "w_%04d.npy"), 0, "6 frames: 6 made");
+  for (int frame = 1; frame <= 6; ++frame) {
+    CHECK(same_files(directory.file(name_of_frame("o_", frame) + ".npy"),
+                     directory.file(name_of_frame("w_", frame) + ".npy")));
+  }
+}
+
+TEST_CASE("refocus: a run that is killed on a full disk loses nothing either") {
+  const TemporaryDirectory directory;
+  constexpr int kFrames = 12;
+  draw_frames(directory, kFrames, "128x96");
+  const Words words = refocus(directory, "o_%04d.png", {"--threads", "1"});
+  // The disk has room for pictures, but for one line more of the journal at most.
+  const std::string journal = directory.file("o_%04d.png.journal");
+  constexpr std::size_t kRoom = 100'000;
+  write_file(journal, std::string(kRoom - 150, 'x') + "\n");
+  REQUIRE(signal_that_ended(words, SIGKILL,
+                            [&] { return std::filesystem::exists(directory.file("o_0004.png")); },
+                            {.file_size_limit = kRoom}) == SIGKILL);
+  CHECK(read_file(journal).size() <= kRoom);
+  CHECK(run_program(words).status == 0);
+  check_run(refocus(directory, "w_%04d.png"), 0, "12 frames: 12 made");
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const std::string number = (frame < 10 ? "000" : "00") + std::to_string(frame) + ".png";
+    CHECK(same_files(directory.file("o_" + number), directory.file("w_" + number)));
+  }
 }
 
 TEST_CASE("refocus: a run that is killed goes on where it stopped, with the same files") {
@@ -224,30 +245,13 @@ TEST_CASE("refocus: a run that is killed goes on where it stopped, with the same
   constexpr int kFrames = 40;
   draw_frames(directory, kFrames, "128x96");
   const Words words = refocus(directory, "o_%04d.png", {"--threads", "2"});
-  std::vector<std::string> arguments = joined({SOFTFOCUS_PROGRAM}, words);
-  std::vector<char*> argv;
-  argv.reserve(arguments.size() + 1);
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::close(STDERR_FILENO);
-    ::execv(SOFTFOCUS_PROGRAM, argv.data());
-    ::_exit(126);
-  }
   // As soon as some frames are there.
   const std::string journal = directory.file("o_%04d.png.journal");
   const auto lines = [&] {
     const std::string text = read_file(journal);
     return std::count(text.begin(), text.end(), '\n');
   };
-  for (int wait = 0; wait < 5000 && lines() < 3; ++wait) {
-    std::this_thread::sleep_for(std::chrono::milliseconds{2});
-  }
-  ::kill(child, SIGKILL);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  REQUIRE(WIFSIGNALED(status));
+  REQUIRE(signal_that_ended(words, SIGKILL, [&] { return lines() >= 3; }) == SIGKILL);
   const auto made = static_cast<int>(lines());
   REQUIRE(made >= 3);
   REQUIRE(made < kFrames);

@@ -246,6 +246,53 @@ TEST_CASE("refocus: --border is what the same filter makes of a larger picture")
   }
 }
 
+TEST_CASE("refocus: --highlights goes by a transparent picture's own colour, not by what is left") {
+  const TemporaryDirectory directory;
+  put_depth(directory, [](int, int) { return 16.0f; });
+  for (const float alpha : {1.0f, 0.5f}) {
+    const Image lamp = picture_of(
+        [&](int x, int y) { return glm::vec3{(x == 30 && y == 20 ? 1.0f : 0.01f) * alpha}; });
+    put(directory, "lamp.png", encode_png_16(lamp, plane_of([&](int, int) { return alpha; })));
+    refocus(directory, "lamp.png", alpha == 1.0f ? "opaque.npy" : "half.exr",
+            {"--method", "disc-layers", "--highlights", "50,0.5"});
+  }
+  const double opaque = static_cast<double>(load_texel(read(directory, "opaque.npy"), 30, 14).x);
+  const double half = static_cast<double>(load_texel(read(directory, "half.exr"), 30, 14).x);
+  CHECK(opaque > 0.03);
+  CHECK(half == doctest::Approx(0.5 * opaque).epsilon(0.01));
+}
+
+TEST_CASE("refocus: beyond a black border a transparent picture has nothing, alpha neither") {
+  const TemporaryDirectory directory;
+  constexpr int kMargin = 12, kWide = kSide + 2 * kMargin;
+  put_transparent(directory, "a.png", {1.0f, 1.0f, 1.0f});
+  put_depth(directory);
+  refocus(directory, "a.png", "b.png", {"--border", "black", "--format", "png-16"});
+  Image wide = make_image(Format::rgba16f, kWide, kWide);
+  std::vector<float> alpha, depths;
+  for (int y = -kMargin; y < kSide + kMargin; ++y) {
+    for (int x = -kMargin; x < kSide + kMargin; ++x) {
+      const int from_x = std::clamp(x, 0, kSide - 1), from_y = std::clamp(y, 0, kSide - 1);
+      alpha.push_back(from_x == x && from_y == y ? opacity_at(x, y) : 0.0f);
+      depths.push_back(depth_at(from_x, from_y));
+      store_texel(wide, x + kMargin, y + kMargin, {glm::vec3{alpha.back()}, 1.0f}, {});
+    }
+  }
+  put(directory, "wide.png", encode_png_16(wide, alpha));
+  put(directory, "d.pfm", encode_grey_pfm(depths, kWide, kWide));
+  refocus(directory, "wide.png", "c.png", {"--format", "png-16"});
+  const PlaneValues result = read_plane(directory, "b.png", "A");
+  const PlaneValues expected = read_plane(directory, "c.png", "A");
+  int different = 0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      different += result[static_cast<std::size_t>(y * kSide + x)] !=
+                   expected[static_cast<std::size_t>((y + kMargin) * kWide + x + kMargin)];
+    }
+  }
+  CHECK(different == 0);
+}
+
 TEST_CASE("refocus: an aperture's blades, turn and stretch are drawn, or refused with who can") {
   const TemporaryDirectory directory;
   put(directory, "a.npy", encode_npy(picture_of([](int x, int y) {

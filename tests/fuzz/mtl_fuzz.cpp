@@ -1,0 +1,15 @@
+// Any bytes as a material library: materials, or a SceneError.
+
+#include "scenes/load/mtl_file.h"
+#include "scenes/load/scene_error.h"
+#include "tests/fuzz/fuzz_input.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace softfocus;
+  try {
+    MtlMaterials materials;
+    load_mtl(fuzz_file(data, size, ".mtl"), materials);
+  } catch (const SceneError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,48 @@
+// Any lines as the arguments of `refocus`: options that fit each other, or a UsageError. What
+// other commands have beside them is read by the same functions.
+
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "tests/fuzz/fuzz_input.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/parser.h"
+#include "tools/refocus/options.h"
+
+namespace {
+
+using namespace softfocus;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t start = 0; start < text.size();) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    lines.push_back(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  std::cout.rdbuf(nullptr);  // where --help goes
+  std::cerr.rdbuf(nullptr);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::vector<std::string> arguments = lines_of({reinterpret_cast<const char*>(data), size});
+  arguments.insert(arguments.begin(), "refocus");
+  const auto program = make_program("softfocus", "0", "");
+  RefocusOptions options;
+  CLI::App* const parser = add_command(*program, "refocus", "");
+  add_refocus_options(*parser, options);
+  try {
+    if (parse(*program, arguments).answered) return 0;
+    complete(options, *parser);
+  } catch (const UsageError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,211 @@
+// What the fuzz targets begin from: small files of every kind, in FOLDER/TARGET.
+//
+//   fuzz_seeds FOLDER TESTS/DATA SCENES
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <string_view>
+
+#include "raster/images/texel.h"
+#include "tools/files/exr_file.h"
+#include "tools/files/profile_file.h"
+#include "tools/files/sums_file.h"
+#include "tools/sequence/journal.h"
+
+#ifdef SOFTFOCUS_EXR_SEEDS
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfTiledOutputFile.h>
+#endif
+
+namespace {
+
+using namespace softfocus;
+namespace fs = std::filesystem;
+
+/// A folder of seeds.
+class Seeds {
+ public:
+  Seeds(const fs::path& all, const std::string& target) : folder_(all / target) {
+    fs::create_directories(folder_);
+  }
+  fs::path file(const std::string& name) const { return folder_ / name; }
+  void put(const std::string& name, std::string_view text) const {
+    std::ofstream{file(name), std::ios::binary} << text;
+  }
+  void put(const std::string& name, const Bytes& bytes) const {
+    put(name, std::string_view{reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
+  void copy(const fs::path& from) const {
+    fs::copy_file(from, file(from.filename().string()), fs::copy_options::overwrite_existing);
+  }
+
+ private:
+  fs::path folder_;
+};
+
+constexpr int kWidth = 12, kHeight = 9;
+
+/// Colours of a slope, depth in alpha.
+Image small_picture() {
+  Image image = make_image(Format::rgba16f, kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto i = static_cast<float>(y * kWidth + x);
+      store_texel<Format::rgba16f>(image, x, y, {i / 108.0f, 0.5f, 1.0f - i / 216.0f, 1.0f + i},
+                                   Profile{});
+    }
+  }
+  return image;
+}
+
+PictureNotes small_notes() {
+  return {.scene = "a scene",
+          .frame = 3.0,
+          .width = kWidth,
+          .height = kHeight,
+          .show = "image",
+          .lens = NotedLens{},
+          .method = {{"name", "two-pass"}, {"max_coc_px", 12.0}}};
+}
+
+void put_pictures(const fs::path& all, const fs::path& data) {
+  const Image image = small_picture();
+  const std::vector<float> plane(kWidth * kHeight, 0.75f);
+  const Seeds png{all, "png"}, jpeg{all, "jpeg"}, hdr{all, "hdr"}, pfm{all, "pfm"}, npy{all, "npy"};
+  png.put("8", encode_with_notes(image, FileFormat::png, small_notes()));
+  png.put("16-alpha", encode_png_16(image, plane));
+  png.put("grey-16", encode_depth(plane, kWidth, kHeight, FileFormat::png_16));
+  jpeg.copy(data / "red-blue-16x8.jpg");
+  hdr.put("colour", encode_hdr(image));
+  pfm.put("colour", encode_pfm(image));
+  pfm.put("grey", encode_grey_pfm(plane, kWidth, kHeight));
+  npy.put("halves", encode_npy(image));
+  npy.put("grey", encode_grey_npy(plane, kWidth, kHeight));
+  npy.put("bytes", encode_npy(make_image(Format::rgba8, 3, 2)));
+  const Seeds texture{all, "texture"};
+  texture.put("8", encode_png(image));
+  texture.put("16-alpha", encode_png_16(image, plane));
+  texture.copy(data / "red-blue-16x8.jpg");
+}
+
+#ifdef SOFTFOCUS_EXR_SEEDS
+Imf::Header exr_header(Imf::Compression compression) {
+  Imf::Header header{kWidth, kHeight};
+  header.compression() = compression;
+  header.channels().insert("R", Imf::Channel(Imf::HALF));
+  header.channels().insert("layer.Z", Imf::Channel(Imf::FLOAT));
+  header.channels().insert("id", Imf::Channel(Imf::UINT));
+  return header;
+}
+
+/// All compressions, tiles and two parts.
+void put_exr_files(const fs::path& all) {
+  const Seeds exr{all, "exr"};
+  const Image image = small_picture();
+  const Bytes ours = encode_exr(image, ExrNumbers::half, "{\"a\": 1}", {.lens = ThinLens{}});
+  exr.put("ours", ours);
+  std::vector<std::uint32_t> numbers(kWidth * kHeight);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = static_cast<std::uint32_t>(0x3C003C00u + (i % 5) * 0x01000100u);
+  }
+  Imf::FrameBuffer buffer;
+  const Imath::Box2i window{{0, 0}, {kWidth - 1, kHeight - 1}};
+  buffer.insert("R", Imf::Slice::Make(Imf::HALF, numbers.data(), window, 4, 4 * kWidth));
+  buffer.insert("layer.Z", Imf::Slice::Make(Imf::FLOAT, numbers.data(), window));
+  buffer.insert("id", Imf::Slice::Make(Imf::UINT, numbers.data(), window));
+  for (int i = 0; i < Imf::NUM_COMPRESSION_METHODS; ++i) {
+    const auto compression = static_cast<Imf::Compression>(i);
+    Imf::OutputFile rows{exr.file("rows-" + std::to_string(i)).c_str(), exr_header(compression)};
+    rows.setFrameBuffer(buffer);
+    rows.writePixels(kHeight);
+    Imf::Header header = exr_header(compression);
+    header.setTileDescription(Imf::TileDescription(8, 8));
+    Imf::TiledOutputFile tiles{exr.file("tiles-" + std::to_string(i)).c_str(), header};
+    tiles.setFrameBuffer(buffer);
+    tiles.writeTiles(0, tiles.numXTiles() - 1, 0, tiles.numYTiles() - 1);
+  }
+  std::vector<Imf::Header> parts(2, exr_header(Imf::ZIP_COMPRESSION));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].setName("part" + std::to_string(i));
+    parts[i].setType(Imf::SCANLINEIMAGE);
+  }
+  Imf::MultiPartOutputFile file{exr.file("parts").c_str(), parts.data(), 2};
+  for (int i = 0; i < 2; ++i) {
+    Imf::OutputPart part{file, i};
+    part.setFrameBuffer(buffer);
+    part.writePixels(kHeight);
+  }
+}
+#endif
+
+void put_texts(const fs::path& all) {
+  Seeds{all, "mtl"}.put("one",
+                        "newmtl red\nKd 0.7 0 0\nKa 0 0 0\nKs 1 1 1\nNs 30\nd 0.5\nTr 0.5\n"
+                        "map_Kd -s 1 1 a.png\nmap_d b.png\n# end\nnewmtl other\nd -halo 0.5\n");
+  const Seeds obj{all, "obj"};
+  obj.put("quad",
+          "mtllib a.mtl\no thing\ng one\nusemtl red\ns 1\nv 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 0.5\n"
+          "vt 0 0\nvt 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/1/1 4/2/1\nf -1//-1 -2//-1 -3//-1\n");
+  obj.put("plain", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 1e3 2 -5\nf 1 2 3\nusemtl b\nf 2 3 4 \\\n 1\n");
+  Seeds{all, "profile"}.put("ieee", profile_text({"mine", "a profile", Profile{}}, "heading"));
+  const Seeds notes{all, "notes"};
+  notes.put("notes", json_text(notes_json(small_notes())));
+  notes.put("json", "[1, -2.5e3, \"\\u00e9\\n\", {\"a\": [true, null]}]");
+  const Seeds sequence{all, "sequence"};
+  const std::string line = journal_line({12, 34, 56});
+  sequence.put("journal", line.substr(0, line.size() - 1));
+  sequence.put("range", "1..48:2");
+  sequence.put("name", "out/frame_%04d.exr");
+  sequence.put("glob", "fr*_[0-9]?.e[!a]r\nframe_12.exr");
+  const Seeds options{all, "options"};
+  options.put("lens",
+              "a.exr\n-o\nb.png\n--focus\n1:2m 48:600cm\n--f-number\nf/1.8\n--keyframes\nsmooth\n"
+              "--frames\n1..48\n--sensor\n23.5x15.6mm\n--highlights\n4,0.9");
+  options.put("depth",
+              "a.png\nb.png\n-ob.exr\n--depth-encoding\ndevice\n--near=0.1\n--far=100m\n"
+              "--focus-range\n1m..3m\n--missing\n0\n--aperture-blades\n5\n--method\n"
+              "aperture-scatter\n--anamorphic\n2\n--layer\na");
+  options.put("method",
+              "--\na.png\n--method=auto\n--max-error=0.1\n--blur-at-infinity\n9\n--shard\n1/4\n"
+              "--max-coc\n12\n--threads\n2\n--border\nblack\n--arithmetic\nfixed-16\n-q\n-v");
+  Seeds{all, "refocus"}.put("bytes", std::string(600, '\x3C'));
+  Seeds{all, "fixed"}.put("bytes", std::string(300, '\x11'));
+}
+
+void put_sums(const fs::path& all) {
+  const SampleSums sums = make_sample_sums(4, 3);
+  PictureNotes notes = small_notes();
+  notes.width = 4;
+  notes.height = 3;
+  write_sums_file(Seeds{all, "sums"}.file("small"), {1, 2}, {.picture = notes, .samples = 64}, sums,
+                  make_image(Format::rgba16f, 4, 3));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::cerr << "usage: fuzz_seeds FOLDER DATA SCENES\n";
+    return 2;
+  }
+  const fs::path all = argv[1];
+  put_pictures(all, argv[2]);
+#ifdef SOFTFOCUS_EXR_SEEDS
+  put_exr_files(all);
+#endif
+  put_texts(all);
+  put_sums(all);
+  const Seeds scenes{all, "scene"};
+  for (const fs::directory_entry& entry : fs::directory_iterator{argv[3]}) {
+    if (entry.path().extension() == ".toml") scenes.copy(entry.path());
+  }
+  return 0;
+}
