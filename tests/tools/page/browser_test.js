@@ -14,7 +14,7 @@ const path = require("path");
 const { pathToFileURL } = require("url");
 const { chromium } = require("playwright-core");
 
-const [folder, program, single_file] = process.argv.slice(2);
+const [folder, program, single_file] = process.argv.slice(2).map((name) => path.resolve(name));
 const work = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-browser-"));
 const kFrameMs = 60000;
 
