@@ -1,6 +1,7 @@
 #include "scenes/load/file_bytes.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -37,5 +38,7 @@ std::string read_file_bytes(const std::filesystem::path& file, std::size_t large
   if (stream.bad()) fail("cannot be read to its end");
   return bytes;
 }
+
+void* zeroed_memory(std::size_t size) { return std::calloc(1, size); }
 
 }  // namespace softfocus

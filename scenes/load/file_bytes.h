@@ -1,5 +1,5 @@
 #pragma once
-// A scene's files, read whole.
+// A scene's files, read whole, and memory for decoding them.
 
 #include <cstddef>
 #include <filesystem>
@@ -10,5 +10,9 @@ namespace softfocus {
 /// The bytes of a file. Throws SceneError where there is none, it is a directory, it
 /// cannot be read or it has more than `largest` bytes.
 std::string read_file_bytes(const std::filesystem::path& file, std::size_t largest);
+
+/// Zeros, for std::free(), or null: what a decoder fills, so that what a damaged file leaves unset
+/// is the same each time.
+void* zeroed_memory(std::size_t size);
 
 }  // namespace softfocus

@@ -11,7 +11,7 @@
 #include "scenes/load/scene_error.h"
 
 // What a damaged file leaves unset is 0 then, and not what was there before.
-#define STBI_MALLOC(size) std::calloc(1, size)
+#define STBI_MALLOC(size) softfocus::zeroed_memory(size)
 #define STBI_REALLOC(memory, size) std::realloc(memory, size)
 #define STBI_FREE(memory) std::free(memory)
 // Its vector code gives other bits for JPEG than its scalar code.

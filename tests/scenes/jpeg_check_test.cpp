@@ -67,20 +67,27 @@ TEST_CASE("a JPEG without its end marker is cut") {
 TEST_CASE("a scan needs the Huffman tables that it names, and those before it alone") {
   // Two components, tables 0 and 1 of each class; then where the coefficients begin and end.
   const auto scan = [](const std::string& coefficients) {
-    return segment(0xDA, std::string("\2\1\x00\2\x11", 5) + coefficients) + "data\xFF\x00more";
+    return segment(0xDA, std::string{2, 1, 0, 2, 0x11} + coefficients) +
+           std::string("data\xFF\0more", 10);
   };
   const std::string whole = scan(std::string("\x00\x3F\x00", 3));
   const auto tables = [](const std::string& numbers) {
     std::string body;
-    for (const char number : numbers) body += number + huffman_table(3).substr(1);
+    for (const char number : numbers) {
+      body += number;
+      body += huffman_table(3).substr(1);
+    }
     return segment(0xC4, body);
   };
   const std::string all = tables(std::string("\x00\x01\x10\x11", 4)), frame = kStart + kFrame;
   CHECK_FALSE(lacks_huffman_table(frame + all + whole));
   CHECK_FALSE(lacks_huffman_table(frame + all + whole + "\xFF\xD3" + whole));
   CHECK(lacks_huffman_table(frame + whole + all));
+  const auto lacks_with = [&](const std::string& given) {
+    return lacks_huffman_table(frame + given + whole);
+  };
   for (const char* three : {"\x01\x10\x11", "\x02\x01\x10\x11", "\x03\x10\x11\x01"}) {
-    CHECK(lacks_huffman_table(frame + tables(three) + whole));
+    CHECK(lacks_with(tables(three)));
   }
   CHECK(lacks_huffman_table(frame + tables(std::string("\x00\x01\x10\x12", 4)) + whole));
   // Progressive: the first coefficient apart, once and again to refine it, and the others.
