@@ -124,7 +124,8 @@ TEST_CASE("bad input: a subcommand that there is not") {
   const TemporaryDirectory directory;
   check_refused(
       directory, {"draw"}, 2,
-      {"'draw'", "render, join, refocus, inspect, scenes, methods, candidates, profiles"});
+      {"'draw'",
+       "render, join, refocus, apply, inspect, scenes, methods, effects, candidates, profiles"});
   check_refused(directory, {"--draw"}, 2, {"'--draw'"});
   check_refused(directory, {"draw", "render", "figures"}, 2, {"'draw'"});
   check_refused(directory, {"scenes", "all"}, 2, {"'all'"});
