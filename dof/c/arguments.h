@@ -18,7 +18,7 @@ struct BadArgument : std::runtime_error {
 /// Throws BadArgument.
 [[noreturn]] void refuse(const std::string& argument, const std::string& reason);
 
-/// The bytes of a struct that begins with its size, of which we know `our_bytes` or fewer.
+/// The bytes of a struct that begins with its size. Of these we know `our_bytes` or fewer.
 /// `first_bytes`: of its first version. Throws BadArgument for a null pointer, less than the first
 /// version, or a field that is set and unknown here.
 std::size_t struct_bytes(const std::string& argument, const void* given, std::size_t first_bytes,

@@ -28,11 +28,11 @@ void downsample(const ConstImageView& source, const ImageView& result, const Pro
 /// source apart, for a result's pixel of even number; reversed for an odd one.
 inline constexpr std::array kUpsample16ths{1, 5, 7, 3};
 
-/// The way back. `result` has width and height of which the source has the half, rounded up. A
-/// result's pixel (2k, 2m) is the weighted sum of the source's k - 2 to k + 1 and m - 2 to m + 1,
-/// an odd one of k - 1 to k + 2. At the edges pixels repeat. The sum s is mixed with `own`, of the
-/// result's size: own + share (s - own), operation by operation in binary32. The order of the sum
-/// is row by row.
+/// The way back: the source has half of the result's width and height, rounded up. A result's
+/// pixel (2k, 2m) is the weighted sum of the source's columns k - 2 to k + 1 and rows m - 2 to
+/// m + 1. An odd column takes k - 1 to k + 2, an odd row m - 1 to m + 2. At the edges pixels
+/// repeat. The sum s is mixed with `own`, of the result's size: own + share (s - own), operation by
+/// operation in binary32. The order of the sum is row by row.
 void upsample(const ConstImageView& source, const ConstImageView& own, float share,
               const ImageView& result, const Profile& profile, ThreadPool& pool);
 

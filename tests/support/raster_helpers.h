@@ -15,6 +15,7 @@
 #include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/profile.h"
+#include "raster/numbers/random_bits.h"
 #include "raster/pipeline/draw.h"
 #include "tests/support/random.h"
 
@@ -48,6 +49,19 @@ struct VaryingColour {
     return {{glm::vec4{f.varyings[0], f.varyings[1], f.varyings[2], f.varyings[3]}}, false};
   }
 };
+
+/// RGBA16F with every channel at random from `low` to `high`.
+inline Image random_halves(int width, int height, std::uint64_t seed, double low, double high) {
+  RandomSequence random{seed};
+  Image image = make_image(Format::rgba16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (std::uint16_t& value : row<std::uint16_t>(image, y)) {
+      value = float_to_half(static_cast<float>(next_between(random, low, high)),
+                            HalfRounding::nearest_even);
+    }
+  }
+  return image;
+}
 
 /// State that lets everything through: no culling, no depth test, no blending.
 inline DrawState plain_state() {

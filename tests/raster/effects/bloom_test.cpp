@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "raster/images/texel.h"
-#include "raster/numbers/random_bits.h"
 #include "tests/support/raster_helpers.h"
 
 using namespace softfocus;
@@ -52,14 +51,7 @@ TEST_CASE("bloom moves light and keeps its sum") {
 
 TEST_CASE("bloom leaves a picture alone that has nothing bright, or at a strength of 0") {
   ThreadPool pool{1};
-  RandomSequence random{4};
-  Image dark = make_image(Format::rgba16f, 50, 41);
-  for (int y = 0; y < dark.height; ++y) {
-    for (std::uint16_t& value : row<std::uint16_t>(dark, y)) {
-      value = float_to_half(static_cast<float>(next_between(random, 0.0, 0.5)),
-                            HalfRounding::nearest_even);
-    }
-  }
+  const Image dark = test::random_halves(50, 41, 4, 0.0, 0.5);
   CHECK(equal(bloomed({.strength = 1.0f}, dark, pool), dark));
   const Image bright = with_point(40, 10, 10, 50.0f);
   CHECK(equal(bloomed({.strength = 0.0f}, bright, pool), bright));
@@ -112,15 +104,8 @@ TEST_CASE("bloom takes what is not finite, and gives nothing else that is not") 
 }
 
 TEST_CASE("bloom in vectors has the scalar form's bits") {
-  RandomSequence random{40};
   for (const std::array<int, 2> size : {std::array{1, 1}, {3, 70}, {37, 18}, {64, 64}}) {
-    Image picture = make_image(Format::rgba16f, size[0], size[1]);
-    for (int y = 0; y < picture.height; ++y) {
-      for (std::uint16_t& value : row<std::uint16_t>(picture, y)) {
-        value = float_to_half(static_cast<float>(next_between(random, -0.5, 5.0)),
-                              HalfRounding::nearest_even);
-      }
-    }
+    const Image picture = test::random_halves(size[0], size[1], 40, -0.5, 5.0);
     for (const char* name : {"ieee", "d3d11", "swiftshader"}) {
       for (const bool is_steady : {false, true}) {
         const BloomSettings settings{.strength = 0.4f, .levels = 3, .is_steady = is_steady};

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "raster/images/texel.h"
-#include "raster/numbers/random_bits.h"
 #include "tests/support/raster_helpers.h"
 
 using namespace softfocus;
@@ -35,14 +34,7 @@ TEST_CASE("effects have names of their own and presets within their limits") {
 }
 
 TEST_CASE("an effect keeps alpha, and its bits do not depend on threads or vectors") {
-  RandomSequence random{17};
-  Image picture = make_image(Format::rgba16f, 75, 70);
-  for (int y = 0; y < picture.height; ++y) {
-    for (std::uint16_t& value : row<std::uint16_t>(picture, y)) {
-      value = float_to_half(static_cast<float>(next_between(random, 0.0, 9.0)),
-                            HalfRounding::nearest_even);
-    }
-  }
+  const Image picture = test::random_halves(75, 70, 17, 0.0, 9.0);
   for (const Effect& effect : effects()) {
     CAPTURE(effect.name);
     const std::vector<double> parameters = presets_of(effect);

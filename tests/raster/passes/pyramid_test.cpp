@@ -6,7 +6,6 @@
 
 #include "raster/images/image.h"
 #include "raster/images/texel.h"
-#include "raster/numbers/random_bits.h"
 #include "tests/support/raster_helpers.h"
 
 using namespace softfocus;
@@ -15,15 +14,7 @@ using test::profile_named;
 namespace {
 
 Image random_picture(int width, int height, std::uint64_t seed) {
-  RandomSequence random{seed};
-  Image image = make_image(Format::rgba16f, width, height);
-  for (int y = 0; y < height; ++y) {
-    for (std::uint16_t& value : row<std::uint16_t>(image, y)) {
-      value = float_to_half(static_cast<float>(next_between(random, 0.0, 4.0)),
-                            HalfRounding::nearest_even);
-    }
-  }
-  return image;
+  return test::random_halves(width, height, seed, 0.0, 4.0);
 }
 
 Image half_of(const Image& image) {
