@@ -12,6 +12,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tools/cli/platform.h"
@@ -49,6 +50,56 @@ TEST_CASE("an interrupt ends the program as its signal does, and leaves no file 
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     CAPTURE(signal);
     check_nothing_left(signal);
+  }
+}
+
+TEST_CASE("an interrupt waits for the file that another thread is making, and removes it") {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("softfocus-made-" + std::to_string(::getpid()));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    prepare_interrupts();
+    std::jthread maker{[&] {
+      const RemovedByInterrupt removed{file, [&] {
+                                         std::ofstream{file} << "half";
+                                         ::kill(::getpid(), SIGTERM);
+                                         ::usleep(50'000);
+                                         return true;
+                                       }};
+      ::pause();
+    }};
+    for (;;) ::pause();
+  }
+  int status = 0;
+  CHECK(::waitpid(child, &status, 0) == child);
+  CHECK(WIFSIGNALED(status));
+  CHECK_FALSE(std::filesystem::exists(file));
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("interrupts in a row, to threads that make files, leave whole files alone") {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("softfocus-threads-" + std::to_string(::getpid()));
+  for (int round = 0; round < 40; ++round) {
+    std::filesystem::create_directory(folder);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      prepare_interrupts();
+      const auto make = [&](int number) {
+        for (;;) {
+          WholeFile file{folder / std::to_string(number)};
+          file.write("whole");
+        }
+      };
+      const std::jthread one{make, 1}, two{make, 2}, three{make, 3};
+      for (;;) ::pause();
+    }
+    ::usleep(2'000);
+    int status = 0;
+    while (::waitpid(child, &status, WNOHANG) == 0) ::kill(child, SIGINT);
+    CHECK(WIFSIGNALED(status));
+    CHECK(std::filesystem::is_empty(folder));
+    std::filesystem::remove_all(folder);
   }
 }
 

@@ -2,6 +2,7 @@
 // What an interrupt (SIGINT, SIGTERM, SIGHUP) leaves behind: nothing.
 
 #include <filesystem>
+#include <functional>
 
 namespace softfocus {
 
@@ -9,11 +10,16 @@ namespace softfocus {
 /// was started to ignore stays ignored.
 void prepare_interrupts();
 
-/// A file that an interrupt removes, while this lives. It need not exist yet. Names past 4,095
-/// bytes, and more than 64 at once, are not kept; nor are any on Windows.
+/// A file that an interrupt removes, while this lives. Names past 4,095 bytes, and more than 64 at
+/// once, are not kept; nor are any on Windows.
 class RemovedByInterrupt {
  public:
-  explicit RemovedByInterrupt(const std::filesystem::path& file);
+  /// It need not exist yet.
+  explicit RemovedByInterrupt(const std::filesystem::path& file)
+      : RemovedByInterrupt(file, [] { return true; }) {}
+  /// Calls `create`, which makes the file and says whether it did; an interrupt in another thread
+  /// waits for it, up to a second. A file that was not made is not removed.
+  RemovedByInterrupt(const std::filesystem::path& file, const std::function<bool()>& create);
   ~RemovedByInterrupt();
   RemovedByInterrupt(const RemovedByInterrupt&) = delete;
   RemovedByInterrupt& operator=(const RemovedByInterrupt&) = delete;

@@ -112,15 +112,18 @@ WholeFile::WholeFile(const std::filesystem::path& target) : shown_(target), targ
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
     temporary_ = target_.parent_path() / (temporary_start() + std::to_string(process_number()) +
                                           "-" + std::to_string(attempt));
-    descriptor_ = create_file(temporary_);
-    if (descriptor_ < 0 && errno != EEXIST) {
-      const int error = errno;
+    int error = 0;
+    removed_.emplace(temporary_, [&] {
+      descriptor_ = create_file(temporary_);
+      error = errno;
+      return descriptor_ >= 0;
+    });
+    if (descriptor_ < 0 && error != EEXIST) {
       temporary_.clear();
       fail(error);
     }
   }
   mark_in_use(descriptor_);
-  removed_.emplace(temporary_);
   // Best effort: some file systems know no permissions.
   std::error_code ignored;
   if (is_there) std::filesystem::permissions(temporary_, status.permissions(), ignored);
