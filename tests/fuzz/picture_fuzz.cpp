@@ -21,6 +21,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const PictureFile file = open_picture_file({bytes.begin(), bytes.end()}, "fuzz");
     for (std::size_t i = 0; i < file.planes.size() && i < 4; ++i) read_planes(file, {&i, 1}, 0.0f);
+    if (file.reader->rows != nullptr && file.has_rows && !file.planes.empty()) {
+      const Rows lower_half{file.height / 2, file.height - file.height / 2};
+      std::vector<PlaneValues> values(1);
+      values[0].resize(static_cast<std::size_t>(file.width) *
+                       static_cast<std::size_t>(lower_half.count));
+      rows_of(file, {0})(lower_half, values);
+    }
   } catch (const FileError&) {
   }
   try {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "dof/lens.h"
+#include "tools/files/byte_source.h"
 #include "tools/files/image_file.h"
 
 namespace softfocus {
@@ -41,7 +42,7 @@ Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& note
 Bytes encode_depth_exr(std::span<const float> values, int width, int height);
 
 /// The attribute `softfocus` of such a file, or nothing.
-std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes);
+std::optional<std::string> find_exr_notes(const ByteSource& bytes);
 
 /// By the first bytes.
 inline bool is_exr(std::span<const std::byte> bytes) {
