@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cstring>
 
-#include "raster/numbers/hash.h"
+#include "raster/images/image_hash.h"
 
 namespace softfocus {
 
@@ -19,7 +19,7 @@ Image make_image(Format format, int width, int height) {
 namespace {
 
 template <class Channel>
-void add_rows_to_hash(Hash& hash, const ConstImageView& image) {
+void add_channels_to_hash(Hash& hash, const ConstImageView& image) {
   for (int y = 0; y < image.height; ++y) {
     for (const Channel value : row<Channel>(image, y)) add_to_hash(hash, value);
   }
@@ -27,19 +27,28 @@ void add_rows_to_hash(Hash& hash, const ConstImageView& image) {
 
 }  // namespace
 
-std::uint64_t hash_image(const ConstImageView& image) {
+Hash begin_image_hash(Format format, int width, int height) {
   Hash hash;
-  add_to_hash(hash, static_cast<std::uint8_t>(image.format));
-  add_to_hash(hash, static_cast<std::uint32_t>(image.width));
-  add_to_hash(hash, static_cast<std::uint32_t>(image.height));
-  switch (image.format) {
+  add_to_hash(hash, static_cast<std::uint8_t>(format));
+  add_to_hash(hash, static_cast<std::uint32_t>(width));
+  add_to_hash(hash, static_cast<std::uint32_t>(height));
+  return hash;
+}
+
+void add_rows_to_hash(Hash& hash, const ConstImageView& rows) {
+  switch (rows.format) {
     case Format::r8:
     case Format::rgba8:
-    case Format::srgb8: add_rows_to_hash<std::uint8_t>(hash, image); break;
-    case Format::rgba16f: add_rows_to_hash<std::uint16_t>(hash, image); break;
+    case Format::srgb8: add_channels_to_hash<std::uint8_t>(hash, rows); break;
+    case Format::rgba16f: add_channels_to_hash<std::uint16_t>(hash, rows); break;
     case Format::r32f:
-    case Format::rgba32f: add_rows_to_hash<float>(hash, image); break;
+    case Format::rgba32f: add_channels_to_hash<float>(hash, rows); break;
   }
+}
+
+std::uint64_t hash_image(const ConstImageView& image) {
+  Hash hash = begin_image_hash(image.format, image.width, image.height);
+  add_rows_to_hash(hash, image);
   return hash.value;
 }
 

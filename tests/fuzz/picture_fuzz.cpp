@@ -36,6 +36,14 @@ Bytes with_checksums(const Bytes& png) {
   return mended;
 }
 
+void read_lower_half(const PictureFile& file) {
+  const Rows lower_half{file.height / 2, file.height - file.height / 2};
+  std::vector<PlaneValues> values(1);
+  values[0].resize(static_cast<std::size_t>(file.width) *
+                   static_cast<std::size_t>(lower_half.count));
+  rows_of(file, {0})(lower_half, values);
+}
+
 void read_all(const Bytes& bytes) {
   const PictureFile file = open_picture_file(bytes, "fuzz");
   demand(file.reader == &SOFTFOCUS_FUZZED_READER && file.width >= 1 && file.height >= 1);
@@ -44,6 +52,7 @@ void read_all(const Bytes& bytes) {
   for (std::size_t i = 0; i < file.planes.size() && i < 8; ++i) {
     demand(read_planes(file, {&i, 1}, 0.0f)[0].size() == pixels);
   }
+  if (file.reader->rows != nullptr && file.has_rows && !file.planes.empty()) read_lower_half(file);
   for (const ColourLayer& layer : colour_layers(file)) read_colour(file, layer, true);
   decode_picture(bytes, "fuzz");
   if (is_png(bytes) || is_exr(bytes)) find_notes("fuzz", bytes);

@@ -22,9 +22,21 @@
 
 namespace softfocus {
 
+/// Whether a program takes no more memory than it asks for: one with sanitizers does.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kCountsMemory = false;
+#elif defined(__has_feature)
+inline constexpr bool kCountsMemory =
+    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
+#else
+inline constexpr bool kCountsMemory = true;
+#endif
+
 /// How a run ended and what it wrote.
 struct ProgramRun {
   int status = -1;  ///< the exit status; -1 if a signal ended it
+  /// The most memory that it held, or that this process held when it began.
+  long peak_kib = 0;
   std::string out{};
   std::string err{};
 };
@@ -107,7 +119,9 @@ inline ProgramRun run_program(const std::vector<std::string>& arguments,
   auto said = std::async(std::launch::async, read_all, err[0]);  // both, or one would fill up
   ProgramRun run{.out = read_all(out[0]), .err = said.get()};
   int status = 0;
-  ::waitpid(child, &status, 0);
+  rusage usage{};
+  ::wait4(child, &status, 0, &usage);
+  run.peak_kib = usage.ru_maxrss;
   if (WIFEXITED(status)) run.status = WEXITSTATUS(status);
   return run;
 }

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "raster/images/texel.h"
+#include "tests/support/run_program.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/files/exr_file.h"
@@ -181,6 +183,24 @@ TEST_CASE("NPY: every type and both orders give the same planes") {
         }
       }
     }
+  }
+}
+
+TEST_CASE("a file that becomes shorter while it is read by rows is refused by its name") {
+  const TemporaryDirectory directory;
+  const Image picture = make_image(Format::rgba16f, 300, 200);
+  for (const std::string name : {"a.npy", "a.pfm"}) {
+    CAPTURE(name);
+    const Bytes bytes = name == "a.npy" ? encode_npy(picture) : encode_pfm(picture);
+    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    std::string why;
+    const auto file = open_on_disk(directory.file(name), why);
+    REQUIRE(file);
+    const ReadRows read = rows_of(*file, {0});
+    std::vector<PlaneValues> values{PlaneValues(300 * 10)};
+    read({95, 10}, values);
+    std::filesystem::resize_file(directory.file(name), bytes.size() / 2);
+    CHECK_THROWS_WITH_AS(read({95, 10}, values), doctest::Contains(name.c_str()), FileError);
   }
 }
 

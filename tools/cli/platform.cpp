@@ -52,8 +52,8 @@ int terminal_columns(int descriptor) {
 }
 #endif
 
-// Linux writes at most 2^31 - 4096 bytes a call, Windows counts them in 32 bits.
-constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
+// Linux moves at most 2^31 - 4096 bytes a call, Windows counts them in 32 bits.
+constexpr std::size_t kLargestPart = std::size_t{1} << 30;
 
 }  // namespace
 
@@ -95,7 +95,7 @@ int open_existing(const std::filesystem::path& file) {
 }
 
 int create_file(const std::filesystem::path& file) {
-  return ::_wopen(file.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
+  return ::_wopen(file.c_str(), _O_RDWR | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
                   _S_IREAD | _S_IWRITE);
 }
 
@@ -107,14 +107,30 @@ void mark_in_use(int) {}
 
 bool is_in_use(const std::filesystem::path&) { return true; }
 
+int open_to_read(const std::filesystem::path& file) {
+  return ::_wopen(file.c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT);
+}
+
 bool may_write(const std::filesystem::path& file) {
   constexpr int kForWriting = 2;
   return ::_waccess(file.c_str(), kForWriting) == 0;
 }
 
 std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes) {
-  const auto size = static_cast<unsigned>(std::min(bytes.size(), kLargestWrite));
+  const auto size = static_cast<unsigned>(std::min(bytes.size(), kLargestPart));
   return ::_write(descriptor, bytes.data(), size);
+}
+
+std::ptrdiff_t write_some_at(int descriptor, std::uint64_t place,
+                             std::span<const std::byte> bytes) {
+  if (::_lseeki64(descriptor, static_cast<__int64>(place), SEEK_SET) < 0) return -1;
+  return write_some(descriptor, bytes);
+}
+
+std::ptrdiff_t read_some_at(int descriptor, std::uint64_t place, std::span<std::byte> bytes) {
+  if (::_lseeki64(descriptor, static_cast<__int64>(place), SEEK_SET) < 0) return -1;
+  const auto size = static_cast<unsigned>(std::min(bytes.size(), kLargestPart));
+  return ::_read(descriptor, bytes.data(), size);
 }
 
 bool sync_file(int descriptor) { return ::_commit(descriptor) == 0; }
@@ -154,7 +170,11 @@ int open_existing(const std::filesystem::path& file) {
 }
 
 int create_file(const std::filesystem::path& file) {
-  return ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  return ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+int open_to_read(const std::filesystem::path& file) {
+  return ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
 }
 
 std::string machine_name() {
@@ -184,7 +204,18 @@ bool is_in_use(const std::filesystem::path& file) {
 bool may_write(const std::filesystem::path& file) { return ::access(file.c_str(), W_OK) == 0; }
 
 std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes) {
-  return ::write(descriptor, bytes.data(), std::min(bytes.size(), kLargestWrite));
+  return ::write(descriptor, bytes.data(), std::min(bytes.size(), kLargestPart));
+}
+
+std::ptrdiff_t write_some_at(int descriptor, std::uint64_t place,
+                             std::span<const std::byte> bytes) {
+  return ::pwrite(descriptor, bytes.data(), std::min(bytes.size(), kLargestPart),
+                  static_cast<off_t>(place));
+}
+
+std::ptrdiff_t read_some_at(int descriptor, std::uint64_t place, std::span<std::byte> bytes) {
+  return ::pread(descriptor, bytes.data(), std::min(bytes.size(), kLargestPart),
+                 static_cast<off_t>(place));
 }
 
 bool sync_file(int descriptor) {

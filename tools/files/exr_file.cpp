@@ -14,6 +14,8 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "tools/cli/errors.h"
@@ -75,8 +77,9 @@ void list_part(PictureFile& file, const Imf::Header& header, int part, int parts
   }
   const Imath::Box2i& display = header.displayWindow();
   const Imath::Box2i& data = header.dataWindow();
-  check_picture_size("the EXR", width_of(display), height_of(display));
-  check_picture_size("the EXR's data window", width_of(data), height_of(data));
+  const int most_rows = most_rows_of(file);
+  check_picture_size("the EXR", width_of(display), height_of(display), most_rows);
+  check_picture_size("the EXR's data window", width_of(data), height_of(data), most_rows);
   if (part == 0) {
     file.width = static_cast<int>(width_of(display));
     file.height = static_cast<int>(height_of(display));
@@ -110,7 +113,7 @@ void list_part(PictureFile& file, const Imf::Header& header, int part, int parts
 
 void list_exr(PictureFile& file) {
   guarded_exr([&] {
-    ExrInput stream{file.bytes};
+    ExrInput stream{source_of(file)};
     const Imf::MultiPartInputFile exr{stream, 1, false};
     for (int part = 0; part < exr.parts(); ++part) {
       list_part(file, exr.header(part), part, exr.parts());
@@ -118,65 +121,85 @@ void list_exr(PictureFile& file) {
   });
   const auto pixels =
       static_cast<std::uint64_t>(file.width) * static_cast<std::uint64_t>(file.height);
-  if (pixels * file.planes.size() / kMostOfCompression > file.bytes.size()) {
+  if (pixels * file.planes.size() / kMostOfCompression > source_of(file).size()) {
     throw FileError("the EXR is too small a file for the size that it claims");
   }
 }
 
-/// The planes of one part. Rows are read a band at a time into a buffer as wide as the data window,
-/// which may reach beyond the picture.
-void read_part(Imf::MultiPartInputFile& exr, int part, const PictureFile& file,
-               std::span<const std::size_t> planes, std::span<PlaneValues> values) {
-  std::vector<std::size_t> wanted;  // places in `planes`
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (file.planes[planes[i]].part == part) wanted.push_back(i);
+/// Reads planes, a band at a time into a buffer as wide as the data window, which may reach beyond
+/// the picture.
+class ExrRows {
+ public:
+  ExrRows(const PictureFile& file, std::vector<std::size_t> planes)
+      : file_(file),
+        planes_(std::move(planes)),
+        stream_(source_of(file)),
+        exr_(stream_, 1, false) {}
+
+  void read(Rows rows, std::span<PlaneValues> values) {
+    for (int part = 0; part < exr_.parts(); ++part) read_part(part, rows, values);
   }
-  if (wanted.empty()) return;
-  Imf::InputPart input{exr, part};
-  const Imath::Box2i data = input.header().dataWindow();
-  const Imath::Box2i display = input.header().displayWindow();
-  const auto width = static_cast<std::size_t>(width_of(data));
-  constexpr int kBand = 256;  // rows: those of the largest block
-  std::vector<std::vector<float>> band(wanted.size(), std::vector<float>(width * kBand));
-  const int first_x = std::max(data.min.x, display.min.x);
-  const int last_x = std::min(data.max.x, display.max.x);
-  for (std::int64_t y0 = data.min.y; y0 <= data.max.y; y0 += kBand) {
-    const auto y1 = std::min<std::int64_t>(y0 + kBand - 1, data.max.y);
-    if (y1 < display.min.y || y0 > display.max.y) continue;
-    Imf::FrameBuffer buffer;
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      buffer.insert(
-          file.planes[planes[wanted[i]]].channel,
-          Imf::Slice::Make(Imf::FLOAT, band[i].data(), Imath::V2i{data.min.x, static_cast<int>(y0)},
-                           static_cast<std::int64_t>(width), y1 - y0 + 1, sizeof(float),
-                           width * sizeof(float)));
+
+ private:
+  void read_part(int part, Rows rows, std::span<PlaneValues> values) {
+    std::vector<std::size_t> wanted;  // places in planes_
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      if (file_.planes[planes_[i]].part == part) wanted.push_back(i);
     }
-    input.setFrameBuffer(buffer);
-    input.readPixels(static_cast<int>(y0), static_cast<int>(y1));
-    if (first_x > last_x) continue;
-    for (std::int64_t y = std::max<std::int64_t>(y0, display.min.y);
-         y <= std::min<std::int64_t>(y1, display.max.y); ++y) {
-      const auto from = static_cast<std::size_t>(y - y0) * width +
-                        static_cast<std::size_t>(std::int64_t{first_x} - data.min.x);
-      const auto to =
-          static_cast<std::size_t>(y - display.min.y) * static_cast<std::size_t>(file.width) +
-          static_cast<std::size_t>(std::int64_t{first_x} - display.min.x);
-      const auto count = static_cast<std::size_t>(std::int64_t{last_x} - first_x + 1);
+    if (wanted.empty()) return;
+    Imf::InputPart input{exr_, part};
+    const Imath::Box2i data = input.header().dataWindow();
+    const Imath::Box2i display = input.header().displayWindow();
+    const auto width = static_cast<std::size_t>(width_of(data));
+    constexpr int kBand = 256;  // rows: those of the largest block
+    const std::int64_t top = std::int64_t{display.min.y} + rows.first;
+    const std::int64_t first_y = std::max<std::int64_t>(data.min.y, top);
+    const std::int64_t last_y = std::min<std::int64_t>(data.max.y, top + rows.count - 1);
+    const int first_x = std::max(data.min.x, display.min.x);
+    const int last_x = std::min(data.max.x, display.max.x);
+    const auto band_rows = static_cast<std::size_t>(std::min(kBand, rows.count));
+    bands_.resize(std::max(bands_.size(), wanted.size()));
+    for (std::size_t i = 0; i < wanted.size(); ++i) bands_[i].resize(width * band_rows);
+    for (std::int64_t y0 = first_y; y0 <= last_y; y0 += kBand) {
+      const auto y1 = std::min<std::int64_t>(y0 + kBand - 1, last_y);
+      Imf::FrameBuffer buffer;
       for (std::size_t i = 0; i < wanted.size(); ++i) {
-        std::copy_n(band[i].begin() + static_cast<std::ptrdiff_t>(from), count,
-                    values[wanted[i]].begin() + static_cast<std::ptrdiff_t>(to));
+        buffer.insert(file_.planes[planes_[wanted[i]]].channel,
+                      Imf::Slice::Make(Imf::FLOAT, bands_[i].data(),
+                                       Imath::V2i{data.min.x, static_cast<int>(y0)},
+                                       static_cast<std::int64_t>(width), y1 - y0 + 1, sizeof(float),
+                                       width * sizeof(float)));
+      }
+      input.setFrameBuffer(buffer);
+      input.readPixels(static_cast<int>(y0), static_cast<int>(y1));
+      if (first_x > last_x) continue;
+      for (std::int64_t y = y0; y <= y1; ++y) {
+        const auto from = static_cast<std::size_t>(y - y0) * width +
+                          static_cast<std::size_t>(std::int64_t{first_x} - data.min.x);
+        const auto to = static_cast<std::size_t>(y - top) * static_cast<std::size_t>(file_.width) +
+                        static_cast<std::size_t>(std::int64_t{first_x} - display.min.x);
+        const auto count = static_cast<std::size_t>(std::int64_t{last_x} - first_x + 1);
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+          std::copy_n(bands_[i].begin() + static_cast<std::ptrdiff_t>(from), count,
+                      values[wanted[i]].begin() + static_cast<std::ptrdiff_t>(to));
+        }
       }
     }
   }
-}
 
-void read_exr(const PictureFile& file, std::span<const std::size_t> planes,
-              std::span<PlaneValues> values) {
-  guarded_exr([&] {
-    ExrInput stream{file.bytes};
-    Imf::MultiPartInputFile exr{stream, 1, false};
-    for (int part = 0; part < exr.parts(); ++part) read_part(exr, part, file, planes, values);
-  });
+  const PictureFile& file_;
+  std::vector<std::size_t> planes_;
+  ExrInput stream_;
+  Imf::MultiPartInputFile exr_;
+  std::vector<std::vector<float>> bands_{};
+};
+
+ReadRows exr_rows(const PictureFile& file, std::vector<std::size_t> planes) {
+  const auto reader =
+      guarded_exr([&] { return std::make_shared<ExrRows>(file, std::move(planes)); });
+  return [reader](Rows rows, std::span<PlaneValues> values) {
+    guarded_exr([&] { reader->read(rows, values); });
+  };
 }
 
 struct LensAttribute {
@@ -222,7 +245,7 @@ void drop_impossible_focus(HeaderLens& lens) {
 
 std::string_view missing_exr() { return {}; }
 
-std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes) {
+std::optional<std::string> find_exr_notes(const ByteSource& bytes) {
   try {
     ExrInput stream{bytes};
     const Imf::MultiPartInputFile exr{stream, 1, false};
@@ -233,9 +256,10 @@ std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes) {
   return std::nullopt;
 }
 
-HeaderLens find_exr_lens(std::span<const std::byte> bytes) {
+HeaderLens find_exr_lens(const ByteSource& bytes) {
   HeaderLens lens;
-  if (!is_exr(bytes)) return lens;
+  std::vector<std::byte> start;
+  if (bytes.size() < 4 || !is_exr(bytes.at(0, 4, start))) return lens;
   try {
     ExrInput stream{bytes};
     const Imf::MultiPartInputFile exr{stream, 1, false};
@@ -249,6 +273,6 @@ HeaderLens find_exr_lens(std::span<const std::byte> bytes) {
   return lens;
 }
 
-const PictureFileReader kExrReader{"OpenEXR", is_exr, list_exr, read_exr};
+const PictureFileReader kExrReader{"OpenEXR", is_exr, list_exr, nullptr, false, exr_rows};
 
 }  // namespace softfocus

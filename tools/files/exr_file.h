@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dof/lens.h"
+#include "tools/files/byte_source.h"
 #include "tools/files/image_file.h"
 
 namespace softfocus {
@@ -42,7 +43,7 @@ Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& note
 Bytes encode_depth_exr(std::span<const float> values, int width, int height);
 
 /// The attribute `softfocus` of such a file, or nothing.
-std::optional<std::string> find_exr_notes(std::span<const std::byte> bytes);
+std::optional<std::string> find_exr_notes(const ByteSource& bytes);
 
 /// What a file's header says of the lens, each if it does: the standard attributes `focus`,
 /// `aperture` and `nominalFocalLength`.
@@ -54,7 +55,7 @@ struct HeaderLens {
 };
 
 /// Of an EXR; else nothing. Does not throw.
-HeaderLens find_exr_lens(std::span<const std::byte> bytes);
+HeaderLens find_exr_lens(const ByteSource& bytes);
 
 /// By the first bytes.
 inline bool is_exr(std::span<const std::byte> bytes) {

@@ -1,58 +1,108 @@
 #pragma once
-// Between the OpenEXR library and bytes in memory.
+// Between the OpenEXR library and bytes in memory or on a disk.
 
 #include <ImfIO.h>
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "tools/cli/errors.h"
-#include "tools/files/image_file.h"
+#include "tools/files/picture_rows.h"
 
 namespace softfocus {
 
 class ExrInput : public Imf::IStream {
  public:
-  explicit ExrInput(std::span<const std::byte> bytes) : IStream("picture"), bytes_(bytes) {}
+  explicit ExrInput(ByteSource source) : IStream("picture"), source_(std::move(source)) {}
 
   bool read(char c[], int n) override {
     const auto count = static_cast<std::size_t>(n);
-    if (n < 0 || count > bytes_.size() - at_) throw FileError("the EXR is cut short");
-    std::memcpy(c, bytes_.data() + at_, count);
+    if (n < 0 || count > source_.size() - at_) throw FileError("the EXR is cut short");
+    // The library reads headers and tables byte by byte.
+    if (count > kLookAhead) {
+      std::memcpy(c, source_.at(at_, count, buffer_).data(), count);
+    } else {
+      if (at_ < ahead_at_ || at_ + count > ahead_at_ + ahead_.size()) {
+        ahead_at_ = at_;
+        ahead_ = source_.at(at_, std::min<std::uint64_t>(kLookAhead, source_.size() - at_), kept_);
+      }
+      std::memcpy(c, ahead_.data() + (at_ - ahead_at_), count);
+    }
     at_ += count;
-    return at_ < bytes_.size();
+    return at_ < source_.size();
   }
   std::uint64_t tellg() override { return at_; }
   void seekg(std::uint64_t place) override {
-    if (place > bytes_.size()) throw FileError("the EXR is cut short");
-    at_ = static_cast<std::size_t>(place);
+    if (place > source_.size()) throw FileError("the EXR is cut short");
+    at_ = place;
   }
   void clear() override {}
 
  private:
-  std::span<const std::byte> bytes_;
-  std::size_t at_ = 0;
+  static constexpr std::size_t kLookAhead = 65536;
+
+  ByteSource source_;
+  std::uint64_t at_ = 0;
+  Bytes buffer_{}, kept_{};
+  std::span<const std::byte> ahead_{};
+  std::uint64_t ahead_at_ = 0;
 };
 
 class ExrOutput : public Imf::OStream {
  public:
-  explicit ExrOutput(Bytes& bytes) : OStream("picture"), bytes_(bytes) {}
+  explicit ExrOutput(const WriteAt& write) : OStream("picture"), write_(write) {}
 
   void write(const char c[], int n) override {
-    const auto count = static_cast<std::size_t>(n);
-    if (bytes_.size() < at_ + count) bytes_.resize(at_ + count);
-    std::memcpy(bytes_.data() + at_, c, count);
-    at_ += count;
+    const auto* const bytes = reinterpret_cast<const std::byte*>(c);
+    waiting_.insert(waiting_.end(), bytes, bytes + n);
+    if (begun_ && waiting_.size() >= kEnough) flush();
   }
-  std::uint64_t tellp() override { return at_; }
-  void seekp(std::uint64_t place) override { at_ = static_cast<std::size_t>(place); }
+  std::uint64_t tellp() override { return at_ + waiting_.size(); }
+  void seekp(std::uint64_t place) override {
+    flush();
+    at_ = place;
+  }
+
+  /// The place of a text that is still waiting: until begin(), all that was written.
+  std::optional<std::uint64_t> find(std::string_view text) const {
+    const std::string_view all{reinterpret_cast<const char*>(waiting_.data()), waiting_.size()};
+    const auto place = all.find(text);
+    return place == all.npos ? std::nullopt : std::optional{at_ + place};
+  }
+  void begin() { begun_ = true; }
+
+  /// Throws what a write did, for the library's destructors keep it to themselves.
+  void end() {
+    flush();
+    if (error_) std::rethrow_exception(error_);
+  }
 
  private:
-  Bytes& bytes_;
-  std::size_t at_ = 0;
+  static constexpr std::size_t kEnough = std::size_t{1} << 20;
+
+  void flush() {
+    try {
+      if (!error_ && !waiting_.empty()) write_(at_, waiting_);
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    at_ += waiting_.size();
+    waiting_.clear();
+    if (begun_ && error_) std::rethrow_exception(error_);
+  }
+
+  const WriteAt& write_;
+  Bytes waiting_{};
+  std::uint64_t at_ = 0;  // of what waits
+  bool begun_ = false;
+  std::exception_ptr error_{};
 };
 
 /// Does what may throw the library's exceptions, as FileError.

@@ -26,7 +26,7 @@ namespace {
 /// Rows that are written at a time: those of the largest block, or fewer, so that a hundred layers
 /// take no more than a few.
 int band_rows(std::size_t planes, int width) {
-  constexpr std::size_t kMostValues = std::size_t{1} << 25;
+  constexpr std::size_t kMostValues = std::size_t{1} << 23;
   int rows = 256;
   while (rows > 16 && planes * static_cast<std::size_t>(width * rows) > kMostValues) rows /= 2;
   return rows;
@@ -41,9 +41,14 @@ struct ExrPlane {
   std::function<void(int y, int rows, std::byte* to)> fill;
 };
 
-Bytes written(const std::vector<ExrPlane>& planes, int width, int height, Imf::Header header) {
+/// Calls `make` before the planes of a band are filled.
+void write_planes(const std::vector<ExrPlane>& planes, const PictureToWrite& picture,
+                  Imf::Header header, const std::function<void(Rows rows)>& make,
+                  const WriteAt& write) {
+  const int width = picture.width, height = picture.height;
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const ExrPlane& plane : planes) header.channels().insert(plane.name, {plane.type});
+  if (!picture.notes.empty()) header.insert("softfocus", Imf::StringAttribute(picture.notes));
   const int band = band_rows(planes.size(), width);
   std::vector<std::vector<std::byte>> bands;
   bands.reserve(planes.size());
@@ -51,12 +56,15 @@ Bytes written(const std::vector<ExrPlane>& planes, int width, int height, Imf::H
     bands.emplace_back(bytes_of(plane.type) * static_cast<std::size_t>(width) *
                        static_cast<std::size_t>(std::min(band, height)));
   }
-  Bytes bytes;
-  ExrOutput stream{bytes};
+  ExrOutput stream{write};
+  std::optional<std::uint64_t> notes_place;
   {
     Imf::OutputFile exr{stream, header, 1};
+    if (picture.notes_after) notes_place = stream.find(picture.notes);
+    stream.begin();
     for (int y = 0; y < height; y += band) {
       const int rows = std::min(band, height - y);
+      make({y, rows});
       Imf::FrameBuffer buffer;
       for (std::size_t i = 0; i < planes.size(); ++i) {
         planes[i].fill(y, rows, bands[i].data());
@@ -69,23 +77,23 @@ Bytes written(const std::vector<ExrPlane>& planes, int width, int height, Imf::H
       exr.writePixels(rows);
     }
   }
-  return bytes;
+  stream.end();
+  if (!notes_place) return;
+  const std::string notes = picture.notes_after();
+  write(*notes_place, std::as_bytes(std::span{notes}));
 }
 
-ExrPlane plane_of(std::string name, std::span<const float> values, int width) {
-  return {std::move(name), Imf::FLOAT, [values, width](int y, int rows, std::byte* to) {
-            const auto columns = static_cast<std::size_t>(width);
-            const auto part = values.subspan(static_cast<std::size_t>(y) * columns,
-                                             static_cast<std::size_t>(rows) * columns);
-            std::memcpy(to, part.data(), part.size_bytes());
-          }};
+ExrPlane plane_of(std::string name, const std::span<const float>& band) {
+  return {std::move(name), Imf::FLOAT,
+          [&band](int, int, std::byte* to) { std::memcpy(to, band.data(), band.size_bytes()); }};
 }
 
-ExrPlane plane_of(std::string name, const Image& image, std::size_t channel, Imf::PixelType type) {
-  return {std::move(name), type, [&image, channel, type](int y0, int rows, std::byte* to) {
+ExrPlane plane_of(std::string name, const ConstImageView& band, std::size_t channel,
+                  Imf::PixelType type) {
+  return {std::move(name), type, [&band, channel, type](int, int rows, std::byte* to) {
             const std::size_t size = bytes_of(type);
-            for (int y = y0; y < y0 + rows; ++y) {
-              const auto from = row<std::uint16_t>(image, y);
+            for (int y = 0; y < rows; ++y) {
+              const auto from = row<std::uint16_t>(band, y);
               for (std::size_t i = channel; i < from.size(); i += 4, to += size) {
                 const float value = half_to_float(from[i]);
                 std::memcpy(to, type == Imf::HALF ? static_cast<const void*>(&from[i]) : &value,
@@ -100,7 +108,7 @@ ExrPlane plane_of(std::string name, const Image& image, std::size_t channel, Imf
 class SourcePlanes {
  public:
   SourcePlanes(const PictureFile& file, std::span<const std::size_t> kept)
-      : file_(file), stream_(file.bytes), exr_(stream_, 1, false) {
+      : file_(file), stream_(source_of(file)), exr_(stream_, 1, false) {
     for (const std::size_t index : kept) {
       const PlaneInfo& info = file.planes[index];
       kept_.push_back({&info, exr_.header(info.part).channels()[info.channel.c_str()].type, {}});
@@ -252,20 +260,23 @@ void add_lens(const ThinLens& lens, Imf::Header& header) {
 
 }  // namespace
 
-Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes,
-                 const PictureExtras& extras) {
-  return guarded_exr([&] {
-    Imf::Header header{image.width, image.height};
+void write_exr(const PictureToWrite& picture, ExrNumbers numbers, const PictureExtras& extras,
+               const WriteAt& write) {
+  guarded_exr([&] {
+    Imf::Header header{picture.width, picture.height};
+    PictureBand band;
     std::vector<ExrPlane> planes;
     const Imf::PixelType type = numbers == ExrNumbers::half ? Imf::HALF : Imf::FLOAT;
     constexpr std::array kNames{"R", "G", "B"};
-    for (std::size_t c = 0; c < 3; ++c) planes.push_back(plane_of(kNames[c], image, c, type));
-    if (!extras.alpha.empty()) planes.push_back(plane_of("A", extras.alpha, image.width));
-    if (extras.has_depth) {
-      planes.push_back(extras.depth_m.empty() ? plane_of("Z", image, 3, Imf::FLOAT)
-                                              : plane_of("Z", extras.depth_m, image.width));
+    for (std::size_t c = 0; c < 3; ++c) {
+      planes.push_back(plane_of(kNames[c], band.picture, c, type));
     }
-    if (!extras.radii_px.empty()) planes.push_back(plane_of("coc", extras.radii_px, image.width));
+    if (!extras.alpha.empty()) planes.push_back(plane_of("A", band.alpha));
+    if (extras.has_depth) {
+      planes.push_back(extras.depth_m.empty() ? plane_of("Z", band.picture, 3, Imf::FLOAT)
+                                              : plane_of("Z", band.depth_m));
+    }
+    if (!extras.radii_px.empty()) planes.push_back(plane_of("coc", band.radii_px));
     std::optional<SourcePlanes> source;
     if (extras.source != nullptr) {
       source.emplace(*extras.source, extras.kept);
@@ -277,15 +288,58 @@ Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& note
       }
     }
     if (extras.lens) add_lens(*extras.lens, header);
-    if (!notes.empty()) header.insert("softfocus", Imf::StringAttribute(notes));
-    return written(planes, image.width, image.height, header);
+    write_planes(
+        planes, picture, std::move(header), [&](Rows rows) { band = picture.make(rows); }, write);
   });
 }
 
+namespace {
+
+/// Into memory.
+WriteAt writer_to(Bytes& bytes) {
+  return [&bytes](std::uint64_t place, std::span<const std::byte> more) {
+    const auto at = static_cast<std::size_t>(place);
+    bytes.resize(std::max(bytes.size(), at + more.size()));
+    std::copy(more.begin(), more.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+}
+
+/// Rows of a plane.
+std::span<const float> rows_of(std::span<const float> plane, int width, Rows rows) {
+  const auto columns = static_cast<std::size_t>(width);
+  return plane.empty() ? plane
+                       : plane.subspan(static_cast<std::size_t>(rows.first) * columns,
+                                       static_cast<std::size_t>(rows.count) * columns);
+}
+
+}  // namespace
+
+Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes,
+                 const PictureExtras& extras) {
+  const auto make = [&](Rows rows) -> PictureBand {
+    const auto part = [&](std::span<const float> plane) {
+      return rows_of(plane, image.width, rows);
+    };
+    return {{image.format, image.width, rows.count, static_cast<std::ptrdiff_t>(image.stride_bytes),
+             image.bytes.data() + static_cast<std::size_t>(rows.first) * image.stride_bytes},
+            part(extras.alpha),
+            part(extras.depth_m),
+            part(extras.radii_px)};
+  };
+  Bytes bytes;
+  write_exr({image.width, image.height, make, notes}, numbers, extras, writer_to(bytes));
+  return bytes;
+}
+
 Bytes encode_depth_exr(std::span<const float> values, int width, int height) {
-  return guarded_exr([&] {
-    return written({plane_of("Z", values, width)}, width, height, Imf::Header{width, height});
+  Bytes bytes;
+  guarded_exr([&] {
+    std::span<const float> band;
+    write_planes(
+        {plane_of("Z", band)}, {width, height, {}}, Imf::Header{width, height},
+        [&](Rows rows) { band = rows_of(values, width, rows); }, writer_to(bytes));
   });
+  return bytes;
 }
 
 }  // namespace softfocus

@@ -13,6 +13,7 @@
 #include "scenes/load/decimal.h"
 #include "tools/cli/errors.h"
 #include "tools/files/picture_file.h"
+#include "tools/files/picture_rows.h"
 
 namespace softfocus {
 namespace {
@@ -206,12 +207,16 @@ void append_runs(Bytes& bytes, const std::vector<Rgbe>& row, std::size_t c) {
 
 }  // namespace
 
-Bytes encode_hdr(const Image& image) {
-  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " +
-                             std::to_string(image.height) + " +X " + std::to_string(image.width) +
-                             "\n";
+Bytes hdr_start(int width, int height) {
   Bytes bytes;
-  for (const char c : header) bytes.push_back(static_cast<std::byte>(c));
+  for (const char c : "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) +
+                          " +X " + std::to_string(width) + "\n") {
+    bytes.push_back(static_cast<std::byte>(c));
+  }
+  return bytes;
+}
+
+void append_hdr_rows(Bytes& bytes, const ConstImageView& image) {
   const bool in_runs = image.width >= 8;  // fewer have no such form
   std::vector<Rgbe> pixels(static_cast<std::size_t>(image.width));
   for (int y = 0; y < image.height; ++y) {
@@ -229,6 +234,11 @@ Bytes encode_hdr(const Image& image) {
     }
     for (std::size_t c = 0; c < 4; ++c) append_runs(bytes, pixels, c);
   }
+}
+
+Bytes encode_hdr(const Image& image) {
+  Bytes bytes = hdr_start(image.width, image.height);
+  append_hdr_rows(bytes, image);
   return bytes;
 }
 

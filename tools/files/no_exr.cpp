@@ -2,7 +2,7 @@
 
 #include "tools/cli/errors.h"
 #include "tools/files/exr_file.h"
-#include "tools/files/picture_file.h"
+#include "tools/files/picture_rows.h"
 
 namespace softfocus {
 namespace {
@@ -28,8 +28,11 @@ std::string_view missing_exr() {
 
 Bytes encode_exr(const Image&, ExrNumbers, const std::string&, const PictureExtras&) { refuse(); }
 Bytes encode_depth_exr(std::span<const float>, int, int) { refuse(); }
-std::optional<std::string> find_exr_notes(std::span<const std::byte>) { return std::nullopt; }
-HeaderLens find_exr_lens(std::span<const std::byte>) { return {}; }
+void write_exr(const PictureToWrite&, ExrNumbers, const PictureExtras&, const WriteAt&) {
+  refuse();
+}
+std::optional<std::string> find_exr_notes(const ByteSource&) { return std::nullopt; }
+HeaderLens find_exr_lens(const ByteSource&) { return {}; }
 
 const PictureFileReader kExrReader{"OpenEXR", is_exr, list_exr, read_exr};
 

@@ -7,12 +7,14 @@
 #include <bit>
 #include <charconv>
 #include <string>
+#include <utility>
 
 #include "raster/images/image.h"
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/files/picture_file.h"
+#include "tools/files/picture_rows.h"
 
 namespace softfocus {
 namespace {
@@ -141,7 +143,7 @@ struct NpyPicture {
   std::size_t value_bytes = 2;
   bool columns_first = false;
   std::size_t width = 0, height = 0, channels = 0;
-  std::span<const std::byte> values{};
+  std::size_t header_bytes = 0;
 };
 
 struct NpyType {
@@ -154,10 +156,13 @@ constexpr std::array kNpyTypes{
     NpyType{"<f8", NumberType::double_precision, 8}, NpyType{"|u1", NumberType::unsigned8, 1},
     NpyType{"<u2", NumberType::unsigned16, 2}};
 
-NpyPicture npy_picture(std::span<const std::byte> bytes) {
+/// `beginning` has the header at the least of a file of `file_bytes`.
+NpyPicture npy_picture(std::span<const std::byte> beginning, std::uint64_t file_bytes,
+                       int most_rows) {
   NpyPicture picture;
-  picture.values = bytes;
-  const Header header = take_header(picture.values);
+  std::span<const std::byte> rest = beginning;
+  const Header header = take_header(rest);
+  picture.header_bytes = beginning.size() - rest.size();
   const auto type = std::find_if(kNpyTypes.begin(), kNpyTypes.end(),
                                  [&](const NpyType& known) { return known.name == header.type; });
   if (type == kNpyTypes.end()) {
@@ -169,20 +174,24 @@ NpyPicture npy_picture(std::span<const std::byte> bytes) {
   picture.columns_first = header.columns_first;
   auto shape = header.shape;
   if (shape.size() == 2) shape.push_back(1);
-  const auto is_side = [](std::uint64_t side) { return side >= 1 && side <= kMaxImageSize; };
-  if (shape.size() != 3 || !is_side(shape[0]) || !is_side(shape[1]) || shape[2] < 1 ||
-      shape[2] > 4) {
+  const auto is_side = [](std::uint64_t side, int most) {
+    return side >= 1 && side <= static_cast<std::uint64_t>(most);
+  };
+  if (shape.size() != 3 || !is_side(shape[0], most_rows) || !is_side(shape[1], kMaxImageSize) ||
+      shape[2] < 1 || shape[2] > 4) {
     throw FileError(
         "the NumPy array must be of shape (height, width) or (height, width, 1 to 4), each side 1 "
         "to " +
-        std::to_string(kMaxImageSize));
+        std::to_string(kMaxImageSize) +
+        (most_rows > kMaxImageSize ? ", the height to " + std::to_string(most_rows) : ""));
   }
   picture.height = static_cast<std::size_t>(shape[0]);
   picture.width = static_cast<std::size_t>(shape[1]);
   picture.channels = static_cast<std::size_t>(shape[2]);
   const std::uint64_t size = shape[0] * shape[1] * shape[2] * picture.value_bytes;
-  if (picture.values.size() != size) {
-    throw FileError("the NumPy file has " + std::to_string(picture.values.size()) +
+  const std::uint64_t there = file_bytes - picture.header_bytes;
+  if (there != size) {
+    throw FileError("the NumPy file has " + std::to_string(there) +
                     " bytes of values where its shape needs " + std::to_string(size));
   }
   return picture;
@@ -217,18 +226,21 @@ Bytes npy_start(std::string_view type, const std::string& shape) {
 
 }  // namespace
 
-Bytes encode_npy(const Image& image) {
+Bytes npy_start(const ConstImageView& image, int height) {
   const int channels = channel_count(image.format);
   const std::size_t value_bytes =
       bytes_per_texel(image.format) / static_cast<std::size_t>(channels);
   const char* const type = value_bytes == 1 ? "|u1" : value_bytes == 2 ? "<f2" : "<f4";
-  Bytes bytes = npy_start(type, std::to_string(image.height) + ", " + std::to_string(image.width) +
-                                    ", " + std::to_string(channels));
-  bytes.reserve(bytes.size() + bytes_per_texel(image.format) *
-                                   static_cast<std::size_t>(image.width) *
+  return npy_start(type, std::to_string(height) + ", " + std::to_string(image.width) + ", " +
+                             std::to_string(channels));
+}
+
+void append_npy_rows(Bytes& bytes, const ConstImageView& image) {
+  const std::size_t texel_bytes = bytes_per_texel(image.format);
+  bytes.reserve(bytes.size() + texel_bytes * static_cast<std::size_t>(image.width) *
                                    static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y) {
-    switch (value_bytes) {
+    switch (texel_bytes / static_cast<std::size_t>(channel_count(image.format))) {
       case 1:
         for (const std::uint8_t value : row<std::uint8_t>(image, y)) {
           append_little_endian(bytes, value);
@@ -245,6 +257,11 @@ Bytes encode_npy(const Image& image) {
         }
     }
   }
+}
+
+Bytes encode_npy(const Image& image) {
+  Bytes bytes = npy_start(image, image.height);
+  append_npy_rows(bytes, image);
   return bytes;
 }
 
@@ -258,7 +275,7 @@ Bytes encode_grey_npy(std::span<const float> values, int width, int height) {
 }
 
 Picture decode_npy(std::span<const std::byte> bytes) {
-  const NpyPicture array = npy_picture(bytes);
+  const NpyPicture array = npy_picture(bytes, bytes.size(), kMaxImageSize);
   const bool is_half = array.type == NumberType::half;
   if ((!is_half && array.type != NumberType::single) || array.columns_first || array.channels < 3) {
     PictureFile file{.path = {}, .bytes = {bytes.begin(), bytes.end()}, .reader = &kNpyReader};
@@ -268,7 +285,7 @@ Picture decode_npy(std::span<const std::byte> bytes) {
   Picture picture{
       make_image(Format::rgba16f, static_cast<int>(array.width), static_cast<int>(array.height)),
       array.channels == 4};
-  auto rest = array.values;
+  auto rest = bytes.subspan(array.header_bytes);
   for (int y = 0; y < picture.image.height; ++y) {
     const auto values = row<std::uint16_t>(picture.image, y);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -289,8 +306,12 @@ bool begins_as_npy(std::span<const std::byte> bytes) {
                     [](char c, std::byte b) { return static_cast<std::byte>(c) == b; });
 }
 
+NpyPicture npy_picture(const PictureFile& file) {
+  return npy_picture(file.bytes, source_of(file).size(), most_rows_of(file));
+}
+
 void list_npy(PictureFile& file) {
-  const NpyPicture array = npy_picture(file.bytes);
+  const NpyPicture array = npy_picture(file);
   file.width = static_cast<int>(array.width);
   file.height = static_cast<int>(array.height);
   constexpr std::array<std::string_view, 4> kNames{"Y", "YA", "RGB", "RGBA"};
@@ -298,27 +319,35 @@ void list_npy(PictureFile& file) {
     file.planes.push_back({.name = std::string{name}, .type = array.type});
   }
   file.is_srgb = array.type == NumberType::unsigned8 || array.type == NumberType::unsigned16;
+  file.has_rows = !array.columns_first;
   if (array.columns_first) file.remark = "Fortran order";
 }
 
-void read_npy(const PictureFile& file, std::span<const std::size_t> planes,
-              std::span<PlaneValues> values) {
-  const NpyPicture array = npy_picture(file.bytes);
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    for (std::size_t y = 0; y < array.height; ++y) {
-      for (std::size_t x = 0; x < array.width; ++x) {
-        const std::size_t place = array.columns_first
-                                      ? (planes[i] * array.width + x) * array.height + y
-                                      : (y * array.width + x) * array.channels + planes[i];
-        values[i][y * array.width + x] =
-            npy_value(array.type, array.values.subspan(place * array.value_bytes));
+/// Of an array by columns all rows at once.
+ReadRows npy_rows(const PictureFile& file, std::vector<std::size_t> planes) {
+  return [array = npy_picture(file), source = source_of(file), planes = std::move(planes),
+          buffer = Bytes{}](Rows rows, std::span<PlaneValues> values) mutable {
+    const std::size_t row_bytes = array.width * array.channels * array.value_bytes;
+    const auto first = static_cast<std::size_t>(rows.first);
+    const auto count = static_cast<std::size_t>(rows.count);
+    const auto bytes =
+        source.at(array.header_bytes + std::uint64_t{first} * row_bytes, count * row_bytes, buffer);
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      float* to = values[i].data();
+      for (std::size_t y = 0; y < count; ++y) {
+        for (std::size_t x = 0; x < array.width; ++x) {
+          const std::size_t place = array.columns_first
+                                        ? (planes[i] * array.width + x) * array.height + y
+                                        : (y * array.width + x) * array.channels + planes[i];
+          *to++ = npy_value(array.type, bytes.subspan(place * array.value_bytes));
+        }
       }
     }
-  }
+  };
 }
 
 }  // namespace
 
-const PictureFileReader kNpyReader{"NumPy", begins_as_npy, list_npy, read_npy, true};
+const PictureFileReader kNpyReader{"NumPy", begins_as_npy, list_npy, nullptr, true, npy_rows};
 
 }  // namespace softfocus

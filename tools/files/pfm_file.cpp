@@ -6,12 +6,14 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "raster/images/texel.h"
 #include "scenes/load/decimal.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/files/picture_file.h"
+#include "tools/files/picture_rows.h"
 
 namespace softfocus {
 namespace {
@@ -55,30 +57,32 @@ struct PfmHeader {
   std::size_t channels = 3;
   int width = 0, height = 0;
   bool low_byte_first = true;
-  std::span<const std::byte> values{};
+  std::size_t length = 0;
 };
 
-PfmHeader pfm_header(std::span<const std::byte> bytes) {
+/// `beginning` has the header at the least of a file of `file_bytes`.
+PfmHeader pfm_header(std::span<const std::byte> beginning, std::uint64_t file_bytes,
+                     int most_rows) {
   PfmHeader header;
-  auto rest = bytes;
+  auto rest = beginning;
   const std::string_view mark = take_word(rest);
   if (mark != "PF" && mark != "Pf") throw FileError("the PFM must begin with 'PF' or 'Pf'");
   header.channels = mark == "PF" ? 3 : 1;
   header.width = whole_number(take_word(rest));
   header.height = whole_number(take_word(rest));
   const float scale = number(take_word(rest));
-  check_picture_size("the PFM", header.width, header.height);
+  check_picture_size("the PFM", header.width, header.height, most_rows);
   if (!std::isfinite(scale) || scale == 0.0f) {
     throw FileError("the PFM's scale must be a number below or above 0");
   }
   header.low_byte_first = scale < 0.0f;
   const auto size = header.channels * sizeof(float) * static_cast<std::uint64_t>(header.width) *
                     static_cast<std::uint64_t>(header.height);
-  if (rest.size() != size) {
-    throw FileError("the PFM has " + std::to_string(rest.size()) +
+  header.length = beginning.size() - rest.size();
+  if (file_bytes - header.length != size) {
+    throw FileError("the PFM has " + std::to_string(file_bytes - header.length) +
                     " bytes of values where its size needs " + std::to_string(size));
   }
-  header.values = rest;
   return header;
 }
 
@@ -91,13 +95,17 @@ float take_float(std::span<const std::byte>& rest, bool low_byte_first) {
 
 }  // namespace
 
-Bytes encode_pfm(const Image& image) {
-  const std::string header =
-      "PF\n" + std::to_string(image.width) + " " + std::to_string(image.height) + "\n-1.0\n";
+Bytes pfm_start(int width, int height) {
   Bytes bytes;
-  bytes.reserve(header.size() + kTexelBytes * static_cast<std::size_t>(image.width) *
-                                    static_cast<std::size_t>(image.height));
-  for (const char c : header) bytes.push_back(static_cast<std::byte>(c));
+  for (const char c : "PF\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n") {
+    bytes.push_back(static_cast<std::byte>(c));
+  }
+  return bytes;
+}
+
+void append_pfm_rows(Bytes& bytes, const ConstImageView& image) {
+  bytes.reserve(bytes.size() + kTexelBytes * static_cast<std::size_t>(image.width) *
+                                   static_cast<std::size_t>(image.height));
   for (int y = image.height - 1; y >= 0; --y) {
     for (int x = 0; x < image.width; ++x) {
       const glm::vec4 colour = load_texel<Format::rgba16f>(image, x, y);
@@ -106,6 +114,11 @@ Bytes encode_pfm(const Image& image) {
       }
     }
   }
+}
+
+Bytes encode_pfm(const Image& image) {
+  Bytes bytes = pfm_start(image.width, image.height);
+  append_pfm_rows(bytes, image);
   return bytes;
 }
 
@@ -125,9 +138,9 @@ Bytes encode_grey_pfm(std::span<const float> values, int width, int height) {
 }
 
 Picture decode_pfm(std::span<const std::byte> bytes) {
-  PfmHeader header = pfm_header(bytes);
+  const PfmHeader header = pfm_header(bytes, bytes.size(), kMaxImageSize);
   if (header.channels != 3) throw FileError("the PFM must be a colour one, 'PF'");
-  auto rest = header.values;
+  auto rest = bytes.subspan(header.length);
   Picture picture{make_image(Format::rgba16f, header.width, header.height), false};
   for (int y = header.height - 1; y >= 0; --y) {
     const auto values = row<std::uint16_t>(picture.image, y);
@@ -147,8 +160,12 @@ bool begins_as_pfm(std::span<const std::byte> bytes) {
          (bytes[1] == std::byte{'F'} || bytes[1] == std::byte{'f'});
 }
 
+PfmHeader pfm_header(const PictureFile& file) {
+  return pfm_header(file.bytes, source_of(file).size(), most_rows_of(file));
+}
+
 void list_pfm(PictureFile& file) {
-  const PfmHeader header = pfm_header(file.bytes);
+  const PfmHeader header = pfm_header(file);
   file.width = header.width;
   file.height = header.height;
   for (const char name : std::string_view{header.channels == 3 ? "RGB" : "Y"}) {
@@ -156,21 +173,26 @@ void list_pfm(PictureFile& file) {
   }
 }
 
-void read_pfm(const PictureFile& file, std::span<const std::size_t> planes,
-              std::span<PlaneValues> values) {
-  const PfmHeader header = pfm_header(file.bytes);
-  const auto columns = static_cast<std::size_t>(file.width);
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    for (std::size_t place = 0; place < values[i].size(); ++place) {
-      auto at = header.values.subspan(sizeof(float) * (header.channels * place + planes[i]));
-      const std::size_t y = static_cast<std::size_t>(file.height) - 1 - place / columns;
-      values[i][y * columns + place % columns] = take_float(at, header.low_byte_first);
+ReadRows pfm_rows(const PictureFile& file, std::vector<std::size_t> planes) {
+  return [header = pfm_header(file), source = source_of(file), planes = std::move(planes),
+          buffer = Bytes{}](Rows rows, std::span<PlaneValues> values) mutable {
+    const auto columns = static_cast<std::size_t>(header.width);
+    const std::size_t row_bytes = columns * header.channels * sizeof(float);
+    const auto below = static_cast<std::uint64_t>(header.height - rows.first - rows.count);
+    const auto bytes = source.at(header.length + below * row_bytes,
+                                 static_cast<std::size_t>(rows.count) * row_bytes, buffer);
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      for (std::size_t place = 0; place < values[i].size(); ++place) {
+        auto at = bytes.subspan(sizeof(float) * (header.channels * place + planes[i]));
+        const std::size_t y = static_cast<std::size_t>(rows.count) - 1 - place / columns;
+        values[i][y * columns + place % columns] = take_float(at, header.low_byte_first);
+      }
     }
-  }
+  };
 }
 
 }  // namespace
 
-const PictureFileReader kPfmReader{"PFM", begins_as_pfm, list_pfm, read_pfm, true};
+const PictureFileReader kPfmReader{"PFM", begins_as_pfm, list_pfm, nullptr, true, pfm_rows};
 
 }  // namespace softfocus

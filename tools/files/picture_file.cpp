@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <system_error>
+#include <utility>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/srgb.h"
@@ -71,34 +73,27 @@ SplitName split(const std::string& name) {
   return {name.substr(0, dot), name.substr(dot + 1)};
 }
 
-/// From numbers of 0 to full_scale() along the sRGB curve, or any numbers of light, to halves.
-class ToHalf {
- public:
-  ToHalf(NumberType type, bool is_srgb) : type_(type) {
-    if (type != NumberType::unsigned8 && type != NumberType::unsigned16) return;
-    const auto count = static_cast<std::size_t>(full_scale(type)) + 1;
-    table_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const float value = !is_srgb ? static_cast<float>(static_cast<double>(i) / full_scale(type))
-                          : type == NumberType::unsigned8
-                              ? srgb8_to_linear(static_cast<std::uint8_t>(i))
-                              : srgb16_to_linear(static_cast<std::uint16_t>(i));
-      table_[i] = float_to_half(value, HalfRounding::nearest_even);
-    }
+/// The halves of numbers of 0 to full_scale(), along the sRGB curve or of light. Empty for others
+/// than whole ones of 8 or 16 bits.
+std::vector<std::uint16_t> half_table(NumberType type, bool is_srgb) {
+  if (type != NumberType::unsigned8 && type != NumberType::unsigned16) return {};
+  std::vector<std::uint16_t> table(static_cast<std::size_t>(full_scale(type)) + 1);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const float value = !is_srgb ? static_cast<float>(static_cast<double>(i) / full_scale(type))
+                        : type == NumberType::unsigned8
+                            ? srgb8_to_linear(static_cast<std::uint8_t>(i))
+                            : srgb16_to_linear(static_cast<std::uint16_t>(i));
+    table[i] = float_to_half(value, HalfRounding::nearest_even);
   }
+  return table;
+}
 
-  std::uint16_t operator()(float value) const {
-    if (!table_.empty()) return table_[static_cast<std::size_t>(value)];
-    if (value != value) return 0;
-    if (type_ == NumberType::unsigned32) value = static_cast<float>(value / full_scale(type_));
-    constexpr float kMost = 65504.0f;
-    return float_to_half(std::clamp(value, -kMost, kMost), HalfRounding::nearest_even);
-  }
-
- private:
-  NumberType type_;
-  std::vector<std::uint16_t> table_{};
-};
+std::uint16_t light_half(NumberType type, float value) {
+  if (value != value) return 0;
+  if (type == NumberType::unsigned32) value = static_cast<float>(value / full_scale(type));
+  constexpr float kMost = 65504.0f;
+  return float_to_half(std::clamp(value, -kMost, kMost), HalfRounding::nearest_even);
+}
 
 }  // namespace
 
@@ -123,11 +118,13 @@ double full_scale(NumberType type) {
   }
 }
 
-void check_picture_size(std::string_view kind, std::int64_t width, std::int64_t height) {
-  if (width >= 1 && height >= 1 && width <= kMaxImageSize && height <= kMaxImageSize) return;
-  throw FileError(std::string{kind} + " is " + std::to_string(width) + "x" +
-                  std::to_string(height) + " pixels; each side may be 1 to " +
-                  std::to_string(kMaxImageSize));
+void check_picture_size(std::string_view kind, std::int64_t width, std::int64_t height,
+                        int most_rows) {
+  if (width >= 1 && height >= 1 && width <= kMaxImageSize && height <= most_rows) return;
+  throw FileError(
+      std::string{kind} + " is " + std::to_string(width) + "x" + std::to_string(height) +
+      " pixels; each side may be 1 to " + std::to_string(kMaxImageSize) +
+      (most_rows > kMaxImageSize ? ", the height to " + std::to_string(most_rows) : ""));
 }
 
 bool begins_as_picture(std::span<const std::byte> bytes) {
@@ -150,6 +147,61 @@ PictureFile open_picture_file(const std::filesystem::path& path) {
   return open_picture_file(read_picture_bytes(path), path);
 }
 
+namespace {
+
+/// What a file begins with. No header of a picture that is larger than memory comes near.
+constexpr std::size_t kMostOfHeader = std::size_t{1} << 20;
+
+/// Reads what stands before the values. False if it is read whole.
+bool list_on_disk(PictureFile& file) {
+  const ByteSource source{file.disk};
+  source.at(0, static_cast<std::size_t>(std::min<std::uint64_t>(kMostOfHeader, source.size())),
+            file.bytes);
+  file.reader = &reader_of(file.bytes);
+  if (file.reader->rows == nullptr) return false;
+  file.reader->list(file);
+  return file.has_rows;
+}
+
+}  // namespace
+
+std::optional<PictureFile> open_on_disk(const std::filesystem::path& path, std::string& why) {
+  const std::string name = "'" + path.string() + "'";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    why = name + " is no file on a disk";
+    return std::nullopt;
+  }
+  PictureFile file{.path = path};
+  try {
+    file.disk = std::make_shared<const DiskFile>(path);
+    if (list_on_disk(file)) return file;
+    why = name + (file.has_rows
+                      ? " is of a kind that is read whole, " + std::string{file.reader->name}
+                      : " is stored by columns");
+  } catch (const FileError& damage) {
+    refuse(file, damage);
+  } catch (const std::system_error& failure) {
+    why = name + ": " + failure.code().message();
+  }
+  return std::nullopt;
+}
+
+ReadRows rows_of(const PictureFile& file, std::vector<std::size_t> planes) {
+  try {
+    return [&file, read = file.reader->rows(file, std::move(planes))](
+               Rows rows, std::span<PlaneValues> values) {
+      try {
+        read(rows, values);
+      } catch (const FileError& error) {
+        refuse(file, error);
+      }
+    };
+  } catch (const FileError& error) {
+    refuse(file, error);
+  }
+}
+
 std::vector<PlaneValues> read_planes(const PictureFile& file, std::span<const std::size_t> planes,
                                      float outside) {
   try {
@@ -162,7 +214,11 @@ std::vector<PlaneValues> read_planes(const PictureFile& file, std::span<const st
     }
     std::vector<PlaneValues> values(planes.size());
     for (PlaneValues& plane : values) plane.assign(static_cast<std::size_t>(pixels), outside);
-    file.reader->read(file, planes, values);
+    if (file.reader->rows != nullptr) {
+      file.reader->rows(file, {planes.begin(), planes.end()})({0, file.height}, values);
+    } else {
+      file.reader->read(file, planes, values);
+    }
     return values;
   } catch (const FileError& error) {
     refuse(file, error);
@@ -205,34 +261,42 @@ std::vector<ColourLayer> colour_layers(const PictureFile& file) {
   return layers;
 }
 
-Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
-  std::vector<std::size_t> planes{layer.red};
-  if (layer.green != layer.red) planes.insert(planes.end(), {layer.green, layer.blue});
-  const bool has_alpha = with_alpha && layer.alpha;
-  if (has_alpha) planes.push_back(*layer.alpha);
-  Picture picture{make_image(Format::rgba16f, file.width, file.height), has_alpha};
-  const auto put = [&](const PlaneValues& from, std::size_t plane, std::size_t first,
-                       std::size_t last) {
-    const ToHalf to_half{file.planes[plane].type, file.is_srgb && first < 3};
-    std::size_t next = 0;
-    for (int y = 0; y < file.height; ++y) {
-      const auto to = row<std::uint16_t>(picture.image, y);
-      for (std::size_t i = 0; i < to.size(); i += 4) {
-        const std::uint16_t half = to_half(from[next++]);
-        for (std::size_t c = first; c <= last; ++c) to[i + c] = half;
-      }
-    }
+ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
+  const auto add = [&](std::size_t plane, std::size_t first, std::size_t last) {
+    planes_.push_back(plane);
+    const NumberType type = file.planes[plane].type;
+    channels_.push_back({first, last, type, half_table(type, file.is_srgb && first < 3)});
   };
+  const bool is_grey = layer.green == layer.red;
+  add(layer.red, 0, is_grey ? 2 : 0);
+  if (!is_grey) add(layer.green, 1, 1);
+  if (!is_grey) add(layer.blue, 2, 2);
+  if (with_alpha && layer.alpha) add(*layer.alpha, 3, 3);
+}
+
+void ColourHalves::put(std::size_t i, const PlaneValues& values, Image& picture) const {
+  const Channel& channel = channels_[i];
+  std::size_t next = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    const auto to = row<std::uint16_t>(picture, y);
+    for (std::size_t x = 0; x < to.size(); x += 4) {
+      const float value = values[next++];
+      const std::uint16_t half = channel.table.empty()
+                                     ? light_half(channel.type, value)
+                                     : channel.table[static_cast<std::size_t>(value)];
+      for (std::size_t c = channel.first; c <= channel.last; ++c) to[x + c] = half;
+    }
+  }
+}
+
+Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
+  const ColourHalves halves{file, layer, with_alpha};
+  Picture picture{make_image(Format::rgba16f, file.width, file.height), with_alpha && layer.alpha};
+  const std::span planes{halves.planes()};
   const std::size_t at_once = file.reader->reads_apart ? 1 : planes.size();
   for (std::size_t i = 0; i < planes.size(); i += at_once) {
-    const std::vector<PlaneValues> values =
-        read_planes(file, std::span{planes}.subspan(i, at_once), 0.0f);
-    for (std::size_t p = i; p < i + at_once; ++p) {
-      const bool is_alpha = has_alpha && p + 1 == planes.size();
-      const bool is_grey = !is_alpha && layer.green == layer.red;
-      const std::size_t channel = is_alpha ? 3 : p;
-      put(values[p - i], planes[p], channel, is_grey ? 2 : channel);
-    }
+    const std::vector<PlaneValues> values = read_planes(file, planes.subspan(i, at_once), 0.0f);
+    for (std::size_t p = i; p < i + at_once; ++p) halves.put(p, values[p - i], picture.image);
   }
   return picture;
 }

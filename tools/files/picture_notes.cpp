@@ -1,5 +1,6 @@
 #include "tools/files/picture_notes.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -17,9 +18,16 @@ constexpr const char* kKeyword = "softfocus";
 /// No notes are longer: larger files are not read for being taken for some.
 constexpr std::size_t kMostBytes = 65536;
 
-std::string hash_of_file(std::span<const std::byte> bytes) {
+std::string hash_of_file(const ByteSource& bytes) {
+  constexpr std::uint64_t kPart = 1 << 20;
   Hash hash;
-  for (const std::byte byte : bytes) add_to_hash(hash, std::to_integer<std::uint8_t>(byte));
+  Bytes buffer;
+  for (std::uint64_t place = 0; place < bytes.size(); place += kPart) {
+    const auto count = static_cast<std::size_t>(std::min(kPart, bytes.size() - place));
+    for (const std::byte byte : bytes.at(place, count, buffer)) {
+      add_to_hash(hash, std::to_integer<std::uint8_t>(byte));
+    }
+  }
   return hash_text(hash.value);
 }
 
@@ -137,7 +145,7 @@ std::optional<std::filesystem::path> sidecar_place(const std::string& output, Fi
   return sidecar_of(output);
 }
 
-std::string sidecar_text(const PictureNotes& notes, const Bytes& picture) {
+std::string sidecar_text(const PictureNotes& notes, const ByteSource& picture) {
   Json json = notes_json(notes);
   json["file_hash"] = hash_of_file(picture);
   return json_text(json, 2) + "\n";
@@ -151,12 +159,16 @@ bool is_free_for_sidecar(const std::filesystem::path& sidecar) {
   return text && parse_notes(*text);
 }
 
-FoundNotes find_notes(const std::filesystem::path& picture, std::span<const std::byte> bytes) {
-  if (is_png(bytes)) {
-    const auto text = find_png_text(bytes, kKeyword);
+FoundNotes find_notes(const std::filesystem::path& picture, const ByteSource& bytes) {
+  Bytes buffer;
+  const std::span start =
+      bytes.at(0, static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), 8)), buffer);
+  if (is_png(start)) {
+    const auto size = static_cast<std::size_t>(bytes.size());
+    const auto text = find_png_text(bytes.at(0, size, buffer), kKeyword);
     return {text ? parse_notes(*text) : std::nullopt, picture};
   }
-  if (is_exr(bytes)) {
+  if (is_exr(start)) {
     const auto text = find_exr_notes(bytes);
     return {text ? parse_notes(*text) : std::nullopt, picture};
   }

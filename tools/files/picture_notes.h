@@ -63,7 +63,7 @@ std::filesystem::path sidecar_of(const std::filesystem::path& picture);
 std::optional<std::filesystem::path> sidecar_place(const std::string& output, FileFormat format);
 
 /// What is to be written beside a picture with these bytes.
-std::string sidecar_text(const PictureNotes& notes, const Bytes& picture);
+std::string sidecar_text(const PictureNotes& notes, const ByteSource& picture);
 
 /// Whether a sidecar can stand there: there is nothing, or one that may be replaced.
 bool is_free_for_sidecar(const std::filesystem::path& sidecar);
@@ -76,6 +76,6 @@ struct FoundNotes {
 };
 
 /// `bytes` are those of the file `picture`. What is no notes is as if it were not there.
-FoundNotes find_notes(const std::filesystem::path& picture, std::span<const std::byte> bytes);
+FoundNotes find_notes(const std::filesystem::path& picture, const ByteSource& bytes);
 
 }  // namespace softfocus

@@ -1,5 +1,6 @@
 #include "tools/files/whole_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <string>
@@ -148,6 +149,17 @@ void WholeFile::write(std::span<const std::byte> bytes) {
 
 void WholeFile::write(std::string_view text) {
   write(std::as_bytes(std::span{text.data(), text.size()}));
+}
+
+void WholeFile::write_at(std::uint64_t place, std::span<const std::byte> bytes) {
+  end_ = std::max(end_, place + bytes.size());
+  while (!bytes.empty()) {
+    const std::ptrdiff_t written = write_some_at(descriptor_, place, bytes);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(errno);
+    place += static_cast<std::uint64_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
 }
 
 void WholeFile::commit() {

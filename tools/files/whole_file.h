@@ -3,12 +3,14 @@
 // it, .softfocus-MACHINE-PROCESS-NUMBER, which takes its name at the end. An interrupt removes it.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "tools/cli/interrupts.h"
+#include "tools/files/byte_source.h"
 
 namespace softfocus {
 
@@ -26,6 +28,11 @@ class WholeFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
+  /// Writes at a place of what is no device or pipe. A file is written so, or by write() alone.
+  void write_at(std::uint64_t place, std::span<const std::byte> bytes);
+  /// What write_at() wrote, until commit().
+  ByteSource written() const { return {descriptor_, end_}; }
+
   /// Gives the file its name, in place of one that has it. A new file has the
   /// permissions of the umask, a replaced one those it had.
   void commit();
@@ -38,6 +45,7 @@ class WholeFile {
   std::filesystem::path temporary_;  // empty: written to directly, or committed
   std::optional<RemovedByInterrupt> removed_;
   int descriptor_ = -1;
+  std::uint64_t end_ = 0;  // of what write_at() wrote
 };
 
 /// Throws FileError if `target` could not be written now, so that a long work need

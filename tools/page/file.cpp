@@ -102,9 +102,10 @@ Json answer_save(Page& page, const Json& request) {
   const OpenedPicture& opened = *page.opened->picture;
   RefocusOptions options = frame.options;
   options.format = *format;
-  page.saved = refocused_file(options, opened.sources, opened.whole.depth, frame.used,
-                              {page.shown->picture, frame.opacity},
-                              refocus_notes(options, frame.used, page.shown->picture));
+  const Image& picture = page.shown->picture;
+  page.saved = refocused_file(
+      options, opened.sources, opened.whole.depth, frame.used, {picture, frame.opacity},
+      refocus_notes(options, frame.used, picture.width, picture.height, hash_image(picture)));
   return {{"saved_bytes", static_cast<std::int64_t>(page.saved.size())}};
 }
 

@@ -3,32 +3,42 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace softfocus {
 
-NumbersSeen numbers_seen(const PlaneValues& values, NumberType type) {
-  NumbersSeen seen;
-  seen.count = values.size();
-  double least = std::numeric_limits<double>::infinity(), largest = -least;
-  const bool is_small = type == NumberType::unsigned8 || type == NumberType::unsigned16;
-  std::vector<bool> there(is_small ? 65536 : 0);
+NumberCounter::NumberCounter(NumberType type)
+    : least_(std::numeric_limits<double>::infinity()),
+      largest_(-least_),
+      there_(type == NumberType::unsigned8 || type == NumberType::unsigned16 ? 65536 : 0) {}
+
+void NumberCounter::add(std::span<const float> values) {
+  seen_.count += values.size();
   for (const float value : values) {
-    seen.nans += value != value;
-    seen.infinities += std::isinf(value);
-    seen.zeros += value == 0.0f;
-    seen.negatives += value < 0.0f;
+    seen_.nans += value != value;
+    seen_.infinities += std::isinf(value);
+    seen_.zeros += value == 0.0f;
+    seen_.negatives += value < 0.0f;
     if (!std::isfinite(value)) continue;
-    least = std::min(least, static_cast<double>(value));
-    largest = std::max(largest, static_cast<double>(value));
-    if (is_small) there[static_cast<std::size_t>(value)] = true;
+    least_ = std::min(least_, static_cast<double>(value));
+    largest_ = std::max(largest_, static_cast<double>(value));
+    if (!there_.empty()) there_[static_cast<std::size_t>(value)] = true;
   }
-  seen.different = static_cast<std::size_t>(std::count(there.begin(), there.end(), true));
-  if (least <= largest) {
-    seen.least = least;
-    seen.largest = largest;
+}
+
+NumbersSeen NumberCounter::seen() const {
+  NumbersSeen seen = seen_;
+  seen.different = static_cast<std::size_t>(std::count(there_.begin(), there_.end(), true));
+  if (least_ <= largest_) {
+    seen.least = least_;
+    seen.largest = largest_;
   }
   return seen;
+}
+
+NumbersSeen numbers_seen(const PlaneValues& values, NumberType type) {
+  NumberCounter counter{type};
+  counter.add(values);
+  return counter.seen();
 }
 
 BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours) {

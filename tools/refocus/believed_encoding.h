@@ -1,7 +1,9 @@
 #pragma once
 // What a depth map's numbers are taken for if nobody says.
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "tools/files/picture_file.h"
 #include "tools/refocus/depth_encodings.h"
@@ -18,6 +20,19 @@ struct NumbersSeen {
   std::size_t different = 0;  ///< distinct whole numbers, of types that are; else 0
   double least = 0.0;         ///< of finite numbers; 0 if there is none
   double largest = 0.0;
+};
+
+/// Looks at numbers that come in pieces.
+class NumberCounter {
+ public:
+  explicit NumberCounter(NumberType type);
+  void add(std::span<const float> values);
+  NumbersSeen seen() const;
+
+ private:
+  NumbersSeen seen_{};
+  double least_, largest_;
+  std::vector<bool> there_;  // of whole numbers up to 16 bits
 };
 
 NumbersSeen numbers_seen(const PlaneValues& values, NumberType type);

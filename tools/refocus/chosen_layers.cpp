@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
@@ -124,15 +123,17 @@ std::size_t choose_depth(const PictureFile& file, const std::optional<std::strin
                    "--depth-layer of " + plane_names(file));
 }
 
-PlaneValues depth_codes(const PictureFile& file, std::size_t plane) {
+std::vector<std::size_t> planes_of_depth(const PictureFile& file, std::size_t plane) {
   std::vector<std::size_t> planes{plane};
   for (const ColourLayer& layer : colour_layers(file)) {
     if (layer.red == plane && layer.green != plane) {
       planes.insert(planes.end(), {layer.green, layer.blue});
     }
   }
-  constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
-  std::vector<PlaneValues> values = read_planes(file, planes, kNothing);
+  return planes;
+}
+
+void check_one_depth(const PictureFile& file, std::span<const PlaneValues> values) {
   const auto same = [](float a, float b) { return a == b || (a != a && b != b); };
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (std::equal(values[0].begin(), values[0].end(), values[i].begin(), same)) continue;
@@ -140,6 +141,11 @@ PlaneValues depth_codes(const PictureFile& file, std::size_t plane) {
                      "' has three channels that differ, which is no depth; give a grey file, or "
                      "say --depth-layer");
   }
+}
+
+PlaneValues depth_codes(const PictureFile& file, std::size_t plane) {
+  std::vector<PlaneValues> values = read_planes(file, planes_of_depth(file, plane), kNoDepthThere);
+  check_one_depth(file, values);
   return std::move(values[0]);
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 // Which layers of one or two files are the colour and the depth.
 
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "tools/files/picture_file.h"
 
@@ -26,6 +29,15 @@ std::optional<std::size_t> find_depth_beside_colour(const PictureFile& file);
 /// file's one plane. Throws UsageError likewise.
 std::size_t choose_depth(const PictureFile& file, const std::optional<std::string>& name,
                          bool beside_colour);
+
+/// What stands where an EXR has no depth.
+inline constexpr float kNoDepthThere = std::numeric_limits<float>::quiet_NaN();
+
+/// The plane, and the two beside it if it is red: a grey picture in three channels.
+std::vector<std::size_t> planes_of_depth(const PictureFile& file, std::size_t plane);
+
+/// Throws UsageError if the values of those differ.
+void check_one_depth(const PictureFile& file, std::span<const PlaneValues> values);
 
 /// Its codes. Throws UsageError if they are one of three channels that differ: that is a picture
 /// and no depth.

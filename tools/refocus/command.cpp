@@ -10,19 +10,12 @@
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/refocus/opacity.h"
+#include "tools/refocus/refocus_by_rows.h"
 #include "tools/refocus/refocus_frames.h"
 #include "tools/refocus/refocused_file.h"
-#include "tools/refocus/report.h"
 
 namespace softfocus {
 namespace {
-
-/// What is said once the files are there.
-struct Refocused {
-  Bytes picture;  ///< of -o -
-  std::vector<std::string> warnings;
-  std::string report, json;
-};
 
 void check_outputs(const RefocusOptions& options) {
   if (options.output == "-") return;
@@ -35,7 +28,9 @@ void check_outputs(const RefocusOptions& options) {
     check_not_read("-o", *sidecar, inputs);
 }
 
-Refocused make_refocused(const RefocusOptions& options, Progress& progress, ThreadPool& pool) {
+/// In memory.
+Refocused refocus_whole(const RefocusOptions& options, const std::string& why, Progress& progress,
+                        ThreadPool& pool) {
   progress.show("reading");
   PictureSources sources = open_sources(options.colour, options.depth, options.reading);
   // The file, its colour as planes and as a picture; then the picture, its depth, the result, and
@@ -53,13 +48,14 @@ Refocused make_refocused(const RefocusOptions& options, Progress& progress, Thre
   // What was read is not needed again, but for an EXR's other layers. `= {}` would keep the memory.
   if (sources.depth_file) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
-  UsedRefocus used;
+  UsedRefocus used{.why_whole = why};
   used.lens = settle_lens(photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
   const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
 
   progress.show("writing");
-  const PictureNotes notes = refocus_notes(options, used, result.picture);
+  const PictureNotes notes = refocus_notes(options, used, result.picture.width,
+                                           result.picture.height, hash_image(result.picture));
   Refocused made;
   Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes);
   auto sidecar = sidecar_place(options.output, options.format);
@@ -73,27 +69,18 @@ Refocused make_refocused(const RefocusOptions& options, Progress& progress, Thre
     picture_file->commit();
   }
   if (sidecar_file) sidecar_file->commit();
-  const auto warn = [&made](std::string text) { made.warnings.push_back(std::move(text)); };
-  if (!has_room) {
-    warn("'" + sidecar->string() +
-         "' is no sidecar of a picture and stays as it is: the picture's "
-         "lens is written nowhere");
-  }
-  for (const std::string& fault : sources.lens.faults) {
-    warn("'" + options.colour + "': " + fault + "; it is ignored");
-  }
-  if (loses_alpha) {
-    warn("'" + options.colour +
-         "' is transparent in places; the result's format has no alpha, and black there; .exr and "
-         ".png have");
-  }
-  if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
-    warn("circles of more than " + std::to_string(static_cast<int>(kLargestMaxCoc)) +
-         " pixels are cut to that; a larger --f-number has smaller ones");
-  }
-  made.report = refocus_text(options, sources, depth, used);
-  made.json = refocus_json(options, sources, depth, used, notes.picture_hash);
+  if (!has_room) made.warnings.push_back(busy_sidecar_warning(*sidecar));
+  if (loses_alpha) made.warnings.push_back(lost_alpha_warning(options.colour));
+  tell(options, sources, depth, used, notes.picture_hash, made);
   return made;
+}
+
+Refocused make_refocused(const RefocusOptions& options, Progress& progress, ThreadPool& pool) {
+  std::string why = reason_for_whole(options);
+  if (why.empty()) {
+    if (auto made = refocus_by_rows(options, progress, pool, why)) return std::move(*made);
+  }
+  return refocus_whole(options, why, progress, pool);
 }
 
 int refocus(const RefocusOptions& options) {

@@ -52,40 +52,57 @@ void sweep(const std::vector<float>& metres, std::vector<float>& farthest, std::
 
 }  // namespace
 
-DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
-                        const DepthReading& reading, const PlaneValues& mask) {
-  const DepthEncoding& encoding = *reading.encoding;
-  const double largest = largest_of(type, encoding);
-  DepthReading full = reading;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+CodeEnds::CodeEnds(NumberType type, const DepthReading& reading)
+    : reading_(reading),
+      full_(largest_of(type, *reading.encoding)),
+      least_(std::numeric_limits<double>::infinity()),
+      largest_(-least_) {}
+
+void CodeEnds::add(std::span<const float> codes, std::span<const float> mask) {
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const double raw = static_cast<double>(codes[i]);
-    if (means_missing(raw, reading) || std::isinf(raw) || (!mask.empty() && mask[i] == 0.0f)) {
+    if (means_missing(raw, reading_) || std::isinf(raw) || (!mask.empty() && mask[i] == 0.0f)) {
       continue;
     }
-    const double code = raw / largest;
-    least = std::min(least, code);
-    most = std::max(most, code);
+    const double code = raw / full_;
+    least_ = std::min(least_, code);
+    largest_ = std::max(largest_, code);
   }
-  full.numbers.least_code = least;
-  full.numbers.largest_code = most > least ? most : least + 1.0;
+}
 
-  // Each code gives way to its depth.
-  DepthMap map{width, height, std::move(codes)};
+void CodeEnds::put_in(DepthNumbers& numbers) const {
+  numbers.least_code = least_;
+  numbers.largest_code = largest_ > least_ ? largest_ : least_ + 1.0;
+}
+
+void codes_to_depths(std::span<float> codes, NumberType type, int first_row, int width, int height,
+                     const DepthReading& reading, std::span<const float> mask) {
+  const DepthEncoding& encoding = *reading.encoding;
+  const double largest = largest_of(type, encoding);
+  const int rows = static_cast<int>(codes.size() / static_cast<std::size_t>(width));
   std::size_t i = 0;
-  for (int y = 0; y < height; ++y) {
+  for (int y = first_row; y < first_row + rows; ++y) {
     for (int x = 0; x < width; ++x, ++i) {
-      const double raw = static_cast<double>(map.metres[i]);
-      map.metres[i] = kMissing;
+      const double raw = static_cast<double>(codes[i]);
+      codes[i] = kMissing;
       if (means_missing(raw, reading) || (!mask.empty() && mask[i] == 0.0f)) continue;
-      double metres = encoding.distance_m(raw / largest, full.numbers);
+      double metres = encoding.distance_m(raw / largest, reading.numbers);
       if (reading.along == DepthAlong::ray) {
         metres /= ray_length(x, y, width, height, reading.pixels_per_tangent);
       }
-      if (metres > 0.0) map.metres[i] = static_cast<float>(std::max(metres, kNearest));
+      if (metres > 0.0) codes[i] = static_cast<float>(std::max(metres, kNearest));
     }
   }
-  return map;
+}
+
+DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
+                        const DepthReading& reading, const PlaneValues& mask) {
+  CodeEnds ends{type, reading};
+  ends.add(codes, mask);
+  DepthReading full = reading;
+  ends.put_in(full.numbers);
+  codes_to_depths(codes, type, 0, width, height, full, mask);
+  return {width, height, std::move(codes)};
 }
 
 PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthReading& reading) {
@@ -108,6 +125,15 @@ PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthRead
 
 std::size_t missing_depths(const DepthMap& map) {
   return static_cast<std::size_t>(std::count_if(map.metres.begin(), map.metres.end(), is_missing));
+}
+
+void add_to_ends(DepthEnds& ends, std::span<const float> metres) {
+  for (const float depth_m : metres) {
+    if (std::isinf(depth_m)) ends.has_infinite = true;
+    if (!std::isfinite(depth_m)) continue;
+    ends.near_m = std::min(ends.near_m, static_cast<double>(depth_m));
+    ends.far_m = std::max(ends.far_m, static_cast<double>(depth_m));
+  }
 }
 
 void fill_from_far_side(DepthMap& map) {

@@ -2,6 +2,7 @@
 // A depth map as metres along the camera's axis: from the codes of a file.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tools/files/picture_file.h"
@@ -33,10 +34,33 @@ struct DepthReading {
 DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
                         const DepthReading& reading, const PlaneValues& mask);
 
+/// The same of a map that comes in bands of rows. First all codes are looked at, for least_code and
+/// largest_code; then each code gives way to its depth.
+class CodeEnds {
+ public:
+  CodeEnds(NumberType type, const DepthReading& reading);
+  void add(std::span<const float> codes, std::span<const float> mask);
+  void put_in(DepthNumbers& numbers) const;
+
+ private:
+  const DepthReading& reading_;
+  double full_, least_, largest_;
+};
+/// `codes` are those of the rows from `first_row` on of a map of that size.
+void codes_to_depths(std::span<float> codes, NumberType type, int first_row, int width, int height,
+                     const DepthReading& reading, std::span<const float> mask);
+
 /// The codes of a map: the inverse, which tests compare with. Missing depths become NaN.
 PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthReading& reading);
 
 std::size_t missing_depths(const DepthMap& map);
+
+/// What finite depths lie between, and whether there are infinite ones.
+struct DepthEnds {
+  double near_m = 1e30, far_m = 0.0;
+  bool has_infinite = false;
+};
+void add_to_ends(DepthEnds& ends, std::span<const float> metres);
 
 /// Gives each missing depth the farthest of the nearest known ones to its left and right, above
 /// and below: a hole opens behind what is near, where the camera saw nothing. Needs a known one.

@@ -12,14 +12,27 @@
 // the focus, no more.
 
 #include <optional>
+#include <span>
 
 #include "dof/lens.h"
 #include "tools/refocus/depth_map.h"
 
 namespace softfocus {
 
-/// Replaces depths, finite ones, by those of the other lens, and returns it; or leaves them, where
-/// circles are known to a 32nd of a pixel in focus, or the other lens would not halve the error.
+/// The other lens, and the way from depths of the one to those of the other.
+struct FinerLens {
+  double far_px, focus_m;  ///< R, f
+  double other_px;         ///< R'
+  PixelCoc coc;            ///< R', f'
+};
+
+/// For depths between two finite ones. None where circles are known to a 32nd of a pixel in focus,
+/// or the other lens would not halve the error.
+std::optional<FinerLens> finer_lens(float nearest_m, float farthest_m, const PixelCoc& coc);
+
+void to_finer_depths(std::span<float> metres, const FinerLens& lens);
+
+/// Replaces depths, finite ones, by those of the other lens, and returns it; or leaves them.
 std::optional<PixelCoc> with_finer_depths(DepthMap& map, const PixelCoc& coc);
 
 }  // namespace softfocus

@@ -24,20 +24,29 @@ void multiply(const PlaneValues& opacity, Image& colour) {
 
 }  // namespace
 
+bool may_be_opacity(const PictureSources& sources) {
+  const auto& alpha = sources.colour.alpha;
+  const bool is_depth = !sources.depth_file && alpha == sources.depth_plane;
+  const bool is_ours = sources.notes && sources.colour_file.reader == &kNpyReader;
+  return alpha && !is_depth && !is_ours;
+}
+
+void take_opacity(const PictureFile& file, float whole, PlaneValues& alpha, Image& colour) {
+  for (float& value : alpha) value /= whole;
+  if (file.reader != &kExrReader) multiply(alpha, colour);
+}
+
 PlaneValues take_opacity(const PictureSources& sources, Image& colour) {
-  if (!sources.colour.alpha) return {};
+  if (!may_be_opacity(sources)) return {};
   const std::size_t plane = *sources.colour.alpha;
-  if (!sources.depth_file && sources.depth_plane == plane) return {};
   const PictureFile& file = sources.colour_file;
   PlaneValues opacity = std::move(read_planes(file, {&plane, 1}, 0.0f)[0]);
   const auto whole = static_cast<float>(full_scale(file.planes[plane].type));
-  const bool is_ours = sources.notes && file.reader == &kNpyReader;
-  if (is_ours || std::any_of(opacity.begin(), opacity.end(),
-                             [&](float value) { return !(value >= 0.0f && value <= whole); })) {
+  if (std::any_of(opacity.begin(), opacity.end(),
+                  [&](float value) { return !(value >= 0.0f && value <= whole); })) {
     return {};
   }
-  for (float& value : opacity) value /= whole;
-  if (file.reader != &kExrReader) multiply(opacity, colour);
+  take_opacity(file, whole, opacity, colour);
   return opacity;
 }
 

@@ -12,6 +12,13 @@ namespace softfocus {
 /// 1, and a fourth channel of NumPy files of ours, are depths.
 PlaneValues take_opacity(const PictureSources& sources, Image& colour);
 
+/// Whether the alpha of `sources` may be one by what its file is, and need but be within 0 and 1.
+bool may_be_opacity(const PictureSources& sources);
+
+/// The numbers of the file's alpha, of that full scale, as opacity, by which `colour` is multiplied
+/// unless the file's is.
+void take_opacity(const PictureFile& file, float whole, PlaneValues& alpha, Image& colour);
+
 /// Whether any pixel is not opaque.
 bool is_transparent(const PlaneValues& opacity);
 

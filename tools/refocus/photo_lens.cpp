@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "dof/sensor.h"
@@ -124,34 +125,10 @@ double shown_degrees(double pixels_per_unit_tangent, int height) {
   return 2.0 * std::atan(height / (2.0 * pixels_per_unit_tangent)) * 180.0 / exact_math::kPi;
 }
 
-std::vector<float> finite_depths(const DepthMap& depth, int x0, int x1, int y0, int y1) {
-  std::vector<float> found;
-  for (int y = std::max(y0, 0); y <= std::min(y1, depth.height - 1); ++y) {
-    for (int x = std::max(x0, 0); x <= std::min(x1, depth.width - 1); ++x) {
-      const float metres =
-          depth.metres[static_cast<std::size_t>(y) * static_cast<std::size_t>(depth.width) +
-                       static_cast<std::size_t>(x)];
-      if (std::isfinite(metres)) found.push_back(metres);
-    }
-  }
-  return found;
-}
-
 double ranked(std::vector<float>& values, std::size_t rank) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), place, values.end());
   return static_cast<double>(*place);
-}
-
-double median_around(const DepthMap& depth, Pixel pixel, const std::string& option) {
-  constexpr int kReach = 2;
-  auto around =
-      finite_depths(depth, pixel.x - kReach, pixel.x + kReach, pixel.y - kReach, pixel.y + kReach);
-  if (around.empty()) {
-    throw UsageError(option +
-                     ": nothing there has a finite depth; give a --focus or another pixel");
-  }
-  return ranked(around, around.size() / 2);
 }
 
 std::string pixel_text(Pixel pixel) {
@@ -159,7 +136,7 @@ std::string pixel_text(Pixel pixel) {
 }
 
 /// The distance in focus and who said it.
-double focus_of(const PhotoLens& photo, const DepthMap& depth, std::string& from) {
+double focus_of(const PhotoLens& photo, FocusDepths& depths, std::string& from) {
   if (photo.lens.focus_m) {
     from = "--focus";
     return *photo.lens.focus_m;
@@ -169,24 +146,27 @@ double focus_of(const PhotoLens& photo, const DepthMap& depth, std::string& from
     return photo.focus_range->near_m;
   }
   if (photo.focus_nearest) {
-    auto all = finite_depths(depth, 0, depth.width - 1, 0, depth.height - 1);
-    if (all.empty())
+    if (depths.finite == 0)
       throw UsageError("--focus-nearest: nothing has a finite depth; give a --focus");
     from = "the nearest thousandth";
-    return ranked(all, all.size() / 1000);
+    return ranked(depths.nearest, depths.finite / 1000);
   }
   if (photo.of_file.focus_m && !photo.focus_at) {
     from = "the file's focus";
     return *photo.of_file.focus_m;
   }
-  const Pixel pixel = photo.focus_at.value_or(Pixel{depth.width / 2, depth.height / 2});
-  if (pixel.x < 0 || pixel.x >= depth.width || pixel.y < 0 || pixel.y >= depth.height) {
+  const Pixel pixel = depths.pixel;
+  if (pixel.x < 0 || pixel.x >= depths.width || pixel.y < 0 || pixel.y >= depths.height) {
     throw UsageError("--focus-at " + pixel_text(pixel) +
                      ": the pixel must lie in the picture, 0,0 to " +
-                     pixel_text({depth.width - 1, depth.height - 1}));
+                     pixel_text({depths.width - 1, depths.height - 1}));
   }
   from = "the median around pixel " + pixel_text(pixel);
-  return median_around(depth, pixel, "--focus-at " + pixel_text(pixel));
+  if (depths.around.empty()) {
+    throw UsageError("--focus-at " + pixel_text(pixel) +
+                     ": nothing there has a finite depth; give a --focus or another pixel");
+  }
+  return ranked(depths.around, depths.around.size() / 2);
 }
 
 }  // namespace
@@ -239,8 +219,48 @@ double pixels_per_tangent(const PhotoLens& photo, const std::optional<PictureNot
                             focal_length_mm(photo, notes), width, height);
 }
 
+FocusDepths::FocusDepths(const PhotoLens& photo, int map_width, int map_height)
+    : width(map_width),
+      height(map_height),
+      pixel(photo.focus_at.value_or(Pixel{map_width / 2, map_height / 2})),
+      most_nearest_(photo.focus_nearest ? static_cast<std::size_t>(map_width) *
+                                                  static_cast<std::size_t>(map_height) / 1000 +
+                                              1
+                                        : 0) {}
+
+void FocusDepths::add(std::span<const float> metres, int first_row) {
+  constexpr int kReach = 2;
+  const auto columns = static_cast<std::size_t>(width);
+  const int end_row = first_row + static_cast<int>(metres.size() / columns);
+  for (int y = std::max(pixel.y - kReach, first_row); y <= std::min(pixel.y + kReach, end_row - 1);
+       ++y) {
+    for (int x = std::max(pixel.x - kReach, 0); x <= std::min(pixel.x + kReach, width - 1); ++x) {
+      const float depth_m =
+          metres[static_cast<std::size_t>(y - first_row) * columns + static_cast<std::size_t>(x)];
+      if (std::isfinite(depth_m)) around.push_back(depth_m);
+    }
+  }
+  if (most_nearest_ == 0) return;
+  for (const float depth_m : metres) {
+    if (!std::isfinite(depth_m)) continue;
+    ++finite;
+    nearest.push_back(depth_m);
+    if (nearest.size() < 2 * most_nearest_ + 1024) continue;
+    std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(most_nearest_),
+                     nearest.end());
+    nearest.resize(most_nearest_);
+  }
+}
+
 SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                         std::optional<double> focal_px, const DepthMap& depth) {
+  FocusDepths depths{photo, depth.width, depth.height};
+  depths.add(depth.metres, 0);
+  return settle_lens(photo, notes, focal_px, std::move(depths));
+}
+
+SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
+                        std::optional<double> focal_px, FocusDepths depths) {
   SettledLens settled;
   if (notes && notes->lens) {
     settled.lens = notes->lens->lens;
@@ -249,7 +269,7 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
   const bool is_noted = notes && notes->lens;
   settled.lens = settled_thin_lens(settled.lens, photo, is_noted, settled.lens_from);
   settled.coc_scale = photo.lens.coc_scale.value_or(settled.coc_scale);
-  settled.lens.focus_m = focus_of(photo, depth, settled.focus_from);
+  settled.lens.focus_m = focus_of(photo, depths, settled.focus_from);
   settled.range = photo.focus_range;
   const CameraSource source = camera_source(photo, notes, focal_px);
   constexpr std::array<const char*, 5> kSources{"--fov", "--sensor ", "--focal-px",
@@ -258,9 +278,9 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
   if (source == CameraSource::sensor) settled.camera_from += photo.sensor->name;
   const auto camera = [&](double image_mm) {
     const double pixels =
-        pixels_per_tangent(source, photo, notes, focal_px, image_mm, depth.width, depth.height);
+        pixels_per_tangent(source, photo, notes, focal_px, image_mm, depths.width, depths.height);
     const bool known = source == CameraSource::fov || source == CameraSource::notes;
-    settled.fov_y_degrees = !known                        ? shown_degrees(pixels, depth.height)
+    settled.fov_y_degrees = !known                        ? shown_degrees(pixels, depths.height)
                             : source == CameraSource::fov ? *photo.fov_y_degrees
                                                           : notes->fov_y_degrees;
     return pixels;

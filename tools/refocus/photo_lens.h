@@ -2,7 +2,9 @@
 // The lens as photographers say it: what is in focus, the sensor, the blur at infinity.
 
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "dof/lens.h"
 #include "tools/cli/option_values.h"
@@ -55,9 +57,29 @@ struct SettledLens {
 double pixels_per_tangent(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                           std::optional<double> focal_px, int width, int height);
 
+/// The depths that a lens is focused by: of a map, or of one that comes in bands of rows.
+class FocusDepths {
+ public:
+  /// Of a map of that size. What `photo` asks for is kept.
+  FocusDepths(const PhotoLens& photo, int width, int height);
+  /// The rows from `first_row` on.
+  void add(std::span<const float> metres, int first_row);
+
+  int width, height;
+  Pixel pixel;                   ///< --focus-at, or the middle
+  std::vector<float> around{};   ///< finite depths of the 5x5 pixels there
+  std::size_t finite = 0;        ///< how many depths are
+  std::vector<float> nearest{};  ///< of these the nearest thousandth and one more, or more
+
+ private:
+  std::size_t most_nearest_;  // 0: nobody asks
+};
+
 /// The lens for a picture of the map's size. The median around a pixel is of the 5x5 pixels there;
 /// the nearest is the depth that one pixel in a thousand is nearer than. Throws UsageError for a
 /// lens that cannot be, a pixel outside, or a map in which nothing has a finite depth.
+SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
+                        std::optional<double> focal_px, FocusDepths depths);
 SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                         std::optional<double> focal_px, const DepthMap& depth);
 

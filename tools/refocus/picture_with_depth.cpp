@@ -124,34 +124,53 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
   add_mending_options(parser, options.mending);
 }
 
+namespace {
+
+void choose_planes(PictureSources& sources, const DepthOptions& options) {
+  sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
+  sources.depth_plane = choose_depth(sources.of_depth(), options.depth_layer, !sources.depth_file);
+  sources.notes = find_notes(sources.colour_file.path, source_of(sources.colour_file)).notes;
+  if (!sources.notes) sources.lens = find_exr_lens(source_of(sources.colour_file));
+}
+
+}  // namespace
+
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options) {
   PictureSources sources{.colour_file = open_picture_file(colour)};
-  sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
   if (!depth.empty()) {
     sources.depth_file = open_picture_file(depth);
     check_shape(sources.colour_file, *sources.depth_file);
   }
-  sources.depth_plane = choose_depth(sources.of_depth(), options.depth_layer, depth.empty());
-  sources.notes = find_notes(sources.colour_file.path, sources.colour_file.bytes).notes;
-  if (!sources.notes) sources.lens = find_exr_lens(sources.colour_file.bytes);
+  choose_planes(sources, options);
   return sources;
 }
 
-ReadDepth read_depth(const PictureSources& sources, const Image& colour,
-                     const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool) {
-  const PictureFile& file = sources.of_depth();
-  const NumberType type = file.planes[sources.depth_plane].type;
-  PlaneValues codes = depth_codes(file, sources.depth_plane);
-  const PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
+std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
+                                                   const std::string& depth,
+                                                   const DepthOptions& options, std::string& why) {
+  auto colour_file = open_on_disk(colour, why);
+  if (!colour_file) return std::nullopt;
+  PictureSources sources{.colour_file = std::move(*colour_file)};
+  if (!depth.empty()) sources.depth_file = open_on_disk(depth, why);
+  if (!depth.empty() && !sources.depth_file) return std::nullopt;
+  const PictureFile& of_depth = sources.of_depth();
+  if (of_depth.width != sources.colour_file.width ||
+      of_depth.height != sources.colour_file.height) {
+    why = "the depth has another size than the colour";
+    return std::nullopt;
+  }
+  choose_planes(sources, options);
+  return sources;
+}
 
-  ReadDepth read{.seen = numbers_seen(codes, type),
-                 .encoding = options.encoding,
-                 .width = file.width,
-                 .height = file.height};
+void settle_encoding(const PictureSources& sources, const DepthOptions& options, ReadDepth& read) {
+  const PictureFile& file = sources.of_depth();
+  read.encoding = options.encoding;
   if (read.encoding == nullptr) {
     const bool is_ours = !sources.depth_file && sources.notes;
-    const BelievedEncoding believed = believed_encoding(read.seen, type, is_ours);
+    const BelievedEncoding believed =
+        believed_encoding(read.seen, file.planes[sources.depth_plane].type, is_ours);
     if (believed.encoding == nullptr) {
       throw UsageError("'" + file.path.string() + "': " + believed.why +
                        "; give a --depth-encoding");
@@ -161,14 +180,32 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
   }
   check_depth_numbers(*read.encoding, options.numbers);
   read.along = options.along.value_or(read.encoding->along);
+}
+
+DepthReading depth_reading(const PictureSources& sources, const DepthOptions& options,
+                           const PhotoLens& photo, const ReadDepth& read) {
   DepthReading reading{.encoding = read.encoding,
                        .numbers = options.numbers,
                        .along = read.along,
                        .missing_codes = options.missing_codes};
   // A smaller map has a smaller focal length in pixels.
+  const PictureFile& colour = sources.colour_file;
   reading.pixels_per_tangent = pixels_per_tangent(photo, sources.notes, options.numbers.focal_px,
                                                   colour.width, colour.height) *
-                               file.height / colour.height;
+                               sources.of_depth().height / colour.height;
+  return reading;
+}
+
+ReadDepth read_depth(const PictureSources& sources, const Image& colour,
+                     const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool) {
+  const PictureFile& file = sources.of_depth();
+  const NumberType type = file.planes[sources.depth_plane].type;
+  PlaneValues codes = depth_codes(file, sources.depth_plane);
+  const PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
+
+  ReadDepth read{.seen = numbers_seen(codes, type), .width = file.width, .height = file.height};
+  settle_encoding(sources, options, read);
+  const DepthReading reading = depth_reading(sources, options, photo, read);
   const bool has_bands = options.mending.bands && full_scale(type) > 1.0;
   if (has_bands) codes = without_bands(codes, file.width, file.height, pool);
   read.mended.bands = has_bands;
@@ -186,6 +223,7 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
   }
   fill_from_far_side(read.map);
   mend(read.map, colour, options.mending, read.mended, pool);
+  add_to_ends(read.ends, read.map.metres);
   return read;
 }
 

@@ -51,6 +51,12 @@ struct PictureSources {
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options);
 
+/// The same of files that stay on the disk. Nothing, with the reason in `why`, if one of them is
+/// read whole, or they differ in size.
+std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
+                                                   const std::string& depth,
+                                                   const DepthOptions& options, std::string& why);
+
 /// A depth map and how it was read.
 struct ReadDepth {
   DepthMap map{};  ///< of the colour's size, nothing missing
@@ -59,9 +65,18 @@ struct ReadDepth {
   std::string why{};  ///< of a believed encoding
   DepthAlong along = DepthAlong::axis;
   int width = 0, height = 0;  ///< of the file's map
-  std::size_t filled = 0;     ///< missing depths of the file's map
+  DepthEnds ends{};
+  std::size_t filled = 0;  ///< missing depths of the file's map
   MendedDepth mended{};
 };
+
+/// Settles the encoding, asked for or believed by `read.seen`. Throws UsageError if it cannot be
+/// told or lacks numbers.
+void settle_encoding(const PictureSources& sources, const DepthOptions& options, ReadDepth& read);
+
+/// How the codes of the depth's file are read then, but for their ends.
+DepthReading depth_reading(const PictureSources& sources, const DepthOptions& options,
+                           const PhotoLens& photo, const ReadDepth& read);
 
 /// Reads the depth of `sources`, mends it beside `colour` (RGBA16F) and fills what is missing.
 /// Throws FileError; UsageError for an encoding that cannot be told or lacks numbers, and missing

@@ -87,22 +87,35 @@ PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions&
 
 }  // namespace
 
-PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
-                          const RefocusOptions& options, UsedRefocus& used, ThreadPool& pool) {
-  Image& colour = source.picture;
+void begin_settings(const RefocusOptions& options, UsedRefocus& used) {
   used.method = options.method.filter;
   used.settings.coc = used.lens.coc;
   used.settings.leak = options.leak;
   used.settings.budget = options.budget;
   used.settings.aperture = options.aperture;
-  DepthMap seen = depth;
-  if (used.lens.range) move_range_into_focus(seen, *used.lens.range);
+}
+
+void move_to_seen(DepthMap& map, const std::optional<SharpDepthRange>& range) {
+  if (range) move_range_into_focus(map, *range);
   // (z - focus) / z is NaN at infinity, and NaN has the largest circle. The horizon has its own.
-  for (float& metres : seen.metres) metres = std::min(metres, kFarthestHalf);
-  put_in_alpha(seen.metres, colour);
-  const CircleSizes sizes = circle_sizes(colour, used.settings.coc, 0.0f, pool);
+  for (float& metres : map.metres) metres = std::min(metres, kFarthestHalf);
+}
+
+void settle_largest_circle(const ConstImageView& picture, const RefocusOptions& options,
+                           UsedRefocus& used, ThreadPool& pool) {
+  const CircleSizes sizes = circle_sizes(picture, used.settings.coc, 0.0f, pool);
   used.largest_circle_px = sizes.largest_px;
   used.settings.max_coc_px = options.max_coc_px.value_or(std::ceil(sizes.largest_px));
+}
+
+PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
+                          const RefocusOptions& options, UsedRefocus& used, ThreadPool& pool) {
+  Image& colour = source.picture;
+  begin_settings(options, used);
+  DepthMap seen = depth;
+  move_to_seen(seen, used.lens.range);
+  put_in_alpha(seen.metres, colour);
+  settle_largest_circle(colour, options, used, pool);
   if (options.show == RefocusShow::coc) {
     return {show_coc(colour, used.settings.coc, std::max(used.settings.max_coc_px, 1e-3f))};
   }

@@ -10,12 +10,24 @@ namespace softfocus {
 
 /// What was used.
 struct UsedRefocus {
-  SettledLens lens;
-  DofSettings settings;
+  SettledLens lens{};
+  DofSettings settings{};
   const Method* method = nullptr;
   std::optional<AutoMethod> choice{};  ///< of auto
   float largest_circle_px = 0.0f;
+  bool by_rows = false;     ///< read, filtered and written a band of rows at a time
+  std::string why_whole{};  ///< why not
 };
+
+/// Settings of two-pass and its kin, but for max_coc_px, which waits for the largest circle.
+void begin_settings(const RefocusOptions& options, UsedRefocus& used);
+
+/// The depths that the filter sees: those in the sharp range moved into focus, none infinite.
+void move_to_seen(DepthMap& map, const std::optional<SharpDepthRange>& range);
+
+/// The largest circle, and what max_coc_px follows from it. `picture` has all depths seen.
+void settle_largest_circle(const ConstImageView& picture, const RefocusOptions& options,
+                           UsedRefocus& used, ThreadPool& pool);
 
 /// A picture with depth. RGBA16F, depth in alpha, its colour times its opacity.
 struct PictureOnItsWay {

@@ -1,12 +1,16 @@
 #include "tools/refocus/refocused_file.h"
 
-#include <vector>
-
 #include "tools/files/exr_file.h"
 
 namespace softfocus {
+
 bool is_of_exr(FileFormat format) {
   return format == FileFormat::exr || format == FileFormat::exr_float;
+}
+
+std::vector<std::size_t> kept_planes(const RefocusOptions& options, const PictureSources& sources) {
+  const bool is_exr = sources.colour_file.reader == &kExrReader;
+  return options.keep_layers && is_exr ? other_planes(sources) : std::vector<std::size_t>{};
 }
 
 std::vector<std::size_t> other_planes(const PictureSources& sources) {
@@ -36,7 +40,7 @@ Bytes refocused_file(const RefocusOptions& options, const PictureSources& source
     extras.radii_px = radii_px;
     extras.depth_m = depth.metres;
     if (sources.colour_file.reader == &kExrReader) {
-      if (options.keep_layers) kept = other_planes(sources);
+      kept = kept_planes(options, sources);
       extras.source = &sources.colour_file;
       extras.kept = kept;
     }

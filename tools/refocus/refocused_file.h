@@ -1,6 +1,8 @@
 #pragma once
 // What is written of a refocused picture.
 
+#include <vector>
+
 #include "tools/refocus/refocused.h"
 
 namespace softfocus {
@@ -13,6 +15,9 @@ std::vector<std::size_t> other_planes(const PictureSources& sources);
 
 /// Whether a file of that format has a place for alpha.
 bool keeps_alpha(FileFormat format);
+
+/// Of an EXR that became an EXR, the planes that are kept as they are.
+std::vector<std::size_t> kept_planes(const RefocusOptions& options, const PictureSources& sources);
 
 /// The file's bytes: the picture with its notes and, if the format can, its alpha. An EXR has the
 /// depth in floats and the circles too, and from an EXR its attributes and, unless

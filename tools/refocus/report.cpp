@@ -26,27 +26,11 @@ std::string lines_of_lens(const SettledLens& lens) {
          short_number(static_cast<double>(lens.coc.radius_at_infinity_px)) + " px radius\n";
 }
 
-struct DepthEnds {
-  double near_m, far_m;
-  bool has_infinite;
-};
-DepthEnds ends_of(const DepthMap& map) {
-  DepthEnds ends{1e30, 0.0, false};
-  for (const float metres : map.metres) {
-    if (std::isinf(metres)) ends.has_infinite = true;
-    if (!std::isfinite(metres)) continue;
-    ends.near_m = std::min(ends.near_m, static_cast<double>(metres));
-    ends.far_m = std::max(ends.far_m, static_cast<double>(metres));
-  }
-  return ends;
-}
-
 }  // namespace
 
 std::string_view name_of(DepthAlong along) { return along == DepthAlong::axis ? "axis" : "ray"; }
 
-std::string depth_range_text(const DepthMap& map) {
-  const DepthEnds ends = ends_of(map);
+std::string depth_range_text(const DepthEnds& ends) {
   if (ends.far_m == 0.0) return "nothing nearer than infinity";
   return short_number(ends.near_m) + " m to " + short_number(ends.far_m) + " m" +
          (ends.has_infinite ? ", and infinity" : "");
@@ -62,7 +46,7 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
                      std::string{depth.encoding->name} + " along the " +
                      std::string{name_of(depth.along)} +
                      (depth.why.empty() ? "" : " (believed: " + depth.why + ")") +
-                     "\n                 " + depth_range_text(depth.map) + "\n";
+                     "\n                 " + depth_range_text(depth.ends) + "\n";
   if (depth.filled > 0) {
     text += "                 " + std::to_string(depth.filled) +
             " pixels without a depth, filled from the far side\n";
@@ -84,13 +68,15 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
     text += "method           " + std::string{used.method->name} + ", circles up to " +
             short_number(static_cast<double>(used.settings.max_coc_px)) + " px radius\n";
   }
+  if (used.by_rows) text += "read             a band of rows at a time\n";
+  if (!used.why_whole.empty()) text += "read             whole: " + used.why_whole + "\n";
   return text;
 }
 
 std::string refocus_json(const RefocusOptions& options, const PictureSources& sources,
                          const ReadDepth& depth, const UsedRefocus& used, std::uint64_t hash) {
   const PictureFile& file = sources.of_depth();
-  const DepthEnds ends = ends_of(depth.map);
+  const DepthEnds& ends = depth.ends;
   const SettledLens& lens = used.lens;
   Json json{{"colour", options.colour},
             {"layer", sources.colour.name},
@@ -111,7 +97,10 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
             {"max_coc_px", used.settings.max_coc_px},
             {"method", nullptr},
             {"lens", nullptr},
+            {"by_rows", used.by_rows},
+            {"why_whole", nullptr},
             {"picture_hash", hash_text(hash)}};
+  if (!used.why_whole.empty()) json["why_whole"] = used.why_whole;
   if (options.show == RefocusShow::image) json["method"] = used.method->name;
   if (lens.has_lens) {
     json["lens"] = {{"focal_length_mm", lens.lens.focal_length_mm},
@@ -124,18 +113,18 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
   return json_text(json, 2) + "\n";
 }
 
-PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& used,
-                           const Image& picture) {
+PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& used, int width,
+                           int height, std::uint64_t hash) {
   PictureNotes notes{.scene = std::filesystem::path{options.colour}.filename().string(),
-                     .width = picture.width,
-                     .height = picture.height,
+                     .width = width,
+                     .height = height,
                      .show = options.show == RefocusShow::image ? "image"
                              : options.show == RefocusShow::coc ? "coc"
                                                                 : "depth",
                      .fov_y_degrees = used.lens.fov_y_degrees,
                      .lens = {},
                      .method = {},
-                     .picture_hash = hash_image(picture)};
+                     .picture_hash = hash};
   if (options.show == RefocusShow::image) {
     notes.method = {{"name", used.method->name},
                     {"max_coc_px", used.settings.max_coc_px},
@@ -153,6 +142,31 @@ PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& use
   }
   if (used.lens.has_lens) notes.lens = {used.lens.lens, used.lens.coc_scale, notes.fov_y_degrees};
   return notes;
+}
+
+void tell(const RefocusOptions& options, const PictureSources& sources, const ReadDepth& depth,
+          const UsedRefocus& used, std::uint64_t hash, Refocused& made) {
+  for (const std::string& fault : sources.lens.faults) {
+    made.warnings.push_back("'" + options.colour + "': " + fault + "; it is ignored");
+  }
+  if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
+    made.warnings.push_back("circles of more than " +
+                            std::to_string(static_cast<int>(kLargestMaxCoc)) +
+                            " pixels are cut to that; a larger --f-number has smaller ones");
+  }
+  made.report = refocus_text(options, sources, depth, used);
+  made.json = refocus_json(options, sources, depth, used, hash);
+}
+
+std::string busy_sidecar_warning(const std::filesystem::path& sidecar) {
+  return "'" + sidecar.string() +
+         "' is no sidecar of a picture and stays as it is: the picture's lens is written nowhere";
+}
+
+std::string lost_alpha_warning(const std::string& colour) {
+  return "'" + colour +
+         "' is transparent in places; the result's format has no alpha, and black there; .exr and "
+         ".png have";
 }
 
 }  // namespace softfocus

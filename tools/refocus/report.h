@@ -1,20 +1,38 @@
 #pragma once
 // What a refocus did, to read or as JSON, and as notes in the picture.
 
+#include <string>
+#include <vector>
+
 #include "tools/refocus/refocused.h"
 
 namespace softfocus {
+
+/// What is said once the files are there.
+struct Refocused {
+  Bytes picture{};  ///< of -o -
+  std::vector<std::string> warnings{};
+  std::string report{}, json{};
+};
 
 std::string refocus_text(const RefocusOptions& options, const PictureSources& sources,
                          const ReadDepth& depth, const UsedRefocus& used);
 std::string refocus_json(const RefocusOptions& options, const PictureSources& sources,
                          const ReadDepth& depth, const UsedRefocus& used, std::uint64_t hash);
 
-PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& used,
-                           const Image& picture);
+/// Of a picture of that size; `hash` is its hash_image().
+PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& used, int width,
+                           int height, std::uint64_t hash);
+
+/// Fills in the report and the JSON, and warns if circles were cut.
+void tell(const RefocusOptions& options, const PictureSources& sources, const ReadDepth& depth,
+          const UsedRefocus& used, std::uint64_t hash, Refocused& made);
+
+std::string busy_sidecar_warning(const std::filesystem::path& sidecar);
+std::string lost_alpha_warning(const std::string& colour);
 
 /// "near 0.71 m, far 12 m" of a map without missing depths.
-std::string depth_range_text(const DepthMap& map);
+std::string depth_range_text(const DepthEnds& ends);
 
 std::string_view name_of(DepthAlong along);
 

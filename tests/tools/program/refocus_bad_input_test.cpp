@@ -52,14 +52,14 @@ std::string small_png(int width, int height, const std::string& data) {
   return text_of(bytes);
 }
 
-/// An EXR whose windows end at 16383 in place of 7 and 5.
-std::string swollen_exr() {
+/// An EXR whose windows end at another pixel in place of 7,5.
+std::string swollen_exr(std::uint32_t right, std::uint32_t bottom) {
   std::string text = text_of(encode_exr(make_image(Format::rgba16f, 8, 6), ExrNumbers::half, ""));
   for (const std::string name : {"dataWindow", "displayWindow"}) {
     const auto at = text.find(name) + name.size() + 1 + sizeof "box2i" + 4;
-    for (const std::size_t corner : {8u, 12u}) {
-      text[at + corner] = '\xFF';
-      text[at + corner + 1] = '\x3F';
+    for (std::size_t byte = 0; byte < 4; ++byte) {
+      text[at + 8 + byte] = static_cast<char>(right >> 8 * byte & 0xFF);
+      text[at + 12 + byte] = static_cast<char>(bottom >> 8 * byte & 0xFF);
     }
   }
   return text;
@@ -81,11 +81,20 @@ TEST_CASE(
       {"h.npy", std::string{"\x93NUMPY\x01\0\x76\0", 10} +
                     "{'descr': '<f8', 'fortran_order': False, 'shape': (16384, 16384, 4), }" +
                     std::string(47, ' ') + "\n" + filler},
+      {"h.npy", std::string{"\x93NUMPY\x01\0\x76\0", 10} +
+                    "{'descr': '<f8', 'fortran_order': False, 'shape': (1048576, 16384, 4), }" +
+                    std::string(45, ' ') + "\n" + filler},
       {"h.npy", std::string{"\x93NUMPY\x02\0\xFF\xFF\xFF\x7F", 12} + filler},
+      {"h.pfm", "PF\n16384 1048576\n-1.0\n" + filler},
       {"h.png", small_png(16384, 16384, filler)},
       {"h.png", std::string{kPngSignature} + std::string{"\x7F\xFF\xFF\xFFIHDR", 8} + filler},
       {"h.jpg", std::string{"\xFF\xD8\xFF\xC0\0\x11\x08\x40\0\x40\0\x03", 12} + filler}};
-  if (missing_exr().empty()) all.push_back({"h.exr", swollen_exr()});
+  if (missing_exr().empty()) {
+    all.push_back({"h.exr", swollen_exr(0x3FFF, 0x3FFF)});
+    all.push_back({"h.exr", swollen_exr(0x3FFF, 0xFFFFF)});  // terabytes, by rows
+    all.push_back({"h.exr", swollen_exr(7, 0x7FFFFFF0)});
+    all.push_back({"h.exr", swollen_exr(0x7FFFFFF0, 0x7FFFFFF0)});
+  }
   for (const Hostile& hostile : all) {
     CAPTURE(hostile.name);
     const std::string file = files.directory.file(hostile.name);
@@ -98,6 +107,12 @@ TEST_CASE(
                   {"refocus", files.colour, files.depth, "-o", files.out, "--mask", file}, 1,
                   {hostile.name, "cannot read"});
     check_refused(files.directory, {"inspect", file}, 1, {hostile.name, "cannot read"});
+    const ProgramRun run = run_program({"refocus", file, files.depth, "-o", files.out});
+    if (kCountsMemory) CHECK(run.peak_kib < 100 * 1024);
+    const ProgramRun rows =
+        run_program({"refocus", file, files.depth, "-o", files.directory.file("out.npy")});
+    CHECK(rows.status == 1);
+    if (kCountsMemory) CHECK(rows.peak_kib < 100 * 1024);
   }
 }
 
