@@ -201,6 +201,10 @@ TEST_CASE("by rows: an EXR keeps its layers, attributes and an opaque alpha") {
                                 {.alpha = ones, .radii_px = files.scene.depth}));
   files.check_same({"a.exr"}, "o.exr", "exr", kBlur);
   files.check_same({"a.exr"}, "o.exr", "exr", joined(kBlur, {"--no-layers"}));
+  files.put("lens.exr", encode_exr(files.scene.picture, ExrNumbers::half, "",
+                                   {.lens = ThinLens{85.0, 0.7, 2.5}}));
+  files.check_same({"lens.exr"}, "o.exr", "exr", {"--coc-scale", "3"});
+  CHECK(files.run({"lens.exr"}, "o.exr", {})["focus_from"] == "the file's focus");
   files.check_same({"a.exr", "d.pfm"}, "o.npy", "npy", kBlur);
   const std::string blender = SOFTFOCUS_TEST_DATA "/blender-cubes/cubes.exr";
   const Words lens{"--focus", "1.6m", "--focal-length", "85mm", "--f-number", "1.8"};
