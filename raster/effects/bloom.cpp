@@ -40,7 +40,7 @@ glm::vec4 light_and_share(const BrightPass& pass, glm::vec4 texel) {
   const float soft = x * x * pass.square_factor;
   const float hard = most - pass.threshold;
   const float kept = hard > soft ? hard : soft;
-  return {light, most > 0.0f ? kept / most : 0.0f};
+  return {light, most > 0.0f && !(texel.w < pass.beyond) ? kept / most : 0.0f};
 }
 
 glm::vec4 bright(const BrightPass& pass, glm::vec4 texel) {
@@ -77,18 +77,6 @@ void for_rows(const ImageView& result, const Profile& profile, ThreadPool& pool,
   });
 }
 
-void find_bright(const BrightPass& pass, const ConstImageView& picture, const ImageView& result,
-                 const Profile& profile, ThreadPool& pool) {
-  for_rows(
-      result, profile, pool,
-      [&](int y) {
-        return SOFTFOCUS_KERNEL(pool.isa(), bright_row)(pass, row<std::uint16_t>(picture, y).data(),
-                                                        row<std::uint16_t>(result, y).data(),
-                                                        result.width, profile.half_store);
-      },
-      [&](int x, int y) { return bright(pass, load_texel<Format::rgba16f>(picture, x, y)); });
-}
-
 void divide_by_weight(const ImageView& image, const Profile& profile, ThreadPool& pool) {
   for_rows(
       image, profile, pool,
@@ -99,9 +87,27 @@ void divide_by_weight(const ImageView& image, const Profile& profile, ThreadPool
       [&](int x, int y) { return divided(load_texel<Format::rgba16f>(image, x, y)); });
 }
 
-void combine(const BrightPass& pass, float strength, const ConstImageView& picture,
-             const ConstImageView& scattered, const ImageView& result, const Profile& profile,
-             ThreadPool& pool) {
+Image half_of(const Image& image) {
+  return make_image(Format::rgba16f, (image.width + 1) / 2, (image.height + 1) / 2);
+}
+
+}  // namespace
+
+void find_bright_light(const BrightPass& pass, const ConstImageView& picture,
+                       const ImageView& result, const Profile& profile, ThreadPool& pool) {
+  for_rows(
+      result, profile, pool,
+      [&](int y) {
+        return SOFTFOCUS_KERNEL(pool.isa(), bright_row)(pass, row<std::uint16_t>(picture, y).data(),
+                                                        row<std::uint16_t>(result, y).data(),
+                                                        result.width, profile.half_store);
+      },
+      [&](int x, int y) { return bright(pass, load_texel<Format::rgba16f>(picture, x, y)); });
+}
+
+void add_scattered_light(const BrightPass& pass, float strength, const ConstImageView& picture,
+                         const ConstImageView& scattered, const ImageView& result,
+                         const Profile& profile, ThreadPool& pool) {
   for_rows(
       result, profile, pool,
       [&](int y) {
@@ -115,12 +121,6 @@ void combine(const BrightPass& pass, float strength, const ConstImageView& pictu
                         load_texel<Format::rgba16f>(scattered, x, y));
       });
 }
-
-Image half_of(const Image& image) {
-  return make_image(Format::rgba16f, (image.width + 1) / 2, (image.height + 1) / 2);
-}
-
-}  // namespace
 
 BrightPass bright_pass_of(const BloomSettings& settings) {
   const float knee = std::min(settings.knee, settings.threshold);
@@ -139,7 +139,7 @@ void bloom(const BloomSettings& settings, const ConstImageView& picture, const I
   const BrightPass pass = bright_pass_of(settings);
   std::vector<Image> levels;
   levels.push_back(make_image(Format::rgba16f, picture.width, picture.height));
-  find_bright(pass, picture, levels[0], profile, pool);
+  find_bright_light(pass, picture, levels[0], profile, pool);
   for (int i = 0; i < settings.levels; ++i) {
     Image half = half_of(levels.back());
     downsample(levels.back(), half, profile, pool);
@@ -152,7 +152,7 @@ void bloom(const BloomSettings& settings, const ConstImageView& picture, const I
     upsample(levels[i + 1], levels[i], share, wider, profile, pool);
     levels[i] = std::move(wider);
   }
-  combine(pass, settings.strength, picture, levels[0], result, profile, pool);
+  add_scattered_light(pass, settings.strength, picture, levels[0], result, profile, pool);
 }
 
 }  // namespace softfocus
@@ -185,7 +185,8 @@ SOFTFOCUS_INLINE BrightLanes bright_lanes(const BrightPass& pass, const HalfTexe
   const Floats soft = x * x * pass.square_factor;
   const Floats hard = most - pass.threshold;
   const Floats kept = select(hard > soft, hard, soft);
-  const Floats share = select(most > 0.0f, kept / most, splat(0.0f));
+  const Floats seen = select(half_to_float(texels.a) < pass.beyond, splat(0.0f), most);
+  const Floats share = select(seen > 0.0f, kept / most, splat(0.0f));
   return {light.r * share, light.g * share, light.b * share};
 }
 

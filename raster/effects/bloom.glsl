@@ -3,6 +3,7 @@ uniform float threshold;
 uniform float begin;          // threshold - knee
 uniform float double_knee;    // 2 knee
 uniform float square_factor;  // 1 / (4 knee), or 0
+uniform float beyond;         // what has less in alpha is not bright
 
 float usable(float light) { return light > 0.0 ? (light < 65504.0 ? light : 65504.0) : 0.0; }
 
@@ -14,7 +15,7 @@ vec3 bright_light(vec4 texel) {
   precise float soft = x * x * square_factor;
   precise float hard = most - threshold;
   float kept = hard > soft ? hard : soft;
-  precise float share = most > 0.0 ? kept / most : 0.0;
+  precise float share = most > 0.0 && !(texel.a < beyond) ? kept / most : 0.0;
   precise vec3 bright = light * share;
   return bright;
 }

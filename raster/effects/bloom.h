@@ -2,6 +2,8 @@
 // Bloom: bright light that a lens and the eye scatter over its surroundings, by a pyramid (Jimenez
 // 2014).
 
+#include <limits>
+
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
@@ -26,8 +28,11 @@ struct BrightPass {
   float double_knee;    ///< 2 knee
   float square_factor;  ///< 1 / (4 knee), or 0
   bool is_steady;
+  /// What has less in alpha is not bright.
+  float beyond = -std::numeric_limits<float>::infinity();
 };
 BrightPass bright_pass_of(const BloomSettings& settings);
+inline constexpr BrightPass kNothingBright{65504.0f, 0.0f, 65504.0f, 0.0f, 0.0f, false};
 
 /// picture + strength (scattered - bright). So light is moved, and its sum stays but for what the
 /// edges repeat and `is_steady` takes. With m the largest of red, green and blue:
@@ -42,5 +47,13 @@ BrightPass bright_pass_of(const BloomSettings& settings);
 /// picture is RGBA16F.
 void bloom(const BloomSettings& settings, const ConstImageView& picture, const ImageView& result,
            const Profile& profile, ThreadPool& pool);
+
+/// Two of its passes: `bright`, by its weight, and the weight in alpha; and picture + strength
+/// (scattered - bright).
+void find_bright_light(const BrightPass& pass, const ConstImageView& picture,
+                       const ImageView& result, const Profile& profile, ThreadPool& pool);
+void add_scattered_light(const BrightPass& pass, float strength, const ConstImageView& picture,
+                         const ConstImageView& scattered, const ImageView& result,
+                         const Profile& profile, ThreadPool& pool);
 
 }  // namespace softfocus

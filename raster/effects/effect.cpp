@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "raster/effects/bloom.h"
+#include "raster/effects/lens_flare.h"
 #include "raster/effects/tone_map.h"
 #include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
@@ -58,6 +59,36 @@ constexpr std::array kBloom{
     EffectParameter{"steady", "1: bright pixels do not flicker as they move, and lose light", 0.0,
                     1.0, 0.0}};
 
+void lens_flare_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                       ThreadPool& pool) {
+  const auto number = [&](std::size_t i) { return static_cast<float>(input.parameters[i]); };
+  LensFlareSettings settings{.threshold = number(0),
+                             .knee = number(1),
+                             .strength = number(3),
+                             .ghosts = static_cast<int>(input.parameters[4]),
+                             .fringe = number(5),
+                             .halo = number(6),
+                             .streak_px = number(7),
+                             .rays = number(8)};
+  if (input.parameters[2] > 0.0) settings.beyond_m = number(2);
+  lens_flare(settings, input.picture, result, input.profile, pool);
+}
+
+constexpr std::array kLensFlare{
+    EffectParameter{"threshold", "what is darker has no flare, white is 1", 0.0, 65504.0, 1.0},
+    EffectParameter{"knee", "half the way from nothing to all that has one", 0.0, 65504.0, 0.5},
+    EffectParameter{"beyond", "light nearer than this, in metres of depth, has none; 0: all has",
+                    0.0, 65504.0, 0.0},
+    EffectParameter{"strength", "factor of all that is added", 0.0, 10.0, 0.05},
+    EffectParameter{"ghosts", "mirrored and scaled pictures of the light", 0.0, 8.0, 5.0},
+    EffectParameter{"fringe", "how much larger ghosts are in blue than in green", 0.0, 0.3, 0.03},
+    EffectParameter{"halo", "radius of a ring, over half the picture's height; 0: none", 0.0, 1.0,
+                    0.5},
+    EffectParameter{"streak", "length of streaks to either side in pixels; 0: none", 0.0, 4096.0,
+                    200.0},
+    EffectParameter{"rays", "length of rays from the light, over the way to it; 0: none", 0.0, 1.0,
+                    0.3}};
+
 void tone_map_effect(const Effect& effect, const EffectInput& input, const ImageView& result,
                      ThreadPool& pool) {
   tone_map(*find_tone_curve(effect.name), static_cast<float>(input.parameters[0]), input.picture,
@@ -84,6 +115,8 @@ constexpr std::array kEffects{
            bilateral_effect},
     Effect{"bloom", "bright light scattered over its surroundings, after Jimenez 2014", kBloom,
            bloom_effect},
+    Effect{"lens-flare", "ghosts, halo, streaks and rays of bright light, after Chapman 2013",
+           kLensFlare, lens_flare_effect},
     of_curve(kToneCurves[0]),
     of_curve(kToneCurves[1]),
     of_curve(kToneCurves[2]),

@@ -1,8 +1,9 @@
-// Stages `bloom` and `tone-map`: the same picture with the effect on both sides.
+// Stages `bloom`, `lens-flare` and `tone-map`: the same picture with the effect on both sides.
 
 #include <array>
 
 #include "raster/effects/bloom.h"
+#include "raster/effects/lens_flare.h"
 #include "raster/images/image.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/effects_on_gl.h"
@@ -41,6 +42,16 @@ void bloom_both(const Bench& bench, Tally& tally, const BloomCase& what) {
   add_pictures(tally, read_colour(target, 0), emulated);
 }
 
+void lens_flare_both(const Bench& bench, Tally& tally, const LensFlareSettings& settings, int width,
+                     int height) {
+  const Image source = lights(width, height, 79, false);
+  const GlTarget target =
+      lens_flare_on_gl(bench.gl, bench.shaders, settings, upload(source), width, height);
+  Image emulated = make_image(Format::rgba16f, width, height);
+  lens_flare(settings, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
 void tone_map_both(const Bench& bench, Tally& tally, const ToneCurve& curve) {
   Image source = make_image(Format::rgba16f, 256, 64);
   std::uint16_t next = 0;
@@ -70,6 +81,21 @@ void add_effect_cases(std::vector<Case>& cases) {
   add("any-bits", false, true, {{.levels = 3}, 64, 64, true});
   add("any-bits-steady", false, true, {{.levels = 3, .is_steady = true}, 64, 64, true});
   add("one-pixel", true, true, {{.levels = 3}, 1, 1});
+  const auto add_flare = [&](const char* name, bool quick, bool slow_too,
+                             const LensFlareSettings& settings, int width, int height) {
+    cases.push_back({"lens-flare", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
+                       lens_flare_both(bench, tally, settings, width, height);
+                     }});
+  };
+  add_flare("64x48", true, true, {.strength = 1.0f}, 64, 48);
+  add_flare("odd-61x43-all", false, true,
+            {.strength = 1.0f, .ghosts = 8, .fringe = 0.3f, .halo = 0.4f, .rays = 1.0f}, 61, 43);
+  add_flare("beyond", false, true, {.beyond_m = 0.7f, .strength = 1.0f, .ghosts = 2}, 64, 64);
+  add_flare("streaks-alone", false, true,
+            {.strength = 1.0f, .ghosts = 0, .halo = 0.0f, .streak_px = 30.0f, .rays = 0.0f}, 64,
+            64);
+  add_flare("512x512", false, false, {}, 512, 512);
+  add_flare("one-pixel", true, true, {}, 1, 1);
   for (const NamedToneCurve& named : kToneCurves) {
     cases.push_back({"tone-map", std::string{named.name} + "-every-half", true, true,
                      [curve = named.curve](const Bench& bench, Tally& tally) {

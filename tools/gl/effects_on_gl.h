@@ -2,6 +2,7 @@
 // Image-space effects on a GL driver, with the project's shaders.
 
 #include "raster/effects/bloom.h"
+#include "raster/effects/lens_flare.h"
 #include "raster/effects/tone_map.h"
 #include "tools/gl/objects.h"
 #include "tools/gl/shaders.h"
@@ -12,6 +13,9 @@ namespace softfocus {
 GlTarget bloom_on_gl(const GlContext& context, const Shaders& shaders,
                      const BloomSettings& settings, const GlTexture& picture, int width,
                      int height);
+GlTarget lens_flare_on_gl(const GlContext& context, const Shaders& shaders,
+                          const LensFlareSettings& settings, const GlTexture& picture, int width,
+                          int height);
 GlTarget tone_map_on_gl(const GlContext& context, const Shaders& shaders, const ToneCurve& curve,
                         float exposure, const GlTexture& picture, int width, int height);
 
