@@ -25,6 +25,8 @@ struct Camera {
   double far_m = 100.0;
   /// The camera's way around the target, about `up`, by frame.
   double orbit_degrees_per_frame = 0.0;
+  /// How long the shutter is open, in frames, that the scene suggests: 0 to kLongestShutter.
+  double shutter_frames = 0.0;
 };
 
 /// From `frame` on, and until the next key's, a value is on its way from `value`.

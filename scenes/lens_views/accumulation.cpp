@@ -11,6 +11,7 @@
 #include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/samples_by_tile.h"
+#include "scenes/lens_views/shutter_times.h"
 #include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
@@ -70,6 +71,16 @@ void place_views(AccumulationBuffer& buffer, const Sampling& sampling) {
   buffer.points = view_points(sampling);
   buffer.offsets = sampling.until ? pixel_offsets(sampling.jitter, sampling.samples)
                                   : view_offsets(sampling.jitter, buffer.points);
+  buffer.times.clear();
+  if (sampling.shutter_frames == 0.0) return;
+  buffer.times = times_in_frames(sampling.until ? shutter_sequence(sampling.samples)
+                                                : shutter_times(buffer.points, buffer.offsets),
+                                 sampling.shutter_frames);
+}
+
+std::vector<double> times_in_frames(std::vector<double> parts, double shutter_frames) {
+  for (double& part : parts) part *= shutter_frames;
+  return parts;
 }
 
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool) {
@@ -77,6 +88,9 @@ AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPo
   const Sampling& sampling = input.sampling;
   return {lens_points(sampling.aperture, sampling.samples),
           pixel_offsets(sampling.jitter, sampling.samples),
+          sampling.shutter_frames == 0.0
+              ? std::vector<double>{}
+              : times_in_frames(shutter_sequence(sampling.samples), sampling.shutter_frames),
           input.prepared != nullptr ? std::move(*input.prepared)
                                     : prepare_scene(input.scene, input.profile, pool),
           make_image(Format::rgba16f, width, height),
@@ -110,6 +124,13 @@ void make_transparent_passes(AccumulationBuffer& buffer, std::size_t count) {
   if (buffer.transparent_lists.size() < count) buffer.transparent_lists.resize(count);
 }
 
+// The pinhole camera at another time than the picture's.
+CameraMatrices camera_at(const LensViewInput& input, double frame) {
+  const Camera& camera = input.scene.camera;
+  if (frame == input.frame || camera.orbit_degrees_per_frame == 0.0) return input.camera;
+  return camera_matrices(camera, frame, input.pinhole.width, input.pinhole.height);
+}
+
 }  // namespace
 
 void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
@@ -117,6 +138,7 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
   const auto count = static_cast<std::size_t>(end - begin);
   assert(end - begin <= kLensViewGroup);
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
+  assert(buffer.times.empty() || static_cast<std::size_t>(end) <= buffer.times.size());
   const bool has_transparent = buffer.prepared.has_transparent;
   for (std::size_t i = 0; i < count; ++i) pass_of(buffer.passes, i, buffer.prepared);
   if (has_transparent) make_transparent_passes(buffer, count);
@@ -128,12 +150,13 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
     passes[i].targets.colour[0] = &buffer.picture;  // the buffer may have moved
     passes[i].targets.depth = &buffer.depth;
     const std::size_t sample = static_cast<std::size_t>(begin) + i;
-    const CameraMatrices camera =
-        lens_camera(input.camera, buffer.points[sample] * input.aperture_radius_m, input.focus_m,
-                    buffer.offsets[sample], buffer.picture.width, buffer.picture.height);
-    record_scene(buffer.prepared, camera, input.frame, passes[i]);
+    const double frame = input.frame + (buffer.times.empty() ? 0.0 : buffer.times[sample]);
+    const CameraMatrices camera = lens_camera(
+        camera_at(input, frame), buffer.points[sample] * input.aperture_radius_m, input.focus_m,
+        buffer.offsets[sample], buffer.picture.width, buffer.picture.height);
+    record_scene(buffer.prepared, camera, frame, passes[i]);
     if (!has_transparent) return;
-    record_transparent(buffer.prepared, camera, input.frame, buffer.transparent_passes[i]);
+    record_transparent(buffer.prepared, camera, frame, buffer.transparent_passes[i]);
   });
   sort_into_tiles(passes, tile_lists, pool);
   if (!has_transparent) return;

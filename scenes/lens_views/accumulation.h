@@ -1,6 +1,7 @@
 #pragma once
 // The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
-// lens, and the mean of the pictures.
+// lens, and the mean of the pictures. With Sampling::shutter_frames also at many times: the motion
+// blur of the same paper.
 
 #include <functional>
 #include <glm/vec2.hpp>
@@ -33,6 +34,7 @@ std::vector<glm::dvec2> view_points(const Sampling& sampling);
 struct AccumulationBuffer {
   std::vector<glm::dvec2> points;   ///< of the lens, in radii of the aperture: may be replaced
   std::vector<glm::dvec2> offsets;  ///< of the pixels
+  std::vector<double> times;        ///< in frames from the picture's; none: all 0
   PreparedScene prepared;
   /// The targets of every lens view, which keep nothing.
   Image picture, depth;
@@ -44,13 +46,17 @@ struct AccumulationBuffer {
   std::vector<TileLists> transparent_lists;
 };
 
-/// With lens_points() and pixel_offsets() for up to `input.sampling.samples` views. The scene must
-/// outlive it.
+/// With lens_points(), pixel_offsets() and the shutter_sequence() for up to
+/// `input.sampling.samples` views. The scene must outlive it.
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool);
 
 /// Puts the buffer's views where accumulation() has them: at the view_points(), with offsets made
-/// for these (few_pixel_offsets.h), or, where they are of the sequence, with the pixel_offsets().
+/// for these (few_pixel_offsets.h), or, where they are of the sequence, with the pixel_offsets();
+/// at the shutter_times(), or with Sampling::until at those of the shutter_sequence().
 void place_views(AccumulationBuffer& buffer, const Sampling& sampling);
+
+/// Parts of the time that the shutter is open, in frames.
+std::vector<double> times_in_frames(std::vector<double> parts, double shutter_frames);
 
 /// Lens views that are drawn together. More take more memory for vertices and triangles, and
 /// fetch the sums less often.

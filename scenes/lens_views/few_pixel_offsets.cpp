@@ -26,12 +26,6 @@ Offsets square_set(std::span<const int> sizes) {
   return offsets;
 }
 
-// In multiples of 2^-32, cut towards 0: as much to the left as to the right.
-double middle_of_column(std::size_t column, std::size_t columns) {
-  const auto n = static_cast<double>(columns);
-  return std::trunc((2.0 * static_cast<double>(column) + 1.0 - n) / (2.0 * n) * 0x1p32) * 0x1p-32;
-}
-
 void spread_over_columns(Offsets& offsets, int axis) {
   std::vector<std::size_t> order(offsets.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -42,27 +36,6 @@ void spread_over_columns(Offsets& offsets, int axis) {
   for (std::size_t column = 0; column < order.size(); ++column) {
     offsets[order[column]][axis] = middle_of_column(column, order.size());
   }
-}
-
-// Row by row.
-std::vector<double> centred_distances(std::span<const glm::dvec2> points) {
-  const std::size_t n = points.size();
-  const auto share = 1.0 / static_cast<double>(n);
-  std::vector<double> distances, means(n);
-  distances.reserve(n * n);
-  double mean = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const glm::dvec2 apart = points[i] - points[j];
-      distances.push_back(std::sqrt(apart.x * apart.x + apart.y * apart.y));
-      means[i] += distances.back() * share;
-    }
-    mean += means[i] * share;
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) distances[i * n + j] += mean - means[i] - means[j];
-  }
-  return distances;
 }
 
 // Which offset each point of the lens has, and both sets' centred distances.
@@ -104,17 +77,50 @@ bool exchange(Pairing& pairing, std::size_t begin) {
 // Pairs the offsets from `begin` on anew, with those before as they are.
 void pair_offsets(std::span<const glm::dvec2> lens_points, std::span<glm::dvec2> offsets,
                   std::size_t begin) {
-  Pairing pairing{centred_distances(lens_points), centred_distances(offsets), {}};
-  pairing.offset_of.resize(offsets.size());
-  std::iota(pairing.offset_of.begin(), pairing.offset_of.end(), std::size_t{0});
-  const int rounds = offsets.size() < kLargePairing ? kPairingRounds : kPairingRoundsOfLargeSets;
-  for (int round = 0; round < rounds && exchange(pairing, begin); ++round) {
-  }
+  const std::vector<std::size_t> offset_of =
+      independent_pairing(centred_distances(lens_points), centred_distances(offsets), begin);
   const Offsets before{offsets.begin(), offsets.end()};
-  for (std::size_t i = begin; i < offsets.size(); ++i) offsets[i] = before[pairing.offset_of[i]];
+  for (std::size_t i = begin; i < offsets.size(); ++i) offsets[i] = before[offset_of[i]];
 }
 
 }  // namespace
+
+std::vector<double> centred_distances(std::span<const glm::dvec2> points) {
+  const std::size_t n = points.size();
+  const auto share = 1.0 / static_cast<double>(n);
+  std::vector<double> distances, means(n);
+  distances.reserve(n * n);
+  double mean = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const glm::dvec2 apart = points[i] - points[j];
+      distances.push_back(std::sqrt(apart.x * apart.x + apart.y * apart.y));
+      means[i] += distances.back() * share;
+    }
+    mean += means[i] * share;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) distances[i * n + j] += mean - means[i] - means[j];
+  }
+  return distances;
+}
+
+std::vector<std::size_t> independent_pairing(std::vector<double> of_first,
+                                             std::vector<double> of_second, std::size_t begin) {
+  Pairing pairing{std::move(of_first), std::move(of_second), {}};
+  pairing.offset_of.resize(static_cast<std::size_t>(std::sqrt(pairing.of_points.size()) + 0.5));
+  std::iota(pairing.offset_of.begin(), pairing.offset_of.end(), std::size_t{0});
+  const int rounds =
+      pairing.offset_of.size() < kLargePairing ? kPairingRounds : kPairingRoundsOfLargeSets;
+  for (int round = 0; round < rounds && exchange(pairing, begin); ++round) {
+  }
+  return std::move(pairing.offset_of);
+}
+
+double middle_of_column(std::size_t column, std::size_t columns) {
+  const auto n = static_cast<double>(columns);
+  return std::trunc((2.0 * static_cast<double>(column) + 1.0 - n) / (2.0 * n) * 0x1p32) * 0x1p-32;
+}
 
 std::vector<glm::dvec2> few_pixel_offsets(std::span<const glm::dvec2> lens_points) {
   assert(!lens_points.empty() && lens_points.size() <= kMostFewLensPoints);

@@ -8,6 +8,20 @@
 
 namespace softfocus {
 
+/// The distances of all pairs, row by row, each less the means of its row and column, plus the mean
+/// of all: A and B below.
+std::vector<double> centred_distances(std::span<const glm::dvec2> points);
+
+/// Which member of the second set each of the first has, by their centred distances, so that the
+/// distance covariance is small: found by exchanges from member to its like, those before `begin`
+/// left as they are.
+std::vector<std::size_t> independent_pairing(std::vector<double> of_first,
+                                             std::vector<double> of_second, std::size_t begin);
+
+/// The middle of one of n equal columns of [-0.5, 0.5], in multiples of 2^-32, cut towards 0: as
+/// much to the left as to the right.
+double middle_of_column(std::size_t column, std::size_t columns);
+
 /// An offset from a pixel's centre for each of 1 to kMostFewLensPoints points of the lens, in
 /// pixels from -0.5 to 0.5. Their sum is exactly 0.
 ///

@@ -35,6 +35,18 @@ std::uint32_t sobol(std::uint32_t index) {
   return bits;
 }
 
+// Sobol's third axis, of the polynomial x^2 + x + 1: v_k = v_(k-1) ^ v_(k-2) ^ v_(k-2) / 4.
+std::uint32_t sobol_third(std::uint32_t index) {
+  std::uint32_t column = 1u << 31, next = 3u << 30, bits = 0;
+  for (; index != 0; index >>= 1) {
+    if ((index & 1u) != 0) bits ^= column;
+    const std::uint32_t after = next ^ column ^ column >> 2;
+    column = next;
+    next = after;
+  }
+  return bits;
+}
+
 double centred_fraction(std::uint32_t bits, std::uint32_t seed) {
   constexpr std::uint32_t kHalf = 1u << 31;
   return static_cast<double>(scrambled(bits, seed) ^ scrambled(0, seed) ^ kHalf) * 0x1p-32;
@@ -42,12 +54,17 @@ double centred_fraction(std::uint32_t bits, std::uint32_t seed) {
 
 constexpr std::uint32_t kLensSeries = 0;
 constexpr std::uint32_t kPixelSeries = 1;
+constexpr std::uint32_t kShutterSeed = 7;
 
 }  // namespace
 
 glm::dvec2 square_point(std::uint32_t index, std::uint32_t series) {
   const std::uint32_t seed = 2 * series;
   return {centred_fraction(reversed(index), seed + 1), centred_fraction(sobol(index), seed + 2)};
+}
+
+double shutter_point(std::uint32_t index) {
+  return centred_fraction(sobol_third(index), kShutterSeed);
 }
 
 ApertureMap::ApertureMap(ApertureShape shape) {

@@ -22,6 +22,12 @@ inline constexpr int kMostSamples = 65536;
 /// out of focus would move.
 glm::dvec2 square_point(std::uint32_t index, std::uint32_t series);
 
+/// Point `index` of [0, 1), in multiples of 2^-32: Sobol's third axis, scrambled and turned as the
+/// others are. With square_point() of series 0 it is a (1, 3)-sequence: every block of 2^k points
+/// that starts at a multiple of 2^k has two in each of 2^(k-1) equal boxes of lens and time, and
+/// one in each of 2^k equal parts of the time.
+double shutter_point(std::uint32_t index);
+
 /// A disc of radius 1, or a regular polygon whose corners lie on its edge, one of them up.
 struct ApertureShape {
   int blades = 0;  ///< corners, 3 to kMostBlades; 0: the disc

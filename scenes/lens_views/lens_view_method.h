@@ -29,6 +29,10 @@ struct Sampling {
   /// Each tile takes as few samples as it needs, `samples` at most (samples_by_tile.h). Not with
   /// `until`.
   bool by_tile = false;
+  /// How long the shutter is open, in frames, with the picture's frame in the middle: 0 to
+  /// kLongestShutter (shutter_times.h). The camera and the objects move on, focus and f-number do
+  /// not. Of methods with LensViewMethod::has_shutter.
+  double shutter_frames = 0.0;
 };
 
 /// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
@@ -74,6 +78,8 @@ struct LensViewMethod {
   int usual_samples = Sampling{}.samples;
   /// The same for Sampling::by_tile. 0: it cannot do that.
   int usual_most_by_tile = 0;
+  /// Whether it can take Sampling::shutter_frames.
+  bool has_shutter = false;
 };
 
 std::span<const LensViewMethod> lens_view_methods();

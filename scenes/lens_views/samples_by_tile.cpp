@@ -6,6 +6,7 @@
 #include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/sample_sums.h"
+#include "scenes/lens_views/shutter_times.h"
 #include "scenes/lens_views/tile_difference.h"
 
 namespace softfocus {
@@ -58,15 +59,21 @@ int tile_samples(std::uint64_t squares, int pixels, std::span<const int> sizes) 
 
 void place_growing_views(AccumulationBuffer& buffer, const Sampling& sampling) {
   const int most = sampling.samples;
+  const bool opens = sampling.shutter_frames > 0.0;
+  buffer.times.clear();
   if (most > kMostFewLensPoints) {
     buffer.points = lens_points(sampling.aperture, most);
     buffer.offsets = pixel_offsets(sampling.jitter, most);
+    if (opens) buffer.times = times_in_frames(shutter_sequence(most), sampling.shutter_frames);
     return;
   }
   const std::vector<int> sizes = tile_sample_sizes(most);
   buffer.points = growing_lens_points(sampling.aperture, sizes);
   buffer.offsets =
       sampling.jitter ? growing_pixel_offsets(buffer.points, sizes) : pixel_offsets(false, most);
+  if (!opens) return;
+  buffer.times = times_in_frames(growing_shutter_times(buffer.points, buffer.offsets, sizes),
+                                 sampling.shutter_frames);
 }
 
 SampledPicture accumulation_by_tile(AccumulationBuffer& buffer, const LensViewInput& input,

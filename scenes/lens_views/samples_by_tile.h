@@ -33,8 +33,8 @@ std::vector<int> tile_sample_sizes(int most);
 /// white, times (n / 8)^(3/4): the error of n views made for their number falls by about that.
 int tile_samples(std::uint64_t squares, int pixels, std::span<const int> sizes);
 
-/// Puts the buffer's views where accumulation_by_tile() has them. Beyond kMostFewLensPoints they
-/// are the sequences.
+/// Puts the buffer's views where and when accumulation_by_tile() has them. Beyond
+/// kMostFewLensPoints they are the sequences.
 void place_growing_views(AccumulationBuffer& buffer, const Sampling& sampling);
 
 /// accumulation() with Sampling::by_tile.

@@ -37,6 +37,7 @@ Camera read_camera(Section section) {
   camera.far_m = read_number(section, "far_m", camera.far_m, kAnySize);
   camera.orbit_degrees_per_frame = read_number(section, "orbit_degrees_per_frame",
                                                camera.orbit_degrees_per_frame, {-360.0, 360.0});
+  camera.shutter_frames = read_number(section, "shutter", camera.shutter_frames, {0.0, 64.0});
   if (camera.near_m >= camera.far_m) {
     fail_at(section, "far_m", "must be larger than near_m");
   }

@@ -70,6 +70,7 @@ BenchWork make_work(const BenchOptions& options) {
   const Scene& scene = work.scene.emplace(chosen_scene(options));
   print_scene_warnings(scene.warnings, false);
   work.name = scene.name;
+  work.sampling = with_shutter_of(scene, options.sampling);
   SceneLens lens = scene.lens;
   lens.lens = lens_at(scene.lens, work.frame);
   set_lens(work, options, {lens, scene.camera.fov_y_degrees});

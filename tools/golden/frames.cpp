@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -18,10 +19,12 @@ namespace {
 constexpr std::array<std::string_view, 3> kScenes{"figures", "cube-room", "sphere-world"};
 
 // These draw what the first three lack: one small frame each, by a few methods.
-constexpr std::array<std::string_view, 16> kMoreScenes{
-    "bright-edges",  "canopy",   "clutter",   "dunes",      "foliage",      "glass",
-    "grazing-floor", "interior", "lattice",   "near-fence", "night-lights", "portrait",
-    "random:1",      "random:6", "random:20", "random:48"};
+constexpr std::array<std::string_view, 18> kMoreScenes{
+    "bright-edges", "canopy",        "clutter",  "crossing", "dunes",      "foliage",
+    "glass",        "grazing-floor", "interior", "lattice",  "near-fence", "night-lights",
+    "portrait",     "windmill",      "random:1", "random:6", "random:20",  "random:48"};
+// Of these, its pictures with an open shutter too: things that are seen through move in it.
+constexpr std::array<std::string_view, 3> kShutterScenes{"crossing", "glass", "windmill"};
 constexpr std::array<std::string_view, 3> kFewMethods{"pinhole", "two-pass", "disc-layers"};
 
 // Whole tiles, and parts of tiles.
@@ -89,6 +92,22 @@ void add_effect_hashes(std::string_view scene, const Image& picture, const Profi
   }
 }
 
+// Views in lens and time: a set, one that grows, and the sequence.
+void add_shutter_hashes(std::string_view scene, const LensViewInput& input,
+                        const std::string& where, std::vector<NamedHash>& hashes,
+                        ThreadPool& pool) {
+  LensViewInput open = input;
+  const auto add = [&](std::string_view name, const Sampling& sampling) {
+    open.sampling = sampling;
+    hashes.push_back(
+        {entry_name(scene, name, where), hash_image(accumulation(open, pool).picture)});
+  };
+  add("accumulation-shutter", {.samples = 5, .jitter = true, .shutter_frames = 2.0});
+  add("accumulation-shutter-by-tile",
+      {.samples = 3 * kSampleGroup, .by_tile = true, .shutter_frames = 2.0});
+  add("accumulation-shutter-until", {.samples = 9, .until = 0.0, .shutter_frames = 2.0});
+}
+
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
   const Scene scene = load_scene(name, scene_search_path({}));
   const auto [width, height] = kSizes[1];
@@ -118,6 +137,9 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
   const std::vector<Image> layers =
       draw_layers(scene, view, kFrame, width, height, kGoldenLayers, profile, pool);
   add_layer_hashes(name, layers, where, hashes);
+  if (std::find(kShutterScenes.begin(), kShutterScenes.end(), name) != kShutterScenes.end()) {
+    add_shutter_hashes(name, from_lens, where, hashes, pool);
+  }
   return hashes;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenes/filtered_views/filtered_views.h"
+#include "scenes/lens_views/shutter_times.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 
@@ -18,7 +19,25 @@ std::string given(Arithmetic arithmetic) {
 // Of Sampling::by_tile: the method's own.
 constexpr int kMostUsual = 0;
 
-constexpr std::array kSamplingOptions{"--samples", "--jitter", "--until", "--aperture-blades"};
+// Of Sampling::shutter_frames, until the scene is there.
+constexpr double kShutterOfScene = -1.0;
+
+constexpr std::array kSamplingOptions{"--samples", "--jitter", "--until", "--aperture-blades",
+                                      "--shutter"};
+
+std::string names_of_methods_with_shutter() {
+  std::string names;
+  for (const LensViewMethod& method : lens_view_methods()) {
+    if (method.has_shutter) names += (names.empty() ? "" : ", ") + std::string{method.name};
+  }
+  return names;
+}
+
+void refuse_shutter(const CLI::App& parser, std::string_view method) {
+  if (!is_given(parser, "--shutter")) return;
+  throw UsageError("--shutter: the method " + std::string{method} +
+                   " shows one instant; give --method " + names_of_methods_with_shutter());
+}
 
 }  // namespace
 
@@ -206,6 +225,14 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
               sampling.until =
                   parse_number("--until", text, 1e-9, 1e9, "an error above 0, such as 0.001");
             });
+  add_value(parser, "--shutter", "FRAMES",
+            "Of accumulation: how long the shutter is open, 0 to 64 frames, with --frame in the "
+            "middle (default: the scene's, mostly 0)",
+            [&sampling](const std::string& text) {
+              sampling.shutter_frames =
+                  parse_number("--shutter", text, 0.0, kLongestShutter,
+                               "a part of a frame's time from 0 to 64, such as 0.5");
+            });
   add_value(
       parser, "--aperture-blades", "N",
       "Of the same and of scatter-aperture: an aperture of 3 to 64 straight blades, 0 = round "
@@ -216,6 +243,10 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
 }
 
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser) {
+  if (!method.has_shutter) refuse_shutter(parser, method.name);
+  if (method.has_shutter && !is_given(parser, "--shutter")) {
+    sampling.shutter_frames = kShutterOfScene;
+  }
   if (sampling.by_tile) {
     if (method.usual_most_by_tile == 0) {
       throw UsageError("--samples auto: the method " + std::string{method.name} +
@@ -231,7 +262,15 @@ void complete_sampling(Sampling& sampling, const LensViewMethod& method, const C
   sampling.samples = sampling.until ? kMostSamples : method.usual_samples;
 }
 
+Sampling with_shutter_of(const Scene& scene, Sampling sampling) {
+  if (sampling.shutter_frames == kShutterOfScene) {
+    sampling.shutter_frames = scene.camera.shutter_frames;
+  }
+  return sampling;
+}
+
 void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
+  refuse_shutter(parser, method);
   for (const char* option : kSamplingOptions) {
     if (!is_given(parser, option)) continue;
     if (method == kApertureMethod && option == std::string_view{"--aperture-blades"}) continue;

@@ -85,8 +85,12 @@ std::string names_of_sampling_methods();
 void add_sampling_options(CLI::App& parser, Sampling& sampling);
 
 /// Once all options are read: without --samples, those of the method; with --until, kMostSamples.
-/// Throws UsageError for --samples auto of a method that cannot, or with --until.
+/// Throws UsageError for --samples auto of a method that cannot, or with --until; or for --shutter
+/// of a method that has none. with_shutter_of() must follow.
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser);
+
+/// With the scene's shutter if the method has one and --shutter was not given.
+Sampling with_shutter_of(const Scene& scene, Sampling sampling);
 
 /// Throws UsageError if one of them was given, for a filter does not sample the lens; but for
 /// --aperture-blades of kApertureMethod.

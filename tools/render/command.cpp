@@ -354,7 +354,7 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
       warnings.push_back(cut_warning(parts.picture, options, *record.lens, pool));
   }
   warnings.push_back(transparent_warning(scene, parts, options));
-  record.used = {options.method, options.sampling, {}, {}};
+  record.used = {options.method, with_shutter_of(scene, options.sampling), {}, {}};
   const bool is_auto = options.show == Show::image && options.method.is_auto();
   const bool from_lens = options.show == Show::image && record.used.method.of_scene != nullptr;
   if (!from_lens && !is_auto) prepared.reset();

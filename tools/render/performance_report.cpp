@@ -71,6 +71,9 @@ std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
   std::string text = line("Samples", std::to_string(used.samples)) +
                      line("Pixel jitter", sampling.jitter ? "yes" : "no") +
                      line("Blades", blades == 0 ? "round" : std::to_string(blades));
+  if (sampling.shutter_frames > 0.0) {
+    text += line("Shutter", short_number(sampling.shutter_frames) + " frames");
+  }
   if (used.mean_samples) {
     text += line("Samples a pixel", short_number(*used.mean_samples) + " in the mean");
   }
@@ -228,6 +231,9 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     json["sampling"] = {{"samples", record.sampled->samples},
                         {"jitter", record.used.sampling.jitter},
                         {"aperture_blades", record.used.sampling.aperture.blades}};
+    if (record.used.sampling.shutter_frames > 0.0) {
+      json["sampling"]["shutter_frames"] = record.used.sampling.shutter_frames;
+    }
     if (record.sampled->mean_samples) {
       json["sampling"]["mean_samples"] = *record.sampled->mean_samples;
       json["sampling"]["most_samples"] = record.used.sampling.samples;

@@ -35,6 +35,9 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
     }
     json["jitter"] = record.used.sampling.jitter;
     json["aperture_blades"] = record.used.sampling.aperture.blades;
+    if (record.used.sampling.shutter_frames > 0.0) {
+      json["shutter_frames"] = record.used.sampling.shutter_frames;
+    }
   } else if (record.lens && method.of_scene == nullptr) {
     json["max_coc_px"] = record.lens->settings.max_coc_px;
     json["leak"] = record.lens->settings.leak;

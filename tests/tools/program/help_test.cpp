@@ -33,6 +33,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--samples N",
                        "--jitter",
                        "--until ERROR",
+                       "--shutter FRAMES",
                        "--aperture-blades N",
                        "--shard I/N",
                        "--profile NAME",
@@ -110,9 +111,9 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
     CHECK(std::count(run.out.begin(), run.out.end(), '\n') ==
           static_cast<std::ptrdiff_t>(names.size()));
   };
-  lists("scenes", {"bright-edges", "canopy", "clutter", "cube-room", "dunes", "figures", "foliage",
-                   "glass", "grazing-floor", "interior", "lattice", "near-fence", "night-lights",
-                   "portrait", "sphere-world", "random:SEED"});
+  lists("scenes", {"bright-edges", "canopy", "clutter", "crossing", "cube-room", "dunes", "figures",
+                   "foliage", "glass", "grazing-floor", "interior", "lattice", "near-fence",
+                   "night-lights", "portrait", "sphere-world", "windmill", "random:SEED"});
   // clang-format off
   lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "importance-ordered",
                     "scatter", "scatter-sorted", "scatter-aperture", "layers",
