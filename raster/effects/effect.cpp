@@ -5,6 +5,7 @@
 
 #include "raster/effects/bloom.h"
 #include "raster/effects/lens_flare.h"
+#include "raster/effects/motion/motion_blur.h"
 #include "raster/effects/tone_map.h"
 #include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
@@ -89,6 +90,33 @@ constexpr std::array kLensFlare{
     EffectParameter{"rays", "length of rays from the light, over the way to it; 0: none", 0.0, 1.0,
                     0.3}};
 
+void motion_blur_along_own_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                                  ThreadPool& pool) {
+  motion_blur_along_own(static_cast<float>(input.parameters[0]),
+                        static_cast<int>(input.parameters[1]), input.picture, input.velocity,
+                        result, input.profile, pool);
+}
+
+template <MotionFilter filter>
+void motion_blur_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                        ThreadPool& pool) {
+  motion_blur({.shutter = static_cast<float>(input.parameters[0]),
+               .samples = static_cast<int>(input.parameters[1]),
+               .radius_px = static_cast<int>(input.parameters[2]),
+               .depth = static_cast<float>(input.parameters[3]),
+               .filter = filter},
+              input.picture, input.velocity, result, input.profile, pool);
+}
+
+constexpr std::array kMotionBlur{
+    EffectParameter{"shutter", "part of a frame that it is open, centred on the frame", 0.0, 8.0,
+                    0.5},
+    EffectParameter{"samples", "pixels that are read for each", 1.0, 64.0, 16.0},
+    EffectParameter{"radius", "longest way to either side in pixels, and the size of the tiles",
+                    1.0, 256.0, 32.0},
+    EffectParameter{"depth", "part of its depth by which something lies wholly before another",
+                    0.001, 1000.0, 0.1}};
+
 void tone_map_effect(const Effect& effect, const EffectInput& input, const ImageView& result,
                      ThreadPool& pool) {
   tone_map(*find_tone_curve(effect.name), static_cast<float>(input.parameters[0]), input.picture,
@@ -117,6 +145,14 @@ constexpr std::array kEffects{
            bloom_effect},
     Effect{"lens-flare", "ghosts, halo, streaks and rays of bright light, after Chapman 2013",
            kLensFlare, lens_flare_effect},
+    Effect{"motion-blur-simple", "samples along each pixel's own motion",
+           std::span{kMotionBlur}.first(2), motion_blur_along_own_effect, true, VelocityOf::all},
+    Effect{"motion-blur-camera", "likewise, of the camera's motion alone, from the depth",
+           std::span{kMotionBlur}.first(2), motion_blur_along_own_effect, true, VelocityOf::camera},
+    Effect{"motion-blur-2012", "along the longest motion of the tiles around, McGuire et al. 2012",
+           kMotionBlur, motion_blur_effect<MotionFilter::one_way>, true, VelocityOf::all},
+    Effect{"motion-blur", "along that and along the pixel's own, Guertin et al. 2014", kMotionBlur,
+           motion_blur_effect<MotionFilter::two_ways>, true, VelocityOf::all},
     of_curve(kToneCurves[0]),
     of_curve(kToneCurves[1]),
     of_curve(kToneCurves[2]),
@@ -136,6 +172,9 @@ const Effect* find_effect(std::string_view name) {
 Image apply(const Effect& effect, const EffectInput& input, ThreadPool& pool) {
   assert(input.picture.format == Format::rgba16f);
   assert(input.parameters.size() == effect.parameters.size());
+  assert(effect.velocity == VelocityOf::nothing ||
+         (input.velocity.format == Format::rg16f && input.velocity.width == input.picture.width &&
+          input.velocity.height == input.picture.height));
   const DefaultFloatEnvironment environment;
   Image result = make_image(Format::rgba16f, input.picture.width, input.picture.height);
   effect.filter(effect, input, result, pool);

@@ -40,6 +40,7 @@ void add_rows_to_hash(Hash& hash, const ConstImageView& rows) {
     case Format::r8:
     case Format::rgba8:
     case Format::srgb8: add_channels_to_hash<std::uint8_t>(hash, rows); break;
+    case Format::rg16f:
     case Format::rgba16f: add_channels_to_hash<std::uint16_t>(hash, rows); break;
     case Format::r32f:
     case Format::rgba32f: add_channels_to_hash<float>(hash, rows); break;

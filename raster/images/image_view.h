@@ -15,9 +15,11 @@ enum class Format : std::uint8_t {
   rgba16f,  ///< 4 x binary16
   r32f,     ///< 1 x binary32; also the depth buffer's
   rgba32f,  ///< 4 x binary32
+  rg16f,    ///< 2 x binary16: a motion in pixels
 };
 
 constexpr int channel_count(Format format) {
+  if (format == Format::rg16f) return 2;
   return format == Format::r8 || format == Format::r32f ? 1 : 4;
 }
 
@@ -29,6 +31,7 @@ constexpr std::size_t bytes_per_texel(Format format) {
     case Format::rgba16f: return 8;
     case Format::r32f: return 4;
     case Format::rgba32f: return 16;
+    case Format::rg16f: return 4;
   }
   return 0;
 }

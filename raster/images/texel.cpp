@@ -13,6 +13,7 @@ glm::vec4 load_texel(const Image& image, int x, int y) {
     case Format::rgba16f: return load_texel<Format::rgba16f>(image, x, y);
     case Format::r32f: return load_texel<Format::r32f>(image, x, y);
     case Format::rgba32f: return load_texel<Format::rgba32f>(image, x, y);
+    case Format::rg16f: return load_texel<Format::rg16f>(image, x, y);
   }
   return {};
 }
@@ -25,6 +26,7 @@ void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& pro
     case Format::rgba16f: return store_texel<Format::rgba16f>(image, x, y, value, profile);
     case Format::r32f: return store_texel<Format::r32f>(image, x, y, value, profile);
     case Format::rgba32f: return store_texel<Format::rgba32f>(image, x, y, value, profile);
+    case Format::rg16f: return store_texel<Format::rg16f>(image, x, y, value, profile);
   }
 }
 

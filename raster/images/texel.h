@@ -1,6 +1,7 @@
 #pragma once
 // Reads and writes one texel of any format as four floats. A one-channel format reads as
-// (value, 0, 0, 1) and stores the first component, as in OpenGL.
+// (value, 0, 0, 1) and stores the first component, one of two channels (first, second, 0, 1),
+// as in OpenGL.
 
 #include <glm/vec4.hpp>
 #include <limits>
@@ -24,6 +25,9 @@ glm::vec4 load_texel(const AnyImage& image, int x, int y) {
   } else if constexpr (format == Format::rgba32f) {
     const auto* v = &row<float>(image, y)[index];
     return {v[0], v[1], v[2], v[3]};
+  } else if constexpr (format == Format::rg16f) {
+    const auto* v = &row<std::uint16_t>(image, y)[index];
+    return {half_to_float(v[0]), half_to_float(v[1]), 0.0f, 1.0f};
   } else if constexpr (format == Format::rgba16f) {
     const auto* v = &row<std::uint16_t>(image, y)[index];
     return {half_to_float(v[0]), half_to_float(v[1]), half_to_float(v[2]), half_to_float(v[3])};
@@ -51,9 +55,9 @@ void store_texel(AnyImage&& image, int x, int y, glm::vec4 value, const Profile&
   } else if constexpr (format == Format::rgba32f) {
     auto* v = &row<float>(image, y)[index];
     for (int i = 0; i < 4; ++i) v[i] = stored_float(value[i], profile);
-  } else if constexpr (format == Format::rgba16f) {
+  } else if constexpr (format == Format::rg16f || format == Format::rgba16f) {
     auto* v = &row<std::uint16_t>(image, y)[index];
-    for (int i = 0; i < 4; ++i) v[i] = float_to_half(value[i], profile.half_store);
+    for (int i = 0; i < channel_count(format); ++i) v[i] = float_to_half(value[i], profile.half_store);
   } else {
     auto* v = &row<std::uint8_t>(image, y)[index];
     for (int i = 0; i < 3; ++i) {
@@ -71,6 +75,7 @@ void store_texel(Image& image, int x, int y, glm::vec4 value, const Profile& pro
 /// A filtered value with the channels that the format lacks set to 0, 0 and 1. Weights that are
 /// NaN can have spoilt them.
 inline glm::vec4 with_missing_channels(glm::vec4 value, Format format) {
+  if (format == Format::rg16f) return {value.x, value.y, 0.0f, 1.0f};
   return channel_count(format) == 1 ? glm::vec4{value.x, 0.0f, 0.0f, 1.0f} : value;
 }
 

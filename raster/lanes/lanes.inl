@@ -660,6 +660,28 @@ SOFTFOCUS_INLINE void store_half_texels(std::uint16_t* to, const HalfTexels& tex
   store_texel_words(to, interleave(texels));
 }
 
+/// Pixels of RG16F.
+SOFTFOCUS_INLINE void store_half_pairs(std::uint16_t* to, Bits r, Bits g) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  const Bits pairs = r << 16 | g;
+#else
+  const Bits pairs = r | g << 16;
+#endif
+  std::memcpy(to, &pairs, sizeof pairs);
+}
+struct HalfPairs {
+  Bits r, g;
+};
+SOFTFOCUS_INLINE HalfPairs load_half_pairs(const std::uint16_t* from) {
+  Bits pairs;
+  std::memcpy(&pairs, from, sizeof pairs);
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  return {pairs >> 16, pairs & 0xFFFFu};
+#else
+  return {pairs & 0xFFFFu, pairs >> 16};
+#endif
+}
+
 /// A store past the caches if the CPU can, for pixels that are not read again soon. Needs an
 /// address that is a multiple of a vector's size, and finish_streaming() before another thread
 /// reads.

@@ -61,6 +61,7 @@ SOFTFOCUS_SURFACE_VARIANT(true, true, true, true)
 #include "raster/pipeline/lanes/interpolate_lanes.inl"
 #include "raster/pipeline/lanes/shade_lanes.inl"
 #include "raster/pipeline/lanes/vertex_lanes.inl"
+#include "scenes/draw/opacity_lanes.inl"
 
 namespace {
 
@@ -76,14 +77,6 @@ SOFTFOCUS_INLINE Floats whole_power(Floats x, int n) {
     n >>= 1;
     if (n == 0) return power;
   }
-}
-
-SOFTFOCUS_INLINE Vec3Lanes load_vectors(const std::vector<glm::vec3>& vectors, Ints index) {
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  const float* first = &vectors[0].x;
-  const Ints at = index * 3;
-  const Mask every = ~Mask{};
-  return {gather(first, at, every), gather(first + 1, at, every), gather(first + 2, at, every)};
 }
 
 struct LitLanes {
@@ -174,23 +167,6 @@ struct SurfaceVertexLanes {
 
 // --- fragments ---
 
-// The red of a holed surface's opacity texture.
-template <SurfaceVariant variant, class Quads>
-SOFTFOCUS_INLINE Floats opacity_texels(const Quads& in, const DecodedTexture& texture,
-                                       const Sampler& sampler, const Profile& profile) {
-  const std::size_t u = surface_layout(variant).texture;
-  const std::size_t v = u + 1;
-  alignas(64) std::array<std::array<float, kLanes>, 3> place;
-  store(place[0].data(), in.varying(u));
-  store(place[1].data(), in.varying(v));
-  store(place[2].data(),
-        level_of_detail_lanes(texture, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
-  RgbLanes texels;
-  sample_lanes(texture, sampler, profile, {place[0].data(), place[1].data(), place[2].data()}, 1,
-               &texels);
-  return texels.r;
-}
-
 template <SurfaceVariant variant>
 struct SurfaceFragmentLanes {
   static constexpr SurfaceLayout kLayout = surface_layout(variant);
@@ -273,7 +249,7 @@ struct SurfaceFragmentLanes {
   SOFTFOCUS_INLINE Floats hides(const Quads& in) const {
     const Floats value = splat(opacity.value);
     if constexpr (!variant.holed) return value;
-    return value * opacity_texels<variant>(in, *decoded_opacity, opacity.sampler, profile);
+    return value * opacity_texels(in, kLayout.texture, *decoded_opacity, opacity.sampler, profile);
   }
 
   // Three varyings of the side that is seen.
@@ -300,7 +276,7 @@ struct SurfaceHoles {
 
   template <class Quads>
   SOFTFOCUS_INLINE Mask keeps(const Quads& in) const {
-    return ~(opacity_texels<variant>(in, decoded_opacity, opacity.sampler, profile) <
+    return ~(opacity_texels(in, kLayout.texture, decoded_opacity, opacity.sampler, profile) <
              least_texel(opacity));
   }
 };

@@ -1,5 +1,6 @@
 // softfocus apply: effects on a picture's file.
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -7,6 +8,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
+#include "tools/effects/velocity_file.h"
 #include "tools/files/picture_notes.h"
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
@@ -24,6 +26,7 @@ struct ApplyOptions {
   std::string output;
   FileFormat format = FileFormat::png;
   std::optional<std::string> layer;
+  std::optional<std::string> velocity;
   EffectOptions effects;
   Profile profile{};
   std::string profile_name = "ieee";
@@ -59,16 +62,21 @@ OpenedPicture read_picture(const ApplyOptions& options) {
 
 /// Opacity goes where light goes.
 void apply_effects(const ApplyOptions& options, OpenedPicture& opened, ThreadPool& pool) {
+  Image velocity;
+  if (options.velocity) {
+    velocity = read_velocity(*options.velocity, opened.colour.width, opened.colour.height);
+  }
+  const auto make_velocity = [&](const ChosenEffect&, const Image&) { return velocity; };
   std::vector<ChosenEffect> spreading;
   for (const ChosenEffect& chosen : all_effects(options.effects)) {
     if (chosen.effect->spreads) spreading.push_back(chosen);
   }
   if (is_transparent(opened.opacity)) {
     opened.opacity = opacity_of(with_effects(opacity_picture(opened.opacity, opened.colour),
-                                             spreading, options.profile, pool));
+                                             spreading, make_velocity, options.profile, pool));
   }
-  opened.colour =
-      with_effects(std::move(opened.colour), all_effects(options.effects), options.profile, pool);
+  opened.colour = with_effects(std::move(opened.colour), all_effects(options.effects),
+                               make_velocity, options.profile, pool);
 }
 
 PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) {
@@ -109,6 +117,9 @@ int apply_to_file(const ApplyOptions& options) {
     check_writable(options.output);
     check_not_read("-o", options.output, {{options.picture, "the picture"}});
     if (sidecar) check_not_read("-o", *sidecar, {{options.picture, "the picture"}});
+    if (options.velocity) {
+      check_not_read("-o", options.output, {{*options.velocity, "the velocity"}});
+    }
   }
   ThreadPool pool{options.pool.threads, options.pool.isa};
   OpenedPicture opened = read_picture(options);
@@ -143,6 +154,20 @@ int apply_to_file(const ApplyOptions& options) {
   return kDone;
 }
 
+void check_velocity(const ApplyOptions& options) {
+  const std::vector<ChosenEffect> all = all_effects(options.effects);
+  const auto reader = std::find_if(all.begin(), all.end(), [](const ChosenEffect& chosen) {
+    return chosen.effect->velocity != VelocityOf::nothing;
+  });
+  if (reader == all.end() && options.velocity) {
+    throw UsageError("--velocity: no effect given reads one; motion-blur does");
+  }
+  if (reader != all.end() && !options.velocity) {
+    throw UsageError("--effect " + std::string{reader->effect->name} +
+                     ": it needs to know how pixels move; give --velocity FILE: " + kVelocityFiles);
+  }
+}
+
 }  // namespace
 
 Command add_apply_command(CLI::App& program) {
@@ -155,6 +180,10 @@ Command add_apply_command(CLI::App& program) {
   add_effect_options(*parser, options->effects);
   add_value(*parser, "--layer", "NAME", "The colour's layer of an EXR",
             [options](const std::string& text) { options->layer = text; });
+  add_value(*parser, "--velocity", "FILE",
+            std::string{"How each pixel moves, for motion blur: "} + kVelocityFiles +
+                "; pixels a frame, to the right and down",
+            [options](const std::string& text) { options->velocity = text; });
   begin_group(*parser, "Output");
   add_value(*parser, "-o,--output", "FILE",
             "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
@@ -170,6 +199,7 @@ Command add_apply_command(CLI::App& program) {
           throw UsageError(
               "there is nothing to apply; give --effect (softfocus effects) or --tone-map");
         }
+        check_velocity(*options);
         if (options->output == "-" && is_terminal(kStandardOutput)) {
           throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
         }

@@ -23,6 +23,7 @@ PixelFormat pixel_format(Format format) {
     case Format::rgba16f: return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
     case Format::r32f: return {GL_R32F, GL_RED, GL_FLOAT};
     case Format::rgba32f: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+    case Format::rg16f: return {GL_RG16F, GL_RG, GL_HALF_FLOAT};
   }
   return {};
 }
@@ -292,6 +293,9 @@ void set_uniform(const GlProgram& program, const char* name, float value) {
 }
 void set_uniform(const GlProgram& program, const char* name, glm::ivec2 value) {
   glUniform2i(location(program, name), value.x, value.y);
+}
+void set_uniform(const GlProgram& program, const char* name, glm::vec2 value) {
+  glUniform2f(location(program, name), value.x, value.y);
 }
 void set_uniform(const GlProgram& program, const char* name, glm::vec3 value) {
   glUniform3f(location(program, name), value.x, value.y, value.z);

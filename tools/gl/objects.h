@@ -87,6 +87,7 @@ GlProgram link_program(const GlContext& context, const Shaders& shaders, std::st
 void set_uniform(const GlProgram& program, const char* name, int value);
 void set_uniform(const GlProgram& program, const char* name, float value);
 void set_uniform(const GlProgram& program, const char* name, glm::ivec2 value);
+void set_uniform(const GlProgram& program, const char* name, glm::vec2 value);
 void set_uniform(const GlProgram& program, const char* name, glm::vec3 value);
 void set_uniform(const GlProgram& program, const char* name, glm::vec4 value);
 void set_uniform(const GlProgram& program, const char* name, const glm::mat3& value);

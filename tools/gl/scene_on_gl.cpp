@@ -51,7 +51,8 @@ void set_material(const GlProgram& program, const Material& material) {
 // counter-clockwise is clockwise to GL.
 void set_state(const DrawState& state) {
   glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
+  glDepthFunc(state.depth->test == Compare::always ? GL_ALWAYS : GL_LESS);
+  glDepthMask(state.depth->write ? GL_TRUE : GL_FALSE);
   glDisable(GL_BLEND);
   glFrontFace(state.front_face == FrontFace::counter_clockwise ? GL_CW : GL_CCW);
   if (state.cull == Cull::none) {
@@ -258,6 +259,50 @@ void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const Peel
                    nullptr);
   }
   for (const GLuint attribute : {0u, 1u, 2u}) glDisableVertexAttribArray(attribute);
+}
+
+Image GlScene::draw_velocity(const Instant& shown, const MotionSpan& span, int width, int height) {
+  const GlTarget target = make_target(std::array{Format::rg16f}, width, height, true);
+  const GlProgram whole = link_program(context_, shaders_, "velocity.vert", "velocity.frag");
+  const GlProgram holed =
+      link_program(context_, shaders_, "velocity.vert", "velocity.frag", "#define CUT_OUT\n");
+  bind(target);
+  glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+  glClearDepth(1.0);
+  glDepthMask(GL_TRUE);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  for (const VelocityDraw& what : velocity_draws(scene_, shown, span, width, height)) {
+    const VelocityInput& input = what.input;
+    const bool has_holes = what.opacity.texture != nullptr;
+    const GlProgram& used = has_holes ? holed : whole;
+    set_uniform(used, "shown_to_clip", input.shown);
+    set_uniform(used, "later_to_clip", input.to);
+    set_uniform(used, "earlier_to_clip", input.from);
+    set_uniform(used, "half_size_px", input.half_size_px);
+    set_uniform(used, "least_w", input.least_w);
+    if (has_holes) {
+      set_texture(used, "opacity_texture", 0, opacities_.at(what.material));
+      set_uniform(used, "least_texel", least_texel(what.opacity));
+    }
+    GlBuffer positions, indices;  // the background's
+    const Mesh* mesh = nullptr;
+    if (what.material != nullptr) {
+      mesh = &meshes_[static_cast<std::size_t>(input.mesh - scene_.meshes.data())];
+      set_attribute(2, mesh->uvs, 2);
+    } else {
+      positions = make_buffer(GL_ARRAY_BUFFER, input.mesh->positions);
+      indices = make_buffer(GL_ELEMENT_ARRAY_BUFFER, input.mesh->indices);
+      glDisableVertexAttribArray(2);
+    }
+    set_attribute(0, mesh != nullptr ? mesh->positions : positions, 3);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh != nullptr ? mesh->indices : indices);
+    set_state(what.state);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(input.mesh->indices.size()), GL_UNSIGNED_INT,
+                   nullptr);
+  }
+  glDepthMask(GL_TRUE);
+  for (const GLuint attribute : {0u, 2u}) glDisableVertexAttribArray(attribute);
+  return read_colour(target, 0);
 }
 
 GlTarget make_scene_target(int width, int height) {

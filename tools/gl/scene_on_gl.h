@@ -8,6 +8,7 @@
 
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/surface_draws.h"
+#include "scenes/draw/velocity.h"
 #include "scenes/scene.h"
 #include "tools/gl/objects.h"
 
@@ -26,6 +27,9 @@ class GlScene {
   /// triangles.
   std::vector<Image> draw_layers(const CameraMatrices& view, double frame, int width, int height,
                                  std::size_t layers);
+
+  /// As softfocus::draw_velocity().
+  Image draw_velocity(const Instant& shown, const MotionSpan& span, int width, int height);
 
  private:
   struct Mesh {

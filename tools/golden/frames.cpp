@@ -6,6 +6,7 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/effects/effect.h"
 #include "scenes/draw/frame_parts.h"
+#include "scenes/draw/velocity.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/sample_sums.h"
@@ -17,6 +18,7 @@ namespace softfocus {
 namespace {
 
 constexpr std::array<std::string_view, 3> kScenes{"figures", "cube-room", "sphere-world"};
+constexpr std::string_view kMovingScene = "cube-room";
 
 // These draw what the first three lack: one small frame each, by a few methods.
 constexpr std::array<std::string_view, 18> kMoreScenes{
@@ -83,6 +85,7 @@ void add_layer_hashes(std::string_view scene, const std::vector<Image>& layers,
 void add_effect_hashes(std::string_view scene, const Image& picture, const Profile& profile,
                        const std::string& where, std::vector<NamedHash>& hashes, ThreadPool& pool) {
   for (const Effect& effect : effects()) {
+    if (effect.velocity != VelocityOf::nothing) continue;  // add_motion_hashes()
     std::vector<double> parameters;
     for (const EffectParameter& parameter : effect.parameters) {
       parameters.push_back(parameter.preset);
@@ -106,6 +109,32 @@ void add_shutter_hashes(std::string_view scene, const LensViewInput& input,
   add("accumulation-shutter-by-tile",
       {.samples = 3 * kSampleGroup, .by_tile = true, .shutter_frames = 2.0});
   add("accumulation-shutter-until", {.samples = 9, .until = 0.0, .shutter_frames = 2.0});
+}
+
+/// Velocity, drawn and from depth, and a line for each effect that reads it. The camera goes
+/// around.
+void add_motion_hashes(std::string_view name, Scene scene, const FrameSize& size,
+                       const Profile& profile, const std::string& where,
+                       std::vector<NamedHash>& hashes, ThreadPool& pool) {
+  scene.camera.orbit_degrees_per_frame = 4.0;
+  const auto [width, height] = size;
+  const CameraMatrices view = camera_matrices(scene.camera, kFrame, width, height);
+  const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
+  for (const Effect& effect : effects()) {
+    if (effect.velocity == VelocityOf::nothing) continue;
+    ChosenEffect chosen{&effect, {}};
+    for (const EffectParameter& parameter : effect.parameters) {
+      chosen.parameters.push_back(parameter.preset);
+    }
+    const Image velocity = velocity_for(chosen, scene, kFrame, picture, profile, pool);
+    const Image blurred = apply(effect, {picture, chosen.parameters, profile, velocity}, pool);
+    hashes.push_back({entry_name(name, effect.name, where), hash_image(blurred)});
+    if (effect.name == "motion-blur") {
+      hashes.push_back({entry_name(name, "velocity", where), hash_image(velocity)});
+    } else if (effect.velocity == VelocityOf::camera) {
+      hashes.push_back({entry_name(name, "camera-velocity", where), hash_image(velocity)});
+    }
+  }
 }
 
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
@@ -190,6 +219,9 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
   add_layer_hashes(name, layers, where, hashes);
   if (width == kSizes[1].width) {
     add_effect_hashes(name, picture, profile, where, hashes, pool);
+    if (name == kMovingScene) {
+      add_motion_hashes(name, scene, size, profile, where, hashes, pool);
+    }
   }
   for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
     Image filtered = make_image(picture.format, width, height);

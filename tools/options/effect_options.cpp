@@ -97,10 +97,16 @@ std::vector<ChosenEffect> all_effects(const EffectOptions& options,
   return all;
 }
 
-Image with_effects(Image picture, const std::vector<ChosenEffect>& effects, const Profile& profile,
-                   ThreadPool& pool) {
+Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
+                   const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool) {
   for (const ChosenEffect& chosen : effects) {
-    picture = apply(*chosen.effect, {picture, chosen.parameters, profile}, pool);
+    Image velocity;
+    EffectInput input{picture, chosen.parameters, profile};
+    if (chosen.effect->velocity != VelocityOf::nothing) {
+      velocity = make_velocity(chosen, picture);
+      input.velocity = velocity;
+    }
+    picture = apply(*chosen.effect, input, pool);
   }
   return picture;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Effects on a command line: --effect NAME:key=value,..., one after the other.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,8 +31,11 @@ void add_effect_options(CLI::App& parser, EffectOptions& options);
 std::vector<ChosenEffect> all_effects(const EffectOptions& options,
                                       std::span<const ChosenEffect> of_scene = {});
 
-/// The picture with all of them, in their order.
-Image with_effects(Image picture, const std::vector<ChosenEffect>& effects, const Profile& profile,
-                   ThreadPool& pool);
+/// Makes the velocity that an effect reads, of the picture as it comes to the effect.
+using MakeVelocity = std::function<Image(const ChosenEffect& chosen, const Image& picture)>;
+
+/// The picture with all of them, in their order. `make_velocity` is called for those that read one.
+Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
+                   const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -17,6 +17,7 @@
 #include "scenes/draw/keyframes.h"
 #include "scenes/draw/object_numbers.h"
 #include "scenes/draw/surface_draws.h"
+#include "scenes/draw/velocity.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -409,7 +410,10 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
   if (!record.effects.empty()) {
     double effects_ms = 0.0;
     picture = timed(progress, "effects", effects_ms, [&] {
-      return with_effects(std::move(picture), record.effects, options.profile, pool);
+      const auto make_velocity = [&](const ChosenEffect& chosen, const Image& of) {
+        return velocity_for(chosen, scene, options.frame, of, options.profile, pool);
+      };
+      return with_effects(std::move(picture), record.effects, make_velocity, options.profile, pool);
     });
     ms.filter += effects_ms;
   }

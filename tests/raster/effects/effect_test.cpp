@@ -17,6 +17,17 @@ std::vector<double> presets_of(const Effect& effect) {
   return values;
 }
 
+/// For effects that read one.
+Image some_velocity(const Image& picture) {
+  Image velocity = make_image(Format::rg16f, picture.width, picture.height);
+  for (int y = 0; y < velocity.height; ++y) {
+    for (int x = 0; x < velocity.width; ++x) {
+      store_texel(velocity, x, y, {0.5f * static_cast<float>(x - y), 20.0f, 0.0f, 1.0f}, {});
+    }
+  }
+  return velocity;
+}
+
 }  // namespace
 
 TEST_CASE("effects have names of their own and presets within their limits") {
@@ -29,17 +40,21 @@ TEST_CASE("effects have names of their own and presets within their limits") {
       CHECK(parameter.least <= parameter.preset);
       CHECK(parameter.preset <= parameter.most);
     }
+    if (effect.velocity == VelocityOf::nothing) continue;
+    REQUIRE(!effect.parameters.empty());
+    CHECK(effect.parameters[0].name == "shutter");
   }
   CHECK(find_effect("nothing") == nullptr);
 }
 
 TEST_CASE("an effect keeps alpha, and its bits do not depend on threads or vectors") {
   const Image picture = test::random_halves(75, 70, 17, 0.0, 9.0);
+  const Image velocity = some_velocity(picture);
   for (const Effect& effect : effects()) {
     CAPTURE(effect.name);
     const std::vector<double> parameters = presets_of(effect);
     ThreadPool alone{1, Isa::scalar};
-    const Image expected = apply(effect, {picture, parameters, {}}, alone);
+    const Image expected = apply(effect, {picture, parameters, {}, velocity}, alone);
     int wrong = 0;
     for (int y = 0; y < picture.height; ++y) {
       for (int x = 0; x < picture.width; ++x) {
@@ -49,7 +64,7 @@ TEST_CASE("an effect keeps alpha, and its bits do not depend on threads or vecto
     CHECK(wrong == 0);
     for (const Isa isa : available_isas()) {
       ThreadPool pool{3, isa};
-      CHECK(equal(apply(effect, {picture, parameters, {}}, pool), expected));
+      CHECK(equal(apply(effect, {picture, parameters, {}, velocity}, pool), expected));
     }
   }
 }
@@ -60,10 +75,11 @@ TEST_CASE("an effect that spreads light keeps what is even") {
     for (std::uint16_t& value : row<std::uint16_t>(picture, y)) value = 0x3800;
   }
   ThreadPool pool{2};
+  const Image velocity = some_velocity(picture);
   for (const Effect& effect : effects()) {
     if (!effect.spreads) continue;
     CAPTURE(effect.name);
     const std::vector<double> parameters = presets_of(effect);
-    CHECK(equal(apply(effect, {picture, parameters, {}}, pool), picture));
+    CHECK(equal(apply(effect, {picture, parameters, {}, velocity}, pool), picture));
   }
 }

@@ -15,8 +15,8 @@ using namespace softfocus;
 
 namespace {
 
-constexpr std::array kFormats{Format::r8,      Format::rgba8, Format::srgb8,
-                              Format::rgba16f, Format::r32f,  Format::rgba32f};
+constexpr std::array kFormats{Format::r8,   Format::rgba8,   Format::srgb8, Format::rgba16f,
+                              Format::r32f, Format::rgba32f, Format::rg16f};
 
 std::uint64_t fnv_of(std::string_view text) {
   Hash hash;
@@ -91,9 +91,9 @@ TEST_CASE("a row spans width times channels values") {
 
 TEST_CASE("texel sizes are channels times channel size") {
   for (const Format format : kFormats) {
-    const std::size_t channel = format == Format::r32f || format == Format::rgba32f ? 4
-                                : format == Format::rgba16f                         ? 2
-                                                                                    : 1;
+    const std::size_t channel = format == Format::r32f || format == Format::rgba32f    ? 4
+                                : format == Format::rgba16f || format == Format::rg16f ? 2
+                                                                                       : 1;
     CHECK(bytes_per_texel(format) == channel * static_cast<std::size_t>(channel_count(format)));
   }
 }

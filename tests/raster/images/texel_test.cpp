@@ -19,8 +19,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-constexpr std::array kFormats{Format::r8,      Format::rgba8, Format::srgb8,
-                              Format::rgba16f, Format::r32f,  Format::rgba32f};
+constexpr std::array kFormats{Format::r8,   Format::rgba8,   Format::srgb8, Format::rgba16f,
+                              Format::r32f, Format::rgba32f, Format::rg16f};
 
 glm::vec4 stored(Format format, glm::vec4 value, const Profile& profile = {}) {
   Image image = make_image(format, 1, 1);
@@ -34,6 +34,10 @@ TEST_CASE("a one-channel texel stores the first component and reads as (value, 0
   CHECK(same_bits(stored(Format::r32f, {0.3f, 7.0f, 8.0f, 9.0f}), {0.3f, 0.0f, 0.0f, 1.0f}));
   CHECK(
       same_bits(stored(Format::r8, {0.2f, 7.0f, 8.0f, 9.0f}), {51.0f / 255.0f, 0.0f, 0.0f, 1.0f}));
+}
+
+TEST_CASE("a two-channel texel stores two components and reads as (first, second, 0, 1)") {
+  CHECK(same_bits(stored(Format::rg16f, {0.5f, -7.0f, 8.0f, 9.0f}), {0.5f, -7.0f, 0.0f, 1.0f}));
 }
 
 TEST_CASE("a float texel keeps its bits, subnormals too") {

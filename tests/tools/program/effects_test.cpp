@@ -2,6 +2,12 @@
 
 #include "raster/effects/effect.h"
 
+#include <algorithm>
+
+#include "raster/effects/motion/motion_blur.h"
+#include "raster/images/texel.h"
+#include "scenes/draw/velocity.h"
+#include "scenes/load/load_scene.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 #include "tools/files/image_file.h"
@@ -116,6 +122,122 @@ radius = 0.5
   refused("sigma = 2\n", "is no effect");
   refused("name = \"gaussian\"\nsigma = -1\n", "sigma");
   refused("name = \"sharpen\"\nsigma = 1\n", "sigma");
+}
+
+namespace {
+
+/// Turns before the camera, so that most of it moves.
+std::string turning_scene(const TemporaryDirectory& directory, const std::string& effect = {}) {
+  const std::string scene = directory.file("turning.toml");
+  write_file(scene, R"(
+[camera]
+position = [0, 0.3, 2]
+near_m = 0.5
+far_m = 20
+orbit_degrees_per_frame = 3
+[[light]]
+kind = "directional"
+direction = [0, 1, 1]
+[material.white]
+diffuse = [1, 1, 1]
+[[object]]
+shape = "cube"
+material = "white"
+size = 0.7
+spin_degrees_per_frame = [0, 20, 0]
+)" + effect);
+  return scene;
+}
+
+Words turned(const std::string& scene, const std::string& file, Words more) {
+  more.insert(more.begin(), {"render", scene, "--size", "64x48", "--frame", "3", "--show",
+                             "pinhole", "-o", file});
+  return more;
+}
+
+std::string npy_text(const Image& image) {
+  const Bytes bytes = encode_npy(image);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+TEST_CASE("render --effect motion-blur: the library's, of the scene's own velocity") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("a.npy"), scene_file = turning_scene(directory);
+  ThreadPool pool{1};
+  const Scene scene = load_scene(scene_file, {});
+  const Instant shown = instant_at(scene, 3.0, 64, 48);
+  const Image sharp = draw_scene(scene, shown.camera, 3.0, 64, 48, {}, pool);
+  for (const Effect& effect : effects()) {
+    if (effect.velocity == VelocityOf::nothing) continue;
+    CAPTURE(effect.name);
+    const std::string text = std::string{effect.name} + ":shutter=1,samples=8";
+    const ProgramRun run = run_program(turned(scene_file, file, {"--effect", text}));
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    const MotionSpan span{instant_at(scene, 2.5, 64, 48), instant_at(scene, 3.5, 64, 48)};
+    Image velocity = make_image(Format::rg16f, 64, 48);
+    if (effect.velocity == VelocityOf::camera) {
+      camera_velocity(camera_motion(scene, shown.camera, span, 64, 48), sharp, velocity, {}, pool);
+    } else {
+      velocity = draw_velocity(scene, shown, span, 64, 48, {}, pool);
+    }
+    std::vector<double> numbers{1.0, 8.0, 32.0, 0.1};
+    numbers.resize(effect.parameters.size());
+    const Image expected = apply(effect, {sharp, numbers, {}, velocity}, pool);
+    CHECK(equal(read_image_file(file).image, expected));
+    CHECK_FALSE(equal(expected, sharp));
+  }
+}
+
+TEST_CASE("motion blur in a scene file is that of --effect") {
+  const TemporaryDirectory directory;
+  const std::string a = directory.file("a.npy"), b = directory.file("b.npy");
+  const auto rendered = [&](const std::string& scene, const std::string& file, Words more) {
+    more.insert(more.begin(), {"render", scene, "--size", "40x30", "--frame", "2", "-o", file});
+    REQUIRE(run_program(more).status == 0);
+    return read_image_file(file).image;
+  };
+  const std::string effect = "[[effect]]\nname = \"motion-blur\"\nshutter = 0.9\n";
+  const Image by_scene = rendered(turning_scene(directory, effect), a, {});
+  CHECK(equal(by_scene,
+              rendered(turning_scene(directory), b, {"--effect", "motion-blur:shutter=0.9"})));
+  CHECK_FALSE(equal(by_scene, rendered(turning_scene(directory), b, {})));
+}
+
+TEST_CASE("apply --velocity: motion blur of a picture by the motions of a file") {
+  const TemporaryDirectory directory;
+  const std::string from = directory.file("a.npy"), to = directory.file("b.npy"),
+                    motions = directory.file("v.npy");
+  REQUIRE(run_program(render("figures", from, {"--show", "pinhole"})).status == 0);
+  const Image picture = read_image_file(from).image;
+  Image velocity = make_image(Format::rg16f, picture.width, picture.height);
+  clear_image(velocity, {14.0f, -6.0f, 0.0f, 1.0f}, {});
+  write_file(motions, npy_text(velocity));
+  const ProgramRun run = run_program(
+      applied(from, to, {"--velocity", motions, "--effect", "motion-blur:shutter=.8,samples=6"}));
+  CAPTURE(run.err);
+  REQUIRE(run.status == 0);
+  ThreadPool pool{1};
+  Image expected = make_image(Format::rgba16f, picture.width, picture.height);
+  motion_blur({.shutter = 0.8f, .samples = 6}, picture, velocity, expected, {}, pool);
+  CHECK(equal(read_image_file(to).image, expected));
+
+  const auto refused = [&](Words words, const std::vector<std::string>& parts) {
+    const ProgramRun wrong = run_program(applied(from, directory.file("c.npy"), std::move(words)));
+    CHECK(wrong.status == 2);
+    CAPTURE(wrong.err);
+    for (const std::string& part : parts) CHECK(contains(wrong.err, part));
+    CHECK(std::count(wrong.err.begin(), wrong.err.end(), '\n') == 1);
+  };
+  refused({"--effect", "motion-blur"}, {"motion-blur", "--velocity FILE", "(height, width, 2)"});
+  refused({"--effect", "sharpen", "--velocity", motions}, {"--velocity", "motion-blur does"});
+  refused({"--effect", "motion-blur:samples=0", "--velocity", motions}, {"samples", "1 to 64"});
+  refused({"--effect", "motion-blur", "--velocity", from}, {"holds no motions"});
+  const std::string small = directory.file("small.npy");
+  write_file(small, npy_text(make_image(Format::rg16f, 4, 3)));
+  refused({"--effect", "motion-blur", "--velocity", small}, {"is 4x3", "the picture's size"});
 }
 
 TEST_CASE("apply: opacity goes where light goes, and stays where it does not") {
