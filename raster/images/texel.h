@@ -57,7 +57,8 @@ void store_texel(AnyImage&& image, int x, int y, glm::vec4 value, const Profile&
     for (int i = 0; i < 4; ++i) v[i] = stored_float(value[i], profile);
   } else if constexpr (format == Format::rg16f || format == Format::rgba16f) {
     auto* v = &row<std::uint16_t>(image, y)[index];
-    for (int i = 0; i < channel_count(format); ++i) v[i] = float_to_half(value[i], profile.half_store);
+    for (int i = 0; i < channel_count(format); ++i)
+      v[i] = float_to_half(value[i], profile.half_store);
   } else {
     auto* v = &row<std::uint8_t>(image, y)[index];
     for (int i = 0; i < 3; ++i) {

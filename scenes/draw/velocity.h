@@ -1,6 +1,6 @@
 #pragma once
-// How what each pixel shows moves in the picture (raster/effects/motion/velocity.h): objects and camera,
-// by place and by turn.
+// How what each pixel shows moves in the picture (raster/effects/motion/velocity.h): objects and
+// camera, by place and by turn.
 
 #include <glm/mat4x4.hpp>
 #include <vector>

@@ -53,8 +53,8 @@ Image read_velocity(const std::filesystem::path& path, int width, int height) {
                      ", in pixels a frame, would be right");
   }
   if (file.width != width || file.height != height) {
-    throw UsageError(where + "is " + velocity_size(file.width, file.height) + "; the picture's size, " +
-                     velocity_size(width, height) + ", would be right");
+    throw UsageError(where + "is " + velocity_size(file.width, file.height) +
+                     "; the picture's size, " + velocity_size(width, height) + ", would be right");
   }
   const std::vector<PlaneValues> values = read_planes(file, *channels, 0.0f);
   Image velocity = make_image(Format::rg16f, width, height);
