@@ -22,7 +22,8 @@ std::string page_of(const std::vector<ChartPanel>& panels) {
   const auto best = best_for_budgets(panels);
   const auto summary = summary_of(panels);
   const bool few = panels.size() <= kMostPanels;
-  return chart_page({.panels = panels,
+  return chart_page({.subject = chart_subjects().front(),
+                     .panels = panels,
                      .best = best,
                      .summary = summary,
                      .size = "64x64",

@@ -82,7 +82,7 @@ TEST_CASE("stress: cases have names of their own, limits and severities that fit
     CHECK(quick.size() <= 3);
     CHECK(quick.front() == of.severities.front());
   }
-  CHECK(names.size() == 36);
+  CHECK(names.size() == 40);
 }
 
 TEST_CASE("stress: circles that do not fit the picture are left out") {
@@ -150,7 +150,7 @@ TEST_CASE("stress: a calculated truth is what the lens sees, where the case is a
     CHECK(difference < 0.07 * light);
     ++compared;
   }
-  CHECK(compared == 9);
+  CHECK(compared == 10);
 }
 
 TEST_CASE("stress: no method is right by taking the truth's own points of the lens") {
@@ -173,4 +173,22 @@ TEST_CASE("stress: methods that draw the scene have no answer to a picture") {
   const auto pinhole = method_pictures("pinhole", trial, pool);
   REQUIRE(pinhole);
   CHECK(equal((*pinhole)[0], trial.frames[0].sharp));
+}
+
+TEST_CASE("stress: while the shutter is open filters of depth of field have no answer") {
+  ThreadPool pool{2};
+  for (const StressCase& of : shutter_cases()) {
+    CAPTURE(std::string{of.name});
+    const double severity = shown_severity(of, severities_of(of, kSize, false));
+    const StressTrial trial = of.make(severity, kSize, pool);
+    CHECK_FALSE(method_pictures("two-pass", trial, pool));
+    CHECK_FALSE(method_pictures("auto", trial, pool));
+    const auto instant = method_pictures("pinhole", trial, pool);
+    REQUIRE(instant);
+    CHECK(equal((*instant)[0], trial.frames[0].sharp));
+    const auto views = method_pictures("accumulation", trial, pool);
+    REQUIRE(views);
+    const Image truth = make_stress_truth(trial, of.views == 0 ? 0 : 256, pool).pictures[0];
+    CHECK(answer_flip(truth, (*views)[0], pool) < 0.2 * answer_flip(truth, (*instant)[0], pool));
+  }
 }

@@ -113,7 +113,8 @@ void write_chart(const std::vector<ChartPanel>& panels, const ChartOptions& opti
       },
       "summary", options);
   write_text(options.directory / "index.html",
-             chart_page({.panels = panels,
+             chart_page({.subject = *options.subject,
+                         .panels = panels,
                          .best = best,
                          .summary = summary,
                          .size = size_text(options.size),

@@ -30,12 +30,14 @@ std::string truth_key(const ChartScene& scene, const std::string& file_bytes, in
                       std::uint64_t measures, ThreadPool& pool) {
   const Image probe = accumulation(accumulation_input(scene, kProbeSamples), pool).picture;
   const ThinLens& lens = scene.lens;
-  return "softfocus " SOFTFOCUS_VERSION "; scene " + scene.scene.name + "; file " +
-         hash_text(hash_bytes(file_bytes)) + "; size " +
+  return "softfocus " SOFTFOCUS_VERSION "; of " + std::string{scene.subject->name} + "; scene " +
+         scene.scene.name + "; file " + hash_text(hash_bytes(file_bytes)) + "; size " +
          size_text({scene.pinhole.width, scene.pinhole.height}) + "; frame " +
          exact_number(scene.frame) + "; focus " + exact_number(lens.focus_m) + " m; focal length " +
          exact_number(lens.focal_length_mm) + " mm; f/" + exact_number(lens.f_number) +
-         "; aperture " + exact_number(scene.aperture_m) + " m; samples " + std::to_string(samples) +
+         "; aperture " + exact_number(scene.aperture_m) + " m; jitter " +
+         std::to_string(scene.sampling.jitter) + "; shutter " +
+         exact_number(scene.sampling.shutter_frames) + "; samples " + std::to_string(samples) +
          "; pinhole " + hash_text(hash_image(scene.pinhole)) + "; first samples " +
          hash_text(hash_image(probe)) + "; measures " + hash_text(measures);
 }

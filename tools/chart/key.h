@@ -10,8 +10,8 @@
 namespace softfocus {
 
 /// A line that differs whenever the truth could. It names the program's version, the scene's name
-/// and file, size, frame, lens, samples and two hashes: of the pinhole's picture and of that of the
-/// first few samples. The hashes change with a scene's other files and with the program.
+/// and file, size, frame, lens, sampling and two hashes: of the pinhole's picture and of that of
+/// the first few samples. The hashes change with a scene's other files and with the program.
 /// `measures` is measures_hash(): without it a changed measure would take over old errors.
 std::string truth_key(const ChartScene& scene, const std::string& file_bytes, int samples,
                       std::uint64_t measures, ThreadPool& pool);

@@ -20,14 +20,24 @@ constexpr int kMostRounds = 100;
 /// and planes of the methods, and the maps of the measures.
 constexpr std::uint64_t kChartBytesPerPixel = 320;
 
-std::vector<std::string> known_methods(const std::string& text) {
-  const std::vector<std::string> known = chart_methods();
-  std::vector<std::string> wanted = listed_names("--methods", text);
-  for (const std::string& name : wanted) {
+void check_methods(const ChartOptions& options) {
+  const std::vector<std::string> known = options.subject->methods();
+  for (const std::string& name : options.methods) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     refuse_name("--methods", name, known);
   }
-  return wanted;
+}
+
+std::vector<std::string> methods_of_all_subjects() {
+  std::vector<std::string> names;
+  for (const ChartSubject& subject : chart_subjects()) {
+    for (std::string& name : subject.methods()) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) {
+        names.push_back(std::move(name));
+      }
+    }
+  }
+  return names;
 }
 
 }  // namespace
@@ -37,16 +47,27 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
   add_value(parser, "-o,--output", "DIR", "Where the chart and what was measured go; required",
             [&options](const std::string& text) { options.directory = text; });
   begin_group(parser, "What is measured");
+  add_value(parser, "--of", "SUBJECT",
+            "What the pictures are to show: depth-of-field, motion-blur, anti-aliasing or bloom "
+            "(default: depth-of-field)",
+            [&options](const std::string& text) {
+              options.subject = find_chart_subject(text);
+              if (options.subject == nullptr) {
+                refuse_name("--of", text, names_in(chart_subjects()));
+              }
+            });
+  offer(parser, "--of", [] { return names_in(chart_subjects()); });
   add_value(parser, "--scenes", "A,B,...",
             "Scenes or files, as render takes them, and ranges such as random:64..127 (default: "
-            "all that have a file)",
+            "all that have a file; of other subjects than depth of field a few)",
             [&options](const std::string& text) { options.scenes = scene_names(text); });
   offer(parser, "--scenes", known_scenes);
-  add_value(parser, "--methods", "A,B,...",
-            "Methods beside the pinhole (default: all filters, accumulation, filtered-views, "
-            "surface-splatting, auto)",
-            [&options](const std::string& text) { options.methods = known_methods(text); });
-  offer(parser, "--methods", chart_methods);
+  add_value(
+      parser, "--methods", "A,B,...",
+      "Methods beside the pinhole (default: all of the subject; of depth of field all filters, "
+      "accumulation, filtered-views, surface-splatting, auto)",
+      [&options](const std::string& text) { options.methods = listed_names("--methods", text); });
+  offer(parser, "--methods", methods_of_all_subjects);
   add_value(
       parser, "--size", "WxH",
       "Width and height in pixels (default: 1024x1024; 256x256 with --quick)",
@@ -55,7 +76,7 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
            options.quick);
   add_value(parser, "--samples", "N",
             "Of the ground truth, a multiple of 16 from 128 to 65536 (default: 4096; 512 with "
-            "--quick)",
+            "--quick; of other subjects 1024 and 256)",
             [&options](const std::string& text) {
               constexpr std::string_view kWanted = "a multiple of 16 from 128 to 65536";
               options.given_samples =
@@ -85,12 +106,19 @@ void complete(ChartOptions& options) {
   }
   const int side = options.quick ? 256 : 1024;
   options.size = options.given_size.value_or(PictureSize{side, side});
-  options.truth_samples = options.given_samples.value_or(options.quick ? 512 : 4096);
+  if (options.given_samples && options.subject->truth_of != nullptr) {
+    throw UsageError("--samples: the truth of " + std::string{options.subject->name} +
+                     " is calculated; leave it out");
+  }
+  options.truth_samples = options.given_samples.value_or(
+      options.quick ? options.subject->quick_truth_samples : options.subject->truth_samples);
   options.rounds = options.given_rounds.value_or(options.quick ? 3 : 7);
-  if (options.methods.empty()) options.methods = chart_methods();
+  check_methods(options);
+  if (options.methods.empty()) options.methods = options.subject->methods();
   // Its frame is the unit of the others' times, its error what they have to better.
   const auto pinhole = std::find(options.methods.begin(), options.methods.end(), kPinhole);
   if (pinhole == options.methods.end()) options.methods.emplace(options.methods.begin(), kPinhole);
+  if (options.scenes.empty()) options.scenes = options.subject->scenes;
   if (options.scenes.empty()) {
     for (const SceneListing& scene : list_scenes(scene_search_path(options.scene_path))) {
       options.scenes.push_back(scene.name);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/chart/subject.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
 #include "tools/options/run_options.h"
@@ -13,8 +14,9 @@
 namespace softfocus {
 
 struct ChartOptions {
+  const ChartSubject* subject = &chart_subjects().front();
   std::filesystem::path directory;
-  std::vector<std::string> scenes;   ///< as `render` takes them; none given: all that are found
+  std::vector<std::string> scenes;   ///< as `render` takes them; none given: the subject's
   std::vector<std::string> methods;  ///< none given: all; the pinhole is always there
   std::vector<std::filesystem::path> scene_path;
   std::optional<PictureSize> given_size;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "dof/halve.h"
 #include "raster/numbers/profile.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/object_numbers.h"
@@ -35,6 +36,7 @@ ChartRunner::ChartRunner(const ChartScene& scene, ThreadPool& pool)
 RunTime ChartRunner::run(const ChartEntry& entry) {
   if (entry.max_error) return choose(*entry.max_error);
   if (entry.of_scene != nullptr) return draw_otherwise(*entry.of_scene);
+  if (is_of_effects(entry)) return draw_with_effects(entry);
   if (entry.method == kOfFilteredViews) return filter_views(entry.samples);
   return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
 }
@@ -103,6 +105,26 @@ RunTime ChartRunner::filter(const ChartEntry& entry) {
   return {ms_between(start, end), ms_between(drawn, end)};
 }
 
+RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
+  const bool is_large = entry.supersample > 1;
+  if (is_large && !prepared_large_) {
+    prepared_large_ = prepare_scene(scene_.scene, Profile{}, pool_);
+    large_ = make_image(Format::rgba16f, entry.supersample * drawn_.width,
+                        entry.supersample * drawn_.height);
+  }
+  PreparedScene& prepared = is_large ? *prepared_large_ : prepared_for("ieee");
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared, scene_.view, scene_.frame, is_large ? large_ : drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  if (is_large) result_ = halve(large_, Profile{}, pool_);
+  for (const ChosenEffect& chosen : entry.effects) {
+    const Image& before = &chosen == &entry.effects.front() && !is_large ? drawn_ : result_;
+    result_ = apply(*chosen.effect, {before, chosen.parameters, Profile{}}, pool_);
+  }
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
 // The memory is made once, as it would be for many frames.
 AccumulationBuffer& ChartRunner::buffer() {
   if (!buffer_) {
@@ -118,9 +140,15 @@ void ChartRunner::add_views(int first, int last) {
   add_lens_views(views, views_, first, last, sums_, pool_);
 }
 
-// As accumulation() has it.
+// As accumulation() has them.
+void ChartRunner::place_views_of(int samples) {
+  Sampling sampling = views_.sampling;
+  sampling.samples = samples;
+  place_views(buffer(), sampling);
+}
+
 void ChartRunner::add_all_views(int samples) {
-  buffer().points = view_points({.samples = samples});
+  place_views_of(samples);
   for (int first = 0; first < samples; first += kLensViewGroup) {
     add_views(first, std::min(first + kLensViewGroup, samples));
   }
@@ -194,12 +222,14 @@ void ChartRunner::warm_up(const ChartEntry& entry) {
     filter(entry);
   } else if (entry.of_scene != nullptr) {
     draw_otherwise(*entry.of_scene);
+  } else if (is_of_effects(entry)) {
+    draw_with_effects(entry);
   } else if (entry.method == kOfFilteredViews) {
     filter_views(std::min(samples, kFilteredViews));
     return;
   }
   if (samples == 0) return;
-  buffer().points = view_points({.samples = samples});
+  place_views_of(samples);
   add_views(0, std::min(samples, kLensViewGroup));
 }
 

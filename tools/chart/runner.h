@@ -42,6 +42,7 @@ class ChartRunner {
 
  private:
   RunTime filter(const ChartEntry& entry);
+  RunTime draw_with_effects(const ChartEntry& entry);
   RunTime accumulate(int samples);
   RunTime filter_views(int samples);
   RunTime draw_otherwise(const LensViewMethod& method);
@@ -54,6 +55,7 @@ class ChartRunner {
   AccumulationBuffer& buffer();
   void add_views(int first, int last);
   void warm_up(const ChartEntry& entry);
+  void place_views_of(int samples);
   void add_all_views(int samples);
 
   const ChartScene& scene_;
@@ -64,7 +66,8 @@ class ChartRunner {
   std::optional<AccumulationBuffer> buffer_;
   std::optional<FilteredViewsBuffer> filtered_;
   SampleSums sums_;
-  Image drawn_;
+  std::optional<PreparedScene> prepared_large_;  // of what is drawn larger
+  Image drawn_, large_;
   std::vector<Image> behind_;                    ///< as many layers as the method reads
   std::vector<TransparentPicture> transparent_;  ///< layers before drawn_
   std::vector<std::uint16_t> objects_;           // of the filter drawn last, if it reads them

@@ -10,6 +10,26 @@
 #include "tools/options/run_options.h"
 
 namespace softfocus {
+namespace {
+
+bool moves(const Scene& scene) {
+  return scene.camera.orbit_degrees_per_frame != 0.0 ||
+         std::any_of(scene.objects.begin(), scene.objects.end(), [](const Object& object) {
+           return object.spin_degrees_per_frame != glm::dvec3{0.0} ||
+                  object.sway != glm::dvec3{0.0};
+         });
+}
+
+// What the subject makes of a scene.
+void prepare_for(const ChartSubject& subject, ChartScene& chart) {
+  chart.sampling = subject.sampling;
+  if (subject.sampling.shutter_frames == 0.0) return;
+  Camera& camera = chart.scene.camera;
+  if (camera.shutter_frames > 0.0) chart.sampling.shutter_frames = camera.shutter_frames;
+  if (!moves(chart.scene)) camera.orbit_degrees_per_frame = subject.orbit_degrees_per_frame;
+}
+
+}  // namespace
 
 std::vector<ReadFile> check_scenes(const ChartOptions& options) {
   std::vector<std::string> names;
@@ -34,26 +54,30 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
   const auto [width, height] = options.size;
   chart.scene = load_scene(name, scene_search_path(options.scene_path));
   print_scene_warnings(chart.scene.warnings, false);
+  chart.subject = options.subject;
+  prepare_for(*options.subject, chart);
   chart.frame = options.frame;
   chart.view = camera_matrices(chart.scene.camera, chart.frame, width, height);
   chart.lens = lens_at(chart.scene.lens, chart.frame);
   check_lens(chart.lens, {}, name);
   const double coc_scale = chart.scene.lens.coc_scale;
   chart.coc = checked_pixel_coc(chart.lens, chart.scene.camera.fov_y_degrees, height, coc_scale);
-  chart.aperture_m = aperture_radius_m(chart.lens, coc_scale);
+  if (options.subject->through_lens) chart.aperture_m = aperture_radius_m(chart.lens, coc_scale);
   chart.pinhole = draw_scene(chart.scene, chart.view, chart.frame, width, height, Profile{}, pool);
   chart.labels = label_regions(chart.pinhole, chart.coc);
   return chart;
 }
 
 LensViewInput accumulation_input(const ChartScene& scene, int samples) {
+  Sampling sampling = scene.sampling;
+  sampling.samples = samples;
   return {.scene = scene.scene,
           .camera = scene.view,
           .frame = scene.frame,
           .pinhole = scene.pinhole,
           .focus_m = scene.lens.focus_m,
           .aperture_radius_m = scene.aperture_m,
-          .sampling = {.samples = samples},
+          .sampling = sampling,
           .profile = Profile{},
           .progress = {}};
 }

@@ -12,12 +12,14 @@
 namespace softfocus {
 
 struct ChartScene {
+  const ChartSubject* subject = &chart_subjects().front();
   Scene scene;
   CameraMatrices view{};
   double frame = 0.0;
   ThinLens lens;
   PixelCoc coc;
-  double aperture_m = 0.0;  ///< its radius
+  double aperture_m = 0.0;  ///< its radius; 0 if the subject is not seen through a lens
+  Sampling sampling;        ///< of the subject; but for the number of samples
   Image pinhole;            ///< in the profile ieee
   Image labels;             ///< label_regions() of it
 };
@@ -30,7 +32,8 @@ std::vector<ReadFile> check_scenes(const ChartOptions& options);
 /// Loads and draws a scene. Throws SceneError, and UsageError for an impossible lens.
 ChartScene load_chart_scene(const std::string& name, const ChartOptions& options, ThreadPool& pool);
 
-/// For the methods that draw the scene. Without jitter: filters, too, look from pixels' centres.
+/// For the methods that draw the scene. Of depth of field without jitter: filters, too, look from
+/// pixels' centres.
 LensViewInput accumulation_input(const ChartScene& scene, int samples);
 
 }  // namespace softfocus

@@ -60,6 +60,10 @@ const SettingsOfMethod& settings_of(std::string_view method) {
 
 }  // namespace
 
+bool is_of_effects(const ChartEntry& entry) {
+  return !entry.effects.empty() || entry.supersample > 1;
+}
+
 std::vector<std::string> chart_methods() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.emplace_back(method.name);
@@ -110,6 +114,11 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
 Json settings_json(const ChartEntry& entry) {
   if (entry.max_error) return {{"max_error", *entry.max_error}, {"chosen", entry.chosen}};
   if (entry.of_scene != nullptr) return Json::object();
+  if (is_of_effects(entry)) {
+    Json json = Json::object();
+    if (!entry.setting.name.empty()) json[entry.setting.name] = entry.setting.value;
+    return json;
+  }
   if (entry.filter == nullptr) return {{"samples", entry.samples}};
   Json json = Json::object();
   if (entry.max_coc_px) json["max_coc_px"] = *entry.max_coc_px;
@@ -133,6 +142,10 @@ std::string settings_text(const ChartEntry& entry) {
 std::string setting_within_series(const ChartEntry& entry) {
   if (entry.max_error) return "max-error " + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return "";
+  if (is_of_effects(entry)) {
+    const EffectSetting& setting = entry.setting;
+    return setting.name.empty() ? "" : setting.name + " " + short_number(setting.value);
+  }
   if (entry.filter == nullptr) return count_text(entry.samples, "sample");
   return entry.max_coc_px ? "max-coc " + short_number(double{*entry.max_coc_px}) : "";
 }
@@ -141,6 +154,10 @@ std::string entry_id(const ChartEntry& entry) {
   std::string id = entry.method;
   if (entry.max_error) return id + "-e" + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return id;
+  if (is_of_effects(entry)) {
+    const EffectSetting& setting = entry.setting;
+    return setting.name.empty() ? id : id + "-" + setting.name + short_number(setting.value);
+  }
   if (entry.filter == nullptr) return id + "-s" + std::to_string(entry.samples);
   if (entry.max_coc_px) id += "-r" + short_number(double{*entry.max_coc_px});
   if (entry.profile != "ieee") id += "-" + entry.profile;

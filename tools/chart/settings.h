@@ -1,5 +1,6 @@
 #pragma once
-// What `chart` measures: for each method a list of settings.
+// What `chart` measures: for each method of depth of field a list of settings. subject.h has other
+// subjects.
 
 #include <optional>
 #include <string>
@@ -8,25 +9,38 @@
 
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "raster/effects/effect.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
 
+/// A setting of an effect: "sigma", 2.
+struct EffectSetting {
+  std::string name{};
+  double value = 0.0;
+};
+
 /// One contender: a method with its settings. Settings without effect on it are left out.
 struct ChartEntry {
   std::string method;
-  /// Null: accumulation or filtered-views of `samples` pictures, auto, or another method that
-  /// needs the scene.
+  /// Null: accumulation or filtered-views of `samples` pictures, auto, another method that
+  /// needs the scene, or what is_of_effects().
   const Method* filter = nullptr;
   const LensViewMethod* of_scene = nullptr;  ///< which takes no samples
   std::string profile = "ieee";              ///< a known profile
   std::optional<float> max_coc_px{};
   Arithmetic arithmetic = Arithmetic::floats;  ///< of two-pass
   int samples = 0;
-  std::optional<double> max_error{};  ///< of auto, which chooses from the others
-  std::string chosen{};               ///< by auto, once it has: "disc-layers, radius 16"
+  std::optional<double> max_error{};    ///< of auto, which chooses from the others
+  std::string chosen{};                 ///< by auto, once it has: "disc-layers, radius 16"
+  std::vector<ChosenEffect> effects{};  ///< on the pinhole's picture, one after the other
+  int supersample = 1;                  ///< drawn at so many times the width and height
+  EffectSetting setting{};              ///< in what the effects differ from others of the method
 };
+
+/// Whether it is the pinhole's picture with effects, or drawn larger and halved.
+bool is_of_effects(const ChartEntry& entry);
 
 inline constexpr std::string_view kPinhole = "pinhole";
 inline constexpr std::string_view kOfFilteredViews = "filtered-views";
@@ -41,7 +55,8 @@ std::vector<std::string> chart_methods();
 std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, bool quick);
 
 /// {"max_coc_px": 16, "profile": "ieee"}, {"max_coc_px": 16, "profile": "ieee", "arithmetic":
-/// "fixed-8"}, {"samples": 32}, {} or {"max_error": 0.02, "chosen": "disc-layers, radius 16"}.
+/// "fixed-8"}, {"samples": 32}, {}, {"sigma": 2} or {"max_error": 0.02, "chosen": "disc-layers,
+/// radius 16"}.
 Json settings_json(const ChartEntry& entry);
 
 /// "max-coc 16, d3d11", "32 samples", "max-error 0.02: disc-layers, radius 16"; the profile

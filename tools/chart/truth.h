@@ -12,9 +12,9 @@
 namespace softfocus {
 
 struct ChartTruth {
-  Image picture;  ///< the mean of the first views of lens_points()
+  Image picture;  ///< the mean of the first views of the sequence, or calculated
   /// The first half of the samples against the second. The picture is the mean of both: its mean
-  /// square error is a fourth of their mean square difference.
+  /// square error is a fourth of their mean square difference. None of what is calculated.
   ChartErrors noise_floor;
 };
 

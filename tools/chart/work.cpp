@@ -30,6 +30,7 @@ constexpr double kLoadGuess = 20.0, kFilterGuess = 6.0, kAutoGuess = 60.0, kScen
 double run_guess(const ChartEntry& entry) {
   if (entry.max_error) return kAutoGuess;
   if (entry.of_scene != nullptr) return kSceneGuess;
+  if (is_of_effects(entry)) return kFilterGuess;
   return entry.filter != nullptr ? kFilterGuess : static_cast<double>(entry.samples);
 }
 
@@ -60,7 +61,7 @@ struct Work {
 std::vector<ChartEntry> wanted_entries(const ChartOptions& options) {
   std::vector<ChartEntry> entries;
   for (const std::string& method : options.methods) {
-    for (ChartEntry& entry : chart_entries(method, options.size.height, options.quick)) {
+    for (ChartEntry& entry : options.subject->entries(method, options.size.height, options.quick)) {
       entries.push_back(std::move(entry));
     }
   }

@@ -26,7 +26,7 @@ LensViewInput views_input(const StressFrame& frame, int samples) {
           .pinhole = frame.sharp,
           .focus_m = scene.focus_m,
           .aperture_radius_m = scene.aperture_m,
-          .sampling = {.samples = samples},
+          .sampling = {.samples = samples, .shutter_frames = scene.shutter_frames},
           .profile = Profile{},
           .progress = {}};
 }
@@ -59,6 +59,12 @@ Image method_picture(const std::string& method, const StressFrame& frame, Thread
   return filtered(*find_method(method), frame, frame.settings.max_coc_px, pool);
 }
 
+/// While the shutter is open a filter of depth of field has no part; the pinhole shows an instant.
+bool can_answer(const std::string& method, const StressFrame& frame) {
+  if (!frame.scene) return find_method(method) != nullptr;
+  return frame.scene->shutter_frames == 0.0 || method == kViewsMethod || method == "pinhole";
+}
+
 }  // namespace
 
 std::vector<std::string> stress_methods() {
@@ -76,7 +82,7 @@ std::optional<std::vector<Image>> method_pictures(const std::string& method,
                                                   const StressTrial& trial, ThreadPool& pool) {
   std::vector<Image> pictures;
   for (const StressFrame& frame : trial.frames) {
-    if (find_method(method) == nullptr && !frame.scene) return std::nullopt;
+    if (!can_answer(method, frame)) return std::nullopt;
     pictures.push_back(method_picture(method, frame, pool));
   }
   return pictures;

@@ -15,7 +15,8 @@ inline constexpr int kStressSamples = 64;
 /// The filters of dof/dof.h, accumulation, what draws the scene in one go, and auto.
 std::vector<std::string> stress_methods();
 
-/// A method's pictures, or nothing if it needs a scene and the trial is made as a picture.
+/// A method's pictures, or nothing if it needs a scene and the trial is made as a picture, or if it
+/// is a filter of depth of field and the trial's shutter is open.
 std::optional<std::vector<Image>> method_pictures(const std::string& method,
                                                   const StressTrial& trial, ThreadPool& pool);
 

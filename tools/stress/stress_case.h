@@ -19,7 +19,8 @@ struct StressScene {
   Scene scene;
   CameraMatrices camera{};
   double focus_m = 1.0;
-  double aperture_m = 0.0;  ///< its radius
+  double aperture_m = 0.0;      ///< its radius
+  double shutter_frames = 0.0;  ///< how long the shutter is open: above 0 all of it is the truth
 };
 
 /// One picture to blur. Most trials have one, those of motion and of resolution two.
@@ -78,6 +79,7 @@ std::span<const StressCase> plane_cases();
 std::span<const StressCase> depth_cases();
 std::span<const StressCase> plain_cases();
 std::span<const StressCase> motion_cases();
+std::span<const StressCase> shutter_cases();
 
 /// The severities for a picture of that size: radii and widths in pixels are at most a quarter of
 /// it. `quick` takes the first, the telling and the last one.

@@ -8,7 +8,7 @@ namespace softfocus {
 std::vector<StressCase> stress_cases() {
   std::vector<StressCase> all;
   for (const auto cases : {edge_cases(), light_cases(), crowd_cases(), glass_cases(), plane_cases(),
-                           depth_cases(), plain_cases(), motion_cases()}) {
+                           depth_cases(), plain_cases(), motion_cases(), shutter_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

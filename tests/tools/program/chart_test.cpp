@@ -4,6 +4,7 @@
 #include "tests/support/cli_render.h"
 #include "tests/support/skip.h"
 #include "tools/chart/report/gnuplot.h"
+#include "tools/chart/subject.h"
 
 using namespace softfocus;
 
@@ -309,4 +310,36 @@ TEST_CASE("chart: the help names every option") {
     CAPTURE(option);
     CHECK(contains(run.out, std::string{"  "} + option));
   }
+}
+
+TEST_CASE("chart --of: another subject has its own truth, methods and page") {
+  if (!has_gnuplot()) return;
+  const TemporaryDirectory directory;
+  for (const ChartSubject& subject : chart_subjects().subspan(1)) {
+    const std::string name{subject.name};
+    CAPTURE(name);
+    const std::string out = directory.file(name);
+    const Words words{"chart",  "--of",  name, "--scenes", "crossing", "--quick",
+                      "--size", "64x64", "-o", out,        "--rounds", "1"};
+    REQUIRE(run_program(words).status == 0);
+    CHECK(listing_of(out) == kFiles);
+    const json list = json::parse(read_file(out + "/chart.json"));
+    CHECK(list[0]["method"] == "pinhole");
+    const std::size_t good = name == "bloom" ? 2 : list.size() - 1;
+    CHECK(list[good]["flip"] < list[0]["flip"]);
+    CHECK(list[good]["settings"] ==
+          (name == "bloom" ? json{{"levels", 6.0}} : json{{"samples", 16}}));
+    const std::string page = read_file(out + "/index.html");
+    CHECK(contains(page, std::string{subject.title} + ": speed against accuracy"));
+    CHECK_FALSE(contains(page, "of the lens"));
+    CHECK(run_program(words).out.starts_with("went on: "));
+  }
+}
+
+TEST_CASE("chart --of: what is no subject, and methods of another, are refused") {
+  check_refused_chart({"--of", "fog"}, {"--of", "fog", "motion-blur"});
+  check_refused_chart({"--of", "motion-blur", "--methods", "two-pass"},
+                      {"--methods", "two-pass", "accumulation"});
+  check_refused_chart({"--of", "bloom", "--samples", "256"}, {"--samples", "calculated"});
+  check_refused_chart({"--methods", "supersample"}, {"--methods", "supersample", "two-pass"});
 }

@@ -50,14 +50,19 @@ std::string point_section(const ChartPanel& panel, const ChartPoint& point) {
          "</div>\n</section>\n";
 }
 
-std::string scene_section(const ChartPanel& panel) {
-  std::string html = "<h2 id=\"scene-" + html_text(panel.scene) + "\">" + html_text(panel.scene) +
-                     "</h2>\n<p>" + html_text(panel.title) + "</p>\n<div class=\"row\">" +
-                     figure(panel.truth_picture, "Ground truth of " + panel.scene,
-                            "the truth: " + std::to_string(panel.truth_samples) +
-                                " points of the lens; FLIP of one half of them against the other " +
-                                decimals(panel.noise_floor.flip, 4)) +
-                     "</div>\n<div class=\"points\">\n";
+std::string truth_caption(const ChartPage& page, const ChartPanel& panel) {
+  if (page.subject.truth_of != nullptr) return "the truth, calculated";
+  return "the truth: " + std::to_string(panel.truth_samples) + " " +
+         std::string{page.subject.sample} + "; FLIP of one half of them against the other " +
+         decimals(panel.noise_floor.flip, 4);
+}
+
+std::string scene_section(const ChartPage& page, const ChartPanel& panel) {
+  std::string html =
+      "<h2 id=\"scene-" + html_text(panel.scene) + "\">" + html_text(panel.scene) + "</h2>\n<p>" +
+      html_text(panel.title) + "</p>\n<div class=\"row\">" +
+      figure(panel.truth_picture, "Ground truth of " + panel.scene, truth_caption(page, panel)) +
+      "</div>\n<div class=\"points\">\n";
   for (const ChartPoint& point : panel.points) {
     if (!point.pictures.empty()) html += point_section(panel, point);
   }
@@ -65,11 +70,10 @@ std::string scene_section(const ChartPanel& panel) {
 }
 
 std::string introduction(const ChartPage& page) {
-  std::string html =
-      "<p>Each method of depth of field on " + std::to_string(page.panels.size()) +
-      (page.panels.size() == 1 ? " scene" : " scenes") + " at " + html_text(page.size) +
-      ": how far its picture is from the ground truth, the mean of pictures from many points of "
-      "the lens";
+  std::string html = "<p>Each method on " + std::to_string(page.panels.size()) +
+                     (page.panels.size() == 1 ? " scene" : " scenes") + " at " +
+                     html_text(page.size) + ": how far its picture is from the ground truth, " +
+                     std::string{page.subject.truth};
   if (has_times(page.summary)) {
     html +=
         ", and how long a whole frame takes, from the drawing to the result. Times are "
@@ -130,7 +134,7 @@ std::string pictures_part(const ChartPage& page) {
   std::string html = "<h2>Pictures</h2>\n<p>" + pictured_text(page.panels) +
                      " In the maps black is right and pale yellow is wrong.</p>\n";
   for (const ChartPanel& panel : page.panels) {
-    if (!panel.truth_picture.empty()) html += scene_section(panel);
+    if (!panel.truth_picture.empty()) html += scene_section(page, panel);
   }
   return html;
 }
@@ -138,14 +142,16 @@ std::string pictures_part(const ChartPage& page) {
 }  // namespace
 
 std::string chart_page(const ChartPage& page) {
+  const std::string heading = std::string{page.subject.title} + ": speed against accuracy";
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Depth of field: speed against accuracy</title>\n<style>";
+      "<title>" +
+      heading + "</title>\n<style>";
   html += kPageStyle;
-  html += "</style>\n</head>\n<body>\n<h1>Depth of field: speed against accuracy</h1>\n" +
-          introduction(page) + summary_part(page) + chart_part(page) + best_part(page) +
-          numbers_part(page) + pictures_part(page) + "<script>";
+  html += "</style>\n</head>\n<body>\n<h1>" + heading + "</h1>\n" + introduction(page) +
+          summary_part(page) + chart_part(page) + best_part(page) + numbers_part(page) +
+          pictures_part(page) + "<script>";
   html += kPageScript;
   return html + "</script>\n</body>\n</html>\n";
 }

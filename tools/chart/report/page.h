@@ -7,10 +7,12 @@
 #include "tools/chart/point.h"
 #include "tools/chart/report/best.h"
 #include "tools/chart/report/summary.h"
+#include "tools/chart/subject.h"
 
 namespace softfocus {
 
 struct ChartPage {
+  const ChartSubject& subject;
   const std::vector<ChartPanel>& panels;
   const std::vector<BestForBudget>& best;  ///< of these panels
   const std::vector<SummaryRow>& summary;

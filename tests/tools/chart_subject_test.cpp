@@ -1,0 +1,143 @@
+// What else than depth of field a chart can be of.
+
+#include "tools/chart/subject.h"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "dof/halve.h"
+#include "dof/measure/measures.h"
+#include "tools/chart/options.h"
+#include "tools/chart/runner.h"
+#include "tools/chart/scene.h"
+#include "tools/chart/truth.h"
+
+using namespace softfocus;
+
+namespace {
+
+ChartScene scene_of(const char* subject, const std::string& name, ThreadPool& pool) {
+  ChartOptions options;
+  options.subject = find_chart_subject(subject);
+  REQUIRE(options.subject != nullptr);
+  options.size = {64, 48};
+  return load_chart_scene(name, options, pool);
+}
+
+double flip_of(const Image& truth, const Image& picture, ThreadPool& pool) {
+  return measure_pictures(truth, picture, nullptr, {}, pool).whole.flip;
+}
+
+Image truth_of(const ChartScene& scene, ThreadPool& pool) {
+  return make_truth(
+             scene, 256, [](int) {}, pool)
+      .picture;
+}
+
+ChartEntry entry_of(const char* subject, const char* method, std::size_t setting) {
+  return find_chart_subject(subject)->entries(method, 48, false).at(setting);
+}
+
+}  // namespace
+
+TEST_CASE("chart subjects: each method has settings, and each setting a name of its own") {
+  CHECK(chart_subjects().front().name == "depth-of-field");
+  for (const ChartSubject& subject : chart_subjects()) {
+    CAPTURE(subject.name);
+    CHECK(subject.truth_samples % kTruthSampleStep == 0);
+    CHECK(subject.quick_truth_samples % kTruthSampleStep == 0);
+    const std::vector<std::string> names = subject.methods();
+    CHECK(names.front() == kPinhole);
+    std::set<std::string> ids;
+    std::size_t entries = 0;
+    for (const std::string& name : names) {
+      for (const bool quick : {false, true}) CHECK(!subject.entries(name, 512, quick).empty());
+      for (const ChartEntry& entry : subject.entries(name, 512, false)) {
+        CHECK(entry.method == name);
+        ids.insert(entry_id(entry));
+        ++entries;
+      }
+    }
+    CHECK(ids.size() == entries);
+  }
+  CHECK(find_chart_subject("fog") == nullptr);
+}
+
+TEST_CASE("chart of motion blur: the truth is many times of the scene's shutter, by a pinhole") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("motion-blur", "crossing", pool);
+  LensViewInput input{.scene = scene.scene,
+                      .camera = scene.view,
+                      .frame = 0.0,
+                      .pinhole = scene.pinhole,
+                      .focus_m = scene.lens.focus_m,
+                      .aperture_radius_m = 0.0,
+                      .sampling = {.samples = 256, .until = 0.0, .shutter_frames = 0.5},
+                      .profile = Profile{},
+                      .progress = {}};
+  CHECK(equal(truth_of(scene, pool), accumulation(input, pool).picture));
+}
+
+TEST_CASE("chart of motion blur: where nothing moves, the camera goes around; else it does not") {
+  ThreadPool pool{1};
+  CHECK(scene_of("motion-blur", "figures", pool).scene.camera.orbit_degrees_per_frame == 2.0);
+  CHECK(scene_of("motion-blur", "random:3", pool).scene.camera.orbit_degrees_per_frame == 2.0);
+  CHECK(scene_of("motion-blur", "windmill", pool).scene.camera.orbit_degrees_per_frame == 0.0);
+  CHECK(scene_of("depth-of-field", "figures", pool).scene.camera.orbit_degrees_per_frame == 0.0);
+}
+
+TEST_CASE("chart of motion blur: more times are nearer to the truth, an instant is far") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("motion-blur", "windmill", pool);
+  const Image truth = truth_of(scene, pool);
+  ChartRunner runner{scene, pool};
+  const auto error = [&](const ChartEntry& entry) {
+    runner.run(entry);
+    return flip_of(truth, runner.result(), pool);
+  };
+  const double instant = error(entry_of("motion-blur", "pinhole", 0));
+  const double few = error(entry_of("motion-blur", "accumulation", 1));
+  const double many = error(entry_of("motion-blur", "accumulation", 4));
+  MESSAGE(instant << ", " << few << ", " << many);
+  CHECK(few < instant);
+  CHECK(many < 0.5 * few);
+}
+
+TEST_CASE("chart of anti-aliasing: what looks from more places in the pixel is nearer") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("anti-aliasing", "figures", pool);
+  const Image truth = truth_of(scene, pool);
+  ChartRunner runner{scene, pool};
+  const auto error = [&](const ChartEntry& entry) {
+    runner.run(entry);
+    return flip_of(truth, runner.result(), pool);
+  };
+  const double none = error(entry_of("anti-aliasing", "pinhole", 0));
+  const double twice = error(entry_of("anti-aliasing", "supersample", 0));
+  const double sixteen = error(entry_of("anti-aliasing", "accumulation", 3));
+  MESSAGE(none << ", " << twice << ", " << sixteen);
+  CHECK(twice < 0.6 * none);
+  CHECK(sixteen < twice);
+}
+
+TEST_CASE("chart runner: its pictures are those of what it times") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("anti-aliasing", "crossing", pool);
+  ChartRunner runner{scene, pool};
+  runner.run_warm(entry_of("anti-aliasing", "supersample", 0));
+  const Image large = draw_scene(scene.scene, camera_matrices(scene.scene.camera, 0.0, 128, 96),
+                                 0.0, 128, 96, Profile{}, pool);
+  CHECK(equal(runner.result(), halve(large, Profile{}, pool)));
+  const ChartEntry blurred = entry_of("anti-aliasing", "gaussian", 1);
+  runner.run_warm(blurred);
+  CHECK(equal(runner.result(),
+              apply(*find_effect("gaussian"), {scene.pinhole, std::vector{0.6}, Profile{}}, pool)));
+  for (const char* subject : {"anti-aliasing", "motion-blur"}) {
+    const ChartScene of = scene_of(subject, "crossing", pool);
+    ChartRunner views{of, pool};
+    const ChartEntry entry = entry_of(subject, "accumulation", 2);
+    views.run_warm(entry);
+    CHECK(equal(views.result(), accumulation(accumulation_input(of, entry.samples), pool).picture));
+  }
+}

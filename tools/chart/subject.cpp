@@ -1,0 +1,161 @@
+#include "tools/chart/subject.h"
+
+#include <algorithm>
+#include <array>
+
+#include "tools/chart/bloom_truth.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::string_view kAccumulationName = "accumulation";
+
+/// An effect's name, and the value of one of its parameters.
+ChosenEffect with_value(std::string_view name, std::string_view parameter, double value) {
+  ChosenEffect chosen{find_effect(name), {}};
+  for (const EffectParameter& of : chosen.effect->parameters) {
+    chosen.parameters.push_back(of.name == parameter ? value : of.preset);
+  }
+  return chosen;
+}
+
+ChartEntry plain_entry(const std::string& method) {
+  return {.method = method, .filter = find_method(method)};
+}
+
+std::vector<ChartEntry> view_entries(const std::vector<int>& counts) {
+  std::vector<ChartEntry> entries;
+  entries.reserve(counts.size());
+  for (const int samples : counts) {
+    entries.push_back({.method = std::string{kAccumulationName}, .samples = samples});
+  }
+  return entries;
+}
+
+// --- motion blur ---
+
+std::vector<std::string> motion_methods() {
+  return {std::string{kPinhole}, std::string{kAccumulationName}};
+}
+
+std::vector<ChartEntry> motion_entries(const std::string& method, int, bool quick) {
+  if (method == kPinhole) return {plain_entry(method)};
+  return view_entries(quick ? std::vector{4, 16} : std::vector{2, 4, 8, 16, 32, 64});
+}
+
+// --- anti-aliasing ---
+
+/// What is drawn twice as wide and high, and what is blurred.
+constexpr std::string_view kSupersample = "supersample";
+constexpr std::array<std::string_view, 2> kBlurs{"gaussian-3", "gaussian"};
+
+std::vector<std::string> smoothing_methods() {
+  std::vector<std::string> names{std::string{kPinhole}};
+  names.insert(names.end(), kBlurs.begin(), kBlurs.end());
+  names.emplace_back(kSupersample);
+  names.emplace_back(kAccumulationName);
+  return names;
+}
+
+std::vector<ChartEntry> smoothing_entries(const std::string& method, int, bool quick) {
+  if (method == kPinhole) return {plain_entry(method)};
+  if (method == kSupersample) return {{.method = method, .supersample = 2}};
+  if (method == "gaussian-3") {
+    return {{.method = method, .effects = {with_value(method, "", 0.0)}}};
+  }
+  if (method == "gaussian") {
+    std::vector<ChartEntry> entries;
+    for (const double sigma : {0.4, 0.6}) {
+      entries.push_back({.method = method,
+                         .effects = {with_value(method, "sigma", sigma)},
+                         .setting = {"sigma", sigma}});
+    }
+    return entries;
+  }
+  return view_entries(quick ? std::vector{4, 16} : std::vector{2, 4, 8, 16, 32});
+}
+
+// --- bloom ---
+
+constexpr std::string_view kBloom = "bloom", kSteadyBloom = "bloom-steady";
+
+Image truth_of_bloom(const Image& pinhole, ThreadPool& pool) {
+  return bloom_truth(BloomSettings{}, pinhole, pool);
+}
+
+std::vector<std::string> bloom_methods() {
+  return {std::string{kPinhole}, std::string{kBloom}, std::string{kSteadyBloom}};
+}
+
+std::vector<ChartEntry> bloom_entries(const std::string& method, int, bool quick) {
+  if (method == kPinhole) return {plain_entry(method)};
+  if (method == kSteadyBloom) {
+    return {{.method = method, .effects = {with_value(kBloom, "steady", 1.0)}}};
+  }
+  std::vector<ChartEntry> entries;
+  for (const double levels : quick ? std::vector{2.0, 6.0} : std::vector{2.0, 3.0, 4.0, 5.0, 6.0}) {
+    entries.push_back({.method = method,
+                       .effects = {with_value(kBloom, "levels", levels)},
+                       .setting = {"levels", levels}});
+  }
+  return entries;
+}
+
+const std::array<ChartSubject, 4>& subjects() {
+  static const std::array<ChartSubject, 4> all{
+      ChartSubject{.name = "depth-of-field",
+                   .title = "Depth of field",
+                   .truth = "the mean of pictures from many points of the lens",
+                   .sample = "points of the lens",
+                   .methods = chart_methods,
+                   .entries = chart_entries},
+      ChartSubject{.name = "motion-blur",
+                   .title = "Motion blur",
+                   .truth = "the mean of pictures at many times while the shutter is open",
+                   .sample = "times",
+                   .scenes = {"windmill", "crossing", "cube-room", "sphere-world"},
+                   .truth_samples = 1024,
+                   .quick_truth_samples = 256,
+                   .through_lens = false,
+                   .sampling = {.shutter_frames = 0.5},
+                   .orbit_degrees_per_frame = 2.0,
+                   .methods = motion_methods,
+                   .entries = motion_entries},
+      ChartSubject{.name = "anti-aliasing",
+                   .title = "Anti-aliasing",
+                   .truth = "the mean of pictures from many places in each pixel",
+                   .sample = "places in the pixel",
+                   .scenes = {"figures", "lattice", "near-fence", "sphere-world", "grazing-floor"},
+                   .truth_samples = 1024,
+                   .quick_truth_samples = 256,
+                   .through_lens = false,
+                   .sampling = {.jitter = true},
+                   .methods = smoothing_methods,
+                   .entries = smoothing_entries},
+      ChartSubject{.name = "bloom",
+                   .title = "Bloom",
+                   .truth = "its bright light convolved with the sum of the pyramid's kernels",
+                   .sample = "",
+                   .scenes = {"night-lights", "bright-edges", "crossing"},
+                   .truth_samples = 0,
+                   .quick_truth_samples = 0,
+                   .through_lens = false,
+                   .truth_of = truth_of_bloom,
+                   .methods = bloom_methods,
+                   .entries = bloom_entries},
+  };
+  return all;
+}
+
+}  // namespace
+
+std::span<const ChartSubject> chart_subjects() { return subjects(); }
+
+const ChartSubject* find_chart_subject(std::string_view name) {
+  const auto all = chart_subjects();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const ChartSubject& of) { return of.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace softfocus
