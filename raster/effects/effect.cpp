@@ -131,7 +131,42 @@ constexpr Effect of_curve(const NamedToneCurve& named) {
   return {named.name, named.summary, kExposure, tone_map_effect};
 }
 
+constexpr EffectParameter kFrameDepth{
+    "depth", "how much nearer or farther a surface may have been, over its depth; 0: any", 0.0,
+    1000.0, 0.1};
+constexpr EffectParameter kWarmUp{
+    "warm-up", "frames that are drawn before the first, for a history", 0.0, 1000.0, 0.0};
+
+constexpr std::array kTemporalAa{
+    EffectParameter{"new", "least share of the new frame in the average", 0.001, 1.0, 0.1},
+    EffectParameter{"places", "in the pixel that frames look from in turn, 1: its centre", 1.0,
+                    64.0, 8.0},
+    EffectParameter{"box", "old colours are cut to 3x3 new ones: 0 not, 1 to all, 2 by deviations",
+                    0.0, 2.0, 2.0},
+    EffectParameter{"deviations", "standard ones from the mean that are kept, of box=2", 0.0,
+                    1000.0, 1.0},
+    EffectParameter{"cubic", "1: the frame before is read by a cubic curve; 0: bilinear", 0.0, 1.0,
+                    1.0},
+    kFrameDepth,
+    kWarmUp};
+constexpr std::array kRefresh{
+    EffectParameter{"groups", "a frame draws one of them", 1.0, 64.0, 4.0}, kFrameDepth, kWarmUp};
+constexpr std::array kReproject{
+    EffectParameter{"every", "one of so many frames is drawn", 1.0, 1000.0, 2.0},
+    EffectParameter{"forward", "1: pixels go to where they are now; 0: look where they were", 0.0,
+                    1.0, 0.0},
+    EffectParameter{"holes", "what was not seen is 0 drawn, 1 filled from beside it, 2 left black",
+                    0.0, 2.0, 0.0},
+    kFrameDepth, kWarmUp};
+
 constexpr std::array kEffects{
+    // Of frames of a scene: scenes/temporal.
+    Effect{"temporal-aa", "frames of a scene averaged, for smooth edges, after Karis 2014",
+           kTemporalAa, nullptr},
+    Effect{"refresh", "frames of a scene that each draw a part, and take the rest from before",
+           kRefresh, nullptr},
+    Effect{"reproject", "frames of a scene that are made from those before, in place of drawn",
+           kReproject, nullptr},
     Effect{"edge-detection", "a pixel eight times, less its eight neighbours", {}, by_kernel},
     Effect{"sharpen", "a pixel five times, less the four beside it", {}, by_kernel},
     Effect{"box-3", "the mean of 3x3 pixels", {}, by_kernel, true},
@@ -172,6 +207,7 @@ const Effect* find_effect(std::string_view name) {
 Image apply(const Effect& effect, const EffectInput& input, ThreadPool& pool) {
   assert(input.picture.format == Format::rgba16f);
   assert(input.parameters.size() == effect.parameters.size());
+  assert(effect.filter != nullptr);
   assert(effect.velocity == VelocityOf::nothing ||
          (input.velocity.format == Format::rg16f && input.velocity.width == input.picture.width &&
           input.velocity.height == input.picture.height));

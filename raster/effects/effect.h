@@ -44,7 +44,7 @@ struct Effect {
   std::string_view name;
   std::string_view summary;
   std::span<const EffectParameter> parameters;
-  /// Writes the picture's size of RGBA16F, the picture's alpha in alpha.
+  /// Writes RGBA16F of the picture's size, with its alpha. Null: it makes frames (scenes/temporal).
   void (*filter)(const Effect& effect, const EffectInput& input, const ImageView& result,
                  ThreadPool& pool);
   /// Whether a pixel's light goes to its neighbours, and so its opacity, if it has one, with it.

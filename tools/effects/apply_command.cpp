@@ -199,6 +199,11 @@ Command add_apply_command(CLI::App& program) {
           throw UsageError(
               "there is nothing to apply; give --effect (softfocus effects) or --tone-map");
         }
+        if (const auto of_frames = effect_of_frames(all_effects(options->effects), "--effect")) {
+          throw UsageError("--effect " + std::string{of_frames->effect->name} +
+                           ": it makes frames of a scene from those before; softfocus render has "
+                           "it, and a picture has none before");
+        }
         check_velocity(*options);
         if (options->output == "-" && is_terminal(kStandardOutput)) {
           throw UsageError("-o -: standard output is a terminal; send it to a file or a program");

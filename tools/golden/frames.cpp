@@ -12,6 +12,7 @@
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/surface_splatting/surface_splatting.h"
+#include "scenes/temporal/frame_history.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {
@@ -86,6 +87,7 @@ void add_effect_hashes(std::string_view scene, const Image& picture, const Profi
                        const std::string& where, std::vector<NamedHash>& hashes, ThreadPool& pool) {
   for (const Effect& effect : effects()) {
     if (effect.velocity != VelocityOf::nothing) continue;  // add_motion_hashes()
+    if (effect.filter == nullptr) continue;                // add_history_hashes()
     std::vector<double> parameters;
     for (const EffectParameter& parameter : effect.parameters) {
       parameters.push_back(parameter.preset);
@@ -135,6 +137,27 @@ void add_motion_hashes(std::string_view name, Scene scene, const FrameSize& size
       hashes.push_back({entry_name(name, "camera-velocity", where), hash_image(velocity)});
     }
   }
+}
+
+/// The fourth of four frames by each effect of frames. The camera goes around.
+void add_history_hashes(std::string_view name, Scene scene, const FrameSize& size,
+                        const Profile& profile, const std::string& where,
+                        std::vector<NamedHash>& hashes, ThreadPool& pool) {
+  constexpr int kFrames = 4;
+  scene.camera.orbit_degrees_per_frame = 4.0;
+  PreparedScene prepared = prepare_scene(scene, profile, pool);
+  const auto add = [&](std::string_view entry, const FrameEffect& effect) {
+    FrameHistory history;
+    for (int i = 0; i < kFrames; ++i) {
+      draw_next(prepared, effect, kFrame + i, size.width, size.height, history, pool);
+    }
+    hashes.push_back({entry_name(name, entry, where), hash_image(history.picture)});
+  };
+  add("temporal-aa", TemporalAa{});
+  add("temporal-aa-extent", TemporalAa{{0.05f, HistoryBox::extent}, 16, {}});
+  add("refresh", Refresh{});
+  add("reproject", Reproject{4});
+  add("reproject-forward", Reproject{4, true, Holes::filled});
 }
 
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
@@ -221,6 +244,7 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
     add_effect_hashes(name, picture, profile, where, hashes, pool);
     if (name == kMovingScene) {
       add_motion_hashes(name, scene, size, profile, where, hashes, pool);
+      add_history_hashes(name, scene, size, profile, where, hashes, pool);
     }
   }
   for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {

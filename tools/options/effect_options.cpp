@@ -97,9 +97,25 @@ std::vector<ChosenEffect> all_effects(const EffectOptions& options,
   return all;
 }
 
+std::optional<ChosenEffect> effect_of_frames(const std::vector<ChosenEffect>& effects,
+                                             const std::string& where) {
+  for (std::size_t i = 1; i < effects.size(); ++i) {
+    if (!is_of_frames(*effects[i].effect)) continue;
+    const std::string name{effects[i].effect->name};
+    throw UsageError(where + ": " + name +
+                     (is_of_frames(*effects.front().effect)
+                          ? " and " + std::string{effects.front().effect->name} +
+                                " both make frames from those before; give one"
+                          : " is part of the drawing; name it before all other effects"));
+  }
+  if (effects.empty() || !is_of_frames(*effects.front().effect)) return {};
+  return effects.front();
+}
+
 Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
                    const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool) {
   for (const ChosenEffect& chosen : effects) {
+    if (is_of_frames(*chosen.effect)) continue;  // it has been drawn so
     Image velocity;
     EffectInput input{picture, chosen.parameters, profile};
     if (chosen.effect->velocity != VelocityOf::nothing) {

@@ -26,6 +26,7 @@
 #include "tools/gl/frame_on_gl.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/render/frame_sequence.h"
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
@@ -306,8 +307,9 @@ struct Rendered {
   std::string report{}, json{};
 };
 
+/// `sequence` is of frames that depend on those before.
 Rendered make_rendered(const RenderOptions& options, const Scene& scene, double load_ms,
-                       Progress& progress, ThreadPool& pool) {
+                       FrameSequence& sequence, Progress& progress, ThreadPool& pool) {
   const bool to_standard_output = options.output == "-";
   RenderRecord record;
   StageTimes& ms = record.ms;
@@ -327,6 +329,7 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
   const CameraMatrices view = camera_matrices(scene.camera, options.frame, width, height);
   record.camera = scene.camera;
   record.camera.position = view.eye;
+  const std::optional<ChosenEffect> of_frames = checked_effect_of_frames(options, scene);
   std::optional<PreparedScene> prepared;
   FrameParts parts = timed(progress, "drawing", ms.draw, [&] {
     FrameParts drawn;
@@ -342,7 +345,18 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
       return drawn;
     }
     prepared = prepare_scene(scene, options.profile, pool);
-    return draw_parts(*prepared, view, options.frame, width, height, layers_of(options), pool);
+    if (!of_frames || layers_of(options) > 1) {
+      drawn = draw_parts(*prepared, view, options.frame, width, height, layers_of(options), pool);
+    }
+    if (of_frames) {
+      draw_up_to(*prepared, *of_frames, options.frame, width, height, sequence, pool);
+      // What is transparent is in the picture, and filtered with it.
+      drawn.picture = sequence.history.picture;
+      drawn.opaque = {};
+      drawn.transparent.clear();
+      record.shaded_share = sequence.history.shaded_share;
+    }
+    return drawn;
   });
 
   std::vector<std::string> warnings;
@@ -478,12 +492,14 @@ int render(const RenderOptions& options) {
   double load_ms = 0.0;
   const Scene scene = loaded_scene(options, progress, load_ms);
   check_outputs(options, scene);
+  checked_effect_of_frames(options, scene);
   if (options.shard && !options.effects.are_given && !scene.effects.empty()) {
     throw UsageError(
         "--shard: the scene has effects, and a shard is no picture; give --effect none, and to "
         "what join makes softfocus apply");
   }
-  const Rendered made = make_rendered(options, scene, load_ms, progress, pool);
+  FrameSequence sequence = frame_sequence(options);
+  const Rendered made = make_rendered(options, scene, load_ms, sequence, progress, pool);
   if (to_standard_output) write_to_standard_output(made.picture);
   progress.clear();
   for (const std::string& warning : made.warnings) {
@@ -498,9 +514,14 @@ int render_many(const RenderOptions& options, const CLI::App& parser) {
   Progress progress{options.quiet};
   double load_ms = 0.0;
   const Scene scene = loaded_scene(options, progress, load_ms);
+  const bool depends = checked_effect_of_frames(options, scene).has_value();
+  FrameSequence sequence = frame_sequence(options);
   return render_frames(options, parser, scene, [&](const RenderOptions& frame, FrameRun& run) {
     Progress silent{true};
-    Rendered made = make_rendered(frame, scene, load_ms, silent, run.pool);
+    // Frames that do not depend on each other are made several at once.
+    FrameSequence own = frame_sequence(frame);
+    Rendered made =
+        make_rendered(frame, scene, load_ms, depends ? sequence : own, silent, run.pool);
     run.picture = std::move(made.picture);
     run.warnings = std::move(made.warnings);
     run.report = std::move(made.report);

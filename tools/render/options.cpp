@@ -248,10 +248,19 @@ constexpr std::uint64_t kFilteredBytesPerPixel = kSamplingBytesPerPixel + 8 * 8;
 /// each for the filter, and the opaque picture.
 constexpr std::uint64_t kTransparentBytesPerPixel = 4 * 12 + 8 * 8 + 8;
 
+/// And for frames from those before: four pictures, a velocity (4 bytes) and counts (4), and what
+/// draws the velocity (12).
+constexpr std::uint64_t kHistoryBytesPerPixel = 4 * 8 + 4 + 4 + 12;
+
 std::uint64_t bytes_per_pixel(const RenderOptions& options) {
+  const std::vector<ChosenEffect>& effects = options.effects.effects;
+  const bool has_history =
+      std::any_of(effects.begin(), effects.end(),
+                  [](const ChosenEffect& chosen) { return is_of_frames(*chosen.effect); });
   const bool may_sample = options.method.of_scene != nullptr || options.method.is_auto();
   const bool may_filter_views = options.method.name() == "filtered-views";
-  return kRenderBytesPerPixel + (layers_of(options) - 1) * kLayerBytesPerPixel +
+  return kRenderBytesPerPixel + (has_history ? kHistoryBytesPerPixel : 0) +
+         (layers_of(options) - 1) * kLayerBytesPerPixel +
          (may_filter_views ? kFilteredBytesPerPixel
           : may_sample     ? kSamplingBytesPerPixel
                            : 0);

@@ -150,6 +150,9 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   text += line("Picture", std::string{name_of(options.show)});
   text += record.gl_renderer.empty() ? line("Profile", options.profile_name)
                                      : line("GL driver", record.gl_renderer);
+  if (record.shaded_share) {
+    text += line("Drawn anew", short_number(100.0 * *record.shaded_share) + " % of the pixels");
+  }
   text += line("Threads", std::to_string(options.pool.threads));
   text += line("Vector unit", std::string{isa_name(options.pool.isa)});
   text += "\n";
@@ -241,6 +244,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     if (record.sampled->half_set_rms)
       json["sampling"]["half_set_rms"] = *record.sampled->half_set_rms;
   }
+  if (record.shaded_share) json["drawn_anew"] = *record.shaded_share;
   json["without_depth_of_field"] = {{"ms", ms.draw}, {"fps", frames_per_second(ms.draw)}};
   if (has_depth_of_field(options)) {
     const double with = ms.draw + cost_ms(ms);

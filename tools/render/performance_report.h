@@ -59,6 +59,7 @@ struct RenderRecord {
   std::optional<UsedLens> lens;        ///< none where the picture needs none
   std::optional<UsedSamples> sampled;  ///< if the method samples the lens
   std::vector<ChosenEffect> effects;   ///< on the finished picture
+  std::optional<double> shaded_share;  ///< of pixels, where frames take from those before
   StageTimes ms;
 };
 

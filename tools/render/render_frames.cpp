@@ -6,6 +6,7 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/files/picture_notes.h"
+#include "tools/render/frame_sequence.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
 #include "tools/sequence/journal.h"
@@ -72,7 +73,13 @@ std::uint64_t bytes_of_textures(const Scene& scene) {
 int render_frames(const RenderOptions& options, const CLI::App& parser, const Scene& scene,
                   const RenderFrame& render) {
   const FrameOutputs outputs = outputs_of(options);
-  const std::string settings = given_settings(parser, options.profile);
+  const bool depend = checked_effect_of_frames(options, scene).has_value();
+  std::string settings = given_settings(parser, options.profile);
+  if (depend) {
+    const FrameSequence sequence = frame_sequence(options);
+    settings += ", after frames from " + short_number(sequence.first) + " by " +
+                short_number(sequence.step);
+  }
   const bool needs_lens = options.show == Show::coc || has_depth_of_field(options);
   std::vector<FrameWork> frames;
   for (const FrameNumber number : chosen_frames(options.sequence, {})) {
@@ -91,8 +98,8 @@ int render_frames(const RenderOptions& options, const CLI::App& parser, const Sc
   FrameRunOptions run = run_options(options.sequence, options.output, options.format, options.pool,
                                     options.json, options.verbose);
   run.quiet = options.quiet;
-  // A driver belongs to one thread.
-  if (options.gl == nullptr) {
+  // A driver belongs to one thread. Frames that depend on those before come in their order.
+  if (options.gl == nullptr && !depend) {
     run.at_once = frames_at_once(frames.size(), options.pool.threads,
                                  bytes_of_a_frame(options) + bytes_of_textures(scene),
                                  memory_bytes().value_or(0));

@@ -1,0 +1,75 @@
+#pragma once
+// Frames that take from the frames before: temporal anti-aliasing, refresh in groups, and frames
+// that are reprojected in place of drawn.
+
+#include <glm/vec2.hpp>
+#include <variant>
+#include <vector>
+
+#include "raster/effects/effect.h"
+#include "raster/images/image.h"
+#include "raster/temporal/accumulate.h"
+#include "raster/temporal/reproject.h"
+#include "raster/threads/parallel.h"
+#include "scenes/draw/draw_scene.h"
+
+namespace softfocus {
+
+/// The effect temporal-aa: each frame looks from another place in the pixel, and frames are
+/// averaged (raster/temporal/accumulate.h).
+struct TemporalAa {
+  AccumulateSettings average;
+  int places = 8;  ///< 1: always the pixel's centre
+  ReprojectSettings reproject{.is_cubic = true};
+};
+
+/// The effect refresh: each frame shades one of the groups, and what was not seen before
+/// (raster/temporal/refresh.h).
+struct Refresh {
+  int groups = 4;
+  float depth_tolerance = 0.1f;
+};
+
+/// What a pixel shows that the frame before did not.
+enum class Holes { drawn, filled, black };
+
+/// The effect reproject: of so many frames one is drawn, and the others are made of that one, so
+/// that errors do not add up.
+struct Reproject {
+  int every = 2;
+  bool forward = false;
+  Holes holes = Holes::drawn;
+  float depth_tolerance = 0.1f;
+};
+
+using FrameEffect = std::variant<TemporalAa, Refresh, Reproject>;
+
+/// Of one of those three.
+FrameEffect frame_effect(const ChosenEffect& chosen);
+
+/// What the next frame gets.
+struct FrameHistory {
+  int count = 0;                               ///< of the frames so far
+  double frame = 0.0;                          ///< the last of them
+  Image picture{};                             ///< what it shows, RGBA16F, depth in alpha
+  Image frames{};                              ///< R32F: of how many frames each pixel is made
+  double shaded_share = 1.0;                   ///< of its pixels
+  Image key{};                                 ///< of Reproject: the last that was drawn
+  double key_frame = 0.0;                      ///< and its frame
+  Image drawn{}, velocity{}, found{}, next{};  ///< memory to use again
+};
+
+/// Draws a frame of the scene that follows on the history, which is then the frame's own.
+void draw_next(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,
+               int height, FrameHistory& history, ThreadPool& pool);
+
+/// n offsets from the pixel's centre, in pixels from -0.5 to 0.5, as Halton's sequence in bases 2
+/// and 3 goes, each axis moved to the middles of n equal columns or rows: so their mean is 0 and an
+/// edge along an axis is as smooth as n places can make it.
+std::vector<glm::dvec2> places_in_pixel(int count);
+
+/// What temporal-aa shows of the scene at one moment after so many frames, 1 or more.
+Image temporal_picture(PreparedScene& prepared, const TemporalAa& settings, double frame,
+                       int frames, int width, int height, ThreadPool& pool);
+
+}  // namespace softfocus
