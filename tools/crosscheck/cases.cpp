@@ -18,6 +18,7 @@ std::vector<Case> crosscheck_cases() {
   add_effect_cases(cases);
   add_motion_cases(cases);
   add_filter_cases(cases);
+  add_polygon_cases(cases);
   return cases;
 }
 

@@ -31,6 +31,10 @@ void add_effect_options(CLI::App& parser, EffectOptions& options);
 std::vector<ChosenEffect> all_effects(const EffectOptions& options,
                                       std::span<const ChosenEffect> of_scene = {});
 
+/// A warning if one comes before another that a camera has before it, or "": motion blur, then
+/// bloom and lens flare, then tone mapping (docs/effects/order.md).
+std::string order_warning(const std::vector<ChosenEffect>& effects);
+
 /// Makes the velocity that an effect reads, of the picture as it comes to the effect.
 using MakeVelocity = std::function<Image(const ChosenEffect& chosen, const Image& picture)>;
 

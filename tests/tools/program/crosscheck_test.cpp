@@ -44,11 +44,11 @@ void check_all_equal(const std::string& driver) {
     stages.insert(entry["stage"]);
   }
   const std::set<std::string> all{
-      "store",    "bilinear-rgba16f", "bilinear-rgba8", "mipmap",     "coverage",
-      "depth",    "attributes",       "scene",          "two-pass",   "one-pass",
-      "frame",    "two-pass-tiled",   "one-pass-tiled", "peel",       "blend",
-      "kernel",   "pyramid",          "bilateral",      "bloom",      "lens-flare",
-      "tone-map", "velocity",         "reproject",      "motion-blur"};
+      "store",    "bilinear-rgba16f", "bilinear-rgba8", "mipmap",      "coverage",
+      "depth",    "attributes",       "scene",          "two-pass",    "one-pass",
+      "frame",    "two-pass-tiled",   "one-pass-tiled", "peel",        "blend",
+      "kernel",   "pyramid",          "bilateral",      "bloom",       "lens-flare",
+      "tone-map", "velocity",         "reproject",      "motion-blur", "polygon"};
   CHECK(stages == all);
 }
 
