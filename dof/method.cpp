@@ -11,6 +11,7 @@
 #include "dof/disc_layers/layered.h"
 #include "dof/methods/anisotropic_diffusion.h"
 #include "dof/methods/diffusion.h"
+#include "dof/methods/fields.h"
 #include "dof/methods/generalised_diffusion.h"
 #include "dof/methods/importance_ordered.h"
 #include "dof/methods/pinhole.h"
@@ -18,6 +19,7 @@
 #include "dof/mipmap/mipmap.h"
 #include "dof/object_layers/object_layers.h"
 #include "dof/one_pass/one_pass.h"
+#include "dof/polygon/polygon.h"
 #include "dof/ray_distribution/ray_distribution.h"
 #include "dof/ring_bucket/ring_bucket.h"
 #include "dof/scatter/aperture_scatter.h"
@@ -53,6 +55,8 @@ constexpr std::array kMethods{
            kColourAndDepth, scatter_aperture},
     Method{"layers", "near, middle and far, each blurred by itself, after Scofield 1992",
            kColourAndDepth, layers},
+    Method{"fields", "near, focus and far as three pictures, one radius a field", kColourAndDepth,
+           fields},
     Method{"ray-distribution-buffer",
            "the nearest thing through each point of the lens, after Shinya 1994", kColourAndDepth,
            ray_distribution},
@@ -73,6 +77,10 @@ constexpr std::array kMethods{
     Method{"circular-1", "a disc of one complex Gaussian, separable, after Garcia 2017",
            kColourAndDepth, circular_one},
     Method{"circular-2", "circular-1 with two complex Gaussians", kColourAndDepth, circular_two},
+    Method{"pentagonal", "pentagons by blurs along lines, after McIntosh et al. 2012",
+           kColourAndDepth, pentagonal},
+    Method{"hexagonal", "hexagons by blurs along lines, after White 2011", kColourAndDepth,
+           hexagonal},
     Method{"disc-layers", "layers of equal circles, each a disc, the nearer over the farther",
            kColourAndDepth, disc_layers, true},
     Method{.name = "layered",

@@ -5,7 +5,7 @@
 set(order
   raster/numbers raster/lanes raster/threads raster/images raster/pipeline raster/passes raster/temporal raster/effects/motion raster/effects raster/raster.h
   dof/fixed dof dof/two_pass dof/one_pass dof/disc_layers dof/scatter
-  dof/half_resolution dof/ring_bucket dof/circular dof/mipmap dof/object_layers dof/ray_distribution
+  dof/half_resolution dof/ring_bucket dof/circular dof/polygon dof/mipmap dof/object_layers dof/ray_distribution
   dof/methods dof/fixed_pictures dof/method.cpp dof/measure dof/auto dof/c
   scenes/scene.h scenes/make scenes/random scenes/load scenes/draw scenes/lens_views scenes/temporal scenes/filtered_views
   scenes/surface_splatting scenes/lens_views/lens_view_method.cpp scenes/auto scenes/scenes.h

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "dof/half_resolution/fill_holes.h"
+#include "dof/half_resolution/polygon_spans.h"
 #include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
@@ -92,7 +93,7 @@ void take_out(const DofInput& input, int x, int y, float surroundings, Planes& c
   }
 }
 
-Highlights take_highlights(const DofInput& input, const Planes& light, Planes& cells,
+Highlights take_highlights(const DofInput& input, const Planes& light, Planes& cells, int corners,
                            ThreadPool& pool) {
   Highlights highlights;
   highlights.rows.resize(static_cast<std::size_t>(input.scene.height));
@@ -126,7 +127,14 @@ Highlights take_highlights(const DofInput& input, const Planes& light, Planes& c
     }
   }
   if (!used.empty()) {
-    highlights.discs = make_discs(0.25f * static_cast<float>(used.size() - 1), used);
+    const float largest_px = 0.25f * static_cast<float>(used.size() - 1);
+    if (corners > 0) {
+      PolygonSpans spans = make_polygon_spans(corners, largest_px, used);
+      highlights.discs = std::move(spans.above);
+      highlights.below = std::move(spans.below);
+    } else {
+      highlights.discs = make_discs(largest_px, used);
+    }
     highlights.reach = highlights.discs.reach;
   }
   return highlights;
@@ -170,13 +178,13 @@ void half_cell(const SplitTexel* four, float* to) {
   for (int c = 0; c < kHalfPlanes; ++c) to[c] = cells[c][0];
 }
 
-HalfFields make_half_fields(const DofInput& input, ThreadPool& pool) {
+HalfFields make_half_fields(const DofInput& input, ThreadPool& pool, int corners) {
   HalfFields fields{
       make_planes(kHalfPlanes, (input.scene.width + 1) / 2, (input.scene.height + 1) / 2),
       false,
       {}};
   const Planes light = split_cells(input, fields.cells, pool);
-  fields.highlights = take_highlights(input, light, fields.cells, pool);
+  fields.highlights = take_highlights(input, light, fields.cells, corners, pool);
   fields.near_field = any_above_zero(fields.cells, kNearOpacity, pool);
   if (fields.near_field) fill(fields.cells, pool);
   return fields;

@@ -44,8 +44,9 @@ struct HalfFields {
   Highlights highlights;
 };
 
-/// The fields without the picture's highlights, which are apart.
-HalfFields make_half_fields(const DofInput& input, ThreadPool& pool);
+/// The fields without the picture's highlights, which are apart: discs, or polygons of so many
+/// corners, 3 or more.
+HalfFields make_half_fields(const DofInput& input, ThreadPool& pool, int corners = 0);
 
 /// A cell from its four pixels, row by row: what the kernel computes, for the tests and for
 /// cells that have lost a highlight. `to[i]` for each plane.

@@ -64,13 +64,15 @@ std::uint32_t highlight_row(const Highlights& highlights, int y, int width,
   for (int from = std::max(y - highlights.reach, 0);
        from <= std::min(y + highlights.reach, height - 1); ++from) {
     const int dy = std::abs(from - y);
-    const DiscSpan* spans =
-        &highlights.discs.spans[static_cast<std::size_t>(dy * highlights.discs.count)];
+    const auto spans_at = static_cast<std::size_t>(dy * highlights.discs.count);
     for (const Highlight& light : highlights.rows[static_cast<std::size_t>(from)]) {
       const auto disc = static_cast<std::size_t>(light.disc);
-      if (highlights.discs.reaches[disc] < dy) continue;
+      const bool above = (from >= y) != (light.layer == kHighlightNear);
+      const ScatterDiscs& discs =
+          above || highlights.below.spans.empty() ? highlights.discs : highlights.below;
+      if (discs.reaches[disc] < dy) continue;
       used |= 1u << light.layer;
-      add_span(light, spans[disc], highlights.discs.weights[disc],
+      add_span(light, discs.spans[spans_at + disc], discs.weights[disc],
                differences + light.layer * layer_stride + 3 * margin);
     }
   }

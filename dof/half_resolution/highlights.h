@@ -15,6 +15,8 @@
 //                sat(-r - 2) for r < 0: the background behind the near field
 // and the near field covers it. A disc before the focus is drawn over all.
 //
+// With corners they are regular polygons in place of discs, upside down before the focus.
+//
 // Sums are exact, in units of 2^-34 (scatter.h): neither order nor threads matter.
 
 #include <cstdint>
@@ -36,8 +38,9 @@ inline constexpr int kHighlightLayers = kHighlightOctaves + 1;
 
 struct Highlights {
   std::vector<std::vector<Highlight>> rows;  ///< of the picture
-  ScatterDiscs discs;
-  int reach = -1;  ///< the largest disc's rows above and below its centre; -1 if there is none
+  ScatterDiscs discs;                        ///< of a polygon its rows above the middle
+  ScatterDiscs below;  ///< of a polygon; a disc is the same both ways, and this is empty
+  int reach = -1;      ///< the largest disc's rows above and below its centre; -1 if there is none
 };
 
 /// How many cells away the surroundings are, even: larger lights stay in the picture.

@@ -51,11 +51,16 @@ constexpr std::array kClaims{
     Claims{"scatter-sorted", 1, 0.002, 0.01, 0.0},
     Claims{"scatter-aperture", 1, 0.002, 0.01, kHalfUlpBelowOne},
     Claims{"layers", 1, 0.002, 0.01, 0.0},
+    Claims{"fields", 1, 0.002, 0.01, kHalfUlpBelowOne},
     Claims{"diffusion", 1, 0.002, 0.01, kHalfUlpBelowOne},
     Claims{"generalised-diffusion", 1, 0.002, 0.01, kHalfUlpBelowOne, 1, true, false},
     Claims{"ring-bucket", 1, 0.002, 0.01, kHalfUlpBelowOne},
     Claims{"circular-1", 1, 0.002, 0.01, kHalfUlpBelowOne},
     Claims{"circular-2", 1, 0.002, 0.01, kHalfUlpBelowOne},
+    // Polygons in a circle have .88 and .91 of its second moment's radius; a pentagon is another
+    // one upside down.
+    Claims{"pentagonal", 1, 0.002, 0.13, 1.0, 1, true, true, 1.0},
+    Claims{"hexagonal", 1, 0.002, 0.1, 0.15, 1, true, true, 0.15},
     Claims{"disc-layers", 1, 0.002, 0.02, 0.0},
     Claims{"layered", 1, 0.002, 0.02, 0.0},
     Claims{"post-process", 1, 0.01, 0.05, 0.12},

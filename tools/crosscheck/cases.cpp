@@ -19,6 +19,7 @@ std::vector<Case> crosscheck_cases() {
   add_motion_cases(cases);
   add_temporal_cases(cases);
   add_filter_cases(cases);
+  add_polygon_cases(cases);
   return cases;
 }
 

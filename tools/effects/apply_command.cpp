@@ -146,6 +146,8 @@ int apply_to_file(const ApplyOptions& options) {
     warn("'" + sidecar->string() +
          "' is no sidecar of a picture and stays as it is: what was done is written nowhere");
   }
+  const std::string order = order_warning(all_effects(options.effects));
+  if (!order.empty()) warn(order);
   if (loses_alpha) {
     warn("'" + options.picture +
          "' is transparent in places; the result's format has no alpha, and black there; .exr and "

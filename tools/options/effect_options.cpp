@@ -112,6 +112,32 @@ std::optional<ChosenEffect> effect_of_frames(const std::vector<ChosenEffect>& ef
   return effects.front();
 }
 
+namespace {
+
+// Effects without a place in the order have 0.
+int place_in_order(const Effect& effect) {
+  if (effect.name.starts_with("motion-blur")) return 1;
+  if (effect.name == "bloom" || effect.name == "lens-flare") return 2;
+  return find_tone_curve(effect.name) != nullptr ? 3 : 0;
+}
+
+}  // namespace
+
+std::string order_warning(const std::vector<ChosenEffect>& effects) {
+  const Effect* last = nullptr;
+  for (const ChosenEffect& chosen : effects) {
+    const int place = place_in_order(*chosen.effect);
+    if (place == 0) continue;
+    if (last != nullptr && place < place_in_order(*last)) {
+      const std::string before{last->name}, after{chosen.effect->name};
+      return "the effect " + before + " comes before " + after + ": a camera has " + after +
+             " first, then " + before + " (docs/effects/order.md)";
+    }
+    last = chosen.effect;
+  }
+  return "";
+}
+
 Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
                    const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool) {
   for (const ChosenEffect& chosen : effects) {

@@ -39,10 +39,15 @@ inline bool is_of_frames(const Effect& effect) { return effect.filter == nullptr
 std::optional<ChosenEffect> effect_of_frames(const std::vector<ChosenEffect>& effects,
                                              const std::string& where);
 
+/// A warning if one comes before another that a camera has before it, or "": motion blur, then
+/// bloom and lens flare, then tone mapping (docs/effects/order.md).
+std::string order_warning(const std::vector<ChosenEffect>& effects);
+
 /// Makes the velocity that an effect reads, of the picture as it comes to the effect.
 using MakeVelocity = std::function<Image(const ChosenEffect& chosen, const Image& picture)>;
 
-/// The picture with all of them, in their order, but for the one of frames. `make_velocity` is called for those that read one.
+/// The picture with all of them, in their order, but for the one of frames. `make_velocity` is
+/// called for those that read one.
 Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
                    const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool);
 

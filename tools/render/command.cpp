@@ -432,7 +432,8 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
     ms.filter += effects_ms;
   }
   progress.clear();
-  warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record)});
+  warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record),
+                                   order_warning(record.effects)});
   auto sidecar = sidecar_place(options);
   if (sidecar && !is_free_for_sidecar(*sidecar)) {
     warnings.push_back("'" + sidecar->string() +

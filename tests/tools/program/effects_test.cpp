@@ -57,6 +57,21 @@ TEST_CASE("render --effect: what apply gives") {
   CHECK_FALSE(equal(read_image_file(rendered).image, read_image_file(plain).image));
 }
 
+TEST_CASE("render warns of an order of effects that no camera has, and draws it") {
+  const TemporaryDirectory directory;
+  const std::string wrong = directory.file("a.npy"), right = directory.file("b.npy");
+  const ProgramRun run =
+      run_program(render("figures", wrong, {"--effect", "reinhard", "--effect", "bloom"}));
+  CHECK(run.status == 0);
+  CHECK(contains(run.err,
+                 "softfocus: warning: the effect reinhard comes before bloom: a camera has bloom "
+                 "first, then reinhard (docs/effects/order.md)\n"));
+  const ProgramRun quiet =
+      run_program(render("figures", right, {"--effect", "bloom", "--tone-map", "reinhard"}));
+  CHECK(quiet.status == 0);
+  CHECK_FALSE(contains(quiet.err, "comes before"));
+}
+
 TEST_CASE("render and apply --tone-map: the curve comes last") {
   const TemporaryDirectory directory;
   const std::string plain = directory.file("a.npy"), first = directory.file("b.npy"),

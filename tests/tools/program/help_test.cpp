@@ -116,8 +116,8 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
                    "night-lights", "portrait", "sphere-world", "windmill", "random:SEED"});
   // clang-format off
   lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "importance-ordered",
-                    "scatter", "scatter-sorted", "scatter-aperture", "layers",
-                    "ray-distribution-buffer", "diffusion", "generalised-diffusion",
+                    "scatter", "scatter-sorted", "scatter-aperture", "layers", "fields",
+                    "ray-distribution-buffer", "pentagonal", "hexagonal", "diffusion", "generalised-diffusion",
                     "anisotropic-diffusion", "ring-bucket", "circular-1", "circular-2",
                     "disc-layers", "layered", "object-identification", "post-process", "mipmap",
                     "accumulation", "filtered-views", "ray-traced", "surface-splatting", "auto"});
