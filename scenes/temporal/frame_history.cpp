@@ -143,7 +143,7 @@ void make(const NextFrame& next, const Reproject& settings) {
   FrameHistory& history = next.history;
   const bool is_drawn = history.count % settings.every == 0;
   // Where a surface was is only known of what is drawn; a scattered picture does without.
-  if (is_drawn || !settings.forward || settings.holes == Holes::drawn) next.draw({0.0, 0.0});
+  if (is_drawn || !settings.forward || settings.holes == UnseenPixels::drawn) next.draw({0.0, 0.0});
   if (is_drawn) {
     next.take_drawn();
     history.key = history.picture;
@@ -158,7 +158,7 @@ void make(const NextFrame& next, const Reproject& settings) {
     next.look_back({settings.depth_tolerance, false, true}, history.key, history.key_frame,
                    {0.0, 0.0});
   }
-  if (settings.holes == Holes::drawn) return next.take_found(1, -1);
+  if (settings.holes == UnseenPixels::drawn) return next.take_found(1, -1);
   history.shaded_share = 0.0;
   if (!settings.forward) {
     // In alpha there is a count of frames; now it is a depth, or 0.
@@ -169,7 +169,7 @@ void make(const NextFrame& next, const Reproject& settings) {
     });
     std::swap(history.found, history.next);
   }
-  if (settings.holes == Holes::filled) {
+  if (settings.holes == UnseenPixels::filled) {
     fill_holes(history.found, history.next, next.profile(), next.pool);
   } else {
     std::swap(history.found, history.next);
@@ -201,8 +201,8 @@ FrameEffect frame_effect(const ChosenEffect& chosen) {
   }
   if (chosen.effect->name == "refresh") return Refresh{whole("groups"), depth_tolerance};
   assert(chosen.effect->name == "reproject");
-  return Reproject{whole("every"), number("forward") >= 0.5, static_cast<Holes>(whole("holes")),
-                   depth_tolerance};
+  return Reproject{whole("every"), number("forward") >= 0.5,
+                   static_cast<UnseenPixels>(whole("holes")), depth_tolerance};
 }
 
 void draw_next(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,

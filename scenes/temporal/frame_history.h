@@ -31,14 +31,14 @@ struct Refresh {
 };
 
 /// What a pixel shows that the frame before did not.
-enum class Holes { drawn, filled, black };
+enum class UnseenPixels { drawn, filled, black };
 
 /// The effect reproject: of so many frames one is drawn, and the others are made of that one, so
 /// that errors do not add up.
 struct Reproject {
   int every = 2;
   bool forward = false;
-  Holes holes = Holes::drawn;
+  UnseenPixels holes = UnseenPixels::drawn;
   float depth_tolerance = 0.1f;
 };
 

@@ -157,7 +157,7 @@ void add_history_hashes(std::string_view name, Scene scene, const FrameSize& siz
   add("temporal-aa-extent", TemporalAa{{0.05f, HistoryBox::extent}, 16, {}});
   add("refresh", Refresh{});
   add("reproject", Reproject{4});
-  add("reproject-forward", Reproject{4, true, Holes::filled});
+  add("reproject-forward", Reproject{4, true, UnseenPixels::filled});
 }
 
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {

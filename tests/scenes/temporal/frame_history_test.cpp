@@ -142,7 +142,8 @@ TEST_CASE("from one place in the pixel a still scene stays as it is drawn, to th
   }
   CHECK(equal(after_frames(figures(), Refresh{5}, 4, pool, 0.0), once));
   for (const bool forward : {false, true}) {
-    CHECK(equal(after_frames(figures(), Reproject{9, forward, Holes::black}, 4, pool, 0.0), once));
+    CHECK(equal(after_frames(figures(), Reproject{9, forward, UnseenPixels::black}, 4, pool, 0.0),
+                once));
   }
 }
 
@@ -183,10 +184,10 @@ TEST_CASE("frames made of those before are nearer to the drawn one than the firs
   const Image truth = drawn(scene, kFrames - 1, kSide, pool);
   const double of_first = psnr(drawn(scene, 0.0, kSide, pool), truth);
   for (const FrameEffect& effect :
-       {FrameEffect{Refresh{}}, FrameEffect{Reproject{kFrames, false, Holes::drawn}},
-        FrameEffect{Reproject{kFrames, false, Holes::filled}},
-        FrameEffect{Reproject{kFrames, true, Holes::drawn}},
-        FrameEffect{Reproject{kFrames, true, Holes::filled}}}) {
+       {FrameEffect{Refresh{}}, FrameEffect{Reproject{kFrames, false, UnseenPixels::drawn}},
+        FrameEffect{Reproject{kFrames, false, UnseenPixels::filled}},
+        FrameEffect{Reproject{kFrames, true, UnseenPixels::drawn}},
+        FrameEffect{Reproject{kFrames, true, UnseenPixels::filled}}}) {
     CHECK(psnr(after_frames(scene, effect, kFrames, pool), truth) > of_first + 3.0);
   }
 }
@@ -210,7 +211,7 @@ TEST_CASE("frames from those before have the same bits in any vectors and any nu
   const Scene scene = orbit_of_figures();
   ThreadPool alone{1, Isa::scalar};
   for (const FrameEffect& effect : {FrameEffect{TemporalAa{}}, FrameEffect{Refresh{}},
-                                    FrameEffect{Reproject{3, true, Holes::filled}}}) {
+                                    FrameEffect{Reproject{3, true, UnseenPixels::filled}}}) {
     const Image expected = after_frames(scene, effect, 3, alone);
     for (const Isa isa : available_isas()) {
       ThreadPool pool{3, isa};

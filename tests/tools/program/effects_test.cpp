@@ -133,7 +133,7 @@ radius = 0.5
     CHECK(contains(run.err, what));
     CHECK(contains(run.err, "a.toml:"));
   };
-  refused("name = \"blom\"\n", "is no effect; there are edge-detection");
+  refused("name = \"blom\"\n", "is no effect; there are temporal-aa");
   refused("sigma = 2\n", "is no effect");
   refused("name = \"gaussian\"\nsigma = -1\n", "sigma");
   refused("name = \"sharpen\"\nsigma = 1\n", "sigma");
