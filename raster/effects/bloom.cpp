@@ -4,7 +4,9 @@
 #include "raster/effects/bloom.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
@@ -77,6 +79,35 @@ void for_rows(const ImageView& result, const Profile& profile, ThreadPool& pool,
   });
 }
 
+/// A row of find_bright_light() and of add_scattered_light().
+void make_bright_row(const BrightPass& pass, const ConstImageView& picture, int y,
+                     std::uint16_t* to, const Profile& profile, Isa isa) {
+  const ImageView one = view_of(Format::rgba16f, to, picture.width, 1);
+  int x = SOFTFOCUS_KERNEL(isa, bright_row)(pass, row<std::uint16_t>(picture, y).data(), to,
+                                            picture.width, profile.half_store);
+  for (; x < picture.width; ++x) {
+    store_texel<Format::rgba16f>(one, x, 0,
+                                 bright(pass, load_texel<Format::rgba16f>(picture, x, y)), profile);
+  }
+}
+
+void make_combined_row(const BrightPass& pass, float strength, const ConstImageView& picture,
+                       const std::uint16_t* scattered, int y, const ImageView& result,
+                       const Profile& profile, Isa isa) {
+  const ConstImageView one{Format::rgba16f, picture.width, 1, 0,
+                           reinterpret_cast<const std::byte*>(scattered)};
+  int x = SOFTFOCUS_KERNEL(isa, combine_row)(pass, strength, row<std::uint16_t>(picture, y).data(),
+                                             scattered, row<std::uint16_t>(result, y).data(),
+                                             result.width, profile.half_store);
+  for (; x < picture.width; ++x) {
+    store_texel<Format::rgba16f>(
+        result, x, y,
+        combined(pass, strength, load_texel<Format::rgba16f>(picture, x, y),
+                 load_texel<Format::rgba16f>(one, x, 0)),
+        profile);
+  }
+}
+
 void divide_by_weight(const ImageView& image, const Profile& profile, ThreadPool& pool) {
   for_rows(
       image, profile, pool,
@@ -87,7 +118,7 @@ void divide_by_weight(const ImageView& image, const Profile& profile, ThreadPool
       [&](int x, int y) { return divided(load_texel<Format::rgba16f>(image, x, y)); });
 }
 
-Image half_of(const Image& image) {
+Image half_of(const ConstImageView& image) {
   return make_image(Format::rgba16f, (image.width + 1) / 2, (image.height + 1) / 2);
 }
 
@@ -103,6 +134,36 @@ void find_bright_light(const BrightPass& pass, const ConstImageView& picture,
                                                         result.width, profile.half_store);
       },
       [&](int x, int y) { return bright(pass, load_texel<Format::rgba16f>(picture, x, y)); });
+}
+
+bool has_bright_light(const BrightPass& pass, const ConstImageView& picture, ThreadPool& pool) {
+  std::atomic<bool> found = false;
+  pool.for_each((picture.height + kPassRows - 1) / kPassRows, [&](int band) {
+    const int end = std::min((band + 1) * kPassRows, picture.height);
+    for (int y = band * kPassRows; y < end && !found; ++y) {
+      int x = 0;
+      if (pool.isa() != Isa::scalar) {
+        x = SOFTFOCUS_KERNEL(pool.isa(), first_bright)(pass, row<std::uint16_t>(picture, y).data(),
+                                                       picture.width);
+      }
+      for (; x < picture.width; ++x) {
+        const glm::vec4 light = light_and_share(pass, load_texel<Format::rgba16f>(picture, x, y));
+        if (light.w > 0.0f) {
+          found = true;
+          break;
+        }
+      }
+    }
+  });
+  return found;
+}
+
+void add_no_light(const ConstImageView& picture, const ImageView& result, const Profile& profile,
+                  ThreadPool& pool) {
+  const std::vector<std::uint16_t> zeros(4 * static_cast<std::size_t>(picture.width));
+  const ConstImageView nothing{Format::rgba16f, picture.width, picture.height, 0,
+                               reinterpret_cast<const std::byte*>(zeros.data())};
+  add_scattered_light(kNothingBright, 0.0f, picture, nothing, result, profile, pool);
 }
 
 void add_scattered_light(const BrightPass& pass, float strength, const ConstImageView& picture,
@@ -137,22 +198,46 @@ void bloom(const BloomSettings& settings, const ConstImageView& picture, const I
   assert(picture.format == Format::rgba16f && result.format == Format::rgba16f);
   assert(picture.width == result.width && picture.height == result.height);
   const BrightPass pass = bright_pass_of(settings);
-  std::vector<Image> levels;
-  levels.push_back(make_image(Format::rgba16f, picture.width, picture.height));
-  find_bright_light(pass, picture, levels[0], profile, pool);
+  if (!has_bright_light(pass, picture, pool)) {
+    return add_no_light(picture, result, profile, pool);
+  }
+  // In vectors the light of the picture's own size is made and used row by row, twice: two pictures
+  // less that go through memory.
+  const bool in_rows = pool.isa() != Isa::scalar;
+  const MadeRows light{picture.width, picture.height, [&](int y, std::uint16_t* to) {
+                         make_bright_row(pass, picture, y, to, profile, pool.isa());
+                       }};
+  std::vector<Image> levels(1);
+  if (!in_rows) {
+    levels[0] = make_image(Format::rgba16f, picture.width, picture.height);
+    find_bright_light(pass, picture, levels[0], profile, pool);
+  }
   for (int i = 0; i < settings.levels; ++i) {
-    Image half = half_of(levels.back());
-    downsample(levels.back(), half, profile, pool);
+    Image half = i == 0 ? half_of(picture) : half_of(levels.back());
+    if (i == 0 && in_rows) {
+      downsample_made(light, half, profile, pool);
+    } else {
+      downsample(levels.back(), half, profile, pool);
+    }
     if (i == 0 && settings.is_steady) divide_by_weight(half, profile, pool);
     levels.push_back(std::move(half));
   }
-  for (std::size_t i = levels.size() - 1; i-- > 0;) {
+  for (std::size_t i = levels.size() - 1; i-- > (in_rows ? 1u : 0u);) {
     const float share = i == 0 ? 1.0f : settings.spread;
     Image wider = make_image(Format::rgba16f, levels[i].width, levels[i].height);
-    upsample(levels[i + 1], levels[i], share, wider, profile, pool);
+    upsample(levels[i + 1], levels[i], {share}, wider, profile, pool);
     levels[i] = std::move(wider);
   }
-  add_scattered_light(pass, settings.strength, picture, levels[0], result, profile, pool);
+  if (!in_rows) {
+    return add_scattered_light(pass, settings.strength, picture, levels[0], result, profile, pool);
+  }
+  upsample_made(
+      levels[1], light, {1.0f},
+      [&](int y, const std::uint16_t* scattered) {
+        make_combined_row(pass, settings.strength, picture, scattered, y, result, profile,
+                          pool.isa());
+      },
+      profile, pool);
 }
 
 }  // namespace softfocus
@@ -174,10 +259,13 @@ SOFTFOCUS_INLINE Floats largest(const BrightLanes& light) {
   return larger(larger(light.r, light.g), light.b);
 }
 
-SOFTFOCUS_INLINE BrightLanes bright_lanes(const BrightPass& pass, const HalfTexels& texels) {
-  const BrightLanes light{usable_lanes(half_to_float(texels.r)),
-                          usable_lanes(half_to_float(texels.g)),
-                          usable_lanes(half_to_float(texels.b))};
+SOFTFOCUS_INLINE BrightLanes usable_light(const HalfTexels& texels) {
+  return {usable_lanes(half_to_float(texels.r)), usable_lanes(half_to_float(texels.g)),
+          usable_lanes(half_to_float(texels.b))};
+}
+
+SOFTFOCUS_INLINE Floats bright_share(const BrightPass& pass, const BrightLanes& light,
+                                     Floats depth) {
   const Floats most = largest(light);
   const Floats above = most - pass.begin;
   const Floats cut = select(above < pass.double_knee, above, splat(pass.double_knee));
@@ -185,8 +273,13 @@ SOFTFOCUS_INLINE BrightLanes bright_lanes(const BrightPass& pass, const HalfTexe
   const Floats soft = x * x * pass.square_factor;
   const Floats hard = most - pass.threshold;
   const Floats kept = select(hard > soft, hard, soft);
-  const Floats seen = select(half_to_float(texels.a) < pass.beyond, splat(0.0f), most);
-  const Floats share = select(seen > 0.0f, kept / most, splat(0.0f));
+  const Floats seen = select(depth < pass.beyond, splat(0.0f), most);
+  return select(seen > 0.0f, kept / most, splat(0.0f));
+}
+
+SOFTFOCUS_INLINE BrightLanes bright_lanes(const BrightPass& pass, const HalfTexels& texels) {
+  const BrightLanes light = usable_light(texels);
+  const Floats share = bright_share(pass, light, half_to_float(texels.a));
   return {light.r * share, light.g * share, light.b * share};
 }
 
@@ -239,6 +332,16 @@ SOFTFOCUS_INLINE int combine_vectors(const BrightPass& pass, float strength,
 }
 
 }  // namespace
+
+/// How many whole vectors of pixels have nothing bright, in pixels.
+int first_bright(const BrightPass& pass, const std::uint16_t* from, int width) {
+  int x = 0;
+  for (; x + kLanes <= width; x += kLanes) {
+    const HalfTexels texels = load_half_texels(from + 4 * x);
+    if (any(bright_share(pass, usable_light(texels), half_to_float(texels.a)) > 0.0f)) break;
+  }
+  return x;
+}
 
 /// Each returns how many pixels are done.
 int bright_row(const BrightPass& pass, const std::uint16_t* from, std::uint16_t* to, int width,

@@ -48,10 +48,15 @@ inline constexpr BrightPass kNothingBright{65504.0f, 0.0f, 65504.0f, 0.0f, 0.0f,
 void bloom(const BloomSettings& settings, const ConstImageView& picture, const ImageView& result,
            const Profile& profile, ThreadPool& pool);
 
-/// Two of its passes: `bright`, by its weight, and the weight in alpha; and picture + strength
+/// Its passes: `bright`, by its weight, and the weight in alpha; and picture + strength
 /// (scattered - bright).
 void find_bright_light(const BrightPass& pass, const ConstImageView& picture,
                        const ImageView& result, const Profile& profile, ThreadPool& pool);
+/// Whether find_bright_light() would find any: it looks no further than the first.
+bool has_bright_light(const BrightPass& pass, const ConstImageView& picture, ThreadPool& pool);
+/// What add_scattered_light() gives for light that is 0 everywhere, if nothing is bright.
+void add_no_light(const ConstImageView& picture, const ImageView& result, const Profile& profile,
+                  ThreadPool& pool);
 void add_scattered_light(const BrightPass& pass, float strength, const ConstImageView& picture,
                          const ConstImageView& scattered, const ImageView& result,
                          const Profile& profile, ThreadPool& pool);

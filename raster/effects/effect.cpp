@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "raster/effects/bloom.h"
+#include "raster/effects/effect_settings.h"
 #include "raster/effects/lens_flare.h"
 #include "raster/effects/motion/motion_blur.h"
 #include "raster/effects/tone_map.h"
@@ -29,11 +30,18 @@ void gaussian(const Effect&, const EffectInput& input, const ImageView& result, 
 constexpr std::array kGaussian{
     EffectParameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 2.0}};
 
+void gaussian_at_once(const Effect&, const EffectInput& input, const ImageView& result,
+                      ThreadPool& pool) {
+  convolve(square_kernel(gaussian_weights(input.parameters[0])), input.picture, result,
+           input.profile, pool);
+}
+
+constexpr std::array kGaussianAtOnce{
+    EffectParameter{"sigma", "standard deviation in pixels", 0.0, 20.0, 2.0}};
+
 void bilateral_effect(const Effect&, const EffectInput& input, const ImageView& result,
                       ThreadPool& pool) {
-  bilateral({input.parameters[0], static_cast<float>(input.parameters[1]),
-             static_cast<float>(input.parameters[2])},
-            input.picture, result, input.profile, pool);
+  bilateral(bilateral_settings(input.parameters), input.picture, result, input.profile, pool);
 }
 
 constexpr std::array kBilateral{
@@ -43,12 +51,20 @@ constexpr std::array kBilateral{
     EffectParameter{"depth", "distance of unlike depths over the pixel's depth, 0 = none", 0.0,
                     1000.0, 0.0}};
 
+void dual_filter_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                        ThreadPool& pool) {
+  const auto [levels, widening] = dual_filter_settings(input.parameters);
+  dual_filter(levels, widening, input.picture, result, input.profile, pool);
+}
+
+constexpr std::array kDualFilter{
+    EffectParameter{"levels", "halvings: each makes the blur twice as wide", 1.0, 12.0, 2.0},
+    EffectParameter{"bilinear", "1: wider again by bilinear samples, 0: by tents of them", 0.0, 1.0,
+                    0.0}};
+
 void bloom_effect(const Effect&, const EffectInput& input, const ImageView& result,
                   ThreadPool& pool) {
-  const auto number = [&](std::size_t i) { return static_cast<float>(input.parameters[i]); };
-  bloom({number(0), number(1), number(2), static_cast<int>(input.parameters[3]), number(4),
-         input.parameters[5] >= 0.5},
-        input.picture, result, input.profile, pool);
+  bloom(bloom_settings(input.parameters), input.picture, result, input.profile, pool);
 }
 
 constexpr std::array kBloom{
@@ -62,17 +78,7 @@ constexpr std::array kBloom{
 
 void lens_flare_effect(const Effect&, const EffectInput& input, const ImageView& result,
                        ThreadPool& pool) {
-  const auto number = [&](std::size_t i) { return static_cast<float>(input.parameters[i]); };
-  LensFlareSettings settings{.threshold = number(0),
-                             .knee = number(1),
-                             .strength = number(3),
-                             .ghosts = static_cast<int>(input.parameters[4]),
-                             .fringe = number(5),
-                             .halo = number(6),
-                             .streak_px = number(7),
-                             .rays = number(8)};
-  if (input.parameters[2] > 0.0) settings.beyond_m = number(2);
-  lens_flare(settings, input.picture, result, input.profile, pool);
+  lens_flare(lens_flare_settings(input.parameters), input.picture, result, input.profile, pool);
 }
 
 constexpr std::array kLensFlare{
@@ -88,7 +94,11 @@ constexpr std::array kLensFlare{
     EffectParameter{"streak", "length of streaks to either side in pixels; 0: none", 0.0, 4096.0,
                     200.0},
     EffectParameter{"rays", "length of rays from the light, over the way to it; 0: none", 0.0, 1.0,
-                    0.3}};
+                    0.3},
+    EffectParameter{"aperture",
+                    "radius of a ghost's six blades, over half the picture's height; 0: the "
+                    "light's own shape",
+                    0.0, 0.5, 0.08}};
 
 void motion_blur_along_own_effect(const Effect&, const EffectInput& input, const ImageView& result,
                                   ThreadPool& pool) {
@@ -174,8 +184,12 @@ constexpr std::array kEffects{
     Effect{"gaussian-5", "5x5 pixels weighed by binomials", {}, by_kernel, true},
     Effect{"gaussian", "a Gaussian of any width, along x and then along y", kGaussian, gaussian,
            true},
+    Effect{"gaussian-at-once", "the same in one pass: the square of the reads", kGaussianAtOnce,
+           gaussian_at_once, true},
     Effect{"bilateral", "a Gaussian that leaves out unlike colours and depths", kBilateral,
            bilateral_effect},
+    Effect{"dual-filter", "a wide blur by halving the picture and doubling it again", kDualFilter,
+           dual_filter_effect, true},
     Effect{"bloom", "bright light scattered over its surroundings, after Jimenez 2014", kBloom,
            bloom_effect},
     Effect{"lens-flare", "ghosts, halo, streaks and rays of bright light, after Chapman 2013",
@@ -204,16 +218,52 @@ const Effect* find_effect(std::string_view name) {
   return nullptr;
 }
 
-Image apply(const Effect& effect, const EffectInput& input, ThreadPool& pool) {
-  assert(input.picture.format == Format::rgba16f);
+BilateralSettings bilateral_settings(std::span<const double> parameters) {
+  return {parameters[0], static_cast<float>(parameters[1]), static_cast<float>(parameters[2])};
+}
+
+BloomSettings bloom_settings(std::span<const double> parameters) {
+  const auto number = [&](std::size_t i) { return static_cast<float>(parameters[i]); };
+  return {number(0), number(1),           number(2), static_cast<int>(parameters[3]),
+          number(4), parameters[5] >= 0.5};
+}
+
+LensFlareSettings lens_flare_settings(std::span<const double> parameters) {
+  const auto number = [&](std::size_t i) { return static_cast<float>(parameters[i]); };
+  LensFlareSettings settings{.threshold = number(0),
+                             .knee = number(1),
+                             .strength = number(3),
+                             .ghosts = static_cast<int>(parameters[4]),
+                             .aperture = number(9),
+                             .fringe = number(5),
+                             .halo = number(6),
+                             .streak_px = number(7),
+                             .rays = number(8)};
+  if (parameters[2] > 0.0) settings.beyond_m = number(2);
+  return settings;
+}
+
+DualFilterSettings dual_filter_settings(std::span<const double> parameters) {
+  return {static_cast<int>(parameters[0]),
+          parameters[1] >= 0.5 ? Widening::bilinear : Widening::tent};
+}
+
+void apply_into(const Effect& effect, const EffectInput& input, const ImageView& result,
+                ThreadPool& pool) {
+  assert(input.picture.format == Format::rgba16f && result.format == Format::rgba16f);
+  assert(input.picture.width == result.width && input.picture.height == result.height);
   assert(input.parameters.size() == effect.parameters.size());
   assert(effect.filter != nullptr);
   assert(effect.velocity == VelocityOf::nothing ||
          (input.velocity.format == Format::rg16f && input.velocity.width == input.picture.width &&
           input.velocity.height == input.picture.height));
   const DefaultFloatEnvironment environment;
-  Image result = make_image(Format::rgba16f, input.picture.width, input.picture.height);
   effect.filter(effect, input, result, pool);
+}
+
+Image apply(const Effect& effect, const EffectInput& input, ThreadPool& pool) {
+  Image result = make_image(Format::rgba16f, input.picture.width, input.picture.height);
+  apply_into(effect, input, result, pool);
   return result;
 }
 

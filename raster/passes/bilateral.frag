@@ -1,10 +1,22 @@
 // The bilateral filter. Beside raster/passes/bilateral.cpp; bilateral.h has the formula.
 uniform sampler2D source;       // colour, and in alpha the depth
+#ifdef TAPS                      // odd: what is known to a compiler is faster
+uniform float weights[TAPS];
+#else
 uniform sampler2D weights;      // R32F, a row: the Gaussian
+#endif
 uniform float colour_factor;    // 1 / tolerance^2, or 0
 uniform float depth_tolerance;  // a share of the depth, or 0
 
 out vec4 filtered;
+
+#ifdef TAPS
+int tap_count() { return TAPS; }
+float gaussian(int i) { return weights[i]; }
+#else
+int tap_count() { return textureSize(weights, 0).x; }
+float gaussian(int i) { return texelFetch(weights, ivec2(i, 0), 0).r; }
+#endif
 
 float likeness(float square) {
   precise float rest = 1.0 - square;
@@ -14,16 +26,16 @@ float likeness(float square) {
 void main() {
   ivec2 last = textureSize(source, 0) - 1;
   ivec2 here = ivec2(gl_FragCoord.xy);
-  int reach = textureSize(weights, 0).x / 2;
+  int reach = tap_count() / 2;
   vec4 own = texelFetch(source, here, 0);
   precise float depth_scale = depth_tolerance * own.a;
   precise vec3 sum = vec3(0.0);
   precise float sum_of_weights = 0.0;
   for (int j = -reach; j <= reach; ++j) {
-    float row_weight = texelFetch(weights, ivec2(reach + j, 0), 0).r;
+    float row_weight = gaussian(reach + j);
     for (int i = -reach; i <= reach; ++i) {
       vec4 other = texelFetch(source, clamp(here + ivec2(i, j), ivec2(0), last), 0);
-      precise float weight = texelFetch(weights, ivec2(reach + i, 0), 0).r * row_weight;
+      precise float weight = gaussian(reach + i) * row_weight;
       if (i != 0 || j != 0) {
         precise vec3 off = other.rgb - own.rgb;
         precise float square = off.r * off.r + off.g * off.g + off.b * off.b;

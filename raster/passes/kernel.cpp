@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 #include <utility>
 
+#include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
 #include "raster/passes/fullscreen_pass.h"
@@ -140,6 +141,15 @@ Kernel column_kernel(std::vector<float> weights) {
   return {1, height, std::move(weights)};
 }
 
+Kernel square_kernel(const std::vector<float>& weights) {
+  const int side = static_cast<int>(weights.size());
+  Kernel kernel{side, side, {}};
+  for (const float down : weights) {
+    for (const float across : weights) kernel.weights.push_back(down * across);
+  }
+  return kernel;
+}
+
 void convolve_oracle(const Kernel& kernel, const ConstImageView& source, const ImageView& result,
                      const Profile& profile, ThreadPool& pool) {
   assert(fit(kernel, source, result));
@@ -170,6 +180,29 @@ void convolve(const Kernel& kernel, const ConstImageView& source, const ImageVie
     convolve_band(kernel, source, result, profile, band * kBandRows,
                   std::min((band + 1) * kBandRows, result.height), ring, pool.isa());
     rings.put_back(std::move(ring));
+  });
+}
+
+void box_in_four_reads(const Texture& source, const ImageView& result, const Profile& profile,
+                       ThreadPool& pool) {
+  assert(source.levels[0].width == result.width && source.levels[0].height == result.height);
+  struct Read {
+    glm::vec2 offset;
+    float weight;
+  };
+  constexpr std::array kReads{Read{{-0.5f, -0.5f}, 4.0f / 9.0f}, Read{{1.0f, -0.5f}, 2.0f / 9.0f},
+                              Read{{-0.5f, 1.0f}, 2.0f / 9.0f}, Read{{1.0f, 1.0f}, 1.0f / 9.0f}};
+  constexpr Sampler kSampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::clamp_to_edge};
+  const glm::vec2 texel{1.0f / static_cast<float>(result.width),
+                        1.0f / static_cast<float>(result.height)};
+  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
+    const glm::vec2 middle{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+    glm::vec4 sum{0.0f};
+    for (const Read& read : kReads) {
+      sum += read.weight * sample(source, kSampler, (middle + read.offset) * texel, 0.0f, profile);
+    }
+    sum.w = load_texel<Format::rgba16f>(source.levels[0], x, y).w;
+    return sum;
   });
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "raster/images/image_view.h"
+#include "raster/images/texture.h"
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
 
@@ -39,6 +40,8 @@ std::vector<float> gaussian_weights(double sigma_px);
 /// A kernel of one row, for a pass along x, or of one column, for a pass along y.
 Kernel row_kernel(std::vector<float> weights);
 Kernel column_kernel(std::vector<float> weights);
+/// Both at once: the square of the reads, one rounding to halves instead of two.
+Kernel square_kernel(const std::vector<float>& weights);
 
 /// The sum of weight(d) * source(p + d) at each pixel p of `result`. Both are RGBA16F and share no
 /// memory. Alpha is that of source(p).
@@ -55,5 +58,18 @@ void convolve(const Kernel& kernel, const ConstImageView& source, const ImageVie
 /// The oracle of convolve(), and its scalar form: pixel by pixel. Equal to the bit.
 void convolve_oracle(const Kernel& kernel, const ConstImageView& source, const ImageView& result,
                      const Profile& profile, ThreadPool& pool);
+
+/// The mean of 3x3 pixels by four bilinear reads of a texture in place of nine: between the four
+/// pixels at the upper left (4/9), between two at the right (2/9) and two below (2/9), and the one
+/// at the lower right (1/9). The first level is RGBA16F of the result's size; its edges repeat.
+/// Alpha is the pixel's own.
+///
+/// The read between pixels is the profile's texture unit's. Coordinates are rounded, so weights are
+/// a half only to about the place in pixels times 2^-24, but where a unit has 8-bit weights.
+///
+/// Order, in binary32: u = (x + 0.5 + dx) (1 / width); the sum of weight times read, beginning with
+/// the first.
+void box_in_four_reads(const Texture& source, const ImageView& result, const Profile& profile,
+                       ThreadPool& pool);
 
 }  // namespace softfocus

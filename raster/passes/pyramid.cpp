@@ -7,8 +7,10 @@
 #include <cassert>
 #include <cstring>
 #include <glm/vec4.hpp>
+#include <utility>
 #include <vector>
 
+#include "raster/images/image.h"
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/row_sums.h"
@@ -38,9 +40,13 @@ float down_weight(int i, int j) {
   return static_cast<float>(kDownsample128ths[distance(i)][distance(j)]) / 128.0f;
 }
 
-float up_weight(int i, bool is_odd) {
-  return static_cast<float>(kUpsample16ths[static_cast<std::size_t>(is_odd ? 3 - i : i)]) / 16.0f;
+float up_weight(Widening widening, int i, bool is_odd) {
+  const auto& sixteenths = widening == Widening::tent ? kTent16ths : kBilinear16ths;
+  return static_cast<float>(sixteenths[static_cast<std::size_t>(is_odd ? 3 - i : i)]) / 16.0f;
 }
+
+/// The first of the four along an axis that counts.
+int first_tap(Widening widening) { return widening == Widening::tent ? 0 : 1; }
 
 /// In the order of downsample(): of a row the columns 0, 2, 4 and then 1, 3, 5.
 constexpr std::array kDownColumns{0, 2, 4, 1, 3, 5};
@@ -48,6 +54,7 @@ constexpr std::array kDownColumns{0, 2, 4, 1, 3, 5};
 /// A thread's rows of floats.
 struct PyramidRows {
   std::vector<float> values, row, own, sums, more_sums;
+  std::vector<std::uint16_t> made, stored;
   std::vector<const float*> rows;
 };
 
@@ -59,7 +66,9 @@ void split_columns(const float* from, int pixels, float* to, std::size_t half) {
   }
 }
 
-void downsample_band(const ConstImageView& source, const ImageView& result, const Profile& profile,
+/// `row_of(y)` is a row of the source, or of what lies beyond its edges.
+template <class RowOf>
+void downsample_band(const RowOf& row_of, const ImageView& result, const Profile& profile,
                      int first, int end, PyramidRows& rows, Isa isa) {
   std::array<float, 36> weights;
   for (int j = 0; j < 6; ++j) {
@@ -78,8 +87,7 @@ void downsample_band(const ConstImageView& source, const ImageView& result, cons
     return &rows.values[static_cast<std::size_t>((y + 6) % 6) * 2 * half];
   };
   const auto take = [&](int y) {
-    decode_row(row<std::uint16_t>(source, std::clamp(y, 0, source.height - 1)), -2, pixels,
-               rows.row.data(), isa);
+    decode_row(row_of(y), -2, pixels, rows.row.data(), isa);
     split_columns(rows.row.data(), pixels, place(y), half);
   };
   for (int y = 2 * first - 2; y < 2 * first + 2; ++y) take(y);
@@ -98,14 +106,18 @@ void downsample_band(const ConstImageView& source, const ImageView& result, cons
 
 struct UpsampleWork {
   const ConstImageView& source;
-  const ConstImageView& own;
-  float share;
-  const ImageView& result;
+  int width;  ///< of the result
+  const Upsampling& how;
   const Profile& profile;
   Isa isa;
 };
 
-void upsample_band(const UpsampleWork& work, int first, int end, PyramidRows& rows) {
+/// `row_of(y)` is a row of what the result is mixed with; store(y, row) rounds a row of the result.
+template <class RowOf, class Store>
+void upsample_band(const UpsampleWork& work, const RowOf& row_of, const Store& store_at, int first,
+                   int end, PyramidRows& rows) {
+  const Widening widening = work.how.widening;
+  const int tap = first_tap(widening);
   const int half_width = work.source.width, values = 4 * half_width, pixels = half_width + 4;
   const std::size_t length = static_cast<std::size_t>(4 * pixels + kValuesAtOnce);
   rows.values.resize(4 * length);
@@ -128,28 +140,44 @@ void upsample_band(const UpsampleWork& work, int first, int end, PyramidRows& ro
     const int top = top_of(y);
     for (; taken < top + 4; ++taken) take(taken);
     std::array<float, 16> even, odd;
-    for (int j = 0; j < 4; ++j) {
-      for (int i = 0; i < 4; ++i) {
-        const auto at = static_cast<std::size_t>(4 * j + i);
-        even[at] = up_weight(i, false) * up_weight(j, y % 2 != 0);
-        odd[at] = up_weight(i, true) * up_weight(j, y % 2 != 0);
+    std::size_t at = 0;
+    for (int j = tap; j < 4 - tap; ++j) {
+      const float down = up_weight(widening, j, y % 2 != 0);
+      for (int i = tap; i < 4 - tap; ++i, ++at) {
+        even[at] = up_weight(widening, i, false) * down;
+        odd[at] = up_weight(widening, i, true) * down;
       }
-      rows.rows[static_cast<std::size_t>(j)] = place(top + j);
+      rows.rows[static_cast<std::size_t>(j - tap)] = place(top + j) + 4 * tap;
     }
-    sum_rows({rows.rows.data(), 4, 4, even.data()}, values, rows.sums.data(), work.isa);
+    const int taps = 4 - 2 * tap;
+    sum_rows({rows.rows.data(), taps, taps, even.data()}, values, rows.sums.data(), work.isa);
     for (const float*& row : rows.rows) row += 4;
-    sum_rows({rows.rows.data(), 4, 4, odd.data()}, values, rows.more_sums.data(), work.isa);
-    for (int x = 0; x < work.result.width; ++x) {
+    sum_rows({rows.rows.data(), taps, taps, odd.data()}, values, rows.more_sums.data(), work.isa);
+    for (int x = 0; x < work.width; ++x) {
       const float* from = (x % 2 == 0 ? rows.sums : rows.more_sums).data() + x / 2 * 4;
       std::memcpy(&rows.row[static_cast<std::size_t>(4 * x)], from, 4 * sizeof(float));
     }
-    const int count = 4 * work.result.width;
-    const auto own = row<std::uint16_t>(work.own, y);
-    decode_row(own, 0, work.result.width, rows.own.data(), work.isa);
-    SOFTFOCUS_KERNEL(work.isa, mix_row)(rows.own.data(), rows.row.data(), work.share, count);
-    store_row(rows.row.data(), nullptr, count, work.profile.half_store,
-              row<std::uint16_t>(work.result, y).data(), work.isa);
+    const int count = 4 * work.width;
+    decode_row(row_of(y), 0, work.width, rows.own.data(), work.isa);
+    if (!work.how.alone) {
+      SOFTFOCUS_KERNEL(work.isa, mix_row)(rows.own.data(), rows.row.data(), work.how.share, count);
+    }
+    store_at(y, [&](std::uint16_t* to) {
+      store_row(rows.row.data(), work.how.alone ? rows.own.data() : nullptr, count,
+                work.profile.half_store, to, work.isa);
+    });
   }
+}
+
+/// Calls band(first, end, rows) for bands of a result's rows, on all threads.
+template <class Band>
+void for_bands(int height, ThreadPool& pool, const Band& band) {
+  ScratchShelf<PyramidRows> shelf;
+  pool.for_each((height + kBandRows - 1) / kBandRows, [&](int i) {
+    PyramidRows rows = shelf.take();
+    band(i * kBandRows, std::min((i + 1) * kBandRows, height), rows);
+    shelf.put_back(std::move(rows));
+  });
 }
 
 }  // namespace
@@ -174,45 +202,99 @@ void downsample(const ConstImageView& source, const ImageView& result, const Pro
                 ThreadPool& pool) {
   assert(fit_down(source, result));
   if (pool.isa() == Isa::scalar) return downsample_oracle(source, result, profile, pool);
-  ScratchShelf<PyramidRows> shelf;
-  pool.for_each((result.height + kBandRows - 1) / kBandRows, [&](int band) {
-    PyramidRows rows = shelf.take();
-    downsample_band(source, result, profile, band * kBandRows,
-                    std::min((band + 1) * kBandRows, result.height), rows, pool.isa());
-    shelf.put_back(std::move(rows));
+  for_bands(result.height, pool, [&](int first, int end, PyramidRows& rows) {
+    const auto row_of = [&](int y) {
+      return row<std::uint16_t>(source, std::clamp(y, 0, source.height - 1));
+    };
+    downsample_band(row_of, result, profile, first, end, rows, pool.isa());
   });
 }
 
-void upsample_oracle(const ConstImageView& source, const ConstImageView& own, float share,
+namespace {
+
+/// A row of made ones in a thread's memory.
+std::span<const std::uint16_t> made_row(const MadeRows& source, int y, PyramidRows& rows) {
+  rows.made.resize(4 * static_cast<std::size_t>(source.width));
+  source.make(std::clamp(y, 0, source.height - 1), rows.made.data());
+  return rows.made;
+}
+
+}  // namespace
+
+void downsample_made(const MadeRows& source, const ImageView& result, const Profile& profile,
+                     ThreadPool& pool) {
+  for_bands(result.height, pool, [&](int first, int end, PyramidRows& rows) {
+    downsample_band([&](int y) { return made_row(source, y, rows); }, result, profile, first, end,
+                    rows, pool.isa());
+  });
+}
+
+void upsample_oracle(const ConstImageView& source, const ConstImageView& own, const Upsampling& how,
                      const ImageView& result, const Profile& profile, ThreadPool& pool) {
   assert(fit_up(source, own, result));
+  const int tap = first_tap(how.widening);
   fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
     const bool odd_x = x % 2 != 0, odd_y = y % 2 != 0;
     glm::vec4 sum{0.0f};
-    for (int j = 0; j < 4; ++j) {
-      for (int i = 0; i < 4; ++i) {
-        sum += up_weight(i, odd_x) * up_weight(j, odd_y) *
+    for (int j = tap; j < 4 - tap; ++j) {
+      for (int i = tap; i < 4 - tap; ++i) {
+        sum += up_weight(how.widening, i, odd_x) * up_weight(how.widening, j, odd_y) *
                load_texel<Format::rgba16f>(
                    source, std::clamp(x / 2 - 2 + (odd_x ? 1 : 0) + i, 0, source.width - 1),
                    std::clamp(y / 2 - 2 + (odd_y ? 1 : 0) + j, 0, source.height - 1));
       }
     }
     const glm::vec4 here = load_texel<Format::rgba16f>(own, x, y);
-    return here + share * (sum - here);
+    if (how.alone) return glm::vec4{sum.x, sum.y, sum.z, here.w};
+    return here + how.share * (sum - here);
   });
 }
 
-void upsample(const ConstImageView& source, const ConstImageView& own, float share,
+void upsample(const ConstImageView& source, const ConstImageView& own, const Upsampling& how,
               const ImageView& result, const Profile& profile, ThreadPool& pool) {
   assert(fit_up(source, own, result));
-  if (pool.isa() == Isa::scalar) return upsample_oracle(source, own, share, result, profile, pool);
-  const UpsampleWork work{source, own, share, result, profile, pool.isa()};
-  ScratchShelf<PyramidRows> shelf;
-  pool.for_each((result.height + kBandRows - 1) / kBandRows, [&](int band) {
-    PyramidRows rows = shelf.take();
-    upsample_band(work, band * kBandRows, std::min((band + 1) * kBandRows, result.height), rows);
-    shelf.put_back(std::move(rows));
+  if (pool.isa() == Isa::scalar) return upsample_oracle(source, own, how, result, profile, pool);
+  const UpsampleWork work{source, result.width, how, profile, pool.isa()};
+  for_bands(result.height, pool, [&](int first, int end, PyramidRows& rows) {
+    upsample_band(
+        work, [&](int y) { return row<std::uint16_t>(own, y); },
+        [&](int y, const auto& store) { store(row<std::uint16_t>(result, y).data()); }, first, end,
+        rows);
   });
+}
+
+void upsample_made(const ConstImageView& source, const MadeRows& own, const Upsampling& how,
+                   const TakeRow& take, const Profile& profile, ThreadPool& pool) {
+  const UpsampleWork work{source, own.width, how, profile, pool.isa()};
+  for_bands(own.height, pool, [&](int first, int end, PyramidRows& rows) {
+    rows.stored.resize(4 * static_cast<std::size_t>(own.width));
+    upsample_band(
+        work, [&](int y) { return made_row(own, y, rows); },
+        [&](int y, const auto& store) {
+          store(rows.stored.data());
+          take(y, rows.stored.data());
+        },
+        first, end, rows);
+  });
+}
+
+void dual_filter(int levels, Widening widening, const ConstImageView& picture,
+                 const ImageView& result, const Profile& profile, ThreadPool& pool) {
+  assert(levels >= 1);
+  std::vector<Image> halves;
+  ConstImageView above = picture;
+  for (int i = 0; i < levels; ++i) {
+    halves.push_back(make_image(Format::rgba16f, (above.width + 1) / 2, (above.height + 1) / 2));
+    downsample(above, halves.back(), profile, pool);
+    above = halves.back();
+  }
+  const Upsampling how{.widening = widening, .alone = true};
+  for (std::size_t i = halves.size() - 1; i > 0; --i) {
+    Image wider = make_image(Format::rgba16f, halves[i - 1].width, halves[i - 1].height);
+    upsample(halves[i], halves[i - 1], how, wider, profile, pool);
+    halves[i - 1] = std::move(wider);
+  }
+  upsample(halves[0], picture, how, result, profile, pool);
 }
 
 }  // namespace softfocus

@@ -3,6 +3,8 @@
 // does not flicker and the way up shows no blocks. All four channels are filtered alike.
 
 #include <array>
+#include <cstdint>
+#include <functional>
 
 #include "raster/images/image_view.h"
 #include "raster/numbers/profile.h"
@@ -24,22 +26,56 @@ inline constexpr std::array<std::array<int, 3>, 3> kDownsample128ths{
 void downsample(const ConstImageView& source, const ImageView& result, const Profile& profile,
                 ThreadPool& pool);
 
-/// Weights of 4 pixels along an axis, in 16ths: a tent of 3 bilinear samples, one pixel of the
-/// source apart, for a result's pixel of even number; reversed for an odd one.
-inline constexpr std::array kUpsample16ths{1, 5, 7, 3};
+/// How a picture is widened: by four pixels of the source along each axis, or by two.
+enum class Widening : std::uint8_t {
+  tent,      ///< of 3 bilinear samples, one pixel of the source apart, 1 2 1
+  bilinear,  ///< one bilinear sample; blocks of the source can be seen
+};
+
+/// Weights of 4 pixels along an axis, in 16ths, for a result's pixel of even number; reversed for
+/// an odd one.
+inline constexpr std::array kTent16ths{1, 5, 7, 3};
+inline constexpr std::array kBilinear16ths{0, 4, 12, 0};
+
+struct Upsampling {
+  float share = 1.0f;  ///< how much of the result comes from the source
+  Widening widening = Widening::tent;
+  bool alone = false;  ///< nothing of `own` but its alpha
+};
 
 /// The way back: the source has half of the result's width and height, rounded up. A result's
 /// pixel (2k, 2m) is the weighted sum of the source's columns k - 2 to k + 1 and rows m - 2 to
 /// m + 1. An odd column takes k - 1 to k + 2, an odd row m - 1 to m + 2. At the edges pixels
 /// repeat. The sum s is mixed with `own`, of the result's size: own + share (s - own), operation by
-/// operation in binary32. The order of the sum is row by row.
-void upsample(const ConstImageView& source, const ConstImageView& own, float share,
+/// operation in binary32; alone it stays s, with the alpha of `own`. The order of the sum is row by
+/// row; a bilinear one leaves out the outer pixels.
+void upsample(const ConstImageView& source, const ConstImageView& own, const Upsampling& how,
               const ImageView& result, const Profile& profile, ThreadPool& pool);
+
+/// Rows of RGBA16F that are made when a pass needs them, so that they need not lie in memory as a
+/// picture: by make(y, to), from several threads at once and for some rows more than once.
+struct MadeRows {
+  int width;
+  int height;
+  std::function<void(int y, std::uint16_t* to)> make;
+};
+using TakeRow = std::function<void(int y, const std::uint16_t* row)>;
+
+/// As above, of made rows, and row by row into `take`. Need an isa with vectors.
+void downsample_made(const MadeRows& source, const ImageView& result, const Profile& profile,
+                     ThreadPool& pool);
+void upsample_made(const ConstImageView& source, const MadeRows& own, const Upsampling& how,
+                   const TakeRow& take, const Profile& profile, ThreadPool& pool);
+
+/// The picture halved `levels` times, 1 or more, and widened as often, each alone ("dual filter",
+/// after Bjørge 2015): a blur whose cost hardly grows with its width. Alpha stays.
+void dual_filter(int levels, Widening widening, const ConstImageView& picture,
+                 const ImageView& result, const Profile& profile, ThreadPool& pool);
 
 /// The oracles, and the scalar forms: pixel by pixel. Equal to the bit.
 void downsample_oracle(const ConstImageView& source, const ImageView& result,
                        const Profile& profile, ThreadPool& pool);
-void upsample_oracle(const ConstImageView& source, const ConstImageView& own, float share,
+void upsample_oracle(const ConstImageView& source, const ConstImageView& own, const Upsampling& how,
                      const ImageView& result, const Profile& profile, ThreadPool& pool);
 
 }  // namespace softfocus

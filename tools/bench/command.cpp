@@ -7,6 +7,7 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/fixed_pictures/fixed_two_pass.h"
 #include "scenes/draw/draw_scene.h"
+#include "tools/bench/effect_bench.h"
 #include "tools/bench/options.h"
 #include "tools/bench/our_frame.h"
 #include "tools/bench/paired_runs.h"
@@ -21,15 +22,17 @@ namespace softfocus {
 namespace {
 
 // The stages of one contender, by what it does to draw and to filter and how it ends:
-// a frame is both without a pause between.
-template <class Draw, class Filter, class Finish>
+// a frame is both without a pause between. `filters_copies` filters with a copy of each picture.
+template <class Draw, class Filter, class FilterCopies, class Finish>
 std::vector<TimedStage> stages_of(const BenchWork& work, Draw draws, Filter filters,
-                                  Finish finishes) {
+                                  FilterCopies filters_copies, Finish finishes) {
   const TimedStage dof{"dof", [=] { filters(), finishes(); }};
   if (!work.scene) return {dof};
-  return {{"raster", [=] { draws(), finishes(); }}, dof, {"frame", [=] {
-                                                            draws(), filters(), finishes();
-                                                          }}};
+  std::vector<TimedStage> stages{{"raster", [=] { draws(), finishes(); }},
+                                 dof,
+                                 {"frame", [=] { draws(), filters(), finishes(); }}};
+  if (work.copies) stages.push_back({"copied", [=] { draws(), filters_copies(), finishes(); }});
+  return stages;
 }
 
 // The driver's: drawing, then the filter and the frame of each of its shader's forms.
@@ -39,12 +42,13 @@ std::vector<TimedStage> stages_of(const BenchWork& work, RepeatedOnGl& on_gl) {
   const auto draws = [&] { on_gl.draw(); };
   if (forms == 0) {
     return stages_of(
-        work, draws, [] {}, finish);
+        work, draws, [] {}, [] {}, finish);
   }
   std::vector<TimedStage> stages;
   for (std::size_t form = 0; form < forms; ++form) {
     std::vector<TimedStage> of_form = stages_of(
-        work, draws, [&on_gl, form] { on_gl.filter(form); }, finish);
+        work, draws, [&on_gl, form] { on_gl.filter(form); },
+        [&on_gl, form] { on_gl.copy_and_filter(form); }, finish);
     if (form > 0 && work.scene) of_form.erase(of_form.begin());  // drawn already
     stages.insert(stages.end(), of_form.begin(), of_form.end());
   }
@@ -139,6 +143,15 @@ int bench(const BenchOptions& options) {
   };
   progress.show("preparing");
   const BenchWork work = make_work(options);
+  if (!options.effects.empty()) {
+    ThreadPool pool{options.pool.threads, options.pool.isa};
+    const EffectBench timed =
+        bench_effects(options, work, pool, [&](const std::string& what) { progress.show(what); });
+    progress.clear();
+    std::cout << (options.json ? effect_bench_json(options, work, timed)
+                               : effect_bench_text(options, work, timed));
+    return kDone;
+  }
   if (options.arithmetic != Arithmetic::floats) {
     ThreadPool pool{options.pool.threads, options.pool.isa};
     const BenchRecord record = bench_arithmetic(options, work, pool, show_run);
@@ -155,7 +168,8 @@ int bench(const BenchOptions& options) {
   ThreadPool pool{options.pool.threads, options.pool.isa};
   OurFrame frame{work, pool, on_gl != nullptr};
   const std::vector<TimedStage> ours = stages_of(
-      work, [&] { draw(frame); }, [&] { filter(frame); }, [] {});
+      work, [&] { draw(frame); }, [&] { filter(frame); },
+      [&] { copy(frame, frame.drawn), filter(frame), copy(frame, frame.filtered); }, [] {});
 
   progress.show("warming up");
   warm_up(ours);

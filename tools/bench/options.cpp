@@ -3,6 +3,7 @@
 #include "scenes/make/sphere_field.h"
 #include "tools/cli/errors.h"
 #include "tools/gl/shaders.h"
+#include "tools/options/effect_options.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -19,6 +20,17 @@ constexpr std::uint64_t kBenchBytesPerPixel = 72;
 /// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kLensSumBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredViewsBytesPerPixel = 8 * 8;
+
+/// Effects read what is sharp.
+void check_effects(BenchOptions& options, const CLI::App& parser) {
+  for (const char* option : {"--method", "--arithmetic", "--max-coc"}) {
+    if (is_given(parser, option)) {
+      throw UsageError(std::string{"--effect and "} + option +
+                       " exclude each other: effects are timed alone, on the sharp picture");
+    }
+  }
+  options.method = {.filter = find_method("pinhole")};
+}
 
 /// What the method needs of the options beside it.
 void check_method(BenchOptions& options, const CLI::App& parser) {
@@ -73,6 +85,21 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_method_option(parser, options.method);
   add_arithmetic_option(parser, options.arithmetic);
   add_max_coc_option(parser, options.max_coc_px);
+  begin_group(parser, "Effects, in place of a method");
+  add_repeatable_value(
+      parser, "--effect", "NAME:KEY=VALUE,...",
+      "Time this effect on the sharp picture (softfocus effects); several one by "
+      "one; all: each of them",
+      [&options](const std::string& text) {
+        if (text != "all") {
+          options.effects.push_back(parse_effect("--effect", text));
+          return;
+        }
+        for (const Effect& effect : effects()) {
+          options.effects.push_back(parse_effect("--effect", std::string{effect.name}));
+        }
+      });
+  offer(parser, "--effect", [] { return names_in(effects()); });
   begin_group(parser, "Methods that sample the lens");
   add_sampling_options(parser, options.sampling);
   begin_group(parser, "The method auto");
@@ -88,6 +115,10 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_value(parser, "--vs", "DRIVER", "Time this GL driver too, in turn: " + names_of(drivers()),
             [&options](const std::string& text) { options.versus = &parse_driver("--vs", text); });
   offer(parser, "--vs", [] { return names_in(drivers()); });
+  add_flag(parser, "--copy",
+           "Time the frame also with a copy of each pass's picture into a texture, as before there "
+           "were frame-buffer objects",
+           options.copies);
   add_flag(parser, "--json", "Print JSON", options.json);
   add_quiet_option(parser, options.quiet);
 }
@@ -104,7 +135,14 @@ void complete(BenchOptions& options, const CLI::App& parser) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;
+  if (!options.effects.empty()) check_effects(options, parser);
   check_method(options, parser);
+  if (options.copies && (options.image || options.method.filter == nullptr ||
+                         options.method.name() == "pinhole" || !options.effects.empty())) {
+    throw UsageError(
+        "--copy needs a frame that is drawn and filtered: a SCENE or --triangles N, and a --method "
+        "that filters its picture");
+  }
   check_memory(options.image ? "--image" : "--size", options.size,
                kBenchBytesPerPixel +
                    (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0) +

@@ -8,6 +8,7 @@
 
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "raster/effects/effect.h"
 #include "raster/numbers/profile.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
@@ -27,6 +28,7 @@ struct BenchOptions {
   PictureSize size;
   double frame = 0.0;
   MethodChoice method{.filter = find_method("two-pass")};
+  std::vector<ChosenEffect> effects;  ///< these alone are timed, on the sharp picture
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;  ///< of a method that draws the scene
   AutoGoal goal;      ///< of auto
@@ -36,6 +38,7 @@ struct BenchOptions {
   Profile profile;
   std::string profile_name = "ieee";
   PoolOptions pool;
+  bool copies = false;  ///< --copy
   int runs = 15;
   const Driver* versus = nullptr;
   bool json = false;

@@ -1,5 +1,7 @@
 #include "tools/bench/our_frame.h"
 
+#include <algorithm>
+
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/object_numbers.h"
 
@@ -78,6 +80,19 @@ void draw(OurFrame& frame) {
       draw_transparent(*frame.scene, work.view, work.frame, frame.drawn, frame.pool);
   frame.objects = object_numbers_for(*work.method.filter, *work.scene, work.view, work.frame,
                                      work.size.width, work.size.height, work.profile, frame.pool);
+}
+
+void copy(OurFrame& frame, const Image& picture) {
+  if (frame.copy.bytes.empty()) {
+    frame.copy = make_image(picture.format, picture.width, picture.height);
+  }
+  constexpr int kRows = 16;
+  frame.pool.for_each((picture.height + kRows - 1) / kRows, [&](int band) {
+    for (int y = band * kRows; y < std::min((band + 1) * kRows, picture.height); ++y) {
+      const auto from = row<std::uint16_t>(picture, y);
+      std::copy(from.begin(), from.end(), row<std::uint16_t>(frame.copy, y).begin());
+    }
+  });
 }
 
 void filter(OurFrame& frame) {

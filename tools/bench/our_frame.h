@@ -28,6 +28,7 @@ struct OurFrame {
   std::vector<TransparentPicture> transparent{};  ///< layers before it, for a filter
   std::vector<std::uint16_t> objects{};  ///< the drawn objects' numbers, if the method reads them
   Image filtered{};
+  Image copy{};                        ///< of a pass's picture, if copies are timed
   std::optional<AutoMethod> choice{};  ///< of auto
   int samples = 0;                     ///< taken by a method that draws the scene
 };
@@ -38,5 +39,10 @@ void draw(OurFrame& frame);
 /// Gives depth of field to what was drawn, or to the work's picture. Auto looks at the picture and
 /// chooses each time.
 void filter(OurFrame& frame);
+
+/// Copies a picture of the frame's size, as a program without frame-buffer objects does after each
+/// pass. Our filter keeps what is between its passes in the caches, so it is one of the same size
+/// that is copied.
+void copy(OurFrame& frame, const Image& picture);
 
 }  // namespace softfocus

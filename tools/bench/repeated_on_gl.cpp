@@ -1,5 +1,6 @@
 #include "tools/bench/repeated_on_gl.h"
 
+#include <array>
 #include <optional>
 
 #include "tools/gl/filter_on_gl.h"
@@ -14,6 +15,7 @@ struct RepeatedOnGl::State {
   Shaders shaders{};
   std::optional<GlScene> scene{};  // with `drawn`
   GlTarget drawn{};
+  GlTarget copy{};                // what copy_and_filter() reads
   GlTexture uploaded{};           // else
   std::vector<GlFilter> forms{};  // as in kFilterForms; none: nothing is filtered
 };
@@ -26,6 +28,9 @@ RepeatedOnGl::RepeatedOnGl(const Driver& driver, const BenchWork& work, int thre
     if (work.scene) {
       state.scene.emplace(state.context, state.shaders, *work.scene);
       state.drawn = make_scene_target(width, height);
+      if (work.copies) {
+        state.copy = make_target(std::array{Format::rgba16f}, width, height, false);
+      }
     } else {
       state.uploaded = upload(work.picture);
     }
@@ -62,6 +67,14 @@ void RepeatedOnGl::filter(std::size_t form) {
   naming(state_->driver, [&] {
     run_filter(state_->forms[form],
                state_->work.scene ? state_->drawn.colour[0] : state_->uploaded);
+  });
+}
+
+void RepeatedOnGl::copy_and_filter(std::size_t form) {
+  naming(state_->driver, [&] {
+    const GlTexture& copy = state_->copy.colour[0];
+    copy_colour(state_->drawn, copy);
+    run_filter(state_->forms[form], copy, &copy);
   });
 }
 

@@ -34,6 +34,10 @@ class RepeatedOnGl {
   /// Filters what was drawn, or the work's picture.
   void filter(std::size_t form);
 
+  /// As filter(), but what was drawn is first copied into a texture, and each pass's picture before
+  /// the next one reads it. Needs a scene.
+  void copy_and_filter(std::size_t form);
+
   /// What the last filter() of that form made. Without forms: what was drawn, or the work's
   /// picture.
   Image picture(std::size_t form) const;

@@ -59,6 +59,7 @@ BenchWork make_work(const BenchOptions& options) {
   work.sampling = options.sampling;
   work.goal = options.goal;
   work.verify = options.verify;
+  work.copies = options.copies;
   work.profile = options.profile;
   work.profile_name = options.profile_name;
   if (options.image) {

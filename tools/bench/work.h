@@ -25,6 +25,7 @@ struct BenchWork {
   Sampling sampling;
   AutoGoal goal;
   Verify verify = Verify::in_doubt;
+  bool copies = false;   ///< a frame is timed with copies of its pictures too
   double focus_m = 0.0;  ///< with the aperture, for methods that draw the scene
   double aperture_radius_m = 0.0;
   Profile profile;

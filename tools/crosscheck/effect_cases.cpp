@@ -35,8 +35,9 @@ struct BloomCase {
 
 void bloom_both(const Bench& bench, Tally& tally, const BloomCase& what) {
   const Image source = lights(what.width, what.height, 77, what.any_bits);
-  const GlTarget target =
-      bloom_on_gl(bench.gl, bench.shaders, what.settings, upload(source), what.width, what.height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTexture picture = upload(source);
+  const GlTarget& target = bloom_on_gl(passes, what.settings, {picture, what.width, what.height});
   Image emulated = make_image(Format::rgba16f, what.width, what.height);
   bloom(what.settings, source, emulated, bench.profile, bench.pool);
   add_pictures(tally, read_colour(target, 0), emulated);
@@ -45,8 +46,9 @@ void bloom_both(const Bench& bench, Tally& tally, const BloomCase& what) {
 void lens_flare_both(const Bench& bench, Tally& tally, const LensFlareSettings& settings, int width,
                      int height) {
   const Image source = lights(width, height, 79, false);
-  const GlTarget target =
-      lens_flare_on_gl(bench.gl, bench.shaders, settings, upload(source), width, height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTexture picture = upload(source);
+  const GlTarget& target = lens_flare_on_gl(passes, settings, {picture, width, height});
   Image emulated = make_image(Format::rgba16f, width, height);
   lens_flare(settings, source, emulated, bench.profile, bench.pool);
   add_pictures(tally, read_colour(target, 0), emulated);
@@ -59,8 +61,10 @@ void tone_map_both(const Bench& bench, Tally& tally, const ToneCurve& curve) {
     for (std::uint16_t& value : row<std::uint16_t>(source, y)) value = next++;
   }
   constexpr float kExposure = 1.3f;
-  const GlTarget target = tone_map_on_gl(bench.gl, bench.shaders, curve, kExposure, upload(source),
-                                         source.width, source.height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTexture picture = upload(source);
+  const GlTarget& target =
+      tone_map_on_gl(passes, curve, kExposure, {picture, source.width, source.height});
   Image emulated = make_image(Format::rgba16f, source.width, source.height);
   tone_map(curve, kExposure, source, emulated, bench.profile, bench.pool);
   add_pictures(tally, read_colour(target, 0), emulated);
@@ -90,6 +94,9 @@ void add_effect_cases(std::vector<Case>& cases) {
   add_flare("64x48", true, true, {.strength = 1.0f}, 64, 48);
   add_flare("odd-61x43-all", false, true,
             {.strength = 1.0f, .ghosts = 8, .fringe = 0.3f, .halo = 0.4f, .rays = 1.0f}, 61, 43);
+  add_flare("wide-textures", false, true,
+            {.strength = 1.0f, .aperture = 0.5f, .halo = 1.0f, .streak_px = 400.0f}, 96, 128);
+  add_flare("lights-own-shape", false, true, {.strength = 1.0f, .aperture = 0.0f}, 64, 64);
   add_flare("beyond", false, true, {.beyond_m = 0.7f, .strength = 1.0f, .ghosts = 2}, 64, 64);
   add_flare("streaks-alone", false, true,
             {.strength = 1.0f, .ghosts = 0, .halo = 0.0f, .streak_px = 30.0f, .rays = 0.0f}, 64,

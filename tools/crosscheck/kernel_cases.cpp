@@ -1,13 +1,11 @@
 // Stages `kernel`, `pyramid` and `bilateral`: the same picture filtered by both sides.
 
-#include <array>
-
 #include "raster/images/image.h"
 #include "raster/passes/bilateral.h"
 #include "raster/passes/kernel.h"
 #include "raster/passes/pyramid.h"
 #include "tools/crosscheck/cases.h"
-#include "tools/gl/objects.h"
+#include "tools/gl/effects_on_gl.h"
 
 namespace softfocus {
 namespace {
@@ -38,63 +36,75 @@ Image with_steps(Image image) {
   return image;
 }
 
-Image weight_image(const Kernel& kernel) {
-  Image image = make_image(Format::r32f, kernel.width, kernel.height);
-  const float* weight = kernel.weights.data();
-  for (int y = 0; y < kernel.height; ++y) {
-    for (float& value : row<float>(image, y)) value = *weight++;
-  }
-  return image;
-}
-
 struct KernelCase {
   Kernel kernel;
   int width;
   int height;
   glm::ivec2 guard{0, 0};
   bool any_bits = false;
+  bool quad = false;  ///< two triangles on the driver's side
 };
 
 void convolve_both(const Bench& bench, Tally& tally, const KernelCase& what) {
   const Image source = random_picture(what.width + 2 * what.guard.x, what.height + 2 * what.guard.y,
                                       2047, what.any_bits);
-  const GlTexture picture = upload(source), weights = upload(weight_image(what.kernel));
-  const GlTarget target = make_target(std::array{Format::rgba16f}, what.width, what.height, false);
-  const GlProgram program = link_program(bench.gl, bench.shaders, "fullscreen.vert", "kernel.frag");
-  set_texture(program, "source", 0, picture);
-  set_texture(program, "weights", 1, weights);
-  set_uniform(program, "guard", what.guard);
-  draw_fullscreen(target, program);
+  EffectPasses passes{bench.gl, bench.shaders};
+  passes.draw_quads(what.quad);
+  const GlTexture picture = upload(source);
+  const GlTarget& target =
+      convolved_on_gl(passes, what.kernel, {picture, source.width, source.height}, what.guard);
 
   Image emulated = make_image(Format::rgba16f, what.width, what.height);
   convolve(what.kernel, source, emulated, bench.profile, bench.pool);
   add_pictures(tally, read_colour(target, 0), emulated);
 }
 
+void box_both(const Bench& bench, Tally& tally, int width, int height) {
+  const Texture source = make_texture(random_picture(width, height, 2051, false));
+  const GlTexture picture =
+      upload(source, {Filter::bilinear, Wrap::clamp_to_edge, Wrap::clamp_to_edge});
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTarget& target = passes.target(width, height);
+  const GlProgram& program = passes.program("box_bilinear.frag");
+  set_texture(program, "source", 0, picture);
+  set_uniform(program, "texel",
+              glm::vec2{1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height)});
+  passes.draw(target, program);
+  Image emulated = make_image(Format::rgba16f, width, height);
+  box_in_four_reads(source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
 /// Down and up again.
 void halve_and_double_both(const Bench& bench, Tally& tally, int width, int height, bool any_bits) {
   const Image source = random_picture(width, height, 2049, any_bits);
-  const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
   const GlTexture picture = upload(source);
-  const GlTarget half = make_target(std::array{Format::rgba16f}, half_width, half_height, false);
-  const GlTarget whole = make_target(std::array{Format::rgba16f}, width, height, false);
-  const GlProgram down =
-      link_program(bench.gl, bench.shaders, "fullscreen.vert", "downsample.frag");
-  set_texture(down, "source", 0, picture);
-  draw_fullscreen(half, down);
-  const GlProgram up = link_program(bench.gl, bench.shaders, "fullscreen.vert", "upsample.frag");
-  constexpr float kShare = 0.7f;
-  set_texture(up, "source", 0, half.colour[0]);
-  set_texture(up, "own", 1, picture);
-  set_uniform(up, "share", kShare);
-  draw_fullscreen(whole, up);
-
-  Image small = make_image(Format::rgba16f, half_width, half_height);
-  Image large = make_image(Format::rgba16f, width, height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlPicture whole{picture, width, height};
+  const GlTarget& half = halved_on_gl(passes, whole);
+  Image small = make_image(Format::rgba16f, half.width, half.height);
   downsample(source, small, bench.profile, bench.pool);
-  upsample(small, source, kShare, large, bench.profile, bench.pool);
   add_pictures(tally, read_colour(half, 0), small, "half");
-  add_pictures(tally, read_colour(whole, 0), large, "whole");
+  Image large = make_image(Format::rgba16f, width, height);
+  for (const Widening widening : {Widening::tent, Widening::bilinear}) {
+    for (const bool alone : {false, true}) {
+      const Upsampling how{0.7f, widening, alone};
+      const GlTarget& widened = widened_on_gl(passes, picture_of(half), whole, how);
+      upsample(small, source, how, large, bench.profile, bench.pool);
+      add_pictures(tally, read_colour(widened, 0), large, "whole");
+    }
+  }
+}
+
+void dual_filter_both(const Bench& bench, Tally& tally, int levels, Widening widening) {
+  constexpr int kWidth = 61, kHeight = 43;
+  const Image source = random_picture(kWidth, kHeight, 2050, false);
+  const GlTexture picture = upload(source);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTarget& target = dual_filter_on_gl(passes, levels, widening, {picture, kWidth, kHeight});
+  Image emulated = make_image(Format::rgba16f, kWidth, kHeight);
+  dual_filter(levels, widening, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
 }
 
 void add_pyramid_cases(std::vector<Case>& cases) {
@@ -109,21 +119,20 @@ void add_pyramid_cases(std::vector<Case>& cases) {
   add("512x512", false, false, 512, 512);
   add("any-bits", false, true, 64, 64, true);
   add("one-pixel", true, true, 1, 1);
+  cases.push_back({"pyramid", "dual-filter-1", true, true, [](const Bench& bench, Tally& tally) {
+                     dual_filter_both(bench, tally, 1, Widening::bilinear);
+                   }});
+  cases.push_back({"pyramid", "dual-filter-3", false, true, [](const Bench& bench, Tally& tally) {
+                     dual_filter_both(bench, tally, 3, Widening::tent);
+                   }});
 }
 
 void smooth_both(const Bench& bench, Tally& tally, const BilateralSettings& settings, int width,
                  int height, bool any_bits) {
   const Image source = with_steps(random_picture(width, height, 2048, any_bits));
+  EffectPasses passes{bench.gl, bench.shaders};
   const GlTexture picture = upload(source);
-  const GlTexture weights = upload(weight_image(row_kernel(gaussian_weights(settings.sigma_px))));
-  const GlTarget target = make_target(std::array{Format::rgba16f}, width, height, false);
-  const GlProgram program =
-      link_program(bench.gl, bench.shaders, "fullscreen.vert", "bilateral.frag");
-  set_texture(program, "source", 0, picture);
-  set_texture(program, "weights", 1, weights);
-  set_uniform(program, "colour_factor", bilateral_colour_factor(settings));
-  set_uniform(program, "depth_tolerance", settings.depth_tolerance);
-  draw_fullscreen(target, program);
+  const GlTarget& target = bilateral_on_gl(passes, settings, {picture, width, height});
 
   Image emulated = make_image(Format::rgba16f, width, height);
   bilateral(settings, source, emulated, bench.profile, bench.pool);
@@ -159,6 +168,8 @@ void add_kernel_cases(std::vector<Case>& cases) {
     add(name + "-512x512", false, false, {named.kernel, 512, 512});
     add(name + "-any-bits", false, true, {named.kernel, 97, 64, {0, 0}, true});
   }
+  add("quad-61x43", true, true,
+      {.kernel = *find_kernel("gaussian-5"), .width = 61, .height = 43, .quad = true});
   add("guard-band-40x30", true, true, {*find_kernel("gaussian-5"), 40, 30, {7, 3}});
   for (const double sigma : {0.6, 4.0, 20.0}) {
     const std::string name = "gaussian-" + std::to_string(static_cast<int>(sigma * 10.0));
@@ -168,6 +179,12 @@ void add_kernel_cases(std::vector<Case>& cases) {
         {column_kernel(gaussian_weights(sigma)), 160, 120});
   }
   add("one-pixel", true, true, {*find_kernel("gaussian-5"), 1, 1});
+  for (const glm::ivec2 size : {glm::ivec2{61, 43}, {256, 64}}) {
+    cases.push_back(
+        {"kernel", "box-in-four-reads-" + std::to_string(size.x) + "x" + std::to_string(size.y),
+         true, true,
+         [size](const Bench& bench, Tally& tally) { box_both(bench, tally, size.x, size.y); }});
+  }
   add_pyramid_cases(cases);
   add_bilateral_cases(cases);
 }

@@ -1,5 +1,6 @@
 // Stands in for what needs GL in a build without libepoxy.
 
+#include "tools/bench/effects_repeated_on_gl.h"
 #include "tools/bench/repeated_on_gl.h"
 #include "tools/crosscheck/probe.h"
 #include "tools/crosscheck/run_cases.h"
@@ -34,6 +35,14 @@ std::vector<Image> FrameOnGl::draw_layers(const Scene&, const CameraMatrices&, d
 }
 Image FrameOnGl::filter(const Method&, const DofSettings&, const Image&) { refuse(); }
 
+struct EffectsRepeatedOnGl::State {};
+EffectsRepeatedOnGl::EffectsRepeatedOnGl(const Driver&, const Image&, int) { refuse(); }
+EffectsRepeatedOnGl::~EffectsRepeatedOnGl() = default;
+std::string EffectsRepeatedOnGl::renderer() const { refuse(); }
+void EffectsRepeatedOnGl::choose(const ChosenEffect&) { refuse(); }
+void EffectsRepeatedOnGl::run(bool) { refuse(); }
+Image EffectsRepeatedOnGl::picture() const { refuse(); }
+
 struct RepeatedOnGl::State {};
 RepeatedOnGl::RepeatedOnGl(const Driver&, const BenchWork&, int) { refuse(); }
 RepeatedOnGl::~RepeatedOnGl() = default;
@@ -42,6 +51,7 @@ void RepeatedOnGl::draw() { refuse(); }
 void RepeatedOnGl::finish() { refuse(); }
 std::vector<std::string> RepeatedOnGl::forms() const { refuse(); }
 void RepeatedOnGl::filter(std::size_t) { refuse(); }
+void RepeatedOnGl::copy_and_filter(std::size_t) { refuse(); }
 Image RepeatedOnGl::picture(std::size_t) const { refuse(); }
 
 }  // namespace softfocus

@@ -99,7 +99,7 @@ GlFilter make_filter(const GlContext& context, const Shaders& shaders, std::stri
   return filter;
 }
 
-void run_filter(const GlFilter& filter, const GlTexture& scene) {
+void run_filter(const GlFilter& filter, const GlTexture& scene, const GlTexture* copy) {
   if (filter.tiles) {
     find_reach(*filter.tiles, scene);
     set_texture(filter.program, "tile_reach", 2, filter.tiles->reach.colour[0]);
@@ -112,6 +112,10 @@ void run_filter(const GlFilter& filter, const GlTexture& scene) {
     set_uniform(filter.program, "direction", direction);
     draw_fullscreen(target, filter.program);
     source = &target.colour[0];
+    if (copy != nullptr && &target != &filter.targets.back()) {
+      copy_colour(target, *copy);
+      source = copy;
+    }
     direction = {0, 1};
   }
 }

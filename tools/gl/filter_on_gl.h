@@ -47,8 +47,9 @@ GlFilter make_filter(const GlContext& context, const Shaders& shaders, std::stri
                      FilterForm form, const DofSettings& settings, int width, int height,
                      int tile_px = kFilterTilePx);
 
-/// Filters an RGBA16F texture of that size.
-void run_filter(const GlFilter& filter, const GlTexture& scene);
+/// Filters an RGBA16F texture of that size. With `copy`, another, which may be `scene`, each pass
+/// but the last is copied there and read from there.
+void run_filter(const GlFilter& filter, const GlTexture& scene, const GlTexture* copy = nullptr);
 
 /// Both at once, brute-force, for a filter that is run once; the result is the target's one colour
 /// texture. Throws DriverError for a method without a shader.

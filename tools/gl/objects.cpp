@@ -247,6 +247,15 @@ Image read_colour(const GlTarget& target, std::size_t index) {
   return read_bound_framebuffer(target.formats[index], target.width, target.height);
 }
 
+void copy_colour(const GlTarget& target, const GlTexture& to) {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, to);
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, target.width, target.height);
+  check_error("copying a target into a texture");
+}
+
 Image read_depth(const GlContext& context, const GlTarget& target) {
   const GlProgram program = link_program(context, {}, "fullscreen.vert", "store.frag");
   const GlTarget copy = make_target(std::array{Format::r32f}, target.width, target.height, false);
@@ -303,6 +312,9 @@ void set_uniform(const GlProgram& program, const char* name, glm::vec3 value) {
 void set_uniform(const GlProgram& program, const char* name, glm::vec4 value) {
   glUniform4f(location(program, name), value.x, value.y, value.z, value.w);
 }
+void set_uniform(const GlProgram& program, const char* name, std::span<const float> values) {
+  glUniform1fv(location(program, name), static_cast<GLsizei>(values.size()), values.data());
+}
 void set_uniform(const GlProgram& program, const char* name, const glm::mat3& value) {
   glUniformMatrix3fv(location(program, name), 1, GL_FALSE, &value[0][0]);
 }
@@ -316,14 +328,26 @@ void set_texture(const GlProgram& program, const char* name, int unit, const GlT
   set_uniform(program, name, unit);
 }
 
-void draw_fullscreen(const GlTarget& target, const GlProgram& program) {
+namespace {
+
+void draw_over(const GlTarget& target, const GlProgram& program, GLenum mode, GLsizei corners) {
   bind(target);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glUseProgram(program);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDrawArrays(mode, 0, corners);
   check_error("a full-screen pass");
+}
+
+}  // namespace
+
+void draw_fullscreen(const GlTarget& target, const GlProgram& program) {
+  draw_over(target, program, GL_TRIANGLES, 3);
+}
+
+void draw_fullscreen_quad(const GlTarget& target, const GlProgram& program) {
+  draw_over(target, program, GL_TRIANGLE_STRIP, 4);
 }
 
 }  // namespace softfocus

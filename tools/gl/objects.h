@@ -72,6 +72,9 @@ GlTarget make_target(std::span<const Format> formats, int width, int height, boo
 /// Binds the target and its viewport.
 void bind(const GlTarget& target);
 Image read_colour(const GlTarget& target, std::size_t index);
+/// Copies its first colour into a texture of its size and format, as programs had to before there
+/// were frame-buffer objects.
+void copy_colour(const GlTarget& target, const GlTexture& to);
 /// By way of a shader: WebGL2 reads no depth.
 Image read_depth(const GlContext& context, const GlTarget& target);
 /// Returns when all that draws into it has been done: its first pixel is there. A browser's
@@ -90,6 +93,7 @@ void set_uniform(const GlProgram& program, const char* name, glm::ivec2 value);
 void set_uniform(const GlProgram& program, const char* name, glm::vec2 value);
 void set_uniform(const GlProgram& program, const char* name, glm::vec3 value);
 void set_uniform(const GlProgram& program, const char* name, glm::vec4 value);
+void set_uniform(const GlProgram& program, const char* name, std::span<const float> values);
 void set_uniform(const GlProgram& program, const char* name, const glm::mat3& value);
 void set_uniform(const GlProgram& program, const char* name, const glm::mat4& value);
 /// Binds a texture to a unit and the sampler uniform to it.
@@ -97,5 +101,8 @@ void set_texture(const GlProgram& program, const char* name, int unit, const GlT
 
 /// One triangle over the whole target, for programs with fullscreen.vert.
 void draw_fullscreen(const GlTarget& target, const GlProgram& program);
+/// Two triangles over it, for programs with fullscreen.vert and AS_QUAD defined: the 2x2 pixels
+/// that GPUs shade together are shaded twice along the diagonal.
+void draw_fullscreen_quad(const GlTarget& target, const GlProgram& program);
 
 }  // namespace softfocus

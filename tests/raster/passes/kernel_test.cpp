@@ -121,6 +121,25 @@ TEST_CASE("a row and a column give what their product gives, to two roundings") 
   CHECK(largest > 0.0f);
 }
 
+TEST_CASE("a Gaussian at once is that of two passes, to their roundings") {
+  ThreadPool pool{2};
+  const Image source = random_picture(40, 31, 8);
+  const std::vector<float> weights = gaussian_weights(1.7);
+  Image across = make_image(Format::rgba16f, 40, 31), both = across, at_once = across;
+  convolve(row_kernel(weights), source, across, {}, pool);
+  convolve(column_kernel(weights), across, both, {}, pool);
+  convolve(square_kernel(weights), source, at_once, {}, pool);
+  float largest = 0.0f;
+  for (int y = 0; y < 31; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      largest =
+          std::max(largest, std::fabs(load_texel(both, x, y).x - load_texel(at_once, x, y).x));
+    }
+  }
+  CHECK(largest <= 0x1p-10f);
+  CHECK(largest > 0.0f);
+}
+
 TEST_CASE("a Gaussian's weights sum to 1, fall outwards and have its variance") {
   for (const double sigma : {0.0, 0.2, 0.5, 1.0, 3.7, 40.0, 341.0}) {
     CAPTURE(sigma);
@@ -137,5 +156,30 @@ TEST_CASE("a Gaussian's weights sum to 1, fall outwards and have its variance") 
     CHECK(std::is_sorted(weights.begin(), weights.begin() + middle + 1));
     // 2.7 % of a Gaussian's variance lie beyond 3 sigma.
     if (sigma >= 1.0) CHECK(std::fabs(variance / (sigma * sigma) - 0.973) < 0.03);
+  }
+}
+
+TEST_CASE(
+    "a box in four bilinear reads is the box of nine, to what its coordinates are rounded by") {
+  ThreadPool pool{2};
+  for (const char* name : {"ieee", "d3d11"}) {
+    CAPTURE(name);
+    double worst = 0.0;
+    for (const int width : {64, 1023}) {
+      const Image source = test::random_halves(width, 40, 21, 0.0, 2.0);
+      Image result = make_image(Format::rgba16f, width, 40);
+      box_in_four_reads(make_texture(source), result, profile_named(name), pool);
+      for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < width; ++x) {
+          const double exact = exact_sum(*find_kernel("box-3"), source, x, y, 0);
+          const double step = std::ldexp(1.0, std::ilogb(exact) - 10);
+          worst = std::max(
+              worst, std::fabs(exact - static_cast<double>(load_texel(result, x, y).x)) / step);
+        }
+      }
+    }
+    MESSAGE(name << ": " << worst << " steps of a half");
+    CHECK(worst < 1.2);
+    CHECK(worst > 0.5);
   }
 }

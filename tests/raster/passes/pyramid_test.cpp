@@ -56,7 +56,7 @@ TEST_CASE("the way up is a tent of bilinear samples, to half a step of the halve
   const Image source = random_picture(20, 15, 2);
   const Image own = make_image(Format::rgba16f, 40, 30);
   Image result = make_image(Format::rgba16f, 40, 30);
-  upsample(source, own, 1.0f, result, {}, pool);
+  upsample(source, own, {1.0f}, result, {}, pool);
   const auto bilinear = [&](double x, double y) {
     const int column = static_cast<int>(std::floor(x)), line = static_cast<int>(std::floor(y));
     const double u = x - column, v = y - line;
@@ -89,14 +89,14 @@ TEST_CASE("a pyramid keeps what is even, and the sum of light away from the edge
   }
   Image down = half_of(even), up = make_image(Format::rgba16f, 21, 13);
   downsample(even, down, {}, pool);
-  upsample(down, even, 1.0f, up, {}, pool);
+  upsample(down, even, {1.0f}, up, {}, pool);
   CHECK(equal(up, even));
 
   Image point = make_image(Format::rgba16f, 32, 32);
   store_texel(point, 15, 17, glm::vec4{1024.0f}, {});
   Image half = half_of(point), back = make_image(Format::rgba16f, 32, 32);
   downsample(point, half, {}, pool);
-  upsample(half, make_image(Format::rgba16f, 32, 32), 1.0f, back, {}, pool);
+  upsample(half, make_image(Format::rgba16f, 32, 32), {1.0f}, back, {}, pool);
   double sum = 0.0;
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) sum += static_cast<double>(load_texel(back, x, y).x);
@@ -108,7 +108,7 @@ TEST_CASE("upsample mixes by its share: with 0 nothing changes") {
   ThreadPool pool{1};
   const Image source = random_picture(9, 6, 3), own = random_picture(17, 12, 4);
   Image result = make_image(Format::rgba16f, 17, 12);
-  upsample(source, own, 0.0f, result, {}, pool);
+  upsample(source, own, {0.0f}, result, {}, pool);
   CHECK(equal(result, own));
 }
 
@@ -124,11 +124,81 @@ TEST_CASE("a pyramid in vectors has the oracle's bits") {
           downsample(source, result, profile_named(profile), pool);
           REQUIRE(equal(result, expected));
           Image up = make_image(Format::rgba16f, width, height), expected_up = up;
-          upsample_oracle(expected, source, 0.4f, expected_up, profile_named(profile), pool);
-          upsample(expected, source, 0.4f, up, profile_named(profile), pool);
+          upsample_oracle(expected, source, {0.4f}, expected_up, profile_named(profile), pool);
+          upsample(expected, source, {0.4f}, up, profile_named(profile), pool);
           REQUIRE(equal(up, expected_up));
         }
       }
     }
+  }
+}
+
+TEST_CASE("the bilinear way up is one bilinear sample, to half a step of the halves") {
+  ThreadPool pool{2};
+  const Image source = random_picture(20, 15, 2), own = random_picture(40, 30, 3);
+  Image result = make_image(Format::rgba16f, 40, 30);
+  upsample(source, own, {.widening = Widening::bilinear, .alone = true}, result, {}, pool);
+  double worst = 0.0;
+  int wrong_alphas = 0;
+  for (int y = 1; y < 29; ++y) {
+    for (int x = 1; x < 39; ++x) {
+      const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
+      const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+      const auto across = [&](int line) {
+        return std::lerp(static_cast<double>(load_texel(source, i, line).x),
+                         static_cast<double>(load_texel(source, i + 1, line).x), u - i);
+      };
+      const double exact = std::lerp(across(j), across(j + 1), v - j);
+      worst = std::max(worst, std::fabs(exact - static_cast<double>(load_texel(result, x, y).x)));
+      wrong_alphas += load_texel(result, x, y).w != load_texel(own, x, y).w;
+    }
+  }
+  CHECK(worst <= 0x1p-10 * 1.01);
+  CHECK(wrong_alphas == 0);
+}
+
+TEST_CASE("each way up in vectors has the oracle's bits, alone or mixed") {
+  for (const Isa isa : available_isas()) {
+    ThreadPool pool{2, isa};
+    for (const int width : {1, 2, 17, 64}) {
+      const Image own = random_picture(width, 37, 11);
+      Image source = half_of(own);
+      downsample(own, source, {}, pool);
+      Image expected = make_image(Format::rgba16f, width, 37), result = expected;
+      for (const Widening widening : {Widening::tent, Widening::bilinear}) {
+        for (const bool alone : {false, true}) {
+          const Upsampling how{0.3f, widening, alone};
+          upsample_oracle(source, own, how, expected, {}, pool);
+          upsample(source, own, how, result, {}, pool);
+          REQUIRE(equal(result, expected));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a dual filter twice as deep spreads a point twice as far, and keeps its sum") {
+  ThreadPool pool{2};
+  Image point = make_image(Format::rgba16f, 256, 256);
+  store_texel(point, 128, 127, glm::vec4{4096.0f}, {});
+  double before = 0.0;
+  for (const int levels : {1, 2, 3, 4}) {
+    CAPTURE(levels);
+    Image result = make_image(Format::rgba16f, 256, 256);
+    dual_filter(levels, Widening::tent, point, result, {}, pool);
+    double sum = 0.0, across = 0.0, mean = 0.0;
+    for (int y = 0; y < 256; ++y) {
+      for (int x = 0; x < 256; ++x) {
+        const auto light = static_cast<double>(load_texel(result, x, y).x);
+        sum += light;
+        mean += light * x;
+        across += light * x * x;
+      }
+    }
+    const double sigma = std::sqrt(across / sum - std::pow(mean / sum, 2));
+    MESSAGE("levels " << levels << ": sigma " << sigma);
+    CHECK(sum == doctest::Approx(4096.0).epsilon(0.002));
+    if (before > 0.0) CHECK(sigma / before == doctest::Approx(2.0).epsilon(0.1));
+    before = sigma;
   }
 }

@@ -230,6 +230,55 @@ TEST_CASE("bench: the text of a comparison names the driver and says whether the
   CHECK(contains(run.out, " ms, tiled "));
 }
 
+TEST_CASE("bench: effects are timed one by one, on a scene or a picture") {
+  const Words two{"--effect", "bloom:levels=3,spread=0.6", "--effect", "sharpen"};
+  for (const Words& subject : {kScene, kPicture}) {
+    const json result = benched(subject, two);
+    REQUIRE(result["effects"].size() == 2);
+    CHECK(result["effects"][0]["effect"] == "bloom:levels=3");
+    CHECK(result["effects"][1]["effect"] == "sharpen");
+    for (const json& effect : result["effects"]) {
+      CHECK(effect["ms"]["min"] > 0.0);
+      CHECK(effect["ms"]["median"] <= effect["ms"]["max"]);
+      CHECK(effect["equal"].is_null());
+    }
+    CHECK(result["peer"].is_null());
+  }
+}
+
+TEST_CASE("bench: --vs llvmpipe runs every effect's shaders, whose bits are ours" *
+          doctest::test_suite("long")) {
+  if (!has_driver("llvmpipe")) return;
+  const json result = benched(
+      kPicture, {"--effect", "all", "--vs", "llvmpipe", "--profile", profile_of("llvmpipe")});
+  CHECK(result["effects"].size() >= 13);
+  for (const json& effect : result["effects"]) {
+    CAPTURE(effect["effect"].get<std::string>());
+    CHECK(effect["equal"] == true);
+    CHECK(effect["ratio"]["median"] > 0.0);
+    CHECK(effect["quad_over_triangle"]["median"] > 0.0);
+  }
+}
+
+TEST_CASE("bench: --copy times a frame whose pictures are copied, here and on a driver") {
+  const ProgramRun run =
+      run_program({"bench", "figures", "--size", "64x64", "--runs", "10", "--copy"});
+  CHECK(run.status == 0);
+  CHECK(contains(run.out, "\ncopied  "));
+  CHECK(contains(run.out, "\nours: "));
+  CHECK(contains(run.out, " frames a second rendering to textures, "));
+  if (!has_driver("llvmpipe")) return;
+  for (const char* method : {"two-pass", "one-pass"}) {
+    const json result =
+        benched(kScene, {"--copy", "--vs", "llvmpipe", "--profile", profile_of("llvmpipe"),
+                         "--method", method, "--max-coc", "4"});
+    check_stages(result["stages"], {"raster", "dof", "frame", "copied"});
+    check_stages(result["peer"]["stages"], {"raster", "dof", "frame", "copied"});
+    CHECK(result["ratio"]["copied"] > 0.0);
+    CHECK(result["equal"] == true);
+  }
+}
+
 TEST_CASE("bench: a driver that is not there is told in one line, with status 1") {
   if (!has_driver("llvmpipe")) return;
   const EnvironmentVariable none{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json"};
@@ -276,6 +325,12 @@ TEST_CASE("bench: bad options are refused with what would be right") {
   refused({"figures", "--samples", "4"}, {"--samples", "two-pass", "accumulation"});
   refused({"figures", "--method", "auto", "--samples", "4"}, {"--samples", "auto"});
   refused({"figures", "--max-error", "0.1"}, {"--max-error", "--method auto"});
+  refused({"figures", "--effect", "blur"}, {"--effect 'blur'", "gaussian"});
+  refused({"figures", "--effect", "bloom", "--method", "two-pass"}, {"--effect and --method"});
+  refused({"figures", "--effect", "bloom", "--max-coc", "4"}, {"--effect and --max-coc"});
+  refused({"figures", "--effect", "bloom", "--copy"}, {"--copy needs"});
+  refused({"--image", "64x64", "--copy"}, {"--copy needs", "SCENE"});
+  refused({"figures", "--method", "accumulation", "--copy"}, {"--copy needs"});
   refused({"figures", "cube-room"}, {"unexpected argument 'cube-room'"});
   refused({"no-such-scene"}, {"no-such-scene"}, 1);
 }
@@ -306,6 +361,8 @@ TEST_CASE("bench: the help names every option") {
                              "--isa NAME",
                              "--runs N",
                              "--vs DRIVER",
+                             "--effect NAME:KEY=VALUE,...",
+                             "--copy",
                              "--json"}) {
     CAPTURE(option);
     CHECK(contains(run.out, std::string{"  "} + option));

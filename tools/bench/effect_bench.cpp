@@ -1,0 +1,163 @@
+#include "tools/bench/effect_bench.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "raster/effects/effect_settings.h"
+#include "scenes/draw/draw_scene.h"
+#include "tools/bench/effects_repeated_on_gl.h"
+#include "tools/bench/timing.h"
+#include "tools/cli/machine.h"
+#include "tools/cli/option_values.h"
+#include "tools/files/json.h"
+#include "tools/options/effect_options.h"
+
+namespace softfocus {
+namespace {
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+/// "5.71 [5.52, 6.03]".
+std::string spread_text(const Spread& spread, int decimals) {
+  return fixed(spread.median, decimals) + " [" + fixed(spread.min, decimals) + ", " +
+         fixed(spread.max, decimals) + "]";
+}
+
+std::string column(const std::string& text, std::size_t width) {
+  return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
+}
+
+Json spread_json(const Spread& spread) {
+  return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
+}
+
+/// The name and the numbers that differ from the effect's own.
+std::string short_text(const ChosenEffect& chosen) {
+  std::string text{chosen.effect->name};
+  bool first = true;
+  for (std::size_t i = 0; i < chosen.parameters.size(); ++i) {
+    const EffectParameter& parameter = chosen.effect->parameters[i];
+    if (chosen.parameters[i] == parameter.preset) continue;
+    text += (first ? ":" : ",") + std::string{parameter.name} + "=" +
+            short_number(chosen.parameters[i]);
+    first = false;
+  }
+  return text;
+}
+
+}  // namespace
+
+EffectBench bench_effects(const BenchOptions& options, const BenchWork& work, ThreadPool& pool,
+                          const std::function<void(const std::string& what)>& on_run) {
+  const auto [width, height] = work.size;
+  const Image picture =
+      work.scene ? draw_scene(*work.scene, work.view, work.frame, width, height, work.profile, pool)
+                 : work.picture;
+  Image result = make_image(Format::rgba16f, width, height);
+  EffectBench bench;
+  std::unique_ptr<EffectsRepeatedOnGl> on_gl;
+  if (options.versus != nullptr) {
+    on_gl = std::make_unique<EffectsRepeatedOnGl>(*options.versus, picture, options.pool.threads);
+    bench.renderer = on_gl->renderer();
+  }
+  for (const ChosenEffect& chosen : options.effects) {
+    EffectTimes times{.name = short_text(chosen)};
+    const std::vector<TimedStage> ours{
+        {"ours", [&] {
+           apply_into(*chosen.effect, {picture, chosen.parameters, work.profile}, result, pool);
+         }}};
+    std::vector<TimedStage> peers;
+    on_run(times.name);
+    warm_up(ours);
+    if (on_gl) {
+      on_gl->choose(chosen);
+      peers = {{"triangle", [&] { on_gl->run(false); }}, {"quad", [&] { on_gl->run(true); }}};
+      warm_up(peers);
+      times.equal = equal(on_gl->picture(), result);
+      on_gl->run(false);
+      times.equal = times.equal && equal(on_gl->picture(), result);
+    }
+    PairedSamples samples =
+        time_in_pairs(ours, peers, options.runs, [&](int) { on_run(times.name); });
+    times.ours_ms = std::move(samples.ours[0].ms);
+    if (on_gl) {
+      times.peers_ms = std::move(samples.peers[0].ms);
+      times.quads_ms = std::move(samples.peers[1].ms);
+    }
+    bench.effects.push_back(std::move(times));
+  }
+  return bench;
+}
+
+std::string effect_bench_text(const BenchOptions& options, const BenchWork& work,
+                              const EffectBench& bench) {
+  const PoolOptions& pool = options.pool;
+  std::string text = work.name + ", " + size_text(work.size) + ", effects on the sharp picture\n" +
+                     "profile " + work.profile_name + ", " + count_text(pool.threads, "thread") +
+                     ", " + std::string{isa_name(pool.isa)} + ", " + std::to_string(options.runs) +
+                     " runs, " + cpu_name().value_or("a CPU without a name") + "\n";
+  const bool has_peer = !bench.renderer.empty();
+  if (has_peer) text += "against " + bench.renderer + "\n";
+  std::size_t widest = 8;
+  for (const EffectTimes& times : bench.effects) widest = std::max(widest, times.name.size() + 2);
+  constexpr std::size_t kTimes = 26, kRatio = 22;
+  text += "\n" + column("effect", widest);
+  if (!has_peer) {
+    text += "ms [min, max]\n";
+    for (const EffectTimes& times : bench.effects) {
+      text += column(times.name, widest) + spread_text(spread_of(times.ours_ms), 2) + "\n";
+    }
+    return text;
+  }
+  const std::string driver{options.versus->name};
+  text += column("ours, ms [min, max]", kTimes) + column(driver + ", ms [min, max]", kTimes) +
+          column(driver + " / ours", kRatio) + column("quad / triangle", kRatio) + "bits\n";
+  for (const EffectTimes& times : bench.effects) {
+    text += column(times.name, widest) + column(spread_text(spread_of(times.ours_ms), 2), kTimes) +
+            column(spread_text(spread_of(times.peers_ms), 2), kTimes) +
+            column(spread_text(spread_of(pair_ratios(times.ours_ms, times.peers_ms)), 1), kRatio) +
+            column(spread_text(spread_of(pair_ratios(times.peers_ms, times.quads_ms)), 2), kRatio) +
+            (times.equal ? "equal" : "differ") + "\n";
+  }
+  return text;
+}
+
+std::string effect_bench_json(const BenchOptions& options, const BenchWork& work,
+                              const EffectBench& bench) {
+  const PoolOptions& pool = options.pool;
+  Json json{{"softfocus", SOFTFOCUS_VERSION}, {"scene", work.name},
+            {"size", size_text(work.size)},   {"profile", work.profile_name},
+            {"threads", pool.threads},        {"isa", isa_name(pool.isa)},
+            {"runs", options.runs},           {"cpu", nullptr},
+            {"compiler", compiler_name()},    {"peer", nullptr},
+            {"effects", Json::array()}};
+  if (const auto cpu = cpu_name()) json["cpu"] = *cpu;
+  if (!bench.renderer.empty()) {
+    json["peer"] = {{"driver", options.versus->name}, {"renderer", bench.renderer}};
+  }
+  for (const EffectTimes& times : bench.effects) {
+    Json effect{{"effect", times.name},
+                {"ms", spread_json(spread_of(times.ours_ms))},
+                {"peer_ms", nullptr},
+                {"ratio", nullptr},
+                {"quad_over_triangle", nullptr},
+                {"equal", nullptr}};
+    if (!times.peers_ms.empty()) {
+      effect["peer_ms"] = spread_json(spread_of(times.peers_ms));
+      effect["ratio"] = spread_json(spread_of(pair_ratios(times.ours_ms, times.peers_ms)));
+      effect["quad_over_triangle"] =
+          spread_json(spread_of(pair_ratios(times.peers_ms, times.quads_ms)));
+      effect["equal"] = times.equal;
+    }
+    json["effects"].push_back(effect);
+  }
+  return json_text(json, 2) + "\n";
+}
+
+}  // namespace softfocus
