@@ -21,6 +21,10 @@ constexpr std::uint64_t kBenchBytesPerPixel = 72;
 constexpr std::uint64_t kLensSumBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredViewsBytesPerPixel = 8 * 8;
 
+bool reads_picture_alone(const Effect& effect) {
+  return effect.filter != nullptr && effect.velocity == VelocityOf::nothing;
+}
+
 /// Effects read what is sharp.
 void check_effects(BenchOptions& options, const CLI::App& parser) {
   for (const char* option : {"--method", "--arithmetic", "--max-coc"}) {
@@ -28,6 +32,13 @@ void check_effects(BenchOptions& options, const CLI::App& parser) {
       throw UsageError(std::string{"--effect and "} + option +
                        " exclude each other: effects are timed alone, on the sharp picture");
     }
+  }
+  for (const ChosenEffect& chosen : options.effects) {
+    if (reads_picture_alone(*chosen.effect)) continue;
+    const std::string name{chosen.effect->name};
+    throw UsageError("--effect: " + name + " reads more than a picture, " +
+                     (chosen.effect->filter == nullptr ? "the frames before" : "a velocity") +
+                     "; bench times what reads a picture alone");
   }
   options.method = {.filter = find_method("pinhole")};
 }
@@ -89,13 +100,14 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_repeatable_value(
       parser, "--effect", "NAME:KEY=VALUE,...",
       "Time this effect on the sharp picture (softfocus effects); several one by "
-      "one; all: each of them",
+      "one; all: each that reads a picture alone",
       [&options](const std::string& text) {
         if (text != "all") {
           options.effects.push_back(parse_effect("--effect", text));
           return;
         }
         for (const Effect& effect : effects()) {
+          if (!reads_picture_alone(effect)) continue;
           options.effects.push_back(parse_effect("--effect", std::string{effect.name}));
         }
       });

@@ -66,11 +66,10 @@ struct Line {
 
 // Along each axis, from a pixel of level i to those of level 0.
 Line way_up(int levels) {
-  // kUpsample16ths of the even and of the odd pixels, in turn.
+  // kTent16ths of the even and of the odd pixels, in turn.
   constexpr int kUpBegin = -3;
-  constexpr std::array kUp{kUpsample16ths[0], kUpsample16ths[3], kUpsample16ths[1],
-                           kUpsample16ths[2], kUpsample16ths[2], kUpsample16ths[1],
-                           kUpsample16ths[3], kUpsample16ths[0]};
+  constexpr std::array kUp{kTent16ths[0], kTent16ths[3], kTent16ths[1], kTent16ths[2],
+                           kTent16ths[2], kTent16ths[1], kTent16ths[3], kTent16ths[0]};
   Line up;
   for (int level = 0; level < levels; ++level) {
     const int step = 1 << level;

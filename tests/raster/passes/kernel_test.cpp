@@ -178,7 +178,6 @@ TEST_CASE(
         }
       }
     }
-    MESSAGE(name << ": " << worst << " steps of a half");
     CHECK(worst < 1.2);
     CHECK(worst > 0.5);
   }

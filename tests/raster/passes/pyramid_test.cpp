@@ -196,7 +196,6 @@ TEST_CASE("a dual filter twice as deep spreads a point twice as far, and keeps i
       }
     }
     const double sigma = std::sqrt(across / sum - std::pow(mean / sum, 2));
-    MESSAGE("levels " << levels << ": sigma " << sigma);
     CHECK(sum == doctest::Approx(4096.0).epsilon(0.002));
     if (before > 0.0) CHECK(sigma / before == doctest::Approx(2.0).epsilon(0.1));
     before = sigma;
