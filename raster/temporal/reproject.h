@@ -22,8 +22,8 @@ struct ReprojectSettings {
 /// All of one size.
 struct ReprojectInput {
   ConstImageView depths;  ///< RGBA16F: the frame's depth in alpha, a number
-  ConstImageView
-      velocity;           ///< RG16F: the position now less that before (raster/effects/velocity.h)
+  /// RG16F: the position now less that before (raster/effects/motion/velocity.h).
+  ConstImageView velocity;
   ConstImageView before;  ///< RGBA16F: the frame before, its depth in alpha; rows as an Image's
   ConstImageView frames;  ///< R32F: of how many frames each pixel of `before` is made
 };

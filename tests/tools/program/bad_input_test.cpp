@@ -81,7 +81,7 @@ TEST_CASE("bad input: an unknown name is answered with the names there are") {
   check_option_refused({"--format", "gif"}, {"'gif'", "png, png-16, pfm, npy"});
   const TemporaryDirectory directory;
   check_refused(directory, {"render", "figurines", "-o", directory.file("out.png")}, 1,
-                {"figurines", "clutter, cube-room, dunes, figures, foliage"});
+                {"figurines", "clutter, crossing, cube-room, dunes, figures, foliage"});
 }
 
 TEST_CASE("bad input: --focus and --autofocus exclude each other") {
