@@ -120,7 +120,8 @@ std::int64_t take_rows(const ConstImageView& before, const Targets& targets,
   std::vector<std::uint16_t> nearest(
       static_cast<std::size_t>(width) * static_cast<std::size_t>(end - first), kBehindAll);
   for (int y = first; y < end; ++y) {
-    std::ranges::fill(row<std::uint16_t>(result, y), std::uint16_t{0});
+    const auto pixels = row<std::uint16_t>(result, y);
+    std::fill(pixels.begin(), pixels.end(), std::uint16_t{0});
   }
   for (int y = 0; y < before.height; ++y) {
     const std::uint16_t* texels = row<std::uint16_t>(before, y).data();
@@ -172,7 +173,8 @@ std::int64_t forward_reproject_oracle(const ConstImageView& before, const ConstI
   const int width = before.width, height = before.height;
   std::vector<float> nearest(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
-    std::ranges::fill(row<std::uint16_t>(result, y), std::uint16_t{0});
+    const auto pixels = row<std::uint16_t>(result, y);
+    std::fill(pixels.begin(), pixels.end(), std::uint16_t{0});
   }
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

@@ -20,11 +20,10 @@ namespace softfocus {
 namespace {
 
 double number_of(const ChosenEffect& chosen, std::string_view name) {
-  for (std::size_t i = 0; i < chosen.parameters.size(); ++i) {
-    if (chosen.effect->parameters[i].name == name) return chosen.parameters[i];
-  }
-  assert(!"the effect has no such parameter");
-  return 0.0;
+  std::size_t i = 0;
+  while (i < chosen.parameters.size() && chosen.effect->parameters[i].name != name) ++i;
+  assert(i < chosen.parameters.size());
+  return chosen.parameters[i];
 }
 
 /// 0.1101 in base 2 of 1011, and likewise in base 3.
