@@ -509,6 +509,28 @@ TEST_CASE("EXR: a file cut short anywhere is refused") {
   }
 }
 
+TEST_CASE("bad input: an EXR's header that claims 2 GB is refused before room is made for them") {
+  const Bytes whole = encode_exr(make_image(Format::rgba16f, 5, 9), ExrNumbers::half, "");
+  const std::string all{reinterpret_cast<const char*>(whole.data()), whole.size()};
+  const std::string most = "\xFF\xFF\xFF\x7F";
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  const auto refused = [&](const std::string& attribute) {
+    write_file(name, all.substr(0, 8) + attribute + all.substr(8));  // behind magic and version
+    return refusal(name);
+  };
+  using namespace std::string_literals;
+  for (const std::string& type : {"string"s, "floatvector"s, "stringvector"s, "opaque"s}) {
+    CAPTURE(type);
+    CHECK(contains(refused("big\0"s + type + "\0"s + most), "claims a value of 2147483647 bytes"));
+  }
+  // A string within a vector, of a size that fits.
+  const std::string vector = "big\0stringvector\0\x08\0\0\0"s;
+  CHECK(contains(refused(vector + most + "text"), "claims a value of 2147483647 bytes"));
+  CHECK(contains(refused(vector + "\xFF\xFF\xFF\xFFtext"), "claims a value of -1 bytes"));
+  CHECK(refused(vector + "\4\0\0\0text"s) == "");
+}
+
 TEST_CASE("EXR: any changed byte is refused or gives a picture") {
   Image image = make_image(Format::rgba16f, 5, 9);
   const Bytes whole = encode_exr(image, ExrNumbers::half, "{}");

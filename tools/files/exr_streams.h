@@ -2,8 +2,11 @@
 // Between the OpenEXR library and bytes in memory or on a disk.
 
 #include <ImfIO.h>
+#include <ImfVersion.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -20,7 +23,9 @@ namespace softfocus {
 
 class ExrInput : public Imf::IStream {
  public:
-  explicit ExrInput(ByteSource source) : IStream("picture"), source_(std::move(source)) {}
+  explicit ExrInput(ByteSource source) : IStream("picture"), source_(std::move(source)) {
+    check_attributes();
+  }
 
   bool read(char c[], int n) override {
     const auto count = static_cast<std::size_t>(n);
@@ -47,6 +52,57 @@ class ExrInput : public Imf::IStream {
 
  private:
   static constexpr std::size_t kLookAhead = 65536;
+  static constexpr std::size_t kLongestName = 255;  // the library's limit, too
+
+  /// The library makes room for what an attribute claims before it reads it: 2 GB for a file of
+  /// 1 kB. A header is (name 0, type 0, size, value)... 0; of parts there are headers... 0.
+  void check_attributes() {
+    if (number() != Imf::MAGIC) return;  // which the library refuses
+    const bool parts = Imf::isMultiPart(number());
+    for (bool within = false;;) {
+      if (name().empty()) {
+        if (!parts || !within) break;
+        within = false;
+        continue;
+      }
+      within = true;
+      const std::string type = name();
+      const int size = claimed(number());
+      const std::uint64_t end = at_ + static_cast<std::uint64_t>(size);
+      while (type == "stringvector" && at_ < end) {
+        at_ += static_cast<std::uint64_t>(claimed(number()));
+      }
+      at_ = end;
+    }
+    at_ = 0;
+  }
+
+  int claimed(int size) const {
+    const std::uint64_t left = source_.size() - at_;
+    if (size >= 0 && static_cast<std::uint64_t>(size) <= left) return size;
+    throw FileError("the EXR is cut short or damaged: its header claims a value of " +
+                    std::to_string(size) + " bytes, and " + std::to_string(left) + " are left");
+  }
+
+  int number() {
+    std::array<char, 4> bytes{};
+    read(bytes.data(), 4);
+    std::uint32_t value = 0;  // little-endian, on every machine
+    for (int i = 3; i >= 0; --i) {
+      value = value << 8 | static_cast<unsigned char>(bytes[static_cast<std::size_t>(i)]);
+    }
+    return static_cast<int>(value);
+  }
+
+  std::string name() {
+    std::string text;
+    char c = 0;
+    while (read(&c, 1), c != 0) {
+      if (text.size() == kLongestName) throw FileError("the EXR is damaged: a name has no end");
+      text += c;
+    }
+    return text;
+  }
 
   ByteSource source_;
   std::uint64_t at_ = 0;

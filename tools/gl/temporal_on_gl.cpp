@@ -25,7 +25,7 @@ GlTarget reverse_reproject_on_gl(const GlContext& context, const Shaders& shader
 GlTarget accumulate_on_gl(const GlContext& context, const Shaders& shaders,
                           const AccumulateSettings& settings, const GlTexture& now,
                           const GlTexture& old, int width, int height) {
-  constexpr float kSamples = 9.0f;
+  constexpr float kNeighbours = 9.0f;
   GlTarget target = make_target(std::array{Format::rgba16f, Format::r32f}, width, height, false);
   const GlProgram program = link_program(context, shaders, "fullscreen.vert", "accumulate.frag");
   set_texture(program, "now", 0, now);
@@ -33,7 +33,7 @@ GlTarget accumulate_on_gl(const GlContext& context, const Shaders& shaders,
   set_uniform(program, "box", static_cast<int>(settings.box));
   set_uniform(program, "deviations", settings.deviations);
   set_uniform(program, "least_share", settings.least_share);
-  set_uniform(program, "samples", kSamples);
+  set_uniform(program, "samples", kNeighbours);
   draw_fullscreen(target, program);
   return target;
 }
