@@ -151,7 +151,7 @@ void upsample_band(const UpsampleWork& work, const RowOf& row_of, const Store& s
     }
     const int taps = 4 - 2 * tap;
     sum_rows({rows.rows.data(), taps, taps, even.data()}, values, rows.sums.data(), work.isa);
-    for (const float*& row : rows.rows) row += 4;
+    for (int j = 0; j < taps; ++j) rows.rows[static_cast<std::size_t>(j)] += 4;
     sum_rows({rows.rows.data(), taps, taps, odd.data()}, values, rows.more_sums.data(), work.isa);
     for (int x = 0; x < work.width; ++x) {
       const float* from = (x % 2 == 0 ? rows.sums : rows.more_sums).data() + x / 2 * 4;
