@@ -528,7 +528,7 @@ TEST_CASE("bad input: an EXR's header that claims 2 GB is refused before room is
   const std::string vector = "big\0stringvector\0\x08\0\0\0"s;
   CHECK(contains(refused(vector + most + "text"), "claims a value of 2147483647 bytes"));
   CHECK(contains(refused(vector + "\xFF\xFF\xFF\xFFtext"), "claims a value of -1 bytes"));
-  CHECK(refused(vector + "\4\0\0\0text"s) == "");
+  CHECK_FALSE(contains(refused(vector + "\4\0\0\0text"s), "claims"));
 }
 
 TEST_CASE("EXR: any changed byte is refused or gives a picture") {
