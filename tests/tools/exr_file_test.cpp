@@ -522,7 +522,9 @@ TEST_CASE("bad input: an EXR's header that claims 2 GB is refused before room is
   using namespace std::string_literals;
   for (const std::string& type : {"string"s, "floatvector"s, "stringvector"s, "opaque"s}) {
     CAPTURE(type);
-    CHECK(contains(refused("big\0"s + type + "\0"s + most), "claims a value of 2147483647 bytes"));
+    std::string attribute = "big\0"s;
+    attribute.append(type).append(1, '\0').append(most);
+    CHECK(contains(refused(attribute), "claims a value of 2147483647 bytes"));
   }
   // A string within a vector, of a size that fits.
   const std::string vector = "big\0stringvector\0\x08\0\0\0"s;
