@@ -26,7 +26,7 @@ std::vector<double> growing_shutter_times(std::span<const glm::dvec2> lens_point
                                           std::span<const glm::dvec2> offsets,
                                           std::span<const int> sizes);
 
-/// The first `count` times of the sequence, of which the first is 0: for pictures that may stop
+/// The first `count` times of the sequence, beginning with 0: for pictures that may stop
 /// at any.
 std::vector<double> shutter_sequence(int count);
 
