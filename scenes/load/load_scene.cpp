@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "scenes/files/nearest_name.h"
 #include "scenes/load/model_scene.h"
-#include "scenes/load/nearest_name.h"
 #include "scenes/load/obj_model.h"
 #include "scenes/load/scene_file.h"
 #include "scenes/random/random_scene.h"

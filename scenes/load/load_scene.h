@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/scene.h"
 
 namespace softfocus {

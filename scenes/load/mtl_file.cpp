@@ -5,8 +5,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "scenes/load/file_bytes.h"
-#include "scenes/load/texture_file.h"
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/texture_file.h"
 #include "scenes/make/opacity_texture.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION

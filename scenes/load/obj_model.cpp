@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "raster/numbers/vector_math.h"
-#include "scenes/load/file_bytes.h"
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/load/first_come_numbers.h"
 #include "scenes/load/mtl_file.h"
 #include "scenes/load/obj_faces.h"
 #include "scenes/load/obj_text.h"
-#include "scenes/load/scene_error.h"
 #include "scenes/make/polygon.h"
 
 namespace softfocus {

@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "scenes/load/decimal.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/decimal.h"
+#include "scenes/files/scene_error.h"
 
 namespace softfocus {
 namespace {

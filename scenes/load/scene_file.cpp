@@ -6,8 +6,8 @@
 
 #include "dof/dof.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/load/file_bytes.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/load/scene_sections.h"
 #include "scenes/load/toml_reading.h"
 

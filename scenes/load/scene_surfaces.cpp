@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "scenes/load/texture_file.h"
+#include "scenes/files/texture_file.h"
 #include "scenes/make/opacity_texture.h"
 #include "scenes/make/procedural_texture.h"
 

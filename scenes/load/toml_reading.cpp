@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <sstream>
 
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 
 namespace softfocus {
 namespace {

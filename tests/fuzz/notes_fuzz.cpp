@@ -4,7 +4,7 @@
 
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/files/json.h"
-#include "tools/files/picture_notes.h"
+#include "tools/pictures/picture_notes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softfocus;

@@ -1,8 +1,8 @@
 // Any bytes as an OBJ model: a model that can be drawn, or a SceneError.
 
 #include "scenes/draw/draw_scene.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/load/model_scene.h"
-#include "scenes/load/scene_error.h"
 #include "tests/fuzz/fuzz_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

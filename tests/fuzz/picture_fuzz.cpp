@@ -7,9 +7,9 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
-#include "tools/files/picture_file.h"
-#include "tools/files/picture_notes.h"
-#include "tools/files/png_text.h"
+#include "tools/pictures/picture_file.h"
+#include "tools/pictures/picture_notes.h"
+#include "tools/pictures/png_text.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Any text as a profile: one whose text says the same, or a SceneError.
 
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/files/profile_file.h"
 

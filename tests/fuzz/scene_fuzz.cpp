@@ -4,7 +4,7 @@
 #include <string>
 
 #include "scenes/draw/draw_scene.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/load/scene_file.h"
 
 namespace {

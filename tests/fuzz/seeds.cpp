@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "raster/images/texel.h"
-#include "tools/files/exr_file.h"
 #include "tools/files/profile_file.h"
-#include "tools/files/sums_file.h"
+#include "tools/pictures/exr_file.h"
+#include "tools/pictures/sums_file.h"
 #include "tools/sequence/journal.h"
 
 #ifdef SOFTFOCUS_EXR_SEEDS

@@ -6,7 +6,7 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
-#include "tools/files/sums_file.h"
+#include "tools/pictures/sums_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softfocus;

@@ -2,9 +2,9 @@
 
 #include <stb_image.h>
 
-#include "scenes/load/jpeg_check.h"
-#include "scenes/load/scene_error.h"
-#include "scenes/load/texture_file.h"
+#include "scenes/files/jpeg_check.h"
+#include "scenes/files/scene_error.h"
+#include "scenes/files/texture_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "scenes/load/jpeg_check.h"
+#include "scenes/files/jpeg_check.h"
 
 #include <doctest/doctest.h>
 

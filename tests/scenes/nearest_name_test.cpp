@@ -1,4 +1,4 @@
-#include "scenes/load/nearest_name.h"
+#include "scenes/files/nearest_name.h"
 
 #include <doctest/doctest.h>
 

@@ -1,11 +1,11 @@
-#include "scenes/load/texture_file.h"
+#include "scenes/files/texture_file.h"
 
 #include <doctest/doctest.h>
 
 #include <string>
 
 #include "raster/images/texel.h"
-#include "scenes/load/jpeg_check.h"
+#include "scenes/files/jpeg_check.h"
 #include "tests/support/scene_test_files.h"
 
 using namespace softfocus;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/run_program.h"
-#include "tools/files/image_file.h"
+#include "tools/pictures/image_file.h"
 
 namespace softfocus {
 

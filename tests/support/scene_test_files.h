@@ -4,9 +4,9 @@
 #include <string>
 
 #include "raster/images/texel.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 #include "tests/support/run_program.h"
-#include "tools/files/image_file.h"
+#include "tools/pictures/image_file.h"
 
 namespace softfocus::test {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <system_error>
 
-#include "scenes/load/file_bytes.h"
+#include "scenes/files/file_bytes.h"
 #include "tools/chart/key.h"
 #include "tools/chart/options.h"
 #include "tools/chart/pictures.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenes/load/file_bytes.h"
+#include "scenes/files/file_bytes.h"
 #include "scenes/load/load_scene.h"
 #include "tools/chart/measure.h"
 #include "tools/cli/machine.h"

@@ -5,7 +5,7 @@
 #include "dof/measure/heat_map.h"
 #include "dof/measure/regions.h"
 #include "tools/files/base64.h"
-#include "tools/files/image_file.h"
+#include "tools/pictures/image_file.h"
 #include "tools/report/specimen.h"
 #include "tools/report/worst_crop.h"
 

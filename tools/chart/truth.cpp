@@ -6,10 +6,10 @@
 #include "tools/chart/key.h"
 #include "tools/chart/record.h"
 #include "tools/cli/errors.h"
-#include "tools/files/image_file.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
 #include "tools/golden/hashes.h"
+#include "tools/pictures/image_file.h"
 #include "tools/report/report_files.h"
 
 namespace softfocus {

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "raster/images/image.h"
+#include "scenes/files/nearest_name.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/load/nearest_name.h"
 #include "tools/cli/errors.h"
 
 namespace softfocus {

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "scenes/load/nearest_name.h"
+#include "scenes/files/nearest_name.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 

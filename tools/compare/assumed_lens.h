@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/compare/options.h"
-#include "tools/files/picture_notes.h"
+#include "tools/pictures/picture_notes.h"
 
 namespace softfocus {
 

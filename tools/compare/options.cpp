@@ -2,9 +2,9 @@
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/files/image_file.h"
-#include "tools/files/picture_notes.h"
 #include "tools/files/same_file.h"
+#include "tools/pictures/image_file.h"
+#include "tools/pictures/picture_notes.h"
 
 namespace softfocus {
 namespace {

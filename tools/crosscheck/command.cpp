@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "raster/threads/parallel.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"

@@ -3,10 +3,10 @@
 #include <fnmatch.h>
 
 #include "tools/crosscheck/cases.h"
-#include "tools/files/image_file.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
 #include "tools/gl/driver_process.h"
+#include "tools/pictures/image_file.h"
 
 namespace softfocus {
 namespace {

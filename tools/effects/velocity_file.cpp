@@ -7,7 +7,7 @@
 
 #include "raster/images/texel.h"
 #include "tools/cli/errors.h"
-#include "tools/files/picture_file.h"
+#include "tools/pictures/picture_file.h"
 
 namespace softfocus {
 namespace {

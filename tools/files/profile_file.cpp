@@ -5,8 +5,8 @@
 #include <sstream>
 #include <string_view>
 
-#include "scenes/load/file_bytes.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/load/toml_reading.h"
 
 namespace softfocus {

@@ -10,7 +10,7 @@
 #include <exception>
 #include <iostream>
 
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 
 namespace softfocus {
 namespace {

@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "scenes/load/file_bytes.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/scene_error.h"
 #include "tools/gl/driver.h"
 
 namespace softfocus {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "scenes/load/file_bytes.h"
+#include "scenes/files/file_bytes.h"
 #include "tools/cli/errors.h"
 #include "tools/files/json.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "scenes/load/file_bytes.h"
+#include "scenes/files/file_bytes.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"

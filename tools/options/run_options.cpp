@@ -4,7 +4,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/platform.h"

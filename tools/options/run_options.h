@@ -13,10 +13,10 @@
 #include "scenes/lens_views/shard.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/files/image_file.h"
 #include "tools/files/profile_file.h"
 #include "tools/gl/driver.h"
 #include "tools/gl/shaders.h"
+#include "tools/pictures/image_file.h"
 
 namespace softfocus {
 

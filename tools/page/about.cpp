@@ -4,7 +4,7 @@
 
 #include "scenes/load/load_scene.h"
 #include "tools/page/requests.h"
-#include "tools/refocus/depth_encodings.h"
+#include "tools/refocus/depth/depth_encodings.h"
 
 namespace softfocus {
 namespace {

@@ -13,9 +13,9 @@
 #include "raster/threads/parallel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
-#include "tools/files/image_file.h"
 #include "tools/golden/hashes.h"
 #include "tools/page/settings.h"
+#include "tools/pictures/image_file.h"
 #include "tools/stress/stress_case.h"
 
 namespace softfocus {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "scenes/load/file_bytes.h"
+#include "scenes/files/file_bytes.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
 #include "tools/page/picture.h"

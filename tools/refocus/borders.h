@@ -1,7 +1,7 @@
 #pragma once
 // What lies beyond the borders of a picture that is refocused.
 
-#include "tools/files/picture_file.h"
+#include "tools/pictures/picture_file.h"
 
 namespace softfocus {
 

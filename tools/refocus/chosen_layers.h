@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/files/picture_file.h"
+#include "tools/pictures/picture_file.h"
 
 namespace softfocus {
 

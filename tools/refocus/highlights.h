@@ -2,7 +2,7 @@
 // Light that a camera clipped: white that was a lamp is raised before the filter, so that it shows
 // as a disc, and lowered by the same curve afterwards, so that what is sharp stays as it was.
 
-#include "tools/files/picture_file.h"
+#include "tools/pictures/picture_file.h"
 
 namespace softfocus {
 

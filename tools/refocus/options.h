@@ -6,9 +6,9 @@
 
 #include "dof/aperture.h"
 #include "dof/fixed_pictures/arithmetic.h"
-#include "tools/files/image_file.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/pictures/image_file.h"
 #include "tools/refocus/borders.h"
 #include "tools/refocus/highlights.h"
 #include "tools/refocus/picture_with_depth.h"

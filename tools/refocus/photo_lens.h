@@ -8,9 +8,9 @@
 
 #include "dof/lens.h"
 #include "tools/cli/option_values.h"
-#include "tools/files/picture_notes.h"
 #include "tools/options/lens_options.h"
-#include "tools/refocus/depth_map.h"
+#include "tools/pictures/picture_notes.h"
+#include "tools/refocus/depth/depth_map.h"
 #include "tools/render/sharp_depths_option.h"
 
 namespace softfocus {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "tools/cli/parser.h"
-#include "tools/files/picture_notes.h"
-#include "tools/refocus/believed_encoding.h"
+#include "tools/pictures/picture_notes.h"
 #include "tools/refocus/chosen_layers.h"
-#include "tools/refocus/depth_map.h"
-#include "tools/refocus/mend_depth.h"
+#include "tools/refocus/depth/believed_encoding.h"
+#include "tools/refocus/depth/depth_map.h"
+#include "tools/refocus/depth/mend_depth.h"
 #include "tools/refocus/photo_lens.h"
 
 namespace softfocus {

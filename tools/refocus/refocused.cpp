@@ -7,7 +7,7 @@
 #include "dof/circle_sizes.h"
 #include "dof/show.h"
 #include "tools/cli/errors.h"
-#include "tools/refocus/finer_depths.h"
+#include "tools/refocus/depth/finer_depths.h"
 #include "tools/refocus/opacity.h"
 
 namespace softfocus {

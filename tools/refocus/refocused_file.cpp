@@ -1,6 +1,6 @@
 #include "tools/refocus/refocused_file.h"
 
-#include "tools/files/exr_file.h"
+#include "tools/pictures/exr_file.h"
 
 namespace softfocus {
 

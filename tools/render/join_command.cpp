@@ -12,9 +12,9 @@
 #include "tools/cli/platform.h"
 #include "tools/cli/progress.h"
 #include "tools/files/same_file.h"
-#include "tools/files/sums_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/options/run_options.h"
+#include "tools/pictures/sums_file.h"
 #include "tools/render/picture_files.h"
 
 namespace softfocus {

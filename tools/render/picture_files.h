@@ -8,7 +8,7 @@
 #include "dof/circle_sizes.h"
 #include "raster/images/image.h"
 #include "scenes/scene.h"
-#include "tools/files/picture_notes.h"
+#include "tools/pictures/picture_notes.h"
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 

@@ -5,7 +5,7 @@
 #include "scenes/draw/keyframes.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
-#include "tools/files/picture_notes.h"
+#include "tools/pictures/picture_notes.h"
 #include "tools/render/frame_sequence.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"

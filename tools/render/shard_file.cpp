@@ -5,7 +5,7 @@
 
 #include "raster/numbers/hash.h"
 #include "tools/cli/errors.h"
-#include "tools/files/sums_file.h"
+#include "tools/pictures/sums_file.h"
 #include "tools/render/picture_files.h"
 
 namespace softfocus {

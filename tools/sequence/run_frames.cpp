@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "raster/numbers/hash.h"
-#include "scenes/load/scene_error.h"
+#include "scenes/files/scene_error.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/progress.h"

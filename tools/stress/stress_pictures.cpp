@@ -6,7 +6,7 @@
 #include "dof/measure/heat_map.h"
 #include "raster/images/texel.h"
 #include "tools/files/base64.h"
-#include "tools/files/image_file.h"
+#include "tools/pictures/image_file.h"
 #include "tools/report/worst_crop.h"
 #include "tools/stress/stress_measures.h"
 

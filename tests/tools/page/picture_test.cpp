@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/support/cli_render.h"
-#include "tools/files/image_file.h"
+#include "tools/pictures/image_file.h"
 
 using namespace softfocus;
 

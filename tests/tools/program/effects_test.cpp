@@ -10,8 +10,8 @@
 #include "scenes/load/load_scene.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
-#include "tools/files/image_file.h"
-#include "tools/files/picture_notes.h"
+#include "tools/pictures/image_file.h"
+#include "tools/pictures/picture_notes.h"
 
 using namespace softfocus;
 using nlohmann::json;

@@ -4,7 +4,7 @@
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/frame_runs.h"
-#include "tools/files/image_file.h"
+#include "tools/pictures/image_file.h"
 
 using namespace softfocus;
 

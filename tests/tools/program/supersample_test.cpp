@@ -7,7 +7,7 @@
 #include "dof/halve.h"
 #include "raster/images/texel.h"
 #include "tests/support/cli_refused.h"
-#include "tools/files/image_file.h"
+#include "tools/pictures/image_file.h"
 
 using namespace softfocus;
 

@@ -1,0 +1,192 @@
+#include "tools/pictures/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <system_error>
+
+#include "raster/numbers/half.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/platform.h"
+#include "tools/pictures/exr_file.h"
+#include "tools/pictures/picture_file.h"
+#include "tools/pictures/png_text.h"
+
+namespace softfocus {
+namespace {
+
+bool starts_with(std::span<const std::byte> bytes, std::string_view start) {
+  return bytes.size() >= start.size() && std::memcmp(bytes.data(), start.data(), start.size()) == 0;
+}
+
+struct NamedFormat {
+  std::string_view name;
+  FileFormat format;
+};
+constexpr std::array kFormats{NamedFormat{"png", FileFormat::png},
+                              NamedFormat{"png-16", FileFormat::png_16},
+                              NamedFormat{"pfm", FileFormat::pfm},
+                              NamedFormat{"npy", FileFormat::npy},
+                              NamedFormat{"hdr", FileFormat::hdr},
+                              NamedFormat{"exr", FileFormat::exr},
+                              NamedFormat{"exr-float", FileFormat::exr_float},
+                              NamedFormat{"rgb24", FileFormat::rgb24},
+                              NamedFormat{"rgb48le", FileFormat::rgb48le}};
+
+}  // namespace
+
+std::optional<FileFormat> format_by_name(std::string_view name) {
+  for (const NamedFormat& known : kFormats) {
+    if (known.name == name) return known.format;
+  }
+  return std::nullopt;
+}
+
+std::string format_names(std::string_view between) {
+  std::string names;
+  for (const NamedFormat& known : kFormats) {
+    names += (names.empty() ? "" : std::string{between}) + std::string{known.name};
+  }
+  return names;
+}
+
+std::string_view missing_format(FileFormat format) {
+  return format == FileFormat::exr || format == FileFormat::exr_float ? missing_exr()
+                                                                      : std::string_view{};
+}
+
+bool is_raw_video(FileFormat format) {
+  return format == FileFormat::rgb24 || format == FileFormat::rgb48le;
+}
+
+std::optional<FileFormat> format_by_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  if (extension.empty()) return std::nullopt;
+  extension.erase(0, 1);
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  const auto format = format_by_name(extension);
+  return format && is_raw_video(*format) ? std::nullopt : format;
+}
+
+Bytes encode(const Image& image, FileFormat format) {
+  switch (format) {
+    case FileFormat::png: return encode_png(image);
+    case FileFormat::png_16: return encode_png_16(image);
+    case FileFormat::pfm: return encode_pfm(image);
+    case FileFormat::npy: return encode_npy(image);
+    case FileFormat::hdr: return encode_hdr(image);
+    case FileFormat::exr: return encode_exr(image, ExrNumbers::half, "");
+    case FileFormat::exr_float: return encode_exr(image, ExrNumbers::single, "");
+    case FileFormat::rgb24: return encode_rgb24(image);
+    case FileFormat::rgb48le: return encode_rgb48le(image);
+  }
+  return {};
+}
+
+Bytes encode_depth(std::span<const float> metres, int width, int height, FileFormat format) {
+  switch (format) {
+    case FileFormat::png:
+    case FileFormat::png_16: {
+      std::vector<std::uint16_t> millimetres(metres.size());
+      std::transform(metres.begin(), metres.end(), millimetres.begin(), [](float metre) {
+        const double value = 1000.0 * static_cast<double>(metre) + 0.5;
+        return static_cast<std::uint16_t>(value >= 1.0 && value < 65536.0 ? value : 0.0);
+      });
+      return encode_grey_png_16(millimetres, width, height);
+    }
+    case FileFormat::pfm: return encode_grey_pfm(metres, width, height);
+    case FileFormat::npy: return encode_grey_npy(metres, width, height);
+    case FileFormat::exr:
+    case FileFormat::exr_float: return encode_depth_exr(metres, width, height);
+    default: break;
+  }
+  throw FileError("such a file has no depth; give a .pfm, .exr, .npy or .png file");
+}
+
+Picture decode(std::span<const std::byte> bytes, FileFormat format) {
+  switch (format) {
+    case FileFormat::png: return decode_png(bytes);
+    case FileFormat::pfm: return decode_pfm(bytes);
+    case FileFormat::npy: return decode_npy(bytes);
+    default: return decode_other(bytes, "the picture");
+  }
+}
+
+Picture decode_other(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  const PictureFile file = open_picture_file({bytes.begin(), bytes.end()}, path);
+  const auto layers = colour_layers(file);
+  if (layers.empty()) {
+    throw FileError("cannot read '" + path.string() + "': there is no colour in it, but " +
+                    plane_names(file));
+  }
+  Picture picture = read_colour(file, layers.front(), true);
+  const auto depth = std::find_if(file.planes.begin(), file.planes.end(),
+                                  [](const PlaneInfo& plane) { return plane.name == "Z"; });
+  if (depth == file.planes.end()) return picture;
+  const std::array planes{static_cast<std::size_t>(depth - file.planes.begin())};
+  put_in_alpha(read_planes(file, planes, 0.0f)[0], picture.image);
+  picture.has_alpha = true;
+  return picture;
+}
+
+namespace {
+
+/// Half of the machine's memory; 16 GB where the system does not tell.
+std::size_t most_picture_bytes() {
+  const std::uint64_t most = memory_bytes().value_or(std::uint64_t{1} << 35) / 2;
+  // On 32 bits a buffer of more could not grow.
+  return static_cast<std::size_t>(
+      std::min<std::uint64_t>(most, std::numeric_limits<std::size_t>::max() / 4));
+}
+
+}  // namespace
+
+Bytes read_picture_bytes(const std::filesystem::path& file) {
+  const auto refuse = [&](int error) {
+    throw FileError("cannot read '" + file.string() +
+                    "': " + std::generic_category().message(error) + "; give a picture's file");
+  };
+  if (std::filesystem::is_directory(file)) refuse(EISDIR);
+  std::ifstream stream{file, std::ios::binary};
+  if (!stream) refuse(errno);
+  Bytes bytes;
+  for (;;) {
+    constexpr std::size_t kPart = 1 << 20;
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kPart);
+    stream.read(reinterpret_cast<char*>(bytes.data() + before), kPart);
+    bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
+    if (stream.bad()) refuse(EIO);
+    // Of what is no picture the first part is enough to be refused by: it may have no end.
+    if (!stream || !begins_as_picture(bytes)) return bytes;
+    // A device that begins as a picture need not end either.
+    const std::size_t most = most_picture_bytes();
+    if (bytes.size() > most) {
+      throw FileError("cannot read '" + file.string() + "': has more than " + std::to_string(most) +
+                      " bytes; give a smaller file");
+    }
+  }
+}
+
+Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::path& file) {
+  try {
+    if (is_png(bytes)) return decode_png(bytes);
+    if (starts_with(bytes, "\x93NUMPY")) return decode_npy(bytes);
+    if (starts_with(bytes, "PF")) return decode_pfm(bytes);
+  } catch (const FileError& error) {
+    throw FileError("cannot read '" + file.string() + "': " + error.what());
+  }
+  return decode_other(bytes, file);
+}
+
+Picture read_image_file(const std::filesystem::path& file) {
+  return decode_picture(read_picture_bytes(file), file);
+}
+
+}  // namespace softfocus

@@ -1,0 +1,314 @@
+#include "tools/pictures/picture_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+#include "raster/images/texel.h"
+#include "raster/numbers/srgb.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
+#include "tools/cli/platform.h"
+#include "tools/pictures/srgb16.h"
+
+namespace softfocus {
+namespace {
+
+/// Some kinds of pictures are not read, but Debian has a program for each.
+struct ForeignKind {
+  std::string_view magic;
+  std::size_t at;
+  std::string_view name;
+  std::string_view remedy;
+};
+constexpr std::string_view kByOiiotool = "oiiotool IN -o OUT.exr converts it, depth included";
+constexpr std::string_view kByHeif =
+    "heif-convert IN OUT.png converts it, its depth into a second file";
+constexpr std::array kForeignKinds{
+    ForeignKind{{"II*\0", 4}, 0, "a TIFF", kByOiiotool},
+    ForeignKind{{"MM\0*", 4}, 0, "a TIFF", kByOiiotool},
+    ForeignKind{{"II+\0", 4}, 0, "a TIFF", kByOiiotool},
+    ForeignKind{"ftyphei", 4, "a HEIC", kByHeif},
+    ForeignKind{"ftypmif1", 4, "a HEIC", kByHeif},
+    ForeignKind{"ftypavif", 4, "an AVIF", kByHeif},
+    ForeignKind{"WEBP", 8, "a WebP", "dwebp IN -o OUT.png converts it"},
+    ForeignKind{"GIF8", 0, "a GIF", kByOiiotool},
+    ForeignKind{"8BPS", 0, "a Photoshop file", kByOiiotool},
+    ForeignKind{"SDPX", 0, "a DPX", kByOiiotool},
+    ForeignKind{"XPDS", 0, "a DPX", kByOiiotool},
+    ForeignKind{"P5", 0, "a PGM", "pnmtopng IN >OUT.png converts it"},
+    ForeignKind{"P6", 0, "a PPM", "pnmtopng IN >OUT.png converts it"},
+    ForeignKind{"BM", 0, "a BMP", kByOiiotool}};
+
+constexpr std::array kReaders{&kPngReader, &kJpegReader, &kHdrReader,
+                              &kPfmReader, &kNpyReader,  &kExrReader};
+
+const PictureFileReader& reader_of(std::span<const std::byte> bytes) {
+  for (const PictureFileReader* reader : kReaders) {
+    if (reader->is(bytes)) return *reader;
+  }
+  for (const ForeignKind& kind : kForeignKinds) {
+    if (bytes.size() >= kind.at + kind.magic.size() &&
+        std::memcmp(bytes.data() + kind.at, kind.magic.data(), kind.magic.size()) == 0) {
+      throw FileError("it is " + std::string{kind.name} + "; " + std::string{kind.remedy});
+    }
+  }
+  throw FileError("it is none of PNG, JPEG, PFM, Radiance HDR, NumPy and OpenEXR");
+}
+
+[[noreturn]] void refuse(const PictureFile& file, const FileError& error) {
+  throw FileError("cannot read '" + file.path.string() + "': " + error.what());
+}
+
+/// What comes before the last dot of a channel's name, and what comes behind it.
+struct SplitName {
+  std::string layer, channel;
+};
+SplitName split(const std::string& name) {
+  const auto dot = name.rfind('.');
+  if (dot == name.npos) return {"", name};
+  return {name.substr(0, dot), name.substr(dot + 1)};
+}
+
+/// The halves of numbers of 0 to full_scale(), along the sRGB curve or of light. Empty for others
+/// than whole ones of 8 or 16 bits.
+std::vector<std::uint16_t> half_table(NumberType type, bool is_srgb) {
+  if (type != NumberType::unsigned8 && type != NumberType::unsigned16) return {};
+  std::vector<std::uint16_t> table(static_cast<std::size_t>(full_scale(type)) + 1);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const float value = !is_srgb ? static_cast<float>(static_cast<double>(i) / full_scale(type))
+                        : type == NumberType::unsigned8
+                            ? srgb8_to_linear(static_cast<std::uint8_t>(i))
+                            : srgb16_to_linear(static_cast<std::uint16_t>(i));
+    table[i] = float_to_half(value, HalfRounding::nearest_even);
+  }
+  return table;
+}
+
+std::uint16_t light_half(NumberType type, float value) {
+  if (value != value) return 0;
+  if (type == NumberType::unsigned32) value = static_cast<float>(value / full_scale(type));
+  constexpr float kMost = 65504.0f;
+  return float_to_half(std::clamp(value, -kMost, kMost), HalfRounding::nearest_even);
+}
+
+}  // namespace
+
+std::string_view name_of(NumberType type) {
+  switch (type) {
+    case NumberType::unsigned8: return "8 bits";
+    case NumberType::unsigned16: return "16 bits";
+    case NumberType::unsigned32: return "32 bits";
+    case NumberType::half: return "half";
+    case NumberType::single: return "float";
+    case NumberType::double_precision: return "double";
+  }
+  return "";
+}
+
+double full_scale(NumberType type) {
+  switch (type) {
+    case NumberType::unsigned8: return 255.0;
+    case NumberType::unsigned16: return 65535.0;
+    case NumberType::unsigned32: return 4294967295.0;
+    default: return 1.0;
+  }
+}
+
+void check_picture_size(std::string_view kind, std::int64_t width, std::int64_t height,
+                        int most_rows) {
+  if (width >= 1 && height >= 1 && width <= kMaxImageSize && height <= most_rows) return;
+  throw FileError(
+      std::string{kind} + " is " + std::to_string(width) + "x" + std::to_string(height) +
+      " pixels; each side may be 1 to " + std::to_string(kMaxImageSize) +
+      (most_rows > kMaxImageSize ? ", the height to " + std::to_string(most_rows) : ""));
+}
+
+bool begins_as_picture(std::span<const std::byte> bytes) {
+  return std::any_of(kReaders.begin(), kReaders.end(),
+                     [&](const PictureFileReader* reader) { return reader->is(bytes); });
+}
+
+PictureFile open_picture_file(Bytes bytes, const std::filesystem::path& path) {
+  PictureFile file{.path = path, .bytes = std::move(bytes)};
+  try {
+    file.reader = &reader_of(file.bytes);
+    file.reader->list(file);
+  } catch (const FileError& error) {
+    refuse(file, error);
+  }
+  return file;
+}
+
+PictureFile open_picture_file(const std::filesystem::path& path) {
+  return open_picture_file(read_picture_bytes(path), path);
+}
+
+namespace {
+
+/// What a file begins with. No header of a picture that is larger than memory comes near.
+constexpr std::size_t kMostOfHeader = std::size_t{1} << 20;
+
+/// Reads what stands before the values. False if it is read whole.
+bool list_on_disk(PictureFile& file) {
+  const ByteSource source{file.disk};
+  source.at(0, static_cast<std::size_t>(std::min<std::uint64_t>(kMostOfHeader, source.size())),
+            file.bytes);
+  file.reader = &reader_of(file.bytes);
+  if (file.reader->rows == nullptr) return false;
+  file.reader->list(file);
+  return file.has_rows;
+}
+
+}  // namespace
+
+std::optional<PictureFile> open_on_disk(const std::filesystem::path& path, std::string& why) {
+  const std::string name = "'" + path.string() + "'";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    why = name + " is no file on a disk";
+    return std::nullopt;
+  }
+  PictureFile file{.path = path};
+  try {
+    file.disk = std::make_shared<const DiskFile>(path);
+    if (list_on_disk(file)) return file;
+    why = name + (file.has_rows
+                      ? " is of a kind that is read whole, " + std::string{file.reader->name}
+                      : " is stored by columns");
+  } catch (const FileError& damage) {
+    refuse(file, damage);
+  } catch (const std::system_error& failure) {
+    why = name + ": " + failure.code().message();
+  }
+  return std::nullopt;
+}
+
+ReadRows rows_of(const PictureFile& file, std::vector<std::size_t> planes) {
+  try {
+    return [&file, read = file.reader->rows(file, std::move(planes))](
+               Rows rows, std::span<PlaneValues> values) {
+      try {
+        read(rows, values);
+      } catch (const FileError& error) {
+        refuse(file, error);
+      }
+    };
+  } catch (const FileError& error) {
+    refuse(file, error);
+  }
+}
+
+std::vector<PlaneValues> read_planes(const PictureFile& file, std::span<const std::size_t> planes,
+                                     float outside) {
+  try {
+    const std::uint64_t pixels =
+        static_cast<std::uint64_t>(file.width) * static_cast<std::uint64_t>(file.height);
+    const auto there = memory_bytes();
+    if (there && pixels * planes.size() > *there / sizeof(float)) {
+      throw FileError("it has " + size_text({file.width, file.height}) +
+                      " pixels, more than fit into memory; give a smaller picture");
+    }
+    std::vector<PlaneValues> values(planes.size());
+    for (PlaneValues& plane : values) plane.assign(static_cast<std::size_t>(pixels), outside);
+    if (file.reader->rows != nullptr) {
+      file.reader->rows(file, {planes.begin(), planes.end()})({0, file.height}, values);
+    } else {
+      file.reader->read(file, planes, values);
+    }
+    return values;
+  } catch (const FileError& error) {
+    refuse(file, error);
+  }
+}
+
+std::string plane_names(const PictureFile& file) { return names_of(file.planes); }
+
+std::vector<ColourLayer> colour_layers(const PictureFile& file) {
+  std::vector<std::string> names;
+  for (const PlaneInfo& plane : file.planes) {
+    const std::string layer = split(plane.name).layer;
+    if (std::find(names.begin(), names.end(), layer) == names.end()) names.push_back(layer);
+  }
+  std::vector<ColourLayer> layers;
+  for (const std::string& name : names) {
+    const auto find = [&](std::string_view channel) -> std::optional<std::size_t> {
+      for (std::size_t i = 0; i < file.planes.size(); ++i) {
+        SplitName of = split(file.planes[i].name);
+        for (char& c : of.channel) {
+          if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+        }
+        if (of.layer != name) continue;
+        if (of.channel == channel || (of.channel.size() > 1 &&
+                                      (of.channel == "RED" || of.channel == "GREEN" ||
+                                       of.channel == "BLUE" || of.channel == "ALPHA") &&
+                                      of.channel.substr(0, 1) == channel)) {
+          return i;
+        }
+      }
+      return std::nullopt;
+    };
+    const auto red = find("R"), green = find("G"), blue = find("B"), grey = find("Y");
+    if (red && green && blue) {
+      layers.push_back({name, *red, *green, *blue, find("A")});
+    } else if (grey && !red && !find("X")) {  // X, Y, Z are a direction
+      layers.push_back({name, *grey, *grey, *grey, find("A")});
+    }
+  }
+  return layers;
+}
+
+ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
+  const auto add = [&](std::size_t plane, std::size_t first, std::size_t last) {
+    planes_.push_back(plane);
+    const NumberType type = file.planes[plane].type;
+    channels_.push_back({first, last, type, half_table(type, file.is_srgb && first < 3)});
+  };
+  const bool is_grey = layer.green == layer.red;
+  add(layer.red, 0, is_grey ? 2 : 0);
+  if (!is_grey) add(layer.green, 1, 1);
+  if (!is_grey) add(layer.blue, 2, 2);
+  if (with_alpha && layer.alpha) add(*layer.alpha, 3, 3);
+}
+
+void ColourHalves::put(std::size_t i, const PlaneValues& values, Image& picture) const {
+  const Channel& channel = channels_[i];
+  std::size_t next = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    const auto to = row<std::uint16_t>(picture, y);
+    for (std::size_t x = 0; x < to.size(); x += 4) {
+      const float value = values[next++];
+      const std::uint16_t half = channel.table.empty()
+                                     ? light_half(channel.type, value)
+                                     : channel.table[static_cast<std::size_t>(value)];
+      for (std::size_t c = channel.first; c <= channel.last; ++c) to[x + c] = half;
+    }
+  }
+}
+
+Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
+  const ColourHalves halves{file, layer, with_alpha};
+  Picture picture{make_image(Format::rgba16f, file.width, file.height), with_alpha && layer.alpha};
+  const std::span planes{halves.planes()};
+  const std::size_t at_once = file.reader->reads_apart ? 1 : planes.size();
+  for (std::size_t i = 0; i < planes.size(); i += at_once) {
+    const std::vector<PlaneValues> values = read_planes(file, planes.subspan(i, at_once), 0.0f);
+    for (std::size_t p = i; p < i + at_once; ++p) halves.put(p, values[p - i], picture.image);
+  }
+  return picture;
+}
+
+void put_in_alpha(const PlaneValues& values, Image& picture) {
+  std::size_t next = 0;
+  for (int y = 0; y < picture.height; ++y) {
+    const auto to = row<std::uint16_t>(picture, y);
+    for (std::size_t i = 3; i < to.size(); i += 4) {
+      to[i] = float_to_half(values[next++], HalfRounding::nearest_even);
+    }
+  }
+}
+
+}  // namespace softfocus

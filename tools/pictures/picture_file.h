@@ -1,0 +1,175 @@
+#pragma once
+// A picture's file as planes of numbers: colour, depth, whatever it holds, by name. One reader a
+// kind of file. A file is opened first, which reads its header alone; then those planes are read
+// that are wanted, so that a file of forty layers takes the memory of two. Some kinds can be read a
+// band of rows at a time from the disk.
+//
+//   PNG, JPEG   R G B, or Y if grey, and A; whole numbers up to 255 or 65535; palettes are looked
+//   up HDR, PFM    R G B, or Y if grey NPY         '<f2', '<f4', '<f8', '|u1', '<u2', C or Fortran
+//   order, (height, width) or
+//               (height, width, 1 to 4): Y, YA, RGB, RGBA
+//   EXR         its channels, "layer.R"; of a file with several parts "part.layer.R"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/files/byte_source.h"
+#include "tools/pictures/image_file.h"
+
+namespace softfocus {
+
+enum class NumberType : std::uint8_t {
+  unsigned8,
+  unsigned16,
+  unsigned32,
+  half,
+  single,
+  double_precision
+};
+
+std::string_view name_of(NumberType type);
+
+/// The largest whole number of the type, by which 0 to 1 is meant; 1 for numbers that are no
+/// whole ones.
+double full_scale(NumberType type);
+
+struct PlaneInfo {
+  std::string name;
+  NumberType type = NumberType::single;
+  int part = 0;           ///< of an EXR
+  std::string channel{};  ///< its name in that part
+};
+
+struct PictureFileReader;
+
+/// A file whose header was read.
+struct PictureFile {
+  std::filesystem::path path;
+  Bytes bytes{};  ///< all of them or, of a file that stays on the disk, those of its header
+  std::shared_ptr<const DiskFile> disk{};
+  const PictureFileReader* reader = nullptr;
+  int width = 0;   ///< 1 to kMaxImageSize
+  int height = 0;  ///< likewise, or to kMostRows of a file that stays on the disk
+  std::vector<PlaneInfo> planes{};
+  /// Whether 0..1 stands for the sRGB curve and not for light. Alpha and depth have none.
+  bool is_srgb = false;
+  bool has_rows = true;  ///< whether a row's values lie together, as `rows` of its reader needs
+  std::string remark{};  ///< what else there is to tell: "3 parts, data window 10,10..99,99"
+};
+
+inline ByteSource source_of(const PictureFile& file) {
+  return file.disk ? ByteSource{file.disk} : ByteSource{file.bytes};
+}
+
+/// Values row by row from the top, width x height of them, whole numbers as they are.
+using PlaneValues = std::vector<float>;
+
+/// Rows of a picture that are read or written together.
+struct Rows {
+  int first = 0, count = 0;
+};
+
+/// Fills a band of some planes. They have the band's size, and their values are set to what stands
+/// outside of an EXR's data window. Needs the file that it was made for. Throws FileError, the file
+/// itself unnamed.
+using ReadRows = std::function<void(Rows rows, std::span<PlaneValues> values)>;
+
+/// One kind of file. `list` fills in all but path, bytes, disk and reader; `read` fills planes like
+/// ReadRows all at once. Both throw FileError, the file itself unnamed. A kind has either `read` or
+/// `rows`, which reads from the disk, too.
+struct PictureFileReader {
+  std::string_view name;
+  bool (*is)(std::span<const std::byte> bytes);
+  void (*list)(PictureFile& file);
+  void (*read)(const PictureFile& file, std::span<const std::size_t> planes,
+               std::span<PlaneValues> values);
+  /// Whether planes may as well be read one after the other, in a third of the memory.
+  bool reads_apart = false;
+  ReadRows (*rows)(const PictureFile& file, std::vector<std::size_t> planes) = nullptr;
+};
+
+extern const PictureFileReader kPngReader, kJpegReader, kHdrReader, kPfmReader, kNpyReader,
+    kExrReader;
+
+/// Whether there is a reader for what begins so.
+bool begins_as_picture(std::span<const std::byte> bytes);
+
+/// Reads the header. Throws FileError that names the file: for what is no picture, is damaged, has
+/// a side beyond kMaxImageSize, or claims more values than so few bytes can hold. For other kinds
+/// of pictures it names the program that converts them.
+PictureFile open_picture_file(const std::filesystem::path& path);
+PictureFile open_picture_file(Bytes bytes, const std::filesystem::path& path);
+
+/// The height of a file that is read by rows.
+inline constexpr int kMostRows = 1 << 20;
+
+/// The same of a file that stays on the disk, for rows_of(). Nothing, with the reason in `why`, if
+/// it is of a kind that is read whole, no regular file, or cannot be opened.
+std::optional<PictureFile> open_on_disk(const std::filesystem::path& path, std::string& why);
+
+/// A reader of bands of these planes. Its errors name the file.
+ReadRows rows_of(const PictureFile& file, std::vector<std::size_t> planes);
+
+/// The planes with these indices. Where an EXR has no pixel, the values are `outside`. Throws
+/// FileError that names the file, or for more values than the machine has memory.
+std::vector<PlaneValues> read_planes(const PictureFile& file, std::span<const std::size_t> planes,
+                                     float outside);
+
+/// Throws FileError for a side that is not 1 to kMaxImageSize, or a height not 1 to `most_rows`.
+/// `kind`: "the PNG".
+void check_picture_size(std::string_view kind, std::int64_t width, std::int64_t height,
+                        int most_rows = kMaxImageSize);
+
+/// For that check: what the file may have.
+inline int most_rows_of(const PictureFile& file) { return file.disk ? kMostRows : kMaxImageSize; }
+
+/// "a.R", "a.G", ...: the names of all planes, for messages.
+std::string plane_names(const PictureFile& file);
+
+/// Channels that make up a colour.
+struct ColourLayer {
+  std::string name;                          ///< what stands before ".R"; empty for plain R, G, B
+  std::size_t red = 0, green = 0, blue = 0;  ///< all the same if it is grey
+  std::optional<std::size_t> alpha{};
+};
+
+/// All of them, in the file's order.
+std::vector<ColourLayer> colour_layers(const PictureFile& file);
+
+/// Turns a colour's planes into halves of linear light. Numbers beyond the largest half are cut to
+/// it, NaN becomes 0.
+class ColourHalves {
+ public:
+  /// `with_alpha`: and its alpha, if it has one.
+  ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha);
+
+  /// What to read: one plane if it is grey.
+  const std::vector<std::size_t>& planes() const { return planes_; }
+  /// Puts the values of planes()[i] into as many pixels of RGBA16F.
+  void put(std::size_t i, const PlaneValues& values, Image& picture) const;
+
+ private:
+  struct Channel {
+    std::size_t first, last;  // of the picture
+    NumberType type;
+    std::vector<std::uint16_t> table;  // of whole numbers up to 16 bits; else empty
+  };
+  std::vector<std::size_t> planes_{};
+  std::vector<Channel> channels_{};
+};
+
+/// A colour and, if `with_alpha`, its alpha as RGBA16F in linear light; else alpha is 0.
+Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha);
+
+/// Values, one a pixel, as the nearest halves of an RGBA16F picture's alpha.
+void put_in_alpha(const PlaneValues& values, Image& picture);
+
+}  // namespace softfocus

@@ -1,0 +1,130 @@
+// PNG and JPEG through stb_image, which scenes/load compiles.
+
+#include <stb_image.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "scenes/files/jpeg_check.h"
+#include "tools/cli/errors.h"
+#include "tools/files/byte_order.h"
+#include "tools/pictures/picture_file.h"
+#include "tools/pictures/png_text.h"
+
+namespace softfocus {
+namespace {
+
+/// A deflate stream is at most so many times as large as its file.
+constexpr std::uint64_t kMostOfDeflate = 1032;
+/// A JPEG has at least a bit for each block of 8x8 pixels.
+constexpr std::uint64_t kMostPixelsOfJpegByte = 512;
+
+const stbi_uc* data_of(const PictureFile& file) {
+  return reinterpret_cast<const stbi_uc*>(file.bytes.data());
+}
+int size_of(const PictureFile& file) { return static_cast<int>(file.bytes.size()); }
+
+std::uint64_t pixels_of(const PictureFile& file) {
+  return static_cast<std::uint64_t>(file.width) * static_cast<std::uint64_t>(file.height);
+}
+
+[[noreturn]] void refuse_as_damaged(std::string_view kind, std::string_view reason) {
+  throw FileError(std::string{kind} + " is damaged: " + std::string{reason});
+}
+
+void list_channels(PictureFile& file, std::string_view kind, NumberType type) {
+  if (file.bytes.size() > 0x7FFFFFFF) throw FileError(std::string{kind} + " is larger than 2 GB");
+  int channels = 0;
+  if (stbi_info_from_memory(data_of(file), size_of(file), &file.width, &file.height, &channels) ==
+      0) {
+    refuse_as_damaged(kind, stbi_failure_reason());
+  }
+  check_picture_size(kind, file.width, file.height);
+  constexpr std::string_view kNames[] = {"Y", "YA", "RGB", "RGBA"};
+  for (const char name : kNames[channels - 1]) {
+    file.planes.push_back({.name = std::string{name}, .type = type});
+  }
+  file.is_srgb = true;
+}
+
+/// The wanted channels of interleaved values.
+template <class Value>
+void take_channels(const Value* from, std::size_t channels, std::span<const std::size_t> planes,
+                   std::span<PlaneValues> values) {
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    PlaneValues& plane = values[i];
+    for (std::size_t p = 0; p < plane.size(); ++p) {
+      plane[p] = static_cast<float>(from[p * channels + planes[i]]);
+    }
+  }
+}
+
+void read_channels(const PictureFile& file, std::string_view kind,
+                   std::span<const std::size_t> planes, std::span<PlaneValues> values) {
+  int width = 0, height = 0, channels = 0;
+  const bool is_wide = file.planes[0].type == NumberType::unsigned16;
+  void* const loaded =
+      is_wide ? static_cast<void*>(stbi_load_16_from_memory(data_of(file), size_of(file), &width,
+                                                            &height, &channels, 0))
+              : stbi_load_from_memory(data_of(file), size_of(file), &width, &height, &channels, 0);
+  const std::unique_ptr<void, decltype(&stbi_image_free)> texels{loaded, stbi_image_free};
+  if (!texels) refuse_as_damaged(kind, stbi_failure_reason());
+  if (width != file.width || height != file.height ||
+      static_cast<std::size_t>(channels) != file.planes.size()) {
+    refuse_as_damaged(kind, "its header and its data differ");
+  }
+  if (is_wide) {
+    take_channels(static_cast<const stbi_us*>(loaded), file.planes.size(), planes, values);
+  } else {
+    take_channels(static_cast<const stbi_uc*>(loaded), file.planes.size(), planes, values);
+  }
+}
+
+bool begins_as_jpeg(std::span<const std::byte> bytes) {
+  return bytes.size() >= 3 && std::memcmp(bytes.data(), "\xFF\xD8\xFF", 3) == 0;
+}
+
+void list_png(PictureFile& file) {
+  check_png_chunks(file.bytes);  // stb reads them without checksums, and does not mind the end
+  constexpr std::size_t kDepthAt = 24;
+  const bool is_wide = file.bytes.size() > kDepthAt && file.bytes[kDepthAt] == std::byte{16};
+  list_channels(file, "the PNG", is_wide ? NumberType::unsigned16 : NumberType::unsigned8);
+  // A bit a pixel at least.
+  if (pixels_of(file) / 8 > kMostOfDeflate * file.bytes.size()) {
+    refuse_as_damaged("the PNG", "it is too small a file for the size that it claims");
+  }
+}
+
+void read_png(const PictureFile& file, std::span<const std::size_t> planes,
+              std::span<PlaneValues> values) {
+  read_channels(file, "the PNG", planes, values);
+}
+
+void list_jpeg(PictureFile& file) {
+  const std::string_view text{reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
+  if (has_overfull_huffman_table(text)) {
+    refuse_as_damaged("the JPEG", "a Huffman table has more than 256 codes");
+  }
+  if (lacks_huffman_table(text)) {
+    refuse_as_damaged("the JPEG", "a scan lacks its Huffman table");
+  }
+  if (is_cut_jpeg(text)) refuse_as_damaged("the JPEG", "its end is missing");
+  list_channels(file, "the JPEG", NumberType::unsigned8);
+  if (pixels_of(file) > kMostPixelsOfJpegByte * file.bytes.size()) {
+    refuse_as_damaged("the JPEG", "it is too small a file for the size that it claims");
+  }
+}
+
+void read_jpeg(const PictureFile& file, std::span<const std::size_t> planes,
+               std::span<PlaneValues> values) {
+  read_channels(file, "the JPEG", planes, values);
+}
+
+}  // namespace
+
+const PictureFileReader kPngReader{"PNG", is_png, list_png, read_png};
+const PictureFileReader kJpegReader{"JPEG", begins_as_jpeg, list_jpeg, read_jpeg};
+
+}  // namespace softfocus

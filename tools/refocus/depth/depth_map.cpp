@@ -1,0 +1,160 @@
+#include "tools/refocus/depth/depth_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace softfocus {
+namespace {
+
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+
+/// Metres: what is nearer counts as so near, for single precision must hold 1/z.
+constexpr double kNearest = 1e-9;
+
+bool is_missing(float metres) { return metres != metres; }
+
+bool means_missing(double code, const DepthReading& reading) {
+  const DepthEncoding& encoding = *reading.encoding;
+  if (code != code || code == -std::numeric_limits<double>::infinity()) return true;
+  if (std::isinf(code)) return !encoding.infinity_is_far;
+  if (code == 0.0 && encoding.zero_is_missing) return true;
+  return std::find(reading.missing_codes.begin(), reading.missing_codes.end(), code) !=
+         reading.missing_codes.end();
+}
+
+/// The distance along the ray of what lies at distance 1 along the axis.
+double ray_length(int x, int y, int width, int height, double pixels_per_tangent) {
+  const double right = (x + 0.5 - width / 2.0) / pixels_per_tangent;
+  const double down = (y + 0.5 - height / 2.0) / pixels_per_tangent;
+  return std::sqrt(1.0 + right * right + down * down);
+}
+
+double largest_of(NumberType type, const DepthEncoding& encoding) {
+  return encoding.by_full_scale ? full_scale(type) : 1.0;
+}
+
+/// Walks over the places of a line, `count` of them, `step` apart from `first` on, and puts into
+/// `farthest` the last known depth where that is farther.
+void sweep(const std::vector<float>& metres, std::vector<float>& farthest, std::ptrdiff_t first,
+           std::ptrdiff_t step, int count) {
+  float last = kMissing;
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(first + i * step);
+    if (!is_missing(metres[at])) {
+      last = metres[at];
+    } else if (!is_missing(last) && !(farthest[at] >= last)) {
+      farthest[at] = last;
+    }
+  }
+}
+
+}  // namespace
+
+CodeEnds::CodeEnds(NumberType type, const DepthReading& reading)
+    : reading_(reading),
+      full_(largest_of(type, *reading.encoding)),
+      least_(std::numeric_limits<double>::infinity()),
+      largest_(-least_) {}
+
+void CodeEnds::add(std::span<const float> codes, std::span<const float> mask) {
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const double raw = static_cast<double>(codes[i]);
+    if (means_missing(raw, reading_) || std::isinf(raw) || (!mask.empty() && mask[i] == 0.0f)) {
+      continue;
+    }
+    const double code = raw / full_;
+    least_ = std::min(least_, code);
+    largest_ = std::max(largest_, code);
+  }
+}
+
+void CodeEnds::put_in(DepthNumbers& numbers) const {
+  numbers.least_code = least_;
+  numbers.largest_code = largest_ > least_ ? largest_ : least_ + 1.0;
+}
+
+void codes_to_depths(std::span<float> codes, NumberType type, int first_row, int width, int height,
+                     const DepthReading& reading, std::span<const float> mask) {
+  const DepthEncoding& encoding = *reading.encoding;
+  const double largest = largest_of(type, encoding);
+  const int rows = static_cast<int>(codes.size() / static_cast<std::size_t>(width));
+  std::size_t i = 0;
+  for (int y = first_row; y < first_row + rows; ++y) {
+    for (int x = 0; x < width; ++x, ++i) {
+      const double raw = static_cast<double>(codes[i]);
+      codes[i] = kMissing;
+      if (means_missing(raw, reading) || (!mask.empty() && mask[i] == 0.0f)) continue;
+      double metres = encoding.distance_m(raw / largest, reading.numbers);
+      if (reading.along == DepthAlong::ray) {
+        metres /= ray_length(x, y, width, height, reading.pixels_per_tangent);
+      }
+      if (metres > 0.0) codes[i] = static_cast<float>(std::max(metres, kNearest));
+    }
+  }
+}
+
+DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
+                        const DepthReading& reading, const PlaneValues& mask) {
+  CodeEnds ends{type, reading};
+  ends.add(codes, mask);
+  DepthReading full = reading;
+  ends.put_in(full.numbers);
+  codes_to_depths(codes, type, 0, width, height, full, mask);
+  return {width, height, std::move(codes)};
+}
+
+PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthReading& reading) {
+  const DepthEncoding& encoding = *reading.encoding;
+  const double largest = largest_of(type, encoding);
+  PlaneValues codes(map.metres.size(), kMissing);
+  std::size_t i = 0;
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x, ++i) {
+      if (is_missing(map.metres[i])) continue;
+      double metres = static_cast<double>(map.metres[i]);
+      if (reading.along == DepthAlong::ray) {
+        metres *= ray_length(x, y, map.width, map.height, reading.pixels_per_tangent);
+      }
+      codes[i] = static_cast<float>(encoding.code(metres, reading.numbers) * largest);
+    }
+  }
+  return codes;
+}
+
+std::size_t missing_depths(const DepthMap& map) {
+  return static_cast<std::size_t>(std::count_if(map.metres.begin(), map.metres.end(), is_missing));
+}
+
+void add_to_ends(DepthEnds& ends, std::span<const float> metres) {
+  for (const float depth_m : metres) {
+    if (std::isinf(depth_m)) ends.has_infinite = true;
+    if (!std::isfinite(depth_m)) continue;
+    ends.near_m = std::min(ends.near_m, static_cast<double>(depth_m));
+    ends.far_m = std::max(ends.far_m, static_cast<double>(depth_m));
+  }
+}
+
+void fill_from_far_side(DepthMap& map) {
+  const int width = map.width, height = map.height;
+  // Twice: a pixel whose row and column know nothing finds a filled one in its row.
+  for (int pass = 0; pass < 2 && missing_depths(map) > 0; ++pass) {
+    std::vector<float> farthest(map.metres.size(), kMissing);
+    for (int y = 0; y < height; ++y) {
+      const std::ptrdiff_t start = std::ptrdiff_t{y} * width;
+      sweep(map.metres, farthest, start, 1, width);
+      sweep(map.metres, farthest, start + width - 1, -1, width);
+    }
+    for (int x = 0; x < width; ++x) {
+      const std::ptrdiff_t last = x + std::ptrdiff_t{height - 1} * width;
+      sweep(map.metres, farthest, x, width, height);
+      sweep(map.metres, farthest, last, -width, height);
+    }
+    for (std::size_t i = 0; i < map.metres.size(); ++i) {
+      if (is_missing(map.metres[i])) map.metres[i] = farthest[i];
+    }
+  }
+}
+
+}  // namespace softfocus

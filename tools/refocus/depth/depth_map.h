@@ -1,0 +1,69 @@
+#pragma once
+// A depth map as metres along the camera's axis: from the codes of a file.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tools/pictures/picture_file.h"
+#include "tools/refocus/depth/depth_encodings.h"
+
+namespace softfocus {
+
+/// Row by row from the top, width x height: metres from 1e-9, infinity where nothing is; NaN where
+/// the depth is missing.
+struct DepthMap {
+  int width = 0;
+  int height = 0;
+  std::vector<float> metres{};
+};
+
+/// How codes are to be read.
+struct DepthReading {
+  const DepthEncoding* encoding = nullptr;
+  DepthNumbers numbers{};  ///< least_code and largest_code are found here
+  DepthAlong along = DepthAlong::axis;
+  std::vector<double> missing_codes{};  ///< beside those that the encoding knows
+  /// The map's height over the height at distance 1: half of it over the tangent of half the field
+  /// of view. For distances along the ray.
+  double pixels_per_tangent = 1.0;
+};
+
+/// `codes` are width x height numbers of that type. `mask`, empty or as many, is 0 where the depth
+/// is missing.
+DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
+                        const DepthReading& reading, const PlaneValues& mask);
+
+/// The same of a map that comes in bands of rows. First all codes are looked at, for least_code and
+/// largest_code; then each code gives way to its depth.
+class CodeEnds {
+ public:
+  CodeEnds(NumberType type, const DepthReading& reading);
+  void add(std::span<const float> codes, std::span<const float> mask);
+  void put_in(DepthNumbers& numbers) const;
+
+ private:
+  const DepthReading& reading_;
+  double full_, least_, largest_;
+};
+/// `codes` are those of the rows from `first_row` on of a map of that size.
+void codes_to_depths(std::span<float> codes, NumberType type, int first_row, int width, int height,
+                     const DepthReading& reading, std::span<const float> mask);
+
+/// The codes of a map: the inverse, which tests compare with. Missing depths become NaN.
+PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthReading& reading);
+
+std::size_t missing_depths(const DepthMap& map);
+
+/// What finite depths lie between, and whether there are infinite ones.
+struct DepthEnds {
+  double near_m = 1e30, far_m = 0.0;
+  bool has_infinite = false;
+};
+void add_to_ends(DepthEnds& ends, std::span<const float> metres);
+
+/// Gives each missing depth the farthest of the nearest known ones to its left and right, above
+/// and below: a hole opens behind what is near, where the camera saw nothing. Needs a known one.
+void fill_from_far_side(DepthMap& map);
+
+}  // namespace softfocus
