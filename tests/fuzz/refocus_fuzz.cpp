@@ -78,10 +78,11 @@ constexpr std::array kOptions{"--depth-encoding=metres",
                               "--arithmetic=fixed-16",
                               "--show=coc",
                               "--show=depth",
-                              "--max-coc=20",
                               "--leak=1"};
-constexpr std::array kMethods{"two-pass",         "one-pass",  "disc-layers",
-                              "aperture-scatter", "diffusion", "auto"};
+constexpr std::array kMethods{"two-pass", "one-pass",  "disc-layers", "scatter-aperture",
+                              "mipmap",   "diffusion", "auto"};
+/// Mirrored borders are as wide, and one-pass reads as many pixels squared for each.
+constexpr int kMostRadiusPx = 24;
 constexpr std::array kOutputs{"--output=a.exr", "--output=a.png", "--output=a.npy",
                               "--output=a.hdr", "--output=a.pfm", "--output=a.png"};
 
@@ -137,6 +138,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   add_of(kOutputs);
   arguments.push_back("--method");
   add_of(kMethods);
+  arguments.push_back("--max-coc=" +
+                      std::to_string(input.next<std::uint8_t>() % (kMostRadiusPx + 1)));
   for (int count = input.next<std::uint8_t>() % 7; count > 0; --count) add_of(kOptions);
   const auto program = make_program("softfocus", "0", "");
   RefocusOptions options;
