@@ -65,7 +65,12 @@ GlTarget motion_blur_on_gl(const GlContext& context, const Shaders& shaders,
   set_uniform(blur, "way_step", pass.step);
   set_uniform(blur, "tile_size", size);
   set_uniform(blur, "inverse_depth", pass.inverse_depth);
-  set_uniform(blur, "own_weight", pass.own_weight);
+  if (two_ways) {
+    set_uniform(blur, "sample_part", pass.sample_part);
+    set_uniform(blur, "across_samples", pass.across_samples);
+    set_uniform(blur, "across_part", pass.across_part);
+    set_uniform(blur, "across_step", pass.across_step);
+  }
   set_texture(blur, "source", 0, picture);
   set_texture(blur, "spread", 1, spread.colour[0]);
   set_texture(blur, "tiles", 2, neighbours.colour[0]);

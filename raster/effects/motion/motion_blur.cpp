@@ -38,6 +38,8 @@ float cylinder(float q) {
   const float s = cut_to_1((q - 0.95f) * 10.0f);
   return 1.0f - s * s * (3.0f - 2.0f * s);
 }
+/// Whether a motion reaches that far, with an edge a tenth of it wide.
+float reached(float q) { return cut_to_1((1.05f - q) * 10.0f); }
 
 /// The pixel's tile, or the next one by chance near its border, so that borders do not show.
 glm::vec2 neighbourhood_motion(const MotionBlurPass& pass, const MotionTiles& tiles,
@@ -61,65 +63,142 @@ struct BlurInput {
   const MotionTiles& tiles;
 };
 
-/// None where nothing near moves: the pixel stays.
-std::optional<glm::vec3> blurred(const BlurInput& input, int x, int y) {
-  const MotionBlurPass& pass = input.pass;
+/// What a pixel and a sample have to do with each other.
+struct Pair {
+  float of_there, of_own;  ///< the distance in lengths of either's motion
+  float nearer, farther;   ///< whether the sample lies before the pixel, and behind it
+};
+
+struct BlurredPixel {
+  glm::vec4 own;
+  glm::vec3 v;  ///< its motion, and in z 1 / its length
+  float per_depth;
+};
+
+BlurredPixel blurred_pixel(const BlurInput& input, int x, int y) {
   const glm::vec4 own = load_texel<Format::rgba16f>(input.picture, x, y);
-  const glm::vec2 n = neighbourhood_motion(pass, input.tiles, input.picture, x, y);
-  const float square = n.x * n.x + n.y * n.y;
-  if (!(square > kLeastMotion2)) return {};
-  const float length = std::sqrt(square);
-  const glm::vec2 along{n.x / length, n.y / length};
   const glm::vec4 v = load_texel<Format::rgba16f>(input.spread, x, y);
+  return {own, glm::vec3{v}, own.w > 0.0f ? input.pass.inverse_depth / own.w : 0.0f};
+}
 
-  glm::vec2 across = along;  // the other way to sample
-  float facing = 1.0f;       // |along . across|
-  if (pass.filter == MotionFilter::two_ways) {
-    // The pixel's own motion, or at a right angle to `along` if it hardly moves.
-    const bool turned = v.y * along.x - v.x * along.y < 0.0f;
-    const glm::vec2 right{turned ? along.y : -along.y, turned ? -along.x : along.x};
-    const float share = cut_to_1((std::sqrt(v.x * v.x + v.y * v.y) - 0.5f) * (1.0f / 1.5f));
-    const glm::vec2 mixed{right.x + (v.x * v.z - right.x) * share,
-                          right.y + (v.y * v.z - right.y) * share};
-    const float mixed_length = std::sqrt(mixed.x * mixed.x + mixed.y * mixed.y);
-    across = {mixed.x / mixed_length, mixed.y / mixed_length};
-    facing = std::fabs(across.x * along.x + across.y * along.y);
-  }
+Pair pair_of(const BlurredPixel& pixel, const glm::vec4& there, const glm::vec4& w, float moved) {
+  const float distance = std::fabs(moved);
+  return {distance * w.z, distance * pixel.v.z,
+          cut_to_1(1.0f - (there.w - pixel.own.w) * pixel.per_depth),
+          cut_to_1(1.0f - (pixel.own.w - there.w) * pixel.per_depth)};
+}
 
-  const float per_depth = own.w > 0.0f ? pass.inverse_depth / own.w : 0.0f;
+/// McGuire et al. 2012, along the longest motion.
+glm::vec3 blurred_one_way(const BlurInput& input, int x, int y, glm::vec2 along, float length) {
+  const MotionBlurPass& pass = input.pass;
+  const BlurredPixel pixel = blurred_pixel(input, x, y);
   const float j = jitter(x, y);
-  float total = v.z * pass.own_weight;
-  glm::vec3 sum{own.x * total, own.y * total, own.z * total};
+  float total = pixel.v.z;
+  glm::vec3 sum{pixel.own.x * total, pixel.own.y * total, pixel.own.z * total};
   for (int i = 0; i < pass.samples; ++i) {
-    const bool is_across = i % 2 != 0;
-    const glm::vec2 way = is_across ? across : along;
     const float moved = way_at(i, j, pass.step) * length;
-    const glm::ivec2 at = pixel_at(input.picture, x, y, {moved * way.x, moved * way.y});
+    const glm::ivec2 at = pixel_at(input.picture, x, y, {moved * along.x, moved * along.y});
     const glm::vec4 there = load_texel<Format::rgba16f>(input.picture, at.x, at.y);
     const glm::vec4 w = load_texel<Format::rgba16f>(input.spread, at.x, at.y);
-    const float distance = std::fabs(moved);
-    const float of_there = distance * w.z, of_own = distance * v.z;
-    const float nearer = cut_to_1(1.0f - (there.w - own.w) * per_depth);
-    const float farther = cut_to_1(1.0f - (own.w - there.w) * per_depth);
-    float weight;
-    if (pass.filter == MotionFilter::two_ways) {
-      const float own_way = is_across ? 1.0f : facing;
-      const float there_way = std::fabs(w.x * way.x + w.y * way.y) * w.z;
-      const float of_both = of_there > of_own ? of_there : of_own;
-      const float either_way = there_way > own_way ? there_way : own_way;
-      weight = ((nearer * cone(of_there)) * there_way + (farther * cone(of_own)) * own_way) +
-               (cylinder(of_both) * either_way) * 2.0f;
-    } else {
-      weight = (nearer * cone(of_there) + farther * cone(of_own)) +
-               (cylinder(of_there) * cylinder(of_own)) * 2.0f;
-    }
+    const Pair of = pair_of(pixel, there, w, moved);
+    const float weight = (of.nearer * cone(of.of_there) + of.farther * cone(of.of_own)) +
+                         (cylinder(of.of_there) * cylinder(of.of_own)) * 2.0f;
     if (!(weight > 0.0f)) continue;  // a light without end must not count 0 times
     total += weight;
     sum.x += there.x * weight;
     sum.y += there.y * weight;
     sum.z += there.z * weight;
   }
-  return glm::vec3{sum.x / total, sum.y / total, sum.z / total};
+  return {sum.x / total, sum.y / total, sum.z / total};
+}
+
+/// What samples along a way show through the pixel: their sum, and how many they are.
+struct Shown {
+  glm::vec3 sum;
+  float count;
+};
+
+struct SampledWay {
+  glm::vec2 way;
+  float length_px;
+  float own_part;  ///< of the pixel's own motion that goes this way
+  int samples;
+  float step, jitter;
+};
+
+Shown shown_along(const BlurInput& input, int x, int y, const BlurredPixel& pixel,
+                  const SampledWay& on) {
+  Shown shown{glm::vec3{0.0f}, 0.0f};
+  for (int i = 0; i < on.samples; ++i) {
+    const float moved = way_at(i, on.jitter, on.step) * on.length_px;
+    const glm::ivec2 at = pixel_at(input.picture, x, y, {moved * on.way.x, moved * on.way.y});
+    const glm::vec4 there = load_texel<Format::rgba16f>(input.picture, at.x, at.y);
+    const glm::vec4 w = load_texel<Format::rgba16f>(input.spread, at.x, at.y);
+    const Pair of = pair_of(pixel, there, w, moved);
+    const float there_part = std::fabs(w.x * on.way.x + w.y * on.way.y) * w.z;
+    const float weight = cut_to_1((of.nearer * reached(of.of_there)) * there_part +
+                                  (of.farther * reached(of.of_own)) * on.own_part);
+    if (!(weight > 0.0f)) continue;  // a light without end must not count 0 times
+    shown.count += weight;
+    shown.sum.x += there.x * weight;
+    shown.sum.y += there.y * weight;
+    shown.sum.z += there.z * weight;
+  }
+  return shown;
+}
+
+/// After Guertin et al. 2014, along the longest motion and along the pixel's own.
+glm::vec3 blurred_two_ways(const BlurInput& input, int x, int y, glm::vec2 n, glm::vec2 along,
+                           float length) {
+  const MotionBlurPass& pass = input.pass;
+  const BlurredPixel pixel = blurred_pixel(input, x, y);
+  const glm::vec3 v = pixel.v;
+  // A pixel that hardly moves has no way of its own: both are n.
+  const float moving = cut_to_1((std::sqrt(v.x * v.x + v.y * v.y) - 0.5f) * (1.0f / 1.5f));
+  const bool turned = v.x * n.x + v.y * n.y < 0.0f;
+  const glm::vec2 ahead{turned ? -v.x : v.x, turned ? -v.y : v.y};
+  const glm::vec2 mixed{n.x + (ahead.x - n.x) * moving, n.y + (ahead.y - n.y) * moving};
+  const float own_length = std::sqrt(mixed.x * mixed.x + mixed.y * mixed.y);
+  const glm::vec2 across{mixed.x / own_length, mixed.y / own_length};
+  const float facing = std::fabs(across.x * along.x + across.y * along.y);
+
+  const float j = jitter(x, y);
+  const float between = j < 0.5f ? j + 0.5f : j - 0.5f;
+  const Shown a =
+      shown_along(input, x, y, pixel, {along, length, facing, pass.samples, pass.step, j});
+  const Shown b =
+      shown_along(input, x, y, pixel,
+                  {across, own_length, 1.0f, pass.across_samples, pass.across_step, between});
+
+  // Two equal ways are halves of one; else what the longest motion does not cover is the other's.
+  const float shorter = own_length < length ? own_length / length : 1.0f;
+  const float half = (facing * shorter) * 0.5f;
+  const float a_part = 1.0f - half;
+  const float rest = a_part * (1.0f - a.count * pass.sample_part);
+  const float b_part = half + rest * moving;
+  const float own_part = rest * (1.0f - moving) + b_part * (1.0f - b.count * pass.across_part);
+  const float of_a = a_part * pass.sample_part, of_b = b_part * pass.across_part;
+  glm::vec3 colour{a.sum.x * of_a, a.sum.y * of_a, a.sum.z * of_a};
+  if (of_b > 0.0f) {
+    colour = {colour.x + b.sum.x * of_b, colour.y + b.sum.y * of_b, colour.z + b.sum.z * of_b};
+  }
+  if (own_part > 0.0f) {
+    colour = {colour.x + pixel.own.x * own_part, colour.y + pixel.own.y * own_part,
+              colour.z + pixel.own.z * own_part};
+  }
+  return colour;
+}
+
+/// None where nothing near moves: the pixel stays.
+std::optional<glm::vec3> blurred(const BlurInput& input, int x, int y) {
+  const glm::vec2 n = neighbourhood_motion(input.pass, input.tiles, input.picture, x, y);
+  const float square = n.x * n.x + n.y * n.y;
+  if (!(square > kLeastMotion2)) return {};
+  const float length = std::sqrt(square);
+  const glm::vec2 along{n.x / length, n.y / length};
+  return input.pass.filter == MotionFilter::two_ways
+             ? blurred_two_ways(input, x, y, n, along, length)
+             : blurred_one_way(input, x, y, along, length);
 }
 
 /// Tiles in which a pixel may read a motion that counts.
@@ -232,11 +311,129 @@ SOFTFOCUS_INLINE Vec2Lanes neighbourhood_lanes(const BlurRow& row, Ints x) {
   return {as_floats(as_bits(v.first)), as_floats(as_bits(v.second))};
 }
 
+SOFTFOCUS_INLINE Floats reached_lanes(Floats q) { return unit_lanes((1.05f - q) * 10.0f); }
+
+struct ColourLanes {
+  Floats r, g, b;
+};
+
+struct PixelLanes {
+  Floats at_x, at_y;
+  FourFloats own;
+  Floats v_x, v_y, v_z;
+  Floats per_depth;
+};
+
+struct PairLanes {
+  FourFloats there, w;
+  Floats of_there, of_own, nearer, farther;
+};
+
+SOFTFOCUS_INLINE PairLanes pair_lanes(const BlurRow& row, const PixelLanes& pixel, Floats moved,
+                                      Vec2Lanes way) {
+  const Ints there_x = place_lanes(pixel.at_x, moved * way.x, row.width);
+  const Ints there_y = place_lanes(pixel.at_y, moved * way.y, row.height);
+  const FourFloats there = gather_texels(row.picture, there_x, there_y);
+  const FourFloats w = gather_texels(row.spread, there_x, there_y);
+  const Floats distance = absolute(moved);
+  return {there,
+          w,
+          distance * w.b,
+          distance * pixel.v_z,
+          unit_lanes(1.0f - (there.a - pixel.own.a) * pixel.per_depth),
+          unit_lanes(1.0f - (pixel.own.a - there.a) * pixel.per_depth)};
+}
+
+SOFTFOCUS_INLINE ColourLanes one_way_lanes(const BlurRow& row, const PixelLanes& pixel, Ints x,
+                                           Vec2Lanes along, Floats length) {
+  const MotionBlurPass& pass = row.pass;
+  const Floats j = jitter_lanes(x, row.y);
+  Floats total = pixel.v_z;
+  ColourLanes sum{pixel.own.r * total, pixel.own.g * total, pixel.own.b * total};
+  for (int i = 0; i < pass.samples; ++i) {
+    const Floats moved = ((static_cast<float>(i) + j) * pass.step - 1.0f) * length;
+    const PairLanes of = pair_lanes(row, pixel, moved, along);
+    const Floats weight =
+        (of.nearer * unit_lanes(1.0f - of.of_there) + of.farther * unit_lanes(1.0f - of.of_own)) +
+        (cylinder_lanes(of.of_there) * cylinder_lanes(of.of_own)) * 2.0f;
+    const Mask counts = weight > 0.0f;
+    total += weight;  // never below 0
+    sum.r = select(counts, sum.r + of.there.r * weight, sum.r);
+    sum.g = select(counts, sum.g + of.there.g * weight, sum.g);
+    sum.b = select(counts, sum.b + of.there.b * weight, sum.b);
+  }
+  return {sum.r / total, sum.g / total, sum.b / total};
+}
+
+struct ShownLanes {
+  ColourLanes sum;
+  Floats count;
+};
+
+struct SampledWayLanes {
+  Vec2Lanes way;
+  Floats length_px, own_part;
+  int samples;
+  float step;
+  Floats jitter;
+};
+
+SOFTFOCUS_INLINE ShownLanes shown_lanes(const BlurRow& row, const PixelLanes& pixel,
+                                        const SampledWayLanes& on) {
+  const Floats zero = splat(0.0f);
+  ShownLanes shown{{zero, zero, zero}, zero};
+  for (int i = 0; i < on.samples; ++i) {
+    const Floats moved = ((static_cast<float>(i) + on.jitter) * on.step - 1.0f) * on.length_px;
+    const PairLanes of = pair_lanes(row, pixel, moved, on.way);
+    const Floats there_part = absolute(of.w.r * on.way.x + of.w.g * on.way.y) * of.w.b;
+    const Floats weight = unit_lanes((of.nearer * reached_lanes(of.of_there)) * there_part +
+                                     (of.farther * reached_lanes(of.of_own)) * on.own_part);
+    const Mask counts = weight > 0.0f;
+    shown.count += weight;
+    shown.sum.r = select(counts, shown.sum.r + of.there.r * weight, shown.sum.r);
+    shown.sum.g = select(counts, shown.sum.g + of.there.g * weight, shown.sum.g);
+    shown.sum.b = select(counts, shown.sum.b + of.there.b * weight, shown.sum.b);
+  }
+  return shown;
+}
+
+SOFTFOCUS_INLINE ColourLanes two_ways_lanes(const BlurRow& row, const PixelLanes& pixel, Ints x,
+                                            Vec2Lanes n, Vec2Lanes along, Floats length) {
+  const MotionBlurPass& pass = row.pass;
+  const Floats one = splat(1.0f), v_x = pixel.v_x, v_y = pixel.v_y;
+  const Floats moving = unit_lanes((square_root(v_x * v_x + v_y * v_y) - 0.5f) * (1.0f / 1.5f));
+  const Mask turned = v_x * n.x + v_y * n.y < 0.0f;
+  const Floats mixed_x = n.x + (select(turned, -v_x, v_x) - n.x) * moving;
+  const Floats mixed_y = n.y + (select(turned, -v_y, v_y) - n.y) * moving;
+  const Floats own_length = square_root(mixed_x * mixed_x + mixed_y * mixed_y);
+  const Vec2Lanes across{mixed_x / own_length, mixed_y / own_length};
+  const Floats facing = absolute(across.x * along.x + across.y * along.y);
+
+  const Floats j = jitter_lanes(x, row.y);
+  const Floats between = select(j < 0.5f, j + 0.5f, j - 0.5f);
+  const ShownLanes a = shown_lanes(row, pixel, {along, length, facing, pass.samples, pass.step, j});
+  const ShownLanes b = shown_lanes(
+      row, pixel, {across, own_length, one, pass.across_samples, pass.across_step, between});
+
+  const Floats shorter = select(own_length < length, own_length / length, one);
+  const Floats half = (facing * shorter) * 0.5f;
+  const Floats a_part = 1.0f - half;
+  const Floats rest = a_part * (1.0f - a.count * pass.sample_part);
+  const Floats b_part = half + rest * moving;
+  const Floats own_part = rest * (1.0f - moving) + b_part * (1.0f - b.count * pass.across_part);
+  const Floats of_a = a_part * pass.sample_part, of_b = b_part * pass.across_part;
+  const auto mix = [&](Floats of_along, Floats of_across, Floats own) {
+    const Floats first = of_along * of_a;
+    const Floats second = select(of_b > 0.0f, first + of_across * of_b, first);
+    return select(own_part > 0.0f, second + own * own_part, second);
+  };
+  return {mix(a.sum.r, b.sum.r, pixel.own.r), mix(a.sum.g, b.sum.g, pixel.own.g),
+          mix(a.sum.b, b.sum.b, pixel.own.b)};
+}
+
 template <MotionFilter filter, HalfRounding rounding>
 SOFTFOCUS_INLINE int blur_vectors(const BlurRow& row, int begin, int end, std::uint16_t* to) {
-  const MotionBlurPass& pass = row.pass;
   const Floats zero = splat(0.0f), one = splat(1.0f);
-  const Floats at_y = splat(static_cast<float>(row.y));
   const std::uint16_t* picture = reinterpret_cast<const std::uint16_t*>(
       row.picture.texels + 2 * static_cast<std::ptrdiff_t>(row.picture.stride) * row.y);
   const std::uint16_t* spread = reinterpret_cast<const std::uint16_t*>(
@@ -244,75 +441,35 @@ SOFTFOCUS_INLINE int blur_vectors(const BlurRow& row, int begin, int end, std::u
   int at = begin;
   for (; at + kLanes <= end; at += kLanes) {
     const Ints x = at + lane_numbers();
-    const HalfTexels own_halves = load_half_texels(picture + 4 * at);
-    const Vec2Lanes n = neighbourhood_lanes(row, x);
-    const Floats square = n.x * n.x + n.y * n.y;
+    const HalfTexels own = load_half_texels(picture + 4 * at);
+    const Vec2Lanes near = neighbourhood_lanes(row, x);
+    const Floats square = near.x * near.x + near.y * near.y;
     const Mask moves = square > 0.25f;
     if (!any(moves)) {
       std::memcpy(to + 4 * at, picture + 4 * at, 4 * sizeof(std::uint16_t) * kLanes);
       continue;
     }
-    const Floats length = square_root(square);
-    const Vec2Lanes along{select(moves, n.x / length, zero), select(moves, n.y / length, zero)};
-    const HalfTexels v_halves = load_half_texels(spread + 4 * at);
-    const Floats v_x = half_to_float(v_halves.r), v_y = half_to_float(v_halves.g);
-    const Floats v_z = half_to_float(v_halves.b);
-    Vec2Lanes across = along;
-    Floats facing = one;
-    if constexpr (filter == MotionFilter::two_ways) {
-      const Mask turned = v_y * along.x - v_x * along.y < 0.0f;
-      const Floats right_x = select(turned, along.y, -along.y);
-      const Floats right_y = select(turned, -along.x, along.x);
-      const Floats share = unit_lanes((square_root(v_x * v_x + v_y * v_y) - 0.5f) * (1.0f / 1.5f));
-      const Floats mixed_x = right_x + (v_x * v_z - right_x) * share;
-      const Floats mixed_y = right_y + (v_y * v_z - right_y) * share;
-      const Floats mixed = square_root(mixed_x * mixed_x + mixed_y * mixed_y);
-      across = {select(moves, mixed_x / mixed, zero), select(moves, mixed_y / mixed, zero)};
-      facing = absolute(across.x * along.x + across.y * along.y);
-    }
-    const Floats own_r = half_to_float(own_halves.r), own_g = half_to_float(own_halves.g);
-    const Floats own_b = half_to_float(own_halves.b), own_a = half_to_float(own_halves.a);
-    const Floats per_depth = select(own_a > 0.0f, pass.inverse_depth / own_a, zero);
-    const Floats j = jitter_lanes(x, row.y);
-    const Floats at_x = to_floats(x);
-    Floats total = v_z * pass.own_weight;
-    Floats sum_r = own_r * total, sum_g = own_g * total, sum_b = own_b * total;
-    for (int i = 0; i < pass.samples; ++i) {
-      const bool is_across = filter == MotionFilter::two_ways && i % 2 != 0;
-      const Vec2Lanes way = is_across ? across : along;
-      const Floats moved = ((static_cast<float>(i) + j) * pass.step - 1.0f) * length;
-      const Ints there_x = place_lanes(at_x, moved * way.x, row.width);
-      const Ints there_y = place_lanes(at_y, moved * way.y, row.height);
-      const FourFloats there = gather_texels(row.picture, there_x, there_y);
-      const FourFloats w = gather_texels(row.spread, there_x, there_y);
-      const Floats distance = absolute(moved);
-      const Floats of_there = distance * w.b, of_own = distance * v_z;
-      const Floats nearer = unit_lanes(1.0f - (there.a - own_a) * per_depth);
-      const Floats farther = unit_lanes(1.0f - (own_a - there.a) * per_depth);
-      const Floats cone_there = unit_lanes(1.0f - of_there), cone_own = unit_lanes(1.0f - of_own);
-      Floats weight;
-      if constexpr (filter == MotionFilter::two_ways) {
-        const Floats own_way = is_across ? one : facing;
-        const Floats there_way = absolute(w.r * way.x + w.g * way.y) * w.b;
-        const Floats of_both = larger(of_there, of_own);
-        const Floats either_way = larger(there_way, own_way);
-        weight = ((nearer * cone_there) * there_way + (farther * cone_own) * own_way) +
-                 (cylinder_lanes(of_both) * either_way) * 2.0f;
-      } else {
-        weight = (nearer * cone_there + farther * cone_own) +
-                 (cylinder_lanes(of_there) * cylinder_lanes(of_own)) * 2.0f;
-      }
-      const Mask counts = weight > 0.0f;
-      total += weight;  // never below 0
-      sum_r = select(counts, sum_r + there.r * weight, sum_r);
-      sum_g = select(counts, sum_g + there.g * weight, sum_g);
-      sum_b = select(counts, sum_b + there.b * weight, sum_b);
-    }
-    store_half_texels(
-        to + 4 * at,
-        {select(moves, float_to_half<rounding>(sum_r / total), own_halves.r),
-         select(moves, float_to_half<rounding>(sum_g / total), own_halves.g),
-         select(moves, float_to_half<rounding>(sum_b / total), own_halves.b), own_halves.a});
+    // What stays has a motion too, which no result is taken of.
+    const Vec2Lanes n{select(moves, near.x, one), select(moves, near.y, zero)};
+    const Floats length = square_root(select(moves, square, one));
+    const Vec2Lanes along{n.x / length, n.y / length};
+    const HalfTexels v = load_half_texels(spread + 4 * at);
+    const Floats own_a = half_to_float(own.a);
+    const PixelLanes pixel{
+        to_floats(x),
+        splat(static_cast<float>(row.y)),
+        {half_to_float(own.r), half_to_float(own.g), half_to_float(own.b), own_a},
+        half_to_float(v.r),
+        half_to_float(v.g),
+        half_to_float(v.b),
+        select(own_a > 0.0f, row.pass.inverse_depth / own_a, zero)};
+    const ColourLanes colour = filter == MotionFilter::two_ways
+                                   ? two_ways_lanes(row, pixel, x, n, along, length)
+                                   : one_way_lanes(row, pixel, x, along, length);
+    store_half_texels(to + 4 * at,
+                      {select(moves, float_to_half<rounding>(colour.r), own.r),
+                       select(moves, float_to_half<rounding>(colour.g), own.g),
+                       select(moves, float_to_half<rounding>(colour.b), own.b), own.a});
   }
   return at;
 }

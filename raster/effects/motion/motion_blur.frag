@@ -7,17 +7,41 @@ uniform sampler2D spread;
 uniform sampler2D tiles;
 uniform int samples;
 uniform float way_step;  // 2 / samples
+#ifdef TWO_WAYS
+uniform float sample_part;  // 1 / samples
+uniform int across_samples;
+uniform float across_part;
+uniform float across_step;
+#endif
 uniform int tile_size;
 uniform float inverse_depth;
-uniform float own_weight;
 
 out vec4 result;
 
-float cylinder(float q) {
-  precise float from_begin = (q - 0.95) * 10.0;
-  float s = cut_to_1(from_begin);
-  precise float share = 1.0 - s * s * (3.0 - 2.0 * s);
-  return share;
+// What a pixel and a sample have to do with each other.
+struct Pair {
+  vec4 there;
+  vec3 w;
+  float of_there, of_own;
+  float nearer, farther;
+};
+
+Pair pair_of(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, float moved, vec2 way) {
+  Pair of;
+  precise vec2 step_px = moved * way;
+  ivec2 place = pixel_at(at, step_px, size);
+  of.there = texelFetch(source, place, 0);
+  of.w = texelFetch(spread, place, 0).xyz;
+  float far = abs(moved);
+  precise float of_there = far * of.w.z;
+  precise float of_own = far * v.z;
+  precise float before = 1.0 - (of.there.a - own.a) * per_depth;
+  precise float behind = 1.0 - (own.a - of.there.a) * per_depth;
+  of.of_there = of_there;
+  of.of_own = of_own;
+  of.nearer = cut_to_1(before);
+  of.farther = cut_to_1(behind);
+  return of;
 }
 
 vec2 neighbourhood_motion(ivec2 at, ivec2 size) {
@@ -28,6 +52,98 @@ vec2 neighbourhood_motion(ivec2 at, ivec2 size) {
 #endif
   return texelFetch(tiles, at / tile_size, 0).xy;
 }
+
+#ifdef TWO_WAYS
+float reached(float q) {
+  precise float left = (1.05 - q) * 10.0;
+  return cut_to_1(left);
+}
+
+// What samples along a way show through the pixel: their sum, and in w how many they are.
+vec4 shown_along(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 way,
+                 float length_px, float own_part, int count, float count_step, float jittered) {
+  precise vec4 shown = vec4(0.0);
+  for (int i = 0; i < count; ++i) {
+    precise float moved = way_at(i, jittered, count_step) * length_px;
+    Pair of = pair_of(at, size, own, v, per_depth, moved, way);
+    precise float cosine = of.w.x * way.x + of.w.y * way.y;
+    precise float there_part = abs(cosine) * of.w.z;
+    precise float either = (of.nearer * reached(of.of_there)) * there_part +
+                           (of.farther * reached(of.of_own)) * own_part;
+    float weight = cut_to_1(either);
+    if (!(weight > 0.0)) continue;
+    shown.w += weight;
+    shown.rgb += of.there.rgb * weight;
+  }
+  return shown;
+}
+
+vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, vec2 along,
+             float length) {
+  precise float own_square = v.x * v.x + v.y * v.y;
+  precise float above_still = (sqrt(own_square) - 0.5) * (1.0 / 1.5);
+  float moving = cut_to_1(above_still);
+  precise float turning = v.x * n.x + v.y * n.y;
+  vec2 ahead = turning < 0.0 ? -v.xy : v.xy;
+  precise vec2 mixed = n + (ahead - n) * moving;
+  precise float mixed_square = mixed.x * mixed.x + mixed.y * mixed.y;
+  float own_length = sqrt(mixed_square);
+  precise vec2 across = mixed / own_length;
+  precise float cosine = across.x * along.x + across.y * along.y;
+  float facing = abs(cosine);
+
+  float jittered = jitter(at);
+  precise float between = jittered < 0.5 ? jittered + 0.5 : jittered - 0.5;
+  vec4 a = shown_along(at, size, own, v, per_depth, along, length, facing, samples, way_step,
+                       jittered);
+  vec4 b = shown_along(at, size, own, v, per_depth, across, own_length, 1.0, across_samples,
+                       across_step, between);
+
+  precise float shorter = own_length < length ? own_length / length : 1.0;
+  precise float half_part = (facing * shorter) * 0.5;
+  precise float a_part = 1.0 - half_part;
+  precise float rest = a_part * (1.0 - a.w * sample_part);
+  precise float b_part = half_part + rest * moving;
+  precise float own_part = rest * (1.0 - moving) + b_part * (1.0 - b.w * across_part);
+  precise float of_a = a_part * sample_part;
+  precise float of_b = b_part * across_part;
+  precise vec3 colour = a.rgb * of_a;
+  if (of_b > 0.0) colour += b.rgb * of_b;
+  if (own_part > 0.0) colour += own.rgb * own_part;
+  return colour;
+}
+#else
+float cylinder(float q) {
+  precise float from_begin = (q - 0.95) * 10.0;
+  float s = cut_to_1(from_begin);
+  precise float share = 1.0 - s * s * (3.0 - 2.0 * s);
+  return share;
+}
+
+float cone(float q) {
+  precise float left = 1.0 - q;
+  return cut_to_1(left);
+}
+
+vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, vec2 along,
+             float length) {
+  float jittered = jitter(at);
+  float total = v.z;
+  precise vec3 sum = own.rgb * total;
+  for (int i = 0; i < samples; ++i) {
+    precise float moved = way_at(i, jittered, way_step) * length;
+    Pair of = pair_of(at, size, own, v, per_depth, moved, along);
+    precise float weight = (of.nearer * cone(of.of_there) + of.farther * cone(of.of_own)) +
+                           (cylinder(of.of_there) * cylinder(of.of_own)) * 2.0;
+    if (!(weight > 0.0)) continue;
+    precise float more = total + weight;
+    total = more;
+    sum += of.there.rgb * weight;
+  }
+  precise vec3 mean = sum / total;
+  return mean;
+}
+#endif
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy), size = textureSize(source, 0);
@@ -41,62 +157,6 @@ void main() {
   float length = sqrt(square);
   precise vec2 along = n / length;
   vec3 v = texelFetch(spread, at, 0).xyz;
-
-  vec2 across = along;
-  float facing = 1.0;
-#ifdef TWO_WAYS
-  precise float turning = v.y * along.x - v.x * along.y;
-  vec2 right = turning < 0.0 ? vec2(along.y, -along.x) : vec2(-along.y, along.x);
-  precise float own_square = v.x * v.x + v.y * v.y;
-  precise float own_share = (sqrt(own_square) - 0.5) * (1.0 / 1.5);
-  float share = cut_to_1(own_share);
-  precise vec2 mixed = right + (v.xy * v.z - right) * share;
-  precise float mixed_square = mixed.x * mixed.x + mixed.y * mixed.y;
-  precise vec2 unit_across = mixed / sqrt(mixed_square);
-  across = unit_across;
-  precise float cosine = across.x * along.x + across.y * along.y;
-  facing = abs(cosine);
-#endif
-
   precise float per_depth = own.a > 0.0 ? inverse_depth / own.a : 0.0;
-  float jittered = jitter(at);
-  precise float total = v.z * own_weight;
-  precise vec3 sum = own.rgb * total;
-  for (int i = 0; i < samples; ++i) {
-    bool is_across = i % 2 != 0;
-    vec2 way = is_across ? across : along;
-    precise float moved = way_at(i, jittered, way_step) * length;
-    precise vec2 step_px = moved * way;
-    ivec2 place = pixel_at(at, step_px, size);
-    vec4 there = texelFetch(source, place, 0);
-    vec3 w = texelFetch(spread, place, 0).xyz;
-    float far = abs(moved);
-    precise float of_there = far * w.z;
-    precise float of_own = far * v.z;
-    precise float before = 1.0 - (there.a - own.a) * per_depth;
-    precise float behind = 1.0 - (own.a - there.a) * per_depth;
-    float nearer = cut_to_1(before);
-    float farther = cut_to_1(behind);
-    precise float left_there = 1.0 - of_there;
-    precise float left_own = 1.0 - of_own;
-    float cone_there = cut_to_1(left_there);
-    float cone_own = cut_to_1(left_own);
-#ifdef TWO_WAYS
-    float own_way = is_across ? 1.0 : facing;
-    precise float cosine_there = w.x * way.x + w.y * way.y;
-    precise float there_way = abs(cosine_there) * w.z;
-    float of_both = of_there > of_own ? of_there : of_own;
-    float either_way = there_way > own_way ? there_way : own_way;
-    precise float weight = ((nearer * cone_there) * there_way + (farther * cone_own) * own_way) +
-                           (cylinder(of_both) * either_way) * 2.0;
-#else
-    precise float weight = (nearer * cone_there + farther * cone_own) +
-                           (cylinder(of_there) * cylinder(of_own)) * 2.0;
-#endif
-    if (!(weight > 0.0)) continue;
-    total += weight;
-    sum += there.rgb * weight;
-  }
-  precise vec3 mean = sum / total;
-  result = vec4(mean, own.a);
+  result = vec4(blurred(at, size, own, v, per_depth, n, along, length), own.a);
 }

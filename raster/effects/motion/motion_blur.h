@@ -14,7 +14,7 @@ namespace softfocus {
 
 enum class MotionFilter : std::uint8_t {
   one_way,   ///< McGuire et al. 2012: along the neighbourhood's longest motion
-  two_ways,  ///< Guertin et al. 2014: along it and along the pixel's own
+  two_ways,  ///< after Guertin et al. 2014: along it and along the pixel's own
 };
 
 struct MotionBlurSettings {
@@ -27,12 +27,14 @@ struct MotionBlurSettings {
 
 /// What the passes compute with; the shaders get it so.
 struct MotionBlurPass {
-  int samples;
-  float step;  ///< 2 / samples
+  int samples;         ///< along the neighbourhood's motion
+  float sample_part;   ///< 1 / samples
+  float step;          ///< 2 / samples
+  int across_samples;  ///< along the pixel's own; with one_way none
+  float across_part, across_step;
   int radius_px;
   float inverse_depth;
   float to_half;  ///< shutter / 2: from pixels a frame to the way to either side
-  float own_weight;
   MotionFilter filter;
 };
 MotionBlurPass pass_of(const MotionBlurSettings& settings);

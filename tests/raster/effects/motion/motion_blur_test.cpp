@@ -112,12 +112,110 @@ glm::dvec2 to_either_side(const MotionBlurSettings& settings, const Image& veloc
   return v;
 }
 
+struct Blurring {
+  const MotionBlurSettings& settings;
+  const Image& picture;
+  const Image& velocity;
+  int x, y;
+};
+
+/// A sample `px` from the pixel, and what the pixel and it have to do with each other.
+struct Sample {
+  glm::dvec3 colour;
+  glm::dvec2 w;
+  double of_there, of_own;  ///< the distance in lengths of either's motion, none below 1/2
+  double nearer, farther;
+};
+
+Sample sample_at(const Blurring& of, glm::dvec2 px) {
+  const auto place = [](int at, double off, int size) {
+    return std::clamp(static_cast<int>(std::floor(at + off + 0.5)), 0, size - 1);
+  };
+  const int x = place(of.x, px.x, of.picture.width), y = place(of.y, px.y, of.picture.height);
+  const glm::vec4 own = load_texel(of.picture, of.x, of.y), there = load_texel(of.picture, x, y);
+  const glm::dvec2 v = to_either_side(of.settings, of.velocity, of.x, of.y);
+  const glm::dvec2 w = to_either_side(of.settings, of.velocity, x, y);
+  const double distance = std::hypot(px.x, px.y);
+  const double extent = static_cast<double>(of.settings.depth) * static_cast<double>(own.w);
+  const double gap = static_cast<double>(there.w) - static_cast<double>(own.w);
+  return {{there.x, there.y, there.z},
+          w,
+          distance / std::max(std::hypot(w.x, w.y), 0.5),
+          distance / std::max(std::hypot(v.x, v.y), 0.5),
+          ramp(1.0 - gap / extent),
+          ramp(1.0 + gap / extent)};
+}
+
+double jitter_of(const Blurring& of) {
+  return static_cast<double>(jitter_bits(of.x, of.y)) / 0x1p24;
+}
+
+/// McGuire et al. 2012.
+glm::dvec3 one_way(const Blurring& of, glm::dvec2 n) {
+  const glm::dvec2 v = to_either_side(of.settings, of.velocity, of.x, of.y);
+  double total = 1.0 / std::max(std::hypot(v.x, v.y), 0.5);
+  glm::dvec3 sum = glm::dvec3{glm::vec3{load_texel(of.picture, of.x, of.y)}} * total;
+  for (int i = 0; i < of.settings.samples; ++i) {
+    const double t = 2.0 * (i + jitter_of(of)) / of.settings.samples - 1.0;
+    const Sample sample = sample_at(of, n * t);
+    const double weight = sample.nearer * ramp(1.0 - sample.of_there) +
+                          sample.farther * ramp(1.0 - sample.of_own) +
+                          2.0 * cylinder(sample.of_there) * cylinder(sample.of_own);
+    total += weight;
+    sum += sample.colour * weight;
+  }
+  return sum / total;
+}
+
+/// The part of the samples along `way` that the pixel shows, and their mean where it does not show
+/// `instead`.
+struct SeenAlong {
+  double part;
+  glm::dvec3 colour;
+};
+
+SeenAlong seen_along(const Blurring& of, glm::dvec2 way, double own_part, int samples,
+                     double jitter, const glm::dvec3& instead) {
+  const double length = std::hypot(way.x, way.y);
+  const auto reached = [](double q) { return ramp((1.05 - q) * 10.0); };
+  SeenAlong seen{0.0, glm::dvec3{0.0}};
+  for (int i = 0; i < samples; ++i) {
+    const Sample sample = sample_at(of, way * (2.0 * (i + jitter) / samples - 1.0));
+    const double along = std::abs(sample.w.x * way.x + sample.w.y * way.y) /
+                         (length * std::max(std::hypot(sample.w.x, sample.w.y), 0.5));
+    const double weight = ramp(sample.nearer * reached(sample.of_there) * along +
+                               sample.farther * reached(sample.of_own) * own_part);
+    seen.part += weight / samples;
+    seen.colour += (sample.colour * weight + instead * (1.0 - weight)) / (1.0 * samples);
+  }
+  return seen;
+}
+
+/// After Guertin et al. 2014.
+glm::dvec3 two_ways(const Blurring& of, glm::dvec2 n) {
+  const glm::dvec3 own{glm::vec3{load_texel(of.picture, of.x, of.y)}};
+  glm::dvec2 v = to_either_side(of.settings, of.velocity, of.x, of.y);
+  if (v.x * n.x + v.y * n.y < 0.0) v = -v;
+  const double moving = ramp((std::hypot(v.x, v.y) - 0.5) / 1.5);
+  const glm::dvec2 across = n * (1.0 - moving) + v * moving;
+  const double length = std::hypot(n.x, n.y), own_length = std::hypot(across.x, across.y);
+  const double facing = std::abs(across.x * n.x + across.y * n.y) / (length * own_length);
+  const double jitter = jitter_of(of);
+  const int samples = of.settings.samples;
+  const SeenAlong second =
+      seen_along(of, across, 1.0, samples / 2, std::fmod(jitter + 0.5, 1.0), own);
+  const SeenAlong first = seen_along(of, n, facing, samples - samples / 2, jitter,
+                                     own * (1.0 - moving) + second.colour * moving);
+  const double half = 0.5 * facing * std::min(1.0, own_length / length);
+  return first.colour * (1.0 - half) + second.colour * half;
+}
+
 glm::dvec3 expected_colour(const MotionBlurSettings& settings, const Image& picture,
                            const Image& velocity, const MotionTiles& tiles, int x, int y) {
-  const bool two_ways = settings.filter == MotionFilter::two_ways;
+  const bool in_two_ways = settings.filter == MotionFilter::two_ways;
   const int size = settings.radius_px;
   int at_x = x, at_y = y;
-  if (two_ways) {
+  if (in_two_ways) {
     const auto off = [&](int a, int b) {
       return (static_cast<int>(jitter_bits(a, b) >> 16) - 128) * size >> 9;
     };
@@ -125,54 +223,9 @@ glm::dvec3 expected_colour(const MotionBlurSettings& settings, const Image& pict
     at_y = std::clamp(y + off(y + 1, x), 0, picture.height - 1);
   }
   const glm::dvec2 n{tiles.v[static_cast<std::size_t>(at_y / size * tiles.columns + at_x / size)]};
-  const glm::vec4 own = load_texel(picture, x, y);
-  const double length = std::hypot(n.x, n.y);
-  if (length <= 0.5) return {own.x, own.y, own.z};
-  const glm::dvec2 along = n / length, v = to_either_side(settings, velocity, x, y);
-  const double own_length = std::max(std::hypot(v.x, v.y), 0.5);
-  glm::dvec2 across = along;
-  if (two_ways) {
-    glm::dvec2 right{-along.y, along.x};
-    if (right.x * v.x + right.y * v.y < 0.0) right = -right;
-    const double share = ramp((std::hypot(v.x, v.y) - 0.5) / 1.5);
-    across = right + (v / own_length - right) * share;
-    across /= std::hypot(across.x, across.y);
-  }
-  const double jitter = static_cast<double>(jitter_bits(x, y)) / 0x1p24;
-  double total = (two_ways ? settings.samples / 40.0 : 1.0) / own_length;
-  glm::dvec3 sum = glm::dvec3{own.x, own.y, own.z} * total;
-  for (int i = 0; i < settings.samples; ++i) {
-    const glm::dvec2 way = i % 2 != 0 ? across : along;
-    const double t = 2.0 * (i + jitter) / settings.samples - 1.0;
-    const glm::dvec2 moved = way * (t * length);
-    const int there_x =
-        std::clamp(static_cast<int>(std::floor(x + moved.x + 0.5)), 0, picture.width - 1);
-    const int there_y =
-        std::clamp(static_cast<int>(std::floor(y + moved.y + 0.5)), 0, picture.height - 1);
-    const glm::vec4 there = load_texel(picture, there_x, there_y);
-    const glm::dvec2 w = to_either_side(settings, velocity, there_x, there_y);
-    const double there_length = std::max(std::hypot(w.x, w.y), 0.5);
-    const double distance = std::abs(t) * length;
-    const double extent = static_cast<double>(settings.depth) * static_cast<double>(own.w);
-    const double gap = static_cast<double>(there.w) - static_cast<double>(own.w);
-    const double nearer = ramp(1.0 - gap / extent), farther = ramp(1.0 + gap / extent);
-    double weight;
-    if (two_ways) {
-      const double own_way = std::abs(across.x * way.x + across.y * way.y);
-      const double there_way = std::abs(w.x * way.x + w.y * way.y) / there_length;
-      weight = nearer * ramp(1.0 - distance / there_length) * there_way +
-               farther * ramp(1.0 - distance / own_length) * own_way +
-               2.0 * cylinder(distance / std::min(there_length, own_length)) *
-                   std::max(there_way, own_way);
-    } else {
-      weight = nearer * ramp(1.0 - distance / there_length) +
-               farther * ramp(1.0 - distance / own_length) +
-               2.0 * cylinder(distance / there_length) * cylinder(distance / own_length);
-    }
-    total += weight;
-    sum += glm::dvec3{there.x, there.y, there.z} * weight;
-  }
-  return sum / total;
+  if (std::hypot(n.x, n.y) <= 0.5) return glm::dvec3{glm::vec3{load_texel(picture, x, y)}};
+  const Blurring of{settings, picture, velocity, x, y};
+  return in_two_ways ? two_ways(of, n) : one_way(of, n);
 }
 
 }  // namespace
@@ -261,6 +314,22 @@ TEST_CASE("what moves before a still background reaches over its outline, but no
       CHECK(red(result, 48 + side * 24, 32) == 0.0f);  // 10 + 12 and a pixel
     }
     CHECK(red(result, 48, 32 - 13) == 0.0f);  // nothing moves up or down
+  }
+}
+
+TEST_CASE("of a still background shows what the shutter leaves of it") {
+  ThreadPool pool{1};
+  // The square goes 16 pixels to either side: at a distance d from its outline it covers the pixel
+  // for (16 - d) / 32 of the time.
+  const MovingSquare scene = moving_square({32.0f, 0.0f}, 2.0f, 8.0f);
+  const Image result =
+      blurred({.shutter = 1.0f, .samples = 64}, scene.picture, scene.velocity, pool);
+  for (const int side : {-1, 1}) {
+    for (int d = 1; d < 20; ++d) {
+      const double expected = std::max(16.5 - d, 0.0) / 32.0;
+      CHECK(static_cast<double>(red(result, 48 + side * (9 + d), 32)) ==
+            doctest::Approx(expected).epsilon(0.04).scale(1.0));
+    }
   }
 }
 
