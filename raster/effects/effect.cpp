@@ -110,12 +110,8 @@ void motion_blur_along_own_effect(const Effect&, const EffectInput& input, const
 template <MotionFilter filter>
 void motion_blur_effect(const Effect&, const EffectInput& input, const ImageView& result,
                         ThreadPool& pool) {
-  motion_blur({.shutter = static_cast<float>(input.parameters[0]),
-               .samples = static_cast<int>(input.parameters[1]),
-               .radius_px = static_cast<int>(input.parameters[2]),
-               .depth = static_cast<float>(input.parameters[3]),
-               .filter = filter},
-              input.picture, input.velocity, result, input.profile, pool);
+  motion_blur(motion_blur_settings(input.parameters, filter), input.picture, input.velocity, result,
+              input.profile, pool);
 }
 
 constexpr std::array kMotionBlur{
@@ -200,8 +196,8 @@ constexpr std::array kEffects{
            std::span{kMotionBlur}.first(2), motion_blur_along_own_effect, true, VelocityOf::camera},
     Effect{"motion-blur-2012", "along the longest motion of the tiles around, McGuire et al. 2012",
            kMotionBlur, motion_blur_effect<MotionFilter::one_way>, true, VelocityOf::all},
-    Effect{"motion-blur", "along that and along the pixel's own, Guertin et al. 2014", kMotionBlur,
-           motion_blur_effect<MotionFilter::two_ways>, true, VelocityOf::all},
+    Effect{"motion-blur", "along that and along the pixel's own, after Guertin et al. 2014",
+           kMotionBlur, motion_blur_effect<MotionFilter::two_ways>, true, VelocityOf::all},
     of_curve(kToneCurves[0]),
     of_curve(kToneCurves[1]),
     of_curve(kToneCurves[2]),
@@ -241,6 +237,14 @@ LensFlareSettings lens_flare_settings(std::span<const double> parameters) {
                              .rays = number(8)};
   if (parameters[2] > 0.0) settings.beyond_m = number(2);
   return settings;
+}
+
+MotionBlurSettings motion_blur_settings(std::span<const double> parameters, MotionFilter filter) {
+  return {.shutter = static_cast<float>(parameters[0]),
+          .samples = static_cast<int>(parameters[1]),
+          .radius_px = static_cast<int>(parameters[2]),
+          .depth = static_cast<float>(parameters[3]),
+          .filter = filter};
 }
 
 DualFilterSettings dual_filter_settings(std::span<const double> parameters) {

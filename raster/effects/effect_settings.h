@@ -7,6 +7,7 @@
 #include "raster/effects/bloom.h"
 #include "raster/effects/effect.h"
 #include "raster/effects/lens_flare.h"
+#include "raster/effects/motion/motion_blur.h"
 #include "raster/passes/bilateral.h"
 #include "raster/passes/pyramid.h"
 
@@ -15,6 +16,7 @@ namespace softfocus {
 BilateralSettings bilateral_settings(std::span<const double> parameters);
 BloomSettings bloom_settings(std::span<const double> parameters);
 LensFlareSettings lens_flare_settings(std::span<const double> parameters);
+MotionBlurSettings motion_blur_settings(std::span<const double> parameters, MotionFilter filter);
 struct DualFilterSettings {
   int levels;
   Widening widening;

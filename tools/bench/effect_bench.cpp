@@ -7,6 +7,7 @@
 
 #include "raster/effects/effect_settings.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/draw/velocity.h"
 #include "tools/bench/effects_repeated_on_gl.h"
 #include "tools/bench/timing.h"
 #include "tools/cli/machine.h"
@@ -68,15 +69,20 @@ EffectBench bench_effects(const BenchOptions& options, const BenchWork& work, Th
   }
   for (const ChosenEffect& chosen : options.effects) {
     EffectTimes times{.name = short_text(chosen)};
+    Image velocity;
+    if (chosen.effect->velocity != VelocityOf::nothing) {
+      velocity = velocity_for(chosen, *work.scene, work.frame, picture, work.profile, pool);
+    }
     const std::vector<TimedStage> ours{
         {"ours", [&] {
-           apply_into(*chosen.effect, {picture, chosen.parameters, work.profile}, result, pool);
+           apply_into(*chosen.effect, {picture, chosen.parameters, work.profile, velocity}, result,
+                      pool);
          }}};
     std::vector<TimedStage> peers;
     on_run(times.name);
     warm_up(ours);
     if (on_gl) {
-      on_gl->choose(chosen);
+      on_gl->choose(chosen, velocity.width > 0 ? &velocity : nullptr);
       peers = {{"triangle", [&] { on_gl->run(false); }}, {"quad", [&] { on_gl->run(true); }}};
       warm_up(peers);
       times.equal = equal(on_gl->picture(), result);

@@ -13,6 +13,7 @@ struct EffectsRepeatedOnGl::State {
   Shaders shaders{};
   int width, height;
   GlTexture picture{};
+  std::optional<GlTexture> velocity{};
   std::array<std::optional<EffectPasses>, 2> passes{};  // of triangles, of quads
   const ChosenEffect* effect = nullptr;
   const GlTarget* result = nullptr;
@@ -34,8 +35,12 @@ std::string EffectsRepeatedOnGl::renderer() const {
   return state_->context.renderer() + ", OpenGL " + state_->context.version();
 }
 
-void EffectsRepeatedOnGl::choose(const ChosenEffect& effect) {
+void EffectsRepeatedOnGl::choose(const ChosenEffect& effect, const Image* velocity) {
   state_->effect = &effect;
+  state_->velocity.reset();
+  if (velocity != nullptr) {
+    naming(state_->driver, [&] { state_->velocity = upload(*velocity); });
+  }
   for (std::optional<EffectPasses>& passes : state_->passes) {
     passes.emplace(state_->context, state_->shaders);
   }
@@ -47,9 +52,9 @@ void EffectsRepeatedOnGl::choose(const ChosenEffect& effect) {
 void EffectsRepeatedOnGl::run(bool as_quad) {
   naming(state_->driver, [&] {
     State& state = *state_;
-    state.result =
-        &effect_on_gl(*state.passes[as_quad ? 1 : 0], *state.effect->effect,
-                      state.effect->parameters, {state.picture, state.width, state.height});
+    state.result = &effect_on_gl(
+        *state.passes[as_quad ? 1 : 0], *state.effect->effect, state.effect->parameters,
+        {state.picture, state.width, state.height}, state.velocity ? &*state.velocity : nullptr);
     glFinish();
   });
 }

@@ -20,8 +20,8 @@ class EffectsRepeatedOnGl {
   std::string renderer() const;
 
   /// Chooses what run() does: links and makes what it needs. Throws DriverError for an effect
-  /// without a shader.
-  void choose(const ChosenEffect& effect);
+  /// without a shader. The velocity is RG16F of the picture's size, or null if it reads none.
+  void choose(const ChosenEffect& effect, const Image* velocity);
   /// Returns when it is done: glFinish. Each pass is a triangle, or a quad of two.
   void run(bool as_quad);
   Image picture() const;  ///< that the last run() made

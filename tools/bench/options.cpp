@@ -25,8 +25,17 @@ bool reads_picture_alone(const Effect& effect) {
   return effect.filter != nullptr && effect.velocity == VelocityOf::nothing;
 }
 
+/// `all` are those that read the picture, and of a scene its velocity.
+void choose_all_effects(BenchOptions& options) {
+  for (const Effect& effect : effects()) {
+    if (effect.filter == nullptr || (options.image && !reads_picture_alone(effect))) continue;
+    options.effects.push_back(parse_effect("--effect", std::string{effect.name}));
+  }
+}
+
 /// Effects read what is sharp.
 void check_effects(BenchOptions& options, const CLI::App& parser) {
+  if (options.all_effects) choose_all_effects(options);
   for (const char* option : {"--method", "--arithmetic", "--max-coc"}) {
     if (is_given(parser, option)) {
       throw UsageError(std::string{"--effect and "} + option +
@@ -34,11 +43,15 @@ void check_effects(BenchOptions& options, const CLI::App& parser) {
     }
   }
   for (const ChosenEffect& chosen : options.effects) {
-    if (reads_picture_alone(*chosen.effect)) continue;
     const std::string name{chosen.effect->name};
-    throw UsageError("--effect: " + name + " reads more than a picture, " +
-                     (chosen.effect->filter == nullptr ? "the frames before" : "a velocity") +
-                     "; bench times what reads a picture alone");
+    if (chosen.effect->filter == nullptr) {
+      throw UsageError("--effect: " + name +
+                       " reads the frames before; bench times what one frame is enough for");
+    }
+    if (options.image && !reads_picture_alone(*chosen.effect)) {
+      throw UsageError("--image and --effect " + name +
+                       " exclude each other: it reads a velocity; give a SCENE that moves");
+    }
   }
   options.method = {.filter = find_method("pinhole")};
 }
@@ -97,20 +110,16 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   add_arithmetic_option(parser, options.arithmetic);
   add_max_coc_option(parser, options.max_coc_px);
   begin_group(parser, "Effects, in place of a method");
-  add_repeatable_value(
-      parser, "--effect", "NAME:KEY=VALUE,...",
-      "Time this effect on the sharp picture (softfocus effects); several one by "
-      "one; all: each that reads a picture alone",
-      [&options](const std::string& text) {
-        if (text != "all") {
-          options.effects.push_back(parse_effect("--effect", text));
-          return;
-        }
-        for (const Effect& effect : effects()) {
-          if (!reads_picture_alone(effect)) continue;
-          options.effects.push_back(parse_effect("--effect", std::string{effect.name}));
-        }
-      });
+  add_repeatable_value(parser, "--effect", "NAME:KEY=VALUE,...",
+                       "Time this effect on the sharp picture (softfocus effects); several one by "
+                       "one; all: each that one frame is enough for",
+                       [&options](const std::string& text) {
+                         if (text == "all") {
+                           options.all_effects = true;
+                         } else {
+                           options.effects.push_back(parse_effect("--effect", text));
+                         }
+                       });
   offer(parser, "--effect", [] { return names_in(effects()); });
   begin_group(parser, "Methods that sample the lens");
   add_sampling_options(parser, options.sampling);
@@ -147,7 +156,7 @@ void complete(BenchOptions& options, const CLI::App& parser) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;
-  if (!options.effects.empty()) check_effects(options, parser);
+  if (options.all_effects || !options.effects.empty()) check_effects(options, parser);
   check_method(options, parser);
   if (options.copies && (options.image || options.method.filter == nullptr ||
                          options.method.name() == "pinhole" || !options.effects.empty())) {

@@ -8,6 +8,8 @@
 #include "raster/numbers/profile.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/object_numbers.h"
+#include "scenes/draw/velocity.h"
+#include "scenes/temporal/frame_history.h"
 
 namespace softfocus {
 namespace {
@@ -105,7 +107,36 @@ RunTime ChartRunner::filter(const ChartEntry& entry) {
   return {ms_between(start, end), ms_between(drawn, end)};
 }
 
+/// Its picture: a scene's velocity is over the shutter of the chart.
+Image ChartRunner::with_effect(ChosenEffect chosen, const Image& before) {
+  Image velocity;
+  if (chosen.effect->velocity != VelocityOf::nothing) {
+    chosen.parameters[0] = views_.sampling.shutter_frames;
+    velocity = velocity_for(chosen, scene_.scene, scene_.frame, before, Profile{}, pool_);
+  }
+  return apply(*chosen.effect, {before, chosen.parameters, Profile{}, velocity}, pool_);
+}
+
+/// The last of so many frames of the moment: what came before is no part of its time.
+RunTime ChartRunner::draw_after_frames(const ChosenEffect& chosen, int frames) {
+  PreparedScene& prepared = prepared_for("ieee");
+  const FrameEffect effect = frame_effect(chosen);
+  FrameHistory history;
+  const auto draw = [&] {
+    draw_next(prepared, effect, scene_.frame, drawn_.width, drawn_.height, history, pool_);
+  };
+  for (int i = 1; i < frames; ++i) draw();
+  const Clock::time_point start = Clock::now();
+  draw();
+  const Clock::time_point end = Clock::now();
+  result_ = std::move(history.picture);
+  return {ms_between(start, end), std::nullopt};
+}
+
 RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
+  if (!entry.effects.empty() && entry.effects.front().effect->filter == nullptr) {
+    return draw_after_frames(entry.effects.front(), static_cast<int>(entry.setting.value));
+  }
   const bool is_large = entry.supersample > 1;
   if (is_large && !prepared_large_) {
     prepared_large_ = prepare_scene(scene_.scene, Profile{}, pool_);
@@ -119,7 +150,7 @@ RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
   if (is_large) result_ = halve(large_, Profile{}, pool_);
   for (const ChosenEffect& chosen : entry.effects) {
     const Image& before = &chosen == &entry.effects.front() && !is_large ? drawn_ : result_;
-    result_ = apply(*chosen.effect, {before, chosen.parameters, Profile{}}, pool_);
+    result_ = with_effect(chosen, before);
   }
   const Clock::time_point end = Clock::now();
   return {ms_between(start, end), ms_between(drawn, end)};

@@ -43,6 +43,8 @@ class ChartRunner {
  private:
   RunTime filter(const ChartEntry& entry);
   RunTime draw_with_effects(const ChartEntry& entry);
+  Image with_effect(ChosenEffect chosen, const Image& before);
+  RunTime draw_after_frames(const ChosenEffect& chosen, int frames);
   RunTime accumulate(int samples);
   RunTime filter_views(int samples);
   RunTime draw_otherwise(const LensViewMethod& method);

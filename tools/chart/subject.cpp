@@ -34,25 +34,43 @@ std::vector<ChartEntry> view_entries(const std::vector<int>& counts) {
 
 // --- motion blur ---
 
+constexpr std::array<std::string_view, 3> kMotionBlurs{"motion-blur-simple", "motion-blur-2012",
+                                                       "motion-blur"};
+
 std::vector<std::string> motion_methods() {
-  return {std::string{kPinhole}, std::string{kAccumulationName}};
+  std::vector<std::string> names{std::string{kPinhole}};
+  names.insert(names.end(), kMotionBlurs.begin(), kMotionBlurs.end());
+  names.emplace_back(kAccumulationName);
+  return names;
 }
 
 std::vector<ChartEntry> motion_entries(const std::string& method, int, bool quick) {
   if (method == kPinhole) return {plain_entry(method)};
-  return view_entries(quick ? std::vector{4, 16} : std::vector{2, 4, 8, 16, 32, 64});
+  if (method == kAccumulationName) {
+    return view_entries(quick ? std::vector{4, 16} : std::vector{2, 4, 8, 16, 32, 64});
+  }
+  std::vector<ChartEntry> entries;
+  for (const double samples : quick ? std::vector{16.0} : std::vector{8.0, 16.0, 32.0}) {
+    entries.push_back({.method = method,
+                       .effects = {with_value(method, "samples", samples)},
+                       .setting = {"samples", samples}});
+  }
+  return entries;
 }
 
 // --- anti-aliasing ---
 
 /// What is drawn twice as wide and high, and what is blurred.
 constexpr std::string_view kSupersample = "supersample";
+/// What has seen so many frames from other places in the pixel.
+constexpr std::string_view kTemporal = "temporal-aa";
 constexpr std::array<std::string_view, 2> kBlurs{"gaussian-3", "gaussian"};
 
 std::vector<std::string> smoothing_methods() {
   std::vector<std::string> names{std::string{kPinhole}};
   names.insert(names.end(), kBlurs.begin(), kBlurs.end());
   names.emplace_back(kSupersample);
+  names.emplace_back(kTemporal);
   names.emplace_back(kAccumulationName);
   return names;
 }
@@ -60,6 +78,15 @@ std::vector<std::string> smoothing_methods() {
 std::vector<ChartEntry> smoothing_entries(const std::string& method, int, bool quick) {
   if (method == kPinhole) return {plain_entry(method)};
   if (method == kSupersample) return {{.method = method, .supersample = 2}};
+  if (method == kTemporal) {
+    std::vector<ChartEntry> entries;
+    for (const double frames : quick ? std::vector{16.0} : std::vector{4.0, 8.0, 16.0, 32.0}) {
+      entries.push_back({.method = method,
+                         .effects = {with_value(method, "", 0.0)},
+                         .setting = {"frames", frames}});
+    }
+    return entries;
+  }
   if (method == "gaussian-3") {
     return {{.method = method, .effects = {with_value(method, "", 0.0)}}};
   }

@@ -91,13 +91,13 @@ void blur_both(const Bench& bench, Tally& tally, const BlurCase& what) {
   }
   const GlTexture on_gl = upload(picture), velocity_on_gl = upload(velocity);
   Image emulated = make_image(Format::rgba16f, width, height);
-  const GlTarget target =
-      motion_blur_on_gl(bench.gl, bench.shaders, settings, on_gl, velocity_on_gl, width, height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlMovingPicture of{on_gl, velocity_on_gl, width, height};
+  const GlTarget& target = motion_blur_on_gl(passes, settings, of);
   motion_blur(settings, picture, velocity, emulated, bench.profile, bench.pool);
   add_pictures(tally, read_colour(target, 0), emulated, "by tiles");
-  const GlTarget simple =
-      motion_blur_along_own_on_gl(bench.gl, bench.shaders, settings.shutter, settings.samples,
-                                  on_gl, velocity_on_gl, width, height);
+  const GlTarget& simple =
+      motion_blur_along_own_on_gl(passes, settings.shutter, settings.samples, of);
   motion_blur_along_own(settings.shutter, settings.samples, picture, velocity, emulated,
                         bench.profile, bench.pool);
   add_pictures(tally, read_colour(simple, 0), emulated, "simple");

@@ -5,8 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "tools/gl/motion_on_gl.h"
+
 namespace softfocus {
 namespace {
+
+const GlTarget& motion_on_gl(EffectPasses& passes, const Effect& effect,
+                             std::span<const double> parameters, const GlMovingPicture& of) {
+  if (effect.name == "motion-blur" || effect.name == "motion-blur-2012") {
+    const MotionFilter filter =
+        effect.name == "motion-blur" ? MotionFilter::two_ways : MotionFilter::one_way;
+    return motion_blur_on_gl(passes, motion_blur_settings(parameters, filter), of);
+  }
+  return motion_blur_along_own_on_gl(passes, static_cast<float>(parameters[0]),
+                                     static_cast<int>(parameters[1]), of);
+}
 
 void set_bright_pass(const GlProgram& program, const BrightPass& pass) {
   set_uniform(program, "threshold", pass.threshold);
@@ -243,7 +256,12 @@ const GlTarget& bilateral_on_gl(EffectPasses& passes, const BilateralSettings& s
 }
 
 const GlTarget& effect_on_gl(EffectPasses& passes, const Effect& effect,
-                             std::span<const double> parameters, const GlPicture& picture) {
+                             std::span<const double> parameters, const GlPicture& picture,
+                             const GlTexture* velocity) {
+  if (velocity != nullptr) {
+    return motion_on_gl(passes, effect, parameters,
+                        {picture.texture, *velocity, picture.width, picture.height});
+  }
   passes.begin();
   if (const Kernel* kernel = find_kernel(effect.name)) {
     return convolved_on_gl(passes, *kernel, picture);

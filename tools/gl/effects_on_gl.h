@@ -23,9 +23,11 @@ inline GlPicture picture_of(const GlTarget& target) {
 }
 
 /// Each begins `passes`; the result is the target's one colour texture. As apply(). Throws
-/// DriverError for an effect without a shader.
+/// DriverError for an effect without a shader. The velocity is of the picture's size, RG16F;
+/// effects that read none need none.
 const GlTarget& effect_on_gl(EffectPasses& passes, const Effect& effect,
-                             std::span<const double> parameters, const GlPicture& picture);
+                             std::span<const double> parameters, const GlPicture& picture,
+                             const GlTexture* velocity = nullptr);
 
 const GlTarget& bloom_on_gl(EffectPasses& passes, const BloomSettings& settings,
                             const GlPicture& picture);

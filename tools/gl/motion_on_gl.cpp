@@ -3,14 +3,6 @@
 #include <array>
 
 namespace softfocus {
-namespace {
-
-GlTarget halves_target(int width, int height) {
-  return make_target(std::array{Format::rgba16f}, width, height, false);
-}
-
-}  // namespace
-
 GlTarget camera_velocity_on_gl(const GlContext& context, const Shaders& shaders,
                                const CameraMotion& motion, const GlTexture& picture, int width,
                                int height) {
@@ -31,36 +23,34 @@ GlTarget camera_velocity_on_gl(const GlContext& context, const Shaders& shaders,
   return target;
 }
 
-GlTarget motion_blur_on_gl(const GlContext& context, const Shaders& shaders,
-                           const MotionBlurSettings& settings, const GlTexture& picture,
-                           const GlTexture& velocity, int width, int height) {
+const GlTarget& motion_blur_on_gl(EffectPasses& passes, const MotionBlurSettings& settings,
+                                  const GlMovingPicture& of) {
+  passes.begin();
   const MotionBlurPass pass = pass_of(settings);
   const bool two_ways = pass.filter == MotionFilter::two_ways;
-  const auto program = [&](std::string_view fragment, const std::string& defines = {}) {
-    return link_program(context, shaders, "fullscreen.vert", fragment, defines);
-  };
-  const GlTarget spread = halves_target(width, height);
-  const GlProgram to_either_side = program("motion_spread.frag");
+  const GlTarget& spread = passes.target(of.width, of.height);
+  const GlProgram& to_either_side = passes.program("motion_spread.frag");
   set_uniform(to_either_side, "to_half", pass.to_half);
   set_uniform(to_either_side, "most", static_cast<float>(pass.radius_px));
-  set_texture(to_either_side, "velocity", 0, velocity);
-  draw_fullscreen(spread, to_either_side);
+  set_texture(to_either_side, "velocity", 0, of.velocity);
+  passes.draw(spread, to_either_side);
 
   const int size = pass.radius_px;
-  const GlTarget tiles = halves_target((width + size - 1) / size, (height + size - 1) / size);
-  const GlProgram longest = program("motion_tiles.frag");
+  const GlTarget& tiles =
+      passes.target((of.width + size - 1) / size, (of.height + size - 1) / size);
+  const GlProgram& longest = passes.program("motion_tiles.frag");
   set_uniform(longest, "tile_size", size);
   set_texture(longest, "spread", 0, spread.colour[0]);
-  draw_fullscreen(tiles, longest);
+  passes.draw(tiles, longest);
 
-  const GlTarget neighbours = halves_target(tiles.width, tiles.height);
-  const GlProgram of_neighbours = program("motion_neighbours.frag");
+  const GlTarget& neighbours = passes.target(tiles.width, tiles.height);
+  const GlProgram& of_neighbours = passes.program("motion_neighbours.frag");
   set_uniform(of_neighbours, "two_ways", two_ways ? 1 : 0);
   set_texture(of_neighbours, "tiles", 0, tiles.colour[0]);
-  draw_fullscreen(neighbours, of_neighbours);
+  passes.draw(neighbours, of_neighbours);
 
-  GlTarget result = halves_target(width, height);
-  const GlProgram blur = program("motion_blur.frag", two_ways ? "#define TWO_WAYS\n" : "");
+  const GlTarget& result = passes.target(of.width, of.height);
+  const GlProgram& blur = passes.program("motion_blur.frag", two_ways ? "#define TWO_WAYS\n" : "");
   set_uniform(blur, "samples", pass.samples);
   set_uniform(blur, "way_step", pass.step);
   set_uniform(blur, "tile_size", size);
@@ -71,24 +61,24 @@ GlTarget motion_blur_on_gl(const GlContext& context, const Shaders& shaders,
     set_uniform(blur, "across_part", pass.across_part);
     set_uniform(blur, "across_step", pass.across_step);
   }
-  set_texture(blur, "source", 0, picture);
+  set_texture(blur, "source", 0, of.picture);
   set_texture(blur, "spread", 1, spread.colour[0]);
   set_texture(blur, "tiles", 2, neighbours.colour[0]);
-  draw_fullscreen(result, blur);
+  passes.draw(result, blur);
   return result;
 }
 
-GlTarget motion_blur_along_own_on_gl(const GlContext& context, const Shaders& shaders,
-                                     float shutter, int samples, const GlTexture& picture,
-                                     const GlTexture& velocity, int width, int height) {
-  GlTarget result = halves_target(width, height);
-  const GlProgram blur = link_program(context, shaders, "fullscreen.vert", "motion_own.frag");
+const GlTarget& motion_blur_along_own_on_gl(EffectPasses& passes, float shutter, int samples,
+                                            const GlMovingPicture& of) {
+  passes.begin();
+  const GlTarget& result = passes.target(of.width, of.height);
+  const GlProgram& blur = passes.program("motion_own.frag");
   set_uniform(blur, "samples", samples);
   set_uniform(blur, "way_step", 2.0f / static_cast<float>(samples));
   set_uniform(blur, "to_half", 0.5f * shutter);
-  set_texture(blur, "source", 0, picture);
-  set_texture(blur, "velocity", 1, velocity);
-  draw_fullscreen(result, blur);
+  set_texture(blur, "source", 0, of.picture);
+  set_texture(blur, "velocity", 1, of.velocity);
+  passes.draw(result, blur);
   return result;
 }
 

@@ -3,8 +3,7 @@
 
 #include "raster/effects/motion/motion_blur.h"
 #include "raster/effects/motion/velocity.h"
-#include "tools/gl/objects.h"
-#include "tools/gl/shaders.h"
+#include "tools/gl/effect_passes.h"
 
 namespace softfocus {
 
@@ -13,12 +12,18 @@ GlTarget camera_velocity_on_gl(const GlContext& context, const Shaders& shaders,
                                const CameraMotion& motion, const GlTexture& picture, int width,
                                int height);
 
-/// As motion_blur() and motion_blur_along_own(), of an RGBA16F and an RG16F texture of that size.
-GlTarget motion_blur_on_gl(const GlContext& context, const Shaders& shaders,
-                           const MotionBlurSettings& settings, const GlTexture& picture,
-                           const GlTexture& velocity, int width, int height);
-GlTarget motion_blur_along_own_on_gl(const GlContext& context, const Shaders& shaders,
-                                     float shutter, int samples, const GlTexture& picture,
-                                     const GlTexture& velocity, int width, int height);
+/// RGBA16F and RG16F to be read, and their size.
+struct GlMovingPicture {
+  const GlTexture& picture;
+  const GlTexture& velocity;
+  int width;
+  int height;
+};
+
+/// As motion_blur() and motion_blur_along_own(). Each begins `passes`.
+const GlTarget& motion_blur_on_gl(EffectPasses& passes, const MotionBlurSettings& settings,
+                                  const GlMovingPicture& of);
+const GlTarget& motion_blur_along_own_on_gl(EffectPasses& passes, float shutter, int samples,
+                                            const GlMovingPicture& of);
 
 }  // namespace softfocus

@@ -1,10 +1,12 @@
 #include "tools/stress/answers.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/frame_parts.h"
+#include "scenes/draw/velocity.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/lens_view_method.h"
 
@@ -15,6 +17,15 @@ namespace {
 /// by taking the same. Blocks of a power of two are even wherever they begin (lens_points.h).
 constexpr int kFirstTruthView = 4096;
 static_assert(kFirstTruthView > kSampleCounts.back());
+
+/// Of a picture filtered by this method before.
+constexpr std::array<std::string_view, 3> kMotionBlurs{"motion-blur-simple", "motion-blur-2012",
+                                                       "motion-blur"};
+constexpr std::string_view kBeforeMotionBlur = "disc-layers";
+
+bool is_motion_blur(const std::string& method) {
+  return std::find(kMotionBlurs.begin(), kMotionBlurs.end(), method) != kMotionBlurs.end();
+}
 
 constexpr std::string_view kViewsMethod = "accumulation", kChoosingMethod = "auto";
 
@@ -50,19 +61,35 @@ Image chosen_picture(const StressFrame& frame, ThreadPool& pool) {
       .picture;
 }
 
+/// Depth of field, then motion blur, as engines have it.
+Image motion_blurred(const std::string& method, const StressFrame& frame, ThreadPool& pool) {
+  ChosenEffect chosen{find_effect(method), {}};
+  for (const EffectParameter& parameter : chosen.effect->parameters) {
+    chosen.parameters.push_back(parameter.preset);
+  }
+  chosen.parameters[0] = frame.scene->shutter_frames;
+  const Image picture =
+      filtered(*find_method(kBeforeMotionBlur), frame, frame.settings.max_coc_px, pool);
+  const Image velocity = velocity_for(chosen, frame.scene->scene, 0.0, picture, Profile{}, pool);
+  return apply(*chosen.effect, {picture, chosen.parameters, Profile{}, velocity}, pool);
+}
+
 Image method_picture(const std::string& method, const StressFrame& frame, ThreadPool& pool) {
   if (method == kViewsMethod) return accumulation(views_input(frame, kStressSamples), pool).picture;
   if (method == kChoosingMethod) return chosen_picture(frame, pool);
   if (const LensViewMethod* of_scene = find_lens_view_method(method)) {
     return of_scene->render(views_input(frame, 1), pool).picture;
   }
+  if (is_motion_blur(method)) return motion_blurred(method, frame, pool);
   return filtered(*find_method(method), frame, frame.settings.max_coc_px, pool);
 }
 
 /// While the shutter is open a filter of depth of field has no part; the pinhole shows an instant.
 bool can_answer(const std::string& method, const StressFrame& frame) {
   if (!frame.scene) return find_method(method) != nullptr;
-  return frame.scene->shutter_frames == 0.0 || method == kViewsMethod || method == "pinhole";
+  const bool is_open = frame.scene->shutter_frames > 0.0;
+  if (is_motion_blur(method)) return is_open;
+  return !is_open || method == kViewsMethod || method == "pinhole";
 }
 
 }  // namespace
@@ -75,6 +102,7 @@ std::vector<std::string> stress_methods() {
     if (!method.samples_lens) names.emplace_back(method.name);
   }
   names.emplace_back(kChoosingMethod);
+  names.insert(names.end(), kMotionBlurs.begin(), kMotionBlurs.end());
   return names;
 }
 

@@ -12,11 +12,11 @@ namespace softfocus {
 /// Views that the method `accumulation` gets.
 inline constexpr int kStressSamples = 64;
 
-/// The filters of dof/dof.h, accumulation, what draws the scene in one go, and auto.
+/// The filters of dof/dof.h, accumulation, what draws the scene in one go, auto, and motion blur.
 std::vector<std::string> stress_methods();
 
 /// A method's pictures, or nothing if it needs a scene and the trial is made as a picture, or if it
-/// is a filter of depth of field and the trial's shutter is open.
+/// is a filter of depth of field and the trial's shutter is open, or motion blur and it is not.
 std::optional<std::vector<Image>> method_pictures(const std::string& method,
                                                   const StressTrial& trial, ThreadPool& pool);
 

@@ -66,7 +66,7 @@ struct BlurInput {
 /// What a pixel and a sample have to do with each other.
 struct Pair {
   float of_there, of_own;  ///< the distance in lengths of either's motion
-  float nearer, farther;   ///< whether the sample lies before the pixel, and behind it
+  float gap;  ///< how much farther the sample is, in parts of what lies wholly before another
 };
 
 struct BlurredPixel {
@@ -81,28 +81,27 @@ BlurredPixel blurred_pixel(const BlurInput& input, int x, int y) {
   return {own, glm::vec3{v}, own.w > 0.0f ? input.pass.inverse_depth / own.w : 0.0f};
 }
 
-Pair pair_of(const BlurredPixel& pixel, const glm::vec4& there, const glm::vec4& w, float moved) {
-  const float distance = std::fabs(moved);
-  return {distance * w.z, distance * pixel.v.z,
-          cut_to_1(1.0f - (there.w - pixel.own.w) * pixel.per_depth),
-          cut_to_1(1.0f - (pixel.own.w - there.w) * pixel.per_depth)};
+Pair pair_of(const BlurredPixel& pixel, const glm::vec4& there, const glm::vec4& w,
+             float distance) {
+  return {distance * w.z, distance * pixel.v.z, (there.w - pixel.own.w) * pixel.per_depth};
 }
 
 /// McGuire et al. 2012, along the longest motion.
-glm::vec3 blurred_one_way(const BlurInput& input, int x, int y, glm::vec2 along, float length) {
+glm::vec3 blurred_one_way(const BlurInput& input, int x, int y, glm::vec2 n, float length) {
   const MotionBlurPass& pass = input.pass;
   const BlurredPixel pixel = blurred_pixel(input, x, y);
   const float j = jitter(x, y);
   float total = pixel.v.z;
   glm::vec3 sum{pixel.own.x * total, pixel.own.y * total, pixel.own.z * total};
   for (int i = 0; i < pass.samples; ++i) {
-    const float moved = way_at(i, j, pass.step) * length;
-    const glm::ivec2 at = pixel_at(input.picture, x, y, {moved * along.x, moved * along.y});
+    const float t = way_at(i, j, pass.step);
+    const glm::ivec2 at = pixel_at(input.picture, x, y, {t * n.x, t * n.y});
     const glm::vec4 there = load_texel<Format::rgba16f>(input.picture, at.x, at.y);
     const glm::vec4 w = load_texel<Format::rgba16f>(input.spread, at.x, at.y);
-    const Pair of = pair_of(pixel, there, w, moved);
-    const float weight = (of.nearer * cone(of.of_there) + of.farther * cone(of.of_own)) +
-                         (cylinder(of.of_there) * cylinder(of.of_own)) * 2.0f;
+    const Pair of = pair_of(pixel, there, w, std::fabs(t) * length);
+    const float weight =
+        (cut_to_1(1.0f - of.gap) * cone(of.of_there) + cut_to_1(1.0f + of.gap) * cone(of.of_own)) +
+        (cylinder(of.of_there) * cylinder(of.of_own)) * 2.0f;
     if (!(weight > 0.0f)) continue;  // a light without end must not count 0 times
     total += weight;
     sum.x += there.x * weight;
@@ -119,9 +118,11 @@ struct Shown {
 };
 
 struct SampledWay {
-  glm::vec2 way;
+  glm::vec2 px;
   float length_px;
-  float own_part;  ///< of the pixel's own motion that goes this way
+  glm::vec2 way;    ///< px over its length
+  float own_part;   ///< of the pixel's own motion that goes this way
+  float own_reach;  ///< what of its motion reaches all of the samples
   int samples;
   float step, jitter;
 };
@@ -130,14 +131,18 @@ Shown shown_along(const BlurInput& input, int x, int y, const BlurredPixel& pixe
                   const SampledWay& on) {
   Shown shown{glm::vec3{0.0f}, 0.0f};
   for (int i = 0; i < on.samples; ++i) {
-    const float moved = way_at(i, on.jitter, on.step) * on.length_px;
-    const glm::ivec2 at = pixel_at(input.picture, x, y, {moved * on.way.x, moved * on.way.y});
+    const float t = way_at(i, on.jitter, on.step);
+    const glm::ivec2 at = pixel_at(input.picture, x, y, {t * on.px.x, t * on.px.y});
     const glm::vec4 there = load_texel<Format::rgba16f>(input.picture, at.x, at.y);
     const glm::vec4 w = load_texel<Format::rgba16f>(input.spread, at.x, at.y);
-    const Pair of = pair_of(pixel, there, w, moved);
+    const Pair of = pair_of(pixel, there, w, std::fabs(t) * on.length_px);
     const float there_part = std::fabs(w.x * on.way.x + w.y * on.way.y) * w.z;
-    const float weight = cut_to_1((of.nearer * reached(of.of_there)) * there_part +
-                                  (of.farther * reached(of.of_own)) * on.own_part);
+    const float in_reach = reached(of.of_own);
+    const float reach = in_reach > on.own_reach ? in_reach : on.own_reach;
+    const float nearer = cut_to_1(2.0f - (of.gap + of.gap));
+    const float farther = cut_to_1(2.0f + (of.gap + of.gap));
+    const float weight =
+        cut_to_1((nearer * reached(of.of_there)) * there_part + (farther * reach) * on.own_part);
     if (!(weight > 0.0f)) continue;  // a light without end must not count 0 times
     shown.count += weight;
     shown.sum.x += there.x * weight;
@@ -165,10 +170,11 @@ glm::vec3 blurred_two_ways(const BlurInput& input, int x, int y, glm::vec2 n, gl
   const float j = jitter(x, y);
   const float between = j < 0.5f ? j + 0.5f : j - 0.5f;
   const Shown a =
-      shown_along(input, x, y, pixel, {along, length, facing, pass.samples, pass.step, j});
-  const Shown b =
       shown_along(input, x, y, pixel,
-                  {across, own_length, 1.0f, pass.across_samples, pass.across_step, between});
+                  {n, length, along, cut_to_1(facing * kFacing), 0.0f, pass.samples, pass.step, j});
+  const Shown b = shown_along(
+      input, x, y, pixel,
+      {mixed, own_length, across, 1.0f, moving, pass.across_samples, pass.across_step, between});
 
   // Two equal ways are halves of one; else what the longest motion does not cover is the other's.
   const float shorter = own_length < length ? own_length / length : 1.0f;
@@ -198,7 +204,7 @@ std::optional<glm::vec3> blurred(const BlurInput& input, int x, int y) {
   const glm::vec2 along{n.x / length, n.y / length};
   return input.pass.filter == MotionFilter::two_ways
              ? blurred_two_ways(input, x, y, n, along, length)
-             : blurred_one_way(input, x, y, along, length);
+             : blurred_one_way(input, x, y, n, length);
 }
 
 /// Tiles in which a pixel may read a motion that counts.
@@ -231,7 +237,12 @@ void motion_blur(const MotionBlurSettings& settings, const ConstImageView& pictu
   }
   const MotionBlurPass pass = pass_of(settings);
   const int width = picture.width, size = pass.radius_px;
-  Image spread = make_image(Format::rgba16f, width, picture.height);
+  // All of it is written, and zeros before would take a tenth of the time.
+  const std::ptrdiff_t stride = (width + 7) / 8 * 8;
+  const RowMemory<std::uint64_t> memory =
+      make_row_memory<std::uint64_t>(static_cast<std::size_t>(stride * picture.height));
+  const ImageView spread =
+      view_of(Format::rgba16f, memory.get(), width, picture.height, 8 * stride);
   motion_to_either_side(pass, velocity, spread, profile, pool);
   const MotionTiles tiles =
       longest_of_neighbours(longest_of_tiles(pass, spread, pool), pass.filter);
@@ -324,38 +335,36 @@ struct PixelLanes {
   Floats per_depth;
 };
 
-struct PairLanes {
-  FourFloats there, w;
-  Floats of_there, of_own, nearer, farther;
+/// A sample's place, and its texel of the picture.
+struct SampleLanes {
+  Ints x, y;
+  FourFloats there;
+  Floats gap;  ///< how much farther it is, in parts of what lies wholly before another
 };
 
-SOFTFOCUS_INLINE PairLanes pair_lanes(const BlurRow& row, const PixelLanes& pixel, Floats moved,
-                                      Vec2Lanes way) {
-  const Ints there_x = place_lanes(pixel.at_x, moved * way.x, row.width);
-  const Ints there_y = place_lanes(pixel.at_y, moved * way.y, row.height);
-  const FourFloats there = gather_texels(row.picture, there_x, there_y);
-  const FourFloats w = gather_texels(row.spread, there_x, there_y);
-  const Floats distance = absolute(moved);
-  return {there,
-          w,
-          distance * w.b,
-          distance * pixel.v_z,
-          unit_lanes(1.0f - (there.a - pixel.own.a) * pixel.per_depth),
-          unit_lanes(1.0f - (pixel.own.a - there.a) * pixel.per_depth)};
+SOFTFOCUS_INLINE SampleLanes sample_lanes(const BlurRow& row, const PixelLanes& pixel, Floats t,
+                                          Vec2Lanes px) {
+  const Ints x = place_lanes(pixel.at_x, t * px.x, row.width);
+  const Ints y = place_lanes(pixel.at_y, t * px.y, row.height);
+  const FourFloats there = gather_texels(row.picture, x, y);
+  return {x, y, there, (there.a - pixel.own.a) * pixel.per_depth};
 }
 
 SOFTFOCUS_INLINE ColourLanes one_way_lanes(const BlurRow& row, const PixelLanes& pixel, Ints x,
-                                           Vec2Lanes along, Floats length) {
+                                           Vec2Lanes n, Floats length) {
   const MotionBlurPass& pass = row.pass;
   const Floats j = jitter_lanes(x, row.y);
   Floats total = pixel.v_z;
   ColourLanes sum{pixel.own.r * total, pixel.own.g * total, pixel.own.b * total};
   for (int i = 0; i < pass.samples; ++i) {
-    const Floats moved = ((static_cast<float>(i) + j) * pass.step - 1.0f) * length;
-    const PairLanes of = pair_lanes(row, pixel, moved, along);
-    const Floats weight =
-        (of.nearer * unit_lanes(1.0f - of.of_there) + of.farther * unit_lanes(1.0f - of.of_own)) +
-        (cylinder_lanes(of.of_there) * cylinder_lanes(of.of_own)) * 2.0f;
+    const Floats t = (static_cast<float>(i) + j) * pass.step - 1.0f;
+    const SampleLanes of = sample_lanes(row, pixel, t, n);
+    const Floats distance = absolute(t) * length;
+    const Floats of_there = distance * gather_texels(row.spread, of.x, of.y).b;
+    const Floats of_own = distance * pixel.v_z;
+    const Floats weight = (unit_lanes(1.0f - of.gap) * unit_lanes(1.0f - of_there) +
+                           unit_lanes(1.0f + of.gap) * unit_lanes(1.0f - of_own)) +
+                          (cylinder_lanes(of_there) * cylinder_lanes(of_own)) * 2.0f;
     const Mask counts = weight > 0.0f;
     total += weight;  // never below 0
     sum.r = select(counts, sum.r + of.there.r * weight, sum.r);
@@ -371,8 +380,10 @@ struct ShownLanes {
 };
 
 struct SampledWayLanes {
+  Vec2Lanes px;
+  Floats length_px;
   Vec2Lanes way;
-  Floats length_px, own_part;
+  Floats own_part, own_reach;
   int samples;
   float step;
   Floats jitter;
@@ -382,12 +393,26 @@ SOFTFOCUS_INLINE ShownLanes shown_lanes(const BlurRow& row, const PixelLanes& pi
                                         const SampledWayLanes& on) {
   const Floats zero = splat(0.0f);
   ShownLanes shown{{zero, zero, zero}, zero};
+  const bool reaches_all = !any(smaller(on.own_part, on.own_reach) < 1.0f);
   for (int i = 0; i < on.samples; ++i) {
-    const Floats moved = ((static_cast<float>(i) + on.jitter) * on.step - 1.0f) * on.length_px;
-    const PairLanes of = pair_lanes(row, pixel, moved, on.way);
-    const Floats there_part = absolute(of.w.r * on.way.x + of.w.g * on.way.y) * of.w.b;
-    const Floats weight = unit_lanes((of.nearer * reached_lanes(of.of_there)) * there_part +
-                                     (of.farther * reached_lanes(of.of_own)) * on.own_part);
+    const Floats t = (static_cast<float>(i) + on.jitter) * on.step - 1.0f;
+    const SampleLanes of = sample_lanes(row, pixel, t, on.px);
+    const Floats distance = absolute(t) * on.length_px;
+    Floats own = unit_lanes(2.0f + (of.gap + of.gap));
+    if (!reaches_all) {
+      own = (own * larger(reached_lanes(distance * pixel.v_z), on.own_reach)) * on.own_part;
+    }
+    if (!any(own < 1.0f)) {  // where all moves alike, whatever the sample's motion
+      shown.count += 1.0f;
+      shown.sum.r += of.there.r;
+      shown.sum.g += of.there.g;
+      shown.sum.b += of.there.b;
+      continue;
+    }
+    const FourFloats w = gather_texels(row.spread, of.x, of.y);
+    const Floats there_part = absolute(w.r * on.way.x + w.g * on.way.y) * w.b;
+    const Floats nearer = unit_lanes(2.0f - (of.gap + of.gap));
+    const Floats weight = unit_lanes((nearer * reached_lanes(distance * w.b)) * there_part + own);
     const Mask counts = weight > 0.0f;
     shown.count += weight;
     shown.sum.r = select(counts, shown.sum.r + of.there.r * weight, shown.sum.r);
@@ -411,9 +436,18 @@ SOFTFOCUS_INLINE ColourLanes two_ways_lanes(const BlurRow& row, const PixelLanes
 
   const Floats j = jitter_lanes(x, row.y);
   const Floats between = select(j < 0.5f, j + 0.5f, j - 0.5f);
-  const ShownLanes a = shown_lanes(row, pixel, {along, length, facing, pass.samples, pass.step, j});
-  const ShownLanes b = shown_lanes(
-      row, pixel, {across, own_length, one, pass.across_samples, pass.across_step, between});
+  const ShownLanes a = shown_lanes(
+      row, pixel,
+      {n, length, along, unit_lanes(facing * kFacing), splat(0.0f), pass.samples, pass.step, j});
+  const ShownLanes b = shown_lanes(row, pixel,
+                                   {{mixed_x, mixed_y},
+                                    own_length,
+                                    across,
+                                    one,
+                                    moving,
+                                    pass.across_samples,
+                                    pass.across_step,
+                                    between});
 
   const Floats shorter = select(own_length < length, own_length / length, one);
   const Floats half = (facing * shorter) * 0.5f;
@@ -465,7 +499,7 @@ SOFTFOCUS_INLINE int blur_vectors(const BlurRow& row, int begin, int end, std::u
         select(own_a > 0.0f, row.pass.inverse_depth / own_a, zero)};
     const ColourLanes colour = filter == MotionFilter::two_ways
                                    ? two_ways_lanes(row, pixel, x, n, along, length)
-                                   : one_way_lanes(row, pixel, x, along, length);
+                                   : one_way_lanes(row, pixel, x, n, length);
     store_half_texels(to + 4 * at,
                       {select(moves, float_to_half<rounding>(colour.r), own.r),
                        select(moves, float_to_half<rounding>(colour.g), own.g),

@@ -23,24 +23,23 @@ struct Pair {
   vec4 there;
   vec3 w;
   float of_there, of_own;
-  float nearer, farther;
+  float gap;
 };
 
-Pair pair_of(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, float moved, vec2 way) {
+Pair pair_of(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, float t, vec2 px,
+             float length_px) {
   Pair of;
-  precise vec2 step_px = moved * way;
+  precise vec2 step_px = t * px;
   ivec2 place = pixel_at(at, step_px, size);
   of.there = texelFetch(source, place, 0);
   of.w = texelFetch(spread, place, 0).xyz;
-  float far = abs(moved);
+  precise float far = abs(t) * length_px;
   precise float of_there = far * of.w.z;
   precise float of_own = far * v.z;
-  precise float before = 1.0 - (of.there.a - own.a) * per_depth;
-  precise float behind = 1.0 - (own.a - of.there.a) * per_depth;
+  precise float gap = (of.there.a - own.a) * per_depth;
   of.of_there = of_there;
   of.of_own = of_own;
-  of.nearer = cut_to_1(before);
-  of.farther = cut_to_1(behind);
+  of.gap = gap;
   return of;
 }
 
@@ -60,16 +59,21 @@ float reached(float q) {
 }
 
 // What samples along a way show through the pixel: their sum, and in w how many they are.
-vec4 shown_along(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 way,
-                 float length_px, float own_part, int count, float count_step, float jittered) {
+vec4 shown_along(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 px, float length_px,
+                 vec2 way, float own_part, float own_reach, int count, float count_step,
+                 float jittered) {
   precise vec4 shown = vec4(0.0);
   for (int i = 0; i < count; ++i) {
-    precise float moved = way_at(i, jittered, count_step) * length_px;
-    Pair of = pair_of(at, size, own, v, per_depth, moved, way);
+    float t = way_at(i, jittered, count_step);
+    Pair of = pair_of(at, size, own, v, per_depth, t, px, length_px);
     precise float cosine = of.w.x * way.x + of.w.y * way.y;
     precise float there_part = abs(cosine) * of.w.z;
-    precise float either = (of.nearer * reached(of.of_there)) * there_part +
-                           (of.farther * reached(of.of_own)) * own_part;
+    float in_reach = reached(of.of_own);
+    float reach = in_reach > own_reach ? in_reach : own_reach;
+    precise float before = 2.0 - (of.gap + of.gap);
+    precise float behind = 2.0 + (of.gap + of.gap);
+    precise float either = (cut_to_1(before) * reached(of.of_there)) * there_part +
+                           (cut_to_1(behind) * reach) * own_part;
     float weight = cut_to_1(either);
     if (!(weight > 0.0)) continue;
     shown.w += weight;
@@ -94,10 +98,11 @@ vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, ve
 
   float jittered = jitter(at);
   precise float between = jittered < 0.5 ? jittered + 0.5 : jittered - 0.5;
-  vec4 a = shown_along(at, size, own, v, per_depth, along, length, facing, samples, way_step,
-                       jittered);
-  vec4 b = shown_along(at, size, own, v, per_depth, across, own_length, 1.0, across_samples,
-                       across_step, between);
+  precise float along_part = facing * 1.1;  // kFacing
+  vec4 a = shown_along(at, size, own, v, per_depth, n, length, along, cut_to_1(along_part), 0.0,
+                       samples, way_step, jittered);
+  vec4 b = shown_along(at, size, own, v, per_depth, mixed, own_length, across, 1.0, moving,
+                       across_samples, across_step, between);
 
   precise float shorter = own_length < length ? own_length / length : 1.0;
   precise float half_part = (facing * shorter) * 0.5;
@@ -131,9 +136,12 @@ vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, ve
   float total = v.z;
   precise vec3 sum = own.rgb * total;
   for (int i = 0; i < samples; ++i) {
-    precise float moved = way_at(i, jittered, way_step) * length;
-    Pair of = pair_of(at, size, own, v, per_depth, moved, along);
-    precise float weight = (of.nearer * cone(of.of_there) + of.farther * cone(of.of_own)) +
+    float t = way_at(i, jittered, way_step);
+    Pair of = pair_of(at, size, own, v, per_depth, t, n, length);
+    precise float before = 1.0 - of.gap;
+    precise float behind = 1.0 + of.gap;
+    precise float weight = (cut_to_1(before) * cone(of.of_there) +
+                            cut_to_1(behind) * cone(of.of_own)) +
                            (cylinder(of.of_there) * cylinder(of.of_own)) * 2.0;
     if (!(weight > 0.0)) continue;
     precise float more = total + weight;

@@ -22,6 +22,8 @@ struct BlurSource {
 // The order of operations is that of the kernels and of the shaders.
 
 inline constexpr float kLeastMotion2 = 0.25f;  ///< half a pixel, squared
+/// Of the cosine between two ways: from 1 on they are one.
+inline constexpr float kFacing = 1.1f;
 
 inline float jitter(int x, int y) { return static_cast<float>(jitter_bits(x, y)) * 0x1p-24f; }
 

@@ -17,11 +17,12 @@ using namespace softfocus;
 
 namespace {
 
-ChartScene scene_of(const char* subject, const std::string& name, ThreadPool& pool) {
+ChartScene scene_of(const char* subject, const std::string& name, ThreadPool& pool,
+                    PictureSize size = {64, 48}) {
   ChartOptions options;
   options.subject = find_chart_subject(subject);
   REQUIRE(options.subject != nullptr);
-  options.size = {64, 48};
+  options.size = size;
   return load_chart_scene(name, options, pool);
 }
 
@@ -104,6 +105,25 @@ TEST_CASE("chart of motion blur: more times are nearer to the truth, an instant 
   CHECK(many < 0.5 * few);
 }
 
+TEST_CASE("chart of motion blur: from one picture, each way is nearer than an instant") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("motion-blur", "windmill", pool, {256, 256});
+  const Image truth = truth_of(scene, pool);
+  ChartRunner runner{scene, pool};
+  const auto error = [&](const char* method) {
+    const RunTime time = runner.run(entry_of("motion-blur", method, 1));
+    CHECK(time.filter_ms.value() > 0.0);
+    return flip_of(truth, runner.result(), pool);
+  };
+  runner.run(entry_of("motion-blur", "pinhole", 0));
+  const double instant = flip_of(truth, runner.result(), pool);
+  const double simple = error("motion-blur-simple"), by_tiles = error("motion-blur");
+  MESSAGE(instant << ", " << simple << ", " << by_tiles);
+  CHECK(simple < 0.8 * instant);
+  CHECK(error("motion-blur-2012") < 0.8 * instant);
+  CHECK(by_tiles < 0.9 * simple);
+}
+
 TEST_CASE("chart of anti-aliasing: what looks from more places in the pixel is nearer") {
   ThreadPool pool{2};
   const ChartScene scene = scene_of("anti-aliasing", "figures", pool);
@@ -116,8 +136,10 @@ TEST_CASE("chart of anti-aliasing: what looks from more places in the pixel is n
   const double none = error(entry_of("anti-aliasing", "pinhole", 0));
   const double twice = error(entry_of("anti-aliasing", "supersample", 0));
   const double sixteen = error(entry_of("anti-aliasing", "accumulation", 3));
-  MESSAGE(none << ", " << twice << ", " << sixteen);
+  const double after_frames = error(entry_of("anti-aliasing", "temporal-aa", 2));
+  MESSAGE(none << ", " << twice << ", " << sixteen << ", " << after_frames);
   CHECK(twice < 0.6 * none);
+  CHECK(after_frames < 0.6 * none);
   CHECK(sixteen < twice);
 }
 

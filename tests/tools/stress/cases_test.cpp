@@ -175,6 +175,12 @@ TEST_CASE("stress: methods that draw the scene have no answer to a picture") {
   CHECK(equal((*pinhole)[0], trial.frames[0].sharp));
 }
 
+TEST_CASE("stress: while the shutter is closed motion blur has no answer") {
+  ThreadPool pool{2};
+  CHECK_FALSE(method_pictures("motion-blur", light_cases()[0].make(4, kSize, pool), pool));
+  CHECK_FALSE(method_pictures("motion-blur-simple", crowd_cases()[1].make(8, kSize, pool), pool));
+}
+
 TEST_CASE("stress: while the shutter is open filters of depth of field have no answer") {
   ThreadPool pool{2};
   for (const StressCase& of : shutter_cases()) {
@@ -189,6 +195,12 @@ TEST_CASE("stress: while the shutter is open filters of depth of field have no a
     const auto views = method_pictures("accumulation", trial, pool);
     REQUIRE(views);
     const Image truth = make_stress_truth(trial, of.views == 0 ? 0 : 256, pool).pictures[0];
-    CHECK(answer_flip(truth, (*views)[0], pool) < 0.2 * answer_flip(truth, (*instant)[0], pool));
+    const double of_instant = answer_flip(truth, (*instant)[0], pool);
+    CHECK(answer_flip(truth, (*views)[0], pool) < 0.2 * of_instant);
+    const auto blurred = method_pictures("motion-blur", trial, pool);
+    REQUIRE(blurred);
+    const double of_blurred = answer_flip(truth, (*blurred)[0], pool);
+    MESSAGE(of_instant << ", motion-blur " << of_blurred);
+    CHECK(of_blurred < 0.7 * of_instant);
   }
 }

@@ -124,7 +124,7 @@ struct Sample {
   glm::dvec3 colour;
   glm::dvec2 w;
   double of_there, of_own;  ///< the distance in lengths of either's motion, none below 1/2
-  double nearer, farther;
+  double gap;               ///< how much farther, in parts of what lies wholly before another
 };
 
 Sample sample_at(const Blurring& of, glm::dvec2 px) {
@@ -142,8 +142,7 @@ Sample sample_at(const Blurring& of, glm::dvec2 px) {
           w,
           distance / std::max(std::hypot(w.x, w.y), 0.5),
           distance / std::max(std::hypot(v.x, v.y), 0.5),
-          ramp(1.0 - gap / extent),
-          ramp(1.0 + gap / extent)};
+          gap / extent};
 }
 
 double jitter_of(const Blurring& of) {
@@ -158,8 +157,8 @@ glm::dvec3 one_way(const Blurring& of, glm::dvec2 n) {
   for (int i = 0; i < of.settings.samples; ++i) {
     const double t = 2.0 * (i + jitter_of(of)) / of.settings.samples - 1.0;
     const Sample sample = sample_at(of, n * t);
-    const double weight = sample.nearer * ramp(1.0 - sample.of_there) +
-                          sample.farther * ramp(1.0 - sample.of_own) +
+    const double weight = ramp(1.0 - sample.gap) * ramp(1.0 - sample.of_there) +
+                          ramp(1.0 + sample.gap) * ramp(1.0 - sample.of_own) +
                           2.0 * cylinder(sample.of_there) * cylinder(sample.of_own);
     total += weight;
     sum += sample.colour * weight;
@@ -174,8 +173,8 @@ struct SeenAlong {
   glm::dvec3 colour;
 };
 
-SeenAlong seen_along(const Blurring& of, glm::dvec2 way, double own_part, int samples,
-                     double jitter, const glm::dvec3& instead) {
+SeenAlong seen_along(const Blurring& of, glm::dvec2 way, double own_part, double own_reach,
+                     int samples, double jitter, const glm::dvec3& instead) {
   const double length = std::hypot(way.x, way.y);
   const auto reached = [](double q) { return ramp((1.05 - q) * 10.0); };
   SeenAlong seen{0.0, glm::dvec3{0.0}};
@@ -183,8 +182,10 @@ SeenAlong seen_along(const Blurring& of, glm::dvec2 way, double own_part, int sa
     const Sample sample = sample_at(of, way * (2.0 * (i + jitter) / samples - 1.0));
     const double along = std::abs(sample.w.x * way.x + sample.w.y * way.y) /
                          (length * std::max(std::hypot(sample.w.x, sample.w.y), 0.5));
-    const double weight = ramp(sample.nearer * reached(sample.of_there) * along +
-                               sample.farther * reached(sample.of_own) * own_part);
+    const double of_there = ramp(2.0 - 2.0 * sample.gap) * reached(sample.of_there) * along;
+    const double of_own =
+        ramp(2.0 + 2.0 * sample.gap) * own_part * std::max(reached(sample.of_own), own_reach);
+    const double weight = ramp(of_there + of_own);
     seen.part += weight / samples;
     seen.colour += (sample.colour * weight + instead * (1.0 - weight)) / (1.0 * samples);
   }
@@ -203,8 +204,8 @@ glm::dvec3 two_ways(const Blurring& of, glm::dvec2 n) {
   const double jitter = jitter_of(of);
   const int samples = of.settings.samples;
   const SeenAlong second =
-      seen_along(of, across, 1.0, samples / 2, std::fmod(jitter + 0.5, 1.0), own);
-  const SeenAlong first = seen_along(of, n, facing, samples - samples / 2, jitter,
+      seen_along(of, across, 1.0, moving, samples / 2, std::fmod(jitter + 0.5, 1.0), own);
+  const SeenAlong first = seen_along(of, n, ramp(1.1 * facing), 0.0, samples - samples / 2, jitter,
                                      own * (1.0 - moving) + second.colour * moving);
   const double half = 0.5 * facing * std::min(1.0, own_length / length);
   return first.colour * (1.0 - half) + second.colour * half;
