@@ -39,7 +39,7 @@ struct EffectsRepeatedOnGl::State {};
 EffectsRepeatedOnGl::EffectsRepeatedOnGl(const Driver&, const Image&, int) { refuse(); }
 EffectsRepeatedOnGl::~EffectsRepeatedOnGl() = default;
 std::string EffectsRepeatedOnGl::renderer() const { refuse(); }
-void EffectsRepeatedOnGl::choose(const ChosenEffect&) { refuse(); }
+void EffectsRepeatedOnGl::choose(const ChosenEffect&, const Image*) { refuse(); }
 void EffectsRepeatedOnGl::run(bool) { refuse(); }
 Image EffectsRepeatedOnGl::picture() const { refuse(); }
 
