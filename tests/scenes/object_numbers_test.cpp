@@ -53,7 +53,8 @@ std::vector<std::uint16_t> numbers_one_by_one(Scene scene, ThreadPool& pool) {
 
 }  // namespace
 
-TEST_CASE("a pixel's number is that of the object whose triangle is nearest at its centre") {
+TEST_CASE("a pixel's number is that of the object whose triangle is nearest at its centre" *
+          doctest::test_suite("long")) {
   ThreadPool pool(2);
   for (const char* name : {"figures", "cube-room", "near-fence", "canopy", "random:3"}) {
     const Scene scene = load_scene(name, scene_search_path({}));

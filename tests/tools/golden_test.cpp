@@ -51,7 +51,7 @@ TEST_CASE("the golden hashes, part by part, are the table's in its order" *
   CHECK(at == expected.size());
 }
 
-TEST_CASE("the quick golden hashes are the table's") {
+TEST_CASE("the quick golden hashes are the table's" * doctest::test_suite("long")) {
   ThreadPool pool(1);
   const auto computed = golden_hashes(pool, GoldenSet::quick);
   CHECK(describe_failures(check_hashes(expected_hashes(GoldenSet::quick), computed)) == "");

@@ -185,7 +185,7 @@ Flicker flicker(bool smooth, bool is_steady) {
 
 }  // namespace
 
-TEST_CASE("bloom is near a convolution with the sum of its kernels") {
+TEST_CASE("bloom is near a convolution with the sum of its kernels" * doctest::test_suite("long")) {
   const Image picture = lamps();
   for (const int levels : {1, 2, 3, 4}) {
     CAPTURE(levels);

@@ -76,7 +76,8 @@ TEST_CASE("accumulation: the same bits for any number of threads and on every ve
   }
 }
 
-TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes") {
+TEST_CASE("accumulation: it is the mean of the pictures that draw_scene() makes" *
+          doctest::test_suite("long")) {
   const int width = 150, height = 70;  // parts of tiles
   const Profile profile{};
   for (const char* name : {"sphere-world", "canopy", "glass"}) {

@@ -44,7 +44,8 @@ Words asked_by_name(const nlohmann::json& choice) {
 
 }  // namespace
 
-TEST_CASE("auto: the bytes are those of the method that it says it chose") {
+TEST_CASE("auto: the bytes are those of the method that it says it chose" *
+          doctest::test_suite("long")) {
   std::string methods;
   struct Case {
     const char* scene;

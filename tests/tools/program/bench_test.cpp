@@ -260,7 +260,8 @@ TEST_CASE("bench: --vs llvmpipe runs every effect's shaders, whose bits are ours
   }
 }
 
-TEST_CASE("bench: --copy times a frame whose pictures are copied, here and on a driver") {
+TEST_CASE("bench: --copy times a frame whose pictures are copied, here and on a driver" *
+          doctest::test_suite("long")) {
   const ProgramRun run =
       run_program({"bench", "figures", "--size", "64x64", "--runs", "10", "--copy"});
   CHECK(run.status == 0);

@@ -108,7 +108,8 @@ TEST_CASE("chart: writes its files, and goes on from what is there to the same r
   CHECK(read_file(out + "/cache/figures.truth.npy") == truth);
 }
 
-TEST_CASE("chart: what is missing or damaged is measured again, the rest is kept") {
+TEST_CASE("chart: what is missing or damaged is measured again, the rest is kept" *
+          doctest::test_suite("long")) {
   if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("chart");
@@ -312,7 +313,8 @@ TEST_CASE("chart: the help names every option") {
   }
 }
 
-TEST_CASE("chart --of: another subject has its own truth, methods and page") {
+TEST_CASE("chart --of: another subject has its own truth, methods and page" *
+          doctest::test_suite("long")) {
   if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   for (const ChartSubject& subject : chart_subjects().subspan(1)) {

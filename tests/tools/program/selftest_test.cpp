@@ -7,7 +7,8 @@
 
 using namespace softfocus;
 
-TEST_CASE("selftest --quick passes and says how many hashes there were") {
+TEST_CASE("selftest --quick passes and says how many hashes there were" *
+          doctest::test_suite("long")) {
   const ProgramRun run = run_program({"selftest", "--quick"});
   CHECK(run.status == 0);
   CHECK(run.out == "pass: " + std::to_string(expected_hashes(GoldenSet::quick).size()) +

@@ -130,7 +130,8 @@ TEST_CASE("join: a scene that was edited between two shards is noticed, seen or 
                 1, {"part2.sum", "scene_files_hash"});
 }
 
-TEST_CASE("join: damaged and cut files are named, with what makes them again") {
+TEST_CASE("join: damaged and cut files are named, with what makes them again" *
+          doctest::test_suite("long")) {
   const TemporaryDirectory directory;
   const Words parts = make_shards(directory, 2);
   const std::string bytes = read_file(parts[1]);
