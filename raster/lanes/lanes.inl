@@ -351,28 +351,41 @@ SOFTFOCUS_INLINE IntPairs unzip_lanes(Ints lower, Ints upper, std::index_sequenc
   return {__builtin_shufflevector(lower, upper, (2 * lane)...),
           __builtin_shufflevector(lower, upper, (2 * lane + 1)...)};
 }
-SOFTFOCUS_INLINE IntPairs gather_pairs(const std::int32_t* base, Ints index) {
+#if SOFTFOCUS_LANES >= 8
+SOFTFOCUS_INLINE long long pair_at(const std::int32_t* base, std::int32_t index) {
+  long long pair;
+  std::memcpy(&pair, base + 2 * static_cast<std::ptrdiff_t>(index), sizeof pair);
+  return pair;
+}
+#endif
+// One by one: a load a lane takes less than half the time of a gather instruction, which processors
+// of several makers split up or have slowed down.
+SOFTFOCUS_INLINE IntPairs gather_pairs(const std::int32_t* base, Ints indices) {
+#if SOFTFOCUS_LANES >= 8
+  std::int32_t index[kLanes];
+  std::memcpy(index, &indices, sizeof index);
+#endif
 #if SOFTFOCUS_LANES == 16
-  const __m512i i = (__m512i)index;
-  const __m512i zero = _mm512_setzero_si512();
-  const __m256i i_lower = _mm512_maskz_extracti64x4_epi64(0xFF, i, 0);
-  const __m256i i_upper = _mm512_maskz_extracti64x4_epi64(0xFF, i, 1);
-  return unzip_lanes((Ints)_mm512_mask_i32gather_epi64(zero, 0xFF, i_lower, base, 8),
-                     (Ints)_mm512_mask_i32gather_epi64(zero, 0xFF, i_upper, base, 8),
-                     std::make_index_sequence<kLanes>{});
+  const auto eight = [&](int first) {
+    return (Ints)_mm512_setr_epi64(pair_at(base, index[first]), pair_at(base, index[first + 1]),
+                                   pair_at(base, index[first + 2]), pair_at(base, index[first + 3]),
+                                   pair_at(base, index[first + 4]), pair_at(base, index[first + 5]),
+                                   pair_at(base, index[first + 6]),
+                                   pair_at(base, index[first + 7]));
+  };
+  return unzip_lanes(eight(0), eight(8), std::make_index_sequence<kLanes>{});
 #elif SOFTFOCUS_LANES == 8
-  const auto* pairs = reinterpret_cast<const long long*>(base);
-  const __m256i zero = _mm256_setzero_si256(), all = _mm256_cmpeq_epi64(zero, zero);
-  const __m128i i_lower = _mm256_castsi256_si128((__m256i)index);
-  const __m128i i_upper = _mm256_extracti128_si256((__m256i)index, 1);
-  return unzip_lanes((Ints)_mm256_mask_i32gather_epi64(zero, pairs, i_lower, all, 8),
-                     (Ints)_mm256_mask_i32gather_epi64(zero, pairs, i_upper, all, 8),
-                     std::make_index_sequence<kLanes>{});
+  const auto four = [&](int first) {
+    return (Ints)_mm256_setr_epi64x(pair_at(base, index[first]), pair_at(base, index[first + 1]),
+                                    pair_at(base, index[first + 2]),
+                                    pair_at(base, index[first + 3]));
+  };
+  return unzip_lanes(four(0), four(4), std::make_index_sequence<kLanes>{});
 #else
   IntPairs v{};
   for (int i = 0; i < kLanes; ++i) {
-    v.first[i] = base[2 * index[i]];
-    v.second[i] = base[2 * index[i] + 1];
+    v.first[i] = base[2 * indices[i]];
+    v.second[i] = base[2 * indices[i] + 1];
   }
   return v;
 #endif

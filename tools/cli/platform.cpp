@@ -21,6 +21,9 @@
 
 #include <csignal>
 #endif
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <cerrno>
@@ -147,6 +150,12 @@ void prepare_process() {
   for (const int stream : {0, kStandardOutput, kStandardError}) {
     if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
   }
+#ifdef __GLIBC__
+  // Pictures come and go. What the system takes back comes again as pages of zeros, which can take
+  // as long as what is done with them.
+  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
 }
 
 int process_number() { return ::getpid(); }

@@ -12,7 +12,8 @@
 namespace softfocus {
 
 /// Makes a write to a closed pipe or past the file-size limit an error, where it would silently
-/// end the program, and makes standard output a stream of bytes.
+/// end the program, and makes standard output a stream of bytes. Memory that is freed is kept for
+/// the next pictures.
 void prepare_process();
 
 /// The running program's number.

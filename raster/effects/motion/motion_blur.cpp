@@ -66,7 +66,7 @@ struct BlurInput {
 /// What a pixel and a sample have to do with each other.
 struct Pair {
   float of_there, of_own;  ///< the distance in lengths of either's motion
-  float gap;  ///< how much farther the sample is, in parts of what lies wholly before another
+  float gap;               ///< how much farther the sample is (MotionBlurPass::inverse_depth)
 };
 
 struct BlurredPixel {
@@ -139,8 +139,8 @@ Shown shown_along(const BlurInput& input, int x, int y, const BlurredPixel& pixe
     const float there_part = std::fabs(w.x * on.way.x + w.y * on.way.y) * w.z;
     const float in_reach = reached(of.of_own);
     const float reach = in_reach > on.own_reach ? in_reach : on.own_reach;
-    const float nearer = cut_to_1(2.0f - (of.gap + of.gap));
-    const float farther = cut_to_1(2.0f + (of.gap + of.gap));
+    const float nearer = cut_to_1(2.0f - of.gap);
+    const float farther = cut_to_1(2.0f + of.gap);
     const float weight =
         cut_to_1((nearer * reached(of.of_there)) * there_part + (farther * reach) * on.own_part);
     if (!(weight > 0.0f)) continue;  // a light without end must not count 0 times
@@ -153,9 +153,10 @@ Shown shown_along(const BlurInput& input, int x, int y, const BlurredPixel& pixe
 }
 
 /// After Guertin et al. 2014, along the longest motion and along the pixel's own.
-glm::vec3 blurred_two_ways(const BlurInput& input, int x, int y, glm::vec2 n, glm::vec2 along,
-                           float length) {
+glm::vec3 blurred_two_ways(const BlurInput& input, int x, int y, glm::vec2 n, float length) {
   const MotionBlurPass& pass = input.pass;
+  const float per_length = 1.0f / length;
+  const glm::vec2 along{n.x * per_length, n.y * per_length};
   const BlurredPixel pixel = blurred_pixel(input, x, y);
   const glm::vec3 v = pixel.v;
   // A pixel that hardly moves has no way of its own: both are n.
@@ -164,7 +165,8 @@ glm::vec3 blurred_two_ways(const BlurInput& input, int x, int y, glm::vec2 n, gl
   const glm::vec2 ahead{turned ? -v.x : v.x, turned ? -v.y : v.y};
   const glm::vec2 mixed{n.x + (ahead.x - n.x) * moving, n.y + (ahead.y - n.y) * moving};
   const float own_length = std::sqrt(mixed.x * mixed.x + mixed.y * mixed.y);
-  const glm::vec2 across{mixed.x / own_length, mixed.y / own_length};
+  const float per_own_length = 1.0f / own_length;
+  const glm::vec2 across{mixed.x * per_own_length, mixed.y * per_own_length};
   const float facing = std::fabs(across.x * along.x + across.y * along.y);
 
   const float j = jitter(x, y);
@@ -177,7 +179,7 @@ glm::vec3 blurred_two_ways(const BlurInput& input, int x, int y, glm::vec2 n, gl
       {mixed, own_length, across, 1.0f, moving, pass.across_samples, pass.across_step, between});
 
   // Two equal ways are halves of one; else what the longest motion does not cover is the other's.
-  const float shorter = own_length < length ? own_length / length : 1.0f;
+  const float shorter = own_length < length ? own_length * per_length : 1.0f;
   const float half = (facing * shorter) * 0.5f;
   const float a_part = 1.0f - half;
   const float rest = a_part * (1.0f - a.count * pass.sample_part);
@@ -201,10 +203,8 @@ std::optional<glm::vec3> blurred(const BlurInput& input, int x, int y) {
   const float square = n.x * n.x + n.y * n.y;
   if (!(square > kLeastMotion2)) return {};
   const float length = std::sqrt(square);
-  const glm::vec2 along{n.x / length, n.y / length};
-  return input.pass.filter == MotionFilter::two_ways
-             ? blurred_two_ways(input, x, y, n, along, length)
-             : blurred_one_way(input, x, y, n, length);
+  return input.pass.filter == MotionFilter::two_ways ? blurred_two_ways(input, x, y, n, length)
+                                                     : blurred_one_way(input, x, y, n, length);
 }
 
 /// Tiles in which a pixel may read a motion that counts.
@@ -339,7 +339,7 @@ struct PixelLanes {
 struct SampleLanes {
   Ints x, y;
   FourFloats there;
-  Floats gap;  ///< how much farther it is, in parts of what lies wholly before another
+  Floats gap;  ///< how much farther it is (MotionBlurPass::inverse_depth)
 };
 
 SOFTFOCUS_INLINE SampleLanes sample_lanes(const BlurRow& row, const PixelLanes& pixel, Floats t,
@@ -398,7 +398,7 @@ SOFTFOCUS_INLINE ShownLanes shown_lanes(const BlurRow& row, const PixelLanes& pi
     const Floats t = (static_cast<float>(i) + on.jitter) * on.step - 1.0f;
     const SampleLanes of = sample_lanes(row, pixel, t, on.px);
     const Floats distance = absolute(t) * on.length_px;
-    Floats own = unit_lanes(2.0f + (of.gap + of.gap));
+    Floats own = unit_lanes(2.0f + of.gap);
     if (!reaches_all) {
       own = (own * larger(reached_lanes(distance * pixel.v_z), on.own_reach)) * on.own_part;
     }
@@ -411,7 +411,7 @@ SOFTFOCUS_INLINE ShownLanes shown_lanes(const BlurRow& row, const PixelLanes& pi
     }
     const FourFloats w = gather_texels(row.spread, of.x, of.y);
     const Floats there_part = absolute(w.r * on.way.x + w.g * on.way.y) * w.b;
-    const Floats nearer = unit_lanes(2.0f - (of.gap + of.gap));
+    const Floats nearer = unit_lanes(2.0f - of.gap);
     const Floats weight = unit_lanes((nearer * reached_lanes(distance * w.b)) * there_part + own);
     const Mask counts = weight > 0.0f;
     shown.count += weight;
@@ -423,15 +423,18 @@ SOFTFOCUS_INLINE ShownLanes shown_lanes(const BlurRow& row, const PixelLanes& pi
 }
 
 SOFTFOCUS_INLINE ColourLanes two_ways_lanes(const BlurRow& row, const PixelLanes& pixel, Ints x,
-                                            Vec2Lanes n, Vec2Lanes along, Floats length) {
+                                            Vec2Lanes n, Floats length) {
   const MotionBlurPass& pass = row.pass;
+  const Floats per_length = 1.0f / length;
+  const Vec2Lanes along{n.x * per_length, n.y * per_length};
   const Floats one = splat(1.0f), v_x = pixel.v_x, v_y = pixel.v_y;
   const Floats moving = unit_lanes((square_root(v_x * v_x + v_y * v_y) - 0.5f) * (1.0f / 1.5f));
   const Mask turned = v_x * n.x + v_y * n.y < 0.0f;
   const Floats mixed_x = n.x + (select(turned, -v_x, v_x) - n.x) * moving;
   const Floats mixed_y = n.y + (select(turned, -v_y, v_y) - n.y) * moving;
   const Floats own_length = square_root(mixed_x * mixed_x + mixed_y * mixed_y);
-  const Vec2Lanes across{mixed_x / own_length, mixed_y / own_length};
+  const Floats per_own_length = 1.0f / own_length;
+  const Vec2Lanes across{mixed_x * per_own_length, mixed_y * per_own_length};
   const Floats facing = absolute(across.x * along.x + across.y * along.y);
 
   const Floats j = jitter_lanes(x, row.y);
@@ -449,7 +452,7 @@ SOFTFOCUS_INLINE ColourLanes two_ways_lanes(const BlurRow& row, const PixelLanes
                                     pass.across_step,
                                     between});
 
-  const Floats shorter = select(own_length < length, own_length / length, one);
+  const Floats shorter = select(own_length < length, own_length * per_length, one);
   const Floats half = (facing * shorter) * 0.5f;
   const Floats a_part = 1.0f - half;
   const Floats rest = a_part * (1.0f - a.count * pass.sample_part);
@@ -486,7 +489,6 @@ SOFTFOCUS_INLINE int blur_vectors(const BlurRow& row, int begin, int end, std::u
     // What stays has a motion too, which no result is taken of.
     const Vec2Lanes n{select(moves, near.x, one), select(moves, near.y, zero)};
     const Floats length = square_root(select(moves, square, one));
-    const Vec2Lanes along{n.x / length, n.y / length};
     const HalfTexels v = load_half_texels(spread + 4 * at);
     const Floats own_a = half_to_float(own.a);
     const PixelLanes pixel{
@@ -498,7 +500,7 @@ SOFTFOCUS_INLINE int blur_vectors(const BlurRow& row, int begin, int end, std::u
         half_to_float(v.b),
         select(own_a > 0.0f, row.pass.inverse_depth / own_a, zero)};
     const ColourLanes colour = filter == MotionFilter::two_ways
-                                   ? two_ways_lanes(row, pixel, x, n, along, length)
+                                   ? two_ways_lanes(row, pixel, x, n, length)
                                    : one_way_lanes(row, pixel, x, n, length);
     store_half_texels(to + 4 * at,
                       {select(moves, float_to_half<rounding>(colour.r), own.r),

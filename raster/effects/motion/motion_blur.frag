@@ -70,8 +70,8 @@ vec4 shown_along(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 p
     precise float there_part = abs(cosine) * of.w.z;
     float in_reach = reached(of.of_own);
     float reach = in_reach > own_reach ? in_reach : own_reach;
-    precise float before = 2.0 - (of.gap + of.gap);
-    precise float behind = 2.0 + (of.gap + of.gap);
+    precise float before = 2.0 - of.gap;
+    precise float behind = 2.0 + of.gap;
     precise float either = (cut_to_1(before) * reached(of.of_there)) * there_part +
                            (cut_to_1(behind) * reach) * own_part;
     float weight = cut_to_1(either);
@@ -82,8 +82,9 @@ vec4 shown_along(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 p
   return shown;
 }
 
-vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, vec2 along,
-             float length) {
+vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, float length) {
+  precise float per_length = 1.0 / length;
+  precise vec2 along = n * per_length;
   precise float own_square = v.x * v.x + v.y * v.y;
   precise float above_still = (sqrt(own_square) - 0.5) * (1.0 / 1.5);
   float moving = cut_to_1(above_still);
@@ -92,7 +93,8 @@ vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, ve
   precise vec2 mixed = n + (ahead - n) * moving;
   precise float mixed_square = mixed.x * mixed.x + mixed.y * mixed.y;
   float own_length = sqrt(mixed_square);
-  precise vec2 across = mixed / own_length;
+  precise float per_own_length = 1.0 / own_length;
+  precise vec2 across = mixed * per_own_length;
   precise float cosine = across.x * along.x + across.y * along.y;
   float facing = abs(cosine);
 
@@ -104,7 +106,7 @@ vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, ve
   vec4 b = shown_along(at, size, own, v, per_depth, mixed, own_length, across, 1.0, moving,
                        across_samples, across_step, between);
 
-  precise float shorter = own_length < length ? own_length / length : 1.0;
+  precise float shorter = own_length < length ? own_length * per_length : 1.0;
   precise float half_part = (facing * shorter) * 0.5;
   precise float a_part = 1.0 - half_part;
   precise float rest = a_part * (1.0 - a.w * sample_part);
@@ -130,8 +132,7 @@ float cone(float q) {
   return cut_to_1(left);
 }
 
-vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, vec2 along,
-             float length) {
+vec3 blurred(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, vec2 n, float length) {
   float jittered = jitter(at);
   float total = v.z;
   precise vec3 sum = own.rgb * total;
@@ -163,8 +164,7 @@ void main() {
     return;
   }
   float length = sqrt(square);
-  precise vec2 along = n / length;
   vec3 v = texelFetch(spread, at, 0).xyz;
   precise float per_depth = own.a > 0.0 ? inverse_depth / own.a : 0.0;
-  result = vec4(blurred(at, size, own, v, per_depth, n, along, length), own.a);
+  result = vec4(blurred(at, size, own, v, per_depth, n, length), own.a);
 }

@@ -33,6 +33,7 @@ struct MotionBlurPass {
   int across_samples;  ///< along the pixel's own; with one_way none
   float across_part, across_step;
   int radius_px;
+  /// Of the gap between two depths over the nearer: 1 / depth, with two_ways 2 / depth.
   float inverse_depth;
   float to_half;  ///< shutter / 2: from pixels a frame to the way to either side
   MotionFilter filter;

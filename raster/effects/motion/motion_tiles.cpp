@@ -40,16 +40,17 @@ MotionBlurPass pass_of(const MotionBlurSettings& settings) {
   const int across = settings.filter == MotionFilter::two_ways ? settings.samples / 2 : 0;
   const auto along_samples = static_cast<float>(settings.samples - across);
   const auto across_samples = static_cast<float>(std::max(across, 1));
-  return {.samples = settings.samples - across,
-          .sample_part = 1.0f / along_samples,
-          .step = 2.0f / along_samples,
-          .across_samples = across,
-          .across_part = 1.0f / across_samples,
-          .across_step = 2.0f / across_samples,
-          .radius_px = settings.radius_px,
-          .inverse_depth = 1.0f / settings.depth,
-          .to_half = 0.5f * settings.shutter,
-          .filter = settings.filter};
+  return {
+      .samples = settings.samples - across,
+      .sample_part = 1.0f / along_samples,
+      .step = 2.0f / along_samples,
+      .across_samples = across,
+      .across_part = 1.0f / across_samples,
+      .across_step = 2.0f / across_samples,
+      .radius_px = settings.radius_px,
+      .inverse_depth = (settings.filter == MotionFilter::two_ways ? 2.0f : 1.0f) / settings.depth,
+      .to_half = 0.5f * settings.shutter,
+      .filter = settings.filter};
 }
 
 void motion_to_either_side(const MotionBlurPass& pass, const ConstImageView& velocity,
