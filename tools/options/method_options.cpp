@@ -1,5 +1,6 @@
 #include "tools/options/method_options.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -267,6 +268,19 @@ Sampling with_shutter_of(const Scene& scene, Sampling sampling) {
     sampling.shutter_frames = scene.camera.shutter_frames;
   }
   return sampling;
+}
+
+std::string shutter_warning(const Scene& scene, const MethodChoice& method,
+                            const std::vector<ChosenEffect>& effects) {
+  if (!(scene.camera.shutter_frames > 0.0)) return "";
+  if (method.of_scene != nullptr && method.of_scene->has_shutter) return "";
+  const bool is_blurred = std::any_of(effects.begin(), effects.end(), [](const ChosenEffect& of) {
+    return of.effect->velocity != VelocityOf::nothing;
+  });
+  if (is_blurred) return "";
+  return "the scene's shutter is open for " + short_number(scene.camera.shutter_frames) +
+         " frames, and this is one instant; --effect motion-blur blurs what moves, --method " +
+         names_of_methods_with_shutter() + " shows all of it";
 }
 
 void refuse_sampling_options(const CLI::App& parser, std::string_view method) {

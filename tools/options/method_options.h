@@ -10,6 +10,7 @@
 #include "dof/auto/auto_method.h"
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "raster/effects/effect.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
@@ -91,6 +92,11 @@ void complete_sampling(Sampling& sampling, const LensViewMethod& method, const C
 
 /// With the scene's shutter if the method has one and --shutter was not given.
 Sampling with_shutter_of(const Scene& scene, Sampling sampling);
+
+/// A warning if the scene suggests an open shutter, but the method and the effects show one
+/// instant, or "".
+std::string shutter_warning(const Scene& scene, const MethodChoice& method,
+                            const std::vector<ChosenEffect>& effects);
 
 /// Throws UsageError if one of them was given, for a filter does not sample the lens; but for
 /// --aperture-blades of kApertureMethod.

@@ -434,6 +434,9 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
   progress.clear();
   warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record),
                                    order_warning(record.effects)});
+  if (options.show == Show::image) {
+    warnings.push_back(shutter_warning(scene, options.method, record.effects));
+  }
   auto sidecar = sidecar_place(options);
   if (sidecar && !is_free_for_sidecar(*sidecar)) {
     warnings.push_back("'" + sidecar->string() +

@@ -106,3 +106,18 @@ TEST_CASE("a scene's shutter is a time of 0 to 64 frames") {
   CHECK(contains(run.err, "a.toml:2: "));
   CHECK(contains(run.err, "shutter"));
 }
+
+TEST_CASE("a scene whose shutter is open is not shown at one instant without a word") {
+  const auto said = [](const char* scene, const Words& words) {
+    const TemporaryDirectory directory;
+    const ProgramRun run = run_program(render(scene, directory.file("a.npy"), words));
+    CHECK(run.status == 0);
+    return contains(run.err, "shutter is open for 0.5 frames") &&
+           contains(run.err, "--effect motion-blur") && contains(run.err, "--method accumulation");
+  };
+  CHECK(said("windmill", {"--method", "two-pass"}));
+  CHECK_FALSE(said("windmill", {"--method", "two-pass", "--effect", "motion-blur"}));
+  CHECK_FALSE(said("windmill", {"--method", "accumulation", "--samples", "4"}));
+  CHECK_FALSE(said("windmill", {"--show", "pinhole"}));
+  CHECK_FALSE(said("figures", {"--method", "two-pass"}));
+}
