@@ -55,11 +55,12 @@ class ExrInput : public Imf::IStream {
   static constexpr std::size_t kLongestName = 255;  // the library's limit, too
 
   /// The library makes room for what an attribute claims before it reads it: 2 GB for a file of
-  /// 1 kB. A header is (name 0, type 0, size, value)... 0; of parts there are headers... 0.
+  /// 1 kB. A header is (name 0, type 0, size, value)... 0; of parts there are headers... 0. Of
+  /// types that it knows the library reads on behind the value, whatever the size: both must agree.
   void check_attributes() {
-    if (number() != Imf::MAGIC) return;  // which the library refuses
-    const bool parts = Imf::isMultiPart(number());
-    for (bool within = false;;) {
+    const bool is_exr = number() == Imf::MAGIC;  // another the library refuses
+    const bool parts = is_exr && Imf::isMultiPart(number());
+    for (bool within = false; is_exr;) {
       if (name().empty()) {
         if (!parts || !within) break;
         within = false;
@@ -69,12 +70,48 @@ class ExrInput : public Imf::IStream {
       const std::string type = name();
       const int size = claimed(number());
       const std::uint64_t end = at_ + static_cast<std::uint64_t>(size);
-      while (type == "stringvector" && at_ < end) {
-        at_ += static_cast<std::uint64_t>(claimed(number()));
-      }
+      check_value(type, end);
       at_ = end;
     }
     at_ = 0;
+  }
+
+  void check_value(std::string_view type, std::uint64_t end) {
+    struct Fixed {
+      std::string_view type;
+      std::uint64_t bytes;
+    };
+    static constexpr std::array kFixed{
+        Fixed{"box2i", 16},   Fixed{"box2f", 16},      Fixed{"chromaticities", 32},
+        Fixed{"v2i", 8},      Fixed{"v2f", 8},         Fixed{"v2d", 16},
+        Fixed{"v3i", 12},     Fixed{"v3f", 12},        Fixed{"v3d", 24},
+        Fixed{"m33f", 36},    Fixed{"m33d", 72},       Fixed{"m44f", 64},
+        Fixed{"m44d", 128},   Fixed{"compression", 1}, Fixed{"lineOrder", 1},
+        Fixed{"envmap", 1},   Fixed{"tiledesc", 9},    Fixed{"deepImageState", 1},
+        Fixed{"int", 4},      Fixed{"float", 4},       Fixed{"double", 8},
+        Fixed{"rational", 8}, Fixed{"timecode", 8},    Fixed{"keycode", 28}};
+    std::uint64_t is_at = end;
+    if (type == "stringvector") {
+      while (at_ < end) at_ += static_cast<std::uint64_t>(claimed(number()));
+      is_at = at_;
+    } else if (type == "chlist") {
+      while (!name().empty()) seekg(at_ + 16);
+      is_at = at_;
+    } else if (type == "preview") {
+      const auto width = static_cast<std::uint32_t>(number());
+      const auto height = static_cast<std::uint32_t>(number());
+      const std::uint64_t left = (source_.size() - at_) / 4;
+      is_at = width == 0 || height <= left / width ? at_ + std::uint64_t{4} * width * height
+                                                   : source_.size() + 1;
+    } else {
+      const auto fixed = std::find_if(kFixed.begin(), kFixed.end(),
+                                      [&](const Fixed& of) { return of.type == type; });
+      if (fixed != kFixed.end()) is_at = at_ + fixed->bytes;
+    }
+    if (is_at != end) {
+      throw FileError("the EXR is damaged: a value of its header, " + std::string{type} +
+                      ", has another size than it claims");
+    }
   }
 
   int claimed(int size) const {

@@ -531,6 +531,16 @@ TEST_CASE("bad input: an EXR's header that claims 2 GB is refused before room is
   CHECK(contains(refused(vector + most + "text"), "claims a value of 2147483647 bytes"));
   CHECK(contains(refused(vector + "\xFF\xFF\xFF\xFFtext"), "claims a value of -1 bytes"));
   CHECK_FALSE(contains(refused(vector + "\4\0\0\0text"s), "claims"));
+  // Values of types that the library reads whatever their size: what it takes for the next
+  // attribute lies within them, or they within it.
+  const std::string hidden = "big\0opaque\0"s + most;
+  const std::string shown = "of another\0box2i\0"s;
+  CHECK(contains(refused(shown + "\x20\0\0\0"s + std::string(16, '\0') + hidden), "another size"));
+  CHECK(contains(refused(shown + "\x04\0\0\0text"s), "another size"));
+  const std::string channels = "others\0chlist\0"s;
+  CHECK(contains(refused(channels + "\x11\0\0\0\0"s + hidden), "another size"));
+  CHECK(contains(refused("small\0preview\0\x08\0\0\0\xFF\xFF\0\0\xFF\xFF\0\0"s), "another size"));
+  CHECK_FALSE(contains(refused("small\0preview\0\x0C\0\0\0\1\0\0\0\1\0\0\0rgba"s), "size"));
 }
 
 TEST_CASE("EXR: any changed byte is refused or gives a picture") {
