@@ -357,30 +357,27 @@ SOFTFOCUS_INLINE long long pair_at(const std::int32_t* base, std::int32_t index)
   std::memcpy(&pair, base + 2 * static_cast<std::ptrdiff_t>(index), sizeof pair);
   return pair;
 }
+/// Of half of the lanes.
+SOFTFOCUS_INLINE Ints pairs_at(const std::int32_t* base, const std::int32_t* index) {
+#if SOFTFOCUS_LANES == 16
+  return (Ints)_mm512_setr_epi64(pair_at(base, index[0]), pair_at(base, index[1]),
+                                 pair_at(base, index[2]), pair_at(base, index[3]),
+                                 pair_at(base, index[4]), pair_at(base, index[5]),
+                                 pair_at(base, index[6]), pair_at(base, index[7]));
+#else
+  return (Ints)_mm256_setr_epi64x(pair_at(base, index[0]), pair_at(base, index[1]),
+                                  pair_at(base, index[2]), pair_at(base, index[3]));
 #endif
-// One by one: a load a lane takes less than half the time of a gather instruction, which processors
-// of several makers split up or have slowed down.
+}
+#endif
+// One by one: a load a lane takes less time than a gather instruction, which processors of several
+// makers split up or have slowed down.
 SOFTFOCUS_INLINE IntPairs gather_pairs(const std::int32_t* base, Ints indices) {
 #if SOFTFOCUS_LANES >= 8
   std::int32_t index[kLanes];
   std::memcpy(index, &indices, sizeof index);
-#endif
-#if SOFTFOCUS_LANES == 16
-  const auto eight = [&](int first) {
-    return (Ints)_mm512_setr_epi64(pair_at(base, index[first]), pair_at(base, index[first + 1]),
-                                   pair_at(base, index[first + 2]), pair_at(base, index[first + 3]),
-                                   pair_at(base, index[first + 4]), pair_at(base, index[first + 5]),
-                                   pair_at(base, index[first + 6]),
-                                   pair_at(base, index[first + 7]));
-  };
-  return unzip_lanes(eight(0), eight(8), std::make_index_sequence<kLanes>{});
-#elif SOFTFOCUS_LANES == 8
-  const auto four = [&](int first) {
-    return (Ints)_mm256_setr_epi64x(pair_at(base, index[first]), pair_at(base, index[first + 1]),
-                                    pair_at(base, index[first + 2]),
-                                    pair_at(base, index[first + 3]));
-  };
-  return unzip_lanes(four(0), four(4), std::make_index_sequence<kLanes>{});
+  return unzip_lanes(pairs_at(base, index), pairs_at(base, index + kLanes / 2),
+                     std::make_index_sequence<kLanes>{});
 #else
   IntPairs v{};
   for (int i = 0; i < kLanes; ++i) {

@@ -1,5 +1,5 @@
 // Last pass of motion blur: what is seen through the pixel while the shutter is open. Beside
-// raster/effects/motion/motion_blur.cpp. Defined or not: TWO_WAYS.
+// raster/effects/motion/motion_one_way.cpp and, with TWO_WAYS, motion_two_ways.cpp.
 #include "motion_blur.glsl"
 
 uniform sampler2D source;

@@ -1,4 +1,4 @@
-// What the passes of motion blur share. Beside raster/effects/motion/motion_blur.cpp, whose order of
+// What the passes of motion blur share. Beside raster/effects/motion/motion_samples.h, whose order of
 // operations this is.
 uint jitter_bits(int x, int y) { return (uint(x) * 3242174889u + uint(y) * 2447445414u) >> 8; }
 
