@@ -22,6 +22,22 @@ using namespace softfocus;
 
 namespace {
 
+// A signal that a child must not get before it is prepared: blocked from the fork on, by the mask
+// that the child inherits.
+class Blocked {
+ public:
+  explicit Blocked(int signal) {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, signal);
+    ::pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  }
+  ~Blocked() { allow(); }
+  void allow() const { ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr); }
+
+ private:
+  sigset_t signals_{};
+};
+
 // What a child leaves in a folder of its own when a signal ends it before a commit.
 void check_nothing_left(int signal) {
   const auto folder = std::filesystem::temp_directory_path() /
@@ -82,9 +98,11 @@ TEST_CASE("interrupts in a row, to threads that make files, leave whole files al
       std::filesystem::temp_directory_path() / ("softfocus-threads-" + std::to_string(::getpid()));
   for (int round = 0; round < 40; ++round) {
     std::filesystem::create_directory(folder);
+    const Blocked interrupts{SIGINT};
     const pid_t child = ::fork();
     if (child == 0) {
       prepare_interrupts();
+      interrupts.allow();
       const auto make = [&](int number) {
         for (;;) {
           WholeFile file{folder / std::to_string(number)};
