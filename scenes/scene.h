@@ -54,11 +54,18 @@ struct SceneLens {
 
 enum class LightKind : std::uint8_t { directional, point };
 
+/// How a light's shadows are made (scenes/shadows).
+enum class ShadowKind : std::uint8_t { none, projected };
+
+/// Lights with shadows: a bit each in a stencil of 8.
+inline constexpr int kMostShadowLights = 8;
+
 struct Light {
   LightKind kind = LightKind::directional;
   /// Of a directional light: towards the light, any length. Of a point light: where it is.
   glm::vec3 position_or_direction{0.0f, 1.0f, 0.0f};
   glm::vec3 colour{1.0f};
+  ShadowKind shadows = ShadowKind::none;
 };
 
 /// Blinn-Phong, evaluated at the vertices.

@@ -8,6 +8,7 @@
 #include "raster/images/texel.h"
 #include "raster/pipeline/draw.h"
 #include "raster/threads/scratch_shelf.h"
+#include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/draw/surface_lanes.h"
 #include "scenes/draw/surface_stages.h"
@@ -63,6 +64,7 @@ glm::vec4 clear_colour(const Scene& scene) {
 
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool) {
   PreparedScene prepared = prepare_surfaces(scene, profile, pool);
+  if (has_shadows(scene)) prepared.shadows = make_scene_shadows(scene, profile, pool);
   if (pool.isa() == Isa::scalar) return prepared;
   pool.for_each(static_cast<int>(scene.textures.size()), [&](int i) {
     const auto number = static_cast<std::size_t>(i);
@@ -73,7 +75,7 @@ PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPo
 }
 
 PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, ThreadPool& pool) {
-  PreparedScene prepared{&scene, has_transparent(scene), {}, {}, {}, {}, {}, {}};
+  PreparedScene prepared{&scene, has_transparent(scene), {}, {}, {}, {}, {}, {}, {}};
   prepared.pass.profile = profile;
   prepared.pass.isa = pool.isa();
   prepared.transparent_pass.profile = profile;
@@ -90,10 +92,16 @@ PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, Threa
 
 void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                   RenderPass& pass) {
+  record_scene(prepared, camera, frame, pass, prepared.scene->lights);
+}
+
+void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                  RenderPass& pass, std::span<const Light> lights) {
   pass.clear_colour = clear_colour(*prepared.scene);
   pass.clear_depth = 1.0f;
   pass.keep_depth = prepared.has_transparent;
-  for (const SurfaceDraw& surface : surface_draws(*prepared.scene, camera, frame)) {
+  for (SurfaceDraw& surface : surface_draws(*prepared.scene, camera, frame)) {
+    surface.input.lights = lights;
     if (!surface.opacity.blends) draw_surface(prepared, surface, pass);
   }
 }
@@ -220,6 +228,10 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   }
   record_scene(prepared, camera, frame, pass);
   finish(pass, pool);
+  if (!prepared.shadows) return;
+  std::vector<Image*> layers{&picture};
+  for (Image& layer : behind) layers.push_back(&layer);
+  add_shadows(prepared, camera, frame, layers, pass.behind_before, pool);
 }
 
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,

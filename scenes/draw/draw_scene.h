@@ -2,6 +2,7 @@
 // From a scene to draw calls.
 
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,8 @@
 #include "scenes/scene.h"
 
 namespace softfocus {
+
+struct SceneShadows;  // shadowed_layers.h
 
 /// The background at the far distance: a picture's colour where nothing is drawn.
 glm::vec4 clear_colour(const Scene& scene);
@@ -38,6 +41,8 @@ struct PreparedScene {
   // If the scene has transparent surfaces.
   RenderPass transparent_pass;
   TransparentTargets transparent;
+  /// If a light of the scene has shadows.
+  std::shared_ptr<SceneShadows> shadows;
 };
 
 /// The scene must outlive the result. `pool` is the one that will draw.
@@ -74,6 +79,10 @@ std::vector<TransparentPicture> draw_transparent(PreparedScene& prepared,
 /// profile and isa of prepare_scene(). Depths are kept if the scene has transparent surfaces.
 void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                   RenderPass& pass);
+
+/// The same, lit by other lights than the scene's. They must outlive the draws.
+void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                  RenderPass& pass, std::span<const Light> lights);
 
 /// Records the transparent draws of a frame into a pass that has set_targets().
 void record_transparent(const PreparedScene& prepared, const CameraMatrices& camera, double frame,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -99,6 +100,7 @@ AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPo
           {},
           {},
           {},
+          {},
           {}};
 }
 
@@ -131,6 +133,44 @@ CameraMatrices camera_at(const LensViewInput& input, double frame) {
   return camera_matrices(camera, frame, input.pinhole.width, input.pinhole.height);
 }
 
+// When and from where a sample sees the scene.
+struct LensView {
+  double frame;
+  CameraMatrices camera;
+};
+
+LensView lens_view(const AccumulationBuffer& buffer, const LensViewInput& input,
+                   std::size_t sample) {
+  const double frame = input.frame + (buffer.times.empty() ? 0.0 : buffer.times[sample]);
+  return {frame, lens_camera(camera_at(input, frame),
+                             buffer.points[sample] * input.aperture_radius_m, input.focus_m,
+                             buffer.offsets[sample], buffer.picture.width, buffer.picture.height)};
+}
+
+// A view's shadows are found from all of its pixels, so it is drawn whole.
+void draw_shadowed_views(AccumulationBuffer& buffer, const LensViewInput& input, std::size_t begin,
+                         std::size_t count, ThreadPool& pool) {
+  const int width = buffer.picture.width, height = buffer.picture.height;
+  while (buffer.shadowed.size() < count) {
+    buffer.shadowed.push_back(make_image(Format::rgba16f, width, height));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const LensView view = lens_view(buffer, input, begin + i);
+    draw_layers(buffer.prepared, view.camera, view.frame, buffer.shadowed[i], {}, pool);
+  }
+}
+
+void copy_tile(const Image& from, const Rectangle& area, std::byte* texels) {
+  const std::size_t bytes =
+      kTexelHalves * sizeof(std::uint16_t) * static_cast<std::size_t>(area.x_end - area.x_begin);
+  for (int y = area.y_begin; y < area.y_end; ++y, texels += bytes) {
+    std::memcpy(
+        texels,
+        row<std::uint16_t>(from, y).data() + kTexelHalves * static_cast<std::size_t>(area.x_begin),
+        bytes);
+  }
+}
+
 }  // namespace
 
 void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int begin, int end,
@@ -140,6 +180,9 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
   assert(buffer.times.empty() || static_cast<std::size_t>(end) <= buffer.times.size());
   const bool has_transparent = buffer.prepared.has_transparent;
+  if (buffer.prepared.shadows) {
+    draw_shadowed_views(buffer, input, static_cast<std::size_t>(begin), count, pool);
+  }
   for (std::size_t i = 0; i < count; ++i) pass_of(buffer.passes, i, buffer.prepared);
   if (has_transparent) make_transparent_passes(buffer, count);
   if (buffer.tile_lists.size() < count) buffer.tile_lists.resize(count);
@@ -149,11 +192,7 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
     const auto i = static_cast<std::size_t>(number);
     passes[i].targets.colour[0] = &buffer.picture;  // the buffer may have moved
     passes[i].targets.depth = &buffer.depth;
-    const std::size_t sample = static_cast<std::size_t>(begin) + i;
-    const double frame = input.frame + (buffer.times.empty() ? 0.0 : buffer.times[sample]);
-    const CameraMatrices camera = lens_camera(
-        camera_at(input, frame), buffer.points[sample] * input.aperture_radius_m, input.focus_m,
-        buffer.offsets[sample], buffer.picture.width, buffer.picture.height);
+    const auto& [frame, camera] = lens_view(buffer, input, static_cast<std::size_t>(begin) + i);
     record_scene(buffer.prepared, camera, frame, passes[i]);
     if (!has_transparent) return;
     record_transparent(buffer.prepared, camera, frame, buffer.transparent_passes[i]);
@@ -167,6 +206,9 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
 void draw_view_tile(AccumulationBuffer& buffer, std::size_t i, int tile, TileMemory& memory,
                     std::byte* texels) {
   draw_tile_aside(buffer.passes[i], buffer.tile_lists[i], tile, memory, texels);
+  if (buffer.prepared.shadows) {
+    copy_tile(buffer.shadowed[i], tile_area(buffer.tile_lists[i], tile), texels);
+  }
   if (!buffer.prepared.has_transparent) return;
   const RenderPass& pass = buffer.transparent_passes[i];
   const std::size_t layers = draw_transparent_tile(pass, buffer.transparent_lists[i], tile,

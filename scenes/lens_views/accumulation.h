@@ -44,6 +44,8 @@ struct AccumulationBuffer {
   TransparentTargets transparent;
   std::vector<RenderPass> transparent_passes;
   std::vector<TileLists> transparent_lists;
+  /// Likewise, if a light has shadows: the views, whole.
+  std::vector<Image> shadowed;
 };
 
 /// With lens_points(), pixel_offsets() and the shutter_sequence() for up to

@@ -102,6 +102,7 @@ SceneLens read_lens(Section section) {
 
 Light read_light(Section& section) {
   static constexpr std::array<std::string_view, 2> kKinds = {"directional", "point"};
+  static constexpr std::array<std::string_view, 2> kShadows = {"none", "projected"};
   Light light;
   if (!has_key(section, "kind")) {
     fail_at(section, "kind", "is missing; \"directional\" or \"point\" would be right");
@@ -118,6 +119,7 @@ Light read_light(Section& section) {
     fail_at(section, place, "points nowhere; a vector towards the light would be right");
   }
   light.colour = read_colour(section, "colour", light.colour, kBrightest);
+  light.shadows = static_cast<ShadowKind>(read_choice(section, "shadows", 0, kShadows));
   finish_section(section);
   return light;
 }
@@ -161,7 +163,16 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file) 
             "has " + std::to_string(lights.size()) + " lights; up to " +
                 std::to_string(kMaxLights) + " would do");
   }
-  for (Section& light : lights) scene.lights.push_back(read_light(light));
+  int with_shadows = 0;
+  for (Section& light : lights) {
+    scene.lights.push_back(read_light(light));
+    if (scene.lights.back().shadows == ShadowKind::none) continue;
+    if (++with_shadows > kMostShadowLights) {
+      fail_at(light, "shadows",
+              "is one light's too many; up to " + std::to_string(kMostShadowLights) +
+                  " lights may have shadows");
+    }
+  }
   for (Section& effect : read_sections(top, "effect")) scene.effects.push_back(read_effect(effect));
 
   const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene);

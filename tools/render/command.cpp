@@ -16,6 +16,7 @@
 #include "scenes/draw/frame_parts.h"
 #include "scenes/draw/keyframes.h"
 #include "scenes/draw/object_numbers.h"
+#include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/draw/velocity.h"
 #include "scenes/load/load_scene.h"
@@ -434,6 +435,8 @@ Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms)
     return load_scene(options.scene, scene_search_path(options.scene_path));
   });
   progress.clear();
+  settle_shadows(options, scene);
+  for (std::string& warning : shadow_warnings(scene)) scene.warnings.push_back(std::move(warning));
   print_scene_warnings(scene.warnings, options.verbose);
   if (has_transparent(scene)) check_transparent_memory(options);
   return scene;

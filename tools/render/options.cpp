@@ -6,6 +6,7 @@
 
 #include "raster/images/image.h"
 #include "raster/pipeline/merge.h"
+#include "scenes/draw/shadowed_layers.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/files/same_file.h"
@@ -23,6 +24,13 @@ struct ShowChoice {
 constexpr std::array kShowChoices{ShowChoice{"image", Show::image},
                                   ShowChoice{"pinhole", Show::pinhole},
                                   ShowChoice{"coc", Show::coc}, ShowChoice{"depth", Show::depth}};
+
+struct ShadowChoice {
+  std::string_view name;
+  ShadowKind kind;
+};
+constexpr std::array kShadowChoices{ShadowChoice{"none", ShadowKind::none},
+                                    ShadowChoice{"projected", ShadowKind::projected}};
 
 void add_picture_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Output");
@@ -81,6 +89,17 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Scene");
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
+  add_value(parser, "--shadows", "none|projected",
+            "Shadows of all lights, in place of what the scene says of each",
+            [&options](const std::string& text) {
+              for (const ShadowChoice& choice : kShadowChoices) {
+                if (choice.name == text) {
+                  options.shadows = choice.kind;
+                  return;
+                }
+              }
+              refuse_name("--shadows", text, names_in(kShadowChoices));
+            });
   add_sequence_options(parser, options.sequence,
                        "Of --frames only every N-th, from the I-th on; without them, of "
                        "accumulation, the I-th of N parts of the samples: FILE, a .sum, gets their "
@@ -272,6 +291,22 @@ void check_render_memory(const RenderOptions& options, std::uint64_t each_pixel)
 }
 
 }  // namespace
+
+void settle_shadows(const RenderOptions& options, Scene& scene) {
+  if (options.shadows) set_shadows(scene, *options.shadows);
+  if (!has_shadows(scene)) return;
+  if (options.shadows && scene.lights.size() > kMostShadowLights) {
+    throw UsageError("--shadows: '" + options.scene + "' has " +
+                     count_text(static_cast<int>(scene.lights.size()), "light") + "; up to " +
+                     std::to_string(kMostShadowLights) + " may have shadows");
+  }
+  const std::string_view method = options.method.name();
+  const bool is_without = method == "ray-traced" || method == "surface-splatting";
+  if (options.gl == nullptr && !(is_without && options.show == Show::image)) return;
+  throw UsageError(
+      (options.gl != nullptr ? std::string{"--gl"} : "--method " + std::string{method}) +
+      ": draws no shadows; --shadows none would leave them out");
+}
 
 void check_transparent_memory(const RenderOptions& options) {
   check_render_memory(options, bytes_per_pixel(options) + kTransparentBytesPerPixel);

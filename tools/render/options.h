@@ -11,6 +11,7 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/numbers/profile.h"
 #include "scenes/auto/auto_picture.h"
+#include "scenes/scene.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
 #include "tools/gl/driver.h"
@@ -37,7 +38,8 @@ struct RenderOptions {
   EffectOptions effects;  ///< on the finished picture
   int supersample = 1;    ///< what is drawn and filtered has so many times the width and height
   double frame = 0.0;
-  SequenceOptions sequence;  ///< of many pictures
+  std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
+  SequenceOptions sequence;           ///< of many pictures
   Profile profile;
   std::string profile_name = "ieee";
   std::filesystem::path profile_file;  ///< empty if the profile is a known one
@@ -81,6 +83,10 @@ void add_render_options(CLI::App& parser, RenderOptions& options);
 /// What each option alone cannot know: throws UsageError for options that are missing,
 /// exclude each other or do not fit together, and settles the format.
 void complete(RenderOptions& options, const CLI::App& parser);
+
+/// Gives the scene's lights the shadows of --shadows. Throws UsageError for too many lights, and
+/// for a way to draw that has no shadows.
+void settle_shadows(const RenderOptions& options, Scene& scene);
 
 /// Throws UsageError if there is not the memory for a scene with transparent surfaces.
 void check_transparent_memory(const RenderOptions& options);

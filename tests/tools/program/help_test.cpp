@@ -18,6 +18,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--depth-output FILE",
                        "--size WxH",
                        "--show image|pinhole|coc|depth",
+                       "--shadows none|projected",
                        "--layers K",
                        "--frame N",
                        "--scene-path DIR",

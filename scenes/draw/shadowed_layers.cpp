@@ -1,0 +1,246 @@
+#include "scenes/draw/shadowed_layers.h"
+
+#include <algorithm>
+#include <bitset>
+#include <cstring>
+#include <utility>
+
+#include "raster/threads/scratch_shelf.h"
+#include "scenes/draw/surface_draws.h"
+
+namespace softfocus {
+namespace {
+
+bool mirrors(const glm::dmat4& m) {
+  return dot(glm::dvec3{m[0]}, cross(glm::dvec3{m[1]}, glm::dvec3{m[2]})) < 0.0;
+}
+
+bool is_cut_out(const Material& material, const Mesh& mesh) {
+  return material.opacity_texture && !mesh.uvs.empty() && material.cut_out;
+}
+
+bool moves(const Object& object) {
+  return object.spin_degrees_per_frame != glm::dvec3{0.0} || object.sway != glm::dvec3{0.0};
+}
+
+void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool& pool) {
+  if (shadows.frame && (*shadows.frame == frame || !shadows.moves)) return;
+  shadows.facets = scene_facets(scene, frame);
+  shadows.projected.clear();
+  for (const std::size_t light : shadows.lights) {
+    shadows.projected.push_back(
+        project_by_grid(shadows.facets, shadow_light(scene.lights[light]), pool));
+  }
+  shadows.frame = frame;
+}
+
+void draw_masks(SceneShadows& shadows, const CameraMatrices& camera, int width, int height,
+                const Profile& profile, ThreadPool& pool) {
+  std::vector<const ProjectedShadows*> of_lights;
+  for (const ProjectedShadows& of_light : shadows.projected) of_lights.push_back(&of_light);
+  const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
+  shadows.masks.resize(shadows.seen.size());
+  for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
+    shadows.masks[i].resize(shadows.seen[i].size());
+    draw_shadow_mask(shadows.facets, of_lights, shadows.seen[i], view, shadows.masks[i], pool);
+  }
+}
+
+// Calls use(texels of the image's row, masks, count) for each row of a tile.
+template <class Use>
+void for_each_tile_row(const Rectangle& area, int width, std::span<const std::uint8_t> mask,
+                       const Use& use) {
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    use(y, mask.subspan(row + static_cast<std::size_t>(area.x_begin),
+                        static_cast<std::size_t>(area.x_end - area.x_begin)));
+  }
+}
+
+using MaskSet = std::bitset<256>;
+
+struct Tiles {
+  int across;
+  std::vector<MaskSet> masks;  // that a tile's pixels have, in any layer
+};
+
+Rectangle area_of(const Tiles& tiles, int tile, int width, int height) {
+  const int x = tile % tiles.across * kTileSize, y = tile / tiles.across * kTileSize;
+  return {x, y, std::min(x + kTileSize, width), std::min(y + kTileSize, height)};
+}
+
+Tiles find_masks(const SceneShadows& shadows, int width, int height, ThreadPool& pool) {
+  Tiles tiles{(width + kTileSize - 1) / kTileSize, {}};
+  const int down = (height + kTileSize - 1) / kTileSize;
+  tiles.masks.resize(static_cast<std::size_t>(tiles.across) * static_cast<std::size_t>(down));
+  pool.for_each(static_cast<int>(tiles.masks.size()), [&](int tile) {
+    MaskSet& found = tiles.masks[static_cast<std::size_t>(tile)];
+    for (const auto& mask : shadows.masks) {
+      for_each_tile_row(area_of(tiles, tile, width, height), width, mask,
+                        [&](int, std::span<const std::uint8_t> row) {
+                          std::uint8_t last = 0;
+                          for (const std::uint8_t m : row) {
+                            if (m != last) found.set(m);
+                            last = m;
+                          }
+                        });
+    }
+  });
+  return tiles;
+}
+
+std::vector<Light> lights_without(const Scene& scene, const SceneShadows& shadows,
+                                  std::size_t mask) {
+  std::vector<Light> left;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const auto bit = std::find(shadows.lights.begin(), shadows.lights.end(), i);
+    const bool is_out =
+        bit != shadows.lights.end() && (mask >> (bit - shadows.lights.begin()) & 1u) != 0;
+    if (!is_out) left.push_back(scene.lights[i]);
+  }
+  return left;
+}
+
+void copy_pixels(const Image& from, Image& to, const Rectangle& area,
+                 std::span<const std::uint8_t> mask, std::size_t of) {
+  constexpr std::size_t kTexelBytes = 8;
+  for_each_tile_row(area, to.width, mask, [&](int y, std::span<const std::uint8_t> row_mask) {
+    const std::size_t first = static_cast<std::size_t>(y) * to.stride_bytes +
+                              kTexelBytes * static_cast<std::size_t>(area.x_begin);
+    for (std::size_t i = 0; i < row_mask.size(); ++i) {
+      if (row_mask[i] != of) continue;
+      const std::size_t at = first + kTexelBytes * i;
+      std::memcpy(to.bytes.data() + at, from.bytes.data() + at, kTexelBytes);
+    }
+  });
+}
+
+void set_targets(SceneShadows& shadows, std::size_t layers, int width, int height) {
+  if (shadows.layers.size() < layers) {
+    shadows.layers.resize(layers);
+    shadows.depths.resize(layers);
+  }
+  RenderTargets& targets = shadows.pass.targets;
+  targets.behind = {};
+  for (std::size_t i = 0; i < layers; ++i) {
+    if (shadows.layers[i].width != width || shadows.layers[i].height != height) {
+      shadows.layers[i] = make_image(Format::rgba16f, width, height);
+      shadows.depths[i] = make_image(Format::r32f, width, height);
+    }
+    if (i > 0) targets.behind[i - 1] = {&shadows.layers[i], &shadows.depths[i]};
+  }
+  targets.colour[0] = shadows.layers.data();
+  targets.depth = shadows.depths.data();
+}
+
+}  // namespace
+
+bool has_shadows(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(),
+                     [](const Light& light) { return light.shadows != ShadowKind::none; });
+}
+
+void set_shadows(Scene& scene, ShadowKind kind) {
+  for (Light& light : scene.lights) light.shadows = kind;
+}
+
+std::vector<std::string> shadow_warnings(const Scene& scene) {
+  if (!has_shadows(scene)) return {};
+  std::vector<std::string> warnings;
+  const auto any = [&](const auto& is) {
+    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+      return is(scene.materials[object.material], scene.meshes[object.mesh]);
+    });
+  };
+  if (any(is_cut_out)) warnings.emplace_back("shadows: cut-out surfaces cast none");
+  if (any(is_transparent)) {
+    warnings.emplace_back("shadows: transparent surfaces cast none and are fully lit");
+  }
+  return warnings;
+}
+
+Facets scene_facets(const Scene& scene, double frame) {
+  std::vector<Facet> facets;
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = scene.meshes[object.mesh];
+    const Material& material = scene.materials[object.material];
+    const glm::dmat4 to_world = object_matrix(object, frame);
+    const bool swaps = mirrors(to_world);
+    const bool casts = !is_transparent(material, mesh) && !is_cut_out(material, mesh);
+    std::vector<glm::dvec3> positions;
+    positions.reserve(mesh.positions.size());
+    for (const glm::vec3& position : mesh.positions) {
+      const glm::dvec3 p{position};
+      positions.emplace_back(((to_world[0] * p.x + to_world[1] * p.y) + to_world[2] * p.z) +
+                             to_world[3]);
+    }
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      Facet facet{{positions[mesh.indices[i]], positions[mesh.indices[i + 1]],
+                   positions[mesh.indices[i + 2]]},
+                  material.two_sided,
+                  casts};
+      if (swaps) std::swap(facet.corners[1], facet.corners[2]);
+      facets.push_back(facet);
+    }
+  }
+  return make_facets(std::move(facets));
+}
+
+ShadowLight shadow_light(const Light& light) {
+  const glm::dvec3 place{light.position_or_direction};
+  if (light.kind == LightKind::point) return {place, 1.0};
+  return {normalize(place), 0.0};
+}
+
+std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profile& profile,
+                                                 ThreadPool& pool) {
+  auto shadows = std::make_shared<SceneShadows>();
+  shadows->numbered = number_triangles(scene, profile, pool.isa());
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (scene.lights[i].shadows != ShadowKind::none) shadows->lights.push_back(i);
+  }
+  shadows->moves = std::any_of(scene.objects.begin(), scene.objects.end(), moves);
+  shadows->pass.profile = profile;
+  shadows->pass.isa = pool.isa();
+  return shadows;
+}
+
+void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                 std::span<Image* const> layers, std::optional<float> behind_before,
+                 ThreadPool& pool) {
+  SceneShadows& shadows = *prepared.shadows;
+  const Scene& scene = *prepared.scene;
+  const int width = layers[0]->width, height = layers[0]->height;
+  update(shadows, scene, frame, pool);
+  shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
+                                  layers.size(), pool, behind_before);
+  draw_masks(shadows, camera, width, height, shadows.pass.profile, pool);
+  const Tiles tiles = find_masks(shadows, width, height, pool);
+
+  for (std::size_t mask = 1; mask < MaskSet{}.size(); ++mask) {
+    std::vector<int> with_mask;
+    for (std::size_t tile = 0; tile < tiles.masks.size(); ++tile) {
+      if (tiles.masks[tile].test(mask)) with_mask.push_back(static_cast<int>(tile));
+    }
+    if (with_mask.empty()) continue;
+    const std::vector<Light> lights = lights_without(scene, shadows, mask);
+    set_targets(shadows, layers.size(), width, height);
+    shadows.pass.behind_before = behind_before;
+    record_scene(prepared, camera, frame, shadows.pass, lights);
+    TileLists lists;
+    sort_into_tiles({&shadows.pass, 1}, {&lists, 1}, pool);
+    ScratchShelf<TileMemory> shelf;
+    pool.for_each(static_cast<int>(with_mask.size()), [&](int number) {
+      const int tile = with_mask[static_cast<std::size_t>(number)];
+      TileMemory memory = shelf.take();
+      draw_tile(shadows.pass, lists, tile, memory);
+      shelf.put_back(std::move(memory));
+      for (std::size_t i = 0; i < layers.size(); ++i) {
+        copy_pixels(shadows.layers[i], *layers[i], tile_area(lists, tile), shadows.masks[i], mask);
+      }
+    });
+    shadows.pass.draws.clear();
+  }
+}
+
+}  // namespace softfocus

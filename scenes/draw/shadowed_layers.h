@@ -1,0 +1,55 @@
+#pragma once
+// The shadows of a scene's frames. A pixel that a light does not reach has the bits that it has in
+// the scene without this light: the light's own share is left out exactly, and ambient light and
+// other lights remain.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/seen_facets.h"
+#include "scenes/shadows/projected_shadows.h"
+
+namespace softfocus {
+
+/// Whether a light of the scene has shadows.
+bool has_shadows(const Scene& scene);
+
+/// Gives all lights of a scene this kind. Needs kMostShadowLights or fewer unless it is none.
+void set_shadows(Scene& scene, ShadowKind kind);
+
+/// What of the scene casts no shadow and why, a line for each reason.
+std::vector<std::string> shadow_warnings(const Scene& scene);
+
+/// The scene's triangles in the world, object by object.
+Facets scene_facets(const Scene& scene, double frame);
+
+ShadowLight shadow_light(const Light& light);
+
+/// Kept from frame to frame: projected triangles as long as nothing moves, and memory.
+struct SceneShadows {
+  NumberedScene numbered;
+  std::vector<std::size_t> lights;  ///< of the scene, those with shadows: bit i is lights[i]
+  bool moves = false;               ///< whether objects are elsewhere at another frame
+  std::optional<double> frame;      ///< of facets and projected
+  Facets facets;
+  std::vector<ProjectedShadows> projected;       ///< of each of `lights`
+  std::vector<std::vector<SeenFacet>> seen;      ///< of each layer
+  std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
+  // The scene without some lights.
+  RenderPass pass;
+  std::vector<Image> layers, depths;
+};
+
+std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profile& profile,
+                                                 ThreadPool& pool);
+
+/// Puts the shadows into layers that draw_layers() has drawn of the same frame without any.
+void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                 std::span<Image* const> layers, std::optional<float> behind_before,
+                 ThreadPool& pool);
+
+}  // namespace softfocus

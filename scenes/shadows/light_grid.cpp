@@ -1,0 +1,208 @@
+#include "scenes/shadows/light_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace softfocus {
+namespace {
+
+constexpr int kMostCells = 1024;
+
+// Of a caster on average. Casters that each fill the light's view get fewer, larger cells: the
+// memory stays a multiple of the casters'.
+constexpr std::size_t kMostEntries = 32;
+
+// A part of a side, in cells: x_begin <= x <= x_end.
+struct CellRange {
+  int x_begin, y_begin, x_end, y_end;
+};
+
+int cell_of(double place, int cells) {
+  // Not a number, which a division by 0 gives, is cell 0: see range_of().
+  if (!(place > 0.0)) return 0;
+  return static_cast<int>(std::min(place * cells, cells - 1.0));
+}
+
+// A little more than the polygon: what touches a cell's edge is in both cells.
+constexpr double kMargin = 1e-9;
+
+CellRange range_of(glm::dvec2 low, glm::dvec2 high, int cells) {
+  return {cell_of(low.x - kMargin, cells), cell_of(low.y - kMargin, cells),
+          cell_of(high.x + kMargin, cells), cell_of(high.y + kMargin, cells)};
+}
+
+struct Box {
+  glm::dvec2 low{std::numeric_limits<double>::infinity()};
+  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
+  void add(glm::dvec2 p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+};
+
+glm::dvec2 along_axes(const LightGrid& grid, glm::dvec3 p) {
+  return {dot(p, grid.axes[0]), dot(p, grid.axes[1])};
+}
+
+// What a side of the cube sees of a polygon: cut by its pyramid's four planes, then divided.
+// Points are (across, across, ahead).
+struct SidePolygon {
+  std::array<glm::dvec3, 12> corners;
+  std::size_t count = 0;
+};
+
+double inside_by(glm::dvec3 p, int plane) {
+  const double across = plane < 2 ? p.x : p.y;
+  return (p.z * (1.0 + kMargin)) + (plane % 2 == 0 ? across : -across);
+}
+
+void cut_to_pyramid(SidePolygon& polygon, int plane) {
+  SidePolygon kept;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const glm::dvec3 a = polygon.corners[i], b = polygon.corners[(i + 1) % polygon.count];
+    const double d_a = inside_by(a, plane), d_b = inside_by(b, plane);
+    if (d_a >= 0.0 && kept.count < kept.corners.size()) kept.corners[kept.count++] = a;
+    if ((d_a < 0.0) != (d_b < 0.0) && kept.count < kept.corners.size()) {
+      kept.corners[kept.count++] = a + (b - a) * (d_a / (d_a - d_b));
+    }
+  }
+  polygon = kept;
+}
+
+glm::dvec3 seen_by_side(glm::dvec3 p, int side) {
+  const int axis = side / 2;
+  const double sign = side % 2 == 0 ? 1.0 : -1.0;
+  return {p[(axis + 1) % 3], p[(axis + 2) % 3], sign * p[axis]};
+}
+
+// Calls use(first cell of a row, count) for each row of cells that the polygon may touch.
+template <class Use>
+void for_each_row(const LightGrid& grid, std::span<const glm::dvec3> polygon, const Use& use) {
+  const auto rows_of = [&](int side, const Box& box) {
+    const CellRange range = range_of(box.low, box.high, grid.cells);
+    for (int y = range.y_begin; y <= range.y_end; ++y) {
+      use((side * grid.cells + y) * grid.cells + range.x_begin, range.x_end - range.x_begin + 1);
+    }
+  };
+  if (grid.sides == 1) {
+    Box box;
+    for (const glm::dvec3& corner : polygon) {
+      box.add((along_axes(grid, corner) - grid.low) / grid.size);
+    }
+    rows_of(0, box);
+    return;
+  }
+  for (int side = 0; side < 6; ++side) {
+    SidePolygon seen;
+    for (const glm::dvec3& corner : polygon) {
+      seen.corners[seen.count++] = seen_by_side(corner - grid.light.place, side);
+    }
+    for (int plane = 0; plane < 4 && seen.count > 0; ++plane) cut_to_pyramid(seen, plane);
+    if (seen.count == 0) continue;
+    Box box;
+    for (std::size_t i = 0; i < seen.count; ++i) {
+      const glm::dvec3& p = seen.corners[i];
+      // At the light itself: it is in every direction.
+      if (!(p.z > std::numeric_limits<double>::min())) {
+        box.add(glm::dvec2{0.0});
+        box.add(glm::dvec2{1.0});
+      } else {
+        box.add(glm::dvec2{p.x, p.y} / p.z * 0.5 + 0.5);
+      }
+    }
+    rows_of(side, box);
+  }
+}
+
+void set_side(LightGrid& grid, std::span<const Facet> facets,
+              std::span<const std::uint32_t> casters) {
+  const glm::dvec3 towards = grid.light.place;
+  // Across the axis that it points along least.
+  glm::dvec3 least{0.0};
+  int axis = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::fabs(towards[i]) < std::fabs(towards[axis])) axis = i;
+  }
+  least[axis] = 1.0;
+  grid.axes[0] = normalize(cross(least, towards));
+  grid.axes[1] = cross(towards, grid.axes[0]);
+  Box box;
+  for (const std::uint32_t caster : casters) {
+    for (const glm::dvec3& corner : facets[caster].corners) box.add(along_axes(grid, corner));
+  }
+  if (casters.empty()) return;
+  grid.low = box.low;
+  const double least_size = std::numeric_limits<double>::min();
+  grid.size = {std::max(box.high.x - box.low.x, least_size),
+               std::max(box.high.y - box.low.y, least_size)};
+}
+
+// How often the cells name a caster.
+std::size_t entries(const LightGrid& grid, std::span<const Facet> facets,
+                    std::span<const std::uint32_t> casters) {
+  std::size_t sum = 0;
+  for (const std::uint32_t caster : casters) {
+    for_each_row(grid, facets[caster].corners,
+                 [&](int, int count) { sum += static_cast<std::size_t>(count); });
+  }
+  return sum;
+}
+
+}  // namespace
+
+bool stops_light(const Facet& facet, const FacetPlane& plane, const ShadowLight& light) {
+  if (!facet.casts || !has_plane(plane)) return false;
+  const double before = height_over(plane, light);
+  return facet.two_sided ? before != 0.0 : before > 0.0;
+}
+
+LightGrid make_light_grid(const Facets& facets, const ShadowLight& light) {
+  LightGrid grid;
+  grid.light = light;
+  grid.sides = light.w == 0.0 ? 1 : 6;
+  std::vector<std::uint32_t> casters;
+  for (std::uint32_t i = 0; i < facets.facets.size(); ++i) {
+    if (stops_light(facets.facets[i], facets.planes[i], light)) casters.push_back(i);
+  }
+  const double per_side = static_cast<double>(casters.size()) / (grid.sides == 1 ? 0.5 : 1.5);
+  grid.cells = std::clamp(static_cast<int>(std::sqrt(per_side)), 1, kMostCells);
+  if (grid.sides == 1) set_side(grid, facets.facets, casters);
+  const std::size_t most = kMostEntries * (casters.size() + 1);
+  while (grid.cells > 1 && entries(grid, facets.facets, casters) > most) grid.cells /= 2;
+
+  const auto cell_count = static_cast<std::size_t>(grid.sides) *
+                          static_cast<std::size_t>(grid.cells) *
+                          static_cast<std::size_t>(grid.cells);
+  grid.begins.assign(cell_count + 1, 0);
+  for (const std::uint32_t caster : casters) {
+    for_each_row(grid, facets.facets[caster].corners, [&](int first, int count) {
+      for (int i = 0; i < count; ++i) ++grid.begins[static_cast<std::size_t>(first + i) + 1];
+    });
+  }
+  for (std::size_t i = 0; i < cell_count; ++i) grid.begins[i + 1] += grid.begins[i];
+  grid.casters.resize(grid.begins.back());
+  std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
+  for (const std::uint32_t caster : casters) {
+    for_each_row(grid, facets.facets[caster].corners, [&](int first, int count) {
+      for (int i = 0; i < count; ++i) {
+        grid.casters[next[static_cast<std::size_t>(first + i)]++] = caster;
+      }
+    });
+  }
+  return grid;
+}
+
+void find_casters(const LightGrid& grid, std::span<const glm::dvec3> polygon,
+                  std::vector<std::uint32_t>& found) {
+  found.clear();
+  for_each_row(grid, polygon, [&](int first, int count) {
+    const std::uint32_t* all = grid.casters.data();
+    found.insert(found.end(), all + grid.begins[static_cast<std::size_t>(first)],
+                 all + grid.begins[static_cast<std::size_t>(first + count)]);
+  });
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+}
+
+}  // namespace softfocus

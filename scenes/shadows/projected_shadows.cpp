@@ -1,0 +1,309 @@
+#include "scenes/shadows/projected_shadows.h"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+
+#include "raster/threads/scratch_shelf.h"
+
+namespace softfocus {
+namespace {
+
+// A receiver with its normal on the light's side.
+struct LitReceiver {
+  FacetPlane plane;
+  double light_height;  // a cosine if the light is directional
+  std::span<const glm::dvec3> outline;
+};
+
+LitReceiver lit_receiver(const Receiver& receiver, const ShadowLight& light, LitSide side) {
+  FacetPlane plane = receiver.plane;
+  if (side == LitSide::back) plane = {-plane.normal, -plane.offset};
+  return {plane, height_over(plane, light), receiver.corners_of_outline()};
+}
+
+bool is_lit(LitSide side) { return side == LitSide::front || side == LitSide::back; }
+
+// 3 corners, a fourth where the receiver's plane cuts, a fifth where the light's height does.
+struct CasterPolygon {
+  std::array<glm::dvec4, 5> corners;
+  std::size_t count = 0;
+};
+
+// Keeps what has distance(corner) >= 0. A new corner runs from the end inside to the one outside:
+// two facets with a common edge get the same point.
+template <class Distance, class Settle>
+CasterPolygon cut_polygon(const CasterPolygon& polygon, const Distance& distance,
+                          const Settle& settle) {
+  CasterPolygon kept;
+  const auto put = [&](const glm::dvec4& corner) {
+    if (kept.count < kept.corners.size()) kept.corners[kept.count++] = corner;
+  };
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const glm::dvec4& a = polygon.corners[i];
+    const glm::dvec4& b = polygon.corners[(i + 1) % polygon.count];
+    const double d_a = distance(a), d_b = distance(b);
+    if (d_a >= 0.0) put(a);
+    if ((d_a < 0.0) == (d_b < 0.0)) continue;
+    put(settle(d_a < 0.0 ? b + (a - b) * (d_b / (d_b - d_a)) : a + (b - a) * (d_a / (d_a - d_b))));
+  }
+  if (kept.count < 3) kept.count = 0;
+  return kept;
+}
+
+// Whether all of `points` are outside a plane through the light and an edge of `polygon`, seen from
+// which the rest of the polygon is inside. Lengths in metres, but for rounding.
+bool is_beside(std::span<const glm::dvec3> polygon, std::span<const glm::dvec3> points,
+               const ShadowLight& light, double margin_m) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3& a = polygon[i];
+    const glm::dvec3& b = polygon[(i + 1) % polygon.size()];
+    const glm::dvec3& inside = polygon[(i + 2) % polygon.size()];
+    glm::dvec3 across = normalize(cross(b - a, light.place - a * light.w));
+    if (dot(across, inside - a) < 0.0) across = -across;
+    if (across == glm::dvec3{0.0}) continue;
+    const bool all = std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) {
+      return dot(across, p - a) < -margin_m;
+    });
+    if (all) return true;
+  }
+  return false;
+}
+
+bool all_before(std::span<const glm::dvec3> points, glm::dvec3 from, glm::dvec3 ahead) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](const glm::dvec3& p) { return dot(p - from, ahead) > 0.0; });
+}
+
+// Seen from a point light, two polygons that do not both lie before it can be apart although
+// neither has an edge that says so. Then a plane through a corner of each does.
+bool is_elsewhere(std::span<const glm::dvec3> polygon, std::span<const glm::dvec3> points,
+                  const ShadowLight& light, double margin_m) {
+  if (light.w == 0.0) return false;
+  glm::dvec3 ahead{0.0};
+  for (const glm::dvec3& p : polygon) ahead += normalize(p - light.place);
+  if (all_before(polygon, light.place, ahead) && all_before(points, light.place, ahead)) {
+    return false;
+  }
+  const auto all_beyond = [&](std::span<const glm::dvec3> of, glm::dvec3 across, double side,
+                              double least) {
+    return std::all_of(of.begin(), of.end(), [&](const glm::dvec3& p) {
+      return side * dot(across, p - light.place) >= least;
+    });
+  };
+  for (const glm::dvec3& a : polygon) {
+    for (const glm::dvec3& b : points) {
+      const glm::dvec3 across = normalize(cross(a - light.place, b - light.place));
+      if (across == glm::dvec3{0.0}) continue;
+      for (const double side : {1.0, -1.0}) {
+        if (all_beyond(polygon, across, side, -margin_m) &&
+            all_beyond(points, across, -side, -margin_m)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+// Whether a caster's plane has the receiver and the light on one side: no ray between them meets
+// it.
+bool stands_behind(const FacetPlane& caster, const LitReceiver& receiver, const ShadowLight& light,
+                   double epsilon_m) {
+  const double side = height_over(caster, light) > 0.0 ? 1.0 : -1.0;
+  return std::all_of(receiver.outline.begin(), receiver.outline.end(), [&](const glm::dvec3& p) {
+    return side * height_over(caster, p) >= -epsilon_m;
+  });
+}
+
+// The caster's shadow on the receiver's plane. With n.p = d the plane, h its heights and L the
+// light, S = (h_L p - h_p L, h_L - w h_p): the matrix h_L I - L (n, -d)^T.
+CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitReceiver& receiver,
+                        const ShadowLight& light) {
+  const Facet& facet = facets.facets[caster];
+  const double epsilon = facets.epsilon_m;
+  CasterPolygon polygon;
+  double highest = 0.0, lowest = 0.0;
+  for (const glm::dvec3& corner : facet.corners) {
+    const double h = height_over(receiver.plane, corner);
+    highest = polygon.count == 0 ? h : std::max(highest, h);
+    lowest = polygon.count == 0 ? h : std::min(lowest, h);
+    polygon.corners[polygon.count++] = glm::dvec4{corner, h};
+  }
+  if (highest <= epsilon) return {};
+  if (light.w != 0.0 && lowest >= receiver.light_height) return {};
+  if (stands_behind(facets.planes[caster], receiver, light, epsilon)) return {};
+  const double margin = epsilon * 0x1p-20;
+  if (is_beside(receiver.outline, facet.corners, light, margin) ||
+      is_beside(facet.corners, receiver.outline, light, margin) ||
+      is_elsewhere(receiver.outline, facet.corners, light, margin)) {
+    return {};
+  }
+  if (lowest < epsilon) {
+    polygon = cut_polygon(
+        polygon, [&](const glm::dvec4& p) { return p.w - epsilon; },
+        [&](const glm::dvec4& p) {
+          return glm::dvec4{glm::dvec3{p}, epsilon};
+        });
+  }
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    glm::dvec4& corner = polygon.corners[i];
+    const glm::dvec3 p{corner};
+    const double h = corner.w;
+    corner = glm::dvec4{p * receiver.light_height - light.place * h,
+                        receiver.light_height - light.w * h};
+  }
+  // What is higher than a point light would be projected through it, onto the other side.
+  if (light.w != 0.0 && highest > receiver.light_height) {
+    polygon = cut_polygon(
+        polygon, [](const glm::dvec4& p) { return p.w; },
+        [](const glm::dvec4& p) {
+          return glm::dvec4{glm::dvec3{p}, 0.0};
+        });
+  }
+  return polygon;
+}
+
+// Calls use(caster, polygon) for the shadow of each caster, in their order.
+template <class Use>
+void for_each_shadow(const Facets& facets, std::uint32_t number, const ShadowLight& light,
+                     LitSide side, std::span<const std::uint32_t> casters, const Use& use) {
+  const LitReceiver receiver = lit_receiver(facets.receivers[number], light, side);
+  for (const std::uint32_t caster : casters) {
+    if (facets.receiver_of[caster] == number) continue;
+    const CasterPolygon polygon = shadow_of(facets, caster, receiver, light);
+    if (polygon.count > 0) use(caster, polygon);
+  }
+}
+
+std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light) {
+  std::vector<LitSide> lit;
+  lit.reserve(facets.receivers.size());
+  for (const Receiver& receiver : facets.receivers) {
+    lit.push_back(lit_side(receiver, light, facets.epsilon_m));
+  }
+  return lit;
+}
+
+std::vector<std::uint32_t> all_casters(const Facets& facets, const ShadowLight& light) {
+  std::vector<std::uint32_t> casters;
+  for (std::uint32_t i = 0; i < facets.facets.size(); ++i) {
+    if (stops_light(facets.facets[i], facets.planes[i], light)) casters.push_back(i);
+  }
+  return casters;
+}
+
+// As a fan.
+template <class Put>
+void triangulate(const CasterPolygon& polygon, const Put& put) {
+  for (std::size_t i = 2; i < polygon.count; ++i) {
+    put(ProjectedTriangle{polygon.corners[0], polygon.corners[i - 1], polygon.corners[i]});
+  }
+}
+
+// Receivers that a task takes at once.
+constexpr std::uint32_t kReceiversATask = 64;
+
+// The casters that a task's first pass found to throw a shadow; those of its receiver i end at
+// ends[i].
+struct FoundCasters {
+  std::vector<std::uint32_t> casters;
+  std::vector<std::size_t> ends;
+};
+
+// find(receiver, memory) gives a receiver's casters.
+template <class Find>
+ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, ThreadPool& pool,
+                                const Find& find) {
+  ProjectedShadows made;
+  made.lit = lit_sides(facets, light);
+  const auto receivers = static_cast<std::uint32_t>(facets.receivers.size());
+  const auto tasks = static_cast<int>((receivers + kReceiversATask - 1) / kReceiversATask);
+  std::vector<FoundCasters> found(static_cast<std::size_t>(tasks));
+  ScratchShelf<std::vector<std::uint32_t>> shelf;
+  made.begins.assign(receivers + std::size_t{1}, 0);
+  pool.for_each(tasks, [&](int task) {
+    FoundCasters& of_task = found[static_cast<std::size_t>(task)];
+    std::vector<std::uint32_t> memory = shelf.take();
+    const std::uint32_t begin = static_cast<std::uint32_t>(task) * kReceiversATask;
+    for (std::uint32_t r = begin; r < std::min(begin + kReceiversATask, receivers); ++r) {
+      if (is_lit(made.lit[r])) {
+        for_each_shadow(facets, r, light, made.lit[r], find(r, memory),
+                        [&](std::uint32_t caster, const CasterPolygon& polygon) {
+                          made.begins[r + 1] += polygon.count - 2;
+                          of_task.casters.push_back(caster);
+                        });
+      }
+      of_task.ends.push_back(of_task.casters.size());
+    }
+    shelf.put_back(std::move(memory));
+  });
+  std::partial_sum(made.begins.begin(), made.begins.end(), made.begins.begin());
+  made.triangles.resize(made.begins.back());
+  pool.for_each(tasks, [&](int task) {
+    const FoundCasters& of_task = found[static_cast<std::size_t>(task)];
+    const std::uint32_t begin = static_cast<std::uint32_t>(task) * kReceiversATask;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < of_task.ends.size(); ++i) {
+      const std::uint32_t r = begin + static_cast<std::uint32_t>(i);
+      const std::span casters{of_task.casters.data() + first, of_task.ends[i] - first};
+      first = of_task.ends[i];
+      if (casters.empty()) continue;
+      ProjectedTriangle* to = made.triangles.data() + made.begins[r];
+      for_each_shadow(
+          facets, r, light, made.lit[r], casters, [&](std::uint32_t, const CasterPolygon& polygon) {
+            triangulate(polygon, [&](const ProjectedTriangle& triangle) { *to++ = triangle; });
+          });
+    }
+  });
+  return made;
+}
+
+}  // namespace
+
+LitSide lit_side(const Receiver& receiver, const ShadowLight& light, double epsilon_m) {
+  if (!has_plane(receiver.plane)) return LitSide::both;
+  const double before = height_over(receiver.plane, light);
+  // A point light in the plane shines along it, and so does a directional one at a right angle.
+  const double least = light.w != 0.0 ? epsilon_m : 0x1p-40;
+  if (before > least) return LitSide::front;
+  return before < -least && receiver.two_sided ? LitSide::back : LitSide::none;
+}
+
+ProjectedShadows project_in_sequence(const Facets& facets, const ShadowLight& light) {
+  ProjectedShadows made;
+  made.lit = lit_sides(facets, light);
+  made.begins.assign(1, 0);
+  const std::vector<std::uint32_t> casters = all_casters(facets, light);
+  for (std::uint32_t r = 0; r < facets.receivers.size(); ++r) {
+    if (is_lit(made.lit[r])) {
+      for_each_shadow(facets, r, light, made.lit[r], casters,
+                      [&](std::uint32_t, const CasterPolygon& polygon) {
+                        triangulate(polygon, [&](const ProjectedTriangle& triangle) {
+                          made.triangles.push_back(triangle);
+                        });
+                      });
+    }
+    made.begins.push_back(made.triangles.size());
+  }
+  return made;
+}
+
+ProjectedShadows project_in_parallel(const Facets& facets, const ShadowLight& light,
+                                     ThreadPool& pool) {
+  const std::vector<std::uint32_t> casters = all_casters(facets, light);
+  return count_and_fill(facets, light, pool, [&](std::uint32_t, std::vector<std::uint32_t>&) {
+    return std::span<const std::uint32_t>{casters};
+  });
+}
+
+ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool) {
+  const LightGrid grid = make_light_grid(facets, light);
+  return count_and_fill(facets, light, pool,
+                        [&](std::uint32_t r, std::vector<std::uint32_t>& memory) {
+                          find_casters(grid, facets.receivers[r].corners_of_outline(), memory);
+                          return std::span<const std::uint32_t>{memory};
+                        });
+}
+
+}  // namespace softfocus

@@ -1,0 +1,41 @@
+#pragma once
+// Projected shadows seen by a camera: a stencil with a bit for each light, set where the light does
+// not reach.
+//
+// A receiver's own pixels take its shadows and no others: a picture of the facets that are seen
+// stands in for the first of the two stencil values of direct shadow projection. Coverage is the
+// pipeline's (raster/pipeline/setup.h), so a GL driver that draws the same triangles into its
+// stencil covers the same pixels.
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <span>
+#include <vector>
+
+#include "raster/numbers/profile.h"
+#include "raster/threads/parallel.h"
+#include "scenes/shadows/projected_shadows.h"
+
+namespace softfocus {
+
+/// The facet that a pixel shows: 0 for none, else 1 + 2 * facet + (1 if it is seen from its back).
+using SeenFacet = std::uint32_t;
+
+inline bool shows_facet(SeenFacet seen) { return seen != 0; }
+inline std::uint32_t facet_of(SeenFacet seen) { return (seen - 1) / 2; }
+inline bool seen_from_back(SeenFacet seen) { return (seen - 1) % 2 != 0; }
+
+struct ShadowView {
+  glm::dmat4 world_to_clip;  ///< -w <= x, y, z <= w, y downwards
+  int width;
+  int height;
+  Profile profile;
+};
+
+/// Bit i of a pixel's byte is set where the light of `shadows`[i] does not reach what it shows.
+/// `seen` and `mask` are rows from the top, without gaps. Up to 8 lights.
+void draw_shadow_mask(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
+                      std::span<const SeenFacet> seen, const ShadowView& view,
+                      std::span<std::uint8_t> mask, ThreadPool& pool);
+
+}  // namespace softfocus

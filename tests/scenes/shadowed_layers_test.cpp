@@ -1,0 +1,149 @@
+// Pictures with shadows: every pixel against the oracle, and against the scene without the light.
+
+#include "scenes/draw/shadowed_layers.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "scenes/lens_views/accumulation.h"
+#include "scenes/load/load_scene.h"
+#include "scenes/shadows/shadow_errors.h"
+
+using namespace softfocus;
+
+namespace {
+
+Scene shadowed(const std::string& name) {
+  Scene scene = load_scene(name, scene_search_path({}));
+  set_shadows(scene, ShadowKind::projected);
+  return scene;
+}
+
+struct Drawn {
+  Image picture;
+  PreparedScene prepared;
+};
+
+constexpr double kFrame = 5.0;
+
+Drawn drawn(const Scene& scene, int width, int height, ThreadPool& pool,
+            const Profile& profile = {}) {
+  Drawn made{make_image(Format::rgba16f, width, height), prepare_scene(scene, profile, pool)};
+  draw_scene(made.prepared, camera_matrices(scene.camera, kFrame, width, height), kFrame,
+             made.picture, pool);
+  return made;
+}
+
+ShadowErrors errors_of(const Scene& scene, int width, int height, bool by_grid) {
+  ThreadPool pool{2};
+  const Drawn made = drawn(scene, width, height, pool);
+  const SceneShadows& shadows = *made.prepared.shadows;
+  const CameraMatrices camera = camera_matrices(scene.camera, kFrame, width, height);
+  std::vector<ShadowLight> lights;
+  for (const Light& light : scene.lights) lights.push_back(shadow_light(light));
+  return shadow_errors(shadows.facets, lights, shadows.seen[0], shadows.masks[0],
+                       {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, {}},
+                       camera.eye, by_grid, pool);
+}
+
+void check_errors(const ShadowErrors& errors) {
+  CHECK(errors.seen > 1000);
+  CHECK(errors.in_shadow > errors.seen / 100);
+  CHECK(errors.in_shadow < errors.seen);
+  CHECK(errors.wrong == 0);
+  CHECK(errors.near_edge * 1000 < errors.seen);
+}
+
+std::uint64_t texel_bits(const Image& picture, int x, int y) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, row<std::uint16_t>(picture, y).data() + 4 * x, sizeof bits);
+  return bits;
+}
+
+}  // namespace
+
+TEST_CASE("cube-room's shadows are those of every ray against every triangle") {
+  check_errors(errors_of(shadowed("cube-room"), 64, 40, false));
+}
+
+TEST_CASE("figures' shadows are those of rays") {
+  check_errors(errors_of(shadowed("figures"), 160, 120, true));
+}
+
+TEST_CASE("sphere-world's shadows are those of rays" * doctest::test_suite("long")) {
+  check_errors(errors_of(shadowed("sphere-world"), 200, 150, true));
+}
+
+TEST_CASE("a pixel in shadow has the bits that it has without the light") {
+  const Scene scene = shadowed("cube-room");
+  ThreadPool pool{2};
+  const Drawn made = drawn(scene, 150, 97, pool);
+  const std::vector<std::uint8_t>& mask = made.prepared.shadows->masks[0];
+  std::size_t in_shadow = 0;
+  for (std::uint8_t of = 0; of < 4; ++of) {
+    Scene without = scene;
+    without.lights.clear();
+    for (std::size_t i = 0; i < 2; ++i) {
+      if ((of >> i & 1) == 0) without.lights.push_back(scene.lights[i]);
+    }
+    set_shadows(without, ShadowKind::none);
+    const Image expected = drawn(without, 150, 97, pool).picture;
+    for (int y = 0; y < 97; ++y) {
+      for (int x = 0; x < 150; ++x) {
+        if (mask[static_cast<std::size_t>(150 * y + x)] != of) continue;
+        in_shadow += of != 0 ? 1 : 0;
+        REQUIRE(texel_bits(made.picture, x, y) == texel_bits(expected, x, y));
+      }
+    }
+  }
+  CHECK(in_shadow > 500);
+}
+
+TEST_CASE("shadows have the same bits on every vector unit and number of threads") {
+  for (const char* name : {"cube-room", "foliage"}) {
+    const Scene scene = shadowed(name);
+    ThreadPool scalar{1, Isa::scalar};
+    const Image expected = drawn(scene, 150, 97, scalar).picture;
+    for (const Isa isa : {Isa::baseline, widest_isa()}) {
+      ThreadPool pool{3, isa};
+      CHECK(equal(drawn(scene, 150, 97, pool).picture, expected));
+    }
+  }
+}
+
+TEST_CASE("shadows lie on the surfaces behind the first, too") {
+  const Scene scene = shadowed("cube-room");
+  ThreadPool pool{2};
+  const CameraMatrices camera = camera_matrices(scene.camera, kFrame, 150, 97);
+  const std::vector<Image> layers = draw_layers(scene, camera, kFrame, 150, 97, 2, {}, pool);
+  CHECK(equal(layers[0], drawn(scene, 150, 97, pool).picture));
+  // Without the cubes the wall behind them is the first surface. They still cast.
+  PreparedScene prepared = prepare_scene(scene, {}, pool);
+  Image first = make_image(Format::rgba16f, 150, 97);
+  std::vector<Image> behind(1, first);
+  draw_layers(prepared, camera, kFrame, first, behind, pool);
+  std::size_t in_shadow = 0;
+  for (const std::uint8_t mask : prepared.shadows->masks[1]) in_shadow += mask != 0 ? 1 : 0;
+  CHECK(in_shadow > 100);
+  Scene unshadowed = scene;
+  set_shadows(unshadowed, ShadowKind::none);
+  CHECK_FALSE(equal(layers[1], draw_layers(unshadowed, camera, kFrame, 150, 97, 2, {}, pool)[1]));
+}
+
+TEST_CASE("a scene without shadows is prepared without any") {
+  const Scene scene = load_scene("figures", scene_search_path({}));
+  ThreadPool pool{1};
+  CHECK(prepare_scene(scene, {}, pool).shadows == nullptr);
+}
+
+TEST_CASE("accumulation of one pinhole view shows the shadows of the picture") {
+  const Scene scene = shadowed("cube-room");
+  ThreadPool pool{2};
+  const CameraMatrices camera = camera_matrices(scene.camera, kFrame, 150, 97);
+  const Image pinhole = drawn(scene, 150, 97, pool).picture;
+  const LensViewInput input{scene, camera, kFrame, pinhole, 1.0, 0.0, {.samples = 1}, {}, {}};
+  CHECK(equal(accumulation(input, pool).picture, pinhole));
+}

@@ -1,0 +1,176 @@
+// Projected triangles: known areas, receivers, and three schedules with the same bits.
+
+#include "scenes/shadows/projected_shadows.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "tests/support/random.h"
+
+using namespace softfocus;
+
+namespace {
+
+void add_quad(std::vector<Facet>& facets, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d) {
+  facets.push_back({{a, b, c}, true});
+  facets.push_back({{a, c, d}, true});
+}
+
+void add_triangle(std::vector<Facet>& facets, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+  facets.push_back({{a, b, c}, true});
+}
+
+void add_floor(std::vector<Facet>& facets) {
+  add_quad(facets, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9});
+}
+
+double area_of(const ProjectedTriangle& triangle) {
+  const auto corner = [&](std::size_t i) { return glm::dvec3{triangle[i]} / triangle[i].w; };
+  const glm::dvec3 across = cross(corner(1) - corner(0), corner(2) - corner(0));
+  return std::sqrt(dot(across, across)) / 2.0;
+}
+
+double area_on(const ProjectedShadows& shadows, std::size_t receiver) {
+  double area = 0.0;
+  for (std::size_t i = shadows.begins[receiver]; i < shadows.begins[receiver + 1]; ++i) {
+    area += area_of(shadows.triangles[i]);
+  }
+  return area;
+}
+
+bool same(const ProjectedShadows& a, const ProjectedShadows& b) {
+  return a.lit == b.lit && a.begins == b.begins && a.triangles.size() == b.triangles.size() &&
+         (a.triangles.empty() || std::memcmp(a.triangles.data(), b.triangles.data(),
+                                             a.triangles.size() * sizeof a.triangles[0]) == 0);
+}
+
+Facets soup(std::uint32_t seed, int triangles) {
+  test::Random random{seed};
+  const auto place = [&] {
+    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
+    return glm::dvec3{x, y, random.between(-1.0, 1.0)};
+  };
+  std::vector<Facet> facets;
+  for (int i = 0; i < triangles; ++i) {
+    const glm::dvec3 at = place();
+    const glm::dvec3 a = at + place() * 0.3, b = at + place() * 0.3, c = at + place() * 0.3;
+    facets.push_back({{a, b, c}, i % 3 == 0, i % 7 != 0});
+  }
+  return make_facets(std::move(facets));
+}
+
+const std::vector<ShadowLight> kLights{{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0},
+                                       {{0.2, 0.1, -0.3}, 1.0},
+                                       {{3, 1, 2}, 1.0},
+                                       {{0, -1, 0}, 0.0}};
+
+}  // namespace
+
+TEST_CASE("the shadow of a square has the area of similar triangles") {
+  std::vector<Facet> corners;
+  add_floor(corners);
+  add_quad(corners, {-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1});
+  const Facets facets = make_facets(std::move(corners));
+  const ProjectedShadows of_point = project_in_sequence(facets, {{0.5, 4, 0.25}, 1.0});
+  CHECK(std::fabs(area_on(of_point, 0) - 4.0 * (16.0 / 9.0)) < 1e-12);
+  const ProjectedShadows of_sun =
+      project_in_sequence(facets, {normalize(glm::dvec3{1, 1, 1}), 0.0});
+  CHECK(std::fabs(area_on(of_sun, 0) - 4.0) < 1e-12);
+}
+
+TEST_CASE("of a caster through the floor the part above casts") {
+  std::vector<Facet> corners;
+  add_floor(corners);
+  // Upright, 2 wide at the top and a point at the bottom; at the floor it is 1 wide.
+  add_triangle(corners, {-1, 1, 0}, {0, -1, 0}, {1, 1, 0});
+  const Facets facets = make_facets(std::move(corners));
+  const ProjectedShadows shadows =
+      project_in_sequence(facets, {normalize(glm::dvec3{0, 1, 1}), 0.0});
+  // Cut at epsilon over the floor: a strip of its width is missing.
+  CHECK(shadows.begins[1] == 2);
+  CHECK(std::fabs(area_on(shadows, 0) - 1.5) < 2.0 * facets.epsilon_m);
+}
+
+TEST_CASE("what rises above a point light casts to infinity, not through the light") {
+  std::vector<Facet> corners;
+  add_floor(corners);
+  add_triangle(corners, {1, 0.5, -1}, {1, 0.5, 1}, {1, 3, 0});
+  const Facets facets = make_facets(std::move(corners));
+  const ProjectedShadows shadows = project_in_sequence(facets, {{0, 1, 0}, 1.0});
+  REQUIRE(shadows.begins[1] > 0);
+  for (std::size_t i = 0; i < shadows.begins[1]; ++i) {
+    for (const glm::dvec4& corner : shadows.triangles[i]) {
+      CHECK(corner.w >= 0.0);
+      CHECK(corner.x > 0.0);
+    }
+  }
+}
+
+TEST_CASE("coplanar neighbours are one receiver") {
+  std::vector<Facet> corners;
+  for (int i = 0; i < 4; ++i) {
+    add_quad(corners, {i, 0, 1}, {i + 1, 0, 1}, {i + 1, 0, 0}, {i, 0, 0});
+  }
+  add_quad(corners, {4, 0, 1}, {4, 1, 1}, {4, 1, 0}, {4, 0, 0});  // a wall at its end
+  const Facets facets = make_facets(std::move(corners));
+  REQUIRE(facets.receivers.size() == 2);
+  for (std::size_t i = 0; i < 8; ++i) CHECK(facets.receiver_of[i] == 0);
+}
+
+TEST_CASE("two walls of a corner that both face the light cast nothing on each other") {
+  std::vector<Facet> corners;
+  add_quad(corners, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}, {0, 0, 0});
+  add_quad(corners, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1});
+  const Facets facets = make_facets(std::move(corners));
+  CHECK(project_in_sequence(facets, {{0.7, 0.8, 0.5}, 1.0}).triangles.empty());
+  // A light behind the wall: its shadow lies on the floor.
+  CHECK_FALSE(project_in_sequence(facets, {{-0.7, 0.8, 0.5}, 1.0}).triangles.empty());
+}
+
+TEST_CASE("all schedules give the same bits") {
+  for (std::uint32_t seed = 1; seed < 5; ++seed) {
+    const Facets facets = soup(seed, 300);
+    for (const ShadowLight& light : kLights) {
+      CAPTURE(seed);
+      const ProjectedShadows in_sequence = project_in_sequence(facets, light);
+      CHECK(in_sequence.triangles.size() > 100);
+      for (const int threads : {1, 3}) {
+        ThreadPool pool{threads};
+        CHECK(same(in_sequence, project_in_parallel(facets, light, pool)));
+        CHECK(same(in_sequence, project_by_grid(facets, light, pool)));
+      }
+    }
+  }
+}
+
+TEST_CASE("lights in awkward places give finite triangles") {
+  const Facets facets = soup(9, 200);
+  ThreadPool pool{1};
+  const glm::dvec3 corner = facets.facets[5].corners[1];
+  const glm::dvec3 in_plane = (facets.facets[3].corners[0] + facets.facets[3].corners[1]) * 0.5;
+  for (const ShadowLight& light :
+       {ShadowLight{corner, 1.0}, ShadowLight{in_plane, 1.0}, ShadowLight{{1e9, 0, 0}, 1.0},
+        ShadowLight{{0, 0, 0}, 1.0}, ShadowLight{facets.planes[2].normal, 0.0}}) {
+    const ProjectedShadows in_sequence = project_in_sequence(facets, light);
+    CHECK(same(in_sequence, project_by_grid(facets, light, pool)));
+    for (const ProjectedTriangle& triangle : in_sequence.triangles) {
+      for (const glm::dvec4& p : triangle) {
+        CHECK((std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && p.w >= 0.0));
+      }
+    }
+  }
+}
+
+TEST_CASE("facets without area receive and cast nothing") {
+  std::vector<Facet> corners;
+  add_floor(corners);
+  add_triangle(corners, {0, 1, 0}, {1, 1, 0}, {2, 1, 0});
+  add_triangle(corners, {0, 1, 0}, {0, 1, 0}, {0, 1, 0});
+  const Facets facets = make_facets(std::move(corners));
+  const ProjectedShadows shadows = project_in_sequence(facets, {{0, 3, 0}, 1.0});
+  CHECK(shadows.triangles.empty());
+  CHECK(shadows.lit[facets.receiver_of[2]] == LitSide::both);
+}

@@ -1,0 +1,203 @@
+// softfocus shadows: what a scene's projected shadows cost, by each schedule, and with --check how
+// right they are.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "scenes/draw/shadowed_layers.h"
+#include "scenes/load/load_scene.h"
+#include "scenes/make/sphere_field.h"
+#include "scenes/shadows/shadow_errors.h"
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
+#include "tools/options/run_options.h"
+
+namespace softfocus {
+namespace {
+
+// Of triangles squared: beyond, the schedules of O(n^2) are left out.
+constexpr std::size_t kMostForAllPairs = 20000;
+
+struct ShadowsOptions {
+  std::string scene;
+  std::optional<int> triangles;  ///< of a sphere field in place of the scene
+  std::vector<std::filesystem::path> scene_path;
+  PictureSize size{1024, 1024};
+  double frame = 0.0;
+  int runs = 5;
+  bool check = false;
+  PoolOptions pool;
+};
+
+struct Milliseconds {
+  std::string name;
+  std::vector<double> ms{};
+  std::vector<double> cpu_ms{};  ///< of all threads
+};
+
+// Each in turn, so that what disturbs the machine disturbs all.
+template <class... Work>
+void time_in_turn(std::vector<Milliseconds>& all, int runs, const Work&... work) {
+  const auto timed = [](Milliseconds& of, const auto& one) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t cpu_start = std::clock();
+    one();
+    of.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
+    of.ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+            .count());
+  };
+  for (int run = 0; run < runs; ++run) {
+    std::size_t i = 0;
+    (timed(all[i++], work), ...);
+  }
+}
+
+void print_times(std::vector<Milliseconds>& all) {
+  for (Milliseconds& of : all) {
+    std::sort(of.ms.begin(), of.ms.end());
+    std::sort(of.cpu_ms.begin(), of.cpu_ms.end());
+    std::printf("%-26s %9.2f ms  (%.2f to %.2f; %.2f of CPU)\n", of.name.c_str(),
+                of.ms[of.ms.size() / 2], of.ms.front(), of.ms.back(),
+                of.cpu_ms[of.cpu_ms.size() / 2]);
+  }
+}
+
+Scene scene_of(const ShadowsOptions& options) {
+  if (options.triangles) {
+    return sphere_field(*options.triangles, static_cast<double>(options.size.width) /
+                                                static_cast<double>(options.size.height));
+  }
+  Scene scene = load_scene(options.scene, scene_search_path(options.scene_path));
+  print_scene_warnings(scene.warnings, false);
+  return scene;
+}
+
+std::size_t bytes_kept(const SceneShadows& shadows) {
+  std::size_t bytes = 0;
+  for (const ProjectedShadows& of_light : shadows.projected) {
+    bytes += of_light.triangles.size() * sizeof(ProjectedTriangle);
+  }
+  return bytes;
+}
+
+void check(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
+           const CameraMatrices& camera, const PictureSize& size, ThreadPool& pool) {
+  const ShadowErrors errors = shadow_errors(
+      shadows.facets, lights, shadows.seen[0], shadows.masks[0],
+      {multiply(camera.eye_to_clip, camera.world_to_eye), size.width, size.height, Profile{}},
+      camera.eye, true, pool);
+  std::printf(
+      "pixels times lights: %zu seen, %zu in shadow, %zu within 1/256 pixel of an edge, "
+      "%zu wrong\n",
+      errors.seen, errors.in_shadow, errors.near_edge, errors.wrong);
+}
+
+int measure_shadows(const ShadowsOptions& options) {
+  if (options.scene.empty() == !options.triangles) {
+    throw UsageError("give one of SCENE and --triangles");
+  }
+  Scene scene = scene_of(options);
+  Scene unshadowed = scene;
+  set_shadows(unshadowed, ShadowKind::none);
+  if (!has_shadows(scene)) set_shadows(scene, ShadowKind::projected);
+  if (scene.lights.empty() || scene.lights.size() > kMostShadowLights) {
+    throw UsageError("'" + scene.name + "' has " + std::to_string(scene.lights.size()) +
+                     " lights; 1 to " + std::to_string(kMostShadowLights) + " would do");
+  }
+  ThreadPool pool{options.pool.threads, options.pool.isa};
+  ThreadPool one{1, options.pool.isa};
+  const auto [width, height] = options.size;
+  const CameraMatrices camera = camera_matrices(scene.camera, options.frame, width, height);
+  Image picture = make_image(Format::rgba16f, width, height);
+  PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
+  PreparedScene plain = prepare_scene(unshadowed, Profile{}, pool);
+  draw_scene(prepared, camera, options.frame, picture, pool);
+  draw_scene(plain, camera, options.frame, picture, pool);
+  SceneShadows& shadows = *prepared.shadows;
+  std::size_t projected = 0;
+  std::vector<ShadowLight> lights;
+  for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
+    lights.push_back(shadow_light(scene.lights[shadows.lights[i]]));
+    projected += shadows.projected[i].triangles.size();
+  }
+  std::printf(
+      "%s: %zu triangles, %zu receivers, %zu lights with shadows, %zu projected triangles "
+      "(%.1f MB)\n",
+      scene.name.c_str(), shadows.facets.facets.size(), shadows.facets.receivers.size(),
+      lights.size(), projected, static_cast<double>(bytes_kept(shadows)) / 1e6);
+
+  const auto all_lights = [&](const auto& project) {
+    for (const ShadowLight& light : lights) project(light);
+  };
+  const Facets& facets = shadows.facets;
+  if (facets.facets.size() <= kMostForAllPairs) {
+    std::vector<Milliseconds> times{
+        {"project in sequence"}, {"project in parallel, 1"}, {"project in parallel, all"}};
+    const auto in_parallel = [&](ThreadPool& by) {
+      all_lights([&](const ShadowLight& light) { project_in_parallel(facets, light, by); });
+    };
+    time_in_turn(
+        times, options.runs,
+        [&] { all_lights([&](const ShadowLight& light) { project_in_sequence(facets, light); }); },
+        [&] { in_parallel(one); }, [&] { in_parallel(pool); });
+    print_times(times);
+  }
+  std::vector<Milliseconds> times{{"project by grid, 1"},    {"project by grid, all"},
+                                  {"facets and receivers"},  {"frame, nothing kept"},
+                                  {"frame, projected kept"}, {"frame without shadows"}};
+  const auto by_grid = [&](ThreadPool& by) {
+    all_lights([&](const ShadowLight& light) { project_by_grid(facets, light, by); });
+  };
+  const auto draw = [&](PreparedScene& of) {
+    draw_scene(of, camera, options.frame, picture, pool);
+  };
+  time_in_turn(
+      times, options.runs, [&] { by_grid(one); }, [&] { by_grid(pool); },
+      [&] { scene_facets(scene, options.frame); },
+      [&] {
+        shadows.frame.reset();
+        draw(prepared);
+      },
+      [&] { draw(prepared); }, [&] { draw(plain); });
+  print_times(times);
+  if (options.check) check(shadows, lights, camera, options.size, pool);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_shadows_command(CLI::App& program) {
+  CLI::App* parser =
+      add_command(program, "shadows", "Measure projected shadows: time, and with --check errors");
+  const auto options = std::make_shared<ShadowsOptions>();
+  add_optional_argument(*parser, "SCENE", "A scene, as render takes it", options->scene);
+  begin_group(*parser, "Picture");
+  add_value(*parser, "--triangles", "N", "In place of a scene, 250 spheres of N triangles in all",
+            [options](const std::string& text) {
+              options->triangles =
+                  parse_whole("--triangles", text, kLeastFieldTriangles, kMostFieldTriangles,
+                              "a number from 1500 to 8000000");
+            });
+  add_scene_path(*parser, options->scene_path);
+  add_size(*parser, options->size);
+  add_frame(*parser, options->frame);
+  begin_group(*parser, "Run");
+  add_value(*parser, "--runs", "N", "Time each N times, 1 to 100 (default: 5)",
+            [options](const std::string& text) {
+              options->runs = parse_whole("--runs", text, 1, 100, "a number from 1 to 100");
+            });
+  add_flag(*parser, "--check", "Ask a ray for every pixel, too", options->check);
+  add_pool_options(*parser, options->pool, "the shadows are the same");
+  return {parser, [options] { return measure_shadows(*options); }};
+}
+
+}  // namespace softfocus
