@@ -131,7 +131,7 @@ TEST_CASE("a plane faces up and has two triangles a cell") {
   const Mesh mesh = make_plane(4.0, 2.0, 28, 30);
   CHECK(mesh.indices.size() == 3 * 1680);
   CHECK(area(mesh) == doctest::Approx(8.0));
-  for (const Triangle& t : triangles_of(mesh)) CHECK(area_normal(t).y > 0.0);
+  for (const MeshTriangle& t : triangles_of(mesh)) CHECK(area_normal(t).y > 0.0);
 }
 
 TEST_CASE("a plane's four sides are its only boundary") {

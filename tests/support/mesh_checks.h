@@ -16,10 +16,10 @@
 
 namespace softfocus::test {
 
-using Triangle = std::array<glm::dvec3, 3>;
+using MeshTriangle = std::array<glm::dvec3, 3>;
 
-inline std::vector<Triangle> triangles_of(const Mesh& mesh) {
-  std::vector<Triangle> triangles;
+inline std::vector<MeshTriangle> triangles_of(const Mesh& mesh) {
+  std::vector<MeshTriangle> triangles;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     triangles.push_back({glm::dvec3{mesh.positions[mesh.indices[i]]},
                          glm::dvec3{mesh.positions[mesh.indices[i + 1]]},
@@ -28,26 +28,26 @@ inline std::vector<Triangle> triangles_of(const Mesh& mesh) {
   return triangles;
 }
 
-inline glm::dvec3 area_normal(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+inline glm::dvec3 area_normal(const MeshTriangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
 inline double length(glm::dvec3 v) { return std::sqrt(dot(v, v)); }
 
 inline double area(const Mesh& mesh) {
   double sum = 0.0;
-  for (const Triangle& t : triangles_of(mesh)) sum += length(area_normal(t)) / 2.0;
+  for (const MeshTriangle& t : triangles_of(mesh)) sum += length(area_normal(t)) / 2.0;
   return sum;
 }
 
 /// Of what the triangles enclose; negative where they face inwards.
 inline double volume(const Mesh& mesh) {
   double sum = 0.0;
-  for (const Triangle& t : triangles_of(mesh)) sum += dot(t[0], cross(t[1], t[2])) / 6.0;
+  for (const MeshTriangle& t : triangles_of(mesh)) sum += dot(t[0], cross(t[1], t[2])) / 6.0;
   return sum;
 }
 
 inline double smallest_area(const Mesh& mesh) {
   double smallest = 1e30;
-  for (const Triangle& t : triangles_of(mesh)) {
+  for (const MeshTriangle& t : triangles_of(mesh)) {
     smallest = std::min(smallest, length(area_normal(t)) / 2.0);
   }
   return smallest;
