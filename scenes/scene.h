@@ -55,7 +55,7 @@ struct SceneLens {
 enum class LightKind : std::uint8_t { directional, point };
 
 /// How a light's shadows are made (scenes/shadows).
-enum class ShadowKind : std::uint8_t { none, projected };
+enum class ShadowKind : std::uint8_t { none, projected, volumes, map };
 
 /// Lights with shadows: a bit each in a stencil of 8.
 inline constexpr int kMostShadowLights = 8;

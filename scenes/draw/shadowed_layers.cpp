@@ -23,13 +23,21 @@ bool moves(const Object& object) {
   return object.spin_degrees_per_frame != glm::dvec3{0.0} || object.sway != glm::dvec3{0.0};
 }
 
+// Of another kind of shadows: its dark sides alone.
+ProjectedShadows without_triangles(const Facets& facets, const ShadowLight& light) {
+  return {lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
+}
+
 void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool& pool) {
   if (shadows.frame && (*shadows.frame == frame || !shadows.moves)) return;
   shadows.facets = scene_facets(scene, frame);
   shadows.projected.clear();
-  for (const std::size_t light : shadows.lights) {
+  for (const std::size_t number : shadows.lights) {
+    const Light& light = scene.lights[number];
     shadows.projected.push_back(
-        project_by_grid(shadows.facets, shadow_light(scene.lights[light]), pool));
+        light.shadows == ShadowKind::projected
+            ? project_by_grid(shadows.facets, shadow_light(light), pool)
+            : without_triangles(shadows.facets, shadow_light(light)));
   }
   shadows.frame = frame;
 }
@@ -43,6 +51,7 @@ void draw_masks(SceneShadows& shadows, const CameraMatrices& camera, int width, 
   for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
     shadows.masks[i].resize(shadows.seen[i].size());
     draw_shadow_mask(shadows.facets, of_lights, shadows.seen[i], view, shadows.masks[i], pool);
+    // SEAM: volumes and maps set their lights' bits in shadows.masks[i] here.
   }
 }
 

@@ -36,7 +36,8 @@ struct SceneShadows {
   bool moves = false;               ///< whether objects are elsewhere at another frame
   std::optional<double> frame;      ///< of facets and projected
   Facets facets;
-  std::vector<ProjectedShadows> projected;       ///< of each of `lights`
+  /// Of each of `lights`. Of other kinds than projected it has no triangles, only the dark sides.
+  std::vector<ProjectedShadows> projected;
   std::vector<std::vector<SeenFacet>> seen;      ///< of each layer
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
   // The scene without some lights.

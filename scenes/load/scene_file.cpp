@@ -102,7 +102,7 @@ SceneLens read_lens(Section section) {
 
 Light read_light(Section& section) {
   static constexpr std::array<std::string_view, 2> kKinds = {"directional", "point"};
-  static constexpr std::array<std::string_view, 2> kShadows = {"none", "projected"};
+  static constexpr std::array<std::string_view, 4> kShadows = {"none", "projected", "volumes", "map"};
   Light light;
   if (!has_key(section, "kind")) {
     fail_at(section, "kind", "is missing; \"directional\" or \"point\" would be right");

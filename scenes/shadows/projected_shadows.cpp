@@ -176,15 +176,6 @@ void for_each_shadow(const Facets& facets, std::uint32_t number, const ShadowLig
   }
 }
 
-std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light) {
-  std::vector<LitSide> lit;
-  lit.reserve(facets.receivers.size());
-  for (const Receiver& receiver : facets.receivers) {
-    lit.push_back(lit_side(receiver, light, facets.epsilon_m));
-  }
-  return lit;
-}
-
 std::vector<std::uint32_t> all_casters(const Facets& facets, const ShadowLight& light) {
   std::vector<std::uint32_t> casters;
   for (std::uint32_t i = 0; i < facets.facets.size(); ++i) {
@@ -268,6 +259,15 @@ LitSide lit_side(const Receiver& receiver, const ShadowLight& light, double epsi
   const double least = light.w != 0.0 ? epsilon_m : 0x1p-40;
   if (before > least) return LitSide::front;
   return before < -least && receiver.two_sided ? LitSide::back : LitSide::none;
+}
+
+std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light) {
+  std::vector<LitSide> lit;
+  lit.reserve(facets.receivers.size());
+  for (const Receiver& receiver : facets.receivers) {
+    lit.push_back(lit_side(receiver, light, facets.epsilon_m));
+  }
+  return lit;
 }
 
 ProjectedShadows project_in_sequence(const Facets& facets, const ShadowLight& light) {

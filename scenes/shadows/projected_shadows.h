@@ -19,13 +19,16 @@ enum class LitSide : std::uint8_t { none, front, back, both };
 
 LitSide lit_side(const Receiver& receiver, const ShadowLight& light, double epsilon_m);
 
+/// Of each receiver.
+std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light);
+
 /// A shadow's triangle in homogeneous coordinates of the world, w >= 0. It lies in its receiver's
 /// plane; corners of w = 0 are infinitely far.
 using ProjectedTriangle = std::array<glm::dvec4, 3>;
 
 /// All shadows of one light. They depend on no camera.
 struct ProjectedShadows {
-  std::vector<LitSide> lit;  ///< of each receiver
+  std::vector<LitSide> lit;  ///< lit_sides()
   /// CSR: receiver i's triangles are triangles[begins[i]] to triangles[begins[i + 1] - 1].
   std::vector<std::size_t> begins;
   std::vector<ProjectedTriangle> triangles;

@@ -30,7 +30,9 @@ struct ShadowChoice {
   ShadowKind kind;
 };
 constexpr std::array kShadowChoices{ShadowChoice{"none", ShadowKind::none},
-                                    ShadowChoice{"projected", ShadowKind::projected}};
+                                    ShadowChoice{"projected", ShadowKind::projected},
+                                    ShadowChoice{"volumes", ShadowKind::volumes},
+                                    ShadowChoice{"map", ShadowKind::map}};
 
 void add_picture_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Output");
@@ -89,7 +91,7 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Scene");
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
-  add_value(parser, "--shadows", "none|projected",
+  add_value(parser, "--shadows", "none|projected|volumes|map",
             "Shadows of all lights, in place of what the scene says of each",
             [&options](const std::string& text) {
               for (const ShadowChoice& choice : kShadowChoices) {
