@@ -34,19 +34,28 @@ void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool&
   shadows.projected.clear();
   for (const std::size_t number : shadows.lights) {
     const Light& light = scene.lights[number];
-    shadows.projected.push_back(
-        light.shadows == ShadowKind::projected
-            ? project_by_grid(shadows.facets, shadow_light(light), pool)
-            : without_triangles(shadows.facets, shadow_light(light)));
+    shadows.projected.push_back(light.shadows == ShadowKind::projected
+                                    ? project_by_grid(shadows.facets, shadow_light(light), pool)
+                                    : without_triangles(shadows.facets, shadow_light(light)));
   }
   shadows.frame = frame;
 }
 
+std::vector<const ProjectedShadows*> pointers_to(const std::vector<ProjectedShadows>& projected) {
+  std::vector<const ProjectedShadows*> of_lights;
+  for (const ProjectedShadows& of_light : projected) of_lights.push_back(&of_light);
+  return of_lights;
+}
+
+ShadowView shadow_view(const CameraMatrices& camera, int width, int height,
+                       const Profile& profile) {
+  return {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
+}
+
 void draw_masks(SceneShadows& shadows, const CameraMatrices& camera, int width, int height,
                 const Profile& profile, ThreadPool& pool) {
-  std::vector<const ProjectedShadows*> of_lights;
-  for (const ProjectedShadows& of_light : shadows.projected) of_lights.push_back(&of_light);
-  const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
+  const auto of_lights = pointers_to(shadows.projected);
+  const ShadowView view = shadow_view(camera, width, height, profile);
   shadows.masks.resize(shadows.seen.size());
   for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
     shadows.masks[i].resize(shadows.seen[i].size());
@@ -212,6 +221,12 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
   shadows->pass.profile = profile;
   shadows->pass.isa = pool.isa();
   return shadows;
+}
+
+MaskDraws shadow_mask_draws(const SceneShadows& shadows, const CameraMatrices& camera, int width,
+                            int height, ThreadPool& pool) {
+  return shadow_mask_draws(shadows.facets, pointers_to(shadows.projected), shadows.seen[0],
+                           shadow_view(camera, width, height, shadows.pass.profile), pool);
 }
 
 void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, double frame,

@@ -7,8 +7,10 @@
 // pipeline's (raster/pipeline/setup.h), so a GL driver that draws the same triangles into its
 // stencil covers the same pixels.
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <span>
 #include <vector>
 
@@ -37,5 +39,25 @@ struct ShadowView {
 void draw_shadow_mask(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
                       std::span<const SeenFacet> seen, const ShadowView& view,
                       std::span<std::uint8_t> mask, ThreadPool& pool);
+
+/// A triangle of a shadow as it is drawn, on the pixels of its receiver alone: corners in
+/// normalised device coordinates, cut to little more than where these pixels lie.
+struct MaskTriangle {
+  std::array<glm::vec2, 3> corners;
+  std::uint32_t receiver;
+};
+
+/// What draw_shadow_mask() draws, for a GL driver (tools/gl).
+struct MaskDraws {
+  std::vector<std::uint32_t> receivers;              ///< of each pixel; kShowsNone
+  std::vector<std::uint8_t> dark;                    ///< the mask before the triangles
+  std::vector<std::vector<MaskTriangle>> triangles;  ///< of each light
+};
+
+inline constexpr std::uint32_t kShowsNone = ~std::uint32_t{0};
+
+MaskDraws shadow_mask_draws(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
+                            std::span<const SeenFacet> seen, const ShadowView& view,
+                            ThreadPool& pool);
 
 }  // namespace softfocus

@@ -16,6 +16,7 @@ std::vector<Case> crosscheck_cases() {
   }
   add_kernel_cases(cases);
   add_effect_cases(cases);
+  add_shadow_cases(cases);
   add_motion_cases(cases);
   add_temporal_cases(cases);
   add_filter_cases(cases);

@@ -47,6 +47,7 @@ void add_effect_cases(std::vector<Case>& cases);
 void add_motion_cases(std::vector<Case>& cases);
 void add_temporal_cases(std::vector<Case>& cases);
 void add_filter_cases(std::vector<Case>& cases);
+void add_shadow_cases(std::vector<Case>& cases);
 void add_polygon_cases(std::vector<Case>& cases);
 
 /// Random numbers for making cases up.
