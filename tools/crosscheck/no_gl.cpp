@@ -5,6 +5,7 @@
 #include "tools/crosscheck/probe.h"
 #include "tools/crosscheck/run_cases.h"
 #include "tools/gl/frame_on_gl.h"
+#include "tools/gl/shadows_repeated_on_gl.h"
 
 namespace softfocus {
 namespace {
@@ -34,6 +35,17 @@ std::vector<Image> FrameOnGl::draw_layers(const Scene&, const CameraMatrices&, d
   refuse();
 }
 Image FrameOnGl::filter(const Method&, const DofSettings&, const Image&) { refuse(); }
+
+struct ShadowsRepeatedOnGl::State {};
+ShadowsRepeatedOnGl::ShadowsRepeatedOnGl(const Driver&, const MaskDraws&, int, int, int) {
+  refuse();
+}
+ShadowsRepeatedOnGl::~ShadowsRepeatedOnGl() = default;
+std::string ShadowsRepeatedOnGl::renderer() const { refuse(); }
+void ShadowsRepeatedOnGl::draw() { refuse(); }
+std::vector<std::uint8_t> ShadowsRepeatedOnGl::mask(std::span<const std::uint8_t>) const {
+  refuse();
+}
 
 struct EffectsRepeatedOnGl::State {};
 EffectsRepeatedOnGl::EffectsRepeatedOnGl(const Driver&, const Image&, int) { refuse(); }

@@ -18,6 +18,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/gl/shadows_repeated_on_gl.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -34,6 +35,7 @@ struct ShadowsOptions {
   double frame = 0.0;
   int runs = 5;
   bool check = false;
+  const Driver* versus = nullptr;  ///< draws the same stencil
   PoolOptions pool;
 };
 
@@ -101,6 +103,37 @@ void check(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
       errors.seen, errors.in_shadow, errors.near_edge, errors.wrong);
 }
 
+// The stencil of the first layer, by both.
+void time_beside(const Driver& driver, const SceneShadows& shadows, const ShadowsOptions& options,
+                 const CameraMatrices& camera, ThreadPool& pool) {
+  const auto [width, height] = options.size;
+  const MaskDraws draws = shadow_mask_draws(shadows, camera, width, height, pool);
+  ShadowsRepeatedOnGl on_gl{driver, draws, width, height, pool.threads()};
+  std::vector<const ProjectedShadows*> projected;
+  for (const ProjectedShadows& of_light : shadows.projected) projected.push_back(&of_light);
+  const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), width, height,
+                        shadows.pass.profile};
+  std::vector<std::uint8_t> mask(shadows.seen[0].size());
+  on_gl.draw();
+  std::vector<Milliseconds> times{{"stencil"}, {"stencil, " + std::string{driver.name}}};
+  time_in_turn(
+      times, options.runs,
+      [&] { draw_shadow_mask(shadows.facets, projected, shadows.seen[0], view, mask, pool); },
+      [&] { on_gl.draw(); });
+  const std::vector<std::uint8_t> theirs = on_gl.mask(draws.dark);
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) differ += mask[i] != theirs[i];
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < times[0].ms.size(); ++i) {
+    ratios.push_back(times[1].ms[i] / times[0].ms[i]);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  print_times(times);
+  std::printf("%-26s %9.2f     (%.2f to %.2f); %zu of %zu pixels differ; %s\n", "ratio",
+              ratios[ratios.size() / 2], ratios.front(), ratios.back(), differ, mask.size(),
+              on_gl.renderer().c_str());
+}
+
 int measure_shadows(const ShadowsOptions& options) {
   if (options.scene.empty() == !options.triangles) {
     throw UsageError("give one of SCENE and --triangles");
@@ -118,8 +151,12 @@ int measure_shadows(const ShadowsOptions& options) {
   const auto [width, height] = options.size;
   const CameraMatrices camera = camera_matrices(scene.camera, options.frame, width, height);
   Image picture = make_image(Format::rgba16f, width, height);
-  PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
-  PreparedScene plain = prepare_scene(unshadowed, Profile{}, pool);
+  // A GPU's has to be probed first; its bits are not expected to be ours.
+  const Profile profile = options.versus == nullptr
+                              ? Profile{}
+                              : find_profile(options.versus->profile).value_or(Profile{});
+  PreparedScene prepared = prepare_scene(scene, profile, pool);
+  PreparedScene plain = prepare_scene(unshadowed, profile, pool);
   draw_scene(prepared, camera, options.frame, picture, pool);
   draw_scene(plain, camera, options.frame, picture, pool);
   SceneShadows& shadows = *prepared.shadows;
@@ -169,6 +206,7 @@ int measure_shadows(const ShadowsOptions& options) {
       },
       [&] { draw(prepared); }, [&] { draw(plain); });
   print_times(times);
+  if (options.versus != nullptr) time_beside(*options.versus, shadows, options, camera, pool);
   if (options.check) check(shadows, lights, camera, options.size, pool);
   return kDone;
 }
@@ -196,6 +234,10 @@ Command add_shadows_command(CLI::App& program) {
               options->runs = parse_whole("--runs", text, 1, 100, "a number from 1 to 100");
             });
   add_flag(*parser, "--check", "Ask a ray for every pixel, too", options->check);
+  add_value(*parser, "--vs", "DRIVER",
+            "Time this GL driver too, in turn, drawing the same stencil: " + names_of(drivers()),
+            [options](const std::string& text) { options->versus = &parse_driver("--vs", text); });
+  offer(*parser, "--vs", [] { return names_in(drivers()); });
   add_pool_options(*parser, options->pool, "the shadows are the same");
   return {parser, [options] { return measure_shadows(*options); }};
 }
