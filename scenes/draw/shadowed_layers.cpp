@@ -59,7 +59,8 @@ void draw_masks(SceneShadows& shadows, const CameraMatrices& camera, int width, 
   shadows.masks.resize(shadows.seen.size());
   for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
     shadows.masks[i].resize(shadows.seen[i].size());
-    draw_shadow_mask(shadows.facets, of_lights, shadows.seen[i], view, shadows.masks[i], pool);
+    draw_shadow_mask(cut_shadows(shadows.facets, of_lights, shadows.seen[i], view, pool), view,
+                     shadows.masks[i], pool);
     // SEAM: volumes and maps set their lights' bits in shadows.masks[i] here.
   }
 }
@@ -223,10 +224,10 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
   return shadows;
 }
 
-MaskDraws shadow_mask_draws(const SceneShadows& shadows, const CameraMatrices& camera, int width,
-                            int height, ThreadPool& pool) {
-  return shadow_mask_draws(shadows.facets, pointers_to(shadows.projected), shadows.seen[0],
-                           shadow_view(camera, width, height, shadows.pass.profile), pool);
+MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
+                      int height, ThreadPool& pool) {
+  return cut_shadows(shadows.facets, pointers_to(shadows.projected), shadows.seen[0],
+                     shadow_view(camera, width, height, shadows.pass.profile), pool);
 }
 
 void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, double frame,

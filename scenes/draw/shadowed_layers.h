@@ -48,9 +48,9 @@ struct SceneShadows {
 std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profile& profile,
                                                  ThreadPool& pool);
 
-/// What a driver draws for the first layer's shadows, once add_shadows() has drawn it.
-MaskDraws shadow_mask_draws(const SceneShadows& shadows, const CameraMatrices& camera, int width,
-                            int height, ThreadPool& pool);
+/// What is drawn of the first layer's shadows, once add_shadows() has drawn it.
+MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
+                      int height, ThreadPool& pool);
 
 /// Puts the shadows into layers that draw_layers() has drawn of the same frame without any.
 void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, double frame,

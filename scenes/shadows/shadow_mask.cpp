@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -77,8 +78,8 @@ void find_seen(const Facets& facets, std::span<const SeenFacet> seen,
       last = here;
       receiver = shows_facet(here) ? facets.receiver_of[facet_of(here)] : kShowsNone;
       of_side = receiver == kShowsNone ? std::uint8_t{0}
-                : seen_from_back(here)  ? dark[receiver].back
-                                        : dark[receiver].front;
+                : seen_from_back(here) ? dark[receiver].back
+                                       : dark[receiver].front;
       if (receiver != run_of) {
         if (run_of != kShowsNone) widen(found.boxes[run_of], run_begin, x, y);
         run_of = receiver;
@@ -171,136 +172,134 @@ void cut_shadow(const ProjectedTriangle& triangle, const ShadowView& view, const
   }
 }
 
-// Where a receiver's shadows are drawn: its pixels lie in `box`, and of these a part at a time is
-// drawn.
-struct MaskArea {
+// Triangles of a light on a receiver, few enough for a task.
+struct Piece {
   std::uint32_t receiver;
-  Rectangle box;
-  Rectangle part;
+  std::uint8_t light;
+  std::size_t begin, end;
 };
 
-struct MaskWriter {
-  const ShadowView& view;
-  const MaskArea& where;
-  std::span<const std::uint32_t> receivers;
-  std::span<std::uint8_t> mask;
-};
+// Projected triangles that a task cuts, at the least.
+constexpr std::size_t kTrianglesOfTask = 2048;
 
-void fill(const MaskWriter& writer, const std::array<glm::vec2, 3>& corners, std::uint8_t bit) {
-  const ShadowView& view = writer.view;
+std::vector<Piece> pieces_of(const SeenReceivers& found,
+                             std::span<const ProjectedShadows* const> shadows) {
+  std::vector<Piece> pieces;
+  for (std::uint32_t r = 0; r < found.boxes.size(); ++r) {
+    if (found.boxes[r].y_end == 0) continue;
+    for (std::size_t light = 0; light < shadows.size(); ++light) {
+      const std::vector<std::size_t>& begins = shadows[light]->begins;
+      const std::size_t end = begins[r + std::size_t{1}];
+      for (std::size_t t = begins[r]; t < end; t += kTrianglesOfTask) {
+        pieces.push_back(
+            {r, static_cast<std::uint8_t>(light), t, std::min(t + kTrianglesOfTask, end)});
+      }
+    }
+  }
+  return pieces;
+}
+
+// Where the pieces of each task end.
+std::vector<std::size_t> ends_of_tasks(const std::vector<Piece>& pieces) {
+  std::vector<std::size_t> ends;
+  std::size_t triangles = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    triangles += pieces[i].end - pieces[i].begin;
+    if (triangles < kTrianglesOfTask && i + 1 < pieces.size()) continue;
+    ends.push_back(i + 1);
+    triangles = 0;
+  }
+  return ends;
+}
+
+// A pixel more either way, so that no profile's rounding leaves one out.
+MaskRows rows_of(const std::array<glm::vec2, 3>& corners, int height) {
+  const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
+  const float half = 0.5f * static_cast<float>(height);
+  return {static_cast<int>(std::floor((low + 1.0f) * half)) - 1,
+          static_cast<int>(std::ceil((high + 1.0f) * half)) + 1};
+}
+
+void cut_piece(const Piece& piece, const ProjectedShadows& shadows, const SeenBox& seen,
+               const ShadowView& view, MaskDraws::Part& part) {
+  const ClipBox box = clip_box({seen.x_begin, seen.y_begin, seen.x_end, seen.y_end}, view);
+  const auto bit = static_cast<std::uint8_t>(1u << piece.light);
+  for (std::size_t t = piece.begin; t < piece.end; ++t) {
+    cut_shadow(shadows.triangles[t], view, box, [&](const std::array<glm::vec2, 3>& corners) {
+      part.triangles.push_back({corners, piece.receiver, bit});
+      part.rows.push_back(rows_of(corners, view.height));
+    });
+  }
+}
+
+void fill(const MaskTriangle& triangle, const Rectangle& band, const ShadowView& view,
+          std::span<const std::uint32_t> of_pixels, std::span<std::uint8_t> mask_bytes) {
   std::array<WindowVertex, 3> vertices;
   for (std::size_t i = 0; i < 3; ++i) {
-    vertices[i] =
-        to_window({corners[i], 0.0f, 1.0f}, view.width, view.height, view.profile.viewport);
+    vertices[i] = to_window({triangle.corners[i], 0.0f, 1.0f}, view.width, view.height,
+                            view.profile.viewport);
   }
-  const auto setup = set_up_triangle(vertices, Cull::none, FrontFace::counter_clockwise,
-                                     writer.where.part, view.profile);
+  const auto setup =
+      set_up_triangle(vertices, Cull::none, FrontFace::counter_clockwise, band, view.profile);
   if (!setup) return;
   const Rectangle& bounds = setup->bounds;
   for (int y = bounds.y_begin; y < bounds.y_end; ++y) {
     const Span span = covered_span(*setup, y, bounds.x_begin, bounds.x_end);
     const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width);
-    const std::uint32_t* receivers = writer.receivers.data() + row;
-    std::uint8_t* mask = writer.mask.data() + row;
+    const std::uint32_t* receivers = of_pixels.data() + row;
+    std::uint8_t* mask = mask_bytes.data() + row;
     for (int x = span.x_begin; x < span.x_end; ++x) {
-      // Others' pixels are not written, not even with what they hold: a thread may be at them.
-      if (receivers[x] == writer.where.receiver) mask[x] = static_cast<std::uint8_t>(mask[x] | bit);
+      if (receivers[x] == triangle.receiver) {
+        mask[x] = static_cast<std::uint8_t>(mask[x] | triangle.bit);
+      }
     }
   }
 }
 
-// Rows that a task takes of a receiver: a large one's shadows are drawn by all threads.
-constexpr int kRowsOfArea = 128;
+// Rows that a task draws.
+constexpr int kRowsOfBand = 32;
 
-// Areas that a task takes at once.
-constexpr std::size_t kAreasATask = 8;
+}  // namespace
 
-std::vector<MaskArea> areas_of(const SeenReceivers& found,
-                               std::span<const ProjectedShadows* const> shadows) {
-  std::vector<MaskArea> areas;
-  for (std::uint32_t r = 0; r < found.boxes.size(); ++r) {
-    const SeenBox& box = found.boxes[r];
-    const bool has_shadows = std::any_of(shadows.begin(), shadows.end(), [&](const auto* of_light) {
-      return of_light->begins[r] < of_light->begins[r + std::size_t{1}];
-    });
-    if (!has_shadows) continue;
-    const Rectangle all{box.x_begin, box.y_begin, box.x_end, box.y_end};
-    for (int y = all.y_begin; y < all.y_end; y += kRowsOfArea) {
-      areas.push_back({r, all, {all.x_begin, y, all.x_end, std::min(y + kRowsOfArea, all.y_end)}});
-    }
-  }
-  return areas;
-}
-
-// Calls use(triangle) for each of a light's triangles on a receiver.
-template <class Use>
-void for_each_triangle(const ProjectedShadows& of_light, std::uint32_t receiver, const Use& use) {
-  for (std::size_t t = of_light.begins[receiver]; t < of_light.begins[receiver + std::size_t{1}];
-       ++t) {
-    use(of_light.triangles[t]);
-  }
-}
-
-SeenReceivers seen_receivers(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
-                             std::span<const SeenFacet> seen, const ShadowView& view,
-                             std::span<std::uint8_t> mask, ThreadPool& pool) {
+MaskDraws cut_shadows(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
+                      std::span<const SeenFacet> seen, const ShadowView& view, ThreadPool& pool) {
+  MaskDraws draws;
+  draws.dark.resize(seen.size());
   const std::vector<DarkSides> dark = dark_sides(facets, shadows);
   SeenReceivers found;
   found.of_pixel.resize(seen.size());
   found.boxes = std::vector<SeenBox>(facets.receivers.size());
   pool.for_each(view.height,
-                [&](int y) { find_seen(facets, seen, dark, view.width, y, found, mask); });
-  return found;
+                [&](int y) { find_seen(facets, seen, dark, view.width, y, found, draws.dark); });
+
+  const std::vector<Piece> pieces = pieces_of(found, shadows);
+  const std::vector<std::size_t> ends = ends_of_tasks(pieces);
+  draws.parts.resize(ends.size());
+  pool.for_each(static_cast<int>(ends.size()), [&](int number) {
+    const auto task = static_cast<std::size_t>(number);
+    for (std::size_t i = task == 0 ? 0 : ends[task - 1]; i < ends[task]; ++i) {
+      cut_piece(pieces[i], *shadows[pieces[i].light], found.boxes[pieces[i].receiver], view,
+                draws.parts[task]);
+    }
+  });
+  draws.receivers = std::move(found.of_pixel);
+  return draws;
 }
 
-}  // namespace
-
-void draw_shadow_mask(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
-                      std::span<const SeenFacet> seen, const ShadowView& view,
-                      std::span<std::uint8_t> mask, ThreadPool& pool) {
-  const SeenReceivers found = seen_receivers(facets, shadows, seen, view, mask, pool);
-  const std::vector<MaskArea> areas = areas_of(found, shadows);
-  const auto tasks = static_cast<int>((areas.size() + kAreasATask - 1) / kAreasATask);
-  pool.for_each(tasks, [&](int task) {
-    const std::size_t begin = static_cast<std::size_t>(task) * kAreasATask;
-    for (std::size_t i = begin; i < std::min(begin + kAreasATask, areas.size()); ++i) {
-      const MaskArea& area = areas[i];
-      const MaskWriter writer{view, area, found.of_pixel, mask};
-      // Cut beyond its box, a shadow has other corners, so each part has the whole box's.
-      const ClipBox box = clip_box(area.box, view);
-      for (std::size_t light = 0; light < shadows.size(); ++light) {
-        for_each_triangle(*shadows[light], area.receiver, [&](const ProjectedTriangle& triangle) {
-          cut_shadow(triangle, view, box, [&](const std::array<glm::vec2, 3>& corners) {
-            fill(writer, corners, static_cast<std::uint8_t>(1u << light));
-          });
-        });
+void draw_shadow_mask(const MaskDraws& draws, const ShadowView& view, std::span<std::uint8_t> mask,
+                      ThreadPool& pool) {
+  std::copy(draws.dark.begin(), draws.dark.end(), mask.begin());
+  pool.for_each((view.height + kRowsOfBand - 1) / kRowsOfBand, [&](int number) {
+    const int y = number * kRowsOfBand;
+    const Rectangle band{0, y, view.width, std::min(y + kRowsOfBand, view.height)};
+    for (const MaskDraws::Part& part : draws.parts) {
+      for (std::size_t i = 0; i < part.rows.size(); ++i) {
+        if (part.rows[i].begin < band.y_end && part.rows[i].end > band.y_begin) {
+          fill(part.triangles[i], band, view, draws.receivers, mask);
+        }
       }
     }
   });
-}
-
-MaskDraws shadow_mask_draws(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
-                            std::span<const SeenFacet> seen, const ShadowView& view,
-                            ThreadPool& pool) {
-  MaskDraws draws;
-  draws.dark.resize(seen.size());
-  draws.triangles.resize(shadows.size());
-  SeenReceivers found = seen_receivers(facets, shadows, seen, view, draws.dark, pool);
-  std::uint32_t last = kShowsNone;
-  for (const MaskArea& area : areas_of(found, shadows)) {
-    if (area.receiver == last) continue;
-    last = area.receiver;
-    const ClipBox box = clip_box(area.box, view);
-    for (std::size_t light = 0; light < shadows.size(); ++light) {
-      for_each_triangle(*shadows[light], area.receiver, [&](const ProjectedTriangle& triangle) {
-        cut_shadow(triangle, view, box, [&](const std::array<glm::vec2, 3>& corners) {
-          draws.triangles[light].push_back({corners, area.receiver});
-        });
-      });
-    }
-  }
-  draws.receivers = std::move(found.of_pixel);
-  return draws;
 }
 
 }  // namespace softfocus

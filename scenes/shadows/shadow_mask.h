@@ -34,30 +34,41 @@ struct ShadowView {
   Profile profile;
 };
 
-/// Bit i of a pixel's byte is set where the light of `shadows`[i] does not reach what it shows.
-/// `seen` and `mask` are rows from the top, without gaps. Up to 8 lights.
-void draw_shadow_mask(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
-                      std::span<const SeenFacet> seen, const ShadowView& view,
-                      std::span<std::uint8_t> mask, ThreadPool& pool);
-
 /// A triangle of a shadow as it is drawn, on the pixels of its receiver alone: corners in
 /// normalised device coordinates, cut to little more than where these pixels lie.
 struct MaskTriangle {
   std::array<glm::vec2, 3> corners;
   std::uint32_t receiver;
+  std::uint8_t bit;  ///< of its light
 };
 
-/// What draw_shadow_mask() draws, for a GL driver (tools/gl).
-struct MaskDraws {
-  std::vector<std::uint32_t> receivers;              ///< of each pixel; kShowsNone
-  std::vector<std::uint8_t> dark;                    ///< the mask before the triangles
-  std::vector<std::vector<MaskTriangle>> triangles;  ///< of each light
+/// Rows of pixels in which a triangle may lie.
+struct MaskRows {
+  int begin, end;
 };
 
 inline constexpr std::uint32_t kShowsNone = ~std::uint32_t{0};
 
-MaskDraws shadow_mask_draws(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
-                            std::span<const SeenFacet> seen, const ShadowView& view,
-                            ThreadPool& pool);
+/// What a camera sees of shadows, cut for drawing.
+struct MaskDraws {
+  std::vector<std::uint32_t> receivers;  ///< of each pixel; kShowsNone
+  std::vector<std::uint8_t> dark;        ///< bits of lights that do not reach a pixel's side
+  /// In parts, in the order of receivers, each with the rows of its triangles.
+  struct Part {
+    std::vector<MaskTriangle> triangles;
+    std::vector<MaskRows> rows;
+  };
+  std::vector<Part> parts;
+};
+
+/// `seen` has rows from the top, without gaps. Bit i is that of the light of `shadows`[i], 8 at
+/// most; one whose shadows have no triangles has its dark sides alone.
+MaskDraws cut_shadows(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
+                      std::span<const SeenFacet> seen, const ShadowView& view, ThreadPool& pool);
+
+/// Bit i of a pixel's byte is set where light i does not reach what the pixel shows. `mask` is as
+/// large as what was seen.
+void draw_shadow_mask(const MaskDraws& draws, const ShadowView& view, std::span<std::uint8_t> mask,
+                      ThreadPool& pool);
 
 }  // namespace softfocus

@@ -37,7 +37,7 @@ std::vector<Image> FrameOnGl::draw_layers(const Scene&, const CameraMatrices&, d
 Image FrameOnGl::filter(const Method&, const DofSettings&, const Image&) { refuse(); }
 
 struct ShadowsRepeatedOnGl::State {};
-ShadowsRepeatedOnGl::ShadowsRepeatedOnGl(const Driver&, const MaskDraws&, int, int, int) {
+ShadowsRepeatedOnGl::ShadowsRepeatedOnGl(const Driver&, const MaskDraws&, int, int, int, int) {
   refuse();
 }
 ShadowsRepeatedOnGl::~ShadowsRepeatedOnGl() = default;

@@ -28,8 +28,9 @@ void shadow_both(const Bench& bench, Tally& tally, const std::string& name, int 
   Image picture = make_image(Format::rgba16f, width, height);
   draw_scene(prepared, camera, 0.0, picture, bench.pool);
   const SceneShadows& shadows = *prepared.shadows;
-  const MaskDraws draws = shadow_mask_draws(shadows, camera, width, height, bench.pool);
-  const GlShadows on_gl = make_gl_shadows(bench.gl, bench.shaders, draws, width, height);
+  const MaskDraws draws = cut_shadows(shadows, camera, width, height, bench.pool);
+  const GlShadows on_gl = make_gl_shadows(bench.gl, bench.shaders, draws,
+                                          static_cast<int>(scene.lights.size()), width, height);
   draw(on_gl);
   add_pictures(tally, mask_image(read_mask(on_gl, draws.dark), width, height),
                mask_image(shadows.masks[0], width, height));

@@ -12,14 +12,20 @@ struct ShadowVertex {
   float receiver;
 };
 
-GlBuffer upload(const std::vector<MaskTriangle>& triangles) {
+std::vector<ShadowVertex> vertices_of(const MaskDraws& draws, std::uint8_t bit) {
   std::vector<ShadowVertex> vertices;
-  vertices.reserve(3 * triangles.size());
-  for (const MaskTriangle& triangle : triangles) {
-    for (const glm::vec2& corner : triangle.corners) {
-      vertices.push_back({corner, static_cast<float>(triangle.receiver)});
+  for (const MaskDraws::Part& part : draws.parts) {
+    for (const MaskTriangle& triangle : part.triangles) {
+      if (triangle.bit != bit) continue;
+      for (const glm::vec2& corner : triangle.corners) {
+        vertices.push_back({corner, static_cast<float>(triangle.receiver)});
+      }
     }
   }
+  return vertices;
+}
+
+GlBuffer upload(const std::vector<ShadowVertex>& vertices) {
   GLuint name = 0;
   glGenBuffers(1, &name);
   GlBuffer buffer{name};
@@ -32,7 +38,7 @@ GlBuffer upload(const std::vector<MaskTriangle>& triangles) {
 }  // namespace
 
 GlShadows make_gl_shadows(const GlContext& context, const Shaders& shaders, const MaskDraws& draws,
-                          int width, int height) {
+                          int lights, int width, int height) {
   GlShadows made{
       width, height, link_program(context, shaders, "shadow.vert", "shadow.frag"), {}, {}};
   Image receivers = make_image(Format::r32f, width, height);
@@ -45,8 +51,9 @@ GlShadows make_gl_shadows(const GlContext& context, const Shaders& shaders, cons
     }
   }
   made.receivers = upload(receivers);
-  for (const std::vector<MaskTriangle>& triangles : draws.triangles) {
-    made.lights.push_back({upload(triangles), static_cast<GLsizei>(3 * triangles.size()),
+  for (int i = 0; i < lights; ++i) {
+    const auto vertices = vertices_of(draws, static_cast<std::uint8_t>(1u << i));
+    made.lights.push_back({upload(vertices), static_cast<GLsizei>(vertices.size()),
                            make_target(std::array{Format::r32f}, width, height, false)});
   }
   return made;

@@ -22,13 +22,14 @@ struct GlShadows {
   std::vector<OfLight> lights;
 };
 
-/// Uploads all of it. Receivers are numbered by binary32: up to 2^24 of them.
+/// Uploads all of it. `lights` counts the bits. Receivers are numbered by binary32: up to 2^24 of
+/// them.
 GlShadows make_gl_shadows(const GlContext& context, const Shaders& shaders, const MaskDraws& draws,
-                          int width, int height);
+                          int lights, int width, int height);
 
 void draw(const GlShadows& shadows);
 
-/// As draw_shadow_mask() has it; `dark` is that of the draws.
+/// As draw_shadow_mask() has it; `dark` is MaskDraws'.
 std::vector<std::uint8_t> read_mask(const GlShadows& shadows, std::span<const std::uint8_t> dark);
 
 }  // namespace softfocus

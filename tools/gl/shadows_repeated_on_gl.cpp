@@ -10,11 +10,11 @@ struct ShadowsRepeatedOnGl::State {
   GlShadows shadows;
 };
 
-ShadowsRepeatedOnGl::ShadowsRepeatedOnGl(const Driver& driver, const MaskDraws& draws, int width,
-                                         int height, int threads) {
+ShadowsRepeatedOnGl::ShadowsRepeatedOnGl(const Driver& driver, const MaskDraws& draws, int lights,
+                                         int width, int height, int threads) {
   naming(driver, [&] {
     state_.reset(new State{driver, GlContext{driver, threads}, {}});
-    state_->shadows = make_gl_shadows(state_->context, Shaders{}, draws, width, height);
+    state_->shadows = make_gl_shadows(state_->context, Shaders{}, draws, lights, width, height);
   });
 }
 

@@ -16,8 +16,8 @@ namespace softfocus {
 class ShadowsRepeatedOnGl {
  public:
   /// Opens the driver; Mesa's get that number of threads. Throws DriverError.
-  ShadowsRepeatedOnGl(const Driver& driver, const MaskDraws& draws, int width, int height,
-                      int threads);
+  ShadowsRepeatedOnGl(const Driver& driver, const MaskDraws& draws, int lights, int width,
+                      int height, int threads);
   ~ShadowsRepeatedOnGl();
 
   /// GL_RENDERER and GL_VERSION.

@@ -107,19 +107,18 @@ void check(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
 void time_beside(const Driver& driver, const SceneShadows& shadows, const ShadowsOptions& options,
                  const CameraMatrices& camera, ThreadPool& pool) {
   const auto [width, height] = options.size;
-  const MaskDraws draws = shadow_mask_draws(shadows, camera, width, height, pool);
-  ShadowsRepeatedOnGl on_gl{driver, draws, width, height, pool.threads()};
-  std::vector<const ProjectedShadows*> projected;
-  for (const ProjectedShadows& of_light : shadows.projected) projected.push_back(&of_light);
+  MaskDraws draws = cut_shadows(shadows, camera, width, height, pool);
+  ShadowsRepeatedOnGl on_gl{driver, draws,  static_cast<int>(shadows.lights.size()),
+                            width,  height, pool.threads()};
   const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), width, height,
                         shadows.pass.profile};
   std::vector<std::uint8_t> mask(shadows.seen[0].size());
   on_gl.draw();
-  std::vector<Milliseconds> times{{"stencil"}, {"stencil, " + std::string{driver.name}}};
+  std::vector<Milliseconds> times{
+      {"stencil"}, {"stencil, " + std::string{driver.name}}, {"cutting, before either"}};
   time_in_turn(
-      times, options.runs,
-      [&] { draw_shadow_mask(shadows.facets, projected, shadows.seen[0], view, mask, pool); },
-      [&] { on_gl.draw(); });
+      times, options.runs, [&] { draw_shadow_mask(draws, view, mask, pool); },
+      [&] { on_gl.draw(); }, [&] { draws = cut_shadows(shadows, camera, width, height, pool); });
   const std::vector<std::uint8_t> theirs = on_gl.mask(draws.dark);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) differ += mask[i] != theirs[i];
