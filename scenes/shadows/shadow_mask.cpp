@@ -212,47 +212,93 @@ std::vector<std::size_t> ends_of_tasks(const std::vector<Piece>& pieces) {
   return ends;
 }
 
-// A pixel more either way, so that no profile's rounding leaves one out.
-MaskRows rows_of(const std::array<glm::vec2, 3>& corners, int height) {
-  const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-  const float half = 0.5f * static_cast<float>(height);
-  return {static_cast<int>(std::floor((low + 1.0f) * half)) - 1,
-          static_cast<int>(std::ceil((high + 1.0f) * half)) + 1};
+// Pixels whose centres lie between two places of the window, and a 16th of a pixel more, which no
+// profile's rounding reaches.
+Span centres_between(float low, float high, int size) {
+  const float half = 0.5f * static_cast<float>(size);
+  return {static_cast<int>(std::ceil((low + 1.0f) * half - 0.5625f)),
+          static_cast<int>(std::floor((high + 1.0f) * half - 0.4375f)) + 1};
 }
+
+Span common(const Span& a, const Span& b) {
+  return {std::max(a.x_begin, b.x_begin), std::min(a.x_end, b.x_end)};
+}
+
+bool is_empty(const Span& span) { return span.x_begin >= span.x_end; }
 
 void cut_piece(const Piece& piece, const ProjectedShadows& shadows, const SeenBox& seen,
                const ShadowView& view, MaskDraws::Part& part) {
   const ClipBox box = clip_box({seen.x_begin, seen.y_begin, seen.x_end, seen.y_end}, view);
   const auto bit = static_cast<std::uint8_t>(1u << piece.light);
   for (std::size_t t = piece.begin; t < piece.end; ++t) {
-    cut_shadow(shadows.triangles[t], view, box, [&](const std::array<glm::vec2, 3>& corners) {
-      part.triangles.push_back({corners, piece.receiver, bit});
-      part.rows.push_back(rows_of(corners, view.height));
+    cut_shadow(shadows.triangles[t], view, box, [&](const std::array<glm::vec2, 3>& p) {
+      const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
+      const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
+      const Span columns =
+          common(centres_between(left, right, view.width), {seen.x_begin, seen.x_end});
+      const Span rows =
+          common(centres_between(top, bottom, view.height), {seen.y_begin, seen.y_end});
+      if (is_empty(columns) || is_empty(rows)) return;
+      part.triangles.push_back({p, piece.receiver, bit});
+      part.pixels.push_back({columns.x_begin, rows.x_begin, columns.x_end, rows.x_end});
     });
   }
 }
 
-void fill(const MaskTriangle& triangle, const Rectangle& band, const ShadowView& view,
-          std::span<const std::uint32_t> of_pixels, std::span<std::uint8_t> mask_bytes) {
-  std::array<WindowVertex, 3> vertices;
-  for (std::size_t i = 0; i < 3; ++i) {
-    vertices[i] = to_window({triangle.corners[i], 0.0f, 1.0f}, view.width, view.height,
-                            view.profile.viewport);
+struct MaskWriter {
+  const ShadowView& view;
+  std::span<const std::uint32_t> receivers;
+  std::span<std::uint8_t> mask;
+};
+
+// Whether a triangle of a few pixels finds one that is not in shadow yet. On a curved surface
+// dozens fall on the same.
+bool may_change(const MaskWriter& to, const MaskTriangle& triangle, const Rectangle& pixels) {
+  constexpr int kFew = 16;
+  if ((pixels.x_end - pixels.x_begin) * (pixels.y_end - pixels.y_begin) > kFew) return true;
+  for (int y = pixels.y_begin; y < pixels.y_end; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(to.view.width);
+    const std::uint32_t* receivers = to.receivers.data() + row;
+    const std::uint8_t* mask = to.mask.data() + row;
+    for (int x = pixels.x_begin; x < pixels.x_end; ++x) {
+      if (receivers[x] == triangle.receiver && (mask[x] & triangle.bit) == 0) return true;
+    }
   }
-  const auto setup =
-      set_up_triangle(vertices, Cull::none, FrontFace::counter_clockwise, band, view.profile);
-  if (!setup) return;
-  const Rectangle& bounds = setup->bounds;
+  return false;
+}
+
+// `coverage` has bounds, and a covered_span().
+template <class Coverage>
+void fill_rows(const MaskWriter& to, const MaskTriangle& triangle, const Rectangle& pixels,
+               const Coverage& coverage) {
+  const Rectangle bounds = intersection(coverage.bounds, pixels);
   for (int y = bounds.y_begin; y < bounds.y_end; ++y) {
-    const Span span = covered_span(*setup, y, bounds.x_begin, bounds.x_end);
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width);
-    const std::uint32_t* receivers = of_pixels.data() + row;
-    std::uint8_t* mask = mask_bytes.data() + row;
+    const Span span = covered_span(coverage, y, bounds.x_begin, bounds.x_end);
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(to.view.width);
+    const std::uint32_t* receivers = to.receivers.data() + row;
+    std::uint8_t* mask = to.mask.data() + row;
     for (int x = span.x_begin; x < span.x_end; ++x) {
       if (receivers[x] == triangle.receiver) {
         mask[x] = static_cast<std::uint8_t>(mask[x] | triangle.bit);
       }
     }
+  }
+}
+
+void fill(const MaskWriter& to, const MaskTriangle& triangle, const Rectangle& pixels) {
+  const ShadowView& view = to.view;
+  std::array<WindowVertex, 3> vertices;
+  for (std::size_t i = 0; i < 3; ++i) {
+    vertices[i] = to_window({triangle.corners[i], 0.0f, 1.0f}, view.width, view.height,
+                            view.profile.viewport);
+  }
+  // As set_up_triangle() has it, whose result is ten times as large.
+  if (view.profile.coverage == Coverage::edge_functions) {
+    if (const auto functions = make_edge_functions(vertices, view.profile)) {
+      fill_rows(to, triangle, pixels, *functions);
+    }
+  } else if (const auto lines = make_scanlines(vertices)) {
+    fill_rows(to, triangle, pixels, *lines);
   }
 }
 
@@ -292,11 +338,12 @@ void draw_shadow_mask(const MaskDraws& draws, const ShadowView& view, std::span<
   pool.for_each((view.height + kRowsOfBand - 1) / kRowsOfBand, [&](int number) {
     const int y = number * kRowsOfBand;
     const Rectangle band{0, y, view.width, std::min(y + kRowsOfBand, view.height)};
+    const MaskWriter writer{view, draws.receivers, mask};
     for (const MaskDraws::Part& part : draws.parts) {
-      for (std::size_t i = 0; i < part.rows.size(); ++i) {
-        if (part.rows[i].begin < band.y_end && part.rows[i].end > band.y_begin) {
-          fill(part.triangles[i], band, view, draws.receivers, mask);
-        }
+      for (std::size_t i = 0; i < part.pixels.size(); ++i) {
+        if (part.pixels[i].y_begin >= band.y_end || part.pixels[i].y_end <= band.y_begin) continue;
+        const Rectangle pixels = intersection(part.pixels[i], band);
+        if (may_change(writer, part.triangles[i], pixels)) fill(writer, part.triangles[i], pixels);
       }
     }
   });

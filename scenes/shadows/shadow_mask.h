@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "raster/numbers/profile.h"
+#include "raster/pipeline/state.h"
 #include "raster/threads/parallel.h"
 #include "scenes/shadows/projected_shadows.h"
 
@@ -42,21 +43,16 @@ struct MaskTriangle {
   std::uint8_t bit;  ///< of its light
 };
 
-/// Rows of pixels in which a triangle may lie.
-struct MaskRows {
-  int begin, end;
-};
-
 inline constexpr std::uint32_t kShowsNone = ~std::uint32_t{0};
 
 /// What a camera sees of shadows, cut for drawing.
 struct MaskDraws {
   std::vector<std::uint32_t> receivers;  ///< of each pixel; kShowsNone
   std::vector<std::uint8_t> dark;        ///< bits of lights that do not reach a pixel's side
-  /// In parts, in the order of receivers, each with the rows of its triangles.
+  /// In parts, in the order of receivers. A triangle covers nothing outside its `pixels`.
   struct Part {
     std::vector<MaskTriangle> triangles;
-    std::vector<MaskRows> rows;
+    std::vector<Rectangle> pixels;
   };
   std::vector<Part> parts;
 };
