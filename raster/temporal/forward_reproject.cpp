@@ -63,6 +63,22 @@ void store_moved(const std::uint16_t* from, const Profile& profile, std::uint16_
   for (int c = 0; c < 4; ++c) to[c] = float_to_half(half_to_float(from[c]), profile.half_store);
 }
 
+/// Likewise a row of texels; `planes` is memory to use again.
+void store_row(const ConstImageView& from, int y, const Profile& profile, Isa isa,
+               std::vector<float>& planes, std::uint16_t* to) {
+  if (isa == Isa::scalar) {
+    const std::uint16_t* texels = row<std::uint16_t>(from, y).data();
+    for (int x = 0; x < from.width; ++x) store_moved(texels + 4 * x, profile, to + 4 * x);
+    return;
+  }
+  const std::ptrdiff_t plane = plane_floats(from.width);
+  planes.resize(static_cast<std::size_t>(4 * plane));
+  split_texels(from, y, 4, planes.data(), isa);
+  const float* const first = planes.data() + 1;
+  const float* const each[] = {first, first + plane, first + 2 * plane, first + 3 * plane};
+  join_texels(each, from.width, profile.half_store, to, isa);
+}
+
 /// Where all pixels go, in rows of whole vectors, and the rows that each span goes to.
 struct Targets {
   std::size_t pitch = 0, spans = 0;
@@ -212,17 +228,22 @@ std::int64_t fill_holes(const ConstImageView& scattered, const ImageView& result
                         const Profile& profile, ThreadPool& pool) {
   assert(scattered.format == Format::rgba16f && result.format == Format::rgba16f);
   std::vector<std::int64_t> left(static_cast<std::size_t>(scattered.height));
-  pool.for_each(scattered.height, [&](int y) {
-    const std::uint16_t* own = row<std::uint16_t>(scattered, y).data();
-    std::uint16_t* to = row<std::uint16_t>(result, y).data();
-    for (int x = 0; x < scattered.width; ++x) {
-      const std::uint16_t* from = own + 4 * x;
-      if (!has_depth(from[3])) {
+  pool.for_each((scattered.height + kPassRows - 1) / kPassRows, [&](int band) {
+    std::vector<float> planes;
+    const int end = std::min((band + 1) * kPassRows, scattered.height);
+    for (int y = band * kPassRows; y < end; ++y) {
+      const std::uint16_t* own = row<std::uint16_t>(scattered, y).data();
+      std::uint16_t* to = row<std::uint16_t>(result, y).data();
+      store_row(scattered, y, profile, pool.isa(), planes, to);
+      for (int x = 0; x < scattered.width; ++x) {
+        if (has_depth(own[4 * x + 3])) continue;
         const std::uint16_t* other = filler(scattered, x, y);
-        if (other == nullptr) ++left[static_cast<std::size_t>(y)];
-        if (other != nullptr) from = other;
+        if (other == nullptr) {
+          ++left[static_cast<std::size_t>(y)];
+        } else {
+          store_moved(other, profile, to + 4 * x);
+        }
       }
-      store_moved(from, profile, to + 4 * x);
     }
   });
   return std::accumulate(left.begin(), left.end(), std::int64_t{0});

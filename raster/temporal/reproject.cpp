@@ -239,6 +239,43 @@ void reverse_reproject(const ReprojectSettings& settings, const ReprojectInput& 
   });
 }
 
+void put_depths_oracle(const ConstImageView& drawn, const ImageView& found, const Profile& profile,
+                       ThreadPool& pool) {
+  assert(drawn.format == Format::rgba16f && found.format == Format::rgba16f);
+  assert(drawn.width == found.width && drawn.height == found.height);
+  // A pixel reads no other pixel of the target.
+  fullscreen_pass<Format::rgba16f>(found, profile, pool, [&](int x, int y) {
+    glm::vec4 texel = load_texel<Format::rgba16f>(found, x, y);
+    if (texel.w > 0.0f) texel.w = load_texel<Format::rgba16f>(drawn, x, y).w;
+    return texel;
+  });
+}
+
+void put_depths(const ConstImageView& drawn, const ImageView& found, const Profile& profile,
+                ThreadPool& pool) {
+  if (pool.isa() == Isa::scalar) return put_depths_oracle(drawn, found, profile, pool);
+  assert(drawn.format == Format::rgba16f && found.format == Format::rgba16f);
+  assert(drawn.width == found.width && drawn.height == found.height);
+  pool.for_each((found.height + kPassRows - 1) / kPassRows, [&](int band) {
+    const std::ptrdiff_t plane = plane_floats(found.width);
+    std::vector<float> both(static_cast<std::size_t>(8 * plane));
+    float* of_found = both.data();
+    float* of_drawn = of_found + 4 * plane;
+    const float* const planes[] = {of_found + 1, of_found + plane + 1, of_found + 2 * plane + 1,
+                                   of_found + 3 * plane + 1};
+    const float* const depths = of_drawn + 3 * plane + 1;
+    float* const counts = of_found + 3 * plane + 1;
+    const int end = std::min((band + 1) * kPassRows, found.height);
+    for (int y = band * kPassRows; y < end; ++y) {
+      split_texels(found, y, 4, of_found, pool.isa());
+      split_texels(drawn, y, 4, of_drawn, pool.isa());
+      for (int x = 0; x < found.width; ++x) counts[x] = counts[x] > 0.0f ? depths[x] : counts[x];
+      join_texels(planes, found.width, profile.half_store, row<std::uint16_t>(found, y).data(),
+                  pool.isa());
+    }
+  });
+}
+
 }  // namespace softfocus
 
 #else  // the kernel

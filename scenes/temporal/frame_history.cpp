@@ -6,11 +6,9 @@
 #include <numeric>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "raster/images/texel.h"
-#include "raster/passes/fullscreen_pass.h"
-#include "raster/temporal/forward_reproject.h"
-#include "raster/temporal/refresh.h"
 #include "raster/threads/float_environment.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/velocity.h"
@@ -92,88 +90,52 @@ struct NextFrame {
     const Instant from = instant_at(before, offset_px), to = instant_at(frame, offset_px);
     draw_velocity(prepared, shown == frame ? to : from, {from, to}, history.velocity, pool);
   }
-
-  void look_back(const ReprojectSettings& settings, const Image& picture, double before,
-                 glm::dvec2 offset_px) const {
-    find_velocity(frame, before, offset_px);
-    reverse_reproject(settings, {history.drawn, history.velocity, picture, history.frames},
-                      history.found, profile(), pool);
-  }
-
-  void take_drawn() const {
-    std::swap(history.picture, history.drawn);
-    clear_image(history.frames, glm::vec4{1.0f}, profile());
-    history.shaded_share = 1.0;
-  }
-
-  /// Pixels of a group's turn, and those that were not found, are drawn; turn -1: no group's.
-  void take_found(int groups, int turn) const {
-    const std::int64_t shaded = refresh(groups, turn, history.drawn, history.found, history.next,
-                                        history.frames, profile(), pool);
-    std::swap(history.picture, history.next);
-    history.shaded_share = static_cast<double>(shaded) /
-                           (static_cast<double>(history.drawn.width) * history.drawn.height);
-  }
 };
 
-void make(const NextFrame& next, const TemporalAa& settings) {
-  FrameHistory& history = next.history;
+void draw(const NextFrame& next, const TemporalAa& settings) {
+  const FrameHistory& history = next.history;
   const std::vector<glm::dvec2> places = places_in_pixel(settings.places);
   const glm::dvec2 offset_px = places[static_cast<std::size_t>(history.count) % places.size()];
   next.draw(offset_px);
-  if (history.count == 0) return next.take_drawn();
-  next.look_back(settings.reproject, history.picture, history.frame, offset_px);
-  accumulate(settings.average, history.drawn, history.found, history.next, history.frames,
-             next.profile(), next.pool);
-  std::swap(history.picture, history.next);
-  history.shaded_share = 1.0;
+  if (history.count > 0) next.find_velocity(next.frame, history.frame, offset_px);
 }
 
-void make(const NextFrame& next, const Refresh& settings) {
+void draw(const NextFrame& next, const Refresh&) {
   next.draw({0.0, 0.0});
   const FrameHistory& history = next.history;
-  if (history.count == 0) return next.take_drawn();
-  next.look_back({settings.depth_tolerance, false, true}, history.picture, history.frame,
-                 {0.0, 0.0});
-  next.take_found(settings.groups, history.count % settings.groups);
+  if (history.count > 0) next.find_velocity(next.frame, history.frame, {0.0, 0.0});
 }
 
-void make(const NextFrame& next, const Reproject& settings) {
+void draw(const NextFrame& next, const Reproject& settings) {
   FrameHistory& history = next.history;
-  const bool is_drawn = history.count % settings.every == 0;
+  const bool is_drawn = is_drawn_whole(settings, history);
   // Where a surface was is only known of what is drawn; a scattered picture does without.
   if (is_drawn || !settings.forward || settings.holes == UnseenPixels::drawn) next.draw({0.0, 0.0});
-  if (is_drawn) {
-    next.take_drawn();
+  if (is_drawn) return;
+  clear_image(history.frames, glm::vec4{1.0f}, next.profile());
+  next.find_velocity(settings.forward ? history.key_frame : next.frame, history.key_frame,
+                     {0.0, 0.0});
+}
+
+void take_drawn(const NextFrame& next, const FrameEffect& effect) {
+  FrameHistory& history = next.history;
+  std::swap(history.picture, history.drawn);
+  clear_image(history.frames, glm::vec4{1.0f}, next.profile());
+  history.shaded_share = 1.0;
+  if (std::holds_alternative<Reproject>(effect)) {
     history.key = history.picture;
     history.key_frame = next.frame;
-    return;
   }
-  if (settings.forward) {
-    next.find_velocity(history.key_frame, history.key_frame, {0.0, 0.0});
-    forward_reproject(history.key, history.velocity, history.found, next.profile(), next.pool);
-  } else {
-    clear_image(history.frames, glm::vec4{1.0f}, next.profile());
-    next.look_back({settings.depth_tolerance, false, true}, history.key, history.key_frame,
-                   {0.0, 0.0});
-  }
-  if (settings.holes == UnseenPixels::drawn) return next.take_found(1, -1);
-  history.shaded_share = 0.0;
-  if (!settings.forward) {
-    // In alpha there is a count of frames; now it is a depth, or 0.
-    fullscreen_pass<Format::rgba16f>(history.next, next.profile(), next.pool, [&](int x, int y) {
-      glm::vec4 texel = load_texel<Format::rgba16f>(history.found, x, y);
-      if (texel.w > 0.0f) texel.w = load_texel<Format::rgba16f>(history.drawn, x, y).w;
-      return texel;
-    });
-    std::swap(history.found, history.next);
-  }
-  if (settings.holes == UnseenPixels::filled) {
-    fill_holes(history.found, history.next, next.profile(), next.pool);
-  } else {
-    std::swap(history.found, history.next);
-  }
+}
+
+void take_made(const NextFrame& next, const FrameEffect& effect) {
+  FrameHistory& history = next.history;
+  const std::int64_t shaded =
+      make_frame(effect, sources_of(effect, history), {history.next, history.frames, history.found},
+                 next.profile(), next.pool);
   std::swap(history.picture, history.next);
+  history.shaded_share = static_cast<double>(shaded) /
+                         (static_cast<double>(history.drawn.width) * history.drawn.height);
 }
 
 void make_room(int width, int height, FrameHistory& history) {
@@ -204,12 +166,40 @@ FrameEffect frame_effect(const ChosenEffect& chosen) {
                    static_cast<UnseenPixels>(whole("holes")), depth_tolerance};
 }
 
-void draw_next(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,
-               int height, FrameHistory& history, ThreadPool& pool) {
+int warm_up_frames(const ChosenEffect& chosen) {
+  return static_cast<int>(number_of(chosen, "warm-up"));
+}
+
+bool is_drawn_whole(const FrameEffect& effect, const FrameHistory& history) {
+  const auto* reproject = std::get_if<Reproject>(&effect);
+  return history.count == 0 || (reproject != nullptr && history.count % reproject->every == 0);
+}
+
+void draw_sources(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,
+                  int height, FrameHistory& history, ThreadPool& pool) {
   const DefaultFloatEnvironment environment;
   make_room(width, height, history);
   const NextFrame next{prepared, frame, history, pool};
-  std::visit([&](const auto& settings) { make(next, settings); }, effect);
+  std::visit([&](const auto& settings) { draw(next, settings); }, effect);
+}
+
+FrameSources sources_of(const FrameEffect& effect, const FrameHistory& history) {
+  const auto* of_groups = std::get_if<Refresh>(&effect);
+  return {history.drawn, history.velocity,
+          std::holds_alternative<Reproject>(effect) ? history.key : history.picture, history.frames,
+          of_groups == nullptr ? 0 : history.count % of_groups->groups};
+}
+
+void draw_next(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,
+               int height, FrameHistory& history, ThreadPool& pool) {
+  const DefaultFloatEnvironment environment;
+  draw_sources(prepared, effect, frame, width, height, history, pool);
+  const NextFrame next{prepared, frame, history, pool};
+  if (is_drawn_whole(effect, history)) {
+    take_drawn(next, effect);
+  } else {
+    take_made(next, effect);
+  }
   history.frame = frame;
   ++history.count;
 }

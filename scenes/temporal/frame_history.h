@@ -3,49 +3,21 @@
 // that are reprojected in place of drawn.
 
 #include <glm/vec2.hpp>
-#include <variant>
 #include <vector>
 
 #include "raster/effects/effect.h"
 #include "raster/images/image.h"
-#include "raster/temporal/accumulate.h"
-#include "raster/temporal/reproject.h"
+#include "raster/temporal/frame_passes.h"
 #include "raster/threads/parallel.h"
 #include "scenes/draw/draw_scene.h"
 
 namespace softfocus {
 
-/// The effect temporal-aa: each frame looks from another place in the pixel, and frames are
-/// averaged (raster/temporal/accumulate.h).
-struct TemporalAa {
-  AccumulateSettings average;
-  int places = 8;  ///< 1: always the pixel's centre
-  ReprojectSettings reproject{.is_cubic = true};
-};
-
-/// The effect refresh: each frame shades one of the groups, and what was not seen before
-/// (raster/temporal/refresh.h).
-struct Refresh {
-  int groups = 4;
-  float depth_tolerance = 0.1f;
-};
-
-/// What a pixel shows that the frame before did not.
-enum class UnseenPixels { drawn, filled, black };
-
-/// The effect reproject: of so many frames one is drawn, and the others are made of that one, so
-/// that errors do not add up.
-struct Reproject {
-  int every = 2;
-  bool forward = false;
-  UnseenPixels holes = UnseenPixels::drawn;
-  float depth_tolerance = 0.1f;
-};
-
-using FrameEffect = std::variant<TemporalAa, Refresh, Reproject>;
-
-/// Of one of those three.
+/// Of temporal-aa, refresh or reproject.
 FrameEffect frame_effect(const ChosenEffect& chosen);
+
+/// Frames that are drawn before the first, as its parameter warm-up says.
+int warm_up_frames(const ChosenEffect& chosen);
 
 /// What the next frame gets.
 struct FrameHistory {
@@ -62,6 +34,16 @@ struct FrameHistory {
 /// Draws a frame of the scene that follows on the history, which is then the frame's own.
 void draw_next(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,
                int height, FrameHistory& history, ThreadPool& pool);
+
+/// Whether the next frame is drawn and takes nothing from those before.
+bool is_drawn_whole(const FrameEffect& effect, const FrameHistory& history);
+
+/// draw_next() without its passes: draws what they read into history.drawn and history.velocity.
+void draw_sources(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,
+                  int height, FrameHistory& history, ThreadPool& pool);
+
+/// What the passes read then, if the next frame is not drawn whole: images of the history.
+FrameSources sources_of(const FrameEffect& effect, const FrameHistory& history);
 
 /// n offsets from the pixel's centre, in pixels from -0.5 to 0.5, as Halton's sequence in bases 2
 /// and 3 goes, each axis moved to the middles of n equal columns or rows: so their mean is 0 and an

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "raster/effects/effect_settings.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/velocity.h"
 #include "tools/bench/effects_repeated_on_gl.h"
+#include "tools/bench/repeated_frame.h"
 #include "tools/bench/timing.h"
 #include "tools/cli/machine.h"
 #include "tools/cli/option_values.h"
@@ -52,6 +54,11 @@ std::string short_text(const ChosenEffect& chosen) {
   return text;
 }
 
+/// A driver's pictures have the bits of ours: of `frames` only if it has made it.
+bool are_equal(const std::vector<Image>& theirs, const Image& picture, const Image& frames) {
+  return equal(theirs[0], picture) && (theirs.size() == 1 || equal(theirs[1], frames));
+}
+
 }  // namespace
 
 EffectBench bench_effects(const BenchOptions& options, const BenchWork& work, ThreadPool& pool,
@@ -69,25 +76,34 @@ EffectBench bench_effects(const BenchOptions& options, const BenchWork& work, Th
   }
   for (const ChosenEffect& chosen : options.effects) {
     EffectTimes times{.name = short_text(chosen)};
+    on_run(times.name);
     Image velocity;
-    if (chosen.effect->velocity != VelocityOf::nothing) {
+    std::optional<RepeatedFrame> frame;
+    if (chosen.effect->filter == nullptr) {
+      frame = make_repeated_frame(chosen, work, pool);
+    } else if (chosen.effect->velocity != VelocityOf::nothing) {
       velocity = velocity_for(chosen, *work.scene, work.frame, picture, work.profile, pool);
     }
     const std::vector<TimedStage> ours{
         {"ours", [&] {
+           if (frame) return run(*frame, result, work.profile, pool);
            apply_into(*chosen.effect, {picture, chosen.parameters, work.profile, velocity}, result,
                       pool);
          }}};
     std::vector<TimedStage> peers;
-    on_run(times.name);
     warm_up(ours);
     if (on_gl) {
-      on_gl->choose(chosen, velocity.width > 0 ? &velocity : nullptr);
+      if (frame) {
+        on_gl->choose(frame->effect, sources_of(frame->effect, frame->history));
+      } else {
+        on_gl->choose(chosen, velocity.width > 0 ? &velocity : nullptr);
+      }
       peers = {{"triangle", [&] { on_gl->run(false); }}, {"quad", [&] { on_gl->run(true); }}};
       warm_up(peers);
-      times.equal = equal(on_gl->picture(), result);
+      const Image frames = frame ? frame->frames : Image{};
+      times.equal = are_equal(on_gl->pictures(), result, frames);
       on_gl->run(false);
-      times.equal = times.equal && equal(on_gl->picture(), result);
+      times.equal = times.equal && are_equal(on_gl->pictures(), result, frames);
     }
     PairedSamples samples =
         time_in_pairs(ours, peers, options.runs, [&](int) { on_run(times.name); });

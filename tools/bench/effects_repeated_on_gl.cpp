@@ -1,11 +1,29 @@
 #include "tools/bench/effects_repeated_on_gl.h"
 
 #include <array>
+#include <cstddef>
+#include <cstring>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "tools/gl/effects_on_gl.h"
+#include "tools/gl/temporal_on_gl.h"
 
 namespace softfocus {
+namespace {
+
+Image image_of(const ConstImageView& view) {
+  Image image = make_image(view.format, view.width, view.height);
+  const std::size_t row_bytes = bytes_per_texel(view.format) * static_cast<std::size_t>(view.width);
+  const ImageView to = image;
+  for (int y = 0; y < view.height; ++y) {
+    std::memcpy(to.texels + y * to.stride_bytes, view.texels + y * view.stride_bytes, row_bytes);
+  }
+  return image;
+}
+
+}  // namespace
 
 struct EffectsRepeatedOnGl::State {
   const Driver& driver;
@@ -13,10 +31,17 @@ struct EffectsRepeatedOnGl::State {
   Shaders shaders{};
   int width, height;
   GlTexture picture{};
-  std::optional<GlTexture> velocity{};
+  std::vector<GlTexture> others{};                      // that the passes read
   std::array<std::optional<EffectPasses>, 2> passes{};  // of triangles, of quads
-  const ChosenEffect* effect = nullptr;
+  std::function<const GlTarget&(EffectPasses&)> make{};
   const GlTarget* result = nullptr;
+
+  void choose(std::function<const GlTarget&(EffectPasses&)> what) {
+    make = std::move(what);
+    for (std::optional<EffectPasses>& each : passes) each.emplace(context, shaders);
+    passes[1]->draw_quads(true);
+    for (std::optional<EffectPasses>& each : passes) make(*each);
+  }
 };
 
 EffectsRepeatedOnGl::EffectsRepeatedOnGl(const Driver& driver, const Image& picture, int threads) {
@@ -36,31 +61,49 @@ std::string EffectsRepeatedOnGl::renderer() const {
 }
 
 void EffectsRepeatedOnGl::choose(const ChosenEffect& effect, const Image* velocity) {
-  state_->effect = &effect;
-  state_->velocity.reset();
-  if (velocity != nullptr) {
-    naming(state_->driver, [&] { state_->velocity = upload(*velocity); });
-  }
-  for (std::optional<EffectPasses>& passes : state_->passes) {
-    passes.emplace(state_->context, state_->shaders);
-  }
-  state_->passes[1]->draw_quads(true);
-  run(true);
-  run(false);
+  naming(state_->driver, [&] {
+    State& state = *state_;
+    state.others.clear();
+    if (velocity != nullptr) state.others.push_back(upload(*velocity));
+    state.choose([&state, &effect](EffectPasses& passes) -> const GlTarget& {
+      return effect_on_gl(passes, *effect.effect, effect.parameters,
+                          {state.picture, state.width, state.height},
+                          state.others.empty() ? nullptr : &state.others[0]);
+    });
+  });
+}
+
+void EffectsRepeatedOnGl::choose(const FrameEffect& effect, const FrameSources& sources) {
+  naming(state_->driver, [&] {
+    State& state = *state_;
+    state.others.clear();
+    for (const ConstImageView& source :
+         {sources.drawn, sources.velocity, sources.before, sources.frames}) {
+      state.others.push_back(upload(image_of(source)));
+    }
+    state.choose([&state, effect, turn = sources.turn](EffectPasses& passes) -> const GlTarget& {
+      return make_frame_on_gl(passes, effect,
+                              {state.others[0], state.others[1], state.others[2], state.others[3],
+                               turn, state.width, state.height});
+    });
+  });
 }
 
 void EffectsRepeatedOnGl::run(bool as_quad) {
   naming(state_->driver, [&] {
-    State& state = *state_;
-    state.result = &effect_on_gl(
-        *state.passes[as_quad ? 1 : 0], *state.effect->effect, state.effect->parameters,
-        {state.picture, state.width, state.height}, state.velocity ? &*state.velocity : nullptr);
+    state_->result = &state_->make(*state_->passes[as_quad ? 1 : 0]);
     glFinish();
   });
 }
 
-Image EffectsRepeatedOnGl::picture() const {
-  return naming(state_->driver, [&] { return read_colour(*state_->result, 0); });
+std::vector<Image> EffectsRepeatedOnGl::pictures() const {
+  return naming(state_->driver, [&] {
+    std::vector<Image> read;
+    for (std::size_t i = 0; i < state_->result->colour.size(); ++i) {
+      read.push_back(read_colour(*state_->result, i));
+    }
+    return read;
+  });
 }
 
 }  // namespace softfocus

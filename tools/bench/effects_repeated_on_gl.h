@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "raster/effects/effect.h"
 #include "raster/images/image.h"
+#include "raster/temporal/frame_passes.h"
 #include "tools/gl/driver.h"
 
 namespace softfocus {
@@ -22,9 +24,12 @@ class EffectsRepeatedOnGl {
   /// Chooses what run() does: links and makes what it needs. Throws DriverError for an effect
   /// without a shader. The velocity is RG16F of the picture's size, or null if it reads none.
   void choose(const ChosenEffect& effect, const Image* velocity);
+  /// The passes of a frame that is made from those before, in place of an effect.
+  void choose(const FrameEffect& effect, const FrameSources& sources);
   /// Returns when it is done: glFinish. Each pass is a triangle, or a quad of two.
   void run(bool as_quad);
-  Image picture() const;  ///< that the last run() made
+  /// What the last run() made: a picture, and of some frames of how many each pixel is made.
+  std::vector<Image> pictures() const;
 
  private:
   struct State;

@@ -1,6 +1,10 @@
 #include "tools/bench/options.h"
 
+#include <algorithm>
+#include <variant>
+
 #include "scenes/make/sphere_field.h"
+#include "scenes/temporal/frame_history.h"
 #include "tools/cli/errors.h"
 #include "tools/gl/shaders.h"
 #include "tools/options/effect_options.h"
@@ -21,15 +25,30 @@ constexpr std::uint64_t kBenchBytesPerPixel = 72;
 constexpr std::uint64_t kLensSumBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredViewsBytesPerPixel = 8 * 8;
 
-bool reads_picture_alone(const Effect& effect) {
-  return effect.filter != nullptr && effect.velocity == VelocityOf::nothing;
-}
+/// For effects that read the frames before: of the history five pictures (8 bytes each), a
+/// velocity (4) and two counts (4 each); a driver has three of those pictures, velocity and count,
+/// and of triangles and of quads a picture between and what the passes make (20).
+constexpr std::uint64_t kFramesBytesPerPixel = 5 * 8 + 3 * 4 + 3 * 8 + 2 * 4 + 2 * 20;
 
-/// `all` are those that read the picture, and of a scene its velocity.
+bool makes_frames(const Effect& effect) { return effect.filter == nullptr; }
+
+/// `all` are those for which there is something to read: of a picture nothing moves.
 void choose_all_effects(BenchOptions& options) {
   for (const Effect& effect : effects()) {
-    if (effect.filter == nullptr || (options.image && !reads_picture_alone(effect))) continue;
+    const bool reads_more = makes_frames(effect) || effect.velocity != VelocityOf::nothing;
+    if (options.image && reads_more) continue;
     options.effects.push_back(parse_effect("--effect", std::string{effect.name}));
+  }
+}
+
+/// A frame that is only ever drawn has no passes.
+void check_passes(const ChosenEffect& chosen) {
+  const FrameEffect effect = frame_effect(chosen);
+  const auto* reproject = std::get_if<Reproject>(&effect);
+  if (reproject != nullptr && reproject->every == 1) {
+    throw UsageError(
+        "--effect: reproject:every=1 draws every frame, so that there is no pass to "
+        "time; give an every of 2 or more");
   }
 }
 
@@ -44,14 +63,13 @@ void check_effects(BenchOptions& options, const CLI::App& parser) {
   }
   for (const ChosenEffect& chosen : options.effects) {
     const std::string name{chosen.effect->name};
-    if (chosen.effect->filter == nullptr) {
-      throw UsageError("--effect: " + name +
-                       " reads the frames before; bench times what one frame is enough for");
+    const bool reads_velocity = chosen.effect->velocity != VelocityOf::nothing;
+    if (options.image && (makes_frames(*chosen.effect) || reads_velocity)) {
+      throw UsageError("--image and --effect " + name + " exclude each other: it reads " +
+                       (reads_velocity ? "a velocity" : "the frames before") +
+                       "; give a SCENE that moves");
     }
-    if (options.image && !reads_picture_alone(*chosen.effect)) {
-      throw UsageError("--image and --effect " + name +
-                       " exclude each other: it reads a velocity; give a SCENE that moves");
-    }
+    if (makes_frames(*chosen.effect)) check_passes(chosen);
   }
   options.method = {.filter = find_method("pinhole")};
 }
@@ -112,7 +130,7 @@ void add_bench_options(CLI::App& parser, BenchOptions& options) {
   begin_group(parser, "Effects, in place of a method");
   add_repeatable_value(parser, "--effect", "NAME:KEY=VALUE,...",
                        "Time this effect on the sharp picture (softfocus effects); several one by "
-                       "one; all: each that one frame is enough for",
+                       "one; all: each, of --image those that read one picture",
                        [&options](const std::string& text) {
                          if (text == "all") {
                            options.all_effects = true;
@@ -164,10 +182,14 @@ void complete(BenchOptions& options, const CLI::App& parser) {
         "--copy needs a frame that is drawn and filtered: a SCENE or --triangles N, and a --method "
         "that filters its picture");
   }
+  const bool reads_history = std::ranges::any_of(
+      options.effects, makes_frames,
+      [](const ChosenEffect& chosen) -> const Effect& { return *chosen.effect; });
   check_memory(options.image ? "--image" : "--size", options.size,
                kBenchBytesPerPixel +
                    (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0) +
-                   (options.method.name() == "filtered-views" ? kFilteredViewsBytesPerPixel : 0));
+                   (options.method.name() == "filtered-views" ? kFilteredViewsBytesPerPixel : 0) +
+                   (reads_history ? kFramesBytesPerPixel : 0));
 }
 
 }  // namespace softfocus

@@ -29,7 +29,7 @@ struct BenchOptions {
   double frame = 0.0;
   MethodChoice method{.filter = find_method("two-pass")};
   std::vector<ChosenEffect> effects;  ///< these alone are timed, on the sharp picture
-  bool all_effects = false;           ///< all that one frame is enough for
+  bool all_effects = false;           ///< all that the subject is enough for
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;  ///< of a method that draws the scene
   AutoGoal goal;      ///< of auto

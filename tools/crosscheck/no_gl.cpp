@@ -52,8 +52,9 @@ EffectsRepeatedOnGl::EffectsRepeatedOnGl(const Driver&, const Image&, int) { ref
 EffectsRepeatedOnGl::~EffectsRepeatedOnGl() = default;
 std::string EffectsRepeatedOnGl::renderer() const { refuse(); }
 void EffectsRepeatedOnGl::choose(const ChosenEffect&, const Image*) { refuse(); }
+void EffectsRepeatedOnGl::choose(const FrameEffect&, const FrameSources&) { refuse(); }
 void EffectsRepeatedOnGl::run(bool) { refuse(); }
-Image EffectsRepeatedOnGl::picture() const { refuse(); }
+std::vector<Image> EffectsRepeatedOnGl::pictures() const { refuse(); }
 
 struct RepeatedOnGl::State {};
 RepeatedOnGl::RepeatedOnGl(const Driver&, const BenchWork&, int) { refuse(); }

@@ -5,6 +5,7 @@
 #include "raster/images/image.h"
 #include "raster/temporal/accumulate.h"
 #include "raster/temporal/forward_reproject.h"
+#include "raster/temporal/frame_passes.h"
 #include "raster/temporal/refresh.h"
 #include "raster/temporal/reproject.h"
 #include "tools/crosscheck/cases.h"
@@ -86,9 +87,9 @@ void reverse_both(const Bench& bench, Tally& tally, const ReprojectSettings& set
   const Image frames = counts(width, height, 84);
   const GlTexture gl_depths = upload(depths), gl_velocity = upload(velocity);
   const GlTexture gl_before = upload(before), gl_frames = upload(frames);
-  const GlTarget target =
-      reverse_reproject_on_gl(bench.gl, bench.shaders, settings,
-                              {gl_depths, gl_velocity, gl_before, gl_frames}, width, height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTarget& target = reverse_reproject_on_gl(
+      passes, settings, {gl_depths, gl_velocity, gl_before, gl_frames, 0, width, height});
   Image emulated = make_image(Format::rgba16f, width, height);
   reverse_reproject(settings, {depths, velocity, before, frames}, emulated, bench.profile,
                     bench.pool);
@@ -99,10 +100,10 @@ void forward_both(const Bench& bench, Tally& tally, const TemporalCase& what) {
   const auto [width, height, any_bits] = what;
   const Image before = patches(width, height, 85, any_bits);
   const Image velocity = motions(width, height, 86, any_bits);
-  const GlTarget scattered = forward_reproject_on_gl(bench.gl, bench.shaders, upload(before),
-                                                     upload(velocity), width, height);
-  const GlTarget filled =
-      fill_holes_on_gl(bench.gl, bench.shaders, scattered.colour[0], width, height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTarget& scattered =
+      forward_reproject_on_gl(passes, upload(before), upload(velocity), width, height);
+  const GlTarget& filled = fill_holes_on_gl(passes, scattered.colour[0], width, height);
   Image emulated = make_image(Format::rgba16f, width, height), whole = emulated;
   forward_reproject(before, velocity, emulated, bench.profile, bench.pool);
   fill_holes(emulated, whole, bench.profile, bench.pool);
@@ -115,8 +116,9 @@ void refresh_both(const Bench& bench, Tally& tally, int groups, int turn,
   const auto [width, height, any_bits] = what;
   const Image drawn = patches(width, height, 87, any_bits);
   const Image found = with_counts(patches(width, height, 88, any_bits), 89);
-  const GlTarget target = refresh_on_gl(bench.gl, bench.shaders, groups, turn, upload(drawn),
-                                        upload(found), width, height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTarget& target =
+      refresh_on_gl(passes, groups, turn, upload(drawn), upload(found), width, height);
   Image emulated = make_image(Format::rgba16f, width, height);
   Image frames = make_image(Format::r32f, width, height);
   refresh(groups, turn, drawn, found, emulated, frames, bench.profile, bench.pool);
@@ -124,13 +126,36 @@ void refresh_both(const Bench& bench, Tally& tally, int groups, int turn,
   add_pictures(tally, read_colour(target, 1), frames, "frames");
 }
 
+/// A whole frame, by each of its passes in turn.
+void frame_both(const Bench& bench, Tally& tally, const FrameEffect& effect,
+                const TemporalCase& what) {
+  const auto [width, height, any_bits] = what;
+  const Image drawn = patches(width, height, 93, false);
+  const Image velocity = motions(width, height, 94, any_bits);
+  const Image before = patches(width, height, 95, any_bits);
+  const Image frames = counts(width, height, 96);
+  const GlTexture gl_drawn = upload(drawn), gl_velocity = upload(velocity);
+  const GlTexture gl_before = upload(before), gl_frames = upload(frames);
+  EffectPasses passes{bench.gl, bench.shaders};
+  constexpr int kTurn = 2;
+  const GlTarget& target = make_frame_on_gl(
+      passes, effect, {gl_drawn, gl_velocity, gl_before, gl_frames, kTurn, width, height});
+  Image picture = make_image(Format::rgba16f, width, height), between = picture;
+  Image counted = make_image(Format::r32f, width, height);
+  make_frame(effect, {drawn, velocity, before, frames, kTurn}, {picture, counted, between},
+             bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), picture, "picture");
+  if (target.colour.size() > 1) add_pictures(tally, read_colour(target, 1), counted, "frames");
+}
+
 void accumulate_both(const Bench& bench, Tally& tally, const AccumulateSettings& settings,
                      const TemporalCase& what) {
   const auto [width, height, any_bits] = what;
   const Image now = patches(width, height, 90, any_bits);
   const Image old = with_counts(patches(width, height, 91, any_bits), 92);
-  const GlTarget target =
-      accumulate_on_gl(bench.gl, bench.shaders, settings, upload(now), upload(old), width, height);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTarget& target =
+      accumulate_on_gl(passes, settings, upload(now), upload(old), width, height);
   Image emulated = make_image(Format::rgba16f, width, height);
   Image frames = make_image(Format::r32f, width, height);
   accumulate(settings, now, old, emulated, frames, bench.profile, bench.pool);
@@ -188,6 +213,22 @@ void add_temporal_cases(std::vector<Case>& cases) {
   add_average("extent-any-bits", false, true, {0.1f, HistoryBox::extent}, kAnyBits);
   add_average("variance-any-bits", false, true, {}, kAnyBits);
   add_average("one-pixel", true, true, {}, kOne);
+  const auto add_frame = [&](const char* name, bool quick, bool slow_too, const FrameEffect& effect,
+                             const TemporalCase& what) {
+    add("temporal", name, quick, slow_too,
+        [=](const Bench& bench, Tally& tally) { frame_both(bench, tally, effect, what); });
+  };
+  using enum UnseenPixels;
+  add_frame("frame-average", false, true, TemporalAa{}, kSmall);
+  add_frame("frame-refresh", false, true, Refresh{}, kSmall);
+  add_frame("frame-reverse-drawn", false, true, Reproject{}, kSmall);
+  add_frame("frame-reverse-filled", true, true, Reproject{.holes = filled}, kSmall);
+  add_frame("frame-reverse-black", false, true, Reproject{.holes = black}, kSmall);
+  add_frame("frame-forward-drawn", false, true, Reproject{.forward = true}, kSmall);
+  add_frame("frame-forward-filled", false, true, Reproject{.forward = true, .holes = filled},
+            kSmall);
+  add_frame("frame-forward-black", false, true, Reproject{.forward = true, .holes = black}, kSmall);
+  add_frame("frame-any-bits", false, true, Reproject{.holes = filled}, kAnyBits);
 }
 
 }  // namespace softfocus

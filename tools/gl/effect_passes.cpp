@@ -1,17 +1,21 @@
 #include "tools/gl/effect_passes.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
 namespace softfocus {
 
 const GlProgram& EffectPasses::program(std::string_view fragment, const std::string& defines) {
-  const std::string all_defines = (quads_ ? "#define AS_QUAD\n" : "") + defines;
-  const std::string name = std::string{fragment} + '\n' + all_defines;
+  return program_of("fullscreen.vert", fragment, (quads_ ? "#define AS_QUAD\n" : "") + defines);
+}
+
+const GlProgram& EffectPasses::program_of(std::string_view vertex, std::string_view fragment,
+                                          const std::string& defines) {
+  const std::string name = std::string{vertex} + '\n' + std::string{fragment} + '\n' + defines;
   const auto found = programs_.find(name);
   if (found != programs_.end()) return found->second;
-  return programs_
-      .emplace(name, link_program(context_, shaders_, "fullscreen.vert", fragment, all_defines))
+  return programs_.emplace(name, link_program(context_, shaders_, vertex, fragment, defines))
       .first->second;
 }
 
@@ -24,10 +28,16 @@ void EffectPasses::draw(const GlTarget& target, const GlProgram& program) const 
 }
 
 const GlTarget& EffectPasses::target(int width, int height) {
+  return target(std::array{Format::rgba16f}, width, height, false);
+}
+
+const GlTarget& EffectPasses::target(std::span<const Format> formats, int width, int height,
+                                     bool with_depth) {
   if (used_targets_ == targets_.size()) targets_.emplace_back();
   GlTarget& target = targets_[used_targets_++];
-  if (target.width != width || target.height != height) {
-    target = make_target(std::array{Format::rgba16f}, width, height, false);
+  if (target.width != width || target.height != height || (target.depth != 0) != with_depth ||
+      !std::ranges::equal(target.formats, formats)) {
+    target = make_target(formats, width, height, with_depth);
   }
   return target;
 }

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -27,8 +28,12 @@ class EffectPasses {
 
   /// With fullscreen.vert.
   const GlProgram& program(std::string_view fragment, const std::string& defines = {});
+  /// Of two shaders, neither of which draws over the whole target.
+  const GlProgram& program_of(std::string_view vertex, std::string_view fragment,
+                              const std::string& defines = {});
   /// RGBA16F, its pixels undefined.
   const GlTarget& target(int width, int height);
+  const GlTarget& target(std::span<const Format> formats, int width, int height, bool with_depth);
   /// An image for texelFetch.
   const GlTexture& table(const Image& image);
 

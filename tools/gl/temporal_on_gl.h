@@ -1,38 +1,44 @@
 #pragma once
-// What one frame takes from the frame before, on a GL driver with the project's shaders.
+// What one frame takes from the frames before, on a GL driver with the project's shaders.
 
-#include "raster/temporal/accumulate.h"
-#include "raster/temporal/reproject.h"
-#include "tools/gl/objects.h"
-#include "tools/gl/shaders.h"
+#include "raster/temporal/frame_passes.h"
+#include "tools/gl/effect_passes.h"
 
 namespace softfocus {
 
-struct ReprojectTextures {
-  const GlTexture& depths;
+/// As FrameSources.
+struct GlFrameSources {
+  const GlTexture& drawn;
   const GlTexture& velocity;
   const GlTexture& before;
   const GlTexture& frames;
+  int turn;
+  int width;
+  int height;
 };
 
-/// As reverse_reproject(): RGBA16F in the target's one texture.
-GlTarget reverse_reproject_on_gl(const GlContext& context, const Shaders& shaders,
-                                 const ReprojectSettings& settings,
-                                 const ReprojectTextures& textures, int width, int height);
+/// As make_frame(): RGBA16F, and R32F as well unless it is Reproject with holes that are not drawn.
+/// Begins `passes`.
+const GlTarget& make_frame_on_gl(EffectPasses& passes, const FrameEffect& effect,
+                                 const GlFrameSources& sources);
+
+/// The passes, which begin nothing. As reverse_reproject(): RGBA16F in the target's one texture.
+const GlTarget& reverse_reproject_on_gl(EffectPasses& passes, const ReprojectSettings& settings,
+                                        const GlFrameSources& sources);
 
 /// As accumulate() and refresh(): RGBA16F and R32F.
-GlTarget accumulate_on_gl(const GlContext& context, const Shaders& shaders,
-                          const AccumulateSettings& settings, const GlTexture& now,
-                          const GlTexture& old, int width, int height);
-GlTarget refresh_on_gl(const GlContext& context, const Shaders& shaders, int groups, int turn,
-                       const GlTexture& drawn, const GlTexture& found, int width, int height);
+const GlTarget& accumulate_on_gl(EffectPasses& passes, const AccumulateSettings& settings,
+                                 const GlTexture& now, const GlTexture& old, int width, int height);
+const GlTarget& refresh_on_gl(EffectPasses& passes, int groups, int turn, const GlTexture& drawn,
+                              const GlTexture& found, int width, int height);
 
-/// As forward_reproject() and fill_holes(): RGBA16F. The driver scatters points, and its depth test
-/// keeps the nearest.
-GlTarget forward_reproject_on_gl(const GlContext& context, const Shaders& shaders,
-                                 const GlTexture& before, const GlTexture& velocity, int width,
+/// As forward_reproject(), fill_holes() and put_depths(): RGBA16F. The driver scatters points, and
+/// its depth test keeps the nearest.
+const GlTarget& forward_reproject_on_gl(EffectPasses& passes, const GlTexture& before,
+                                        const GlTexture& velocity, int width, int height);
+const GlTarget& fill_holes_on_gl(EffectPasses& passes, const GlTexture& scattered, int width,
                                  int height);
-GlTarget fill_holes_on_gl(const GlContext& context, const Shaders& shaders,
-                          const GlTexture& scattered, int width, int height);
+const GlTarget& put_depths_on_gl(EffectPasses& passes, const GlTexture& drawn,
+                                 const GlTexture& found, int width, int height);
 
 }  // namespace softfocus

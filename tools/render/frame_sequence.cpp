@@ -6,19 +6,6 @@
 #include "tools/cli/errors.h"
 
 namespace softfocus {
-namespace {
-
-int warm_up_frames(const ChosenEffect& effect) {
-  for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-    if (effect.effect->parameters[i].name == "warm-up") {
-      return static_cast<int>(effect.parameters[i]);
-    }
-  }
-  return 0;
-}
-
-}  // namespace
-
 FrameSequence frame_sequence(const RenderOptions& options) {
   if (!options.sequence.frames) return {options.frame, 1.0};
   return {static_cast<double>(options.sequence.frames->first),

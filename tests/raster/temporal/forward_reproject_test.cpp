@@ -110,3 +110,23 @@ TEST_CASE("forward reprojection has the oracle's bits in any vectors and any num
     }
   }
 }
+
+TEST_CASE("filled holes have the same bits in any vectors and any number of threads") {
+  for (const char* profile : {"ieee", "d3d11", "swiftshader"}) {
+    for (const int width : {1, 19, 130}) {
+      Image scattered = test::random_patches(width, 41, 7);
+      for (int y = 0; y < 41; ++y) {
+        for (int x = y % 5; x < width; x += 5) store_texel(scattered, x, y, glm::vec4{0.0f}, {});
+      }
+      test::spoil(scattered);
+      ThreadPool scalar{1, Isa::scalar};
+      Image expected = make_image(Format::rgba16f, width, 41), result = expected;
+      const std::int64_t left = fill_holes(scattered, expected, profile_named(profile), scalar);
+      for (const Isa isa : available_isas()) {
+        ThreadPool pool{3, isa};
+        CHECK(fill_holes(scattered, result, profile_named(profile), pool) == left);
+        REQUIRE(equal(result, expected));
+      }
+    }
+  }
+}

@@ -166,3 +166,25 @@ TEST_CASE("reverse reprojection in vectors has the oracle's bits, also of what i
     }
   }
 }
+
+TEST_CASE("what was found gets the frame's depth, and what was not stays, in any vectors") {
+  for (const char* profile : {"ieee", "d3d11", "swiftshader"}) {
+    for (const Isa isa : available_isas()) {
+      for (const int width : {1, 19, 70}) {
+        Image drawn = test::random_patches(width, 21, 14);
+        Image found = test::random_patches(width, 21, 15);
+        for (int x = 0; x < width; x += 3) store_texel(found, x, 9, glm::vec4{0.0f}, {});
+        store_texel(found, 0, 10, {1.0f, 2.0f, 3.0f, 8.0f}, {});
+        store_texel(drawn, 0, 10, {4.0f, 5.0f, 6.0f, 7.0f}, {});
+        for (Image* image : {&drawn, &found}) test::spoil(*image);
+        Image expected = found;
+        ThreadPool pool{2, isa};
+        put_depths_oracle(drawn, expected, profile_named(profile), pool);
+        put_depths(drawn, found, profile_named(profile), pool);
+        REQUIRE(equal(found, expected));
+        CHECK(load_texel(found, 0, 9) == glm::vec4{0.0f});
+        CHECK(load_texel(found, 0, 10) == glm::vec4{1.0f, 2.0f, 3.0f, 7.0f});
+      }
+    }
+  }
+}

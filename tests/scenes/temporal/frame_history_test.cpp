@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <set>
+#include <variant>
 
 #include "raster/images/texel.h"
 #include "scenes/load/load_scene.h"
@@ -216,6 +217,36 @@ TEST_CASE("frames from those before have the same bits in any vectors and any nu
     for (const Isa isa : available_isas()) {
       ThreadPool pool{3, isa};
       CHECK(equal(after_frames(scene, effect, 3, pool), expected));
+    }
+  }
+}
+
+TEST_CASE("the passes of a frame can be run again and again, and make the frame") {
+  ThreadPool pool{2};
+  const Scene scene = orbit_of_figures();
+  using enum UnseenPixels;
+  for (const FrameEffect& effect :
+       {FrameEffect{TemporalAa{}}, FrameEffect{Refresh{}}, FrameEffect{Reproject{.every = 3}},
+        FrameEffect{Reproject{.every = 3, .holes = filled}},
+        FrameEffect{Reproject{.every = 3, .holes = black}},
+        FrameEffect{Reproject{.every = 3, .forward = true}},
+        FrameEffect{Reproject{.every = 3, .forward = true, .holes = filled}}}) {
+    PreparedScene prepared = prepare_scene(scene, {}, pool);
+    FrameHistory history;
+    for (int i = 0; i < 5; ++i) {
+      CHECK(is_drawn_whole(effect, history) ==
+            (i == 0 || (i == 3 && std::holds_alternative<Reproject>(effect))));
+      draw_next(prepared, effect, i, kSide, kSide, history, pool);
+    }
+    FrameHistory drawn = history;
+    draw_sources(prepared, effect, 5.0, kSide, kSide, drawn, pool);
+    draw_next(prepared, effect, 5.0, kSide, kSide, history, pool);
+    Image between = make_image(Format::rgba16f, kSide, kSide);
+    Image frames = make_image(Format::r32f, kSide, kSide);
+    for (int run = 0; run < 2; ++run) {
+      Image picture = make_image(Format::rgba16f, kSide, kSide);
+      make_frame(effect, sources_of(effect, drawn), {picture, frames, between}, {}, pool);
+      CHECK(equal(picture, history.picture));
     }
   }
 }

@@ -260,10 +260,40 @@ TEST_CASE("bench: --vs llvmpipe runs every effect's shaders, whose bits are ours
     }
     return result["effects"].size();
   };
-  // What reads a velocity needs a scene.
+  // What reads a velocity or the frames before needs a scene.
   const auto of_picture = effects_of(kPicture);
   CHECK(of_picture >= 13);
-  CHECK(effects_of({"crossing", "--size", "64x64", "--frame", "7"}) == of_picture + 4);
+  CHECK(effects_of({"crossing", "--size", "64x64", "--frame", "7"}) == of_picture + 4 + 3);
+}
+
+TEST_CASE(
+    "bench: an effect of frames is timed after a history, of a scene that moves or is still") {
+  for (const Words& subject : {Words{"crossing", "--size", "64x64", "--frame", "7"}, kSpheres}) {
+    const json result = benched(subject, {"--effect", "temporal-aa:places=16", "--effect",
+                                          "refresh:warm-up=3", "--effect", "reproject:every=7"});
+    REQUIRE(result["effects"].size() == 3);
+    CHECK(result["effects"][0]["effect"] == "temporal-aa:places=16");
+    CHECK(result["effects"][1]["effect"] == "refresh:warm-up=3");
+    for (const json& effect : result["effects"]) CHECK(effect["ms"]["min"] > 0.0);
+  }
+}
+
+TEST_CASE("bench: --vs llvmpipe has our bits of frames by each way to make them") {
+  if (!has_driver("llvmpipe")) return;
+  Words more{"--vs", "llvmpipe", "--profile", profile_of("llvmpipe")};
+  for (const char* effect :
+       {"temporal-aa:box=0", "temporal-aa:box=1,cubic=0", "refresh:groups=16", "reproject:holes=1",
+        "reproject:holes=2", "reproject:forward=1", "reproject:forward=1,holes=1,every=3",
+        "reproject:forward=1,holes=2"}) {
+    more.insert(more.end(), {"--effect", effect});
+  }
+  const json result = benched({"crossing", "--size", "61x43", "--frame", "7"}, more);
+  REQUIRE(result["effects"].size() == 8);
+  for (const json& effect : result["effects"]) {
+    CAPTURE(effect["effect"].get<std::string>());
+    CHECK(effect["equal"] == true);
+    CHECK(effect["ratio"]["median"] > 0.0);
+  }
 }
 
 TEST_CASE("bench: --copy times a frame whose pictures are copied, here and on a driver" *
@@ -334,7 +364,9 @@ TEST_CASE("bench: bad options are refused with what would be right") {
   refused({"figures", "--max-error", "0.1"}, {"--max-error", "--method auto"});
   refused({"--image", "64x64", "--effect", "motion-blur"},
           {"--image and --effect motion-blur", "velocity", "SCENE"});
-  refused({"figures", "--effect", "temporal-aa"}, {"temporal-aa", "frames before"});
+  refused({"--image", "64x64", "--effect", "temporal-aa"},
+          {"--image and --effect temporal-aa", "frames before", "SCENE"});
+  refused({"figures", "--effect", "reproject:every=1"}, {"reproject:every=1", "2 or more"});
   refused({"figures", "--effect", "blur"}, {"--effect 'blur'", "gaussian"});
   refused({"figures", "--effect", "bloom", "--method", "two-pass"}, {"--effect and --method"});
   refused({"figures", "--effect", "bloom", "--max-coc", "4"}, {"--effect and --max-coc"});
