@@ -60,12 +60,27 @@ enum class ShadowKind : std::uint8_t { none, projected, volumes, map };
 /// Lights with shadows: a bit each in a stencil of 8.
 inline constexpr int kMostShadowLights = 8;
 
+/// How a shadow map is made and read (shadows/shadow_map.h).
+struct ShadowMapSettings {
+  int size = 1024;          ///< texels along an edge, kLeastMapSize to kMostMapSize
+  double bias = 1.0;        ///< towards the light, in widths of what a look into the map reaches
+  double slope_bias = 1.0;  ///< the same, times the tangent of the light's angle
+  int kernel = 1;           ///< odd, 1 to kMostMapKernel: so many texels in square are compared
+  int cascades = 1;         ///< 1 to kMostCascades; of a directional light with fits_camera
+  bool fits_camera = true;  ///< the map holds what the camera can see, or else all casters
+  bool operator==(const ShadowMapSettings&) const = default;
+};
+inline constexpr int kLeastMapSize = 16, kMostMapSize = 8192;
+inline constexpr int kMostMapKernel = 9, kMostCascades = 4;
+inline constexpr double kMostMapBias = 1000.0;
+
 struct Light {
   LightKind kind = LightKind::directional;
   /// Of a directional light: towards the light, any length. Of a point light: where it is.
   glm::vec3 position_or_direction{0.0f, 1.0f, 0.0f};
   glm::vec3 colour{1.0f};
   ShadowKind shadows = ShadowKind::none;
+  ShadowMapSettings map{};  ///< if they are made by a map
 };
 
 /// Blinn-Phong, evaluated at the vertices.

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "raster/threads/scratch_shelf.h"
+#include "scenes/draw/light_shares.h"
+#include "scenes/draw/scene_maps.h"
 #include "scenes/draw/surface_draws.h"
 
 namespace softfocus {
@@ -38,6 +40,7 @@ void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool&
                                     ? project_by_grid(shadows.facets, shadow_light(light), pool)
                                     : without_triangles(shadows.facets, shadow_light(light)));
   }
+  shadows.maps.assign(shadows.lights.size(), {});
   shadows.frame = frame;
 }
 
@@ -52,16 +55,18 @@ ShadowView shadow_view(const CameraMatrices& camera, int width, int height,
   return {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
 }
 
-void draw_masks(SceneShadows& shadows, const CameraMatrices& camera, int width, int height,
-                const Profile& profile, ThreadPool& pool) {
+void draw_masks(SceneShadows& shadows, const Scene& scene, const CameraMatrices& camera, int width,
+                int height, const Profile& profile, ThreadPool& pool) {
   const auto of_lights = pointers_to(shadows.projected);
   const ShadowView view = shadow_view(camera, width, height, profile);
+  draw_maps(shadows, scene, map_camera(scene, camera), profile, pool);
   shadows.masks.resize(shadows.seen.size());
   for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
     shadows.masks[i].resize(shadows.seen[i].size());
     draw_shadow_mask(cut_shadows(shadows.facets, of_lights, shadows.seen[i], view, pool), view,
                      shadows.masks[i], pool);
-    // SEAM: volumes and maps set their lights' bits in shadows.masks[i] here.
+    // SEAM: volumes set their lights' bits in shadows.masks[i] here.
+    look_up_maps(shadows, i, view, camera.eye, pool);
   }
 }
 
@@ -134,6 +139,15 @@ void copy_pixels(const Image& from, Image& to, const Rectangle& area,
   });
 }
 
+void copy_area(const Image& from, Image& to, const Rectangle& area) {
+  const auto first = 4 * static_cast<std::ptrdiff_t>(area.x_begin);
+  const auto count = 4 * static_cast<std::ptrdiff_t>(area.x_end - area.x_begin);
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    const auto source = row<std::uint16_t>(from, y).begin() + first;
+    std::copy(source, source + count, row<std::uint16_t>(to, y).begin() + first);
+  }
+}
+
 void set_targets(SceneShadows& shadows, std::size_t layers, int width, int height) {
   if (shadows.layers.size() < layers) {
     shadows.layers.resize(layers);
@@ -150,6 +164,44 @@ void set_targets(SceneShadows& shadows, std::size_t layers, int width, int heigh
   }
   targets.colour[0] = shadows.layers.data();
   targets.depth = shadows.depths.data();
+}
+
+// Of each light with shadows.
+std::vector<std::vector<int>> tiles_with_shares(const SceneShadows& shadows, const Tiles& tiles,
+                                                int width, int height) {
+  std::vector<std::vector<int>> found(shadows.maps.size());
+  for (std::size_t light = 0; light < found.size(); ++light) {
+    for (std::size_t tile = 0; tile < tiles.masks.size(); ++tile) {
+      const Rectangle area = area_of(tiles, static_cast<int>(tile), width, height);
+      const bool has_any =
+          std::any_of(shadows.shares.begin(), shadows.shares.end(), [&](const auto& of_layer) {
+            return !of_layer[light].empty() && has_shares(of_layer[light], width, area);
+          });
+      if (has_any) found[light].push_back(static_cast<int>(tile));
+    }
+  }
+  return found;
+}
+
+void keep_unshadowed(SceneShadows& shadows, std::span<const std::vector<int>> with_shares,
+                     const Tiles& tiles, std::span<Image* const> layers) {
+  if (std::all_of(with_shares.begin(), with_shares.end(),
+                  [](const std::vector<int>& of_light) { return of_light.empty(); })) {
+    return;
+  }
+  shadows.unshadowed.resize(layers.size());
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const auto [width, height] = std::pair{layers[i]->width, layers[i]->height};
+    Image& kept = shadows.unshadowed[i];
+    if (kept.width != width || kept.height != height) {
+      kept = make_image(Format::rgba16f, width, height);
+    }
+    for (const std::vector<int>& of_light : with_shares) {
+      for (const int tile : of_light) {
+        copy_area(*layers[i], kept, area_of(tiles, tile, width, height));
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -239,15 +291,12 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   update(shadows, scene, frame, pool);
   shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
                                   layers.size(), pool, behind_before);
-  draw_masks(shadows, camera, width, height, shadows.pass.profile, pool);
+  draw_masks(shadows, scene, camera, width, height, shadows.pass.profile, pool);
   const Tiles tiles = find_masks(shadows, width, height, pool);
-
-  for (std::size_t mask = 1; mask < MaskSet{}.size(); ++mask) {
-    std::vector<int> with_mask;
-    for (std::size_t tile = 0; tile < tiles.masks.size(); ++tile) {
-      if (tiles.masks[tile].test(mask)) with_mask.push_back(static_cast<int>(tile));
-    }
-    if (with_mask.empty()) continue;
+  const std::vector<std::vector<int>> with_shares =
+      tiles_with_shares(shadows, tiles, width, height);
+  keep_unshadowed(shadows, with_shares, tiles, layers);
+  const auto redraw = [&](std::size_t mask, std::span<const int> of_tiles, const auto& use) {
     const std::vector<Light> lights = lights_without(scene, shadows, mask);
     set_targets(shadows, layers.size(), width, height);
     shadows.pass.behind_before = behind_before;
@@ -255,16 +304,33 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
     TileLists lists;
     sort_into_tiles({&shadows.pass, 1}, {&lists, 1}, pool);
     ScratchShelf<TileMemory> shelf;
-    pool.for_each(static_cast<int>(with_mask.size()), [&](int number) {
-      const int tile = with_mask[static_cast<std::size_t>(number)];
+    pool.for_each(static_cast<int>(of_tiles.size()), [&](int number) {
+      const int tile = of_tiles[static_cast<std::size_t>(number)];
       TileMemory memory = shelf.take();
       draw_tile(shadows.pass, lists, tile, memory);
       shelf.put_back(std::move(memory));
-      for (std::size_t i = 0; i < layers.size(); ++i) {
-        copy_pixels(shadows.layers[i], *layers[i], tile_area(lists, tile), shadows.masks[i], mask);
-      }
+      for (std::size_t i = 0; i < layers.size(); ++i) use(i, tile_area(lists, tile));
     });
     shadows.pass.draws.clear();
+  };
+
+  for (std::size_t mask = 1; mask < MaskSet{}.size(); ++mask) {
+    std::vector<int> with_mask;
+    for (std::size_t tile = 0; tile < tiles.masks.size(); ++tile) {
+      if (tiles.masks[tile].test(mask)) with_mask.push_back(static_cast<int>(tile));
+    }
+    if (with_mask.empty()) continue;
+    redraw(mask, with_mask, [&](std::size_t i, const Rectangle& area) {
+      copy_pixels(shadows.layers[i], *layers[i], area, shadows.masks[i], mask);
+    });
+  }
+  for (std::size_t light = 0; light < with_shares.size(); ++light) {
+    if (with_shares[light].empty()) continue;
+    const int kernel = shadows.maps[light].settings.kernel;
+    redraw(std::size_t{1} << light, with_shares[light], [&](std::size_t i, const Rectangle& area) {
+      take_shares(shadows.shares[i][light], kernel * kernel, area, shadows.unshadowed[i],
+                  shadows.layers[i], *layers[i], shadows.pass.profile);
+    });
   }
 }
 

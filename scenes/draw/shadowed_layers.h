@@ -12,6 +12,7 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/seen_facets.h"
 #include "scenes/shadows/projected_shadows.h"
+#include "scenes/shadows/shadow_map.h"
 
 namespace softfocus {
 
@@ -40,6 +41,11 @@ struct SceneShadows {
   std::vector<ProjectedShadows> projected;
   std::vector<std::vector<SeenFacet>> seen;      ///< of each layer
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
+  /// Of each of `lights`. Of other kinds than map, and before they are drawn, they have no sides.
+  std::vector<ShadowMap> maps;
+  /// Of each layer, of each of `lights`: map_lookup.h. Empty for kernels of one texel.
+  std::vector<std::vector<std::vector<std::uint8_t>>> shares;
+  std::vector<Image> unshadowed;  ///< layers with all lights, where there are shares
   // The scene without some lights.
   RenderPass pass;
   std::vector<Image> layers, depths;

@@ -100,9 +100,27 @@ SceneLens read_lens(Section section) {
   return lens;
 }
 
+ShadowMapSettings read_map(Section section) {
+  static constexpr std::array<std::string_view, 2> kFits = {"camera", "scene"};
+  ShadowMapSettings map;
+  map.size = read_whole_number(section, "size", map.size, kLeastMapSize, kMostMapSize);
+  map.bias = read_number(section, "bias", map.bias, {0.0, kMostMapBias});
+  map.slope_bias = read_number(section, "slope_bias", map.slope_bias, {0.0, kMostMapBias});
+  map.kernel = read_whole_number(section, "kernel", map.kernel, 1, kMostMapKernel);
+  if (map.kernel % 2 == 0) fail_at(section, "kernel", "is even; 1, 3, 5, 7 or 9 would be right");
+  map.cascades = read_whole_number(section, "cascades", map.cascades, 1, kMostCascades);
+  map.fits_camera = read_choice(section, "fit", 0, kFits) == 0;
+  if (map.cascades > 1 && !map.fits_camera) {
+    fail_at(section, "cascades", "are of the camera's picture; fit = \"camera\" would be right");
+  }
+  finish_section(section);
+  return map;
+}
+
 Light read_light(Section& section) {
   static constexpr std::array<std::string_view, 2> kKinds = {"directional", "point"};
-  static constexpr std::array<std::string_view, 4> kShadows = {"none", "projected", "volumes", "map"};
+  static constexpr std::array<std::string_view, 4> kShadows = {"none", "projected", "volumes",
+                                                               "map"};
   Light light;
   if (!has_key(section, "kind")) {
     fail_at(section, "kind", "is missing; \"directional\" or \"point\" would be right");
@@ -120,6 +138,7 @@ Light read_light(Section& section) {
   }
   light.colour = read_colour(section, "colour", light.colour, kBrightest);
   light.shadows = static_cast<ShadowKind>(read_choice(section, "shadows", 0, kShadows));
+  light.map = read_map(read_section(section, "map"));
   finish_section(section);
   return light;
 }

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "raster/images/texel.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/shadows/map_errors.h"
 #include "scenes/shadows/shadow_errors.h"
 
 using namespace softfocus;
@@ -146,4 +148,136 @@ TEST_CASE("accumulation of one pinhole view shows the shadows of the picture") {
   const Image pinhole = drawn(scene, 150, 97, pool).picture;
   const LensViewInput input{scene, camera, kFrame, pinhole, 1.0, 0.0, {.samples = 1}, {}, {}};
   CHECK(equal(accumulation(input, pool).picture, pinhole));
+}
+
+// Shadow maps.
+
+namespace {
+
+Scene mapped(const std::string& name, const ShadowMapSettings& settings) {
+  Scene scene = load_scene(name, scene_search_path({}));
+  set_shadows(scene, ShadowKind::map);
+  for (Light& light : scene.lights) light.map = settings;
+  return scene;
+}
+
+MapErrors map_errors_of(const ShadowMapSettings& settings) {
+  ThreadPool pool{2};
+  const Scene scene = mapped("cube-room", settings);
+  const Drawn made = drawn(scene, 160, 120, pool);
+  const SceneShadows& shadows = *made.prepared.shadows;
+  const CameraMatrices camera = camera_matrices(scene.camera, kFrame, 160, 120);
+  const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), 160, 120, {}};
+  MapErrors sum;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const ShadowLight light = shadow_light(scene.lights[i]);
+    const ShadowTruth truth{shadows.facets, light, view, camera.eye, true};
+    const std::vector<std::uint8_t> dark = dark_pixels(truth, shadows.seen[0], 160, 120, pool);
+    sum += map_errors(shadows.facets, shadows.maps[i], truth, dark, shadows.seen[0],
+                      shadows.masks[0], static_cast<int>(i), shadows.shares[0][i], 160, 120, pool);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("cube-room's map is wrong near edges alone, and less so if it is larger") {
+  const MapErrors small = map_errors_of({.size = 128, .bias = 0.25, .slope_bias = 0.75});
+  const MapErrors large = map_errors_of({.size = 1024, .bias = 0.25, .slope_bias = 0.75});
+  CHECK(small.in_shadow > 1000);
+  CHECK(small.acne == 0);
+  CHECK(large.acne == 0);
+  CHECK(small.wrong() > 3 * large.wrong());
+  CHECK(large.wrong() * 200 < large.seen);
+}
+
+TEST_CASE("a map's errors are told apart: no bias is acne, much of it is peter-panning") {
+  const MapErrors without = map_errors_of({.size = 512, .bias = 0.0, .slope_bias = 0.0});
+  CHECK(without.acne > without.seen / 10);
+  CHECK(without.peter_panning == 0);
+  const MapErrors much = map_errors_of({.size = 512, .bias = 60.0, .slope_bias = 0.75});
+  CHECK(much.acne == 0);
+  CHECK(much.peter_panning > much.in_shadow / 50);
+}
+
+TEST_CASE("a map of one texel's kernel darkens pixels to the bits of the scene without the light") {
+  const Scene scene = mapped("cube-room", {.size = 256});
+  ThreadPool pool{2};
+  const Drawn made = drawn(scene, 150, 97, pool);
+  Scene without = scene;
+  set_shadows(without, ShadowKind::none);
+  const Image all = drawn(without, 150, 97, pool).picture;
+  without.lights.erase(without.lights.begin());
+  const Image second = drawn(without, 150, 97, pool).picture;
+  std::size_t dark = 0;
+  for (int y = 0; y < 97; ++y) {
+    for (int x = 0; x < 150; ++x) {
+      const std::uint8_t mask =
+          made.prepared.shadows->masks[0][static_cast<std::size_t>(150 * y + x)];
+      if (mask > 1) continue;
+      dark += mask;
+      REQUIRE(texel_bits(made.picture, x, y) == texel_bits(mask == 0 ? all : second, x, y));
+    }
+  }
+  CHECK(dark > 300);
+}
+
+TEST_CASE("where a kernel is partly in shadow the light's share is taken in part") {
+  Scene scene = mapped("cube-room", {.size = 256, .kernel = 5});
+  scene.lights.resize(1);
+  ThreadPool pool{2};
+  const Drawn made = drawn(scene, 150, 97, pool);
+  Scene without = scene;
+  set_shadows(without, ShadowKind::none);
+  const Image lit = drawn(without, 150, 97, pool).picture;
+  without.lights.clear();
+  const Image unlit = drawn(without, 150, 97, pool).picture;
+  std::size_t partly = 0;
+  for (int y = 0; y < 97; ++y) {
+    for (int x = 0; x < 150; ++x) {
+      const std::uint8_t share =
+          made.prepared.shadows->shares[0][0][static_cast<std::size_t>(150 * y + x)];
+      if (share == 0) continue;
+      ++partly;
+      const glm::vec4 with = load_texel<Format::rgba16f>(lit, x, y);
+      const glm::vec4 dark = load_texel<Format::rgba16f>(unlit, x, y);
+      const glm::vec4 here = load_texel<Format::rgba16f>(made.picture, x, y);
+      for (int i = 0; i < 3; ++i) {
+        const float part = static_cast<float>(share) / 25.0f;
+        const float wanted = with[i] + part * (dark[i] - with[i]);
+        REQUIRE(here[i] == half_to_float(float_to_half(wanted, HalfRounding::nearest_even)));
+      }
+      REQUIRE(here.w == with.w);
+    }
+  }
+  CHECK(partly > 200);
+}
+
+TEST_CASE("shadow maps have the same bits on every vector unit and number of threads") {
+  for (const int kernel : {1, 3}) {
+    const Scene scene = mapped("cube-room", {.size = 200, .kernel = kernel, .cascades = 2});
+    ThreadPool scalar{1, Isa::scalar};
+    const Image expected = drawn(scene, 150, 97, scalar).picture;
+    for (const Isa isa : {Isa::baseline, widest_isa()}) {
+      ThreadPool pool{3, isa};
+      CHECK(equal(drawn(scene, 150, 97, pool).picture, expected));
+    }
+  }
+}
+
+TEST_CASE("a map that is fitted to the scene is drawn once, one fitted to the camera for each") {
+  for (const bool fits_camera : {false, true}) {
+    const Scene scene = mapped("figures", {.size = 64, .fits_camera = fits_camera});
+    ThreadPool pool{1};
+    Drawn made = drawn(scene, 64, 48, pool);
+    std::vector<ShadowMap>& maps = made.prepared.shadows->maps;
+    const float mark = 12345.0f;
+    maps[0].sides[0].nearness[0] = mark;
+    CameraMatrices camera = camera_matrices(scene.camera, kFrame, 64, 48);
+    draw_scene(made.prepared, camera, kFrame, made.picture, pool);
+    CHECK(maps[0].sides[0].nearness[0] == mark);
+    camera.eye.x += 0.01;
+    draw_scene(made.prepared, camera, kFrame, made.picture, pool);
+    CHECK((maps[0].sides[0].nearness[0] == mark) == !fits_camera);
+  }
 }

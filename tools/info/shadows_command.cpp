@@ -1,10 +1,8 @@
-// softfocus shadows: what a scene's projected shadows cost, by each schedule, and with --check how
-// right they are.
+// softfocus shadows: what a scene's shadows cost, projected ones by each schedule, and with --check
+// how right they are.
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -19,7 +17,10 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/gl/shadows_repeated_on_gl.h"
+#include "tools/info/map_measures.h"
+#include "tools/info/time_in_turn.h"
 #include "tools/options/run_options.h"
+#include "tools/options/shadow_options.h"
 
 namespace softfocus {
 namespace {
@@ -36,42 +37,11 @@ struct ShadowsOptions {
   int runs = 5;
   bool check = false;
   const Driver* versus = nullptr;  ///< draws the same stencil
+  std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
+  MapOptions map;
+  bool map_table = false;
   PoolOptions pool;
 };
-
-struct Milliseconds {
-  std::string name;
-  std::vector<double> ms{};
-  std::vector<double> cpu_ms{};  ///< of all threads
-};
-
-// Each in turn, so that what disturbs the machine disturbs all.
-template <class... Work>
-void time_in_turn(std::vector<Milliseconds>& all, int runs, const Work&... work) {
-  const auto timed = [](Milliseconds& of, const auto& one) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::clock_t cpu_start = std::clock();
-    one();
-    of.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
-    of.ms.push_back(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-            .count());
-  };
-  for (int run = 0; run < runs; ++run) {
-    std::size_t i = 0;
-    (timed(all[i++], work), ...);
-  }
-}
-
-void print_times(std::vector<Milliseconds>& all) {
-  for (Milliseconds& of : all) {
-    std::sort(of.ms.begin(), of.ms.end());
-    std::sort(of.cpu_ms.begin(), of.cpu_ms.end());
-    std::printf("%-26s %9.2f ms  (%.2f to %.2f; %.2f of CPU)\n", of.name.c_str(),
-                of.ms[of.ms.size() / 2], of.ms.front(), of.ms.back(),
-                of.cpu_ms[of.cpu_ms.size() / 2]);
-  }
-}
 
 Scene scene_of(const ShadowsOptions& options) {
   if (options.triangles) {
@@ -140,12 +110,27 @@ int measure_shadows(const ShadowsOptions& options) {
   Scene scene = scene_of(options);
   Scene unshadowed = scene;
   set_shadows(unshadowed, ShadowKind::none);
+  if (options.shadows) set_shadows(scene, *options.shadows);
   if (!has_shadows(scene)) set_shadows(scene, ShadowKind::projected);
   if (scene.lights.empty() || scene.lights.size() > kMostShadowLights) {
     throw UsageError("'" + scene.name + "' has " + std::to_string(scene.lights.size()) +
                      " lights; 1 to " + std::to_string(kMostShadowLights) + " would do");
   }
   ThreadPool pool{options.pool.threads, options.pool.isa};
+  const bool has_map = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                   [](const Light& of) { return of.shadows == ShadowKind::map; });
+  if (has_map) set_shadows(scene, ShadowKind::map);
+  set_maps(options.map, scene);
+  if (options.map_table && !has_map) throw UsageError("--map-table: give --shadows map too");
+  if (has_map) {
+    const MapMeasure measure{scene, options.size, options.frame, options.runs};
+    if (options.map_table) {
+      print_map_table(measure, pool);
+    } else {
+      measure_maps(measure, options.check, pool);
+    }
+    return kDone;
+  }
   ThreadPool one{1, options.pool.isa};
   const auto [width, height] = options.size;
   const CameraMatrices camera = camera_matrices(scene.camera, options.frame, width, height);
@@ -214,7 +199,7 @@ int measure_shadows(const ShadowsOptions& options) {
 
 Command add_shadows_command(CLI::App& program) {
   CLI::App* parser =
-      add_command(program, "shadows", "Measure projected shadows: time, and with --check errors");
+      add_command(program, "shadows", "Measure shadows: time, and with --check errors");
   const auto options = std::make_shared<ShadowsOptions>();
   add_optional_argument(*parser, "SCENE", "A scene, as render takes it", options->scene);
   begin_group(*parser, "Picture");
@@ -227,6 +212,18 @@ Command add_shadows_command(CLI::App& program) {
   add_scene_path(*parser, options->scene_path);
   add_size(*parser, options->size);
   add_frame(*parser, options->frame);
+  add_value(*parser, "--shadows", "projected|map",
+            "Measure these, in place of what the scene says (default: projected)",
+            [options](const std::string& text) {
+              if (text == "map") {
+                options->shadows = ShadowKind::map;
+              } else if (text == "projected") {
+                options->shadows = ShadowKind::projected;
+              } else {
+                refuse_name("--shadows", text, {"projected", "map"});
+              }
+            });
+  add_map_option(*parser, options->map);
   begin_group(*parser, "Run");
   add_value(*parser, "--runs", "N", "Time each N times, 1 to 100 (default: 5)",
             [options](const std::string& text) {
@@ -237,6 +234,8 @@ Command add_shadows_command(CLI::App& program) {
             "Time this GL driver too, in turn, drawing the same stencil: " + names_of(drivers()),
             [options](const std::string& text) { options->versus = &parse_driver("--vs", text); });
   offer(*parser, "--vs", [] { return names_in(drivers()); });
+  add_flag(*parser, "--map-table", "Of maps, time and wrong pixels by each of their settings",
+           options->map_table);
   add_pool_options(*parser, options->pool, "the shadows are the same");
   return {parser, [options] { return measure_shadows(*options); }};
 }

@@ -20,6 +20,7 @@
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/shadow_options.h"
 #include "tools/pictures/image_file.h"
 #include "tools/render/sharp_depths_option.h"
 #include "tools/sequence/sequence_options.h"
@@ -39,6 +40,7 @@ struct RenderOptions {
   int supersample = 1;    ///< what is drawn and filtered has so many times the width and height
   double frame = 0.0;
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
+  MapOptions map;
   SequenceOptions sequence;           ///< of many pictures
   Profile profile;
   std::string profile_name = "ieee";

@@ -1,0 +1,112 @@
+#include "scenes/shadows/map_errors.h"
+
+#include <cmath>
+
+namespace softfocus {
+namespace {
+
+// The point of the plane that is seen at (u, v).
+glm::dvec3 point_at(const ShadowMap& map, const MapSide& side, const FacetPlane& plane, double u,
+                    double v) {
+  const double x = u / side.texels.x + side.low.x, y = v / side.texels.y + side.low.y;
+  const glm::dvec3 across = side.axes[0] * x + side.axes[1] * y;
+  const bool is_point = map.light.w != 0.0;
+  const glm::dvec3 from = is_point ? side.origin : side.origin + across;
+  const glm::dvec3 ray = is_point ? across + side.axes[2] : side.axes[2];
+  return from + ray * (-height_over(plane, from) / dot(plane.normal, ray));
+}
+
+// Whether a ray answers otherwise somewhere in the kernel's reach: around it, or at a centre that
+// it compares.
+bool is_at_edge(const Facets& facets, const ShadowMap& map, const ShadowTruth& truth,
+                SeenFacet seen, glm::dvec3 point, bool is_dark,
+                std::vector<std::uint32_t>& memory) {
+  const FacetPlane& plane = facets.planes[facet_of(seen)];
+  if (!has_plane(plane)) return false;
+  const MapPlace place = map_place(map, plane, point);
+  if (place.side->nearness.empty()) return false;
+  const auto differs = [&](double u, double v) {
+    return truth.is_dark_at(seen, point_at(map, *place.side, plane, u, v), memory) != is_dark;
+  };
+  const int kernel = map.settings.kernel;
+  const double u = std::floor(place.u) - kernel / 2, v = std::floor(place.v) - kernel / 2;
+  for (int j = 0; j < kernel; ++j) {
+    for (int i = 0; i < kernel; ++i) {
+      if (differs(u + i + 0.5, v + j + 0.5)) return true;
+    }
+  }
+  const double half = kernel / 2.0;
+  for (const double across : {-half, 0.0, half}) {
+    for (const double down : {-half, 0.0, half}) {
+      if (differs(place.u + across, place.v + down)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+MapErrors& operator+=(MapErrors& sum, const MapErrors& more) {
+  sum.seen += more.seen;
+  sum.in_shadow += more.in_shadow;
+  sum.near_edge += more.near_edge;
+  sum.aliasing += more.aliasing;
+  sum.acne += more.acne;
+  sum.peter_panning += more.peter_panning;
+  sum.missed_share += more.missed_share;
+  return sum;
+}
+
+std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
+                                      int width, int height, ThreadPool& pool) {
+  std::vector<std::uint8_t> is_dark(seen.size());
+  pool.for_each(height, [&](int y) {
+    std::vector<std::uint32_t> memory;
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                static_cast<std::size_t>(x);
+      if (!shows_facet(seen[pixel])) continue;
+      is_dark[pixel] = truth.is_dark(seen[pixel], {x + 0.5, y + 0.5}, memory) ? 1 : 0;
+    }
+  });
+  return is_dark;
+}
+
+MapErrors map_errors(const Facets& facets, const ShadowMap& map, const ShadowTruth& truth,
+                     std::span<const std::uint8_t> is_dark, std::span<const SeenFacet> seen,
+                     std::span<const std::uint8_t> mask, int bit,
+                     std::span<const std::uint8_t> shares, int width, int height,
+                     ThreadPool& pool) {
+  const double whole = map.settings.kernel * map.settings.kernel;
+  std::vector<MapErrors> of_rows(static_cast<std::size_t>(height));
+  pool.for_each(height, [&](int y) {
+    MapErrors& errors = of_rows[static_cast<std::size_t>(y)];
+    std::vector<std::uint32_t> memory;
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                static_cast<std::size_t>(x);
+      if (!shows_facet(seen[pixel])) continue;
+      const bool dark = is_dark[pixel] != 0;
+      double share = (mask[pixel] >> bit & 1) != 0 ? 1.0 : 0.0;
+      if (share == 0.0 && !shares.empty()) share = shares[pixel] / whole;
+      ++errors.seen;
+      errors.in_shadow += dark ? 1 : 0;
+      errors.missed_share += std::fabs(share - (dark ? 1.0 : 0.0));
+      if ((share > 0.5) == dark) continue;
+      const glm::dvec2 centre{x + 0.5, y + 0.5};
+      if (truth.is_near_edge(seen[pixel], centre, memory)) {
+        ++errors.near_edge;
+      } else if (is_at_edge(facets, map, truth, seen[pixel], truth.point(seen[pixel], centre), dark,
+                            memory)) {
+        ++errors.aliasing;
+      } else {
+        ++(dark ? errors.peter_panning : errors.acne);
+      }
+    }
+  });
+  MapErrors sum;
+  for (const MapErrors& errors : of_rows) sum += errors;
+  return sum;
+}
+
+}  // namespace softfocus

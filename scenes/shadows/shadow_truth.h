@@ -1,0 +1,39 @@
+#pragma once
+// What a pixel shows of one light's shadow, by the definition (point_in_shadow.h).
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "scenes/shadows/light_grid.h"
+#include "scenes/shadows/shadow_mask.h"
+
+namespace softfocus {
+
+class ShadowTruth {
+ public:
+  /// All outlive it. With `by_grid` the rays ask the casters that a LightGrid finds; without, all.
+  ShadowTruth(const Facets& facets, const ShadowLight& light, const ShadowView& view,
+              glm::dvec3 eye, bool by_grid);
+
+  /// Of the facet's plane at a place in the window. `memory` is of the thread.
+  bool is_dark(SeenFacet seen, glm::dvec2 window, std::vector<std::uint32_t>& memory) const;
+
+  /// Whether the answer is another as at a point 1/256 pixel from there.
+  bool is_near_edge(SeenFacet seen, glm::dvec2 window, std::vector<std::uint32_t>& memory) const;
+
+  /// Of a point of the facet's plane.
+  bool is_dark_at(SeenFacet seen, glm::dvec3 point, std::vector<std::uint32_t>& memory) const;
+
+  glm::dvec3 point(SeenFacet seen, glm::dvec2 window) const;
+
+ private:
+  const Facets& facets_;
+  const ShadowLight& light_;
+  const ShadowView& view_;
+  glm::dvec3 eye_;
+  LightGrid grid_;
+  std::vector<std::uint32_t> all_;
+};
+
+}  // namespace softfocus

@@ -1,0 +1,210 @@
+#include "tools/info/map_measures.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "scenes/draw/scene_maps.h"
+#include "scenes/shadows/map_errors.h"
+#include "tools/info/time_in_turn.h"
+
+namespace softfocus {
+namespace {
+
+// A scene drawn by itself: its shadows, and time after time the same frame.
+struct Drawing {
+  Drawing(const Scene& of, const MapMeasure& measure, ThreadPool& with)
+      : scene(of),
+        camera(camera_matrices(of.camera, measure.frame, measure.size.width, measure.size.height)),
+        frame(measure.frame),
+        picture(make_image(Format::rgba16f, measure.size.width, measure.size.height)),
+        pool(with),
+        prepared(prepare_scene(scene, Profile{}, with)) {
+    draw();
+  }
+
+  void draw() { draw_scene(prepared, camera, frame, picture, pool); }
+
+  void draw_anew() {
+    prepared.shadows->frame.reset();
+    draw();
+  }
+
+  const SceneShadows& shadows() const { return *prepared.shadows; }
+
+  Scene scene;
+  CameraMatrices camera;
+  double frame;
+  Image picture;
+  ThreadPool& pool;
+  PreparedScene prepared;
+};
+
+Scene with_shadows(Scene scene, ShadowKind kind) {
+  set_shadows(scene, kind);
+  return scene;
+}
+
+Scene with_settings(Scene scene, const ShadowMapSettings& settings) {
+  for (Light& light : scene.lights) light.map = settings;
+  return scene;
+}
+
+// Of all lights of a drawing, which has maps or projected shadows.
+class LightTruths {
+ public:
+  LightTruths(const Drawing& drawing, ThreadPool& pool)
+      : facets_(drawing.shadows().facets),
+        view_{multiply(drawing.camera.eye_to_clip, drawing.camera.world_to_eye),
+              drawing.picture.width,
+              drawing.picture.height,
+              {}} {
+    const SceneShadows& shadows = drawing.shadows();
+    lights_.reserve(shadows.lights.size());
+    for (const std::size_t number : shadows.lights) {
+      lights_.push_back(shadow_light(drawing.scene.lights[number]));
+      truths_.emplace_back(facets_, lights_.back(), view_, drawing.camera.eye, true);
+      is_dark_.push_back(
+          dark_pixels(truths_.back(), shadows.seen[0], view_.width, view_.height, pool));
+    }
+  }
+  LightTruths(const LightTruths&) = delete;
+  LightTruths& operator=(const LightTruths&) = delete;
+
+  MapErrors errors(const Drawing& drawing, ThreadPool& pool) const {
+    const SceneShadows& shadows = drawing.shadows();
+    MapErrors sum;
+    for (std::size_t i = 0; i < truths_.size(); ++i) {
+      sum += map_errors(facets_, shadows.maps[i], truths_[i], is_dark_[i], shadows.seen[0],
+                        shadows.masks[0], static_cast<int>(i), shadows.shares[0][i], view_.width,
+                        view_.height, pool);
+    }
+    return sum;
+  }
+
+ private:
+  const Facets& facets_;
+  ShadowView view_;
+  std::vector<ShadowLight> lights_;
+  std::vector<ShadowTruth> truths_;
+  std::vector<std::vector<std::uint8_t>> is_dark_;
+};
+
+std::size_t bytes_of(const SceneShadows& shadows) {
+  std::size_t bytes = 0;
+  for (const ShadowMap& map : shadows.maps) {
+    for (const MapSide& side : map.sides) bytes += side.nearness.size() * sizeof(float);
+  }
+  return bytes;
+}
+
+struct TableRow {
+  std::string name;
+  ShadowMapSettings settings;
+};
+
+std::string number_text(double value) { return short_number(value); }
+
+std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
+  std::vector<TableRow> rows;
+  const auto add = [&](std::string name, const std::function<void(ShadowMapSettings&)>& change) {
+    ShadowMapSettings settings = usual;
+    change(settings);
+    rows.push_back({std::move(name), settings});
+  };
+  for (int size = 256; size <= 4096; size *= 2) {
+    add("size=" + std::to_string(size), [&](ShadowMapSettings& map) { map.size = size; });
+  }
+  for (const double bias : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0}) {
+    add("bias=" + number_text(bias), [&](ShadowMapSettings& map) { map.bias = bias; });
+  }
+  for (const double bias : {0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0}) {
+    add("slope-bias=" + number_text(bias), [&](ShadowMapSettings& map) { map.slope_bias = bias; });
+  }
+  add("no-bias", [](ShadowMapSettings& map) { map.bias = map.slope_bias = 0.0; });
+  for (int kernel = 1; kernel <= kMostMapKernel; kernel += 2) {
+    add("kernel=" + std::to_string(kernel), [&](ShadowMapSettings& map) { map.kernel = kernel; });
+  }
+  for (int cascades = 1; cascades <= kMostCascades; ++cascades) {
+    add("cascades=" + std::to_string(cascades),
+        [&](ShadowMapSettings& map) { map.cascades = cascades; });
+  }
+  add("fit=scene", [](ShadowMapSettings& map) {
+    map.fits_camera = false;
+    map.cascades = 1;
+  });
+  for (int size = 1024; size <= 4096; size *= 2) {
+    add("size=" + std::to_string(size) + ",cascades=4", [&](ShadowMapSettings& map) {
+      map.size = size;
+      map.cascades = 4;
+    });
+  }
+  return rows;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
+  ThreadPool one{1, pool.isa()};
+  Drawing mapped{measure.scene, measure, pool};
+  Drawing projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  Drawing plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
+  SceneShadows& shadows = *mapped.prepared.shadows;
+  std::printf("%s: %zu triangles, %zu lights with shadow maps (%.1f MB)\n",
+              measure.scene.name.c_str(), shadows.facets.facets.size(), shadows.lights.size(),
+              static_cast<double>(bytes_of(shadows)) / 1e6);
+  const MapCamera camera = map_camera(mapped.scene, mapped.camera);
+  const ShadowView view{camera.world_to_clip, measure.size.width, measure.size.height, Profile{}};
+  const auto maps_by = [&](ThreadPool& by) {
+    shadows.maps.assign(shadows.lights.size(), {});
+    draw_maps(shadows, mapped.scene, camera, Profile{}, by);
+  };
+  std::vector<Milliseconds> times{{"draw maps, 1 thread"}, {"draw maps, all"},
+                                  {"look up, all"},        {"frame, nothing kept"},
+                                  {"frame, maps kept"},    {"projected, nothing kept"},
+                                  {"projected, kept"},     {"frame without shadows"}};
+  time_in_turn(
+      times, measure.runs, [&] { maps_by(one); }, [&] { maps_by(pool); },
+      [&] {
+        std::fill(shadows.masks[0].begin(), shadows.masks[0].end(), std::uint8_t{0});
+        look_up_maps(shadows, 0, view, camera.eye, pool);
+      },
+      [&] { mapped.draw_anew(); }, [&] { mapped.draw(); }, [&] { projected.draw_anew(); },
+      [&] { projected.draw(); }, [&] { plain.draw(); });
+  print_times(times);
+  if (!check) return;
+  const MapErrors errors = LightTruths{mapped, pool}.errors(mapped, pool);
+  std::printf(
+      "pixels times lights: %zu seen, %zu in shadow, %zu within 1/256 pixel of an edge, %zu wrong: "
+      "%zu aliasing, %zu acne, %zu peter-panning; missed shares %.0f\n",
+      errors.seen, errors.in_shadow, errors.near_edge, errors.wrong(), errors.aliasing, errors.acne,
+      errors.peter_panning, errors.missed_share);
+}
+
+void print_map_table(const MapMeasure& measure, ThreadPool& pool) {
+  Drawing projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  const LightTruths truths{projected, pool};
+  std::printf("%-22s %9s %9s %9s %9s %9s %9s %9s\n", measure.scene.name.c_str(), "ms", "wrong",
+              "aliasing", "acne", "peter-pan", "near-edge", "missed");
+  const ShadowMapSettings usual = measure.scene.lights[0].map;
+  for (const TableRow& row : table_rows(usual)) {
+    Drawing mapped{with_settings(measure.scene, row.settings), measure, pool};
+    std::vector<Milliseconds> times{{"mapped"}, {"projected"}};
+    time_in_turn(
+        times, measure.runs, [&] { mapped.draw_anew(); }, [&] { projected.draw_anew(); });
+    const MapErrors errors = truths.errors(mapped, pool);
+    std::printf("%-22s %9.1f %9zu %9zu %9zu %9zu %9zu %9.0f   projected %.1f ms\n",
+                row.name.c_str(), median(times[0].ms), errors.wrong(), errors.aliasing, errors.acne,
+                errors.peter_panning, errors.near_edge, errors.missed_share, median(times[1].ms));
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace softfocus

@@ -1,0 +1,24 @@
+#pragma once
+// What shadow maps cost and how wrong they are, beside projected shadows, which are right.
+
+#include "raster/threads/parallel.h"
+#include "scenes/scene.h"
+#include "tools/cli/option_values.h"
+
+namespace softfocus {
+
+struct MapMeasure {
+  const Scene& scene;  ///< all of its lights have a map
+  PictureSize size;
+  double frame;
+  int runs;
+};
+
+/// Prints times, each in turn; with `check` every pixel against a ray.
+void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool);
+
+/// Prints a table: time and wrong pixels by size, bias, slope bias, kernel and cascades, one of
+/// them at a time changed from the scene's settings.
+void print_map_table(const MapMeasure& measure, ThreadPool& pool);
+
+}  // namespace softfocus
