@@ -303,7 +303,7 @@ void fill(const MaskWriter& to, const MaskTriangle& triangle, const Rectangle& p
 }
 
 // Rows that a task draws.
-constexpr int kRowsOfBand = 32;
+constexpr int kRowsOfMaskTask = 32;
 
 }  // namespace
 
@@ -335,9 +335,9 @@ MaskDraws cut_shadows(const Facets& facets, std::span<const ProjectedShadows* co
 void draw_shadow_mask(const MaskDraws& draws, const ShadowView& view, std::span<std::uint8_t> mask,
                       ThreadPool& pool) {
   std::copy(draws.dark.begin(), draws.dark.end(), mask.begin());
-  pool.for_each((view.height + kRowsOfBand - 1) / kRowsOfBand, [&](int number) {
-    const int y = number * kRowsOfBand;
-    const Rectangle band{0, y, view.width, std::min(y + kRowsOfBand, view.height)};
+  pool.for_each((view.height + kRowsOfMaskTask - 1) / kRowsOfMaskTask, [&](int number) {
+    const int y = number * kRowsOfMaskTask;
+    const Rectangle band{0, y, view.width, std::min(y + kRowsOfMaskTask, view.height)};
     const MaskWriter writer{view, draws.receivers, mask};
     for (const MaskDraws::Part& part : draws.parts) {
       for (std::size_t i = 0; i < part.pixels.size(); ++i) {
