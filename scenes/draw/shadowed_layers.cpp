@@ -30,6 +30,31 @@ ProjectedShadows without_triangles(const Facets& facets, const ShadowLight& ligh
   return {lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
 }
 
+void update_volumes(SceneShadows& shadows, const Scene& scene) {
+  const auto has_volumes = [&](std::size_t light) {
+    return scene.lights[light].shadows == ShadowKind::volumes;
+  };
+  shadows.volumes.assign(shadows.lights.size(), {});
+  if (std::none_of(shadows.lights.begin(), shadows.lights.end(), has_volumes)) return;
+  shadows.joined = join_facets(shadows.facets);
+  for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
+    if (!has_volumes(shadows.lights[i])) continue;
+    shadows.volumes[i] = make_shadow_volumes(shadows.facets, shadows.joined,
+                                             shadow_light(scene.lights[shadows.lights[i]]));
+  }
+}
+
+// Of the lights that have them.
+void draw_volumes(SceneShadows& shadows, const ShadowView& view, glm::dvec3 eye,
+                  std::span<const SeenFacet> seen, std::span<std::uint8_t> mask, ThreadPool& pool) {
+  for (std::size_t i = 0; i < shadows.volumes.size(); ++i) {
+    if (shadows.volumes[i].casters.empty()) continue;
+    shadows.volume_rays += draw_volume_mask(
+        shadows.facets, shadows.joined, shadows.volumes[i], shadows.projected[i].lit,
+        static_cast<std::uint8_t>(1u << i), seen, view, eye, shadows.volume_count, mask, pool);
+  }
+}
+
 void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool& pool) {
   if (shadows.frame && (*shadows.frame == frame || !shadows.moves)) return;
   shadows.facets = scene_facets(scene, frame);
@@ -41,6 +66,7 @@ void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool&
                                     : without_triangles(shadows.facets, shadow_light(light)));
   }
   shadows.maps.assign(shadows.lights.size(), {});
+  update_volumes(shadows, scene);
   shadows.frame = frame;
 }
 
@@ -61,11 +87,12 @@ void draw_masks(SceneShadows& shadows, const Scene& scene, const CameraMatrices&
   const ShadowView view = shadow_view(camera, width, height, profile);
   draw_maps(shadows, scene, map_camera(scene, camera), profile, pool);
   shadows.masks.resize(shadows.seen.size());
+  shadows.volume_rays = 0;
   for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
     shadows.masks[i].resize(shadows.seen[i].size());
     draw_shadow_mask(cut_shadows(shadows.facets, of_lights, shadows.seen[i], view, pool), view,
                      shadows.masks[i], pool);
-    // SEAM: volumes set their lights' bits in shadows.masks[i] here.
+    draw_volumes(shadows, view, camera.eye, shadows.seen[i], shadows.masks[i], pool);
     look_up_maps(shadows, i, view, camera.eye, pool);
   }
 }

@@ -13,6 +13,7 @@
 #include "scenes/draw/seen_facets.h"
 #include "scenes/shadows/projected_shadows.h"
 #include "scenes/shadows/shadow_map.h"
+#include "scenes/shadows/volume_mask.h"
 
 namespace softfocus {
 
@@ -30,7 +31,8 @@ Facets scene_facets(const Scene& scene, double frame);
 
 ShadowLight shadow_light(const Light& light);
 
-/// Kept from frame to frame: projected triangles as long as nothing moves, and memory.
+/// Kept from frame to frame: projected triangles and volumes as long as nothing moves, and
+/// memory.
 struct SceneShadows {
   NumberedScene numbered;
   std::vector<std::size_t> lights;  ///< of the scene, those with shadows: bit i is lights[i]
@@ -39,6 +41,10 @@ struct SceneShadows {
   Facets facets;
   /// Of each of `lights`. Of other kinds than projected it has no triangles, only the dark sides.
   std::vector<ProjectedShadows> projected;
+  JoinedFacets joined;                 ///< if a light has volumes
+  std::vector<ShadowVolumes> volumes;  ///< of each of `lights`; empty if it has another kind
+  VolumeCount volume_count = VolumeCount::z_fail;
+  std::size_t volume_rays = 0;  ///< what draw_volume_mask() returned for the last frame's layers
   std::vector<std::vector<SeenFacet>> seen;      ///< of each layer
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
   /// Of each of `lights`. Of other kinds than map, and before they are drawn, they have no sides.

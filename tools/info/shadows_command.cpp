@@ -2,11 +2,13 @@
 // how right they are.
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "scenes/draw/shadowed_layers.h"
@@ -28,6 +30,14 @@ namespace {
 // Of triangles squared: beyond, the schedules of O(n^2) are left out.
 constexpr std::size_t kMostForAllPairs = 20000;
 
+struct MeasuredShadows {
+  std::string_view name;
+  ShadowKind kind;
+};
+constexpr std::array kMeasuredShadows{MeasuredShadows{"projected", ShadowKind::projected},
+                                      MeasuredShadows{"volumes", ShadowKind::volumes},
+                                      MeasuredShadows{"map", ShadowKind::map}};
+
 struct ShadowsOptions {
   std::string scene;
   std::optional<int> triangles;  ///< of a sphere field in place of the scene
@@ -36,10 +46,11 @@ struct ShadowsOptions {
   double frame = 0.0;
   int runs = 5;
   bool check = false;
-  const Driver* versus = nullptr;  ///< draws the same stencil
+  const Driver* versus = nullptr;     ///< draws the same stencil
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;
   bool map_table = false;
+  VolumeCount volume_count = VolumeCount::z_fail;
   PoolOptions pool;
 };
 
@@ -59,6 +70,17 @@ std::size_t bytes_kept(const SceneShadows& shadows) {
     bytes += of_light.triangles.size() * sizeof(ProjectedTriangle);
   }
   return bytes;
+}
+
+void print_volumes(const SceneShadows& shadows) {
+  std::size_t edges = 0, faces = 0;
+  for (const ShadowVolumes& volumes : shadows.volumes) {
+    edges += volumes.silhouette_edges;
+    faces += volumes.faces.size();
+  }
+  if (faces == 0) return;
+  std::printf("volumes: %zu silhouette edges, %zu faces; %zu pixels by rays\n", edges, faces,
+              shadows.volume_rays);
 }
 
 void check(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
@@ -103,6 +125,33 @@ void time_beside(const Driver& driver, const SceneShadows& shadows, const Shadow
               on_gl.renderer().c_str());
 }
 
+void time_projection(const Facets& facets, const std::vector<ShadowLight>& lights, int runs,
+                     ThreadPool& pool) {
+  ThreadPool one{1, pool.isa()};
+  const auto all_lights = [&](const auto& project) {
+    for (const ShadowLight& light : lights) project(light);
+  };
+  if (facets.facets.size() <= kMostForAllPairs) {
+    std::vector<Milliseconds> times{
+        {"project in sequence"}, {"project in parallel, 1"}, {"project in parallel, all"}};
+    const auto in_parallel = [&](ThreadPool& by) {
+      all_lights([&](const ShadowLight& light) { project_in_parallel(facets, light, by); });
+    };
+    time_in_turn(
+        times, runs,
+        [&] { all_lights([&](const ShadowLight& light) { project_in_sequence(facets, light); }); },
+        [&] { in_parallel(one); }, [&] { in_parallel(pool); });
+    print_times(times);
+  }
+  std::vector<Milliseconds> times{{"project by grid, 1"}, {"project by grid, all"}};
+  const auto by_grid = [&](ThreadPool& by) {
+    all_lights([&](const ShadowLight& light) { project_by_grid(facets, light, by); });
+  };
+  time_in_turn(
+      times, runs, [&] { by_grid(one); }, [&] { by_grid(pool); });
+  print_times(times);
+}
+
 int measure_shadows(const ShadowsOptions& options) {
   if (options.scene.empty() == !options.triangles) {
     throw UsageError("give one of SCENE and --triangles");
@@ -120,6 +169,13 @@ int measure_shadows(const ShadowsOptions& options) {
   const bool has_map = std::any_of(scene.lights.begin(), scene.lights.end(),
                                    [](const Light& of) { return of.shadows == ShadowKind::map; });
   if (has_map) set_shadows(scene, ShadowKind::map);
+  const bool is_projected =
+      std::all_of(scene.lights.begin(), scene.lights.end(), [](const Light& of) {
+        return of.shadows == ShadowKind::none || of.shadows == ShadowKind::projected;
+      });
+  if (options.versus != nullptr && !is_projected) {
+    throw UsageError("--vs: times projected shadows; --shadows projected would be right");
+  }
   set_maps(options.map, scene);
   if (options.map_table && !has_map) throw UsageError("--map-table: give --shadows map too");
   if (has_map) {
@@ -131,7 +187,6 @@ int measure_shadows(const ShadowsOptions& options) {
     }
     return kDone;
   }
-  ThreadPool one{1, options.pool.isa};
   const auto [width, height] = options.size;
   const CameraMatrices camera = camera_matrices(scene.camera, options.frame, width, height);
   Image picture = make_image(Format::rgba16f, width, height);
@@ -140,6 +195,7 @@ int measure_shadows(const ShadowsOptions& options) {
                               ? Profile{}
                               : find_profile(options.versus->profile).value_or(Profile{});
   PreparedScene prepared = prepare_scene(scene, profile, pool);
+  prepared.shadows->volume_count = options.volume_count;
   PreparedScene plain = prepare_scene(unshadowed, profile, pool);
   draw_scene(prepared, camera, options.frame, picture, pool);
   draw_scene(plain, camera, options.frame, picture, pool);
@@ -155,35 +211,29 @@ int measure_shadows(const ShadowsOptions& options) {
       "(%.1f MB)\n",
       scene.name.c_str(), shadows.facets.facets.size(), shadows.facets.receivers.size(),
       lights.size(), projected, static_cast<double>(bytes_kept(shadows)) / 1e6);
+  print_volumes(shadows);
 
-  const auto all_lights = [&](const auto& project) {
-    for (const ShadowLight& light : lights) project(light);
-  };
-  const Facets& facets = shadows.facets;
-  if (facets.facets.size() <= kMostForAllPairs) {
-    std::vector<Milliseconds> times{
-        {"project in sequence"}, {"project in parallel, 1"}, {"project in parallel, all"}};
-    const auto in_parallel = [&](ThreadPool& by) {
-      all_lights([&](const ShadowLight& light) { project_in_parallel(facets, light, by); });
-    };
-    time_in_turn(
-        times, options.runs,
-        [&] { all_lights([&](const ShadowLight& light) { project_in_sequence(facets, light); }); },
-        [&] { in_parallel(one); }, [&] { in_parallel(pool); });
-    print_times(times);
-  }
-  std::vector<Milliseconds> times{{"project by grid, 1"},    {"project by grid, all"},
-                                  {"facets and receivers"},  {"frame, nothing kept"},
-                                  {"frame, projected kept"}, {"frame without shadows"}};
-  const auto by_grid = [&](ThreadPool& by) {
-    all_lights([&](const ShadowLight& light) { project_by_grid(facets, light, by); });
-  };
   const auto draw = [&](PreparedScene& of) {
     draw_scene(of, camera, options.frame, picture, pool);
   };
+  if (projected > 0) time_projection(shadows.facets, lights, options.runs, pool);
+  if (!shadows.joined.facets.empty()) {
+    std::vector<Milliseconds> times{{"join facets"}, {"make volumes"}};
+    time_in_turn(
+        times, options.runs, [&] { join_facets(shadows.facets); },
+        [&] {
+          for (const ShadowLight& light : lights) {
+            make_shadow_volumes(shadows.facets, shadows.joined, light);
+          }
+        });
+    print_times(times);
+  }
+  std::vector<Milliseconds> times{{"facets and receivers"},
+                                  {"frame, nothing kept"},
+                                  {"frame, shadows kept"},
+                                  {"frame without shadows"}};
   time_in_turn(
-      times, options.runs, [&] { by_grid(one); }, [&] { by_grid(pool); },
-      [&] { scene_facets(scene, options.frame); },
+      times, options.runs, [&] { scene_facets(scene, options.frame); },
       [&] {
         shadows.frame.reset();
         draw(prepared);
@@ -212,18 +262,20 @@ Command add_shadows_command(CLI::App& program) {
   add_scene_path(*parser, options->scene_path);
   add_size(*parser, options->size);
   add_frame(*parser, options->frame);
-  add_value(*parser, "--shadows", "projected|map",
-            "Measure these, in place of what the scene says (default: projected)",
-            [options](const std::string& text) {
-              if (text == "map") {
-                options->shadows = ShadowKind::map;
-              } else if (text == "projected") {
-                options->shadows = ShadowKind::projected;
-              } else {
-                refuse_name("--shadows", text, {"projected", "map"});
-              }
-            });
   add_map_option(*parser, options->map);
+  add_value(*parser, "--shadows", "projected|volumes|map",
+            "Of all lights, in place of what the scene says of each",
+            [options](const std::string& text) {
+              for (const MeasuredShadows& choice : kMeasuredShadows) {
+                if (choice.name == text) {
+                  options->shadows = choice.kind;
+                  return;
+                }
+              }
+              refuse_name("--shadows", text, names_in(kMeasuredShadows));
+            });
+  add_flag(*parser, "--z-pass", "Count volumes' faces before what is seen, not behind",
+           [options] { options->volume_count = VolumeCount::z_pass; });
   begin_group(*parser, "Run");
   add_value(*parser, "--runs", "N", "Time each N times, 1 to 100 (default: 5)",
             [options](const std::string& text) {

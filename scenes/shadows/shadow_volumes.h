@@ -1,0 +1,48 @@
+#pragma once
+// Shadow volumes (Crow 1977): the faces around what a light's casters keep in the dark.
+//
+// A casting triangle's volume is what lies behind it as the light sees it. The volumes of all
+// casters are counted together, so a side face stands only where an edge's triangles do not cancel
+// out: an edge whose sum of directions is not 0 (Bergeron 1986; Kim, Kim and Neumann 2008). Meshes
+// may be open, and three or more triangles may share an edge.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "scenes/shadows/joined_facets.h"
+
+namespace softfocus {
+
+/// Corner i below the number of joined corners is that corner. Above, it is infinitely far from
+/// the light: for a point light in the direction of corner i - corners, for a directional light in
+/// the one direction that there is.
+struct VolumeFace {
+  std::array<std::uint32_t, 3> corners;  ///< counter-clockwise, seen from outside the volume
+  std::int32_t times;                    ///< counted; negative if seen from inside
+};
+
+/// All volumes of one light. They depend on no camera.
+struct ShadowVolumes {
+  ShadowLight light;
+  std::vector<std::uint32_t> casters;  ///< facets
+  std::size_t silhouette_edges = 0;
+  /// The casters, then the sides, then the caps at infinity, which a directional light does not
+  /// need: all is at one point there.
+  std::vector<VolumeFace> faces;
+  std::size_t faces_before_far_caps = 0;
+};
+
+ShadowVolumes make_shadow_volumes(const Facets& facets, const JoinedFacets& joined,
+                                  const ShadowLight& light);
+
+/// How many of the volumes of `casters` hold a point: how many of them the ray from the point to
+/// the light meets. A ray through a common edge meets one of its two triangles. Facets that cast no
+/// volume are left out.
+int volumes_that_hold(const Facets& facets, const JoinedFacets& joined, const ShadowLight& light,
+                      std::span<const std::uint32_t> casters, glm::dvec3 point);
+
+}  // namespace softfocus
