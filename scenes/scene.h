@@ -62,12 +62,12 @@ inline constexpr int kMostShadowLights = 8;
 
 /// How a shadow map is made and read (shadows/shadow_map.h).
 struct ShadowMapSettings {
-  int size = 1024;          ///< texels along an edge, kLeastMapSize to kMostMapSize
-  double bias = 1.0;        ///< towards the light, in widths of what a look into the map reaches
-  double slope_bias = 1.0;  ///< the same, times the tangent of the light's angle
-  int kernel = 1;           ///< odd, 1 to kMostMapKernel: so many texels in square are compared
-  int cascades = 1;         ///< 1 to kMostCascades; of a directional light with fits_camera
-  bool fits_camera = true;  ///< the map holds what the camera can see, or else all casters
+  int size = 1024;           ///< texels along an edge, kLeastMapSize to kMostMapSize
+  double bias = 0.5;         ///< towards the light, in widths of what a look into the map reaches
+  double slope_bias = 0.75;  ///< the same, times the tangent of the light's angle
+  int kernel = 1;            ///< odd, 1 to kMostMapKernel: so many texels in square are compared
+  int cascades = 1;          ///< 1 to kMostCascades; of a directional light with fits_camera
+  bool fits_camera = true;   ///< the map holds what the camera can see, or else all casters
   bool operator==(const ShadowMapSettings&) const = default;
 };
 inline constexpr int kLeastMapSize = 16, kMostMapSize = 8192;

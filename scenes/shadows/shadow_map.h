@@ -76,8 +76,10 @@ struct MapPlace {
   double slope = 0.0;       ///< of the plane: z's change over a metre across; at most kMostSlope
 };
 
-/// A plane that is seen edge-on by the light would be moved to infinity by a slope's bias.
-inline constexpr double kMostSlope = 256.0;
+/// A plane that is seen edge-on by the light would be moved to infinity by a slope's bias. With
+/// half as much such planes shade themselves, with three times as much they lose their shadows
+/// (docs/shadows.md).
+inline constexpr double kMostSlope = 32.0;
 
 MapPlace map_place(const ShadowMap& map, const FacetPlane& plane, glm::dvec3 point);
 

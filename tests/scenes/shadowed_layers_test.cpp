@@ -182,8 +182,8 @@ MapErrors map_errors_of(const ShadowMapSettings& settings) {
 }  // namespace
 
 TEST_CASE("cube-room's map is wrong near edges alone, and less so if it is larger") {
-  const MapErrors small = map_errors_of({.size = 128, .bias = 0.25, .slope_bias = 0.75});
-  const MapErrors large = map_errors_of({.size = 1024, .bias = 0.25, .slope_bias = 0.75});
+  const MapErrors small = map_errors_of({.size = 128, .bias = 0.25, .slope_bias = 1.0});
+  const MapErrors large = map_errors_of({.size = 1024, .bias = 0.25, .slope_bias = 1.0});
   CHECK(small.in_shadow > 1000);
   CHECK(small.acne == 0);
   CHECK(large.acne == 0);
@@ -195,7 +195,7 @@ TEST_CASE("a map's errors are told apart: no bias is acne, much of it is peter-p
   const MapErrors without = map_errors_of({.size = 512, .bias = 0.0, .slope_bias = 0.0});
   CHECK(without.acne > without.seen / 10);
   CHECK(without.peter_panning == 0);
-  const MapErrors much = map_errors_of({.size = 512, .bias = 60.0, .slope_bias = 0.75});
+  const MapErrors much = map_errors_of({.size = 512, .bias = 60.0, .slope_bias = 1.0});
   CHECK(much.acne == 0);
   CHECK(much.peter_panning > much.in_shadow / 50);
 }

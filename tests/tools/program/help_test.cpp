@@ -19,6 +19,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--size WxH",
                        "--show image|pinhole|coc|depth",
                        "--shadows none|projected",
+                       "--map KEY=VALUE,...",
                        "--layers K",
                        "--frame N",
                        "--scene-path DIR",
