@@ -3,7 +3,7 @@
 //
 // A casting triangle's volume is what lies behind it as the light sees it. The volumes of all
 // casters are counted together, so a side face stands only where an edge's triangles do not cancel
-// out: an edge whose sum of directions is not 0 (Bergeron 1986; Kim, Kim and Neumann 2008). Meshes
+// out: an edge whose sum of directions is not 0 (Bergeron 1986; Kim, Kim and Turk 2008). Meshes
 // may be open, and three or more triangles may share an edge.
 
 #include <array>

@@ -104,7 +104,8 @@ std::vector<std::uint8_t> volume_mask(const Facets& facets, const ShadowLight& l
       lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
   const ProjectedShadows* const of_light = &sides;
   std::vector<std::uint8_t> mask(seen.size());
-  draw_shadow_mask(facets, {&of_light, 1}, seen, view_of(camera), mask, pool);
+  draw_shadow_mask(cut_shadows(facets, {&of_light, 1}, seen, view_of(camera), pool),
+                   view_of(camera), mask, pool);
   const JoinedFacets joined = join_facets(facets);
   draw_volume_mask(facets, joined, make_shadow_volumes(facets, joined, light), sides.lit, 1, seen,
                    view_of(camera), camera.eye, count, mask, pool);
@@ -128,7 +129,8 @@ std::size_t check_masks(const std::vector<Facet>& corners, const ShadowLight& li
   const ProjectedShadows projected = project_in_sequence(facets, light);
   const ProjectedShadows* const of_light = &projected;
   std::vector<std::uint8_t> mask(seen.size());
-  draw_shadow_mask(facets, {&of_light, 1}, seen, view_of(camera), mask, pool);
+  draw_shadow_mask(cut_shadows(facets, {&of_light, 1}, seen, view_of(camera), pool),
+                   view_of(camera), mask, pool);
   const auto errors_of = [&](std::span<const std::uint8_t> in) {
     return shadow_errors(facets, {&light, 1}, seen, in, view_of(camera), camera.eye, false, pool);
   };
