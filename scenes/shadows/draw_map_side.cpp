@@ -47,7 +47,7 @@ constexpr int kRowsOfBand = 32;
 class ChunkWriter {
  public:
   ChunkWriter(const ShadowLight& light, const MapSide& side, int size, double least_z)
-      : light_(light), side_(side), size_(size) {
+      : side_(side), size_(size) {
     // A texel's room around the centres, so that no cut runs between them.
     cuts_.low = side.low - 1.0 / side.texels;
     cuts_.high = side.low + (size + 1.0) / side.texels;
@@ -106,7 +106,6 @@ class ChunkWriter {
     return triangle;
   }
 
-  const ShadowLight& light_;
   const MapSide& side_;
   int size_;
   SideCuts cuts_;

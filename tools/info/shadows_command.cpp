@@ -98,7 +98,7 @@ void check(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
 // The stencil of the first layer, by both.
 void time_beside(const Driver& driver, const SceneShadows& shadows, const ShadowsOptions& options,
                  const CameraMatrices& camera, ThreadPool& pool) {
-  const auto [width, height] = options.size;
+  const int width = options.size.width, height = options.size.height;
   MaskDraws draws = cut_shadows(shadows, camera, width, height, pool);
   ShadowsRepeatedOnGl on_gl{driver, draws,  static_cast<int>(shadows.lights.size()),
                             width,  height, pool.threads()};

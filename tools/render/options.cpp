@@ -29,10 +29,9 @@ struct ShadowChoice {
   std::string_view name;
   ShadowKind kind;
 };
-constexpr std::array kShadowChoices{ShadowChoice{"none", ShadowKind::none},
-                                    ShadowChoice{"projected", ShadowKind::projected},
-                                    ShadowChoice{"volumes", ShadowKind::volumes},
-                                    ShadowChoice{"map", ShadowKind::map}};
+constexpr std::array kShadowChoices{
+    ShadowChoice{"none", ShadowKind::none}, ShadowChoice{"projected", ShadowKind::projected},
+    ShadowChoice{"volumes", ShadowKind::volumes}, ShadowChoice{"map", ShadowKind::map}};
 
 void add_picture_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Output");

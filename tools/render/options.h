@@ -41,7 +41,7 @@ struct RenderOptions {
   double frame = 0.0;
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;
-  SequenceOptions sequence;           ///< of many pictures
+  SequenceOptions sequence;  ///< of many pictures
   Profile profile;
   std::string profile_name = "ieee";
   std::filesystem::path profile_file;  ///< empty if the profile is a known one

@@ -14,6 +14,7 @@
 
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/shadows/point_in_shadow.h"
 #include "scenes/shadows/shadow_errors.h"
 #include "scenes/shadows/volume_mask.h"
 #include "tests/support/random.h"
