@@ -81,10 +81,16 @@ TEST_CASE("a frame's golden hash does not depend on the number of threads" *
 TEST_CASE("a golden hash tells one profile's frame from another's") {
   const std::vector<NamedHash> ieee = frames("ieee", 2);
   const std::vector<NamedHash> llvmpipe = frames("llvmpipe", 2);
-  REQUIRE(ieee.size() == llvmpipe.size());
-  for (std::size_t i = 0; i < ieee.size(); ++i) {
-    CAPTURE(llvmpipe[i].name);
-    CHECK(ieee[i].hash != llvmpipe[i].hash);
+  // Shadows have an entry under ieee alone.
+  REQUIRE(ieee.size() >= llvmpipe.size());
+  for (const NamedHash& theirs : llvmpipe) {
+    CAPTURE(theirs.name);
+    std::string name = theirs.name;
+    name.replace(name.find(" llvmpipe "), 10, " ieee ");
+    const auto ours =
+        std::find_if(ieee.begin(), ieee.end(), [&](const auto& one) { return one.name == name; });
+    REQUIRE(ours != ieee.end());
+    CHECK(ours->hash != theirs.hash);
   }
 }
 

@@ -36,7 +36,7 @@ const GlTarget& EffectPasses::target(std::span<const Format> formats, int width,
   if (used_targets_ == targets_.size()) targets_.emplace_back();
   GlTarget& target = targets_[used_targets_++];
   if (target.width != width || target.height != height || (target.depth != 0) != with_depth ||
-      !std::ranges::equal(target.formats, formats)) {
+      !std::equal(target.formats.begin(), target.formats.end(), formats.begin(), formats.end())) {
     target = make_target(formats, width, height, with_depth);
   }
   return target;
