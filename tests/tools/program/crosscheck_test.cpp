@@ -49,7 +49,7 @@ void check_all_equal(const std::string& driver) {
       "frame",    "two-pass-tiled",   "one-pass-tiled", "peel",        "blend",
       "kernel",   "pyramid",          "bilateral",      "bloom",       "lens-flare",
       "tone-map", "velocity",         "reproject",      "motion-blur", "reprojection",
-      "temporal", "polygon"};
+      "temporal", "polygon",          "shadow"};
   CHECK(stages == all);
 }
 
