@@ -232,6 +232,8 @@ void cut_piece(const Piece& piece, const ProjectedShadows& shadows, const SeenBo
   const auto bit = static_cast<std::uint8_t>(1u << piece.light);
   for (std::size_t t = piece.begin; t < piece.end; ++t) {
     cut_shadow(shadows.triangles[t], view, box, [&](const std::array<glm::vec2, 3>& p) {
+      // A corner at infinity, straight before the eye, is nowhere.
+      if (!std::isfinite(p[0].x + p[0].y + p[1].x + p[1].y + p[2].x + p[2].y)) return;
       const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
       const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
       const Span columns =
