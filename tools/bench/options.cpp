@@ -182,9 +182,9 @@ void complete(BenchOptions& options, const CLI::App& parser) {
         "--copy needs a frame that is drawn and filtered: a SCENE or --triangles N, and a --method "
         "that filters its picture");
   }
-  const bool reads_history = std::ranges::any_of(
-      options.effects, makes_frames,
-      [](const ChosenEffect& chosen) -> const Effect& { return *chosen.effect; });
+  const bool reads_history =
+      std::any_of(options.effects.begin(), options.effects.end(),
+                  [](const ChosenEffect& chosen) { return makes_frames(*chosen.effect); });
   check_memory(options.image ? "--image" : "--size", options.size,
                kBenchBytesPerPixel +
                    (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0) +
