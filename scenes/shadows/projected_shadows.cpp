@@ -146,22 +146,24 @@ CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitRec
           return glm::dvec4{glm::dvec3{p}, epsilon};
         });
   }
-  for (std::size_t i = 0; i < polygon.count; ++i) {
-    glm::dvec4& corner = polygon.corners[i];
-    const glm::dvec3 p{corner};
-    const double h = corner.w;
-    corner = glm::dvec4{p * receiver.light_height - light.place * h,
-                        receiver.light_height - light.w * h};
+  CasterPolygon shadow;
+  for (; shadow.count < polygon.count; ++shadow.count) {
+    const glm::dvec4& p = polygon.corners[shadow.count];
+    const double h = p.w;
+    shadow.corners[shadow.count] = {p.x * receiver.light_height - light.place.x * h,
+                                    p.y * receiver.light_height - light.place.y * h,
+                                    p.z * receiver.light_height - light.place.z * h,
+                                    receiver.light_height - light.w * h};
   }
   // What is higher than a point light would be projected through it, onto the other side.
   if (light.w != 0.0 && highest > receiver.light_height) {
-    polygon = cut_polygon(
-        polygon, [](const glm::dvec4& p) { return p.w; },
+    shadow = cut_polygon(
+        shadow, [](const glm::dvec4& p) { return p.w; },
         [](const glm::dvec4& p) {
           return glm::dvec4{glm::dvec3{p}, 0.0};
         });
   }
-  return polygon;
+  return shadow;
 }
 
 // Calls use(caster, polygon) for the shadow of each caster, in their order.
