@@ -13,6 +13,7 @@
 
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
+#include "raster/passes/kernel.h"
 #include "raster/passes/pyramid.h"
 
 namespace softfocus {
@@ -193,6 +194,10 @@ BrightPass bright_pass_of(const BloomSettings& settings) {
           settings.is_steady};
 }
 
+BrightPass bright_pass_of(const GaussianBloomSettings& settings) {
+  return bright_pass_of(BloomSettings{settings.threshold, settings.knee});
+}
+
 void bloom(const BloomSettings& settings, const ConstImageView& picture, const ImageView& result,
            const Profile& profile, ThreadPool& pool) {
   assert(picture.format == Format::rgba16f && result.format == Format::rgba16f);
@@ -238,6 +243,23 @@ void bloom(const BloomSettings& settings, const ConstImageView& picture, const I
                           pool.isa());
       },
       profile, pool);
+}
+
+void bloom_by_gaussian(const GaussianBloomSettings& settings, const ConstImageView& picture,
+                       const ImageView& result, const Profile& profile, ThreadPool& pool) {
+  assert(picture.format == Format::rgba16f && result.format == Format::rgba16f);
+  assert(picture.width == result.width && picture.height == result.height);
+  const BrightPass pass = bright_pass_of(settings);
+  if (!has_bright_light(pass, picture, pool)) {
+    return add_no_light(picture, result, profile, pool);
+  }
+  Image light = make_image(Format::rgba16f, picture.width, picture.height);
+  Image across = make_image(Format::rgba16f, picture.width, picture.height);
+  find_bright_light(pass, picture, light, profile, pool);
+  const std::vector<float> weights = gaussian_weights(settings.sigma_px);
+  convolve(row_kernel(weights), light, across, profile, pool);
+  convolve(column_kernel(weights), across, light, profile, pool);
+  add_scattered_light(pass, settings.strength, picture, light, result, profile, pool);
 }
 
 }  // namespace softfocus

@@ -1,6 +1,6 @@
 #pragma once
 // Bloom: bright light that a lens and the eye scatter over its surroundings, by a pyramid (Jimenez
-// 2014).
+// 2014), and by one Gaussian.
 
 #include <limits>
 
@@ -48,7 +48,21 @@ inline constexpr BrightPass kNothingBright{65504.0f, 0.0f, 65504.0f, 0.0f, 0.0f,
 void bloom(const BloomSettings& settings, const ConstImageView& picture, const ImageView& result,
            const Profile& profile, ThreadPool& pool);
 
-/// Its passes: `bright`, by its weight, and the weight in alpha; and picture + strength
+struct GaussianBloomSettings {
+  float threshold = 1.0f;  ///< these three as of BloomSettings
+  float knee = 0.5f;
+  float strength = 0.1f;
+  double sigma_px = 8.0;  ///< the standard deviation, 0 to 341
+};
+BrightPass bright_pass_of(const GaussianBloomSettings& settings);
+
+/// Bloom as it is written first (after James and O'Rorke 2004): picture + strength (scattered -
+/// bright). `scattered` is the bright light through one Gaussian of the picture's own size, along x
+/// and then along y (kernel.h). Its cost grows with sigma.
+void bloom_by_gaussian(const GaussianBloomSettings& settings, const ConstImageView& picture,
+                       const ImageView& result, const Profile& profile, ThreadPool& pool);
+
+/// The passes of both: `bright`, by its weight, and the weight in alpha; and picture + strength
 /// (scattered - bright).
 void find_bright_light(const BrightPass& pass, const ConstImageView& picture,
                        const ImageView& result, const Profile& profile, ThreadPool& pool);

@@ -76,6 +76,16 @@ constexpr std::array kBloom{
     EffectParameter{"steady", "1: bright pixels do not flicker as they move, and lose light", 0.0,
                     1.0, 0.0}};
 
+void bloom_gaussian_effect(const Effect&, const EffectInput& input, const ImageView& result,
+                           ThreadPool& pool) {
+  bloom_by_gaussian(gaussian_bloom_settings(input.parameters), input.picture, result, input.profile,
+                    pool);
+}
+
+constexpr std::array kBloomGaussian{
+    kBloom[0], kBloom[1], kBloom[2],
+    EffectParameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 8.0}};
+
 void lens_flare_effect(const Effect&, const EffectInput& input, const ImageView& result,
                        ThreadPool& pool) {
   lens_flare(lens_flare_settings(input.parameters), input.picture, result, input.profile, pool);
@@ -188,6 +198,8 @@ constexpr std::array kEffects{
            dual_filter_effect, true},
     Effect{"bloom", "bright light scattered over its surroundings, after Jimenez 2014", kBloom,
            bloom_effect},
+    Effect{"bloom-gaussian", "bright light scattered by one Gaussian of the picture's own size",
+           kBloomGaussian, bloom_gaussian_effect},
     Effect{"lens-flare", "ghosts, halo, streaks and rays of bright light, after Chapman 2013",
            kLensFlare, lens_flare_effect},
     Effect{"motion-blur-simple", "samples along each pixel's own motion",
@@ -222,6 +234,11 @@ BloomSettings bloom_settings(std::span<const double> parameters) {
   const auto number = [&](std::size_t i) { return static_cast<float>(parameters[i]); };
   return {number(0), number(1),           number(2), static_cast<int>(parameters[3]),
           number(4), parameters[5] >= 0.5};
+}
+
+GaussianBloomSettings gaussian_bloom_settings(std::span<const double> parameters) {
+  const auto number = [&](std::size_t i) { return static_cast<float>(parameters[i]); };
+  return {number(0), number(1), number(2), parameters[3]};
 }
 
 LensFlareSettings lens_flare_settings(std::span<const double> parameters) {

@@ -15,6 +15,7 @@ namespace softfocus {
 
 BilateralSettings bilateral_settings(std::span<const double> parameters);
 BloomSettings bloom_settings(std::span<const double> parameters);
+GaussianBloomSettings gaussian_bloom_settings(std::span<const double> parameters);
 LensFlareSettings lens_flare_settings(std::span<const double> parameters);
 MotionBlurSettings motion_blur_settings(std::span<const double> parameters, MotionFilter filter);
 struct DualFilterSettings {

@@ -104,14 +104,16 @@ std::vector<ChartEntry> smoothing_entries(const std::string& method, int, bool q
 
 // --- bloom ---
 
-constexpr std::string_view kBloom = "bloom", kSteadyBloom = "bloom-steady";
+constexpr std::string_view kBloom = "bloom", kSteadyBloom = "bloom-steady",
+                           kGaussianBloom = "bloom-gaussian";
 
 Image truth_of_bloom(const Image& pinhole, ThreadPool& pool) {
   return bloom_truth(BloomSettings{}, pinhole, pool);
 }
 
 std::vector<std::string> bloom_methods() {
-  return {std::string{kPinhole}, std::string{kBloom}, std::string{kSteadyBloom}};
+  return {std::string{kPinhole}, std::string{kBloom}, std::string{kSteadyBloom},
+          std::string{kGaussianBloom}};
 }
 
 std::vector<ChartEntry> bloom_entries(const std::string& method, int, bool quick) {
@@ -120,6 +122,14 @@ std::vector<ChartEntry> bloom_entries(const std::string& method, int, bool quick
     return {{.method = method, .effects = {with_value(kBloom, "steady", 1.0)}}};
   }
   std::vector<ChartEntry> entries;
+  if (method == kGaussianBloom) {
+    for (const double sigma : quick ? std::vector{16.0} : std::vector{4.0, 8.0, 16.0, 32.0}) {
+      entries.push_back({.method = method,
+                         .effects = {with_value(kGaussianBloom, "sigma", sigma)},
+                         .setting = {"sigma", sigma}});
+    }
+    return entries;
+  }
   for (const double levels : quick ? std::vector{2.0, 6.0} : std::vector{2.0, 3.0, 4.0, 5.0, 6.0}) {
     entries.push_back({.method = method,
                        .effects = {with_value(kBloom, "levels", levels)},

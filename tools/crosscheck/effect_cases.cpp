@@ -43,6 +43,17 @@ void bloom_both(const Bench& bench, Tally& tally, const BloomCase& what) {
   add_pictures(tally, read_colour(target, 0), emulated);
 }
 
+void bloom_by_gaussian_both(const Bench& bench, Tally& tally, const GaussianBloomSettings& settings,
+                            int width, int height) {
+  const Image source = lights(width, height, 78, true);
+  EffectPasses passes{bench.gl, bench.shaders};
+  const GlTexture picture = upload(source);
+  const GlTarget& target = bloom_by_gaussian_on_gl(passes, settings, {picture, width, height});
+  Image emulated = make_image(Format::rgba16f, width, height);
+  bloom_by_gaussian(settings, source, emulated, bench.profile, bench.pool);
+  add_pictures(tally, read_colour(target, 0), emulated);
+}
+
 void lens_flare_both(const Bench& bench, Tally& tally, const LensFlareSettings& settings, int width,
                      int height) {
   const Image source = lights(width, height, 79, false);
@@ -85,6 +96,17 @@ void add_effect_cases(std::vector<Case>& cases) {
   add("any-bits", false, true, {{.levels = 3}, 64, 64, true});
   add("any-bits-steady", false, true, {{.levels = 3, .is_steady = true}, 64, 64, true});
   add("one-pixel", true, true, {{.levels = 3}, 1, 1});
+  const auto add_gaussian = [&](const char* name, bool quick, bool slow_too, double sigma_px,
+                                int width, int height) {
+    cases.push_back({"bloom", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
+                       bloom_by_gaussian_both(bench, tally, {.sigma_px = sigma_px}, width, height);
+                     }});
+  };
+  add_gaussian("gaussian-64x48", true, true, 2.0, 64, 48);
+  // More weights than a shader has as uniforms.
+  add_gaussian("gaussian-wide-61x43", false, true, 16.0, 61, 43);
+  add_gaussian("gaussian-512x512", false, false, 8.0, 512, 512);
+  add_gaussian("gaussian-one-pixel", true, true, 8.0, 1, 1);
   const auto add_flare = [&](const char* name, bool quick, bool slow_too,
                              const LensFlareSettings& settings, int width, int height) {
     cases.push_back({"lens-flare", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {

@@ -162,6 +162,17 @@ const GlTarget& bloom_on_gl(EffectPasses& passes, const BloomSettings& settings,
   return added(passes, pass, settings.strength, picture, *levels[0]);
 }
 
+const GlTarget& bloom_by_gaussian_on_gl(EffectPasses& passes, const GaussianBloomSettings& settings,
+                                        const GlPicture& picture) {
+  passes.begin();
+  const BrightPass pass = bright_pass_of(settings);
+  const std::vector<float> weights = gaussian_weights(settings.sigma_px);
+  const GlTarget& light = bright(passes, pass, picture);
+  const GlTarget& across = convolved_on_gl(passes, row_kernel(weights), picture_of(light));
+  const GlTarget& wide = convolved_on_gl(passes, column_kernel(weights), picture_of(across));
+  return added(passes, pass, settings.strength, picture, wide);
+}
+
 const GlTarget& dual_filter_on_gl(EffectPasses& passes, int levels, Widening widening,
                                   const GlPicture& picture) {
   passes.begin();
@@ -285,6 +296,9 @@ const GlTarget& effect_on_gl(EffectPasses& passes, const Effect& effect,
     return dual_filter_on_gl(passes, levels, widening, picture);
   }
   if (effect.name == "bloom") return bloom_on_gl(passes, bloom_settings(parameters), picture);
+  if (effect.name == "bloom-gaussian") {
+    return bloom_by_gaussian_on_gl(passes, gaussian_bloom_settings(parameters), picture);
+  }
   if (effect.name == "lens-flare") {
     return lens_flare_on_gl(passes, lens_flare_settings(parameters), picture);
   }

@@ -31,6 +31,8 @@ const GlTarget& effect_on_gl(EffectPasses& passes, const Effect& effect,
 
 const GlTarget& bloom_on_gl(EffectPasses& passes, const BloomSettings& settings,
                             const GlPicture& picture);
+const GlTarget& bloom_by_gaussian_on_gl(EffectPasses& passes, const GaussianBloomSettings& settings,
+                                        const GlPicture& picture);
 const GlTarget& lens_flare_on_gl(EffectPasses& passes, const LensFlareSettings& settings,
                                  const GlPicture& picture);
 const GlTarget& tone_map_on_gl(EffectPasses& passes, const ToneCurve& curve, float exposure,

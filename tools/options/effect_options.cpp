@@ -117,7 +117,7 @@ namespace {
 // Effects without a place in the order have 0.
 int place_in_order(const Effect& effect) {
   if (effect.name.starts_with("motion-blur")) return 1;
-  if (effect.name == "bloom" || effect.name == "lens-flare") return 2;
+  if (effect.name.starts_with("bloom") || effect.name == "lens-flare") return 2;
   return find_tone_curve(effect.name) != nullptr ? 3 : 0;
 }
 

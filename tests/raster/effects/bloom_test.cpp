@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -24,6 +25,13 @@ Image with_point(int size, int x, int y, float light) {
   Image picture = make_image(Format::rgba16f, size, size);
   store_texel(picture, x, y, glm::vec4{light, light, light, 1.0f}, {});
   return picture;
+}
+
+Image by_gaussian(const GaussianBloomSettings& settings, const Image& picture, ThreadPool& pool,
+                  const Profile& profile = {}) {
+  Image result = make_image(Format::rgba16f, picture.width, picture.height);
+  bloom_by_gaussian(settings, picture, result, profile, pool);
+  return result;
 }
 
 double sum_of_red(const Image& picture) {
@@ -137,6 +145,81 @@ TEST_CASE("bloom without bright light has the bits of all its passes, specials t
           bloomed({.knee = 0.4991f, .strength = 1.0f}, faint, pool, profile_named(name));
       row<std::uint16_t>(skipped, 30)[4 * 52] = row<std::uint16_t>(run, 30)[4 * 52];
       CHECK(equal(skipped, run));
+    }
+  }
+}
+
+TEST_CASE("bloom by a Gaussian is picture + strength (scattered - bright), in binary64") {
+  constexpr int kWidth = 23, kHeight = 17;
+  constexpr double kSigma = 2.5;
+  constexpr int kReach = 7;  // whole distances up to 3 sigma
+  const Image picture = test::random_halves(kWidth, kHeight, 31, 0.0, 6.0);
+  // Of the channel c.
+  const auto light = [&](int x, int y, int c) {
+    const glm::dvec4 texel{
+        load_texel(picture, std::clamp(x, 0, kWidth - 1), std::clamp(y, 0, kHeight - 1))};
+    const double most = std::max({texel.x, texel.y, texel.z});
+    const double soft = std::pow(std::clamp(most - 1.5, 0.0, 1.0), 2) / 2.0;
+    return texel[c] * std::max(most - 2.0, soft) / most;
+  };
+  const auto weight = [](int x, int y) {
+    return std::exp(-(x * x + y * y) / (2 * kSigma * kSigma));
+  };
+  double whole = 0.0;
+  for (int j = -kReach; j <= kReach; ++j) {
+    for (int i = -kReach; i <= kReach; ++i) whole += weight(i, j);
+  }
+  ThreadPool pool{2};
+  const Image result = by_gaussian(
+      {.threshold = 2.0f, .knee = 0.5f, .strength = 0.5f, .sigma_px = kSigma}, picture, pool);
+  double most_off = 0.0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        double scattered = 0.0;
+        for (int j = -kReach; j <= kReach; ++j) {
+          for (int i = -kReach; i <= kReach; ++i) {
+            scattered += weight(i, j) / whole * light(x + i, y + j, c);
+          }
+        }
+        const double truth =
+            static_cast<double>(load_texel(picture, x, y)[c]) + 0.5 * (scattered - light(x, y, c));
+        most_off =
+            std::max(most_off, std::abs(static_cast<double>(load_texel(result, x, y)[c]) - truth));
+      }
+    }
+  }
+  // Halves below 8 are 2^-8 apart; those of the passes before weigh half.
+  CHECK(most_off < 1.0 / 256.0);
+}
+
+TEST_CASE("bloom by a Gaussian moves light, keeps its sum, and no more than a pixel with sigma 0") {
+  ThreadPool pool{2};
+  const Image point = with_point(128, 64, 63, 4000.0f);
+  for (const double sigma : {0.0, 1.0, 8.0}) {
+    const Image result = by_gaussian({.strength = 0.5f, .sigma_px = sigma}, point, pool);
+    CHECK(sum_of_red(result) == doctest::Approx(4000.0).epsilon(0.004));
+    CHECK((load_texel(result, 66, 63).x > 0.0f) == (sigma > 0.0));
+  }
+}
+
+TEST_CASE("bloom by a Gaussian leaves a picture alone that has nothing bright") {
+  ThreadPool pool{1};
+  const Image dark = test::random_halves(50, 41, 4, 0.0, 0.5);
+  CHECK(equal(by_gaussian({.strength = 1.0f}, dark, pool), dark));
+}
+
+TEST_CASE("bloom by a Gaussian in vectors has the scalar form's bits") {
+  for (const std::array<int, 2> size : {std::array{1, 1}, {3, 70}, {37, 18}, {64, 64}}) {
+    const Image picture = test::random_halves(size[0], size[1], 41, -0.5, 5.0);
+    for (const char* name : {"ieee", "d3d11", "swiftshader"}) {
+      const GaussianBloomSettings settings{.strength = 0.4f, .sigma_px = 3.0};
+      ThreadPool alone{1, Isa::scalar};
+      const Image expected = by_gaussian(settings, picture, alone, profile_named(name));
+      for (const Isa isa : available_isas()) {
+        ThreadPool pool{2, isa};
+        REQUIRE(equal(by_gaussian(settings, picture, pool, profile_named(name)), expected));
+      }
     }
   }
 }
