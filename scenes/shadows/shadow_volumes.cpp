@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "scenes/shadows/light_grid.h"
-
 namespace softfocus {
 namespace {
 

@@ -10,10 +10,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "scenes/shadows/joined_facets.h"
+#include "scenes/shadows/light_grid.h"
 
 namespace softfocus {
 
@@ -34,6 +36,7 @@ struct ShadowVolumes {
   /// need: all is at one point there.
   std::vector<VolumeFace> faces;
   std::size_t faces_before_far_caps = 0;
+  std::optional<LightGrid> grid;  ///< of the casters; draw_volume_mask() makes it if it needs it
 };
 
 ShadowVolumes make_shadow_volumes(const Facets& facets, const JoinedFacets& joined,

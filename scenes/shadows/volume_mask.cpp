@@ -1,3 +1,5 @@
+#ifndef SOFTFOCUS_ISA
+
 #include "scenes/shadows/volume_mask.h"
 
 #include <algorithm>
@@ -10,14 +12,45 @@
 #include <vector>
 
 #include "raster/threads/scratch_shelf.h"
-#include "scenes/shadows/light_grid.h"
+
+namespace softfocus {
+namespace {
+
+// f(x, y) = a x + b y + c
+struct Linear {
+  double a, b, c;
+};
+
+double at(const Linear& f, double x, double y) { return (f.a * x + f.b * y) + f.c; }
+
+struct CountedFace {
+  std::array<Linear, 3> edges;
+  std::array<double, 3> least;  // E is positive if it is greater
+  std::array<double, 3> w, is_finite;
+  std::int64_t times;
+};
+
+// Pixels' samples, one after the other.
+struct Samples {
+  const double *x, *y, *q;
+  std::int64_t* counts;
+  std::size_t count;  // a multiple of kBlockSize
+};
+
+// The pixels of a block's row, which the widest unit takes at once.
+constexpr int kBlockSize = 8;
+
+}  // namespace
+}  // namespace softfocus
+
+#define SOFTFOCUS_KERNELS "scenes/shadows/volume_mask.cpp"
+#include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
 namespace {
 
 // Pixels are counted in blocks, which most faces cover whole or not at all, in bands of blocks,
 // which are tasks.
-constexpr int kBlockSize = 8;
 constexpr int kBlockPixels = kBlockSize * kBlockSize;
 constexpr int kBandRows = 4 * kBlockSize;
 constexpr int kBlockRows = kBandRows / kBlockSize;
@@ -234,11 +267,11 @@ Bands sort_into_bands(const SeenFaces& of, const PixelSpace& space, const Shadow
 // What a band of the picture is counted with. Pixels lie block by block.
 struct Band {
   std::vector<double> x, y, q;
-  std::vector<std::int32_t> counts;
+  std::vector<std::int64_t> counts;
   std::vector<std::uint8_t> counted;  // whether the pixel has a sample
   struct Block {
     Range q;
-    std::int32_t count = 0;  // of all its pixels
+    std::int64_t count = 0;  // of all its pixels
   };
   std::vector<Block> blocks;
 };
@@ -249,16 +282,10 @@ struct FarSample {
   glm::dvec3 place;
 };
 
-// f(x, y) = a x + b y + c. Extremes over a block are those of the points that its samples can be.
-struct Linear {
-  double a, b, c;
-};
-
+// Extremes over a block are those of the points that its samples can be.
 struct BlockArea {
   double x_low, x_high, y_low, y_high;
 };
-
-double at(const Linear& f, double x, double y) { return (f.a * x + f.b * y) + f.c; }
 
 double least_in(const Linear& f, const BlockArea& area) {
   return at(f, f.a > 0.0 ? area.x_low : area.x_high, f.b > 0.0 ? area.y_low : area.y_high);
@@ -285,43 +312,46 @@ double least_outside(const Linear& edge) {
   return owns ? -std::numeric_limits<double>::denorm_min() : 0.0;
 }
 
-struct CountedFace {
-  std::array<Linear, 3> edges;
-  std::array<double, 3> least;  // E is positive if it is greater
-  std::array<double, 3> w, is_finite;
-  std::int32_t times;
-};
-
+// Written as the lanes are.
 template <VolumeCount kCount>
-void count_pixels(const CountedFace& face, const double* x, const double* y, const double* q,
-                  std::int32_t* counts, int pixels) {
-  for (int i = 0; i < pixels; ++i) {
-    const double e0 = at(face.edges[0], x[i], y[i]);
-    const double e1 = at(face.edges[1], x[i], y[i]);
-    const double e2 = at(face.edges[2], x[i], y[i]);
+void count_samples(const CountedFace& face, const Samples& samples) {
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    const double e0 = at(face.edges[0], samples.x[i], samples.y[i]);
+    const double e1 = at(face.edges[1], samples.x[i], samples.y[i]);
+    const double e2 = at(face.edges[2], samples.x[i], samples.y[i]);
     const bool in0 = e0 > face.least[0], in1 = e1 > face.least[1], in2 = e2 > face.least[2];
     if (in0 != in1 || in0 != in2) continue;
     const double of_w = (e0 * face.w[0] + e1 * face.w[1]) + e2 * face.w[2];
     const double finite =
         (e0 * face.is_finite[0] + e1 * face.is_finite[1]) + e2 * face.is_finite[2];
-    const double beyond = q[i] * of_w - finite;
-    const bool counts_here = kCount == VolumeCount::z_fail ? (in0 ? beyond > 0.0 : beyond < 0.0)
-                                                           : (in0 ? of_w > 0.0 && !(beyond > 0.0)
-                                                                  : of_w < 0.0 && !(beyond < 0.0));
-    if (counts_here) counts[i] += in0 ? face.times : -face.times;
+    const double beyond = samples.q[i] * of_w - finite;
+    const bool counts = kCount == VolumeCount::z_fail
+                            ? (in0 ? beyond > 0.0 : beyond < 0.0)
+                            : (in0 ? of_w > 0.0 && !(beyond > 0.0) : of_w < 0.0 && !(beyond < 0.0));
+    if (counts) samples.counts[i] += in0 ? face.times : -face.times;
   }
+}
+
+using CountSamples = void (*)(const CountedFace&, const Samples&);
+
+template <VolumeCount kCount>
+CountSamples count_samples_by(Isa isa) {
+  if (isa == Isa::scalar) return count_samples<kCount>;
+  return kCount == VolumeCount::z_fail ? SOFTFOCUS_KERNEL(isa, count_behind)
+                                       : SOFTFOCUS_KERNEL(isa, count_before);
 }
 
 template <VolumeCount kCount>
 class BandCounter {
  public:
   BandCounter(const ShadowView& view, const PixelSpace& space, const SeenFaces& faces, int y_begin,
-              Band& band)
+              Isa isa, Band& band)
       : view_(view),
         space_(space),
         faces_(faces),
         y_begin_(y_begin),
         blocks_across_((view.width + kBlockSize - 1) / kBlockSize),
+        count_samples_(count_samples_by<kCount>(isa)),
         band_(band) {}
 
   void count(const VolumeFace& of) {
@@ -414,9 +444,9 @@ class BandCounter {
         const int row_end = within(std::floor(rows.high + kReach - y) + 1.0);
         if (row_begin >= row_end) continue;
         const std::size_t from = first + static_cast<std::size_t>(row_begin * kBlockSize);
-        count_pixels<kCount>(face, band_.x.data() + from, band_.y.data() + from,
-                             band_.q.data() + from, band_.counts.data() + from,
-                             (row_end - row_begin) * kBlockSize);
+        count_samples_(face, {band_.x.data() + from, band_.y.data() + from, band_.q.data() + from,
+                              band_.counts.data() + from,
+                              static_cast<std::size_t>((row_end - row_begin) * kBlockSize)});
       }
     }
   }
@@ -427,6 +457,7 @@ class BandCounter {
   const SeenFaces& faces_;
   int y_begin_;
   int blocks_across_;
+  CountSamples count_samples_;
   Band& band_;
 };
 
@@ -501,9 +532,10 @@ bool find_samples(Sampler sampler, const MaskRows& rows, const ShadowView& view,
   const int across = (view.width + kBlockSize - 1) / kBlockSize;
   const std::size_t blocks = static_cast<std::size_t>(across) * kBlockRows;
   const std::size_t pixels = blocks * kBlockPixels;
-  band.x.assign(pixels, 0.0);
-  band.y.assign(pixels, 0.0);
-  band.q.assign(pixels, 0.0);
+  // What pixels without a sample count to does not matter.
+  band.x.resize(pixels);
+  band.y.resize(pixels);
+  band.q.resize(pixels);
   band.counts.assign(pixels, 0);
   band.counted.assign(pixels, 0);
   band.blocks.assign(blocks, {});
@@ -546,7 +578,7 @@ void set_mask(const MaskRows& rows, int width, std::int32_t of_eye, const Band& 
         rows.mask.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
     for (int x = 0; x < width; ++x) {
       const std::size_t from = place_in_band(x, y - rows.y_begin, across);
-      const std::int32_t count =
+      const std::int64_t count =
           of_eye + band.blocks[from / kBlockPixels].count + band.counts[from];
       if (band.counted[from] != 0 && count > 0) {
         mask[x] = static_cast<std::uint8_t>(mask[x] | rows.bit);
@@ -556,18 +588,18 @@ void set_mask(const MaskRows& rows, int width, std::int32_t of_eye, const Band& 
 }
 
 std::size_t draw_far_samples(const Facets& facets, const JoinedFacets& joined,
-                             const ShadowLight& light, std::uint8_t bit,
+                             ShadowVolumes& volumes, std::uint8_t bit,
                              std::span<const std::vector<FarSample>> far,
                              std::span<std::uint8_t> mask, ThreadPool& pool) {
   std::size_t sum = 0;
   for (const auto& of_band : far) sum += of_band.size();
   if (sum == 0) return 0;
-  const LightGrid grid = make_light_grid(facets, light);
+  if (!volumes.grid) volumes.grid = make_light_grid(facets, volumes.light);
   pool.for_each(static_cast<int>(far.size()), [&](int number) {
     std::vector<std::uint32_t> casters;
     for (const FarSample& sample : far[static_cast<std::size_t>(number)]) {
-      find_casters(grid, {&sample.place, 1}, casters);
-      if (volumes_that_hold(facets, joined, light, casters, sample.place) > 0) {
+      find_casters(*volumes.grid, {&sample.place, 1}, casters);
+      if (volumes_that_hold(facets, joined, volumes.light, casters, sample.place) > 0) {
         mask[sample.pixel] = static_cast<std::uint8_t>(mask[sample.pixel] | bit);
       }
     }
@@ -576,10 +608,10 @@ std::size_t draw_far_samples(const Facets& facets, const JoinedFacets& joined,
 }
 
 template <VolumeCount kCount>
-std::size_t draw_counted(const Facets& facets, const JoinedFacets& joined,
-                         const ShadowVolumes& volumes, std::span<const LitSide> lit,
-                         std::uint8_t bit, std::span<const SeenFacet> seen, const ShadowView& view,
-                         glm::dvec3 eye, std::span<std::uint8_t> mask, ThreadPool& pool) {
+std::size_t draw_counted(const Facets& facets, const JoinedFacets& joined, ShadowVolumes& volumes,
+                         std::span<const LitSide> lit, std::uint8_t bit,
+                         std::span<const SeenFacet> seen, const ShadowView& view, glm::dvec3 eye,
+                         std::span<std::uint8_t> mask, ThreadPool& pool) {
   constexpr bool kByPass = kCount == VolumeCount::z_pass;
   const PixelSpace space = pixel_space(view, eye);
   const std::vector<glm::dvec3> corners = corners_in_pixels(space, joined, volumes.light, pool);
@@ -600,7 +632,7 @@ std::size_t draw_counted(const Facets& facets, const JoinedFacets& joined,
     const MaskRows rows{seen, mask, bit, y_begin, std::min(y_begin + kBandRows, view.height)};
     Band band = shelf.take();
     if (find_samples(sampler, rows, view, space, band, far[i])) {
-      BandCounter<kCount> counter{view, space, faces, y_begin, band};
+      BandCounter<kCount> counter{view, space, faces, y_begin, pool.isa(), band};
       for (std::size_t k = bands.begins[i]; k < bands.begins[i + 1]; ++k) {
         counter.count(faces.faces[bands.faces[k]]);
       }
@@ -608,19 +640,81 @@ std::size_t draw_counted(const Facets& facets, const JoinedFacets& joined,
     }
     shelf.put_back(std::move(band));
   });
-  return draw_far_samples(facets, joined, volumes.light, bit, far, mask, pool);
+  return draw_far_samples(facets, joined, volumes, bit, far, mask, pool);
 }
 
 }  // namespace
 
 std::size_t draw_volume_mask(const Facets& facets, const JoinedFacets& joined,
-                             const ShadowVolumes& volumes, std::span<const LitSide> lit,
-                             std::uint8_t bit, std::span<const SeenFacet> seen,
-                             const ShadowView& view, glm::dvec3 eye, VolumeCount count,
-                             std::span<std::uint8_t> mask, ThreadPool& pool) {
+                             ShadowVolumes& volumes, std::span<const LitSide> lit, std::uint8_t bit,
+                             std::span<const SeenFacet> seen, const ShadowView& view,
+                             glm::dvec3 eye, VolumeCount count, std::span<std::uint8_t> mask,
+                             ThreadPool& pool) {
   const auto draw = count == VolumeCount::z_fail ? draw_counted<VolumeCount::z_fail>
                                                  : draw_counted<VolumeCount::z_pass>;
   return draw(facets, joined, volumes, lit, bit, seen, view, eye, mask, pool);
 }
 
 }  // namespace softfocus
+
+#else  // the kernels, once a vector unit
+
+namespace {
+
+// Half as many numbers as other kernels have lanes.
+using SampleDoubles [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = double;
+using SampleLongs [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = std::int64_t;
+constexpr std::size_t kSampleLanes = SOFTFOCUS_LANES / 2;
+
+SOFTFOCUS_INLINE SampleDoubles load_samples(const double* from) {
+  SampleDoubles v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+SOFTFOCUS_INLINE SampleDoubles at(const Linear& f, SampleDoubles x, SampleDoubles y) {
+  return (f.a * x + f.b * y) + f.c;
+}
+
+SOFTFOCUS_INLINE void add_counts(const CountedFace& face, SampleLongs up, SampleLongs down,
+                                 std::int64_t* to) {
+  SampleLongs counts;
+  std::memcpy(&counts, to, sizeof counts);
+  counts += (up & face.times) - (down & face.times);
+  std::memcpy(to, &counts, sizeof counts);
+}
+
+template <bool kBehind>
+SOFTFOCUS_INLINE void count_samples(const CountedFace& face, const Samples& samples) {
+  for (std::size_t i = 0; i < samples.count; i += kSampleLanes) {
+    const SampleDoubles x = load_samples(samples.x + i), y = load_samples(samples.y + i);
+    const SampleDoubles e0 = at(face.edges[0], x, y);
+    const SampleDoubles e1 = at(face.edges[1], x, y);
+    const SampleDoubles e2 = at(face.edges[2], x, y);
+    const SampleLongs in0 = e0 > face.least[0], in1 = e1 > face.least[1], in2 = e2 > face.least[2];
+    const SampleLongs up = in0 & in1 & in2, down = ~(in0 | in1 | in2);
+    const SampleDoubles of_w = (e0 * face.w[0] + e1 * face.w[1]) + e2 * face.w[2];
+    const SampleDoubles finite =
+        (e0 * face.is_finite[0] + e1 * face.is_finite[1]) + e2 * face.is_finite[2];
+    const SampleDoubles beyond = load_samples(samples.q + i) * of_w - finite;
+    const SampleLongs above = beyond > 0.0, below = beyond < 0.0;
+    if constexpr (kBehind) {
+      add_counts(face, up & above, down & below, samples.counts + i);
+    } else {
+      const SampleLongs ahead = of_w > 0.0, astern = of_w < 0.0;
+      add_counts(face, up & ahead & ~above, down & astern & ~below, samples.counts + i);
+    }
+  }
+}
+
+}  // namespace
+
+void count_behind(const CountedFace& face, const Samples& samples) {
+  count_samples<true>(face, samples);
+}
+
+void count_before(const CountedFace& face, const Samples& samples) {
+  count_samples<false>(face, samples);
+}
+
+#endif

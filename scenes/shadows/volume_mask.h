@@ -34,9 +34,9 @@ enum class VolumeCount : std::uint8_t { z_fail, z_pass };
 /// light grazes a surface, or the surface the ray. Their volumes are counted along the ray to the
 /// light.
 std::size_t draw_volume_mask(const Facets& facets, const JoinedFacets& joined,
-                             const ShadowVolumes& volumes, std::span<const LitSide> lit,
-                             std::uint8_t bit, std::span<const SeenFacet> seen,
-                             const ShadowView& view, glm::dvec3 eye, VolumeCount count,
-                             std::span<std::uint8_t> mask, ThreadPool& pool);
+                             ShadowVolumes& volumes, std::span<const LitSide> lit, std::uint8_t bit,
+                             std::span<const SeenFacet> seen, const ShadowView& view,
+                             glm::dvec3 eye, VolumeCount count, std::span<std::uint8_t> mask,
+                             ThreadPool& pool);
 
 }  // namespace softfocus

@@ -160,6 +160,19 @@ void add_history_hashes(std::string_view name, Scene scene, const FrameSize& siz
   add("reproject-forward", Reproject{4, true, UnseenPixels::filled});
 }
 
+/// Two layers whose lights have shadows.
+void add_shadow_hashes(std::string_view name, Scene scene, ShadowKind kind, std::string_view entry,
+                       const CameraMatrices& view, const FrameSize& size, const Profile& profile,
+                       const std::string& where, std::vector<NamedHash>& hashes, ThreadPool& pool) {
+  set_shadows(scene, kind);
+  const auto [width, height] = size;
+  const std::vector<Image> layers =
+      draw_layers(scene, view, kFrame, width, height, 2, profile, pool);
+  hashes.push_back({entry_name(name, entry, where), hash_image(layers[0])});
+  hashes.push_back(
+      {entry_name(name, std::string{entry} + "-layer-2", where), hash_image(layers[1])});
+}
+
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
   const Scene scene = load_scene(name, scene_search_path({}));
   const auto [width, height] = kSizes[1];
@@ -245,6 +258,15 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
     if (name == kMovingScene) {
       add_motion_hashes(name, scene, size, profile, where, hashes, pool);
       add_history_hashes(name, scene, size, profile, where, hashes, pool);
+    }
+    // A second's work for each of the others.
+    if (name == "cube-room" || known.name == "ieee") {
+      add_shadow_hashes(name, scene, ShadowKind::projected, "shadows", view, size, profile, where,
+                        hashes, pool);
+    }
+    if (known.name == "ieee") {
+      add_shadow_hashes(name, scene, ShadowKind::volumes, "shadows-volumes", view, size, profile,
+                        where, hashes, pool);
     }
   }
   for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
