@@ -23,7 +23,8 @@ bool is_at_edge(const Facets& facets, const ShadowMap& map, const ShadowTruth& t
                 std::vector<std::uint32_t>& memory) {
   const FacetPlane& plane = facets.planes[facet_of(seen)];
   if (!has_plane(plane)) return false;
-  const MapPlace place = map_place(map, plane, point);
+  const MapPlace place =
+      map_place(map, facets.receivers[facets.receiver_of[facet_of(seen)]], point);
   if (place.side->nearness.empty()) return false;
   const auto differs = [&](double u, double v) {
     return truth.is_dark_at(seen, point_at(map, *place.side, plane, u, v), memory) != is_dark;

@@ -17,14 +17,16 @@ void look_up_maps(const Facets& facets, std::span<const MapLookup> lookups,
         if (!lookup.shares.empty()) lookup.shares[pixel] = 0;
       }
       if (!shows_facet(seen[pixel]) || (mask[pixel] & all_bits) == all_bits) continue;
-      const FacetPlane& plane = facets.planes[facet_of(seen[pixel])];
+      const std::uint32_t facet = facet_of(seen[pixel]);
+      const FacetPlane& plane = facets.planes[facet];
       if (!has_plane(plane)) continue;
       const glm::dvec3 point =
           seen_point(plane, view.world_to_clip, eye, {x + 0.5, y + 0.5}, view.width, view.height);
+      const Receiver& receiver = facets.receivers[facets.receiver_of[facet]];
       for (const MapLookup& lookup : lookups) {
         const ShadowMap& map = *lookup.map;
         if ((mask[pixel] >> lookup.bit & 1) != 0) continue;
-        const int blocked = blocked_texels(map, map_place(map, plane, point));
+        const int blocked = blocked_texels(map, map_place(map, receiver, point));
         if (blocked == map.settings.kernel * map.settings.kernel) {
           mask[pixel] = static_cast<std::uint8_t>(mask[pixel] | 1u << lookup.bit);
         } else if (!lookup.shares.empty()) {

@@ -274,10 +274,11 @@ ShadowMap draw_shadow_map(const Facets& facets, const ShadowLight& light,
   return map;
 }
 
-MapPlace map_place(const ShadowMap& map, const FacetPlane& plane, glm::dvec3 point) {
+MapPlace map_place(const ShadowMap& map, const Receiver& receiver, glm::dvec3 point) {
   MapPlace place;
   place.side = &side_for(map, point);
   const MapSide& side = *place.side;
+  const FacetPlane& plane = receiver.plane;
   const glm::dvec3 p = in_side(side, point);
   const bool is_point = map.light.w != 0.0;
   const double x = is_point ? p.x / p.z : p.x, y = is_point ? p.y / p.z : p.y;
@@ -289,9 +290,20 @@ MapPlace map_place(const ShadowMap& map, const FacetPlane& plane, glm::dvec3 poi
   const double n_x = dot(plane.normal, side.axes[0]), n_y = dot(plane.normal, side.axes[1]);
   double n_ahead = dot(plane.normal, side.axes[2]);
   if (is_point) n_ahead = (n_x * x + n_y * y) + n_ahead;
-  const double slope = std::sqrt(n_x * n_x + n_y * n_y) / std::fabs(n_ahead);
-  place.slope = slope < kMostSlope ? slope : kMostSlope;
+  place.slope = std::sqrt(n_x * n_x + n_y * n_y) / std::fabs(n_ahead);
+  if (!(place.slope > kMostSlope)) return place;
+  for (const glm::dvec3& corner : receiver.corners_of_outline()) {
+    place.rises_m = std::max(place.rises_m, p.z - in_side(side, corner).z);
+  }
   return place;
+}
+
+double bias_m(const ShadowMapSettings& settings, const MapPlace& place) {
+  const auto by = [&](double slope) { return place.reach_m * settings.slope_bias * slope; };
+  const double most = std::max(by(kMostSlope), place.rises_m);
+  const double of_slope =
+      place.slope > kMostSlope ? std::min(by(place.slope), most) : by(place.slope);
+  return place.reach_m * settings.bias + of_slope;
 }
 
 int blocked_texels(const ShadowMap& map, const MapPlace& place) {

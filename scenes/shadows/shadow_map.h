@@ -67,25 +67,32 @@ ShadowMap draw_shadow_map(const Facets& facets, const ShadowLight& light,
 ShadowMap fit_shadow_map(const Facets& facets, const ShadowLight& light,
                          const ShadowMapSettings& settings, const MapCamera& camera);
 
-/// A point of a plane as a side of the map sees it.
+/// A point of a receiver as a side of the map sees it.
 struct MapPlace {
   const MapSide* side = nullptr;
   double u = 0.0, v = 0.0;  ///< in texels
   double z = 0.0;           ///< metres before the side's origin
   double reach_m = 0.0;     ///< what the kernel reaches there: its width
-  double slope = 0.0;       ///< of the plane: z's change over a metre across; at most kMostSlope
+  double slope = 0.0;       ///< of the plane: z's change over a metre across
+  /// Of a receiver steeper than kMostSlope: how far it comes nearer to the light than the point,
+  /// and so the most that it can shade itself by.
+  double rises_m = 0.0;
 };
 
-/// A plane that is seen edge-on by the light would be moved to infinity by a slope's bias. With
-/// half as much such planes shade themselves, with three times as much they lose their shadows
-/// (docs/shadows.md).
+/// What the light sees edge-on would be moved to infinity by a slope's bias. It is moved as what
+/// has this slope; with half as much curved surfaces shade themselves, with three times as much
+/// they lose their shadows (docs/shadows.md).
 inline constexpr double kMostSlope = 32.0;
 
-MapPlace map_place(const ShadowMap& map, const FacetPlane& plane, glm::dvec3 point);
+MapPlace map_place(const ShadowMap& map, const Receiver& receiver, glm::dvec3 point);
 
-/// How many of the kernel's texels hold something nearer to the light than the place, moved
-/// towards the light by reach_m * (bias + slope_bias * slope): 0 to kernel * kernel (percentage
-/// closer filtering, Reeves, Salesin and Cook 1987).
+/// How far a place is moved towards the light:
+///   reach_m * bias + min(by(slope), max(by(kMostSlope), rises_m)), by(s) = reach_m * slope_bias *
+///   s
+double bias_m(const ShadowMapSettings& settings, const MapPlace& place);
+
+/// How many of the kernel's texels hold something nearer to the light than the place, moved by
+/// bias_m(): 0 to kernel * kernel (percentage closer filtering, Reeves, Salesin and Cook 1987).
 int blocked_texels(const ShadowMap& map, const MapPlace& place);
 
 }  // namespace softfocus
