@@ -6,6 +6,7 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/effects/effect.h"
 #include "scenes/draw/frame_parts.h"
+#include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/velocity.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
@@ -173,6 +174,22 @@ void add_shadow_hashes(std::string_view name, Scene scene, ShadowKind kind, std:
       {entry_name(name, std::string{entry} + "-layer-2", where), hash_image(layers[1])});
 }
 
+/// Shadows by maps: of one texel's kernel, and shares of cascades.
+void add_map_hashes(std::string_view name, Scene scene, const CameraMatrices& view,
+                    const FrameSize& size, const Profile& profile, const std::string& where,
+                    std::vector<NamedHash>& hashes, ThreadPool& pool) {
+  set_shadows(scene, ShadowKind::map);
+  const auto add = [&](std::string_view entry, const ShadowMapSettings& settings) {
+    for (Light& light : scene.lights) light.map = settings;
+    hashes.push_back(
+        {entry_name(name, entry, where),
+         hash_image(draw_scene(scene, view, kFrame, size.width, size.height, profile, pool))});
+  };
+  add("shadows-map", {.size = 256, .bias = 0.5, .slope_bias = 0.75});
+  add("shadows-map-pcf",
+      {.size = 128, .bias = 0.5, .slope_bias = 0.75, .kernel = 3, .cascades = 2});
+}
+
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
   const Scene scene = load_scene(name, scene_search_path({}));
   const auto [width, height] = kSizes[1];
@@ -263,6 +280,7 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
     if (name == "cube-room" || known.name == "ieee") {
       add_shadow_hashes(name, scene, ShadowKind::projected, "shadows", view, size, profile, where,
                         hashes, pool);
+      add_map_hashes(name, scene, view, size, profile, where, hashes, pool);
     }
     if (known.name == "ieee") {
       add_shadow_hashes(name, scene, ShadowKind::volumes, "shadows-volumes", view, size, profile,
