@@ -194,8 +194,11 @@ void triangulate(const CasterPolygon& polygon, const Put& put) {
   }
 }
 
-// Receivers that a task takes at once.
-constexpr std::uint32_t kReceiversATask = 64;
+// Receivers that a task takes at once: many, or one each if there are few, which may be a room's
+// walls and take most casters.
+std::uint32_t receivers_a_task(std::uint32_t receivers) {
+  return std::clamp(receivers / 256, std::uint32_t{1}, std::uint32_t{64});
+}
 
 // The casters that a task's first pass found to throw a shadow; those of its receiver i end at
 // ends[i].
@@ -211,15 +214,16 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
   ProjectedShadows made;
   made.lit = lit_sides(facets, light);
   const auto receivers = static_cast<std::uint32_t>(facets.receivers.size());
-  const auto tasks = static_cast<int>((receivers + kReceiversATask - 1) / kReceiversATask);
+  const std::uint32_t a_task = receivers_a_task(receivers);
+  const auto tasks = static_cast<int>((receivers + a_task - 1) / a_task);
   std::vector<FoundCasters> found(static_cast<std::size_t>(tasks));
   ScratchShelf<std::vector<std::uint32_t>> shelf;
   made.begins.assign(receivers + std::size_t{1}, 0);
   pool.for_each(tasks, [&](int task) {
     FoundCasters& of_task = found[static_cast<std::size_t>(task)];
     std::vector<std::uint32_t> memory = shelf.take();
-    const std::uint32_t begin = static_cast<std::uint32_t>(task) * kReceiversATask;
-    for (std::uint32_t r = begin; r < std::min(begin + kReceiversATask, receivers); ++r) {
+    const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
+    for (std::uint32_t r = begin; r < std::min(begin + a_task, receivers); ++r) {
       if (is_lit(made.lit[r])) {
         for_each_shadow(facets, r, light, made.lit[r], find(r, memory),
                         [&](std::uint32_t caster, const CasterPolygon& polygon) {
@@ -235,7 +239,7 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
   made.triangles.resize(made.begins.back());
   pool.for_each(tasks, [&](int task) {
     const FoundCasters& of_task = found[static_cast<std::size_t>(task)];
-    const std::uint32_t begin = static_cast<std::uint32_t>(task) * kReceiversATask;
+    const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
     std::size_t first = 0;
     for (std::size_t i = 0; i < of_task.ends.size(); ++i) {
       const std::uint32_t r = begin + static_cast<std::uint32_t>(i);
