@@ -10,8 +10,8 @@
 #include "raster/threads/scratch_shelf.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/surface_draws.h"
-#include "scenes/draw/surface_lanes.h"
-#include "scenes/draw/surface_stages.h"
+#include "scenes/surfaces/surface_lanes.h"
+#include "scenes/surfaces/surface_stages.h"
 
 namespace softfocus {
 namespace {

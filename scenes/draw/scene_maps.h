@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "scenes/draw/shadowed_layers.h"
-#include "scenes/shadows/map_lookup.h"
+#include "scenes/shadows/maps/map_lookup.h"
 
 namespace softfocus {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "scenes/draw/surface_stages.h"
+#include "scenes/surfaces/surface_stages.h"
 
 #define SOFTFOCUS_KERNELS "scenes/draw/split_layer_row.cpp"
 #include "raster/lanes/for_each_isa.inl"

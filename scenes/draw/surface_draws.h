@@ -5,7 +5,7 @@
 
 #include "raster/pipeline/state.h"
 #include "scenes/draw/frame_matrices.h"
-#include "scenes/draw/surface_stages.h"
+#include "scenes/surfaces/surface_stages.h"
 #include "scenes/scene.h"
 
 namespace softfocus {

@@ -281,7 +281,7 @@ Image velocity_for(const ChosenEffect& chosen, const Scene& scene, double frame,
 #include "raster/pipeline/lanes/interpolate_lanes.inl"
 #include "raster/pipeline/lanes/shade_lanes.inl"
 #include "raster/pipeline/lanes/vertex_lanes.inl"
-#include "scenes/draw/opacity_lanes.inl"
+#include "scenes/surfaces/opacity_lanes.inl"
 
 namespace {
 

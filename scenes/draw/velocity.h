@@ -7,7 +7,7 @@
 
 #include "raster/effects/motion/velocity.h"
 #include "scenes/draw/draw_scene.h"
-#include "scenes/draw/surface_stages.h"
+#include "scenes/surfaces/surface_stages.h"
 
 namespace softfocus {
 

@@ -6,7 +6,7 @@
 #include "raster/images/level_of_detail.h"
 #include "raster/images/sampler.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/draw/lighting.h"
+#include "scenes/surfaces/lighting.h"
 
 namespace softfocus {
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/shadows/place_box.h"
+
 namespace softfocus {
 namespace {
 
@@ -31,15 +33,6 @@ CellRange range_of(glm::dvec2 low, glm::dvec2 high, int cells) {
   return {cell_of(low.x - kMargin, cells), cell_of(low.y - kMargin, cells),
           cell_of(high.x + kMargin, cells), cell_of(high.y + kMargin, cells)};
 }
-
-struct Box {
-  glm::dvec2 low{std::numeric_limits<double>::infinity()};
-  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
-  void add(glm::dvec2 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-};
 
 glm::dvec2 along_axes(const LightGrid& grid, glm::dvec3 p) {
   return {dot(p, grid.axes[0]), dot(p, grid.axes[1])};
@@ -79,16 +72,16 @@ glm::dvec3 seen_by_side(glm::dvec3 p, int side) {
 // Calls use(first cell of a row, count) for each row of cells that the polygon may touch.
 template <class Use>
 void for_each_row(const LightGrid& grid, std::span<const glm::dvec3> polygon, const Use& use) {
-  const auto rows_of = [&](int side, const Box& box) {
+  const auto rows_of = [&](int side, const PlaceBox& box) {
     const CellRange range = range_of(box.low, box.high, grid.cells);
     for (int y = range.y_begin; y <= range.y_end; ++y) {
       use((side * grid.cells + y) * grid.cells + range.x_begin, range.x_end - range.x_begin + 1);
     }
   };
   if (grid.sides == 1) {
-    Box box;
+    PlaceBox box;
     for (const glm::dvec3& corner : polygon) {
-      box.add((along_axes(grid, corner) - grid.low) / grid.size);
+      add(box, (along_axes(grid, corner) - grid.low) / grid.size);
     }
     rows_of(0, box);
     return;
@@ -100,15 +93,15 @@ void for_each_row(const LightGrid& grid, std::span<const glm::dvec3> polygon, co
     }
     for (int plane = 0; plane < 4 && seen.count > 0; ++plane) cut_to_pyramid(seen, plane);
     if (seen.count == 0) continue;
-    Box box;
+    PlaceBox box;
     for (std::size_t i = 0; i < seen.count; ++i) {
       const glm::dvec3& p = seen.corners[i];
       // At the light itself: it is in every direction.
       if (!(p.z > std::numeric_limits<double>::min())) {
-        box.add(glm::dvec2{0.0});
-        box.add(glm::dvec2{1.0});
+        add(box, glm::dvec2{0.0});
+        add(box, glm::dvec2{1.0});
       } else {
-        box.add(glm::dvec2{p.x, p.y} / p.z * 0.5 + 0.5);
+        add(box, glm::dvec2{p.x, p.y} / p.z * 0.5 + 0.5);
       }
     }
     rows_of(side, box);
@@ -127,9 +120,9 @@ void set_side(LightGrid& grid, std::span<const Facet> facets,
   least[axis] = 1.0;
   grid.axes[0] = normalize(cross(least, towards));
   grid.axes[1] = cross(towards, grid.axes[0]);
-  Box box;
+  PlaceBox box;
   for (const std::uint32_t caster : casters) {
-    for (const glm::dvec3& corner : facets[caster].corners) box.add(along_axes(grid, corner));
+    for (const glm::dvec3& corner : facets[caster].corners) add(box, along_axes(grid, corner));
   }
   if (casters.empty()) return;
   grid.low = box.low;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "raster/images/texel.h"
-#include "scenes/draw/lighting.h"
+#include "scenes/surfaces/lighting.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/test_images.h"
 

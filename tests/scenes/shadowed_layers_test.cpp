@@ -11,7 +11,7 @@
 #include "raster/images/texel.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/shadows/map_errors.h"
+#include "scenes/shadows/maps/map_errors.h"
 #include "scenes/shadows/shadow_errors.h"
 
 using namespace softfocus;

@@ -1,6 +1,6 @@
 // Cut-out surfaces, wherever surfaces are drawn.
 
-#include "scenes/draw/surface_stages.h"
+#include "scenes/surfaces/surface_stages.h"
 
 #include <doctest/doctest.h>
 

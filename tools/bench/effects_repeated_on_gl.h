@@ -8,7 +8,7 @@
 #include "raster/effects/effect.h"
 #include "raster/images/image.h"
 #include "raster/temporal/frame_passes.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 

@@ -12,7 +12,7 @@
 #include "raster/numbers/profile.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"

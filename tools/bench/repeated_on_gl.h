@@ -10,7 +10,7 @@
 
 #include "raster/images/image.h"
 #include "tools/bench/work.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 

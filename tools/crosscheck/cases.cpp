@@ -1,6 +1,6 @@
 #include "tools/crosscheck/cases.h"
 
-#include "tools/gl/api.h"
+#include "tools/gl/driver/api.h"
 
 namespace softfocus {
 

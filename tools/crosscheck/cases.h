@@ -11,7 +11,7 @@
 #include "raster/numbers/random_bits.h"
 #include "raster/threads/parallel.h"
 #include "tools/crosscheck/tally.h"
-#include "tools/gl/context.h"
+#include "tools/gl/driver/context.h"
 #include "tools/gl/shaders.h"
 
 namespace softfocus {

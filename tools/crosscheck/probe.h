@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/files/profile_file.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 

@@ -5,7 +5,7 @@
 #include "tools/crosscheck/cases.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
-#include "tools/gl/driver_process.h"
+#include "tools/gl/driver/driver_process.h"
 #include "tools/pictures/image_file.h"
 
 namespace softfocus {

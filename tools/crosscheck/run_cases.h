@@ -10,7 +10,7 @@
 
 #include "raster/numbers/profile.h"
 #include "tools/crosscheck/tally.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/gl/shaders.h"
 
 namespace softfocus {

@@ -8,7 +8,7 @@
 #include "dof/dof.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/scene.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/gl/shaders.h"
 
 namespace softfocus {

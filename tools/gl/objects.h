@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "raster/images/sampler.h"
-#include "tools/gl/api.h"
-#include "tools/gl/context.h"
+#include "tools/gl/driver/api.h"
+#include "tools/gl/driver/context.h"
 #include "tools/gl/shaders.h"
 
 namespace softfocus {

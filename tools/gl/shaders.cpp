@@ -7,7 +7,7 @@
 
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 namespace {

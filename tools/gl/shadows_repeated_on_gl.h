@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenes/shadows/shadow_mask.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 

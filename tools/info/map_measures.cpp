@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/draw/scene_maps.h"
-#include "scenes/shadows/map_errors.h"
+#include "scenes/shadows/maps/map_errors.h"
 #include "tools/info/time_in_turn.h"
 
 namespace softfocus {

@@ -14,7 +14,7 @@
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
 #include "tools/files/profile_file.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/gl/shaders.h"
 #include "tools/pictures/image_file.h"
 

@@ -1,6 +1,6 @@
 // Stands in for gpu.cpp in a build without GL.
 
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/page/requests.h"
 
 namespace softfocus {

@@ -14,7 +14,7 @@
 #include "scenes/scene.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/gl/shaders.h"
 #include "tools/options/effect_options.h"
 #include "tools/options/lens_options.h"

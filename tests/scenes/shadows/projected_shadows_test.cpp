@@ -8,24 +8,12 @@
 #include <cstring>
 #include <vector>
 
-#include "tests/support/random.h"
+#include "tests/support/shadow_facets.h"
 
 using namespace softfocus;
+using namespace softfocus::test;
 
 namespace {
-
-void add_quad(std::vector<Facet>& facets, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d) {
-  facets.push_back({{a, b, c}, true});
-  facets.push_back({{a, c, d}, true});
-}
-
-void add_triangle(std::vector<Facet>& facets, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
-  facets.push_back({{a, b, c}, true});
-}
-
-void add_floor(std::vector<Facet>& facets) {
-  add_quad(facets, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9});
-}
 
 double area_of(const ProjectedTriangle& triangle) {
   const auto corner = [&](std::size_t i) { return glm::dvec3{triangle[i]} / triangle[i].w; };
@@ -47,21 +35,6 @@ bool same(const ProjectedShadows& a, const ProjectedShadows& b) {
                                              a.triangles.size() * sizeof a.triangles[0]) == 0);
 }
 
-Facets soup(std::uint32_t seed, int triangles) {
-  test::Random random{seed};
-  const auto place = [&] {
-    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
-    return glm::dvec3{x, y, random.between(-1.0, 1.0)};
-  };
-  std::vector<Facet> facets;
-  for (int i = 0; i < triangles; ++i) {
-    const glm::dvec3 at = place();
-    const glm::dvec3 a = at + place() * 0.3, b = at + place() * 0.3, c = at + place() * 0.3;
-    facets.push_back({{a, b, c}, i % 3 == 0, i % 7 != 0});
-  }
-  return make_facets(std::move(facets));
-}
-
 const std::vector<ShadowLight> kLights{{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0},
                                        {{0.2, 0.1, -0.3}, 1.0},
                                        {{3, 1, 2}, 1.0},
@@ -71,7 +44,7 @@ const std::vector<ShadowLight> kLights{{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0}
 
 TEST_CASE("the shadow of a square has the area of similar triangles") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 9);
   add_quad(corners, {-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1});
   const Facets facets = make_facets(std::move(corners));
   const ProjectedShadows of_point = project_in_sequence(facets, {{0.5, 4, 0.25}, 1.0});
@@ -83,7 +56,7 @@ TEST_CASE("the shadow of a square has the area of similar triangles") {
 
 TEST_CASE("of a caster through the floor the part above casts") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 9);
   // Upright, 2 wide at the top and a point at the bottom; at the floor it is 1 wide.
   add_triangle(corners, {-1, 1, 0}, {0, -1, 0}, {1, 1, 0});
   const Facets facets = make_facets(std::move(corners));
@@ -96,7 +69,7 @@ TEST_CASE("of a caster through the floor the part above casts") {
 
 TEST_CASE("what rises above a point light casts to infinity, not through the light") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 9);
   add_triangle(corners, {1, 0.5, -1}, {1, 0.5, 1}, {1, 3, 0});
   const Facets facets = make_facets(std::move(corners));
   const ProjectedShadows shadows = project_in_sequence(facets, {{0, 1, 0}, 1.0});
@@ -132,7 +105,7 @@ TEST_CASE("two walls of a corner that both face the light cast nothing on each o
 
 TEST_CASE("all schedules give the same bits") {
   for (std::uint32_t seed = 1; seed < 5; ++seed) {
-    const Facets facets = soup(seed, 300);
+    const Facets facets = facet_soup(seed, 300, 0.3);
     for (const ShadowLight& light : kLights) {
       CAPTURE(seed);
       const ProjectedShadows in_sequence = project_in_sequence(facets, light);
@@ -147,7 +120,7 @@ TEST_CASE("all schedules give the same bits") {
 }
 
 TEST_CASE("lights in awkward places give finite triangles") {
-  const Facets facets = soup(9, 200);
+  const Facets facets = facet_soup(9, 200, 0.3);
   ThreadPool pool{1};
   const glm::dvec3 corner = facets.facets[5].corners[1];
   const glm::dvec3 in_plane = (facets.facets[3].corners[0] + facets.facets[3].corners[1]) * 0.5;
@@ -166,7 +139,7 @@ TEST_CASE("lights in awkward places give finite triangles") {
 
 TEST_CASE("facets without area receive and cast nothing") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 9);
   add_triangle(corners, {0, 1, 0}, {1, 1, 0}, {2, 1, 0});
   add_triangle(corners, {0, 1, 0}, {0, 1, 0}, {0, 1, 0});
   const Facets facets = make_facets(std::move(corners));

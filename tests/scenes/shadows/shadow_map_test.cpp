@@ -1,6 +1,6 @@
 // Shadow maps: texels against rays, and each of a map's failures where it must be and nowhere else.
 
-#include "scenes/shadows/shadow_map.h"
+#include "scenes/shadows/maps/shadow_map.h"
 
 #include <doctest/doctest.h>
 
@@ -12,40 +12,17 @@
 
 #include "scenes/shadows/light_grid.h"
 #include "tests/support/random.h"
+#include "tests/support/shadow_facets.h"
 
 using namespace softfocus;
+using namespace softfocus::test;
 
 namespace {
 
-void add_quad(std::vector<Facet>& facets, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d) {
-  facets.push_back({{a, b, c}, true});
-  facets.push_back({{a, c, d}, true});
-}
-
-// Facet 0 is of the floor, its normal up.
-void add_floor(std::vector<Facet>& facets) {
-  add_quad(facets, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4});
-}
-
 Facets square_over_floor(double height) {
   std::vector<Facet> facets;
-  add_floor(facets);
+  add_floor(facets, 4);
   add_quad(facets, {-1, height, 1}, {1, height, 1}, {1, height, -1}, {-1, height, -1});
-  return make_facets(std::move(facets));
-}
-
-Facets soup(std::uint32_t seed, int triangles) {
-  test::Random random{seed};
-  const auto place = [&] {
-    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
-    return glm::dvec3{x, y, random.between(-1.0, 1.0)};
-  };
-  std::vector<Facet> facets;
-  for (int i = 0; i < triangles; ++i) {
-    const glm::dvec3 at = place();
-    const glm::dvec3 a = at + place() * 0.4, b = at + place() * 0.4, c = at + place() * 0.4;
-    facets.push_back({{a, b, c}, i % 3 == 0, i % 7 != 0});
-  }
   return make_facets(std::move(facets));
 }
 
@@ -142,7 +119,7 @@ int wrong_points(const ShadowLight& light, const ShadowMapSettings& settings) {
 }  // namespace
 
 TEST_CASE("a texel holds the nearest caster that a ray of the light meets") {
-  const Facets facets = soup(3, 150);
+  const Facets facets = facet_soup(3, 150, 0.4);
   for (const ShadowLight& light : {kSun, ShadowLight{{0.2, 0.1, -0.3}, 1.0}, kLamp}) {
     for (const bool fits_camera : {false, true}) {
       ShadowMapSettings settings = of_scene(48, 0.0, 0.0);
@@ -180,7 +157,7 @@ TEST_CASE("a larger map is less wrong") {
 TEST_CASE(
     "without bias a plane shades itself, with a slope's bias of half the diagonal it does not") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 4);
   const Facets facets = make_facets(std::move(corners));
   // The lamp is low, so that sides look along the floor.
   for (const ShadowLight& light : {kSun, ShadowLight{{-3.9, 0.8, 0.1}, 1.0}}) {
@@ -200,7 +177,7 @@ TEST_CASE(
 
 TEST_CASE("a plane that the light sees almost edge-on does not shade itself") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 4);
   const Facets facets = make_facets(std::move(corners));
   for (const double rise : {1e-1, 1e-2, 1e-3}) {
     const ShadowLight light{normalize(glm::dvec3{1.0, rise, 0.3}), 0.0};
@@ -260,7 +237,7 @@ TEST_CASE("cascades end where the practical scheme says, the last at the far dis
 }
 
 TEST_CASE("what the camera sees of a shadow lies inside its cascade, with room for the kernel") {
-  const Facets facets = soup(5, 200);
+  const Facets facets = facet_soup(5, 200, 0.4);
   const MapCamera camera = camera_ahead();
   for (const ShadowLight& light : {kSun, ShadowLight{{0.2, 0.1, -0.3}, 1.0}}) {
     for (int cascades = 1; cascades <= kMostCascades; ++cascades) {
@@ -297,7 +274,7 @@ TEST_CASE("what the camera sees of a shadow lies inside its cascade, with room f
 }
 
 TEST_CASE("a map has the same bits on any number of threads") {
-  const Facets facets = soup(2, 3000);
+  const Facets facets = facet_soup(2, 3000, 0.4);
   for (const ShadowLight& light : {kSun, ShadowLight{{0.2, 0.1, -0.3}, 1.0}}) {
     ShadowMapSettings settings = of_scene(200, 0.0, 0.0);
     settings.fits_camera = true;
@@ -314,7 +291,7 @@ TEST_CASE("a map has the same bits on any number of threads") {
 }
 
 TEST_CASE("lights in awkward places give maps that can be looked up") {
-  const Facets facets = soup(9, 200);
+  const Facets facets = facet_soup(9, 200, 0.4);
   const glm::dvec3 corner = facets.facets[5].corners[1];
   const glm::dvec3 in_plane = (facets.facets[3].corners[0] + facets.facets[3].corners[1]) * 0.5;
   for (const ShadowLight& light :
@@ -342,7 +319,7 @@ TEST_CASE("a scene of nothing, or of what does not cast, has a map that darkens 
   for (const ShadowLight& light : {kSun, kLamp}) {
     for (const bool is_empty : {true, false}) {
       std::vector<Facet> corners;
-      if (!is_empty) add_floor(corners);
+      if (!is_empty) add_floor(corners, 4);
       for (Facet& facet : corners) facet.casts = false;
       const Facets facets = make_facets(std::move(corners));
       const ShadowMap map = drawn(facets, light, of_scene(32, 0.0, 0.0));

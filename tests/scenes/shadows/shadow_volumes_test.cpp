@@ -1,6 +1,6 @@
 // Shadow volumes: silhouettes of known meshes, and masks against rays and against projection.
 
-#include "scenes/shadows/shadow_volumes.h"
+#include "scenes/shadows/volumes/shadow_volumes.h"
 
 #include <doctest/doctest.h>
 
@@ -16,28 +16,16 @@
 #include "scenes/load/load_scene.h"
 #include "scenes/shadows/point_in_shadow.h"
 #include "scenes/shadows/shadow_errors.h"
-#include "scenes/shadows/volume_mask.h"
+#include "scenes/shadows/volumes/volume_mask.h"
 #include "tests/support/random.h"
+#include "tests/support/shadow_facets.h"
 
 using namespace softfocus;
+using namespace softfocus::test;
 
 namespace {
 
 constexpr int kWidth = 61, kHeight = 47;
-
-void add_quad(std::vector<Facet>& facets, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d,
-              bool two_sided = true) {
-  facets.push_back({{a, b, c}, two_sided});
-  facets.push_back({{a, c, d}, two_sided});
-}
-
-void add_triangle(std::vector<Facet>& facets, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
-  facets.push_back({{a, b, c}, true});
-}
-
-void add_floor(std::vector<Facet>& facets) {
-  add_quad(facets, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4});
-}
 
 // Seen from outside, counter-clockwise. An open box has no top.
 void add_box(std::vector<Facet>& facets, glm::dvec3 low, glm::dvec3 high, bool two_sided,
@@ -226,7 +214,7 @@ TEST_CASE("volumes of boxes on a floor are right") {
   for (const bool two_sided : {false, true}) {
     CAPTURE(two_sided);
     std::vector<Facet> corners;
-    add_floor(corners);
+    add_floor(corners, 4);
     add_box(corners, {-0.5, 0, -0.5}, {0.5, 1, 0.5}, two_sided);
     CHECK(check_masks(corners, kSun) > 40);
     CHECK(check_masks(corners, kLamp) > 40);
@@ -240,7 +228,7 @@ TEST_CASE("volumes of boxes on a floor are right") {
 
 TEST_CASE("volumes of an open mesh, of a mesh with three triangles on an edge are right") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 4);
   add_box(corners, {-0.5, 0.2, -0.5}, {0.5, 1, 0.5}, true, true);
   const glm::dvec3 a{1, 0.3, -0.5}, b{1, 0.9, 0.5};
   for (const glm::dvec3& c : {glm::dvec3{0.6, 0.8, 0}, {1.6, 0.5, 0.2}, {1.2, 1.3, -0.4}}) {
@@ -252,7 +240,7 @@ TEST_CASE("volumes of an open mesh, of a mesh with three triangles on an edge ar
 
 TEST_CASE("volumes are right for a camera inside one") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 4);
   add_box(corners, {-0.5, 1, -0.5}, {0.5, 1.5, 0.5}, false);
   add_quad(corners, {1, 0, 1}, {1, 0, -1}, {1, 1, -1}, {1, 1, 1});
   const ShadowLight above{{0.1, 4, 0.05}, 1.0};
@@ -266,7 +254,7 @@ TEST_CASE("volumes are right for a camera inside one") {
 
 TEST_CASE("volumes are right for lights at corners, in planes and inside objects") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 4);
   add_box(corners, {-0.5, 0.3, -0.5}, {0.5, 1, 0.5}, true);
   add_quad(corners, {1, 0.2, 1}, {1, 0.2, -1}, {1, 1, -1}, {1, 1, 1});
   check_masks(corners, {{0.5, 1, 0.5}, 1.0});    // a corner
@@ -285,7 +273,7 @@ TEST_CASE("volumes are right for lights at corners, in planes and inside objects
 
 TEST_CASE("volumes of thin casters, and of casters through their receivers, are right") {
   std::vector<Facet> corners;
-  add_floor(corners);
+  add_floor(corners, 4);
   add_quad(corners, {-1, -0.5, 0.1}, {1, -0.7, 0.3}, {1.1, 0.8, 0.2}, {-0.9, 1.1, -0.1});
   add_triangle(corners, {-1.5, 0, 1}, {-1.5, 1e-4, 1}, {1.2, 0.9, 1.1});
   add_triangle(corners, {-1, 1.2, 0}, {1, 1.2, 0.001}, {1, 1.2, 0});
@@ -304,7 +292,7 @@ TEST_CASE("volumes of random triangles are right from random places") {
       return glm::dvec3{x, y, random.between(-1.0, 1.0)};
     };
     std::vector<Facet> corners;
-    add_floor(corners);
+    add_floor(corners, 4);
     for (int i = 0; i < 40; ++i) {
       const glm::dvec3 at = place() * 2.0;
       const glm::dvec3 a = at + place() * 0.6, b = at + place() * 0.6, c = at + place() * 0.6;

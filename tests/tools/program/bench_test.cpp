@@ -8,7 +8,7 @@
 #include "raster/lanes/isa.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/gl_drivers.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 using namespace softfocus;
 

@@ -7,7 +7,7 @@
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/gl_drivers.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/gl/shaders.h"
 
 using namespace softfocus;

@@ -3,7 +3,7 @@
 #include "raster/numbers/profile.h"
 #include "tests/support/gl_drivers.h"
 #include "tools/files/profile_file.h"
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 using namespace softfocus;
 

@@ -1,8 +1,8 @@
 #include <emscripten/em_js.h>
 #include <emscripten/html5_webgl.h>
 
-#include "tools/gl/api.h"
-#include "tools/gl/context.h"
+#include "tools/gl/driver/api.h"
+#include "tools/gl/driver/context.h"
 
 // A canvas of the worker's own, under a name for emscripten's functions. Nothing is drawn into it.
 EM_JS(int, softfocus_make_canvas, (), {

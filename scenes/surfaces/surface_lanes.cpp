@@ -4,7 +4,7 @@
 
 #ifndef SOFTFOCUS_ISA
 
-#include "scenes/draw/surface_lanes.h"
+#include "scenes/surfaces/surface_lanes.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 
 #include "raster/numbers/fixed_point.h"
 
-#define SOFTFOCUS_KERNELS "scenes/draw/surface_lanes.cpp"
+#define SOFTFOCUS_KERNELS "scenes/surfaces/surface_lanes.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
@@ -61,7 +61,7 @@ SOFTFOCUS_SURFACE_VARIANT(true, true, true, true)
 #include "raster/pipeline/lanes/interpolate_lanes.inl"
 #include "raster/pipeline/lanes/shade_lanes.inl"
 #include "raster/pipeline/lanes/vertex_lanes.inl"
-#include "scenes/draw/opacity_lanes.inl"
+#include "scenes/surfaces/opacity_lanes.inl"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "tools/gl/lavapipe.h"
+#include "tools/gl/driver/lavapipe.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 namespace {

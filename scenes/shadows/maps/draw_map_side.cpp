@@ -1,4 +1,4 @@
-#include "scenes/shadows/draw_map_side.h"
+#include "scenes/shadows/maps/draw_map_side.h"
 
 #include <algorithm>
 #include <atomic>

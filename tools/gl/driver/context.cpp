@@ -1,4 +1,4 @@
-#include "tools/gl/context.h"
+#include "tools/gl/driver/context.h"
 
 #include <dlfcn.h>
 #include <epoxy/gl.h>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/gl/lavapipe.h"
+#include "tools/gl/driver/lavapipe.h"
 
 namespace softfocus {
 namespace {

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "scenes/shadows/joined_facets.h"
 #include "scenes/shadows/light_grid.h"
+#include "scenes/shadows/volumes/joined_facets.h"
 
 namespace softfocus {
 
@@ -38,6 +38,10 @@ struct ShadowVolumes {
   std::size_t faces_before_far_caps = 0;
   std::optional<LightGrid> grid;  ///< of the casters; draw_volume_mask() makes it if it needs it
 };
+
+/// z-fail counts the faces behind a sample. z-pass counts those before it, from the number of
+/// volumes that hold the eye. Either gives the number of volumes that hold the sample.
+enum class VolumeCount : std::uint8_t { z_fail, z_pass };
 
 ShadowVolumes make_shadow_volumes(const Facets& facets, const JoinedFacets& joined,
                                   const ShadowLight& light);

@@ -1,4 +1,4 @@
-#include "scenes/shadows/joined_facets.h"
+#include "scenes/shadows/volumes/joined_facets.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "tools/gl/driver_process.h"
+#include "tools/gl/driver/driver_process.h"
 
 #include <sys/wait.h>
 #include <unistd.h>

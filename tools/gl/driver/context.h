@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 

@@ -1,4 +1,4 @@
-#include "scenes/shadows/shadow_volumes.h"
+#include "scenes/shadows/volumes/shadow_volumes.h"
 
 #include <algorithm>
 #include <utility>

@@ -20,13 +20,9 @@
 #include "raster/threads/parallel.h"
 #include "scenes/shadows/projected_shadows.h"
 #include "scenes/shadows/shadow_mask.h"
-#include "scenes/shadows/shadow_volumes.h"
+#include "scenes/shadows/volumes/shadow_volumes.h"
 
 namespace softfocus {
-
-/// z-fail counts the faces behind a sample. z-pass counts those before it, from the number of
-/// volumes that hold the eye. Either gives the number of volumes that hold the sample.
-enum class VolumeCount : std::uint8_t { z_fail, z_pass };
 
 /// Sets `bit` of the mask where volumes hold what a pixel shows. Pixels that have the bit are left
 /// alone; draw_shadow_mask() gives it to sides that the light is not on. `lit` is lit_sides().

@@ -1,4 +1,4 @@
-#include "scenes/shadows/shadow_map.h"
+#include "scenes/shadows/maps/shadow_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,23 +6,16 @@
 #include <span>
 
 #include "raster/numbers/exact_math.h"
-#include "scenes/shadows/draw_map_side.h"
 #include "scenes/shadows/light_grid.h"
+#include "scenes/shadows/maps/draw_map_side.h"
+#include "scenes/shadows/place_box.h"
 
 namespace softfocus {
 namespace {
 
-struct MapBox {
-  glm::dvec2 low{std::numeric_limits<double>::infinity()};
-  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
-  void add(glm::dvec2 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
-};
+bool is_empty(const PlaceBox& box) { return !(box.low.x <= box.high.x && box.low.y <= box.high.y); }
 
-MapBox intersection(const MapBox& a, const MapBox& b) {
+PlaceBox intersection(const PlaceBox& a, const PlaceBox& b) {
   return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
           {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
 }
@@ -102,7 +95,7 @@ DepthRange depth_range(const MapCamera& camera, const SceneBox& box) {
 }
 
 // `inner` holds what is looked up; the kernel reaches texels around it.
-void set_texels(MapSide& side, const MapBox& inner, const ShadowMapSettings& settings,
+void set_texels(MapSide& side, const PlaceBox& inner, const ShadowMapSettings& settings,
                 double least_size) {
   const int margin = (settings.kernel + 1) / 2;
   const double texels = settings.size - 2 * margin;
@@ -142,15 +135,15 @@ void fit_to_directional(const Facets& facets, const MapCamera& camera, const Sce
   side.origin = (scene.low + scene.high) * 0.5;
   side.axes = axes_along(map.light.place,
                          fits ? row_of(camera.world_to_clip, 3) : glm::dvec3{0.0, 0.0, 1.0});
-  MapBox casters;
+  PlaceBox casters;
   for (std::size_t i = 0; i < facets.facets.size(); ++i) {
     if (!stops_light(facets.facets[i], facets.planes[i], map.light)) continue;
     for (const glm::dvec3& corner : facets.facets[i].corners) {
-      casters.add(glm::dvec2{in_side(side, corner)});
+      add(casters, glm::dvec2{in_side(side, corner)});
     }
   }
   if (!fits) {
-    if (!casters.is_empty()) set_texels(side, casters, map.settings, facets.epsilon_m);
+    if (!is_empty(casters)) set_texels(side, casters, map.settings, facets.epsilon_m);
     map.sides.push_back(side);
     map.ends_m.push_back(std::numeric_limits<double>::infinity());
     return;
@@ -159,12 +152,12 @@ void fit_to_directional(const Facets& facets, const MapCamera& camera, const Sce
   map.ends_m = cascade_ends_m(range.near_m, range.far_m, map.settings.cascades);
   double begin_m = range.near_m;
   for (const double end_m : map.ends_m) {
-    MapBox box;
+    PlaceBox box;
     for (const glm::dvec3& corner : frustum_of(camera, begin_m, end_m)) {
-      box.add(glm::dvec2{in_side(side, corner)});
+      add(box, glm::dvec2{in_side(side, corner)});
     }
     box = intersection(box, casters);
-    if (!box.is_empty()) set_texels(side, box, map.settings, facets.epsilon_m);
+    if (!is_empty(box)) set_texels(side, box, map.settings, facets.epsilon_m);
     map.sides.push_back(side);
     begin_m = end_m;
   }
@@ -181,10 +174,10 @@ MapSide cube_side(glm::dvec3 place, int number) {
 }
 
 // What a cube's side sees of a frustum: the box around its faces, cut to the side.
-MapBox seen_of(const Frustum& frustum, const MapSide& side, double least_z) {
+PlaceBox seen_of(const Frustum& frustum, const MapSide& side, double least_z) {
   static constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
       {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
-  MapBox box;
+  PlaceBox box;
   for (const auto& face : kFaces) {
     MapPolygon polygon;
     for (const std::size_t corner : face) {
@@ -192,7 +185,7 @@ MapBox seen_of(const Frustum& frustum, const MapSide& side, double least_z) {
     }
     cut_to_side(polygon, {{-1.0, -1.0}, {1.0, 1.0}, least_z});
     for (std::size_t i = 0; i < polygon.count; ++i) {
-      box.add(glm::dvec2{polygon.corners[i]} / polygon.corners[i].z);
+      add(box, glm::dvec2{polygon.corners[i]} / polygon.corners[i].z);
     }
   }
   return box;
@@ -200,16 +193,16 @@ MapBox seen_of(const Frustum& frustum, const MapSide& side, double least_z) {
 
 void fit_to_point(const Facets& facets, const MapCamera& camera, const SceneBox& scene,
                   ShadowMap& map) {
-  const MapBox whole{{-1.0, -1.0}, {1.0, 1.0}};
+  const PlaceBox whole{{-1.0, -1.0}, {1.0, 1.0}};
   const DepthRange range = depth_range(camera, scene);
   const Frustum frustum = frustum_of(camera, range.near_m, range.far_m);
   for (int number = 0; number < 6; ++number) {
     MapSide side = cube_side(map.light.place, number);
-    MapBox box = whole;
+    PlaceBox box = whole;
     if (map.settings.fits_camera) {
       box = intersection(whole, seen_of(frustum, side, facets.epsilon_m));
     }
-    if (!box.is_empty()) set_texels(side, box, map.settings, 0x1p-20);
+    if (!is_empty(box)) set_texels(side, box, map.settings, 0x1p-20);
     map.sides.push_back(side);
   }
   map.ends_m.push_back(std::numeric_limits<double>::infinity());

@@ -1,5 +1,5 @@
 // The fragment stage of a lit, perhaps textured surface: linear colour, and the depth in
-// metres in alpha. Beside scenes/draw/surface_stages.h. Defined or not: TEXTURED, SPECULAR,
+// metres in alpha. Beside scenes/surfaces/surface_stages.h. Defined or not: TEXTURED, SPECULAR,
 // TWO_SIDED, CUT_OUT, BLENDED, PEELED.
 //
 // PEELED, after Everitt 2001: a fragment is discarded unless it lies behind the one that `layer_before` has. Depth alone

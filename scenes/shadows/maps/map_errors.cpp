@@ -1,4 +1,4 @@
-#include "scenes/shadows/map_errors.h"
+#include "scenes/shadows/maps/map_errors.h"
 
 #include <cmath>
 

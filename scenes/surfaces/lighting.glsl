@@ -1,5 +1,5 @@
 // Light at a vertex: ambient, diffuse and specular after Blinn 1977. Beside
-// scenes/draw/lighting.h, in the same order of operations: no pow() and no dot(), whose
+// scenes/surfaces/lighting.h, in the same order of operations: no pow() and no dot(), whose
 // arithmetic drivers choose. MAX_LIGHTS, 1 or more, is defined by whoever compiles this.
 
 uniform vec3 ambient_light;

@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "scenes/shadows/shadow_map.h"
+#include "scenes/shadows/maps/shadow_map.h"
 
 namespace softfocus {
 

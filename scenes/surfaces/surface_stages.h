@@ -13,7 +13,7 @@
 #include "raster/images/sampler.h"
 #include "raster/numbers/vector_math.h"
 #include "raster/pipeline/stages.h"
-#include "scenes/draw/lighting.h"
+#include "scenes/surfaces/lighting.h"
 #include "scenes/scene.h"
 
 namespace softfocus {

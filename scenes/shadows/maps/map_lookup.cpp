@@ -1,4 +1,4 @@
-#include "scenes/shadows/map_lookup.h"
+#include "scenes/shadows/maps/map_lookup.h"
 
 #include "scenes/shadows/point_in_shadow.h"
 

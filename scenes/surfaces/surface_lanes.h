@@ -3,7 +3,7 @@
 
 #include "raster/lanes/isa.h"
 #include "raster/pipeline/lanes/draw_in_lanes.h"
-#include "scenes/draw/surface_stages.h"
+#include "scenes/surfaces/surface_stages.h"
 
 namespace softfocus {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "raster/threads/parallel.h"
-#include "scenes/shadows/shadow_map.h"
+#include "scenes/shadows/maps/shadow_map.h"
 #include "scenes/shadows/shadow_mask.h"
 
 namespace softfocus {

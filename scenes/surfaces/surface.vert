@@ -1,4 +1,4 @@
-// The vertex stage of a lit, perhaps textured surface. Beside scenes/draw/surface_stages.h.
+// The vertex stage of a lit, perhaps textured surface. Beside scenes/surfaces/surface_stages.h.
 // Defined or not: TEXTURED, SPECULAR, TWO_SIDED, CUT_OUT, PEELED.
 #include "lighting.glsl"
 

@@ -1,4 +1,4 @@
-#include "tools/gl/driver.h"
+#include "tools/gl/driver/driver.h"
 
 #include <array>
 
