@@ -28,7 +28,7 @@ class EffectPasses {
 
   /// With fullscreen.vert.
   const GlProgram& program(std::string_view fragment, const std::string& defines = {});
-  /// Of two shaders, neither of which draws over the whole target.
+  /// With a vertex shader of its own, for points and triangles.
   const GlProgram& program_of(std::string_view vertex, std::string_view fragment,
                               const std::string& defines = {});
   /// RGBA16F, its pixels undefined.

@@ -9,9 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "dof/halve.h"
 #include "dof/show.h"
-#include "raster/images/texel.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/frame_parts.h"
 #include "scenes/draw/keyframes.h"
@@ -27,6 +25,7 @@
 #include "tools/gl/frame_on_gl.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/render/frame_lens.h"
 #include "tools/render/frame_sequence.h"
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
@@ -55,77 +54,6 @@ auto timed(Progress& progress, const char* stage, double& ms, Work work) {
 
 bool needs_lens(const RenderOptions& options) {
   return options.show == Show::coc || has_depth_of_field(options);
-}
-
-/// The lens as far as it is known before anything is drawn.
-UsedLens chosen_lens(const RenderOptions& options, const SceneLens& of_scene,
-                     double fov_y_degrees) {
-  UsedLens used;
-  used.lens = overruled(lens_at(of_scene, options.frame), options.lens);
-  used.coc_scale = options.lens.coc_scale.value_or(of_scene.coc_scale);
-  const auto scale = static_cast<float>(options.supersample);
-  used.settings.max_coc_px = std::min(
-      scale * used_max_coc_px(options.max_coc_px, of_scene, options.size.height), kLargestMaxCoc);
-  used.settings.leak = options.leak;
-  used.settings.budget = options.budget;
-  used.settings.aperture = options.aperture;
-  if (options.autofocus) {
-    used.autofocus_pixel =
-        options.autofocus_pixel.value_or(Pixel{options.size.width / 2, options.size.height / 2});
-  } else if (!options.sharp_depths.empty()) {
-    used.sharp_depths = sharp_depths(options.sharp_depths, used.lens, fov_y_degrees,
-                                     drawn_size(options).height, used.coc_scale);
-  } else {
-    check_lens(used.lens, options.lens, options.scene);
-  }
-  return used;
-}
-
-/// Of the picture and of each layer that is blurred by itself.
-float largest_circle_px(const FrameParts& parts, const PixelCoc& coc, ThreadPool& pool) {
-  const auto largest = [&](const Image& picture) {
-    return circle_sizes(picture, coc, 0.0f, pool).largest_px;
-  };
-  float most = largest(parts.transparent.empty() ? parts.picture : parts.opaque);
-  for (const TransparentPicture& layer : parts.transparent) {
-    most = std::max(most, largest(layer.colour));
-  }
-  return most;
-}
-
-/// Focuses on the drawn picture if that is asked for, and computes the frame's constants.
-void set_lens(UsedLens& used, const FrameParts& parts, const RenderOptions& options,
-              double fov_y_degrees, ThreadPool& pool) {
-  const Image& scene = parts.picture;
-  if (used.autofocus_pixel) {
-    const auto [x, y] = *used.autofocus_pixel;
-    const int scale = options.supersample;
-    used.lens.focus_m =
-        load_texel<Format::rgba16f>(scene, x * scale + scale / 2, y * scale + scale / 2).w;
-    check_lens(used.lens, options.lens,
-               "--autofocus " + std::to_string(x) + "," + std::to_string(y));
-  }
-  used.settings.coc =
-      checked_pixel_coc(used.lens, fov_y_degrees, drawn_size(options).height, used.coc_scale);
-  if (!used.sharp_depths.empty()) {
-    used.radii_px = sharp_depths_radii(scene, used.sharp_depths, pool);
-    const float largest = *std::max_element(used.radii_px.begin(), used.radii_px.end());
-    if (takes_all_circles(options)) used.settings.max_coc_px = std::ceil(largest);
-  } else if (takes_all_circles(options)) {
-    used.settings.max_coc_px = std::ceil(largest_circle_px(parts, used.settings.coc, pool));
-  }
-  if (options.show == Show::image) check_arithmetic(options.arithmetic, used.settings);
-}
-
-/// Halves a picture that was made at twice the size, and its lens's lengths in pixels.
-Image halved(const Image& picture, const RenderOptions& options, double fov_y_degrees,
-             std::optional<UsedLens>& used, ThreadPool& pool) {
-  if (used) {
-    used->settings.max_coc_px *= 0.5f;
-    used->settings.coc =
-        checked_pixel_coc(used->lens, fov_y_degrees, options.size.height, used->coc_scale);
-  }
-  return halve(picture, options.profile, pool);
 }
 
 /// What a method works from that draws the scene itself, from many points of the lens.
