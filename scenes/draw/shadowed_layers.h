@@ -11,8 +11,8 @@
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/seen_facets.h"
-#include "scenes/shadows/projected_shadows.h"
 #include "scenes/shadows/maps/shadow_map.h"
+#include "scenes/shadows/projected_shadows.h"
 #include "scenes/shadows/volumes/volume_mask.h"
 
 namespace softfocus {

@@ -5,8 +5,8 @@
 
 #include "raster/pipeline/state.h"
 #include "scenes/draw/frame_matrices.h"
-#include "scenes/surfaces/surface_stages.h"
 #include "scenes/scene.h"
+#include "scenes/surfaces/surface_stages.h"
 
 namespace softfocus {
 

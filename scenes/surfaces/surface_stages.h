@@ -13,8 +13,8 @@
 #include "raster/images/sampler.h"
 #include "raster/numbers/vector_math.h"
 #include "raster/pipeline/stages.h"
-#include "scenes/surfaces/lighting.h"
 #include "scenes/scene.h"
+#include "scenes/surfaces/lighting.h"
 
 namespace softfocus {
 

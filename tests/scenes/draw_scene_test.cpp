@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "raster/images/texel.h"
-#include "scenes/surfaces/lighting.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/surfaces/lighting.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <string>
 
+#include "dof/circle_sizes.h"
 #include "dof/halve.h"
 #include "raster/images/texel.h"
+#include "scenes/draw/keyframes.h"
 #include "tools/cli/errors.h"
 #include "tools/options/method_options.h"
+#include "tools/render/picture_files.h"
 #include "tools/render/sharp_depths_option.h"
 
 namespace softfocus {
