@@ -169,6 +169,12 @@ int measure_shadows(const ShadowsOptions& options) {
   const bool has_map = std::any_of(scene.lights.begin(), scene.lights.end(),
                                    [](const Light& of) { return of.shadows == ShadowKind::map; });
   if (has_map) set_shadows(scene, ShadowKind::map);
+  const bool has_volumes =
+      std::any_of(scene.lights.begin(), scene.lights.end(),
+                  [](const Light& of) { return of.shadows == ShadowKind::volumes; });
+  if (options.volume_count == VolumeCount::z_pass && !has_volumes) {
+    throw UsageError("--z-pass: counts the faces of volumes; give --shadows volumes too");
+  }
   const bool is_projected =
       std::all_of(scene.lights.begin(), scene.lights.end(), [](const Light& of) {
         return of.shadows == ShadowKind::none || of.shadows == ShadowKind::projected;

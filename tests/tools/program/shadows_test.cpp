@@ -1,0 +1,115 @@
+// softfocus shadows, and render --shadows, from end to end.
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "tests/support/cli_refused.h"
+#include "tests/support/gl_drivers.h"
+#include "tools/pictures/image_file.h"
+
+using namespace softfocus;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::string measured(const Words& more) {
+  Words words{"shadows", "--size", "64x48", "--runs", "1"};
+  words.insert(words.end(), more.begin(), more.end());
+  const ProgramRun run = run_program(words);
+  CHECK(run.status == 0);
+  CHECK(run.err == "");
+  return run.out;
+}
+
+std::uint64_t drawn(const TemporaryDirectory& folder, const Words& more) {
+  const std::string file = folder.file("a.npy");
+  Words words{"render", "--size", "64x48", "--show", "pinhole", "-o", file};
+  words.insert(words.end(), more.begin(), more.end());
+  const ProgramRun run = run_program(words);
+  CHECK(run.err == "");
+  REQUIRE(run.status == 0);
+  return hash_image(read_image_file(file).image);
+}
+
+}  // namespace
+
+TEST_CASE("shadows --check: no pixel of projected shadows and of volumes is wrong") {
+  for (const Words& kind : {Words{"--shadows", "projected"}, Words{"--shadows", "volumes"},
+                            Words{"--shadows", "volumes", "--z-pass"}}) {
+    CAPTURE(kind.back());
+    Words words = kind;
+    words.insert(words.end(), {"cube-room", "--check"});
+    const std::string out = measured(words);
+    CHECK(out.find("6144 seen") != std::string::npos);
+    CHECK(out.find(" 0 in shadow") == std::string::npos);
+    CHECK(out.find(" 0 wrong\n") != std::string::npos);
+  }
+}
+
+TEST_CASE("shadows --check: a map without a bias shades itself, and says so") {
+  const Words map{"cube-room", "--shadows", "map", "--check"};
+  CHECK(measured(map).find(" 0 acne") != std::string::npos);
+  Words biased = map;
+  biased.insert(biased.end(), {"--map", "bias=0,slope-bias=0"});
+  CHECK(measured(biased).find(" 0 acne") == std::string::npos);
+}
+
+TEST_CASE("shadows --vs: a driver draws the same stencil") {
+  if (!has_driver("llvmpipe")) return;
+  const std::string out = measured({"cube-room", "--vs", "llvmpipe"});
+  CHECK(out.find("; 0 of 3072 pixels differ; llvmpipe") != std::string::npos);
+}
+
+TEST_CASE("render --shadows overrules a scene file's lights, and none is the scene without") {
+  const TemporaryDirectory folder;
+  const std::string plain = folder.file("plain.toml"), shadowed = folder.file("shadowed.toml");
+  const std::string text = R"(
+[camera]
+position = [0, 3, 5]
+target = [0, 0, 0]
+fov_degrees = 50
+[material.grey]
+diffuse = [0.6, 0.6, 0.6]
+[[object]]
+shape = "plane"
+width = 8
+depth = 8
+material = "grey"
+[[object]]
+shape = "cube"
+position = [0, 1.5, 0]
+material = "grey"
+[[light]]
+kind = "point"
+position = [1, 6, 1]
+)";
+  std::ofstream{plain} << text;
+  std::ofstream{shadowed} << text << "shadows = \"volumes\"\n";
+  const std::uint64_t none = drawn(folder, {plain});
+  const std::uint64_t projected = drawn(folder, {plain, "--shadows", "projected"});
+  CHECK(projected != none);
+  CHECK(drawn(folder, {shadowed}) == projected);
+  CHECK(drawn(folder, {shadowed, "--shadows", "none"}) == none);
+  CHECK(drawn(folder, {plain, "--shadows", "map", "--map", "size=4096"}) != none);
+}
+
+TEST_CASE("shadows and render --shadows: what does not go together is one clear line") {
+  const TemporaryDirectory folder;
+  const auto refused = [&](const Words& words, const Words& said) {
+    check_refused(folder, words, 2, said);
+  };
+  refused({"shadows"}, {"SCENE", "--triangles"});
+  refused({"shadows", "figures", "--z-pass"}, {"--z-pass", "--shadows volumes"});
+  refused({"shadows", "figures", "--shadows", "volumes", "--vs", "llvmpipe"},
+          {"--vs", "--shadows projected"});
+  refused({"shadows", "figures", "--map-table"}, {"--map-table", "--shadows map"});
+  refused({"shadows", "figures", "--shadows", "fog"}, {"'fog'", "projected, volumes, map"});
+  refused({"render", "figures", "-o", "a.png", "--shadows", "maps"}, {"'maps'", "'map'"});
+  refused({"render", "figures", "-o", "a.png", "--map", "size=64"}, {"--map", "--shadows map"});
+  refused({"render", "figures", "-o", "a.png", "--shadows", "map", "--map", "size=1"},
+          {"'1'", "16 to 8192"});
+  refused({"render", "figures", "-o", "a.png", "--shadows", "projected", "--method", "ray-traced"},
+          {"ray-traced", "--shadows none"});
+}
