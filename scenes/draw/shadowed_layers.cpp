@@ -9,6 +9,7 @@
 #include "scenes/draw/light_shares.h"
 #include "scenes/draw/scene_maps.h"
 #include "scenes/draw/surface_draws.h"
+#include "scenes/shadows/shadow_truth.h"
 
 namespace softfocus {
 namespace {
@@ -61,7 +62,7 @@ void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool&
   shadows.projected.clear();
   for (const std::size_t number : shadows.lights) {
     const Light& light = scene.lights[number];
-    shadows.projected.push_back(light.shadows == ShadowKind::projected
+    shadows.projected.push_back(light.shadows == ShadowKind::projected && !shadows.by_rays
                                     ? project_by_grid(shadows.facets, shadow_light(light), pool)
                                     : without_triangles(shadows.facets, shadow_light(light)));
   }
@@ -81,10 +82,33 @@ ShadowView shadow_view(const CameraMatrices& camera, int width, int height,
   return {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
 }
 
+void draw_masks_by_rays(SceneShadows& shadows, const Scene& scene, const ShadowView& view,
+                        glm::dvec3 eye, ThreadPool& pool) {
+  shadows.masks.resize(shadows.seen.size());
+  for (std::size_t layer = 0; layer < shadows.seen.size(); ++layer) {
+    shadows.masks[layer].assign(shadows.seen[layer].size(), 0);
+  }
+  for (std::size_t light = 0; light < shadows.lights.size(); ++light) {
+    const ShadowLight source = shadow_light(scene.lights[shadows.lights[light]]);
+    const ShadowTruth truth{shadows.facets, source, view, eye, true};
+    for (std::size_t layer = 0; layer < shadows.seen.size(); ++layer) {
+      const std::vector<std::uint8_t> is_dark =
+          dark_pixels(truth, shadows.seen[layer], view.width, view.height, pool);
+      for (std::size_t i = 0; i < is_dark.size(); ++i) {
+        shadows.masks[layer][i] |= static_cast<std::uint8_t>(is_dark[i] << light);
+      }
+    }
+  }
+}
+
 void draw_masks(SceneShadows& shadows, const Scene& scene, const CameraMatrices& camera, int width,
                 int height, const Profile& profile, ThreadPool& pool) {
-  const auto of_lights = pointers_to(shadows.projected);
   const ShadowView view = shadow_view(camera, width, height, profile);
+  if (shadows.by_rays) {
+    draw_masks_by_rays(shadows, scene, view, camera.eye, pool);
+    return;
+  }
+  const auto of_lights = pointers_to(shadows.projected);
   draw_maps(shadows, scene, map_camera(scene, camera), profile, pool);
   shadows.masks.resize(shadows.seen.size());
   shadows.volume_rays = 0;

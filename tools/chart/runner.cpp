@@ -39,6 +39,7 @@ RunTime ChartRunner::run(const ChartEntry& entry) {
   if (entry.max_error) return choose(*entry.max_error);
   if (entry.of_scene != nullptr) return draw_otherwise(*entry.of_scene);
   if (is_of_effects(entry)) return draw_with_effects(entry);
+  if (entry.shadows) return draw_with_shadows(entry);
   if (entry.method == kOfFilteredViews) return filter_views(entry.samples);
   return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
 }
@@ -156,6 +157,25 @@ RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
   return {ms_between(start, end), ms_between(drawn, end)};
 }
 
+ShadowContenders& ChartRunner::shadow_contenders() {
+  if (!shadows_) shadows_.emplace(scene_, pool_);
+  return *shadows_;
+}
+
+RunTime ChartRunner::draw_with_shadows(const ChartEntry& entry) {
+  ShadowContenders& contenders = shadow_contenders();
+  contenders.prepare(entry);
+  const Clock::time_point start = Clock::now();
+  contenders.draw(result_);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+double ChartRunner::wrong_pixels(const ChartEntry& entry) {
+  if (scene_.subject->ranked[0].value != kShadowErrors[0].value) return kNotTimed;
+  return static_cast<double>(entry.shadows ? shadow_contenders().wrong_pixels()
+                                           : shadow_contenders().wrong_without_shadows());
+}
+
 // The memory is made once, as it would be for many frames.
 AccumulationBuffer& ChartRunner::buffer() {
   if (!buffer_) {
@@ -253,8 +273,8 @@ void ChartRunner::warm_up(const ChartEntry& entry) {
     filter(entry);
   } else if (entry.of_scene != nullptr) {
     draw_otherwise(*entry.of_scene);
-  } else if (is_of_effects(entry)) {
-    draw_with_effects(entry);
+  } else if (is_of_pinhole(entry)) {
+    run(entry);
   } else if (entry.method == kOfFilteredViews) {
     filter_views(std::min(samples, kFilteredViews));
     return;

@@ -11,6 +11,7 @@
 #include "scenes/filtered_views/filtered_views.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/settings.h"
+#include "tools/chart/shadow_contenders.h"
 
 namespace softfocus {
 
@@ -37,12 +38,16 @@ class ChartRunner {
 
   /// Of the last run.
   const Image& result() const { return result_; }
+  /// Of a chart of shadows: ChartErrors::wrong_pixels of the last run, which was of that entry.
+  double wrong_pixels(const ChartEntry& entry);
   /// What auto chose last, in words.
   const std::string& chosen() const { return chosen_; }
 
  private:
   RunTime filter(const ChartEntry& entry);
   RunTime draw_with_effects(const ChartEntry& entry);
+  RunTime draw_with_shadows(const ChartEntry& entry);
+  ShadowContenders& shadow_contenders();
   Image with_effect(ChosenEffect chosen, const Image& before);
   RunTime draw_after_frames(const ChosenEffect& chosen, int frames);
   RunTime accumulate(int samples);
@@ -69,6 +74,7 @@ class ChartRunner {
   std::optional<FilteredViewsBuffer> filtered_;
   SampleSums sums_;
   std::optional<PreparedScene> prepared_large_;  // of what is drawn larger
+  std::optional<ShadowContenders> shadows_;
   Image drawn_, large_;
   std::vector<Image> behind_;                    ///< as many layers as the method reads
   std::vector<TransparentPicture> transparent_;  ///< layers before drawn_

@@ -64,6 +64,10 @@ bool is_of_effects(const ChartEntry& entry) {
   return !entry.effects.empty() || entry.supersample > 1;
 }
 
+bool is_of_pinhole(const ChartEntry& entry) {
+  return is_of_effects(entry) || entry.shadows.has_value();
+}
+
 std::vector<std::string> chart_methods() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.emplace_back(method.name);
@@ -114,7 +118,7 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
 Json settings_json(const ChartEntry& entry) {
   if (entry.max_error) return {{"max_error", *entry.max_error}, {"chosen", entry.chosen}};
   if (entry.of_scene != nullptr) return Json::object();
-  if (is_of_effects(entry)) {
+  if (is_of_pinhole(entry)) {
     Json json = Json::object();
     if (!entry.setting.name.empty()) json[entry.setting.name] = entry.setting.value;
     return json;
@@ -142,7 +146,7 @@ std::string settings_text(const ChartEntry& entry) {
 std::string setting_within_series(const ChartEntry& entry) {
   if (entry.max_error) return "max-error " + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return "";
-  if (is_of_effects(entry)) {
+  if (is_of_pinhole(entry)) {
     const EffectSetting& setting = entry.setting;
     return setting.name.empty() ? "" : setting.name + " " + short_number(setting.value);
   }
@@ -154,7 +158,7 @@ std::string entry_id(const ChartEntry& entry) {
   std::string id = entry.method;
   if (entry.max_error) return id + "-e" + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return id;
-  if (is_of_effects(entry)) {
+  if (is_of_pinhole(entry)) {
     const EffectSetting& setting = entry.setting;
     return setting.name.empty() ? id : id + "-" + setting.name + short_number(setting.value);
   }

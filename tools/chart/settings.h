@@ -11,11 +11,22 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/effects/effect.h"
 #include "scenes/lens_views/lens_view_method.h"
+#include "scenes/scene.h"
+#include "scenes/shadows/volumes/volume_mask.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
 
-/// A setting of an effect: "sigma", 2.
+/// Shadows of all lights.
+struct ChartShadows {
+  ShadowKind kind = ShadowKind::projected;
+  ShadowMapSettings map{};
+  VolumeCount count = VolumeCount::z_fail;
+  bool by_rays = false;
+  bool kept = false;  ///< from frame to frame; else all is found anew
+};
+
+/// A setting of an effect or of shadows: "sigma", 2.
 struct EffectSetting {
   std::string name{};
   double value = 0.0;
@@ -36,11 +47,15 @@ struct ChartEntry {
   std::string chosen{};                 ///< by auto, once it has: "disc-layers, radius 16"
   std::vector<ChosenEffect> effects{};  ///< on the pinhole's picture, one after the other
   int supersample = 1;                  ///< drawn at so many times the width and height
-  EffectSetting setting{};              ///< in what the effects differ from others of the method
+  std::optional<ChartShadows> shadows{};
+  EffectSetting setting{};  ///< in what effects or shadows differ from others of the method
 };
 
 /// Whether it is the pinhole's picture with effects, or drawn larger and halved.
 bool is_of_effects(const ChartEntry& entry);
+
+/// Whether it is the pinhole's picture with something more: effects, a larger size, shadows.
+bool is_of_pinhole(const ChartEntry& entry);
 
 inline constexpr std::string_view kPinhole = "pinhole";
 inline constexpr std::string_view kOfFilteredViews = "filtered-views";
