@@ -41,6 +41,7 @@ RunTime ChartRunner::run(const ChartEntry& entry) {
   if (is_of_effects(entry)) return draw_with_effects(entry);
   if (entry.shadows) return draw_with_shadows(entry);
   if (entry.method == kOfFilteredViews) return filter_views(entry.samples);
+  if (entry.drawn_views > 0) return warp_views(entry.samples, entry.drawn_views);
   return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
 }
 
@@ -223,6 +224,16 @@ RunTime ChartRunner::filter_views(int samples) {
   return {ms_between(start, Clock::now()), std::nullopt};
 }
 
+RunTime ChartRunner::warp_views(int samples, int drawn_views) {
+  LensViewInput views = views_;
+  views.sampling.samples = samples;
+  views.sampling.drawn_views = drawn_views;
+  if (!warped_) warped_ = make_warped_views_buffer(views, pool_);
+  const Clock::time_point start = Clock::now();
+  result_ = warped_accumulation(*warped_, views, pool_).picture;
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
 // The sharp picture tells such a method what is seen, so its drawing counts.
 RunTime ChartRunner::draw_otherwise(const LensViewMethod& method) {
   const Clock::time_point start = Clock::now();
@@ -277,6 +288,9 @@ void ChartRunner::warm_up(const ChartEntry& entry) {
     run(entry);
   } else if (entry.method == kOfFilteredViews) {
     filter_views(std::min(samples, kFilteredViews));
+    return;
+  } else if (entry.drawn_views > 0) {
+    warp_views(kSampleGroup, entry.drawn_views);
     return;
   }
   if (samples == 0) return;

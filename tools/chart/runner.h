@@ -9,6 +9,7 @@
 
 #include "dof/auto/auto_method.h"
 #include "scenes/filtered_views/filtered_views.h"
+#include "scenes/warped_views/warped_views.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/settings.h"
 #include "tools/chart/shadow_contenders.h"
@@ -52,6 +53,7 @@ class ChartRunner {
   RunTime draw_after_frames(const ChosenEffect& chosen, int frames);
   RunTime accumulate(int samples);
   RunTime filter_views(int samples);
+  RunTime warp_views(int samples, int drawn_views);
   RunTime draw_otherwise(const LensViewMethod& method);
   RunTime choose(double max_error);
   AutoMethod predicted_for(double max_error);
@@ -72,6 +74,7 @@ class ChartRunner {
   std::map<float, FixedTable> tables_;             // by radius
   std::optional<AccumulationBuffer> buffer_;
   std::optional<FilteredViewsBuffer> filtered_;
+  std::optional<WarpedViewsBuffer> warped_;
   SampleSums sums_;
   std::optional<PreparedScene> prepared_large_;  // of what is drawn larger
   std::optional<ShadowContenders> shadows_;

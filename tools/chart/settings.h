@@ -35,7 +35,7 @@ struct EffectSetting {
 /// One contender: a method with its settings. Settings without effect on it are left out.
 struct ChartEntry {
   std::string method;
-  /// Null: accumulation or filtered-views of `samples` pictures, auto, another method that
+  /// Null: accumulation, filtered or warped views of `samples` pictures, auto, another method that
   /// needs the scene, or what is_of_effects().
   const Method* filter = nullptr;
   const LensViewMethod* of_scene = nullptr;  ///< which takes no samples
@@ -43,6 +43,7 @@ struct ChartEntry {
   std::optional<float> max_coc_px{};
   Arithmetic arithmetic = Arithmetic::floats;  ///< of two-pass
   int samples = 0;
+  int drawn_views = 0;                  ///< of warped-accumulation
   std::optional<double> max_error{};    ///< of auto, which chooses from the others
   std::string chosen{};                 ///< by auto, once it has: "disc-layers, radius 16"
   std::vector<ChosenEffect> effects{};  ///< on the pinhole's picture, one after the other
@@ -59,10 +60,10 @@ bool is_of_pinhole(const ChartEntry& entry);
 
 inline constexpr std::string_view kPinhole = "pinhole";
 inline constexpr std::string_view kOfFilteredViews = "filtered-views";
+inline constexpr std::string_view kOfWarpedViews = "warped-accumulation";
 
-/// The names that --methods takes: every filter of dof/dof.h, accumulation,
-/// filtered-views, what
-/// draws the scene in one go, and auto.
+/// The names that --methods takes: every filter of dof/dof.h, accumulation, filtered-views,
+/// warped-accumulation, what draws the scene in one go, and auto.
 std::vector<std::string> chart_methods();
 
 /// The settings of one method for pictures of that height; fewer if `quick`. Integers have radii
