@@ -15,6 +15,7 @@
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/pictures/exr_file.h"
+#include "tools/pictures/image_file.h"
 #include "tools/pictures/png_text.h"
 #include "tools/pictures/srgb16.h"
 
@@ -134,6 +135,25 @@ TEST_CASE("PNG: grey of one bit goes from 0 to 255, grey with alpha has two plan
   CHECK(names(grey) == "Y, A");
   CHECK(all_planes(grey)[0] == PlaneValues{16, 32});
   CHECK(all_planes(grey)[1] == PlaneValues{255, 128});
+}
+
+TEST_CASE("PNG: a transparent colour is an alpha, of grey, of colours and of 16 bits") {
+  const auto png = [](int bits, int colour_type, std::string_view rows, std::string_view colour) {
+    return plain_png(2, 1, bits, colour_type, bytes_of(rows), {}, colour);
+  };
+  using namespace std::string_view_literals;
+  const PictureFile grey = open_picture_file(png(8, 0, "\0\x10\x20"sv, "\0\x20"sv), "a.png");
+  CHECK(names(grey) == "Y, A");
+  CHECK(all_planes(grey)[0] == PlaneValues{16, 32});
+  CHECK(all_planes(grey)[1] == PlaneValues{255, 0});
+  const Bytes colours = png(8, 2, "\0\1\2\3\1\2\4"sv, "\0\1\0\2\0\3"sv);
+  const PictureFile colour = open_picture_file(colours, "a.png");
+  CHECK(names(colour) == "R, G, B, A");
+  CHECK(all_planes(colour)[3] == PlaneValues{0, 255});
+  CHECK(decode_picture(colours, "a.png").has_alpha);
+  const PictureFile wide = open_picture_file(png(16, 0, "\0\1\2\1\3"sv, "\1\3"sv), "a.png");
+  CHECK(names(wide) == "Y, A");
+  CHECK(all_planes(wide)[1] == PlaneValues{65535, 0});
 }
 
 TEST_CASE("NPY: every type and both orders give the same planes") {
