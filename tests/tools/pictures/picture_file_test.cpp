@@ -315,6 +315,34 @@ TEST_CASE("JPEG: a picture has the colours of its sRGB numbers") {
   CHECK(load_texel(picture.image, 13, 4).z > 5.0f * load_texel(picture.image, 13, 4).x);
 }
 
+/// The test's JPEG with Exif data: a TIFF of one entry, the orientation.
+Bytes turned_jpeg(std::string_view tiff) {
+  Bytes jpeg = read_picture_bytes(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg");
+  const Bytes data = bytes_of(std::string{"Exif\0\0", 6} + std::string{tiff});
+  Bytes segment = bytes_of("\xFF\xE1");
+  segment.push_back(std::byte{0});
+  segment.push_back(static_cast<std::byte>(data.size() + 2));
+  segment.insert(segment.end(), data.begin(), data.end());
+  jpeg.insert(jpeg.begin() + 2, segment.begin(), segment.end());
+  return jpeg;
+}
+
+TEST_CASE("JPEG: the orientation of Exif data is told, of either byte order, and damage is none") {
+  using namespace std::string_view_literals;
+  const auto orientation = [](std::string_view tiff) {
+    return open_picture_file(turned_jpeg(tiff), "a.jpg").exif_orientation;
+  };
+  const auto big = "MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0"sv;
+  CHECK(orientation(big) == 6);
+  CHECK(orientation("II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0\x08\0\0\0\0\0\0\0"sv) == 8);
+  CHECK(open_picture_file(turned_jpeg(big), "a.jpg").remark == "EXIF orientation 6");
+  for (std::size_t length = 0; length < 22; ++length)
+    CHECK(orientation(big.substr(0, length)) == 1);
+  CHECK(orientation("MM\0*\xFF\xFF\xFF\xFF\0\1"sv) == 1);
+  CHECK(orientation("MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\x09\0\0"sv) == 1);
+  CHECK(open_picture_file(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg").exif_orientation == 1);
+}
+
 TEST_CASE("a picture that is not read is named, and the program that converts it") {
   // Whole numbers would be other ones in an EXR.
   CHECK(has(error_of(bytes_of(std::string_view{"II*\0abcdefgh", 12})), "oiiotool IN -o OUT.png"));
