@@ -352,7 +352,7 @@ TEST_CASE("refocus: an aperture's blades, turn and stretch are drawn, or refused
                 {"--border", "clamp, mirror, black"});
   for (const std::string value : {"8", "0.5,1", "8,-1", "8,x", ","}) {
     check_refused(directory, {"refocus", a, d, "-o", out, "--highlights", value}, 2,
-                  {"--highlights", "GAIN,THRESHOLD"});
+                  {"--highlights '" + value + "'", "GAIN,THRESHOLD"});
   }
 }
 
