@@ -189,6 +189,14 @@ TEST_CASE("a box before the sun has six silhouette edges, a square four") {
   CHECK(make_shadow_volumes(square, join_facets(square), kLamp).silhouette_edges == 4);
 }
 
+TEST_CASE("an edge at 0 and one at -0 are one edge") {
+  std::vector<Facet> corners;
+  add_triangle(corners, {0.0, 0, 0}, {1, 0, 0}, {1, 1, 0});
+  add_triangle(corners, {-0.0, 0, 0}, {1, 1, -0.0}, {0, 1, 0});
+  const Facets square = make_facets(corners);
+  CHECK(make_shadow_volumes(square, join_facets(square), kLamp).silhouette_edges == 4);
+}
+
 TEST_CASE("three triangles on an edge count it once or three times") {
   const ShadowLight above{{0, 1, 0}, 0.0};
   const auto volumes_with = [&](double third_x) {
@@ -283,6 +291,27 @@ TEST_CASE("volumes of thin casters, and of casters through their receivers, are 
   CHECK(check_masks(corners, kLamp) > 10);
 }
 
+TEST_CASE("what is a little more than epsilon over a receiver casts, what is less does not") {
+  // Of 283 m across, so that epsilon is a sixth of a pixel of a close look.
+  for (const double height : {0.6, 3.0, 20.0}) {
+    for (const double rise : {0.0, 30.0}) {
+      CAPTURE(height);
+      CAPTURE(rise);
+      std::vector<Facet> corners;
+      add_floor(corners, 100);
+      const double epsilon = make_facets(corners).epsilon_m;
+      const double low = height * epsilon, high = (height + rise) * epsilon;
+      add_quad(corners, {-0.011, low, 0.008}, {0.012, high, 0.01}, {0.009, high, -0.011},
+               {-0.013, low, -0.009});
+      Camera camera = camera_at({0.015, 0.1, 0.06}, {0.003, 0, 0.002});
+      camera.fov_y_degrees = 26.0;
+      check_masks(corners, {normalize(glm::dvec3{1.0, 0.5, 0.13}), 0.0}, camera);
+      check_masks(corners, {normalize(glm::dvec3{-1.0, 0.5, 0.13}), 0.0}, camera);
+      check_masks(corners, {{0.4, 0.2, 0.1}, 1.0}, camera);
+    }
+  }
+}
+
 TEST_CASE("volumes of random triangles are right from random places") {
   for (std::uint32_t seed = 1; seed < 9; ++seed) {
     CAPTURE(seed);
@@ -320,6 +349,35 @@ TEST_CASE("volumes hold the points that rays to the light find dark") {
   CHECK(held({0.1, -1, 0.3}) == 1);
   CHECK(held({0.1, 1.1, 0.3}) == 0);
   CHECK(held({2, 0.5, 0}) == 0);
+}
+
+TEST_CASE("a pixel with a sample is dark exactly if its count and the eye's are more than none") {
+  std::vector<Facet> corners;
+  add_floor(corners, 4);
+  add_box(corners, {-0.5, 0, -0.5}, {0.5, 1, 0.5}, false);
+  const Facets facets = make_facets(corners);
+  const JoinedFacets joined = join_facets(facets);
+  const CameraMatrices camera = camera_matrices(kCamera, 0.0, kWidth, kHeight);
+  const std::vector<SeenFacet> seen = seen_by_rays(facets, camera);
+  const ShadowVolumes volumes = make_shadow_volumes(facets, joined, kLamp);
+  const std::vector<LitSide> lit = lit_sides(facets, kLamp);
+  ThreadPool pool{2};
+  const int of_eye = volumes_that_hold(facets, joined, kLamp, volumes.casters, camera.eye);
+  for (const VolumeCount count : {VolumeCount::z_fail, VolumeCount::z_pass}) {
+    const std::vector<std::uint8_t> mask = volume_mask(facets, kLamp, seen, camera, count, pool);
+    std::vector<std::uint8_t> none(seen.size());
+    const VolumeCounts counted = count_volumes(facets, joined, volumes, lit, 1, seen,
+                                               view_of(camera), camera.eye, count, none, pool);
+    int samples = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (counted.samples[i].z == 0.0) continue;
+      ++samples;
+      const std::int64_t held = counted.counts[i] + (count == VolumeCount::z_pass ? of_eye : 0);
+      REQUIRE(held >= 0);
+      REQUIRE((held > 0) == (mask[i] == 1));
+    }
+    CHECK(samples > 500);
+  }
 }
 
 TEST_CASE("cube-room's volumes are right") { check_scene("cube-room", 160, 120); }

@@ -49,7 +49,7 @@ void check_all_equal(const std::string& driver) {
       "frame",    "two-pass-tiled",   "one-pass-tiled", "peel",        "blend",
       "kernel",   "pyramid",          "bilateral",      "bloom",       "lens-flare",
       "tone-map", "velocity",         "reproject",      "motion-blur", "reprojection",
-      "temporal", "polygon",          "shadow"};
+      "temporal", "polygon",          "shadow",         "shadow-map",  "shadow-volume"};
   CHECK(stages == all);
 }
 
@@ -166,6 +166,12 @@ TEST_CASE("crosscheck: another order of operations in a shader is caught" *
                       "(a.x * b.x + a.y * b.y) + a.z * b.z", "a.x * b.x + (a.y * b.y + a.z * b.z)");
   check_shader_caught("frame/figures-128x96-frame7-two-pass", "weights.glsl",
                       "depth_m - focus_m) / depth_m", "depth_m - focus_m) * (1.0 / depth_m)");
+  // In binary32, at the corner of a texel, with another texel of the kernel, at its edge.
+  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "over.y * double(",
+                      "over.y * double(float(over.x) * 0.0) + over.y * double(");
+  check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "> own", ">= own");
+  check_shader_caught("shadow-volume/figures 33x21 z-fail", "volume.frag", "value >= 0.0",
+                      "value > 0.0");
 }
 
 TEST_CASE("crosscheck: a difference is told with its pixel, both values and a picture") {
