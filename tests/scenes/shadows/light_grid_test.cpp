@@ -15,13 +15,16 @@ using namespace softfocus::test;
 
 namespace {
 
-bool meets(const Facet& facet, glm::dvec3 from, glm::dvec3 ray) {
+// Before the light.
+bool meets(const Facet& facet, glm::dvec3 from, const ShadowLight& light) {
+  const glm::dvec3 ray = light.place - from * light.w;
   const auto& [a, b, c] = facet.corners;
   const glm::dvec3 p = cross(ray, c - a), q = cross(from - a, b - a);
   const double determinant = dot(b - a, p);
   if (determinant == 0.0) return false;
   const double s = dot(from - a, p) / determinant, t = dot(ray, q) / determinant;
-  return s >= 0.0 && t >= 0.0 && s + t <= 1.0 && dot(c - a, q) / determinant > 0.0;
+  const double along = dot(c - a, q) / determinant;
+  return s >= 0.0 && t >= 0.0 && s + t <= 1.0 && along > 0.0 && (light.w == 0.0 || along < 1.0);
 }
 
 // From behind a point of the facet, seen from the light.
@@ -39,11 +42,10 @@ int check_grid(const Facets& facets, const ShadowLight& light) {
     for (const glm::dvec3& target :
          {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0}) {
       const glm::dvec3 from = behind(target, light);
-      const glm::dvec3 ray = light.place - from * light.w;
       find_casters(grid, {&from, 1}, found);
       for (std::uint32_t i = 0; i < facets.facets.size(); ++i) {
         if (!stops_light(facets.facets[i], facets.planes[i], light)) continue;
-        if (!meets(facets.facets[i], from, ray)) continue;
+        if (!meets(facets.facets[i], from, light)) continue;
         ++met;
         REQUIRE(std::binary_search(found.begin(), found.end(), i));
       }

@@ -166,12 +166,13 @@ TEST_CASE("crosscheck: another order of operations in a shader is caught" *
                       "(a.x * b.x + a.y * b.y) + a.z * b.z", "a.x * b.x + (a.y * b.y + a.z * b.z)");
   check_shader_caught("frame/figures-128x96-frame7-two-pass", "weights.glsl",
                       "depth_m - focus_m) / depth_m", "depth_m - focus_m) * (1.0 / depth_m)");
-  // In binary32, at the corner of a texel, with another texel of the kernel, at its edge.
-  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "over.y * double(",
-                      "over.y * double(float(over.x) * 0.0) + over.y * double(");
-  check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "> own", ">= own");
-  check_shader_caught("shadow-volume/figures 33x21 z-fail", "volume.frag", "value >= 0.0",
-                      "value > 0.0");
+  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "double(gl_FragCoord.x)",
+                      "double(gl_FragCoord.x - 0.5)");
+  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "most < raised ? most : raised",
+                      "raised");
+  check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "kernel / 2", "kernel");
+  check_shader_caught("shadow-volume/figures 33x21 z-fail", "volume.frag", "q * of_w - finite",
+                      "q * of_w");
 }
 
 TEST_CASE("crosscheck: a difference is told with its pixel, both values and a picture") {
