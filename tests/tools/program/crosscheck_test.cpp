@@ -171,7 +171,7 @@ TEST_CASE("crosscheck: another order of operations in a shader is caught" *
   check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "most < raised ? most : raised",
                       "raised");
   check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "kernel / 2", "kernel");
-  check_shader_caught("shadow-volume/figures 33x21 z-fail", "volume.frag", "q * of_w - finite",
+  check_shader_caught("shadow-volume/near-fence 65x41 z-fail", "volume.frag", "q * of_w - finite",
                       "q * of_w");
 }
 
