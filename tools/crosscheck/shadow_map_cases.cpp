@@ -57,9 +57,9 @@ void map_both(const Bench& bench, Tally& tally, const std::string& scene,
 void add_shadow_map_cases(std::vector<Case>& cases) {
   const auto add = [&](const std::string& scene, const ShadowMapSettings& settings, int width,
                        int height, bool quick) {
-    const std::string name =
-        name_and_size(scene, width, height) + ' ' + std::to_string(settings.size) + "-kernel" +
-        std::to_string(settings.kernel) + "-cascades" + std::to_string(settings.cascades);
+    std::string name = name_and_size(scene, width, height) + ' ' + std::to_string(settings.size);
+    if (settings.kernel > 1) name += "-kernel" + std::to_string(settings.kernel);
+    if (settings.cascades > 1) name += "-cascades" + std::to_string(settings.cascades);
     cases.push_back({"shadow-map", name, quick, quick, [=](const Bench& bench, Tally& tally) {
                        map_both(bench, tally, scene, settings, width, height);
                      }});

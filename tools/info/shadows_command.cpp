@@ -46,7 +46,7 @@ struct ShadowsOptions {
   double frame = 0.0;
   int runs = 5;
   bool check = false;
-  const Driver* versus = nullptr;     ///< draws the same stencil
+  const Driver* versus = nullptr;     ///< draws the same stencil or maps
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;
   bool map_table = false;

@@ -65,7 +65,7 @@ TEST_CASE("shadows --vs: a driver draws the same stencil") {
 TEST_CASE("shadows --vs: a driver draws the same maps") {
   if (!has_driver("llvmpipe")) return;
   const std::string out =
-      measured({"cube-room", "--shadows", "map", "--map", "size=64", "--vs", "llvmpipe"});
+      measured({"near-fence", "--shadows", "map", "--map", "size=64", "--vs", "llvmpipe"});
   CHECK(out.find("; 0 of ") != std::string::npos);
   CHECK(out.find(" texels differ; llvmpipe") != std::string::npos);
 }
