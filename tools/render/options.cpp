@@ -102,6 +102,8 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
               refuse_name("--shadows", text, names_in(kShadowChoices));
             });
   add_map_option(parser, options.map);
+  add_light_options(parser, options.lights);
+  add_terminator_option(parser, options.lights);
   add_sequence_options(parser, options.sequence,
                        "Of --frames only every N-th, from the I-th on; without them, of "
                        "accumulation, the I-th of N parts of the samples: FILE, a .sum, gets their "
@@ -297,6 +299,7 @@ void check_render_memory(const RenderOptions& options, std::uint64_t each_pixel)
 void settle_shadows(const RenderOptions& options, Scene& scene) {
   if (options.shadows) set_shadows(scene, *options.shadows);
   set_maps(options.map, scene);
+  set_lights(options.lights, scene);
   if (!has_shadows(scene)) return;
   if (options.shadows && scene.lights.size() > kMostShadowLights) {
     throw UsageError("--shadows: '" + options.scene + "' has " +
