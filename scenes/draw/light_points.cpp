@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
@@ -51,7 +52,7 @@ std::vector<Light> lights_at_point(std::span<const Light> lights, std::uint32_t 
   std::vector<Light> moved{lights.begin(), lights.end()};
   if (index == 0) return moved;
   constexpr std::uint32_t kLightSeries = 0;
-  const glm::dvec2 of_disc = ApertureMap{{}}(square_point(index, kLightSeries));
+  const glm::dvec2 of_disc = ApertureMap{ApertureShape{}}(square_point(index, kLightSeries));
   const double turn = shutter_point(index);
   for (Light& light : moved) {
     if (!is_soft(light)) continue;

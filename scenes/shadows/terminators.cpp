@@ -10,7 +10,7 @@
 namespace softfocus {
 namespace {
 
-glm::dvec3 towards(const ShadowLight& light, glm::dvec3 point) {
+glm::dvec3 way_to(const ShadowLight& light, glm::dvec3 point) {
   return light.place - point * light.w;
 }
 
@@ -99,7 +99,7 @@ bool has_lit_corner(const Facets& facets, const CurvedSurfaces& surfaces, std::u
   const double side = seen_from_back ? -1.0 : 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 normal{surfaces.normals[facet][i]};
-    if (side * dot(normal, towards(light, facets.facets[facet].corners[i])) > 0.0) return true;
+    if (side * dot(normal, way_to(light, facets.facets[facet].corners[i])) > 0.0) return true;
   }
   return false;
 }
@@ -107,7 +107,7 @@ bool has_lit_corner(const Facets& facets, const CurvedSurfaces& surfaces, std::u
 bool behind_own_curve_in_shadow(const Facets& facets, const CurvedSurfaces& surfaces,
                                 std::uint32_t facet, glm::dvec3 point, const ShadowLight& light,
                                 std::span<const std::uint32_t> casters) {
-  const glm::dvec3 ray = towards(light, point);
+  const glm::dvec3 ray = way_to(light, point);
   const double metres = length_of(ray);
   const double own_m = kOwnReach * longest_edge_m(facets.facets[facet]);
   for (const std::uint32_t caster : casters) {
@@ -130,7 +130,7 @@ double kept_by_fade(const Facets& facets, const CurvedSurfaces& surfaces, std::u
   const glm::dvec3 by_plane = plane * side;
   const glm::dvec3 by_corners =
       normal_at(facets.facets[facet], surfaces.normals[facet], plane, point) * side;
-  const glm::dvec3 to_light = normalize(towards(light, point));
+  const glm::dvec3 to_light = normalize(way_to(light, point));
   const double faces = dot(by_corners, to_light), agree = dot(by_plane, by_corners);
   if (!(faces > 0.0) || !(agree > 0.0)) return 1.0;
   const double g = std::clamp(dot(by_plane, to_light) / (faces * agree), 0.0, 1.0);

@@ -271,6 +271,9 @@ constexpr std::uint64_t kFilteredBytesPerPixel = kSamplingBytesPerPixel + 8 * 8;
 /// each for the filter, and the opaque picture.
 constexpr std::uint64_t kTransparentBytesPerPixel = 4 * 12 + 8 * 8 + 8;
 
+/// And for soft shadows: sums of three colours, of each layer.
+constexpr std::uint64_t kSoftBytesPerPixel = 3 * 8;
+
 /// And for frames from those before: four pictures, a velocity (4 bytes) and counts (4), and what
 /// draws the velocity (12).
 constexpr std::uint64_t kHistoryBytesPerPixel = 4 * 8 + 4 + 4 + 12;
@@ -316,6 +319,10 @@ void settle_shadows(const RenderOptions& options, Scene& scene) {
 
 void check_transparent_memory(const RenderOptions& options) {
   check_render_memory(options, bytes_per_pixel(options) + kTransparentBytesPerPixel);
+}
+
+void check_soft_memory(const RenderOptions& options) {
+  check_render_memory(options, bytes_per_pixel(options) + layers_of(options) * kSoftBytesPerPixel);
 }
 
 PictureSize drawn_size(const RenderOptions& options) {

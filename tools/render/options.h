@@ -95,6 +95,9 @@ void settle_shadows(const RenderOptions& options, Scene& scene);
 /// Throws UsageError if there is not the memory for a scene with transparent surfaces.
 void check_transparent_memory(const RenderOptions& options);
 
+/// Throws UsageError if there is not the memory for a scene with soft shadows.
+void check_soft_memory(const RenderOptions& options);
+
 /// --autofocus may stand without a value, and CLI11 would take the next argument for
 /// it, a scene perhaps. So what follows is joined to it with "=": the pixel, or "centre".
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments);

@@ -84,7 +84,7 @@ TEST_CASE("normals: another object's shadow lies on facets that turn away, too")
   CHECK(equal(drawn(scene, pool), drawn(without, pool)));
 }
 
-TEST_CASE("normals: the grid's casters answer as all do") {
+TEST_CASE("normals: in the middle of no facet that turns away does the ray meet the sphere itself") {
   ThreadPool pool{2};
   const Scene scene = sphere_scene(Terminator::normals);
   const Facets facets = scene_facets(scene, 0.0);
