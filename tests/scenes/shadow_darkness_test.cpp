@@ -16,7 +16,8 @@ namespace {
 constexpr int kWidth = 120, kHeight = 80;
 
 Scene room(ShadowKind kind, float darkness) {
-  Scene scene = load_scene("cube-room", scene_search_path({}));
+  static const Scene loaded = load_scene("cube-room", scene_search_path({}));
+  Scene scene = loaded;
   set_shadows(scene, kind);
   for (Light& light : scene.lights) light.shadow_darkness = darkness;
   return scene;
