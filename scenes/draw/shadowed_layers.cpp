@@ -95,24 +95,24 @@ ShadowView shadow_view(const CameraMatrices& camera, int width, int height,
   return {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
 }
 
-// Of a light whose terminator fades, shares are 255ths, those of its map's kernel too.
-constexpr int kWholeOfFade = 255;
+// Of a light whose terminator has a rule, shares are 255ths, those of its map's kernel too.
+constexpr int kWholeOfTerminator = 255;
 
 int share_whole(const Light& light) {
-  if (light.terminator == Terminator::fade) return kWholeOfFade;
+  if (light.terminator != Terminator::facets) return kWholeOfTerminator;
   return light.shadows == ShadowKind::map ? light.map.kernel * light.map.kernel : 1;
 }
 
-// A fading light's shares, made ready for soften_terminators().
-std::span<std::uint8_t> fading_shares(std::vector<std::uint8_t>& shares, std::size_t pixels,
-                                      const Light& light) {
+// Such a light's shares, made ready for soften_terminators().
+std::span<std::uint8_t> terminator_shares(std::vector<std::uint8_t>& shares, std::size_t pixels,
+                                          const Light& light) {
   if (light.shadows != ShadowKind::map || light.map.kernel == 1 || shares.size() != pixels) {
     shares.assign(pixels, 0);
     return shares;
   }
   const int texels = light.map.kernel * light.map.kernel;
   for (std::uint8_t& share : shares) {
-    share = static_cast<std::uint8_t>((2 * kWholeOfFade * share + texels) / (2 * texels));
+    share = static_cast<std::uint8_t>((2 * kWholeOfTerminator * share + texels) / (2 * texels));
   }
   return shares;
 }
@@ -123,10 +123,9 @@ void soften_layer(SceneShadows& shadows, std::span<const Light> lights, std::siz
   for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
     const Light& light = lights[shadows.lights[i]];
     if (light.terminator == Terminator::facets) continue;
-    softened.push_back({light.terminator, shadows.placed[i], static_cast<int>(i), {}});
-    if (light.terminator != Terminator::fade) continue;
-    softened.back().taken =
-        fading_shares(shadows.shares[layer][i], shadows.seen[layer].size(), light);
+    softened.push_back(
+        {light.terminator, shadows.placed[i], static_cast<int>(i),
+         terminator_shares(shadows.shares[layer][i], shadows.seen[layer].size(), light)});
   }
   soften_terminators(shadows.facets, shadows.surfaces, softened, shadows.seen[layer], view, eye,
                      shadows.masks[layer], pool);

@@ -57,7 +57,7 @@ struct SceneShadows {
   /// Of each of `lights`. Of other kinds than map, and before they are drawn, they have no sides.
   std::vector<ShadowMap> maps;
   /// Of each layer, of each of `lights`: map_lookup.h, or in 255ths: terminators.h. Empty for
-  /// kernels of one texel without a terminator that fades.
+  /// kernels of one texel without such a rule.
   std::vector<std::vector<std::vector<std::uint8_t>>> shares;
   std::vector<Image> unshadowed;  ///< layers with all lights, where there are shares
   // The scene without some lights.

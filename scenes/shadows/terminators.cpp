@@ -21,16 +21,12 @@ double longest_edge_m(const Facet& facet) {
   return std::max({length_of(b - a), length_of(c - b), length_of(a - c)});
 }
 
-// The normal between the corners', by the areas of the triangles that the point makes with the
+// How much of each corner there is at a point: the areas of the triangles that it makes with the
 // edges. Outside the facet, too, where a pixel's centre may lie by a rounding.
-glm::dvec3 normal_at(const Facet& facet, const std::array<glm::vec3, 3>& normals,
-                     glm::dvec3 plane_normal, glm::dvec3 point) {
+std::array<double, 3> corner_parts(const Facet& facet, glm::dvec3 plane_normal, glm::dvec3 point) {
   const auto& [a, b, c] = facet.corners;
-  const double of_a = dot(plane_normal, cross(c - b, point - b));
-  const double of_b = dot(plane_normal, cross(a - c, point - c));
-  const double of_c = dot(plane_normal, cross(b - a, point - a));
-  return normalize((glm::dvec3{normals[0]} * of_a + glm::dvec3{normals[1]} * of_b) +
-                   glm::dvec3{normals[2]} * of_c);
+  return {dot(plane_normal, cross(c - b, point - b)), dot(plane_normal, cross(a - c, point - c)),
+          dot(plane_normal, cross(b - a, point - a))};
 }
 
 LitSide side_of(bool seen_from_back) { return seen_from_back ? LitSide::back : LitSide::front; }
@@ -40,8 +36,22 @@ struct SoftenedLight {
   const TerminatorLight& given;
   LightGrid grid;
   std::vector<LitSide> lit;
-  std::vector<std::uint8_t> has_corner;  // of each side of each facet, as SeenFacet numbers them
+  std::vector<std::uint8_t> may_change;  // of each side of each facet, as SeenFacet numbers them
 };
+
+bool turns_away(const SoftenedLight& light, const Facets& facets, SeenFacet seen) {
+  const LitSide lit = light.lit[facets.receiver_of[facet_of(seen)]];
+  return lit != LitSide::both && lit != side_of(seen_from_back(seen));
+}
+
+// Some corners are lit, and either not all are or the facet turns away.
+bool may_change_by_normals(const SoftenedLight& light, const Facets& facets,
+                           const CurvedSurfaces& surfaces, SeenFacet seen) {
+  const std::array<double, 3> cosines =
+      corner_cosines(facets, surfaces, facet_of(seen), seen_from_back(seen), light.given.light);
+  const auto [least, most] = std::minmax({cosines[0], cosines[1], cosines[2]});
+  return most > 0.0 && (least < 0.0 || turns_away(light, facets, seen));
+}
 
 std::vector<SoftenedLight> softened_lights(const Facets& facets, const CurvedSurfaces& surfaces,
                                            std::span<const TerminatorLight> lights,
@@ -52,61 +62,86 @@ std::vector<SoftenedLight> softened_lights(const Facets& facets, const CurvedSur
     if (light.rule != Terminator::normals) continue;
     SoftenedLight& last = made.back();
     last.grid = make_light_grid(facets, light.light);
-    last.has_corner.resize(2 * facets.facets.size());
+    last.may_change.resize(2 * facets.facets.size());
     constexpr std::size_t kOfTask = 1024;
-    const std::size_t tasks = (last.has_corner.size() + kOfTask - 1) / kOfTask;
+    const std::size_t tasks = (last.may_change.size() + kOfTask - 1) / kOfTask;
     pool.for_each(static_cast<int>(tasks), [&](int task) {
       const std::size_t begin = static_cast<std::size_t>(task) * kOfTask;
-      for (std::size_t i = begin; i < std::min(begin + kOfTask, last.has_corner.size()); ++i) {
-        const auto seen = static_cast<SeenFacet>(i + 1);
-        last.has_corner[i] =
-            has_lit_corner(facets, surfaces, facet_of(seen), seen_from_back(seen), light.light);
+      for (std::size_t i = begin; i < std::min(begin + kOfTask, last.may_change.size()); ++i) {
+        last.may_change[i] =
+            may_change_by_normals(last, facets, surfaces, static_cast<SeenFacet>(i + 1));
       }
     });
   }
   return made;
 }
 
+void take(std::uint8_t& taken, double kept) {
+  taken = static_cast<std::uint8_t>(255.0 - (255.0 - taken) * kept + 0.5);
+}
+
+void soften_by_normals(const Facets& facets, const CurvedSurfaces& surfaces,
+                       const SoftenedLight& light, SeenFacet seen, glm::dvec3 point,
+                       std::size_t pixel, std::uint8_t& mask, std::vector<std::uint32_t>& memory) {
+  if (light.may_change[seen - 1] == 0) return;
+  const std::uint32_t facet = facet_of(seen);
+  const double kept = kept_by_normals(
+      facets.facets[facet], facets.planes[facet],
+      corner_cosines(facets, surfaces, facet, seen_from_back(seen), light.given.light), point);
+  const auto bit = static_cast<std::uint8_t>(1u << light.given.bit);
+  if ((mask & bit) != 0) {
+    if (!turns_away(light, facets, seen) || kept == 0.0) return;
+    find_casters(light.grid, {&point, 1}, memory);
+    if (in_shadow_but_for_own_curve(facets, surfaces, facet, point, light.given.light, memory)) {
+      return;
+    }
+    mask = static_cast<std::uint8_t>(mask & ~bit);
+  }
+  take(light.given.taken[pixel], kept);
+}
+
 void soften_pixel(const Facets& facets, const CurvedSurfaces& surfaces, const SoftenedLight& light,
                   SeenFacet seen, glm::dvec3 point, std::size_t pixel, std::uint8_t& mask,
                   std::vector<std::uint32_t>& memory) {
-  const std::uint32_t facet = facet_of(seen);
-  const auto bit = static_cast<std::uint8_t>(1u << light.given.bit);
   if (light.given.rule == Terminator::normals) {
-    if ((mask & bit) == 0 || light.has_corner[seen - 1] == 0) return;
-    find_casters(light.grid, {&point, 1}, memory);
-    if (!behind_own_curve_in_shadow(facets, surfaces, facet, point, light.given.light, memory)) {
-      mask = static_cast<std::uint8_t>(mask & ~bit);
-    }
+    soften_by_normals(facets, surfaces, light, seen, point, pixel, mask, memory);
     return;
   }
-  if ((mask & bit) != 0 || light.lit[facets.receiver_of[facet]] != side_of(seen_from_back(seen))) {
-    return;
-  }
-  const double kept =
-      kept_by_fade(facets, surfaces, facet, seen_from_back(seen), point, light.given.light);
-  std::uint8_t& taken = light.given.taken[pixel];
-  taken = static_cast<std::uint8_t>(255.0 - (255.0 - taken) * kept + 0.5);
+  const std::uint32_t facet = facet_of(seen);
+  if ((mask >> light.given.bit & 1) != 0 || turns_away(light, facets, seen)) return;
+  take(light.given.taken[pixel],
+       kept_by_fade(facets, surfaces, facet, seen_from_back(seen), point, light.given.light));
 }
 
 }  // namespace
 
-bool has_lit_corner(const Facets& facets, const CurvedSurfaces& surfaces, std::uint32_t facet,
-                    bool seen_from_back, const ShadowLight& light) {
-  const LitSide lit =
-      lit_side(facets.receivers[facets.receiver_of[facet]], light, facets.epsilon_m);
-  if (lit == LitSide::both || lit == side_of(seen_from_back)) return false;
+std::array<double, 3> corner_cosines(const Facets& facets, const CurvedSurfaces& surfaces,
+                                     std::uint32_t facet, bool seen_from_back,
+                                     const ShadowLight& light) {
   const double side = seen_from_back ? -1.0 : 1.0;
+  std::array<double, 3> cosines{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 normal{surfaces.normals[facet][i]};
-    if (side * dot(normal, way_to(light, facets.facets[facet].corners[i])) > 0.0) return true;
+    const glm::dvec3 to_light = normalize(way_to(light, facets.facets[facet].corners[i]));
+    cosines[i] = side * dot(glm::dvec3{surfaces.normals[facet][i]}, to_light);
   }
-  return false;
+  return cosines;
 }
 
-bool behind_own_curve_in_shadow(const Facets& facets, const CurvedSurfaces& surfaces,
-                                std::uint32_t facet, glm::dvec3 point, const ShadowLight& light,
-                                std::span<const std::uint32_t> casters) {
+double kept_by_normals(const Facet& facet, const FacetPlane& plane,
+                       const std::array<double, 3>& cosines, glm::dvec3 point) {
+  const std::array<double, 3> parts = corner_parts(facet, plane.normal, point);
+  double cosine = 0.0, lit = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double part = std::max(parts[i], 0.0);
+    cosine += part * cosines[i];
+    lit += part * std::max(cosines[i], 0.0);
+  }
+  return lit > 0.0 ? std::max(cosine, 0.0) / lit : 1.0;
+}
+
+bool in_shadow_but_for_own_curve(const Facets& facets, const CurvedSurfaces& surfaces,
+                                 std::uint32_t facet, glm::dvec3 point, const ShadowLight& light,
+                                 std::span<const std::uint32_t> casters) {
   const glm::dvec3 ray = way_to(light, point);
   const double metres = length_of(ray);
   const double own_m = kOwnReach * longest_edge_m(facets.facets[facet]);
@@ -128,8 +163,12 @@ double kept_by_fade(const Facets& facets, const CurvedSurfaces& surfaces, std::u
   const double side = seen_from_back ? -1.0 : 1.0;
   const glm::dvec3 plane = facets.planes[facet].normal;
   const glm::dvec3 by_plane = plane * side;
+  const std::array<double, 3> parts = corner_parts(facets.facets[facet], plane, point);
+  const std::array<glm::vec3, 3>& normals = surfaces.normals[facet];
   const glm::dvec3 by_corners =
-      normal_at(facets.facets[facet], surfaces.normals[facet], plane, point) * side;
+      normalize((glm::dvec3{normals[0]} * parts[0] + glm::dvec3{normals[1]} * parts[1]) +
+                glm::dvec3{normals[2]} * parts[2]) *
+      side;
   const glm::dvec3 to_light = normalize(way_to(light, point));
   const double faces = dot(by_corners, to_light), agree = dot(by_plane, by_corners);
   if (!(faces > 0.0) || !(agree > 0.0)) return 1.0;

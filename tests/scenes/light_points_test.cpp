@@ -11,8 +11,8 @@
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/shadowed_layers.h"
-#include "scenes/load/load_scene.h"
 #include "scenes/shadows/shadow_errors.h"
+#include "tests/support/shadow_scene.h"
 
 using namespace softfocus;
 
@@ -37,11 +37,8 @@ std::vector<glm::dvec3> points_of(const Light& light) {
   return points;
 }
 
-// cube-room has a point light and a directional one.
-Scene soft_room(int points) {
-  static const Scene loaded = load_scene("cube-room", scene_search_path({}));
-  Scene scene = loaded;
-  set_shadows(scene, ShadowKind::projected);
+Scene soft_scene(int points) {
+  Scene scene = test::shadow_scene(ShadowKind::projected);
   for (Light& light : scene.lights) {
     light.radius_m = 0.2;
     light.angular_radius_degrees = 3.0;
@@ -126,13 +123,13 @@ TEST_CASE("lights without a size or without shadows stay where they are") {
 
 TEST_CASE("one point of a light with a size is the light without, to the bit") {
   ThreadPool pool{2};
-  CHECK(equal(drawn(soft_room(1), pool), drawn(at_point(soft_room(1), 0), pool)));
+  CHECK(equal(drawn(soft_scene(1), pool), drawn(at_point(soft_scene(1), 0), pool)));
 }
 
 TEST_CASE("a frame with soft shadows is the exact mean of its points' frames") {
   constexpr int kFew = 5;
   ThreadPool pool{2};
-  const Scene scene = soft_room(kFew);
+  const Scene scene = soft_scene(kFew);
   const Image picture = drawn(scene, pool);
   std::vector<Image> frames;
   for (int i = 0; i < kFew; ++i) frames.push_back(drawn(at_point(scene, i), pool));
@@ -156,7 +153,7 @@ TEST_CASE("a frame with soft shadows is the exact mean of its points' frames") {
 
 TEST_CASE("of every point of a light the shadows are those of rays") {
   ThreadPool pool{2};
-  const Scene soft = soft_room(4);
+  const Scene soft = soft_scene(4);
   const CameraMatrices camera = camera_matrices(soft.camera, 5.0, 64, 40);
   Image picture = make_image(Format::rgba16f, 64, 40);
   std::vector<int> counts(64 * 40);
@@ -182,7 +179,7 @@ TEST_CASE("of every point of a light the shadows are those of rays") {
 }
 
 TEST_CASE("soft shadows have the same bits on every vector unit and number of threads") {
-  const Scene scene = soft_room(3);
+  const Scene scene = soft_scene(3);
   ThreadPool scalar{1, Isa::scalar};
   const Image expected = drawn(scene, scalar);
   for (const Isa isa : {Isa::baseline, widest_isa()}) {
@@ -193,7 +190,7 @@ TEST_CASE("soft shadows have the same bits on every vector unit and number of th
 
 TEST_CASE("soft shadows lie on the surfaces behind the first, and volumes and maps have them") {
   ThreadPool pool{2};
-  Scene scene = soft_room(3);
+  Scene scene = soft_scene(3);
   const CameraMatrices camera = camera_matrices(scene.camera, 5.0, 120, 80);
   const std::vector<Image> layers = draw_layers(scene, camera, 5.0, 120, 80, 2, {}, pool);
   CHECK(equal(layers[0], drawn(scene, pool)));

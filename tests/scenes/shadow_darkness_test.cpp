@@ -7,7 +7,7 @@
 
 #include "raster/images/texel.h"
 #include "scenes/draw/shadowed_layers.h"
-#include "scenes/load/load_scene.h"
+#include "tests/support/shadow_scene.h"
 
 using namespace softfocus;
 
@@ -15,10 +15,8 @@ namespace {
 
 constexpr int kWidth = 120, kHeight = 80;
 
-Scene room(ShadowKind kind, float darkness) {
-  static const Scene loaded = load_scene("cube-room", scene_search_path({}));
-  Scene scene = loaded;
-  set_shadows(scene, kind);
+Scene darkened(ShadowKind kind, float darkness) {
+  Scene scene = test::shadow_scene(kind);
   for (Light& light : scene.lights) light.shadow_darkness = darkness;
   return scene;
 }
@@ -44,11 +42,11 @@ bool same_pixel(const Image& a, const Image& b, int x, int y) {
 
 TEST_CASE("a shadow of darkness 1/2 has the bits of the scene whose light has half its colour") {
   ThreadPool pool{2};
-  const Shown made = shown(room(ShadowKind::projected, 0.5f), pool);
+  const Shown made = shown(darkened(ShadowKind::projected, 0.5f), pool);
   const std::vector<std::uint8_t>& mask = made.prepared.shadows->masks[0];
   std::size_t in_shadow = 0;
   for (unsigned of = 0; of < 4; ++of) {
-    Scene dimmed = room(ShadowKind::none, 1.0f);
+    Scene dimmed = darkened(ShadowKind::none, 1.0f);
     for (std::size_t i = 0; i < 2; ++i) {
       if ((of >> i & 1) != 0) dimmed.lights[i].colour *= 0.5f;
     }
@@ -66,13 +64,13 @@ TEST_CASE("a shadow of darkness 1/2 has the bits of the scene whose light has ha
 
 TEST_CASE("shadows of darkness 0 are none, to the bit") {
   ThreadPool pool{2};
-  CHECK(equal(shown(room(ShadowKind::projected, 0.0f), pool).picture,
-              shown(room(ShadowKind::none, 1.0f), pool).picture));
+  CHECK(equal(shown(darkened(ShadowKind::projected, 0.0f), pool).picture,
+              shown(darkened(ShadowKind::none, 1.0f), pool).picture));
 }
 
 TEST_CASE("where a map's kernel is partly in shadow, darkness takes a part of that part") {
   ThreadPool pool{2};
-  Scene scene = room(ShadowKind::map, 0.25f);
+  Scene scene = darkened(ShadowKind::map, 0.25f);
   scene.lights.resize(1);
   scene.lights[0].map = {.size = 256, .kernel = 5};
   const Shown made = shown(scene, pool);

@@ -1,5 +1,6 @@
 #include "tools/info/terminator_measures.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string_view>
@@ -100,13 +101,11 @@ std::vector<ShapeRegion> regions_of(const ShapePicture& drawn, const Scene& scen
     const bool back = seen_from_back(seen);
     regions.back() = surfaces.object_of[facet] == 1 ? kFloor : kShape;
     if (regions.back() == kFloor) continue;
-    const double side = back ? -1.0 : 1.0;
-    bool some_away = false;
-    for (const glm::vec3& normal : surfaces.normals[facet]) {
-      some_away |= side * dot(glm::dvec3{normal}, light.place) <= 0.0;
-    }
-    const bool faces = side * height_over(drawn.facets.planes[facet], light) > 0.0;
-    if (faces ? some_away : has_lit_corner(drawn.facets, surfaces, facet, back, light)) {
+    const std::array<double, 3> cosines =
+        corner_cosines(drawn.facets, surfaces, facet, back, light);
+    const auto [least, most] = std::minmax({cosines[0], cosines[1], cosines[2]});
+    const double faces = (back ? -1.0 : 1.0) * height_over(drawn.facets.planes[facet], light);
+    if (faces > 0.0 ? least <= 0.0 : most > 0.0) {
       regions.back() = kBand;
     }
   }

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -11,9 +13,10 @@
 
 #include "raster/images/texel.h"
 #include "scenes/draw/shadowed_layers.h"
-#include "scenes/load/load_scene.h"
 #include "scenes/make/shapes.h"
+#include "scenes/shadows/point_in_shadow.h"
 #include "tests/support/shadow_facets.h"
+#include "tests/support/shadow_scene.h"
 
 using namespace softfocus;
 
@@ -61,11 +64,52 @@ double kept(glm::vec3 normal, glm::dvec3 light, bool from_back = false) {
 
 }  // namespace
 
-TEST_CASE("normals: a sphere of few facets alone is lit as it is without shadows, to the bit") {
+TEST_CASE("normals: a sphere's light ends where its normals turn away, on facets of either side") {
   ThreadPool pool{2};
-  const Scene scene = sphere_scene(Terminator::normals);
-  CHECK(equal(drawn(scene, pool), unshadowed(scene, pool)));
-  CHECK_FALSE(equal(drawn(sphere_scene(Terminator::facets), pool), unshadowed(scene, pool)));
+  Scene scene = sphere_scene(Terminator::normals);
+  PreparedScene prepared = prepare_scene(scene, {}, pool);
+  Image picture = make_image(Format::rgba16f, 120, 90);
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, 120, 90);
+  draw_scene(prepared, camera, 0.0, picture, pool);
+  const Image all = unshadowed(scene, pool);
+  const Facets& facets = prepared.shadows->facets;
+  const CurvedSurfaces surfaces = curved_surfaces(scene, 0.0);
+  const ShadowLight light = shadow_light(scene.lights[0]);
+  int on_away = 0, beyond = 0;
+  for (int y = 0; y < 90; ++y) {
+    for (int x = 0; x < 120; ++x) {
+      const SeenFacet seen = prepared.shadows->seen[0][static_cast<std::size_t>(120 * y + x)];
+      if (!shows_facet(seen)) continue;
+      const std::uint32_t facet = facet_of(seen);
+      const glm::dvec3 point =
+          seen_point(facets.planes[facet], multiply(camera.eye_to_clip, camera.world_to_eye),
+                     camera.eye, {x + 0.5, y + 0.5}, 120, 90);
+      const double kept =
+          kept_by_normals(facets.facets[facet], facets.planes[facet],
+                          corner_cosines(facets, surfaces, facet, false, light), point);
+      const float dark = 0.2f * 0.2f;  // ambient alone
+      const float lit = load_texel<Format::rgba16f>(all, x, y).x - dark;
+      const float here = load_texel<Format::rgba16f>(picture, x, y).x - dark;
+      REQUIRE(std::fabs(here - lit * static_cast<float>(kept)) < 3e-3f);
+      on_away += height_over(facets.planes[facet], light) < 0.0 && here > 0.01f ? 1 : 0;
+      beyond += lit > 0.01f && kept == 0.0 ? 1 : 0;
+    }
+  }
+  CHECK(on_away > 20);
+  CHECK(beyond > 20);
+}
+
+TEST_CASE("normals: what is kept is the clamped cosine of the mean over the mean of the clamped") {
+  std::vector<Facet> made;
+  test::add_triangle(made, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const Facets facets = make_facets(std::move(made));
+  const auto kept = [&](std::array<double, 3> cosines, glm::dvec3 point) {
+    return kept_by_normals(facets.facets[0], facets.planes[0], cosines, point);
+  };
+  CHECK(kept({0.5, 0.2, 0.1}, {0.3, 0.3, 0}) == doctest::Approx(1.0));
+  CHECK(kept({0.6, -0.2, -0.2}, {0.25, 0.25, 0}) == doctest::Approx(0.2 / 0.3));
+  CHECK(kept({0.6, -0.2, -0.2}, {0.5, 0.4, 0}) == 0.0);
+  CHECK(kept({-0.1, -0.2, 0.0}, {0.3, 0.3, 0}) == 1.0);  // no light to keep
 }
 
 TEST_CASE("normals: another object's shadow lies on facets that turn away, too") {
@@ -84,22 +128,25 @@ TEST_CASE("normals: another object's shadow lies on facets that turn away, too")
   CHECK(equal(drawn(scene, pool), drawn(without, pool)));
 }
 
-TEST_CASE("normals: in the middle of no facet that turns away does the ray meet the sphere itself") {
-  ThreadPool pool{2};
+TEST_CASE(
+    "normals: on no facet that turns away does a ray from its middle meet the sphere itself") {
   const Scene scene = sphere_scene(Terminator::normals);
   const Facets facets = scene_facets(scene, 0.0);
   const CurvedSurfaces surfaces = curved_surfaces(scene, 0.0);
   const ShadowLight light = shadow_light(scene.lights[0]);
   std::vector<std::uint32_t> all(facets.facets.size());
   std::iota(all.begin(), all.end(), 0u);
-  int of_band = 0;
+  int away = 0;
   for (std::uint32_t facet = 0; facet < facets.facets.size(); ++facet) {
-    if (!has_lit_corner(facets, surfaces, facet, false, light)) continue;
-    ++of_band;
+    const std::array<double, 3> cosines = corner_cosines(facets, surfaces, facet, false, light);
+    if (height_over(facets.planes[facet], light) > 0.0) continue;
+    if (std::max({cosines[0], cosines[1], cosines[2]}) <= 0.0) continue;
+    ++away;
     const auto& [a, b, c] = facets.facets[facet].corners;
-    CHECK_FALSE(behind_own_curve_in_shadow(facets, surfaces, facet, (a + b + c) / 3.0, light, all));
+    CHECK_FALSE(
+        in_shadow_but_for_own_curve(facets, surfaces, facet, (a + b + c) / 3.0, light, all));
   }
-  CHECK(of_band > 5);
+  CHECK(away > 5);
 }
 
 TEST_CASE("normals: what is far away on the own object still casts its shadow") {
@@ -112,8 +159,8 @@ TEST_CASE("normals: what is far away on the own object still casts its shadow") 
   const std::vector<std::uint32_t> all{0, 1};
   const auto dark = [&](double height, std::uint32_t other) {
     const CurvedSurfaces surfaces = with_normal(up, {0, other});
-    return behind_own_curve_in_shadow(facets, surfaces, 0, {0.2, 5.0 - height, 0.2},
-                                      {{0, 1, 0}, 0.0}, all);
+    return in_shadow_but_for_own_curve(facets, surfaces, 0, {0.2, 5.0 - height, 0.2},
+                                       {{0, 1, 0}, 0.0}, all);
   };
   CHECK(dark(4.0, 0));
   CHECK_FALSE(dark(2.0, 0));
@@ -150,8 +197,8 @@ TEST_CASE("fade: takes from the facets that the light grazes, and nowhere adds l
 
 TEST_CASE("flat surfaces keep their bits by every rule") {
   ThreadPool pool{2};
-  Scene scene = load_scene("cube-room", scene_search_path({}));
-  set_shadows(scene, ShadowKind::projected);
+  Scene scene = test::shadow_scene(ShadowKind::projected);
+  scene.objects.pop_back();  // the ball
   const Image expected = drawn(scene, pool);
   for (const Terminator rule : {Terminator::normals, Terminator::fade}) {
     for (Light& light : scene.lights) light.terminator = rule;
