@@ -74,6 +74,10 @@ inline constexpr int kLeastMapSize = 16, kMostMapSize = 8192;
 inline constexpr int kMostMapKernel = 9, kMostCascades = 4;
 inline constexpr double kMostMapBias = 1000.0;
 
+/// Where the light ends on a curved surface of few facets (shadows/terminators.h): where a facet
+/// turns away; where the normals do; or at facets, faded towards them.
+enum class Terminator : std::uint8_t { facets, normals, fade };
+
 struct Light {
   LightKind kind = LightKind::directional;
   /// Of a directional light: towards the light, any length. Of a point light: where it is.
@@ -81,7 +85,14 @@ struct Light {
   glm::vec3 colour{1.0f};
   ShadowKind shadows = ShadowKind::none;
   ShadowMapSettings map{};  ///< if they are made by a map
+  /// The part of the light's share that a shadow takes away, 0 to 1.
+  float shadow_darkness = 1.0f;
+  Terminator terminator = Terminator::facets;
+  // The size of a light with shadows (draw/light_points.h). A light of size 0 is a point.
+  double radius_m = 0.0;                ///< of a point light, a ball; 0 to 1e6
+  double angular_radius_degrees = 0.0;  ///< of a directional one, a disc in the sky; 0 to 90
 };
+inline constexpr double kMostAngularRadius = 90.0;
 
 /// Blinn-Phong, evaluated at the vertices.
 struct Material {
@@ -128,6 +139,10 @@ struct Object {
   double sway_phase = 0.0;
 };
 
+/// As many halves can be added in binary64 without a rounding (draw/light_points.h).
+inline constexpr int kMostLightPoints = 4096;
+inline constexpr int kUsualLightPoints = 16;
+
 struct Scene {
   std::string name;
   std::string title;
@@ -136,6 +151,7 @@ struct Scene {
   glm::vec3 background{0.0f};
   glm::vec3 ambient_light{0.2f};
   std::vector<Light> lights;
+  int light_points = kUsualLightPoints;  ///< of lights with a size; 1 to kMostLightPoints
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

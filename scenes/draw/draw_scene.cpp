@@ -8,6 +8,7 @@
 #include "raster/images/texel.h"
 #include "raster/pipeline/draw.h"
 #include "raster/threads/scratch_shelf.h"
+#include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/surfaces/surface_lanes.h"
@@ -180,6 +181,30 @@ void blend_transparent(PreparedScene& prepared, const CameraMatrices& camera, do
       });
 }
 
+// Into the targets that the scene's pass has, which are `layers`.
+void draw_lit_by(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                 std::span<const Light> lights, std::span<Image* const> layers, ThreadPool& pool) {
+  RenderPass& pass = prepared.pass;
+  record_scene(prepared, camera, frame, pass, lights);
+  finish(pass, pool);
+  if (!prepared.shadows) return;
+  add_shadows(prepared, camera, frame, lights, layers, pass.behind_before, pool);
+}
+
+void draw_lit(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+              std::span<Image* const> layers, ThreadPool& pool) {
+  const Scene& scene = *prepared.scene;
+  const int points = prepared.shadows && has_soft_shadows(scene) ? scene.light_points : 1;
+  if (points == 1) return draw_lit_by(prepared, camera, frame, scene.lights, layers, pool);
+  LayerSums sums;
+  for (int i = 0; i < points; ++i) {
+    const std::vector<Light> lights = lights_at_point(scene.lights, static_cast<std::uint32_t>(i));
+    draw_lit_by(prepared, camera, frame, lights, layers, pool);
+    add_layers(layers, sums, pool);
+  }
+  store_means(sums, layers, prepared.pass.profile, pool);
+}
+
 }  // namespace
 
 void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
@@ -226,12 +251,9 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   if (behind_before_m) {
     pass.behind_before = buffer_depth(prepared.scene->camera, *behind_before_m);
   }
-  record_scene(prepared, camera, frame, pass);
-  finish(pass, pool);
-  if (!prepared.shadows) return;
   std::vector<Image*> layers{&picture};
   for (Image& layer : behind) layers.push_back(&layer);
-  add_shadows(prepared, camera, frame, layers, pass.behind_before, pool);
+  draw_lit(prepared, camera, frame, layers, pool);
 }
 
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,

@@ -9,10 +9,10 @@ MapCamera map_camera(const Scene& scene, const CameraMatrices& camera) {
           scene.camera.far_m};
 }
 
-void draw_maps(SceneShadows& shadows, const Scene& scene, const MapCamera& camera,
+void draw_maps(SceneShadows& shadows, std::span<const Light> lights, const MapCamera& camera,
                const Profile& profile, ThreadPool& pool) {
   for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
-    const Light& light = scene.lights[shadows.lights[i]];
+    const Light& light = lights[shadows.lights[i]];
     ShadowMap& map = shadows.maps[i];
     if (light.shadows != ShadowKind::map) continue;
     if (!map.sides.empty() && (!map.camera || *map.camera == camera)) continue;

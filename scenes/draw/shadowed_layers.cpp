@@ -1,6 +1,7 @@
 #include "scenes/draw/shadowed_layers.h"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cstring>
 #include <utility>
@@ -31,9 +32,9 @@ ProjectedShadows without_triangles(const Facets& facets, const ShadowLight& ligh
   return {lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
 }
 
-void update_volumes(SceneShadows& shadows, const Scene& scene) {
+void update_volumes(SceneShadows& shadows, std::span<const Light> lights) {
   const auto has_volumes = [&](std::size_t light) {
-    return scene.lights[light].shadows == ShadowKind::volumes;
+    return lights[light].shadows == ShadowKind::volumes;
   };
   shadows.volumes.assign(shadows.lights.size(), {});
   if (std::none_of(shadows.lights.begin(), shadows.lights.end(), has_volumes)) return;
@@ -41,7 +42,7 @@ void update_volumes(SceneShadows& shadows, const Scene& scene) {
   for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
     if (!has_volumes(shadows.lights[i])) continue;
     shadows.volumes[i] = make_shadow_volumes(shadows.facets, shadows.joined,
-                                             shadow_light(scene.lights[shadows.lights[i]]));
+                                             shadow_light(lights[shadows.lights[i]]));
   }
 }
 
@@ -56,18 +57,32 @@ void draw_volumes(SceneShadows& shadows, const ShadowView& view, glm::dvec3 eye,
   }
 }
 
-void update(SceneShadows& shadows, const Scene& scene, double frame, ThreadPool& pool) {
-  if (shadows.frame && (*shadows.frame == frame || !shadows.moves)) return;
-  shadows.facets = scene_facets(scene, frame);
-  shadows.projected.clear();
-  for (const std::size_t number : shadows.lights) {
-    const Light& light = scene.lights[number];
-    shadows.projected.push_back(light.shadows == ShadowKind::projected && !shadows.by_rays
-                                    ? project_by_grid(shadows.facets, shadow_light(light), pool)
-                                    : without_triangles(shadows.facets, shadow_light(light)));
+bool has_terminators(std::span<const Light> lights, const SceneShadows& shadows) {
+  return std::any_of(shadows.lights.begin(), shadows.lights.end(), [&](std::size_t number) {
+    return lights[number].terminator != Terminator::facets;
+  });
+}
+
+void update(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights, double frame,
+            ThreadPool& pool) {
+  const bool has_facets = shadows.frame && (*shadows.frame == frame || !shadows.moves);
+  std::vector<ShadowLight> placed;
+  for (const std::size_t number : shadows.lights) placed.push_back(shadow_light(lights[number]));
+  if (has_facets && placed == shadows.placed) return;
+  if (!has_facets) {
+    shadows.facets = scene_facets(scene, frame);
+    if (has_terminators(lights, shadows)) shadows.surfaces = curved_surfaces(scene, frame);
   }
+  shadows.projected.clear();
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const bool is_projected = lights[shadows.lights[i]].shadows == ShadowKind::projected;
+    shadows.projected.push_back(is_projected && !shadows.by_rays
+                                    ? project_by_grid(shadows.facets, placed[i], pool)
+                                    : without_triangles(shadows.facets, placed[i]));
+  }
+  shadows.placed = std::move(placed);
   shadows.maps.assign(shadows.lights.size(), {});
-  update_volumes(shadows, scene);
+  update_volumes(shadows, lights);
   shadows.frame = frame;
 }
 
@@ -82,15 +97,14 @@ ShadowView shadow_view(const CameraMatrices& camera, int width, int height,
   return {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
 }
 
-void draw_masks_by_rays(SceneShadows& shadows, const Scene& scene, const ShadowView& view,
-                        glm::dvec3 eye, ThreadPool& pool) {
+void draw_masks_by_rays(SceneShadows& shadows, const ShadowView& view, glm::dvec3 eye,
+                        ThreadPool& pool) {
   shadows.masks.resize(shadows.seen.size());
   for (std::size_t layer = 0; layer < shadows.seen.size(); ++layer) {
     shadows.masks[layer].assign(shadows.seen[layer].size(), 0);
   }
   for (std::size_t light = 0; light < shadows.lights.size(); ++light) {
-    const ShadowLight source = shadow_light(scene.lights[shadows.lights[light]]);
-    const ShadowTruth truth{shadows.facets, source, view, eye, true};
+    const ShadowTruth truth{shadows.facets, shadows.placed[light], view, eye, true};
     for (std::size_t layer = 0; layer < shadows.seen.size(); ++layer) {
       const std::vector<std::uint8_t> is_dark =
           dark_pixels(truth, shadows.seen[layer], view.width, view.height, pool);
@@ -101,23 +115,62 @@ void draw_masks_by_rays(SceneShadows& shadows, const Scene& scene, const ShadowV
   }
 }
 
-void draw_masks(SceneShadows& shadows, const Scene& scene, const CameraMatrices& camera, int width,
-                int height, const Profile& profile, ThreadPool& pool) {
+// Of a light whose terminator has a rule, shares are 255ths, those of its map's kernel too.
+constexpr int kWholeOfTerminator = 255;
+
+int share_whole(const Light& light) {
+  if (light.terminator != Terminator::facets) return kWholeOfTerminator;
+  return light.shadows == ShadowKind::map ? light.map.kernel * light.map.kernel : 1;
+}
+
+// Such a light's shares, made ready for soften_terminators().
+std::span<std::uint8_t> terminator_shares(std::vector<std::uint8_t>& shares, std::size_t pixels,
+                                          const Light& light) {
+  if (light.shadows != ShadowKind::map || light.map.kernel == 1 || shares.size() != pixels) {
+    shares.assign(pixels, 0);
+    return shares;
+  }
+  const int texels = light.map.kernel * light.map.kernel;
+  for (std::uint8_t& share : shares) {
+    share = static_cast<std::uint8_t>((2 * kWholeOfTerminator * share + texels) / (2 * texels));
+  }
+  return shares;
+}
+
+void soften_layer(SceneShadows& shadows, std::span<const Light> lights, std::size_t layer,
+                  const ShadowView& view, glm::dvec3 eye, ThreadPool& pool) {
+  std::vector<TerminatorLight> softened;
+  for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
+    const Light& light = lights[shadows.lights[i]];
+    if (light.terminator == Terminator::facets) continue;
+    softened.push_back(
+        {light.terminator, shadows.placed[i], static_cast<int>(i),
+         terminator_shares(shadows.shares[layer][i], shadows.seen[layer].size(), light)});
+  }
+  soften_terminators(shadows.facets, shadows.surfaces, softened, shadows.seen[layer], view, eye,
+                     shadows.masks[layer], pool);
+}
+
+void draw_masks(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
+                const CameraMatrices& camera, int width, int height, const Profile& profile,
+                ThreadPool& pool) {
   const ShadowView view = shadow_view(camera, width, height, profile);
   if (shadows.by_rays) {
-    draw_masks_by_rays(shadows, scene, view, camera.eye, pool);
+    draw_masks_by_rays(shadows, view, camera.eye, pool);
     return;
   }
   const auto of_lights = pointers_to(shadows.projected);
-  draw_maps(shadows, scene, map_camera(scene, camera), profile, pool);
+  draw_maps(shadows, lights, map_camera(scene, camera), profile, pool);
   shadows.masks.resize(shadows.seen.size());
   shadows.volume_rays = 0;
+  const bool softens = has_terminators(lights, shadows);
   for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
     shadows.masks[i].resize(shadows.seen[i].size());
     draw_shadow_mask(cut_shadows(shadows.facets, of_lights, shadows.seen[i], view, pool), view,
                      shadows.masks[i], pool);
     draw_volumes(shadows, view, camera.eye, shadows.seen[i], shadows.masks[i], pool);
     look_up_maps(shadows, i, view, camera.eye, pool);
+    if (softens) soften_layer(shadows, lights, i, view, camera.eye, pool);
   }
 }
 
@@ -164,14 +217,17 @@ Tiles find_masks(const SceneShadows& shadows, int width, int height, ThreadPool&
   return tiles;
 }
 
-std::vector<Light> lights_without(const Scene& scene, const SceneShadows& shadows,
-                                  std::size_t mask) {
+// What the shadows of the mask leave of the lights.
+std::vector<Light> lights_left(std::span<const Light> lights, const SceneShadows& shadows,
+                               std::size_t mask) {
   std::vector<Light> left;
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+  for (std::size_t i = 0; i < lights.size(); ++i) {
     const auto bit = std::find(shadows.lights.begin(), shadows.lights.end(), i);
     const bool is_out =
         bit != shadows.lights.end() && (mask >> (bit - shadows.lights.begin()) & 1u) != 0;
-    if (!is_out) left.push_back(scene.lights[i]);
+    if (is_out && lights[i].shadow_darkness == 1.0f) continue;
+    left.push_back(lights[i]);
+    if (is_out) left.back().colour *= 1.0f - lights[i].shadow_darkness;
   }
   return left;
 }
@@ -308,6 +364,29 @@ Facets scene_facets(const Scene& scene, double frame) {
   return make_facets(std::move(facets));
 }
 
+CurvedSurfaces curved_surfaces(const Scene& scene, double frame) {
+  CurvedSurfaces surfaces;
+  // A matrix of any camera: normals are of the world.
+  const std::vector<SurfaceDraw> draws = surface_draws(scene, CameraMatrices{}, frame);
+  for (std::size_t number = 0; number < draws.size(); ++number) {
+    const SurfaceVertexInput& input = draws[number].input;
+    std::vector<glm::vec3> normals;
+    for (const glm::vec3& normal : input.mesh->normals) {
+      normals.push_back(normalize(transform_direction(input.normal_to_world, normal)));
+    }
+    const bool swaps = draws[number].state.front_face == FrontFace::clockwise;
+    const std::vector<std::uint32_t>& indices = input.mesh->indices;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      std::array<glm::vec3, 3> corners{normals[indices[i]], normals[indices[i + 1]],
+                                       normals[indices[i + 2]]};
+      if (swaps) std::swap(corners[1], corners[2]);
+      surfaces.normals.push_back(corners);
+      surfaces.object_of.push_back(static_cast<std::uint32_t>(number));
+    }
+  }
+  return surfaces;
+}
+
 ShadowLight shadow_light(const Light& light) {
   const glm::dvec3 place{light.position_or_direction};
   if (light.kind == LightKind::point) return {place, 1.0};
@@ -334,24 +413,24 @@ MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera,
 }
 
 void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                 std::span<Image* const> layers, std::optional<float> behind_before,
-                 ThreadPool& pool) {
+                 std::span<const Light> lights, std::span<Image* const> layers,
+                 std::optional<float> behind_before, ThreadPool& pool) {
   SceneShadows& shadows = *prepared.shadows;
   const Scene& scene = *prepared.scene;
   const int width = layers[0]->width, height = layers[0]->height;
-  update(shadows, scene, frame, pool);
+  update(shadows, scene, lights, frame, pool);
   shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
                                   layers.size(), pool, behind_before);
-  draw_masks(shadows, scene, camera, width, height, shadows.pass.profile, pool);
+  draw_masks(shadows, scene, lights, camera, width, height, shadows.pass.profile, pool);
   const Tiles tiles = find_masks(shadows, width, height, pool);
   const std::vector<std::vector<int>> with_shares =
       tiles_with_shares(shadows, tiles, width, height);
   keep_unshadowed(shadows, with_shares, tiles, layers);
   const auto redraw = [&](std::size_t mask, std::span<const int> of_tiles, const auto& use) {
-    const std::vector<Light> lights = lights_without(scene, shadows, mask);
+    const std::vector<Light> left = lights_left(lights, shadows, mask);
     set_targets(shadows, layers.size(), width, height);
     shadows.pass.behind_before = behind_before;
-    record_scene(prepared, camera, frame, shadows.pass, lights);
+    record_scene(prepared, camera, frame, shadows.pass, left);
     TileLists lists;
     sort_into_tiles({&shadows.pass, 1}, {&lists, 1}, pool);
     ScratchShelf<TileMemory> shelf;
@@ -377,10 +456,10 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   }
   for (std::size_t light = 0; light < with_shares.size(); ++light) {
     if (with_shares[light].empty()) continue;
-    const int kernel = shadows.maps[light].settings.kernel;
+    const int whole = share_whole(lights[shadows.lights[light]]);
     redraw(std::size_t{1} << light, with_shares[light], [&](std::size_t i, const Rectangle& area) {
-      take_shares(shadows.shares[i][light], kernel * kernel, area, shadows.unshadowed[i],
-                  shadows.layers[i], *layers[i], shadows.pass.profile);
+      take_shares(shadows.shares[i][light], whole, area, shadows.unshadowed[i], shadows.layers[i],
+                  *layers[i], shadows.pass.profile);
     });
   }
 }

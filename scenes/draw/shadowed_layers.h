@@ -1,7 +1,8 @@
 #pragma once
 // The shadows of a scene's frames. A pixel that a light does not reach has the bits that it has in
 // the scene without this light: the light's own share is left out exactly, and ambient light and
-// other lights remain.
+// other lights remain. Light is linear in its colour, so a shadow of darkness X leaves the light
+// with 1 - X of its colour, and nothing is rounded twice.
 
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "scenes/draw/seen_facets.h"
 #include "scenes/shadows/maps/shadow_map.h"
 #include "scenes/shadows/projected_shadows.h"
+#include "scenes/shadows/terminators.h"
 #include "scenes/shadows/volumes/volume_mask.h"
 
 namespace softfocus {
@@ -29,6 +31,9 @@ std::vector<std::string> shadow_warnings(const Scene& scene);
 /// The scene's triangles in the world, object by object.
 Facets scene_facets(const Scene& scene, double frame);
 
+/// Normals and objects of scene_facets().
+CurvedSurfaces curved_surfaces(const Scene& scene, double frame);
+
 ShadowLight shadow_light(const Light& light);
 
 /// Kept from frame to frame: projected triangles and volumes as long as nothing moves, and
@@ -39,6 +44,8 @@ struct SceneShadows {
   bool moves = false;               ///< whether objects are elsewhere at another frame
   std::optional<double> frame;      ///< of facets and projected
   Facets facets;
+  CurvedSurfaces surfaces;          ///< if a light's terminator asks for them
+  std::vector<ShadowLight> placed;  ///< where `lights` were for what follows
   /// Of each of `lights`. Of other kinds than projected it has no triangles, only the dark sides.
   std::vector<ProjectedShadows> projected;
   JoinedFacets joined;                 ///< if a light has volumes
@@ -50,7 +57,8 @@ struct SceneShadows {
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
   /// Of each of `lights`. Of other kinds than map, and before they are drawn, they have no sides.
   std::vector<ShadowMap> maps;
-  /// Of each layer, of each of `lights`: map_lookup.h. Empty for kernels of one texel.
+  /// Of each layer, of each of `lights`: map_lookup.h, or in 255ths: terminators.h. Empty for
+  /// kernels of one texel without such a rule.
   std::vector<std::vector<std::vector<std::uint8_t>>> shares;
   std::vector<Image> unshadowed;  ///< layers with all lights, where there are shares
   // The scene without some lights.
@@ -65,9 +73,10 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
 MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
                       int height, ThreadPool& pool);
 
-/// Puts the shadows into layers that draw_layers() has drawn of the same frame without any.
+/// Puts the shadows into layers that record_scene() has drawn of the same frame, lit by the same
+/// lights. These are the scene's, or the scene's in other places.
 void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                 std::span<Image* const> layers, std::optional<float> behind_before,
-                 ThreadPool& pool);
+                 std::span<const Light> lights, std::span<Image* const> layers,
+                 std::optional<float> behind_before, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -121,6 +121,7 @@ Light read_light(Section& section) {
   static constexpr std::array<std::string_view, 2> kKinds = {"directional", "point"};
   static constexpr std::array<std::string_view, 4> kShadows = {"none", "projected", "volumes",
                                                                "map"};
+  static constexpr std::array<std::string_view, 3> kTerminators = {"facets", "normals", "fade"};
   Light light;
   if (!has_key(section, "kind")) {
     fail_at(section, "kind", "is missing; \"directional\" or \"point\" would be right");
@@ -139,6 +140,15 @@ Light read_light(Section& section) {
   light.colour = read_colour(section, "colour", light.colour, kBrightest);
   light.shadows = static_cast<ShadowKind>(read_choice(section, "shadows", 0, kShadows));
   light.map = read_map(read_section(section, "map"));
+  light.shadow_darkness =
+      static_cast<float>(read_number(section, "shadow_darkness", 1.0, {0.0, 1.0}));
+  light.terminator = static_cast<Terminator>(read_choice(section, "terminators", 0, kTerminators));
+  if (light.kind == LightKind::point) {
+    light.radius_m = read_number(section, "radius_m", 0.0, {0.0, kAnySize.high});
+  } else {
+    light.angular_radius_degrees =
+        read_number(section, "angular_radius_degrees", 0.0, {0.0, kMostAngularRadius});
+  }
   finish_section(section);
   return light;
 }
@@ -175,6 +185,8 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file) 
   scene.camera = read_camera(read_section(top, "camera"));
   scene.lens = read_lens(read_section(top, "lens"));
 
+  scene.light_points =
+      read_whole_number(top, "light_points", scene.light_points, 1, kMostLightPoints);
   constexpr std::size_t kMaxLights = 64;
   std::vector<Section> lights = read_sections(top, "light");
   if (lights.size() > kMaxLights) {

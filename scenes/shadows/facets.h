@@ -38,6 +38,7 @@ inline double height_over(const FacetPlane& plane, glm::dvec3 p) {
 struct ShadowLight {
   glm::dvec3 place{0.0, 1.0, 0.0};
   double w = 0.0;
+  bool operator==(const ShadowLight&) const = default;
 };
 
 /// Of a directional light, the cosine of its angle with the normal.

@@ -6,10 +6,7 @@
 #include "scenes/shadows/projected_shadows.h"
 
 namespace softfocus {
-namespace {
-
-// Moeller and Trumbore 1997: how many `direction`s away the facet is hit, or a negative number.
-double hit(const Facet& facet, glm::dvec3 from, glm::dvec3 direction) {
+double ray_hit(const Facet& facet, glm::dvec3 from, glm::dvec3 direction) {
   const auto& [a, b, c] = facet.corners;
   const glm::dvec3 edge1 = b - a, edge2 = c - a;
   const glm::dvec3 p = cross(direction, edge2);
@@ -21,8 +18,6 @@ double hit(const Facet& facet, glm::dvec3 from, glm::dvec3 direction) {
   const double v = dot(direction, q) / determinant;
   return u >= 0.0 && v >= 0.0 && u + v <= 1.0 ? dot(edge2, q) / determinant : -1.0;
 }
-
-}  // namespace
 
 bool point_in_shadow(const Facets& facets, std::uint32_t facet, bool seen_from_back,
                      glm::dvec3 point, const ShadowLight& light,
@@ -38,7 +33,7 @@ bool point_in_shadow(const Facets& facets, std::uint32_t facet, bool seen_from_b
         !stops_light(facets.facets[caster], facets.planes[caster], light)) {
       continue;
     }
-    const double t = hit(facets.facets[caster], point, towards);
+    const double t = ray_hit(facets.facets[caster], point, towards);
     if (!(t > 0.0) || (light.w != 0.0 && t >= 1.0)) continue;
     const double height = height_over(receiver.plane, point + towards * t);
     if ((lit == LitSide::front ? height : -height) > facets.epsilon_m) return true;

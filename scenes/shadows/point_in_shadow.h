@@ -12,6 +12,9 @@
 
 namespace softfocus {
 
+/// How many `direction`s away a ray hits a facet, or a negative number (Moeller and Trumbore 1997).
+double ray_hit(const Facet& facet, glm::dvec3 from, glm::dvec3 direction);
+
 /// Whether a point on the front or the back of a facet is in shadow. It is if the light does not
 /// reach that side (projected_shadows.h, lit_side()), or if the ray from the point to the light
 /// meets one of `casters` that stops light, is of another receiver, and is hit more than epsilon_m

@@ -9,8 +9,7 @@
 namespace softfocus {
 namespace {
 
-// On a circle of 1/256 pixel: cosines and sines of 0, 22.5 and 45 degrees.
-constexpr double kNear = 1.0 / 256.0;
+// On a circle of 1 pixel: cosines and sines of 0, 22.5 and 45 degrees.
 constexpr double kCos1 = 0.92387953251128674, kSin1 = 0.38268343236508977,
                  kDiagonal = 0.70710678118654752;
 constexpr std::array<glm::dvec2, 16> kAround{{{1, 0},
@@ -61,10 +60,10 @@ bool ShadowTruth::is_dark(SeenFacet seen, glm::dvec2 window,
 }
 
 bool ShadowTruth::is_near_edge(SeenFacet seen, glm::dvec2 window,
-                               std::vector<std::uint32_t>& memory) const {
+                               std::vector<std::uint32_t>& memory, double distance_px) const {
   const bool here = is_dark(seen, window, memory);
   return std::any_of(kAround.begin(), kAround.end(), [&](glm::dvec2 around) {
-    return is_dark(seen, window + around * kNear, memory) != here;
+    return is_dark(seen, window + around * distance_px, memory) != here;
   });
 }
 

@@ -21,8 +21,9 @@ class ShadowTruth {
   /// Of the facet's plane at a place in the window. `memory` is of the thread.
   bool is_dark(SeenFacet seen, glm::dvec2 window, std::vector<std::uint32_t>& memory) const;
 
-  /// Whether the answer is another as at a point 1/256 pixel from there.
-  bool is_near_edge(SeenFacet seen, glm::dvec2 window, std::vector<std::uint32_t>& memory) const;
+  /// Whether the answer is another as at one of 16 points at this distance from there.
+  bool is_near_edge(SeenFacet seen, glm::dvec2 window, std::vector<std::uint32_t>& memory,
+                    double distance_px = 1.0 / 256.0) const;
 
   /// Of a point of the facet's plane.
   bool is_dark_at(SeenFacet seen, glm::dvec3 point, std::vector<std::uint32_t>& memory) const;

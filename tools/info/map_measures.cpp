@@ -229,7 +229,7 @@ void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
   const ShadowView view{camera.world_to_clip, measure.size.width, measure.size.height, Profile{}};
   const auto maps_by = [&](ThreadPool& by) {
     shadows.maps.assign(shadows.lights.size(), {});
-    draw_maps(shadows, mapped.scene, camera, Profile{}, by);
+    draw_maps(shadows, mapped.scene.lights, camera, Profile{}, by);
   };
   std::vector<Milliseconds> times{{"draw maps, 1 thread"}, {"draw maps, all"},
                                   {"look up, all"},        {"frame, nothing kept"},

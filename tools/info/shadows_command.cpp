@@ -11,16 +11,21 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/make/sphere_field.h"
+#include "scenes/shadows/embree_shadows.h"
 #include "scenes/shadows/shadow_errors.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/gl/shadows_repeated_on_gl.h"
 #include "tools/info/map_measures.h"
+#include "tools/info/soft_measures.h"
+#include "tools/info/terminator_measures.h"
 #include "tools/info/time_in_turn.h"
+#include "tools/options/light_options.h"
 #include "tools/options/run_options.h"
 #include "tools/options/shadow_options.h"
 
@@ -46,10 +51,14 @@ struct ShadowsOptions {
   double frame = 0.0;
   int runs = 5;
   bool check = false;
+  bool check_embree = false;          ///< too
   const Driver* versus = nullptr;     ///< draws the same stencil or maps
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;
   bool map_table = false;
+  LightOptions lights;
+  bool soft_table = false;
+  bool terminator_table = false;
   VolumeCount volume_count = VolumeCount::z_fail;
   PoolOptions pool;
 };
@@ -93,6 +102,23 @@ void check(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
       "pixels times lights: %zu seen, %zu in shadow, %zu within 1/256 pixel of an edge, "
       "%zu wrong\n",
       errors.seen, errors.in_shadow, errors.near_edge, errors.wrong);
+}
+
+void check_embree(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
+                  const CameraMatrices& camera, const PictureSize& size, ThreadPool& pool) {
+  const EmbreeDifferences found = embree_differences(
+      shadows.facets, lights, shadows.seen[0],
+      {multiply(camera.eye_to_clip, camera.world_to_eye), size.width, size.height, Profile{}},
+      camera.eye, pool);
+  std::size_t all = 0;
+  for (const std::size_t of : found.differ) all += of;
+  std::printf("Embree's rays, in binary32: %zu of %zu differ from ours, in binary64:", all,
+              found.seen);
+  for (std::size_t i = 0; i < kDifferenceReaches.size(); ++i) {
+    std::printf(" %zu within 1/%.0f pixel of an edge,", found.differ[i],
+                1.0 / kDifferenceReaches[i]);
+  }
+  std::printf(" %zu farther\n", found.differ.back());
 }
 
 // The stencil of the first layer, by both.
@@ -153,6 +179,14 @@ void time_projection(const Facets& facets, const std::vector<ShadowLight>& light
 }
 
 int measure_shadows(const ShadowsOptions& options) {
+  if (options.terminator_table) {
+    ThreadPool pool{options.pool.threads, options.pool.isa};
+    print_terminator_table(options.size, pool);
+    return kDone;
+  }
+  if (options.check_embree && !embree_shadows_missing().empty()) {
+    throw UsageError("--check-embree: " + std::string{embree_shadows_missing()});
+  }
   if (options.scene.empty() == !options.triangles) {
     throw UsageError("give one of SCENE and --triangles");
   }
@@ -161,6 +195,9 @@ int measure_shadows(const ShadowsOptions& options) {
   set_shadows(unshadowed, ShadowKind::none);
   if (options.shadows) set_shadows(scene, *options.shadows);
   if (!has_shadows(scene)) set_shadows(scene, ShadowKind::projected);
+  set_lights(options.lights, scene);
+  // What a terminator's rule changes is apart from shadows and their truth.
+  for (Light& light : scene.lights) light.terminator = Terminator::facets;
   if (scene.lights.empty() || scene.lights.size() > kMostShadowLights) {
     throw UsageError("'" + scene.name + "' has " + std::to_string(scene.lights.size()) +
                      " lights; 1 to " + std::to_string(kMostShadowLights) + " would do");
@@ -182,6 +219,23 @@ int measure_shadows(const ShadowsOptions& options) {
     throw UsageError("--vs: does not go with --map-table");
   }
   set_maps(options.map, scene);
+  if (options.soft_table && !has_soft_shadows(scene)) {
+    throw UsageError("--soft-table: no light has a size; give --light-radius or --light-angle");
+  }
+  if (has_soft_shadows(scene) && (options.versus != nullptr || options.map_table)) {
+    throw UsageError(
+        "--vs, --map-table: time the shadows of lights without a size; "
+        "--light-radius 0 or --light-angle 0 would be right");
+  }
+  if (has_soft_shadows(scene)) {
+    const SoftMeasure measure{scene, options.size, options.frame, options.runs};
+    if (options.soft_table) {
+      print_soft_table(measure, pool);
+    } else {
+      measure_soft(measure, options.check, pool);
+    }
+    return kDone;
+  }
   if (options.map_table && !has_map) throw UsageError("--map-table: give --shadows map too");
   if (has_map) {
     const MapMeasure measure{scene, options.size, options.frame, options.runs, options.versus};
@@ -247,6 +301,7 @@ int measure_shadows(const ShadowsOptions& options) {
   print_times(times);
   if (options.versus != nullptr) time_beside(*options.versus, shadows, options, camera, pool);
   if (options.check) check(shadows, lights, camera, options.size, pool);
+  if (options.check_embree) check_embree(shadows, lights, camera, options.size, pool);
   return kDone;
 }
 
@@ -279,6 +334,7 @@ Command add_shadows_command(CLI::App& program) {
               }
               refuse_name("--shadows", text, names_in(kMeasuredShadows));
             });
+  add_light_options(*parser, options->lights);
   add_flag(*parser, "--z-pass", "Count volumes' faces before what is seen, not behind",
            [options] { options->volume_count = VolumeCount::z_pass; });
   begin_group(*parser, "Run");
@@ -291,9 +347,16 @@ Command add_shadows_command(CLI::App& program) {
       *parser, "--vs", "DRIVER",
       "Time this GL driver too, in turn, drawing the same stencil or maps: " + names_of(drivers()),
       [options](const std::string& text) { options->versus = &parse_driver("--vs", text); });
+  add_flag(*parser, "--check-embree", "Ask Embree's ray for every pixel, too",
+           options->check_embree);
   offer(*parser, "--vs", [] { return names_in(drivers()); });
   add_flag(*parser, "--map-table", "Of maps, time and wrong pixels by each of their settings",
            options->map_table);
+  add_flag(*parser, "--soft-table", "Of lights with a size, error and time by points",
+           options->soft_table);
+  add_flag(*parser, "--terminator-table",
+           "In place of a scene: curves of few facets, by each rule of --soften-terminators",
+           options->terminator_table);
   add_pool_options(*parser, options->pool, "the shadows are the same");
   return {parser, [options] { return measure_shadows(*options); }};
 }

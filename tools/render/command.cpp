@@ -13,6 +13,7 @@
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/frame_parts.h"
 #include "scenes/draw/keyframes.h"
+#include "scenes/draw/light_points.h"
 #include "scenes/draw/object_numbers.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/surface_draws.h"
@@ -367,6 +368,7 @@ Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms)
   for (std::string& warning : shadow_warnings(scene)) scene.warnings.push_back(std::move(warning));
   print_scene_warnings(scene.warnings, options.verbose);
   if (has_transparent(scene)) check_transparent_memory(options);
+  if (has_soft_shadows(scene)) check_soft_memory(options);
   return scene;
 }
 

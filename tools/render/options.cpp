@@ -102,6 +102,8 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
               refuse_name("--shadows", text, names_in(kShadowChoices));
             });
   add_map_option(parser, options.map);
+  add_light_options(parser, options.lights);
+  add_terminator_option(parser, options.lights);
   add_sequence_options(parser, options.sequence,
                        "Of --frames only every N-th, from the I-th on; without them, of "
                        "accumulation, the I-th of N parts of the samples: FILE, a .sum, gets their "
@@ -271,6 +273,9 @@ constexpr std::uint64_t kWarpedBytesPerPixel = 4 * 4;
 /// each for the filter, and the opaque picture.
 constexpr std::uint64_t kTransparentBytesPerPixel = 4 * 12 + 8 * 8 + 8;
 
+/// And for soft shadows: sums of three colours, of each layer.
+constexpr std::uint64_t kSoftBytesPerPixel = 3 * 8;
+
 /// And for frames from those before: four pictures, a velocity (4 bytes) and counts (4), and what
 /// draws the velocity (12).
 constexpr std::uint64_t kHistoryBytesPerPixel = 4 * 8 + 4 + 4 + 12;
@@ -302,6 +307,7 @@ void check_render_memory(const RenderOptions& options, std::uint64_t each_pixel)
 void settle_shadows(const RenderOptions& options, Scene& scene) {
   if (options.shadows) set_shadows(scene, *options.shadows);
   set_maps(options.map, scene);
+  set_lights(options.lights, scene);
   if (!has_shadows(scene)) return;
   if (options.shadows && scene.lights.size() > kMostShadowLights) {
     throw UsageError("--shadows: '" + options.scene + "' has " +
@@ -318,6 +324,10 @@ void settle_shadows(const RenderOptions& options, Scene& scene) {
 
 void check_transparent_memory(const RenderOptions& options) {
   check_render_memory(options, bytes_per_pixel(options) + kTransparentBytesPerPixel);
+}
+
+void check_soft_memory(const RenderOptions& options) {
+  check_render_memory(options, bytes_per_pixel(options) + layers_of(options) * kSoftBytesPerPixel);
 }
 
 PictureSize drawn_size(const RenderOptions& options) {

@@ -18,6 +18,7 @@
 #include "tools/gl/shaders.h"
 #include "tools/options/effect_options.h"
 #include "tools/options/lens_options.h"
+#include "tools/options/light_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 #include "tools/options/shadow_options.h"
@@ -41,6 +42,7 @@ struct RenderOptions {
   double frame = 0.0;
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;
+  LightOptions lights;
   SequenceOptions sequence;  ///< of many pictures
   Profile profile;
   std::string profile_name = "ieee";
@@ -86,12 +88,15 @@ void add_render_options(CLI::App& parser, RenderOptions& options);
 /// exclude each other or do not fit together, and settles the format.
 void complete(RenderOptions& options, const CLI::App& parser);
 
-/// Gives the scene's lights the shadows of --shadows. Throws UsageError for too many lights, and
-/// for a way to draw that has no shadows.
+/// Gives the scene's lights the shadows of --shadows, and what else is said of lights. Throws
+/// UsageError for too many lights, and for a way to draw that has no shadows.
 void settle_shadows(const RenderOptions& options, Scene& scene);
 
 /// Throws UsageError if there is not the memory for a scene with transparent surfaces.
 void check_transparent_memory(const RenderOptions& options);
+
+/// Throws UsageError if there is not the memory for a scene with soft shadows.
+void check_soft_memory(const RenderOptions& options);
 
 /// --autofocus may stand without a value, and CLI11 would take the next argument for
 /// it, a scene perhaps. So what follows is joined to it with "=": the pixel, or "centre".

@@ -56,6 +56,14 @@ TEST_CASE("shadows --check: a map without a bias shades itself, and says so") {
   CHECK(measured(biased).find(" 0 acne") == std::string::npos);
 }
 
+TEST_CASE("shadows --soft --check: no pixel of a light's points is wrong") {
+  const std::string out = measured(
+      {"cube-room", "--soft", "2", "--light-radius", ".3", "--light-angle", "2", "--check"});
+  CHECK(out.find("12288 seen") != std::string::npos);
+  CHECK(out.find(" 0 in shadow") == std::string::npos);
+  CHECK(out.find(" 0 wrong\n") != std::string::npos);
+}
+
 TEST_CASE("shadows --vs: a driver draws the same stencil") {
   if (!has_driver("llvmpipe")) return;
   const std::string out = measured({"cube-room", "--vs", "llvmpipe"});
@@ -101,6 +109,18 @@ position = [1, 6, 1]
   CHECK(drawn(folder, {shadowed}) == projected);
   CHECK(drawn(folder, {shadowed, "--shadows", "none"}) == none);
   CHECK(drawn(folder, {plain, "--shadows", "map", "--map", "size=4096"}) != none);
+
+  const std::string whole = folder.file("whole.toml");
+  std::ofstream{whole} << "light_points = 5\n"
+                       << text
+                       << "shadows = \"projected\"\nradius_m = 0.25\nshadow_darkness = 0.5\n"
+                          "terminators = \"normals\"\n";
+  CHECK(drawn(folder, {plain, "--shadows", "projected", "--light-radius", ".25", "--soft", "5",
+                       "--shadow-darkness", ".5", "--soften-terminators", "normals"}) ==
+        drawn(folder, {whole}));
+  CHECK(drawn(folder, {plain, "--shadows", "projected", "--shadow-darkness", "1"}) == projected);
+  CHECK(drawn(folder, {plain, "--shadows", "projected", "--shadow-darkness", "0"}) == none);
+  CHECK(drawn(folder, {whole, "--light-radius", "0", "--shadow-darkness", "1"}) == projected);
 }
 
 TEST_CASE("shadows and render --shadows: what does not go together is one clear line") {
@@ -116,6 +136,17 @@ TEST_CASE("shadows and render --shadows: what does not go together is one clear 
           {"--vs", "--map-table"});
   refused({"shadows", "figures", "--map-table"}, {"--map-table", "--shadows map"});
   refused({"shadows", "figures", "--shadows", "fog"}, {"'fog'", "projected, volumes, map"});
+  refused({"shadows", "figures", "--soft-table"}, {"--soft-table", "--light-angle"});
+  refused({"shadows", "figures", "--soft", "5000"}, {"'5000'", "1 to 4096"});
+  refused({"shadows", "cube-room", "--light-radius", ".2", "--vs", "llvmpipe"},
+          {"--vs", "--light-radius 0"});
+  refused({"render", "figures", "-o", "a.png", "--soft", "4"}, {"--soft", "--shadows"});
+  refused({"render", "figures", "-o", "a.png", "--shadows", "projected", "--soft", "4"},
+          {"--soft", "--light-radius"});
+  refused({"render", "figures", "-o", "a.png", "--shadows", "projected", "--shadow-darkness", "2"},
+          {"'2'", "0 to 1"});
+  refused({"render", "figures", "-o", "a.png", "--soften-terminators", "soft"},
+          {"'soft'", "facets, normals, fade"});
   refused({"render", "figures", "-o", "a.png", "--shadows", "maps"}, {"'maps'", "'map'"});
   refused({"render", "figures", "-o", "a.png", "--map", "size=64"}, {"--map", "--shadows map"});
   refused({"render", "figures", "-o", "a.png", "--shadows", "map", "--map", "size=1"},

@@ -1,0 +1,195 @@
+#include "tools/info/soft_measures.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "scenes/draw/light_points.h"
+#include "scenes/draw/shadowed_layers.h"
+#include "scenes/shadows/maps/map_errors.h"
+#include "scenes/shadows/shadow_errors.h"
+#include "tools/info/time_in_turn.h"
+
+namespace softfocus {
+namespace {
+
+// The frames of a light's points, one after the other, with hard shadows.
+struct PointFrames {
+  PointFrames(const SoftMeasure& measure, ThreadPool& with)
+      : whole(measure.scene.lights),
+        scene(measure.scene),
+        camera(
+            camera_matrices(scene.camera, measure.frame, measure.size.width, measure.size.height)),
+        frame(measure.frame),
+        picture(make_image(Format::rgba16f, measure.size.width, measure.size.height)),
+        pool(with),
+        prepared(prepare_scene(scene, Profile{}, with)) {
+    scene.light_points = 1;
+    draw(0);
+  }
+  PointFrames(const PointFrames&) = delete;
+  PointFrames& operator=(const PointFrames&) = delete;
+
+  void draw(int point) {
+    scene.lights = lights_at_point(whole, static_cast<std::uint32_t>(point));
+    draw_scene(prepared, camera, frame, picture, pool);
+  }
+
+  const SceneShadows& shadows() const { return *prepared.shadows; }
+
+  ShadowView view() const {
+    return {multiply(camera.eye_to_clip, camera.world_to_eye), picture.width, picture.height, {}};
+  }
+
+  std::vector<Light> whole;
+  Scene scene;
+  CameraMatrices camera;
+  double frame;
+  Image picture;
+  ThreadPool& pool;
+  PreparedScene prepared;
+};
+
+// Of each soft light, and one after the other of each pixel, points that do not reach it.
+using DarkCounts = std::vector<std::vector<std::uint16_t>>;
+
+// The numbers of SceneShadows::lights that are soft.
+std::vector<std::size_t> soft_numbers(const PointFrames& frames) {
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < frames.shadows().lights.size(); ++i) {
+    if (is_soft(frames.whole[frames.shadows().lights[i]])) numbers.push_back(i);
+  }
+  return numbers;
+}
+
+constexpr int kPointsOfTruth = 1024;
+
+DarkCounts counts_by_rays(const PointFrames& frames, const std::vector<std::size_t>& soft) {
+  const SceneShadows& shadows = frames.shadows();
+  const std::vector<SeenFacet>& seen = shadows.seen[0];
+  const ShadowView view = frames.view();
+  DarkCounts counts(soft.size(), std::vector<std::uint16_t>(seen.size()));
+  for (int point = kPointsOfTruth; point < 2 * kPointsOfTruth; ++point) {
+    const std::vector<Light> lights =
+        lights_at_point(frames.whole, static_cast<std::uint32_t>(point));
+    for (std::size_t i = 0; i < soft.size(); ++i) {
+      const ShadowLight light = shadow_light(lights[shadows.lights[soft[i]]]);
+      const ShadowTruth truth{shadows.facets, light, view, frames.camera.eye, true};
+      const std::vector<std::uint8_t> dark =
+          dark_pixels(truth, seen, view.width, view.height, frames.pool);
+      for (std::size_t p = 0; p < dark.size(); ++p) {
+        counts[i][p] = static_cast<std::uint16_t>(counts[i][p] + dark[p]);
+      }
+    }
+  }
+  return counts;
+}
+
+struct ShareErrors {
+  double rms = 0.0;           // of pixels times lights that are seen
+  double penumbra_rms = 0.0;  // of those that the truth has partly in shadow
+  double largest = 0.0;
+  std::size_t penumbra = 0;
+};
+
+ShareErrors share_errors(const DarkCounts& counts, int points, const DarkCounts& truth,
+                         std::span<const SeenFacet> seen) {
+  ShareErrors errors;
+  double sum = 0.0, penumbra_sum = 0.0;
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+      if (!shows_facet(seen[p])) continue;
+      const double error = std::fabs(static_cast<double>(counts[i][p]) / points -
+                                     static_cast<double>(truth[i][p]) / kPointsOfTruth);
+      ++all;
+      sum += error * error;
+      errors.largest = std::max(errors.largest, error);
+      if (truth[i][p] == 0 || truth[i][p] == kPointsOfTruth) continue;
+      ++errors.penumbra;
+      penumbra_sum += error * error;
+    }
+  }
+  errors.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(all, 1)));
+  errors.penumbra_rms =
+      std::sqrt(penumbra_sum / static_cast<double>(std::max<std::size_t>(errors.penumbra, 1)));
+  return errors;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
+  const int points = measure.scene.light_points;
+  PreparedScene soft = prepare_scene(measure.scene, Profile{}, pool);
+  PointFrames frames{measure, pool};
+  Image picture = frames.picture;
+  std::vector<Milliseconds> times{{"frame, " + count_text(points, "point")},
+                                  {"frame, hard shadows kept"}};
+  time_in_turn(
+      times, measure.runs, [&] { draw_scene(soft, frames.camera, measure.frame, picture, pool); },
+      [&] { frames.draw(0); });
+  print_times(times);
+  if (!check) return;
+  const SceneShadows& shadows = frames.shadows();
+  ShadowErrors sum;
+  for (int point = 0; point < points; ++point) {
+    frames.draw(point);
+    std::vector<ShadowLight> lights;
+    for (const std::size_t number : shadows.lights) {
+      lights.push_back(shadow_light(frames.scene.lights[number]));
+    }
+    const ShadowErrors errors =
+        shadow_errors(shadows.facets, lights, shadows.seen[0], shadows.masks[0], frames.view(),
+                      frames.camera.eye, true, pool);
+    sum.seen += errors.seen;
+    sum.in_shadow += errors.in_shadow;
+    sum.near_edge += errors.near_edge;
+    sum.wrong += errors.wrong;
+  }
+  std::printf(
+      "pixels times lights times points: %zu seen, %zu in shadow, %zu within 1/256 pixel of an "
+      "edge, %zu wrong\n",
+      sum.seen, sum.in_shadow, sum.near_edge, sum.wrong);
+}
+
+void print_soft_table(const SoftMeasure& measure, ThreadPool& pool) {
+  PointFrames frames{measure, pool};
+  const std::vector<std::size_t> soft = soft_numbers(frames);
+  const auto truth_start = std::chrono::steady_clock::now();
+  const DarkCounts truth = counts_by_rays(frames, soft);
+  std::printf("%s: %d points by rays in %.0f s\n", measure.scene.name.c_str(), kPointsOfTruth,
+              seconds_since(truth_start));
+  std::printf("%8s %12s %14s %12s %10s %12s\n", "points", "rms", "penumbra rms", "largest", "ms",
+              "penumbra");
+  const std::size_t pixels = frames.shadows().seen[0].size();
+  DarkCounts counts(soft.size(), std::vector<std::uint16_t>(pixels));
+  double seconds = 0.0;
+  int drawn = 0;
+  for (const int points : {1, 4, 16, 64, 256, 1024}) {
+    for (; drawn < points; ++drawn) {
+      const auto start = std::chrono::steady_clock::now();
+      frames.draw(drawn);
+      seconds += seconds_since(start);
+      const std::vector<std::uint8_t>& mask = frames.shadows().masks[0];
+      for (std::size_t i = 0; i < soft.size(); ++i) {
+        for (std::size_t p = 0; p < pixels; ++p) {
+          counts[i][p] = static_cast<std::uint16_t>(counts[i][p] + (mask[p] >> soft[i] & 1));
+        }
+      }
+    }
+    const ShareErrors errors = share_errors(counts, points, truth, frames.shadows().seen[0]);
+    std::printf("%8d %12.5f %14.5f %12.3f %10.0f %12zu\n", points, errors.rms, errors.penumbra_rms,
+                errors.largest, 1e3 * seconds, errors.penumbra);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace softfocus
