@@ -91,7 +91,8 @@ TEST_CASE("inspect: of numbers that cannot be told the histogram counts 0 and wh
 TEST_CASE("inspect: a depth in three equal channels is one, as refocus takes it") {
   const TemporaryDirectory directory;
   Image grey = make_image(Format::rgba16f, 4, 3);
-  for (int i = 0; i < 12; ++i) store_texel(grey, i % 4, i / 4, glm::vec4{0.1f * (i % 4)}, {});
+  for (int i = 0; i < 12; ++i)
+    store_texel(grey, i % 4, i / 4, glm::vec4{0.1f * static_cast<float>(i % 4)}, {});
   const auto put = [&](const std::string& name) {
     const Bytes bytes = encode_png(grey);
     write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
