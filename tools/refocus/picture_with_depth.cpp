@@ -60,7 +60,8 @@ PlaneValues read_mask(const std::string& name, const PictureFile& depth) {
                      " pixels and the depth " + size_text({depth.width, depth.height}) +
                      "; give one of that size");
   }
-  const std::size_t plane = 0;
+  // An EXR's first channel would be its alpha.
+  const std::size_t plane = file.planes.size() == 1 ? 0 : choose_colour(file, {}, "--mask").red;
   return read_planes(file, {&plane, 1}, 0.0f)[0];
 }
 

@@ -180,6 +180,21 @@ TEST_CASE("refocus: an EXR's alpha a little beyond 0 and 1, and NaN, is kept, cu
   }
 }
 
+TEST_CASE("refocus: an EXR's red is the mask, not its alpha, which is 1 everywhere") {
+  if (!missing_exr().empty()) return;
+  const TemporaryDirectory directory;
+  put_depth(directory);
+  put(directory, "a.npy", encode_npy(picture_of(random_colour)));
+  const Image mask = picture_of([](int x, int) { return glm::vec3{x < 3 ? 0.0f : 1.0f}; });
+  put(directory, "mask.exr",
+      encode_exr(mask, ExrNumbers::half, "", {.alpha = plane_of([](int, int) { return 1.0f; })}));
+  const ProgramRun run =
+      run_program({"refocus", directory.file("a.npy"), directory.file("d.pfm"), "--mask",
+                   directory.file("mask.exr"), "-o", directory.file("o.png"), "--json"});
+  REQUIRE(run.status == 0);
+  CHECK(nlohmann::json::parse(run.out)["filled_pixels"] == 3 * kSide);
+}
+
 TEST_CASE("refocus: an alpha that is opaque everywhere changes no colour") {
   const TemporaryDirectory directory;
   const Image picture = picture_of(random_colour);
