@@ -280,6 +280,29 @@ TEST_CASE("volumes are right for lights at corners, in planes and inside objects
   check_masks(corners, {at_light.position, 1.0}, at_light);
 }
 
+TEST_CASE("a caster with a corner at the light throws no volume, even if its plane is rounded") {
+  test::Random random{11};
+  const auto place = [&] {
+    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
+    return glm::dvec3{x, y, random.between(-1.0, 1.0)};
+  };
+  int rounded = 0;
+  for (int i = 0; i < 40; ++i) {
+    std::vector<Facet> corners;
+    add_triangle(corners, place(), place(), place());
+    const Facets facets = make_facets(corners);
+    for (const glm::dvec3& corner : corners[0].corners) {
+      const ShadowLight light{corner, 1.0};
+      // The corner that gave the plane its offset lies in it exactly, others may not.
+      rounded += stops_light(facets.facets[0], facets.planes[0], light) ? 1 : 0;
+      const ShadowVolumes volumes = make_shadow_volumes(facets, join_facets(facets), light);
+      CHECK(volumes.casters.empty());
+      CHECK(volumes.faces.empty());
+    }
+  }
+  CHECK(rounded > 10);
+}
+
 TEST_CASE("volumes of thin casters, and of casters through their receivers, are right") {
   std::vector<Facet> corners;
   add_floor(corners, 4);
