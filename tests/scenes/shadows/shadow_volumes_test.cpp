@@ -416,6 +416,38 @@ TEST_CASE("a pixel with a sample is dark exactly if its count and the eye's are 
   }
 }
 
+TEST_CASE("a sample on a common edge of two casters is in the volume of one") {
+  // A picture of one column, whose centres lie in the plane of the edge and of the sun.
+  std::vector<Facet> corners;
+  add_triangle(corners, {-40, 0, 20}, {40, 0, 20}, {0, 0, -60});
+  add_triangle(corners, {0, 1, 1}, {1, 1, 0}, {0, 1, -1});
+  add_triangle(corners, {0, 1, 1}, {0, 1, -1}, {-1, 1, 0});
+  const Facets facets = make_facets(corners);
+  const JoinedFacets joined = join_facets(facets);
+  const ShadowLight sun{normalize(glm::dvec3{0, 1, 0.5}), 0.0};
+  const ShadowVolumes volumes = make_shadow_volumes(facets, joined, sun);
+  const CameraMatrices camera =
+      camera_matrices(camera_at({0, 6, 3}, {0, 0, -0.5}), 0.0, 1, kHeight);
+  const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), 1, kHeight, {}};
+  const std::vector<SeenFacet> seen(kHeight, 1);
+  std::vector<std::uint8_t> mask(kHeight);
+  ThreadPool pool{1};
+  for (const VolumeCount count : {VolumeCount::z_fail, VolumeCount::z_pass}) {
+    const VolumeCounts counted = count_volumes(facets, joined, volumes, lit_sides(facets, sun), 1,
+                                               seen, view, camera.eye, count, mask, pool);
+    int on_edge = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const glm::dvec3 at = seen_point(facets.planes[0], view.world_to_clip, camera.eye,
+                                       {0.5, static_cast<double>(i) + 0.5}, 1, kHeight);
+      const double from_middle = std::fabs(at.z + 0.5);  // of the shadow
+      if (std::fabs(from_middle - 1.0) < 1e-3) continue;
+      REQUIRE(counted.counts[i] == (from_middle < 1.0 ? 1 : 0));
+      on_edge += counted.samples[i].x == 0.5 && from_middle < 1.0 ? 1 : 0;
+    }
+    CHECK(on_edge > 5);
+  }
+}
+
 TEST_CASE("cube-room's volumes are right") { check_scene("cube-room", 160, 120); }
 
 TEST_CASE("figures' volumes are right") { check_scene("figures", 160, 120); }
