@@ -103,6 +103,28 @@ TEST_CASE("two walls of a corner that both face the light cast nothing on each o
   CHECK_FALSE(project_in_sequence(facets, {{-0.7, 0.8, 0.5}, 1.0}).triangles.empty());
 }
 
+TEST_CASE("walls of a corner cast nothing on each other, turned and rounded to binary32") {
+  test::Random random{4};
+  const auto direction = [&] {
+    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
+    return normalize(glm::dvec3{x, y, random.between(-1.0, 1.0)});
+  };
+  for (int i = 0; i < 200; ++i) {
+    const glm::dvec3 at = direction() * 3.0, right = direction();
+    const glm::dvec3 up = normalize(cross(right, direction())), ahead = cross(up, right);
+    const auto corner = [&](double x, double y, double z) {
+      return glm::dvec3{glm::vec3{at + right * x + up * y + ahead * -z}};
+    };
+    std::vector<Facet> corners;
+    add_quad(corners, corner(0, 0, 1), corner(1, 0, 1), corner(1, 0, 0), corner(0, 0, 0));
+    add_quad(corners, corner(0, 0, 0), corner(0, 1, 0), corner(0, 1, 1), corner(0, 0, 1));
+    const Facets facets = make_facets(std::move(corners));
+    CHECK(project_in_sequence(facets, {corner(0.7, 0.8, 0.5), 1.0}).triangles.empty());
+    const glm::dvec3 towards = normalize(right * 0.7 + up * 0.8 + ahead * 0.2);
+    CHECK(project_in_sequence(facets, {towards, 0.0}).triangles.empty());
+  }
+}
+
 TEST_CASE("all schedules give the same bits") {
   for (std::uint32_t seed = 1; seed < 5; ++seed) {
     const Facets facets = facet_soup(seed, 300, 0.3);

@@ -280,6 +280,29 @@ TEST_CASE("volumes are right for lights at corners, in planes and inside objects
   check_masks(corners, {at_light.position, 1.0}, at_light);
 }
 
+TEST_CASE("a caster with a corner at the light throws no volume, even if its plane is rounded") {
+  test::Random random{11};
+  const auto place = [&] {
+    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
+    return glm::dvec3{x, y, random.between(-1.0, 1.0)};
+  };
+  int rounded = 0;
+  for (int i = 0; i < 40; ++i) {
+    std::vector<Facet> corners;
+    add_triangle(corners, place(), place(), place());
+    const Facets facets = make_facets(corners);
+    for (const glm::dvec3& corner : corners[0].corners) {
+      const ShadowLight light{corner, 1.0};
+      // The corner that gave the plane its offset lies in it exactly, others may not.
+      rounded += stops_light(facets.facets[0], facets.planes[0], light) ? 1 : 0;
+      const ShadowVolumes volumes = make_shadow_volumes(facets, join_facets(facets), light);
+      CHECK(volumes.casters.empty());
+      CHECK(volumes.faces.empty());
+    }
+  }
+  CHECK(rounded > 10);
+}
+
 TEST_CASE("volumes of thin casters, and of casters through their receivers, are right") {
   std::vector<Facet> corners;
   add_floor(corners, 4);
@@ -390,6 +413,38 @@ TEST_CASE("a pixel with a sample is dark exactly if its count and the eye's are 
       REQUIRE((held > 0) == (mask[i] == 1));
     }
     CHECK(samples > 500);
+  }
+}
+
+TEST_CASE("a sample on a common edge of two casters is in the volume of one") {
+  // A picture of one column, whose centres lie in the plane of the edge and of the sun.
+  std::vector<Facet> corners;
+  add_triangle(corners, {-40, 0, 20}, {40, 0, 20}, {0, 0, -60});
+  add_triangle(corners, {0, 1, 1}, {1, 1, 0}, {0, 1, -1});
+  add_triangle(corners, {0, 1, 1}, {0, 1, -1}, {-1, 1, 0});
+  const Facets facets = make_facets(corners);
+  const JoinedFacets joined = join_facets(facets);
+  const ShadowLight sun{normalize(glm::dvec3{0, 1, 0.5}), 0.0};
+  const ShadowVolumes volumes = make_shadow_volumes(facets, joined, sun);
+  const CameraMatrices camera =
+      camera_matrices(camera_at({0, 6, 3}, {0, 0, -0.5}), 0.0, 1, kHeight);
+  const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), 1, kHeight, {}};
+  const std::vector<SeenFacet> seen(kHeight, 1);
+  std::vector<std::uint8_t> mask(kHeight);
+  ThreadPool pool{1};
+  for (const VolumeCount count : {VolumeCount::z_fail, VolumeCount::z_pass}) {
+    const VolumeCounts counted = count_volumes(facets, joined, volumes, lit_sides(facets, sun), 1,
+                                               seen, view, camera.eye, count, mask, pool);
+    int on_edge = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const glm::dvec3 at = seen_point(facets.planes[0], view.world_to_clip, camera.eye,
+                                       {0.5, static_cast<double>(i) + 0.5}, 1, kHeight);
+      const double from_middle = std::fabs(at.z + 0.5);  // of the shadow
+      if (std::fabs(from_middle - 1.0) < 1e-3) continue;
+      REQUIRE(counted.counts[i] == (from_middle < 1.0 ? 1 : 0));
+      on_edge += counted.samples[i].x == 0.5 && from_middle < 1.0 ? 1 : 0;
+    }
+    CHECK(on_edge > 5);
   }
 }
 
