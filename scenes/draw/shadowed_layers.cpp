@@ -10,6 +10,7 @@
 #include "scenes/draw/light_shares.h"
 #include "scenes/draw/scene_maps.h"
 #include "scenes/draw/surface_draws.h"
+#include "scenes/shadows/shadow_truth.h"
 
 namespace softfocus {
 namespace {
@@ -74,7 +75,8 @@ void update(SceneShadows& shadows, const Scene& scene, std::span<const Light> li
   }
   shadows.projected.clear();
   for (std::size_t i = 0; i < placed.size(); ++i) {
-    shadows.projected.push_back(lights[shadows.lights[i]].shadows == ShadowKind::projected
+    const bool is_projected = lights[shadows.lights[i]].shadows == ShadowKind::projected;
+    shadows.projected.push_back(is_projected && !shadows.by_rays
                                     ? project_by_grid(shadows.facets, placed[i], pool)
                                     : without_triangles(shadows.facets, placed[i]));
   }
@@ -93,6 +95,24 @@ std::vector<const ProjectedShadows*> pointers_to(const std::vector<ProjectedShad
 ShadowView shadow_view(const CameraMatrices& camera, int width, int height,
                        const Profile& profile) {
   return {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, profile};
+}
+
+void draw_masks_by_rays(SceneShadows& shadows, const ShadowView& view, glm::dvec3 eye,
+                        ThreadPool& pool) {
+  shadows.masks.resize(shadows.seen.size());
+  for (std::size_t layer = 0; layer < shadows.seen.size(); ++layer) {
+    shadows.masks[layer].assign(shadows.seen[layer].size(), 0);
+  }
+  for (std::size_t light = 0; light < shadows.lights.size(); ++light) {
+    const ShadowTruth truth{shadows.facets, shadows.placed[light], view, eye, true};
+    for (std::size_t layer = 0; layer < shadows.seen.size(); ++layer) {
+      const std::vector<std::uint8_t> is_dark =
+          dark_pixels(truth, shadows.seen[layer], view.width, view.height, pool);
+      for (std::size_t i = 0; i < is_dark.size(); ++i) {
+        shadows.masks[layer][i] |= static_cast<std::uint8_t>(is_dark[i] << light);
+      }
+    }
+  }
 }
 
 // Of a light whose terminator has a rule, shares are 255ths, those of its map's kernel too.
@@ -134,8 +154,12 @@ void soften_layer(SceneShadows& shadows, std::span<const Light> lights, std::siz
 void draw_masks(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
                 const CameraMatrices& camera, int width, int height, const Profile& profile,
                 ThreadPool& pool) {
-  const auto of_lights = pointers_to(shadows.projected);
   const ShadowView view = shadow_view(camera, width, height, profile);
+  if (shadows.by_rays) {
+    draw_masks_by_rays(shadows, view, camera.eye, pool);
+    return;
+  }
+  const auto of_lights = pointers_to(shadows.projected);
   draw_maps(shadows, lights, map_camera(scene, camera), profile, pool);
   shadows.masks.resize(shadows.seen.size());
   shadows.volume_rays = 0;

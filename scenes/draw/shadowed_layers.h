@@ -51,6 +51,7 @@ struct SceneShadows {
   JoinedFacets joined;                 ///< if a light has volumes
   std::vector<ShadowVolumes> volumes;  ///< of each of `lights`; empty if it has another kind
   VolumeCount volume_count = VolumeCount::z_fail;
+  bool by_rays = false;         ///< every pixel by a ray to each light, whatever its kind
   std::size_t volume_rays = 0;  ///< what draw_volume_mask() returned for the last frame's layers
   std::vector<std::vector<SeenFacet>> seen;      ///< of each layer
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h

@@ -6,6 +6,7 @@
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/ray_traced.h"
 #include "scenes/surface_splatting/surface_splatting.h"
+#include "scenes/warped_views/warped_views.h"
 
 namespace softfocus {
 namespace {
@@ -30,6 +31,16 @@ const std::array kMethods{
                    true,
                    kFilteredViews,
                    kMostFilteredViewsByTile},
+    LensViewMethod{"warped-accumulation",
+                   "few views drawn, and warped to many points of the lens",
+                   kScene,
+                   {},
+                   warped_accumulation,
+                   true,
+                   kUsualWarpedViews,
+                   0,
+                   false,
+                   true},
     LensViewMethod{"ray-traced", "the mean of rays through the lens, after Cook et al. 1984",
                    kScene, ray_traced_missing(), ray_traced},
     LensViewMethod{"surface-splatting",

@@ -33,6 +33,8 @@ struct Sampling {
   /// kLongestShutter (shutter_times.h). The camera and the objects move on, focus and f-number do
   /// not. Of methods with LensViewMethod::has_shutter.
   double shutter_frames = 0.0;
+  /// Of warped-accumulation: the views that are drawn, 1 to kMostDrawnViews; the others are warped.
+  int drawn_views = 7;
 };
 
 /// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
@@ -59,9 +61,11 @@ struct SampledPicture {
   Image picture;    ///< RGBA16F: linear colour, in alpha the pinhole's depth
   int samples = 0;  ///< that it is the mean of
   /// With `until`, half_set_rms() at the end; none if there were too few samples.
-  std::optional<double> half_set_rms;
+  std::optional<double> half_set_rms = {};
   /// With `by_tile`, of all pixels; `samples` is then the most that a tile has.
-  std::optional<double> mean_samples;
+  std::optional<double> mean_samples = {};
+  /// Of views that are warped: the share of their pixels that no drawn view has seen.
+  std::optional<double> unseen = {};
 };
 
 struct LensViewMethod {
@@ -80,6 +84,8 @@ struct LensViewMethod {
   int usual_most_by_tile = 0;
   /// Whether it can take Sampling::shutter_frames.
   bool has_shutter = false;
+  /// Whether it takes Sampling::drawn_views, and then neither jitter nor until.
+  bool warps_views = false;
 };
 
 std::span<const LensViewMethod> lens_view_methods();

@@ -116,10 +116,24 @@ bool stands_behind(const FacetPlane& caster, const LitReceiver& receiver, const 
   });
 }
 
+// Whether a caster that reaches over the receiver's plane throws no shadow on it all the same.
+bool misses(const Facets& facets, std::uint32_t caster, const LitReceiver& receiver,
+            const ShadowLight& light) {
+  if (stands_behind(facets.planes[caster], receiver, light, facets.epsilon_m)) return true;
+  const std::array<glm::dvec3, 3>& corners = facets.facets[caster].corners;
+  const double margin = facets.epsilon_m * 0x1p-20;
+  return is_beside(receiver.outline, corners, light, margin) ||
+         is_beside(corners, receiver.outline, light, margin) ||
+         is_elsewhere(receiver.outline, corners, light, margin);
+}
+
+// What is known of a caster beforehand.
+enum class Throws : std::uint8_t { perhaps, a_shadow };
+
 // The caster's shadow on the receiver's plane. With n.p = d the plane, h its heights and L the
 // light, S = (h_L p - h_p L, h_L - w h_p): the matrix h_L I - L (n, -d)^T.
 CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitReceiver& receiver,
-                        const ShadowLight& light) {
+                        const ShadowLight& light, Throws known) {
   const Facet& facet = facets.facets[caster];
   const double epsilon = facets.epsilon_m;
   CasterPolygon polygon;
@@ -132,13 +146,7 @@ CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitRec
   }
   if (highest <= epsilon) return {};
   if (light.w != 0.0 && lowest >= receiver.light_height) return {};
-  if (stands_behind(facets.planes[caster], receiver, light, epsilon)) return {};
-  const double margin = epsilon * 0x1p-20;
-  if (is_beside(receiver.outline, facet.corners, light, margin) ||
-      is_beside(facet.corners, receiver.outline, light, margin) ||
-      is_elsewhere(receiver.outline, facet.corners, light, margin)) {
-    return {};
-  }
+  if (known == Throws::perhaps && misses(facets, caster, receiver, light)) return {};
   if (lowest < epsilon) {
     polygon = cut_polygon(
         polygon, [&](const glm::dvec4& p) { return p.w - epsilon; },
@@ -169,11 +177,12 @@ CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitRec
 // Calls use(caster, polygon) for the shadow of each caster, in their order.
 template <class Use>
 void for_each_shadow(const Facets& facets, std::uint32_t number, const ShadowLight& light,
-                     LitSide side, std::span<const std::uint32_t> casters, const Use& use) {
+                     LitSide side, std::span<const std::uint32_t> casters, Throws known,
+                     const Use& use) {
   const LitReceiver receiver = lit_receiver(facets.receivers[number], light, side);
   for (const std::uint32_t caster : casters) {
     if (facets.receiver_of[caster] == number) continue;
-    const CasterPolygon polygon = shadow_of(facets, caster, receiver, light);
+    const CasterPolygon polygon = shadow_of(facets, caster, receiver, light, known);
     if (polygon.count > 0) use(caster, polygon);
   }
 }
@@ -225,7 +234,7 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
     const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
     for (std::uint32_t r = begin; r < std::min(begin + a_task, receivers); ++r) {
       if (is_lit(made.lit[r])) {
-        for_each_shadow(facets, r, light, made.lit[r], find(r, memory),
+        for_each_shadow(facets, r, light, made.lit[r], find(r, memory), Throws::perhaps,
                         [&](std::uint32_t caster, const CasterPolygon& polygon) {
                           made.begins[r + 1] += polygon.count - 2;
                           of_task.casters.push_back(caster);
@@ -247,10 +256,11 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
       first = of_task.ends[i];
       if (casters.empty()) continue;
       ProjectedTriangle* to = made.triangles.data() + made.begins[r];
-      for_each_shadow(
-          facets, r, light, made.lit[r], casters, [&](std::uint32_t, const CasterPolygon& polygon) {
-            triangulate(polygon, [&](const ProjectedTriangle& triangle) { *to++ = triangle; });
-          });
+      for_each_shadow(facets, r, light, made.lit[r], casters, Throws::a_shadow,
+                      [&](std::uint32_t, const CasterPolygon& polygon) {
+                        triangulate(polygon,
+                                    [&](const ProjectedTriangle& triangle) { *to++ = triangle; });
+                      });
     }
   });
   return made;
@@ -283,7 +293,7 @@ ProjectedShadows project_in_sequence(const Facets& facets, const ShadowLight& li
   const std::vector<std::uint32_t> casters = all_casters(facets, light);
   for (std::uint32_t r = 0; r < facets.receivers.size(); ++r) {
     if (is_lit(made.lit[r])) {
-      for_each_shadow(facets, r, light, made.lit[r], casters,
+      for_each_shadow(facets, r, light, made.lit[r], casters, Throws::perhaps,
                       [&](std::uint32_t, const CasterPolygon& polygon) {
                         triangulate(polygon, [&](const ProjectedTriangle& triangle) {
                           made.triangles.push_back(triangle);

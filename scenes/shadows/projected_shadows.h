@@ -37,8 +37,8 @@ struct ProjectedShadows {
 /// Every caster against every receiver, one after the other: O(n^2).
 ProjectedShadows project_in_sequence(const Facets& facets, const ShadowLight& light);
 
-/// The same bits. Every caster against every receiver twice, in parallel over receivers: to count
-/// their triangles, and to fill a buffer of exactly that size.
+/// The same bits. In parallel over receivers, every caster against every receiver to count their
+/// triangles; then those that throw a shadow again, to fill a buffer of exactly that size.
 ProjectedShadows project_in_parallel(const Facets& facets, const ShadowLight& light,
                                      ThreadPool& pool);
 

@@ -67,4 +67,19 @@ bool ShadowTruth::is_near_edge(SeenFacet seen, glm::dvec2 window,
   });
 }
 
+std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
+                                      int width, int height, ThreadPool& pool) {
+  std::vector<std::uint8_t> is_dark(seen.size());
+  pool.for_each(height, [&](int y) {
+    std::vector<std::uint32_t> memory;
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                static_cast<std::size_t>(x);
+      if (!shows_facet(seen[pixel])) continue;
+      is_dark[pixel] = truth.is_dark(seen[pixel], {x + 0.5, y + 0.5}, memory) ? 1 : 0;
+    }
+  });
+  return is_dark;
+}
+
 }  // namespace softfocus

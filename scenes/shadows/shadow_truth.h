@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
+#include "raster/threads/parallel.h"
 #include "scenes/shadows/light_grid.h"
 #include "scenes/shadows/shadow_mask.h"
 
@@ -36,5 +38,9 @@ class ShadowTruth {
   LightGrid grid_;
   std::vector<std::uint32_t> all_;
 };
+
+/// Whether each pixel is dark, 0 or 1, by rays.
+std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
+                                      int width, int height, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -24,6 +24,8 @@ constexpr std::uint64_t kBenchBytesPerPixel = 72;
 /// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kLensSumBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredViewsBytesPerPixel = 8 * 8;
+/// Of each view that is drawn to be warped: four planes of binary32.
+constexpr std::uint64_t kWarpedViewBytesPerPixel = 4 * 4;
 
 /// For effects that read the frames before: of the history five pictures (8 bytes each), a
 /// velocity (4) and two counts (4 each); a driver has three of those pictures, velocity and count,
@@ -185,11 +187,14 @@ void complete(BenchOptions& options, const CLI::App& parser) {
   const bool reads_history =
       std::any_of(options.effects.begin(), options.effects.end(),
                   [](const ChosenEffect& chosen) { return makes_frames(*chosen.effect); });
-  check_memory(options.image ? "--image" : "--size", options.size,
-               kBenchBytesPerPixel +
-                   (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0) +
-                   (options.method.name() == "filtered-views" ? kFilteredViewsBytesPerPixel : 0) +
-                   (reads_history ? kFramesBytesPerPixel : 0));
+  check_memory(
+      options.image ? "--image" : "--size", options.size,
+      kBenchBytesPerPixel + (options.method.filter == nullptr ? kLensSumBytesPerPixel : 0) +
+          (options.method.name() == "filtered-views" ? kFilteredViewsBytesPerPixel : 0) +
+          (options.method.of_scene != nullptr && options.method.of_scene->warps_views
+               ? static_cast<std::uint64_t>(options.sampling.drawn_views) * kWarpedViewBytesPerPixel
+               : 0) +
+          (reads_history ? kFramesBytesPerPixel : 0));
 }
 
 }  // namespace softfocus

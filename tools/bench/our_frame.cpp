@@ -51,6 +51,9 @@ void sample_lens(OurFrame& frame, const LensViewMethod& method, const Sampling& 
       frame.filtered_views = make_filtered_views_buffer(input, frame.pool);
     }
     sampled = filtered_views(*frame.filtered_views, input, frame.pool);
+  } else if (method.warps_views) {
+    if (!frame.warped_views) frame.warped_views = make_warped_views_buffer(input, frame.pool);
+    sampled = warped_accumulation(*frame.warped_views, input, frame.pool);
   } else {
     sampled = method.render(input, frame.pool);
   }

@@ -9,6 +9,7 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
+#include "scenes/warped_views/warped_views.h"
 #include "tools/bench/work.h"
 
 namespace softfocus {
@@ -23,6 +24,7 @@ struct OurFrame {
   std::optional<PreparedScene> scene{};
   std::optional<AccumulationBuffer> views{};
   std::optional<FilteredViewsBuffer> filtered_views{};
+  std::optional<WarpedViewsBuffer> warped_views{};
   Image drawn{};
   std::vector<Image> behind{};  ///< the layers behind it, if the method reads them
   std::vector<TransparentPicture> transparent{};  ///< layers before it, for a filter

@@ -101,9 +101,17 @@ void write_list(const Json& list, const std::string& name, const ChartOptions& o
   write_json(options.directory / (name + ".json"), list);
 }
 
+/// "chart-hdr-flip".
+std::string second_plot(const RankedErrors& ranked) {
+  std::string name = "chart-" + std::string{ranked[1].key};
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
 void write_chart(const std::vector<ChartPanel>& panels, const ChartOptions& options) {
   const std::vector<BestForBudget> best = best_for_budgets(panels);
   const std::vector<SummaryRow> summary = summary_of(panels);
+  const RankedErrors& ranked = options.subject->ranked;
   write_list(chart_json(panels), "chart", options);
   write_list(best_json(best), "best", options);
   write_list(summary_json(summary), "summary", options);
@@ -112,23 +120,27 @@ void write_chart(const std::vector<ChartPanel>& panels, const ChartOptions& opti
         return summary_script(summary, terminal, file);
       },
       "summary", options);
-  write_text(options.directory / "index.html",
-             chart_page({.subject = *options.subject,
-                         .panels = panels,
-                         .best = best,
-                         .summary = summary,
-                         .size = size_text(options.size),
-                         .machine = machine_key(options.pool),
-                         .summary_svg = summary_svg,
-                         .flip_svg = write_panels(panels, kRankedErrors[0], "chart", options),
-                         .hdr_flip_svg =
-                             write_panels(panels, kRankedErrors[1], "chart-hdr-flip", options)}));
+  write_text(
+      options.directory / "index.html",
+      chart_page({.subject = *options.subject,
+                  .panels = panels,
+                  .best = best,
+                  .summary = summary,
+                  .size = size_text(options.size),
+                  .machine = machine_key(options.pool),
+                  .summary_svg = summary_svg,
+                  .first_svg = write_panels(panels, ranked[0], "chart", options),
+                  .second_svg = write_panels(panels, ranked[1], second_plot(ranked), options)}));
 }
 
 void print_fronts(const std::vector<ChartPanel>& panels) {
   for (const ChartPanel& panel : panels) {
-    std::cout << panel.scene << ": noise of the truth, FLIP "
-              << short_number(panel.noise_floor.flip) << "; best for their time:\n";
+    const RankedError& error = panel.ranked[0];
+    std::cout << panel.scene << ": ";
+    if (panel.noise_floor.flip > 0.0) {
+      std::cout << "noise of the truth, FLIP " << short_number(panel.noise_floor.flip) << "; ";
+    }
+    std::cout << "best for their time:\n";
     std::vector<const ChartPoint*> front;
     for (const ChartPoint& point : panel.points) {
       if (point.on_front) front.push_back(&point);
@@ -136,8 +148,8 @@ void print_fronts(const std::vector<ChartPanel>& panels) {
     std::sort(front.begin(), front.end(),
               [](const ChartPoint* a, const ChartPoint* b) { return a->median_ms < b->median_ms; });
     for (const ChartPoint* point : front) {
-      std::cout << "  " << short_number(point->median_ms) << " ms, FLIP "
-                << short_number(point->errors.flip) << ": " << point->entry.method << ' '
+      std::cout << "  " << short_number(point->median_ms) << " ms, " << error.title << ' '
+                << short_number(point->errors.*error.value) << ": " << point->entry.method << ' '
                 << settings_text(point->entry) << '\n';
     }
   }
@@ -145,34 +157,38 @@ void print_fronts(const std::vector<ChartPanel>& panels) {
 
 /// Each method at its best setting.
 void print_summary(const std::vector<ChartPanel>& panels) {
-  std::cout << "FLIP over " << panels.size() << " scenes, at the best setting of each: median, 90 %"
+  std::cout << panels.front().ranked[0].title << " over " << panels.size()
+            << " scenes, at the best setting of each: median, 90 %"
             << ", worst\n";
   for (const SummaryRow& row : summary_of(panels)) {
     if (row.settings != kBestSetting && !row.settings.empty()) continue;
-    const OverScenes& flip = row.errors[0];
-    std::cout << "  " << short_number(flip.median) << ", " << short_number(flip.p90) << ", "
-              << short_number(flip.worst) << ": " << row.method << '\n';
+    const OverScenes& error = row.errors[0];
+    std::cout << "  " << short_number(error.median) << ", " << short_number(error.p90) << ", "
+              << short_number(error.worst) << ": " << row.method << '\n';
   }
 }
 
 /// All that a chart writes but its cache.
-std::vector<std::filesystem::path> output_files(const std::filesystem::path& directory) {
+std::vector<std::filesystem::path> output_files(const std::filesystem::path& directory,
+                                                const RankedErrors& ranked) {
   std::vector<std::filesystem::path> files{directory / "index.html"};
   for (const char* name : {"chart", "best", "summary"}) {
     for (const char* ending : {".csv", ".json"}) {
       files.push_back(directory / (std::string{name} + ending));
     }
   }
-  for (const char* name : {"chart", "chart-hdr-flip", "summary"}) {
+  for (const std::string& name :
+       {std::string{"chart"}, second_plot(ranked), std::string{"summary"}}) {
     for (const char* ending : {".svg", ".png"}) {
-      files.push_back(directory / (std::string{name} + ending));
+      files.push_back(directory / (name + ending));
     }
   }
   return files;
 }
 
 int chart(const ChartOptions& options) {
-  const std::vector<std::filesystem::path> outputs = output_files(options.directory);
+  const std::vector<std::filesystem::path> outputs =
+      output_files(options.directory, options.subject->ranked);
   const std::vector<ReadFile> inputs = check_scenes(options);
   for (const auto& file : outputs) check_not_read("-o", file, inputs);
   check_gnuplot();

@@ -28,19 +28,20 @@ void settle_times(ChartPanel& panel) {
 }
 
 void settle_front(ChartPanel& panel) {
+  double ChartErrors::*const error = panel.ranked[0].value;
   std::vector<TwoCosts> costs;
   std::vector<ChartPoint*> fixed;
   for (ChartPoint& point : panel.points) {
     point.on_front = false;
     if (point.entry.max_error) continue;
-    costs.push_back({point.median_ms, point.errors.flip});
+    costs.push_back({point.median_ms, point.errors.*error});
     fixed.push_back(&point);
   }
   for (const std::size_t i : pareto_front(costs)) fixed[i]->on_front = true;
   for (ChartPoint& point : panel.points) {
     if (!point.entry.max_error || point.times.frame_ms.empty()) continue;
     point.on_front = std::none_of(fixed.begin(), fixed.end(), [&](const ChartPoint* other) {
-      return other->errors.flip <= point.errors.flip &&
+      return other->errors.*error <= point.errors.*error &&
              other->median_ms * kChoosing < point.median_ms;
     });
   }
@@ -48,13 +49,14 @@ void settle_front(ChartPanel& panel) {
 
 /// Of settings with one error the first: the smallest radius.
 void settle_best_settings(ChartPanel& panel) {
+  double ChartErrors::*const error = panel.ranked[0].value;
   for (ChartPoint& point : panel.points) {
     const std::string series = series_name(point.entry);
     point.best_setting = true;
     for (const ChartPoint& other : panel.points) {
       if (series_name(other.entry) != series) continue;
-      const double flip = other.errors.flip;
-      if (flip < point.errors.flip || (flip == point.errors.flip && &other < &point)) {
+      const double others = other.errors.*error, own = point.errors.*error;
+      if (others < own || (others == own && &other < &point)) {
         point.best_setting = false;
       }
     }

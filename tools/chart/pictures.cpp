@@ -32,7 +32,9 @@ std::vector<PicturedPoint> worst_of_methods(const std::vector<ChartPanel>& panel
       if (!is_best_of_method(point)) continue;
       const auto [found, is_first] = worst.try_emplace(point.entry.method, PicturedPoint{i, k});
       const PicturedPoint& before = found->second;
-      if (!is_first && point.errors.flip > panels[before.panel].points[before.point].errors.flip) {
+      double ChartErrors::*const error = panels[i].ranked[0].value;
+      const ChartPoint& worst_before = panels[before.panel].points[before.point];
+      if (!is_first && point.errors.*error > worst_before.errors.*error) {
         found->second = {i, k};
       }
     }
@@ -78,7 +80,7 @@ std::string pictured_text(const std::vector<ChartPanel>& panels) {
     case Pictured::best: return "Pictures are of every method at its best setting on each scene.";
     case Pictured::worst: break;
   }
-  return "Pictures are of every method at its best setting, on the scene where its FLIP is "
+  return "Pictures are of every method at its best setting, on the scene where its error is "
          "largest.";
 }
 

@@ -13,7 +13,7 @@ namespace softfocus {
 inline constexpr std::size_t kMostPicturedPoints = 160;
 
 /// With more scenes the page shows pictures of the worst alone, and no panel a scene.
-inline constexpr std::size_t kMostPanels = 16;
+inline constexpr std::size_t kMostPanels = 20;
 
 struct PicturedPoint {
   std::size_t panel;

@@ -23,6 +23,9 @@ struct ChartErrors {
   std::array<double, kRegions> flip_by_region{};
   double hdr_flip = 0.0;
   std::array<double, kRegions> hdr_flip_by_region{};
+  /// Of shadows: pixels times lights in the light that should be in shadow, or the other way about.
+  /// NaN of other subjects.
+  double wrong_pixels = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Needs pictures measured with HDR-FLIP.
@@ -33,10 +36,19 @@ struct RankedError {
   std::string_view key;    ///< "flip", as in chart.json
   std::string_view title;  ///< "FLIP"
   double ChartErrors::*value;
+  int places = 4;                ///< decimal ones, in tables
+  double least_shown = 1e-5;     ///< stands for 0 in plots: it has no logarithm
+  double least_in_ratio = 1e-6;  ///< stands for 0 where errors are divided
 };
-inline constexpr std::array kRankedErrors{
+
+/// The first decides which setting is best and what is on the front.
+using RankedErrors = std::array<RankedError, 2>;
+inline constexpr RankedErrors kPictureErrors{
     RankedError{"flip", "FLIP", &ChartErrors::flip},
     RankedError{"hdr_flip", "HDR-FLIP", &ChartErrors::hdr_flip}};
+inline constexpr RankedErrors kShadowErrors{
+    RankedError{"wrong_pixels", "wrong pixels", &ChartErrors::wrong_pixels, 0, 0.5, 0.5},
+    RankedError{"flip", "FLIP", &ChartErrors::flip}};
 
 /// Milliseconds, run by run: of the whole frame, from the drawing to the result, and of the
 /// filter's share in it. Nothing is filtered in an accumulation: `filter_ms` is empty.
@@ -93,6 +105,7 @@ struct ChartPanel {
   std::vector<ChartPoint> points{};
   std::string given_name{};  ///< as --scenes has it
   std::string key{};         ///< under which its points are kept
+  RankedErrors ranked = kPictureErrors;
 };
 
 }  // namespace softfocus

@@ -50,6 +50,7 @@ Json errors_json(const ChartErrors& errors) {
           number_or_null((errors.*of.by_region)[static_cast<std::size_t>(region)]);
     }
   }
+  if (!std::isnan(errors.wrong_pixels)) json["wrong_pixels"] = errors.wrong_pixels;
   return json;
 }
 
@@ -64,6 +65,7 @@ ChartErrors errors_of(const Json& json) {
           number_or(json.at(region_key(of, region)), std::numeric_limits<double>::quiet_NaN());
     }
   }
+  if (const Json* wrong = json.find("wrong_pixels")) errors.wrong_pixels = wrong->number();
   return errors;
 }
 

@@ -39,7 +39,9 @@ RunTime ChartRunner::run(const ChartEntry& entry) {
   if (entry.max_error) return choose(*entry.max_error);
   if (entry.of_scene != nullptr) return draw_otherwise(*entry.of_scene);
   if (is_of_effects(entry)) return draw_with_effects(entry);
+  if (entry.shadows) return draw_with_shadows(entry);
   if (entry.method == kOfFilteredViews) return filter_views(entry.samples);
+  if (entry.drawn_views > 0) return warp_views(entry.samples, entry.drawn_views);
   return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
 }
 
@@ -156,6 +158,25 @@ RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
   return {ms_between(start, end), ms_between(drawn, end)};
 }
 
+ShadowContenders& ChartRunner::shadow_contenders() {
+  if (!shadows_) shadows_.emplace(scene_, pool_);
+  return *shadows_;
+}
+
+RunTime ChartRunner::draw_with_shadows(const ChartEntry& entry) {
+  ShadowContenders& contenders = shadow_contenders();
+  contenders.prepare(entry);
+  const Clock::time_point start = Clock::now();
+  contenders.draw(result_);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+double ChartRunner::wrong_pixels(const ChartEntry& entry) {
+  if (scene_.subject->ranked[0].value != kShadowErrors[0].value) return kNotTimed;
+  return static_cast<double>(entry.shadows ? shadow_contenders().wrong_pixels()
+                                           : shadow_contenders().wrong_without_shadows());
+}
+
 // The memory is made once, as it would be for many frames.
 AccumulationBuffer& ChartRunner::buffer() {
   if (!buffer_) {
@@ -200,6 +221,16 @@ RunTime ChartRunner::filter_views(int samples) {
   set_views(*filtered_, views_, samples);
   add_filtered_views(*filtered_, views_, sums_, pool_);
   store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+RunTime ChartRunner::warp_views(int samples, int drawn_views) {
+  LensViewInput views = views_;
+  views.sampling.samples = samples;
+  views.sampling.drawn_views = drawn_views;
+  if (!warped_) warped_ = make_warped_views_buffer(views, pool_);
+  const Clock::time_point start = Clock::now();
+  result_ = warped_accumulation(*warped_, views, pool_).picture;
   return {ms_between(start, Clock::now()), std::nullopt};
 }
 
@@ -253,10 +284,13 @@ void ChartRunner::warm_up(const ChartEntry& entry) {
     filter(entry);
   } else if (entry.of_scene != nullptr) {
     draw_otherwise(*entry.of_scene);
-  } else if (is_of_effects(entry)) {
-    draw_with_effects(entry);
+  } else if (is_of_pinhole(entry)) {
+    run(entry);
   } else if (entry.method == kOfFilteredViews) {
     filter_views(std::min(samples, kFilteredViews));
+    return;
+  } else if (entry.drawn_views > 0) {
+    warp_views(kSampleGroup, entry.drawn_views);
     return;
   }
   if (samples == 0) return;

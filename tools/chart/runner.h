@@ -9,8 +9,10 @@
 
 #include "dof/auto/auto_method.h"
 #include "scenes/filtered_views/filtered_views.h"
+#include "scenes/warped_views/warped_views.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/settings.h"
+#include "tools/chart/shadow_contenders.h"
 
 namespace softfocus {
 
@@ -37,16 +39,21 @@ class ChartRunner {
 
   /// Of the last run.
   const Image& result() const { return result_; }
+  /// Of a chart of shadows: ChartErrors::wrong_pixels of the last run, which was of that entry.
+  double wrong_pixels(const ChartEntry& entry);
   /// What auto chose last, in words.
   const std::string& chosen() const { return chosen_; }
 
  private:
   RunTime filter(const ChartEntry& entry);
   RunTime draw_with_effects(const ChartEntry& entry);
+  RunTime draw_with_shadows(const ChartEntry& entry);
+  ShadowContenders& shadow_contenders();
   Image with_effect(ChosenEffect chosen, const Image& before);
   RunTime draw_after_frames(const ChosenEffect& chosen, int frames);
   RunTime accumulate(int samples);
   RunTime filter_views(int samples);
+  RunTime warp_views(int samples, int drawn_views);
   RunTime draw_otherwise(const LensViewMethod& method);
   RunTime choose(double max_error);
   AutoMethod predicted_for(double max_error);
@@ -67,8 +74,10 @@ class ChartRunner {
   std::map<float, FixedTable> tables_;             // by radius
   std::optional<AccumulationBuffer> buffer_;
   std::optional<FilteredViewsBuffer> filtered_;
+  std::optional<WarpedViewsBuffer> warped_;
   SampleSums sums_;
   std::optional<PreparedScene> prepared_large_;  // of what is drawn larger
+  std::optional<ShadowContenders> shadows_;
   Image drawn_, large_;
   std::vector<Image> behind_;                    ///< as many layers as the method reads
   std::vector<TransparentPicture> transparent_;  ///< layers before drawn_

@@ -4,6 +4,7 @@
 
 #include "dof/measure/regions.h"
 #include "scenes/draw/keyframes.h"
+#include "scenes/draw/shadowed_layers.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
 #include "tools/options/lens_options.h"
@@ -23,6 +24,8 @@ bool moves(const Scene& scene) {
 // What the subject makes of a scene.
 void prepare_for(const ChartSubject& subject, ChartScene& chart) {
   chart.sampling = subject.sampling;
+  // Its pinhole is without, and each contender gives all lights its own.
+  if (subject.ranked[0].value == kShadowErrors[0].value) set_shadows(chart.scene, ShadowKind::none);
   if (subject.sampling.shutter_frames == 0.0) return;
   Camera& camera = chart.scene.camera;
   if (camera.shutter_frames > 0.0) chart.sampling.shutter_frames = camera.shutter_frames;

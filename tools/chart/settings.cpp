@@ -64,11 +64,16 @@ bool is_of_effects(const ChartEntry& entry) {
   return !entry.effects.empty() || entry.supersample > 1;
 }
 
+bool is_of_pinhole(const ChartEntry& entry) {
+  return is_of_effects(entry) || entry.shadows.has_value();
+}
+
 std::vector<std::string> chart_methods() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.emplace_back(method.name);
   names.emplace_back(kAccumulation);
   names.emplace_back(kOfFilteredViews);
+  names.emplace_back(kOfWarpedViews);
   for (const LensViewMethod& method : lens_view_methods()) {
     if (!method.samples_lens) names.emplace_back(method.name);
   }
@@ -83,6 +88,16 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
   const LensViewMethod* const of_scene = find_lens_view_method(method);
   if (of_scene != nullptr && !of_scene->samples_lens) {
     return {{.method = method, .of_scene = of_scene}};
+  }
+  if (method == kOfWarpedViews) {
+    struct Views {
+      int samples, drawn;
+    };
+    for (const Views of_few :
+         quick ? std::vector<Views>{{64, 7}} : std::vector<Views>{{64, 3}, {64, 7}, {256, 7}}) {
+      entries.push_back({.method = method, .samples = of_few.samples, .drawn_views = of_few.drawn});
+    }
+    return entries;
   }
   for (const int samples : quick ? of.quick_samples : of.samples) {
     entries.push_back({.method = method, .samples = samples});
@@ -114,11 +129,12 @@ std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, 
 Json settings_json(const ChartEntry& entry) {
   if (entry.max_error) return {{"max_error", *entry.max_error}, {"chosen", entry.chosen}};
   if (entry.of_scene != nullptr) return Json::object();
-  if (is_of_effects(entry)) {
+  if (is_of_pinhole(entry)) {
     Json json = Json::object();
     if (!entry.setting.name.empty()) json[entry.setting.name] = entry.setting.value;
     return json;
   }
+  if (entry.drawn_views > 0) return {{"samples", entry.samples}, {"views", entry.drawn_views}};
   if (entry.filter == nullptr) return {{"samples", entry.samples}};
   Json json = Json::object();
   if (entry.max_coc_px) json["max_coc_px"] = *entry.max_coc_px;
@@ -142,9 +158,12 @@ std::string settings_text(const ChartEntry& entry) {
 std::string setting_within_series(const ChartEntry& entry) {
   if (entry.max_error) return "max-error " + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return "";
-  if (is_of_effects(entry)) {
+  if (is_of_pinhole(entry)) {
     const EffectSetting& setting = entry.setting;
     return setting.name.empty() ? "" : setting.name + " " + short_number(setting.value);
+  }
+  if (entry.drawn_views > 0) {
+    return count_text(entry.samples, "sample") + " from " + std::to_string(entry.drawn_views);
   }
   if (entry.filter == nullptr) return count_text(entry.samples, "sample");
   return entry.max_coc_px ? "max-coc " + short_number(double{*entry.max_coc_px}) : "";
@@ -154,9 +173,12 @@ std::string entry_id(const ChartEntry& entry) {
   std::string id = entry.method;
   if (entry.max_error) return id + "-e" + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return id;
-  if (is_of_effects(entry)) {
+  if (is_of_pinhole(entry)) {
     const EffectSetting& setting = entry.setting;
     return setting.name.empty() ? id : id + "-" + setting.name + short_number(setting.value);
+  }
+  if (entry.drawn_views > 0) {
+    return id + "-s" + std::to_string(entry.samples) + "-v" + std::to_string(entry.drawn_views);
   }
   if (entry.filter == nullptr) return id + "-s" + std::to_string(entry.samples);
   if (entry.max_coc_px) id += "-r" + short_number(double{*entry.max_coc_px});

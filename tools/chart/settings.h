@@ -11,11 +11,22 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/effects/effect.h"
 #include "scenes/lens_views/lens_view_method.h"
+#include "scenes/scene.h"
+#include "scenes/shadows/volumes/volume_mask.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
 
-/// A setting of an effect: "sigma", 2.
+/// Shadows of all lights.
+struct ChartShadows {
+  ShadowKind kind = ShadowKind::projected;
+  ShadowMapSettings map{};
+  VolumeCount count = VolumeCount::z_fail;
+  bool by_rays = false;
+  bool kept = false;  ///< from frame to frame; else all is found anew
+};
+
+/// A setting of an effect or of shadows: "sigma", 2.
 struct EffectSetting {
   std::string name{};
   double value = 0.0;
@@ -24,7 +35,7 @@ struct EffectSetting {
 /// One contender: a method with its settings. Settings without effect on it are left out.
 struct ChartEntry {
   std::string method;
-  /// Null: accumulation or filtered-views of `samples` pictures, auto, another method that
+  /// Null: accumulation, filtered or warped views of `samples` pictures, auto, another method that
   /// needs the scene, or what is_of_effects().
   const Method* filter = nullptr;
   const LensViewMethod* of_scene = nullptr;  ///< which takes no samples
@@ -32,22 +43,27 @@ struct ChartEntry {
   std::optional<float> max_coc_px{};
   Arithmetic arithmetic = Arithmetic::floats;  ///< of two-pass
   int samples = 0;
+  int drawn_views = 0;                  ///< of warped-accumulation
   std::optional<double> max_error{};    ///< of auto, which chooses from the others
   std::string chosen{};                 ///< by auto, once it has: "disc-layers, radius 16"
   std::vector<ChosenEffect> effects{};  ///< on the pinhole's picture, one after the other
   int supersample = 1;                  ///< drawn at so many times the width and height
-  EffectSetting setting{};              ///< in what the effects differ from others of the method
+  std::optional<ChartShadows> shadows{};
+  EffectSetting setting{};  ///< in what effects or shadows differ from others of the method
 };
 
 /// Whether it is the pinhole's picture with effects, or drawn larger and halved.
 bool is_of_effects(const ChartEntry& entry);
 
+/// Whether it is the pinhole's picture with something more: effects, a larger size, shadows.
+bool is_of_pinhole(const ChartEntry& entry);
+
 inline constexpr std::string_view kPinhole = "pinhole";
 inline constexpr std::string_view kOfFilteredViews = "filtered-views";
+inline constexpr std::string_view kOfWarpedViews = "warped-accumulation";
 
-/// The names that --methods takes: every filter of dof/dof.h, accumulation,
-/// filtered-views, what
-/// draws the scene in one go, and auto.
+/// The names that --methods takes: every filter of dof/dof.h, accumulation, filtered-views,
+/// warped-accumulation, what draws the scene in one go, and auto.
 std::vector<std::string> chart_methods();
 
 /// The settings of one method for pictures of that height; fewer if `quick`. Integers have radii

@@ -4,6 +4,8 @@
 #include <array>
 
 #include "tools/chart/bloom_truth.h"
+#include "tools/chart/scene.h"
+#include "tools/chart/shadow_contenders.h"
 
 namespace softfocus {
 namespace {
@@ -107,8 +109,8 @@ std::vector<ChartEntry> smoothing_entries(const std::string& method, int, bool q
 constexpr std::string_view kBloom = "bloom", kSteadyBloom = "bloom-steady",
                            kGaussianBloom = "bloom-gaussian";
 
-Image truth_of_bloom(const Image& pinhole, ThreadPool& pool) {
-  return bloom_truth(BloomSettings{}, pinhole, pool);
+Image truth_of_bloom(const ChartScene& scene, ThreadPool& pool) {
+  return bloom_truth(BloomSettings{}, scene.pinhole, pool);
 }
 
 std::vector<std::string> bloom_methods() {
@@ -138,8 +140,8 @@ std::vector<ChartEntry> bloom_entries(const std::string& method, int, bool quick
   return entries;
 }
 
-const std::array<ChartSubject, 4>& subjects() {
-  static const std::array<ChartSubject, 4> all{
+const std::array<ChartSubject, 5>& subjects() {
+  static const std::array<ChartSubject, 5> all{
       ChartSubject{.name = "depth-of-field",
                    .title = "Depth of field",
                    .truth = "the mean of pictures from many points of the lens",
@@ -180,6 +182,19 @@ const std::array<ChartSubject, 4>& subjects() {
                    .truth_of = truth_of_bloom,
                    .methods = bloom_methods,
                    .entries = bloom_entries},
+      ChartSubject{.name = "shadows",
+                   .title = "Hard shadows",
+                   .truth = "a ray from the point that each pixel shows to each light",
+                   .sample = "",
+                   .truth_samples = 0,
+                   .quick_truth_samples = 0,
+                   .through_lens = false,
+                   .truth_of = truth_of_shadows,
+                   .ranked = kShadowErrors,
+                   .measure = "Wrong pixels are counted for each light: a pixel is wrong if no ray "
+                              "from it, or from within 1/256 pixel of it, gives its answer.",
+                   .methods = shadow_methods,
+                   .entries = shadow_entries},
   };
   return all;
 }

@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "scenes/lens_views/lens_view_method.h"
+#include "tools/chart/point.h"
 #include "tools/chart/settings.h"
 
 namespace softfocus {
+
+struct ChartScene;
 
 struct ChartSubject {
   std::string_view name;    ///< of --of
@@ -29,8 +32,10 @@ struct ChartSubject {
   /// What a scene in which nothing moves gets: the camera's way around the target.
   double orbit_degrees_per_frame = 0.0;
 
-  /// The truth, calculated from the sharp picture. Null: it is the mean of views.
-  Image (*truth_of)(const Image& pinhole, ThreadPool& pool) = nullptr;
+  /// The truth, calculated. Null: it is the mean of views.
+  Image (*truth_of)(const ChartScene& scene, ThreadPool& pool) = nullptr;
+  RankedErrors ranked = kPictureErrors;
+  std::string_view measure{};  ///< sentences of the page on an error of its own
 
   /// The names that --methods takes.
   std::vector<std::string> (*methods)();

@@ -24,7 +24,7 @@ std::filesystem::path with_ending(const std::filesystem::path& file, const char*
 ChartTruth make_truth(const ChartScene& scene, int samples,
                       const std::function<void(int)>& on_samples, ThreadPool& pool) {
   if (scene.subject->truth_of != nullptr) {
-    return {scene.subject->truth_of(scene.pinhole, pool), {}};
+    return {scene.subject->truth_of(scene, pool), {}};
   }
   // Half of the samples must end a group, or the bits would differ from accumulation()'s with
   // `until`.

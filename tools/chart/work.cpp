@@ -30,7 +30,7 @@ constexpr double kLoadGuess = 20.0, kFilterGuess = 6.0, kAutoGuess = 60.0, kScen
 double run_guess(const ChartEntry& entry) {
   if (entry.max_error) return kAutoGuess;
   if (entry.of_scene != nullptr) return kSceneGuess;
-  if (is_of_effects(entry)) return kFilterGuess;
+  if (is_of_pinhole(entry)) return kFilterGuess;
   return entry.filter != nullptr ? kFilterGuess : static_cast<double>(entry.samples);
 }
 
@@ -113,6 +113,8 @@ FoundTruth truth_of(Work& work, const ChartScene& scene, const std::string& key,
 
 /// Where no circle is larger than the smallest radius, all radii give one picture.
 const ChartPoint* same_picture(const ChartPoint& point, const std::vector<ChartPoint>& before) {
+  // A light may be too weak for a pixel to show whether its shadow is right.
+  if (point.entry.shadows) return nullptr;
   const auto same = std::find_if(before.begin(), before.end(), [&](const ChartPoint& other) {
     return other.picture_hash == point.picture_hash;
   });
@@ -148,6 +150,7 @@ void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth
       work.left.drop(kMeasure, 1);
     } else {
       point.errors = measure_picture(runner.result(), truth.picture, scene.labels, work.pool);
+      point.errors.wrong_pixels = runner.wrong_pixels(entry);
       save_errors(point, key, file);
       work.left.done(kMeasure, 1);
     }
@@ -230,7 +233,8 @@ ChartPanel measure_scene(Work& work, const std::string& given_name) {
                    .truth_samples = options.truth_samples,
                    .noise_floor = truth.noise_floor,
                    .given_name = given_name,
-                   .key = point_key(key, truth.picture)};
+                   .key = point_key(key, truth.picture),
+                   .ranked = options.subject->ranked};
   measure_errors(work, scene, truth, panel.key, runner, panel.points);
   measure_times(work, name, runner, panel.points);
   settle_points(panel);

@@ -17,6 +17,10 @@ std::vector<Case> crosscheck_cases() {
   add_kernel_cases(cases);
   add_effect_cases(cases);
   add_shadow_cases(cases);
+  if (!kIsWebGl) {  // which has no doubles
+    add_shadow_map_cases(cases);
+    add_shadow_volume_cases(cases);
+  }
   add_motion_cases(cases);
   add_temporal_cases(cases);
   add_filter_cases(cases);

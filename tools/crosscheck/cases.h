@@ -48,6 +48,8 @@ void add_motion_cases(std::vector<Case>& cases);
 void add_temporal_cases(std::vector<Case>& cases);
 void add_filter_cases(std::vector<Case>& cases);
 void add_shadow_cases(std::vector<Case>& cases);
+void add_shadow_map_cases(std::vector<Case>& cases);
+void add_shadow_volume_cases(std::vector<Case>& cases);
 void add_polygon_cases(std::vector<Case>& cases);
 
 /// Random numbers for making cases up.

@@ -5,6 +5,7 @@
 #include "tools/crosscheck/probe.h"
 #include "tools/crosscheck/run_cases.h"
 #include "tools/gl/frame_on_gl.h"
+#include "tools/gl/maps_repeated_on_gl.h"
 #include "tools/gl/shadows_repeated_on_gl.h"
 
 namespace softfocus {
@@ -46,6 +47,13 @@ void ShadowsRepeatedOnGl::draw() { refuse(); }
 std::vector<std::uint8_t> ShadowsRepeatedOnGl::mask(std::span<const std::uint8_t>) const {
   refuse();
 }
+
+struct MapsRepeatedOnGl::State {};
+MapsRepeatedOnGl::MapsRepeatedOnGl(const Driver&, std::span<const MapCasters>, int) { refuse(); }
+MapsRepeatedOnGl::~MapsRepeatedOnGl() = default;
+std::string MapsRepeatedOnGl::renderer() const { refuse(); }
+void MapsRepeatedOnGl::draw() { refuse(); }
+Image MapsRepeatedOnGl::nearness(std::size_t, std::size_t) const { refuse(); }
 
 struct EffectsRepeatedOnGl::State {};
 EffectsRepeatedOnGl::EffectsRepeatedOnGl(const Driver&, const Image&, int) { refuse(); }

@@ -116,7 +116,7 @@ int apply_to_file(const ApplyOptions& options) {
   if (!to_standard_output) {
     check_writable(options.output);
     check_not_read("-o", options.output, {{options.picture, "the picture"}});
-    if (sidecar) check_not_read("-o", *sidecar, {{options.picture, "the picture"}});
+    if (sidecar) check_not_read("the sidecar of -o", *sidecar, {{options.picture, "the picture"}});
     if (options.velocity) {
       check_not_read("-o", options.output, {{*options.velocity, "the velocity"}});
     }

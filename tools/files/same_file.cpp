@@ -9,8 +9,11 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
   std::error_code error;
   if (std::filesystem::equivalent(a, b, error) && !error) return true;
   std::error_code error_a, error_b;
-  const auto place_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a), error_a);
-  const auto place_b = std::filesystem::weakly_canonical(std::filesystem::absolute(b), error_b);
+  const auto whole_a = std::filesystem::absolute(a, error_a);  // an empty name has no place
+  const auto whole_b = std::filesystem::absolute(b, error_b);
+  if (error_a || error_b) return false;
+  const auto place_a = std::filesystem::weakly_canonical(whole_a, error_a);
+  const auto place_b = std::filesystem::weakly_canonical(whole_b, error_b);
   return !error_a && !error_b && place_a == place_b;
 }
 

@@ -14,6 +14,7 @@
 #include "scenes/load/load_scene.h"
 #include "scenes/surface_splatting/surface_splatting.h"
 #include "scenes/temporal/frame_history.h"
+#include "scenes/warped_views/warped_views.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {
@@ -235,6 +236,10 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
       {entry_name(name, "accumulation", where), hash_image(accumulation(from_lens, pool).picture)});
   hashes.push_back({entry_name(name, "filtered-views", where),
                     hash_image(filtered_views(from_lens, pool).picture)});
+  const LensViewInput from_few =
+      seen_from_lens(scene, view, picture, {.samples = 12, .drawn_views = 3}, profile);
+  hashes.push_back({entry_name(name, "warped-accumulation", where),
+                    hash_image(warped_accumulation(from_few, pool).picture)});
   const Sampling tile_sampling{.samples = 3 * kSampleGroup, .jitter = true, .by_tile = true};
   const LensViewInput by_tile = seen_from_lens(scene, view, picture, tile_sampling, profile);
   hashes.push_back({entry_name(name, "accumulation-by-tile", where),

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <functional>
 #include <utility>
 #include <vector>
 
+#include "raster/images/texel.h"
 #include "scenes/draw/scene_maps.h"
+#include "scenes/shadows/maps/draw_map_side.h"
 #include "scenes/shadows/maps/map_errors.h"
+#include "tools/gl/maps_repeated_on_gl.h"
 #include "tools/info/time_in_turn.h"
 
 namespace softfocus {
@@ -149,6 +153,67 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// The sides of all maps, from casters that are cut already.
+void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int runs,
+                      ThreadPool& pool) {
+  // A GPU's has to be probed first; its bits are not expected to be ours.
+  const Profile profile = find_profile(driver.profile).value_or(Profile{});
+  const auto cut = [&](const ShadowMap& map) {
+    MapCasters casters{map.settings, {}};
+    for (const MapSide& side : map.sides) {
+      casters.sides.emplace_back();
+      if (side.texels == glm::dvec2{0.0}) continue;
+      casters.sides.back() = cut_casters(shadows.facets, map.light, map.settings.size, side, pool);
+    }
+    return casters;
+  };
+  std::vector<ShadowMap> maps = shadows.maps;
+  std::vector<MapCasters> casters(maps.size());
+  const auto cut_all = [&] {
+    for (std::size_t i = 0; i < maps.size(); ++i) casters[i] = cut(maps[i]);
+  };
+  const auto draw_all = [&] {
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      for (std::size_t k = 0; k < maps[i].sides.size(); ++k) {
+        draw_casters(casters[i].sides[k], maps[i].settings.size, profile, maps[i].sides[k], pool);
+      }
+    }
+  };
+  cut_all();
+  MapsRepeatedOnGl on_gl{driver, casters, pool.threads()};
+  on_gl.draw();
+  std::vector<Milliseconds> times{
+      {"casters into maps"}, {"the same, " + std::string{driver.name}}, {"cutting, before either"}};
+  time_in_turn(
+      times, runs, draw_all, [&] { on_gl.draw(); }, cut_all);
+  std::size_t texels = 0, differ = 0;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const int size = maps[i].settings.size;
+    for (std::size_t k = 0; k < maps[i].sides.size(); ++k) {
+      const std::vector<float>& ours = maps[i].sides[k].nearness;
+      if (ours.empty()) continue;
+      const Image theirs = on_gl.nearness(i, k);
+      texels += ours.size();
+      for (int y = 0; y < size; ++y) {
+        const auto of_row = row<float>(theirs, y);
+        const float* from = ours.data() + static_cast<std::size_t>(y) * of_row.size();
+        for (std::size_t x = 0; x < of_row.size(); ++x) {
+          differ += std::memcmp(&of_row[x], from + x, sizeof(float)) != 0 ? 1 : 0;
+        }
+      }
+    }
+  }
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < times[0].ms.size(); ++i) {
+    ratios.push_back(times[1].ms[i] / times[0].ms[i]);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  print_times(times);
+  std::printf("%-26s %9.2f     (%.2f to %.2f); %zu of %zu texels differ; %s\n", "ratio",
+              ratios[ratios.size() / 2], ratios.front(), ratios.back(), differ, texels,
+              on_gl.renderer().c_str());
+}
+
 }  // namespace
 
 void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
@@ -179,6 +244,7 @@ void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
       [&] { mapped.draw_anew(); }, [&] { mapped.draw(); }, [&] { projected.draw_anew(); },
       [&] { projected.draw(); }, [&] { plain.draw(); });
   print_times(times);
+  if (measure.versus != nullptr) time_maps_beside(*measure.versus, shadows, measure.runs, pool);
   if (!check) return;
   const MapErrors errors = LightTruths{mapped, pool}.errors(mapped, pool);
   std::printf(

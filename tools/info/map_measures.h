@@ -4,6 +4,7 @@
 #include "raster/threads/parallel.h"
 #include "scenes/scene.h"
 #include "tools/cli/option_values.h"
+#include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 
@@ -12,9 +13,11 @@ struct MapMeasure {
   PictureSize size;
   double frame;
   int runs;
+  const Driver* versus = nullptr;  ///< draws the same maps
 };
 
-/// Prints times, each in turn; with `check` every pixel against a ray.
+/// Prints times, each in turn, and the driver's if there is one. Throws DriverError. With `check`
+/// every pixel against a ray.
 void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool);
 
 /// Prints a table: time and wrong pixels by size, bias, slope bias, kernel and cascades, one of

@@ -52,7 +52,7 @@ struct ShadowsOptions {
   int runs = 5;
   bool check = false;
   bool check_embree = false;          ///< too
-  const Driver* versus = nullptr;     ///< draws the same stencil
+  const Driver* versus = nullptr;     ///< draws the same stencil or maps
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;
   bool map_table = false;
@@ -215,12 +215,11 @@ int measure_shadows(const ShadowsOptions& options) {
   if (options.volume_count == VolumeCount::z_pass && !has_volumes) {
     throw UsageError("--z-pass: counts the faces of volumes; give --shadows volumes too");
   }
-  const bool is_projected =
-      std::all_of(scene.lights.begin(), scene.lights.end(), [](const Light& of) {
-        return of.shadows == ShadowKind::none || of.shadows == ShadowKind::projected;
-      });
-  if (options.versus != nullptr && !is_projected) {
-    throw UsageError("--vs: times projected shadows; --shadows projected would be right");
+  if (options.versus != nullptr && has_volumes) {
+    throw UsageError("--vs: times projected shadows and maps; --shadows projected or map would do");
+  }
+  if (options.versus != nullptr && options.map_table) {
+    throw UsageError("--vs: does not go with --map-table");
   }
   set_maps(options.map, scene);
   if (options.check_embree && (has_map || has_soft_shadows(scene))) {
@@ -246,7 +245,7 @@ int measure_shadows(const ShadowsOptions& options) {
   }
   if (options.map_table && !has_map) throw UsageError("--map-table: give --shadows map too");
   if (has_map) {
-    const MapMeasure measure{scene, options.size, options.frame, options.runs};
+    const MapMeasure measure{scene, options.size, options.frame, options.runs, options.versus};
     if (options.map_table) {
       print_map_table(measure, pool);
     } else {
@@ -351,11 +350,12 @@ Command add_shadows_command(CLI::App& program) {
               options->runs = parse_whole("--runs", text, 1, 100, "a number from 1 to 100");
             });
   add_flag(*parser, "--check", "Ask a ray for every pixel, too", options->check);
+  add_value(
+      *parser, "--vs", "DRIVER",
+      "Time this GL driver too, in turn, drawing the same stencil or maps: " + names_of(drivers()),
+      [options](const std::string& text) { options->versus = &parse_driver("--vs", text); });
   add_flag(*parser, "--check-embree", "Ask Embree's ray for every pixel, too",
            options->check_embree);
-  add_value(*parser, "--vs", "DRIVER",
-            "Time this GL driver too, in turn, drawing the same stencil: " + names_of(drivers()),
-            [options](const std::string& text) { options->versus = &parse_driver("--vs", text); });
   offer(*parser, "--vs", [] { return names_in(drivers()); });
   add_flag(*parser, "--map-table", "Of maps, time and wrong pixels by each of their settings",
            options->map_table);

@@ -7,6 +7,7 @@
 
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/shutter_times.h"
+#include "scenes/warped_views/warped_views.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 
@@ -23,8 +24,8 @@ constexpr int kMostUsual = 0;
 // Of Sampling::shutter_frames, until the scene is there.
 constexpr double kShutterOfScene = -1.0;
 
-constexpr std::array kSamplingOptions{"--samples", "--jitter", "--until", "--aperture-blades",
-                                      "--shutter"};
+constexpr std::array kSamplingOptions{"--samples",         "--jitter",  "--until",
+                                      "--aperture-blades", "--shutter", "--views"};
 
 std::string names_of_methods_with_shutter() {
   std::string names;
@@ -38,6 +39,20 @@ void refuse_shutter(const CLI::App& parser, std::string_view method) {
   if (!is_given(parser, "--shutter")) return;
   throw UsageError("--shutter: the method " + std::string{method} +
                    " shows one instant; give --method " + names_of_methods_with_shutter());
+}
+
+// Warped views are drawn from their points alone, and their number is known beforehand.
+void check_warped_views(const CLI::App& parser, const LensViewMethod& method) {
+  if (!method.warps_views) {
+    if (!is_given(parser, "--views")) return;
+    throw UsageError("--views: the method " + std::string{method.name} +
+                     " draws all of its views; give --method warped-accumulation");
+  }
+  for (const char* option : {"--jitter", "--until"}) {
+    if (!is_given(parser, option)) continue;
+    throw UsageError(std::string{option} + ": the method " + std::string{method.name} +
+                     " does without; give --method accumulation");
+  }
 }
 
 }  // namespace
@@ -199,24 +214,35 @@ std::string names_of_sampling_methods() {
 }
 
 void add_sampling_options(CLI::App& parser, Sampling& sampling) {
-  add_value(parser, "--samples", "N|auto[:N]",
-            "Of accumulation, filtered-views and ray-traced: points on the lens, 1 to 65536 "
-            "(default: " +
-                std::to_string(sampling.samples) + ", of filtered-views " +
-                std::to_string(kFilteredViews) +
-                ", with --until 65536); auto, not of ray-traced: as each tile needs, at most N "
-                "(default: " +
-                std::to_string(sampling.samples) + ", of filtered-views " +
-                std::to_string(kMostFilteredViewsByTile) + ")",
-            [&sampling](const std::string& text) {
-              constexpr std::string_view kAutoWord = "auto", kAutoLimit = "auto:";
-              sampling.by_tile = text == kAutoWord || text.starts_with(kAutoLimit);
-              sampling.samples = kMostUsual;
-              if (text == kAutoWord) return;
-              sampling.samples =
-                  parse_whole("--samples", sampling.by_tile ? text.substr(kAutoLimit.size()) : text,
-                              1, kMostSamples, "a whole number from 1 to 65536, auto or auto:64");
-            });
+  add_value(
+      parser, "--samples", "N|auto[:N]",
+      "Of accumulation, filtered-views, warped-accumulation and ray-traced: points on the lens, "
+      "1 to 65536 "
+      "(default: " +
+          std::to_string(sampling.samples) + ", of filtered-views " +
+          std::to_string(kFilteredViews) +
+          ", with --until 65536); auto, not of ray-traced: as each tile needs, at most N "
+          "(default: " +
+          std::to_string(sampling.samples) + ", of filtered-views " +
+          std::to_string(kMostFilteredViewsByTile) + ")",
+      [&sampling](const std::string& text) {
+        constexpr std::string_view kAutoWord = "auto", kAutoLimit = "auto:";
+        sampling.by_tile = text == kAutoWord || text.starts_with(kAutoLimit);
+        sampling.samples = kMostUsual;
+        if (text == kAutoWord) return;
+        sampling.samples =
+            parse_whole("--samples", sampling.by_tile ? text.substr(kAutoLimit.size()) : text, 1,
+                        kMostSamples, "a whole number from 1 to 65536, auto or auto:64");
+      });
+  add_value(
+      parser, "--views", "V",
+      "Of warped-accumulation: views that are drawn, 1 to 64; the others are warped from them "
+      "(default: " +
+          std::to_string(sampling.drawn_views) + ")",
+      [&sampling](const std::string& text) {
+        sampling.drawn_views =
+            parse_whole("--views", text, 1, kMostDrawnViews, "a whole number from 1 to 64");
+      });
   add_flag(parser, "--jitter",
            "Of the same: look from all over each pixel, not from its centre alone",
            sampling.jitter);
@@ -245,6 +271,7 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
 
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser) {
   if (!method.has_shutter) refuse_shutter(parser, method.name);
+  check_warped_views(parser, method);
   if (method.has_shutter && !is_given(parser, "--shutter")) {
     sampling.shutter_frames = kShutterOfScene;
   }

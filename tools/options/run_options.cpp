@@ -80,7 +80,11 @@ void add_shard_option(CLI::App& parser, std::optional<Shard>& shard, const std::
     const auto number = [&](const std::string& part) {
       return parse_whole("--shard", part, 1, kMostSamples, wanted);
     };
-    shard = Shard{number(text.substr(0, slash)), number(text.substr(slash + 1))};
+    try {
+      shard = Shard{number(text.substr(0, slash)), number(text.substr(slash + 1))};
+    } catch (const UsageError&) {  // which knows one number alone
+      refuse();
+    }
     if (shard->number > shard->count) refuse();
   });
 }

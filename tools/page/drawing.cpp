@@ -10,7 +10,7 @@
 #include "scenes/draw/keyframes.h"
 #include "tools/cli/errors.h"
 #include "tools/page/picture.h"
-#include "tools/stress/make_frame.h"
+#include "tools/stress/cases/make_frame.h"
 
 namespace softfocus {
 namespace {

@@ -16,7 +16,7 @@
 #include "tools/golden/hashes.h"
 #include "tools/page/settings.h"
 #include "tools/pictures/image_file.h"
-#include "tools/stress/stress_case.h"
+#include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
 

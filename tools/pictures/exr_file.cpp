@@ -99,7 +99,8 @@ void list_part(PictureFile& file, const Imf::Header& header, int part, int parts
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
       throw FileError(std::string{"the EXR's channel '"} + channel.name() +
-                      "' has fewer pixels than the others; oiiotool IN -o OUT.exr evens them");
+                      "' has fewer pixels than the others, as luminance and chroma do; "
+                      "ImageMagick's convert IN OUT.exr makes red, green and blue of them");
     }
     if (file.planes.size() >= kMostChannels) {
       throw FileError("the EXR has more than " + std::to_string(kMostChannels) + " channels");

@@ -24,7 +24,12 @@ struct ForeignKind {
   std::string_view name;
   std::string_view remedy;
 };
-constexpr std::string_view kByOiiotool = "oiiotool IN -o OUT.exr converts it, depth included";
+// To PNG, whole numbers stay what they are. In an EXR they would be parts of their largest, in
+// halves, and sRGB numbers would be taken for light.
+constexpr std::string_view kByOiiotool =
+    "oiiotool IN -o OUT.png converts it, -o OUT.exr one of floats, depth included";
+constexpr std::string_view kByNetpbm = "pnmtopng IN >OUT.png converts it";
+constexpr std::string_view kByDjxl = "djxl IN OUT.png converts it";
 constexpr std::string_view kByHeif =
     "heif-convert IN OUT.png converts it, its depth into a second file";
 constexpr std::array kForeignKinds{
@@ -32,6 +37,7 @@ constexpr std::array kForeignKinds{
     ForeignKind{{"MM\0*", 4}, 0, "a TIFF", kByOiiotool},
     ForeignKind{{"II+\0", 4}, 0, "a TIFF", kByOiiotool},
     ForeignKind{"ftyphei", 4, "a HEIC", kByHeif},
+    ForeignKind{"ftyphev", 4, "a HEIC", kByHeif},
     ForeignKind{"ftypmif1", 4, "a HEIC", kByHeif},
     ForeignKind{"ftypavif", 4, "an AVIF", kByHeif},
     ForeignKind{"WEBP", 8, "a WebP", "dwebp IN -o OUT.png converts it"},
@@ -39,8 +45,16 @@ constexpr std::array kForeignKinds{
     ForeignKind{"8BPS", 0, "a Photoshop file", kByOiiotool},
     ForeignKind{"SDPX", 0, "a DPX", kByOiiotool},
     ForeignKind{"XPDS", 0, "a DPX", kByOiiotool},
-    ForeignKind{"P5", 0, "a PGM", "pnmtopng IN >OUT.png converts it"},
-    ForeignKind{"P6", 0, "a PPM", "pnmtopng IN >OUT.png converts it"},
+    ForeignKind{"P1", 0, "a PBM", kByNetpbm},
+    ForeignKind{"P2", 0, "a PGM", kByNetpbm},
+    ForeignKind{"P3", 0, "a PPM", kByNetpbm},
+    ForeignKind{"P4", 0, "a PBM", kByNetpbm},
+    ForeignKind{"P5", 0, "a PGM", kByNetpbm},
+    ForeignKind{"P6", 0, "a PPM", kByNetpbm},
+    ForeignKind{"P7", 0, "a PAM", "pamtopng IN >OUT.png converts it"},
+    ForeignKind{"\xFF\x0A", 0, "a JPEG XL", kByDjxl},
+    ForeignKind{"JXL ", 4, "a JPEG XL", kByDjxl},
+    ForeignKind{"jP  ", 4, "a JPEG 2000", kByOiiotool},
     ForeignKind{"BM", 0, "a BMP", kByOiiotool}};
 
 constexpr std::array kReaders{&kPngReader, &kJpegReader, &kHdrReader,
@@ -56,6 +70,7 @@ const PictureFileReader& reader_of(std::span<const std::byte> bytes) {
       throw FileError("it is " + std::string{kind.name} + "; " + std::string{kind.remedy});
     }
   }
+  if (bytes.empty()) throw FileError("it is empty");
   throw FileError("it is none of PNG, JPEG, PFM, Radiance HDR, NumPy and OpenEXR");
 }
 

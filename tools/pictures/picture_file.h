@@ -61,8 +61,9 @@ struct PictureFile {
   std::vector<PlaneInfo> planes{};
   /// Whether 0..1 stands for the sRGB curve and not for light. Alpha and depth have none.
   bool is_srgb = false;
-  bool has_rows = true;  ///< whether a row's values lie together, as `rows` of its reader needs
-  std::string remark{};  ///< what else there is to tell: "3 parts, data window 10,10..99,99"
+  bool has_rows = true;      ///< whether a row's values lie together, as `rows` of its reader needs
+  int exif_orientation = 1;  ///< of a JPEG: 1 if it stands upright, else 2 to 8; not followed
+  std::string remark{};      ///< what else there is to tell: "3 parts, data window 10,10..99,99"
 };
 
 inline ByteSource source_of(const PictureFile& file) {

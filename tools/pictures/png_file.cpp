@@ -172,7 +172,7 @@ Picture decode_png(std::span<const std::byte> bytes) {
     throw FileError(std::string{"the PNG is damaged: "} + stbi_failure_reason());
   }
   if (stbi_is_16_bit_from_memory(data, data_size) != 0) return decode_other(bytes, "the PNG");
-  const bool has_alpha = channels == 2 || channels == 4;
+  const bool has_alpha = channels == 2 || channels == 4 || has_transparent_colour(bytes);
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels{
       stbi_load_from_memory(data, data_size, &width, &height, &channels, 4), stbi_image_free};
   if (!texels) throw FileError(std::string{"the PNG is damaged: "} + stbi_failure_reason());

@@ -42,6 +42,8 @@ void list_channels(PictureFile& file, std::string_view kind, NumberType type) {
     refuse_as_damaged(kind, stbi_failure_reason());
   }
   check_picture_size(kind, file.width, file.height);
+  // stb counts the alpha of a transparent colour only once it reads the pixels.
+  if (is_png(file.bytes) && has_transparent_colour(file.bytes)) ++channels;
   constexpr std::string_view kNames[] = {"Y", "YA", "RGB", "RGBA"};
   for (const char name : kNames[channels - 1]) {
     file.planes.push_back({.name = std::string{name}, .type = type});
@@ -102,6 +104,52 @@ void read_png(const PictureFile& file, std::span<const std::size_t> planes,
   read_channels(file, "the PNG", planes, values);
 }
 
+/// The orientation in Exif data (CIPA DC-008, 4.6): a TIFF, of either byte order, whose first
+/// directory has it as tag 0x0112, one whole number of 16 bits. 1 if it is not there.
+int exif_orientation(std::span<const std::byte> tiff) {
+  constexpr std::size_t kHeader = 8, kEntry = 12;
+  constexpr std::uint32_t kOrientation = 0x0112, kShort = 3;
+  if (tiff.size() < kHeader) return 1;
+  const bool low_byte_first = tiff[0] == std::byte{'I'};
+  const auto number = [&](std::size_t at, bool is_wide) -> std::uint32_t {
+    const auto bytes = tiff.subspan(at);
+    if (is_wide) {
+      return low_byte_first ? little_endian<std::uint32_t>(bytes)
+                            : big_endian<std::uint32_t>(bytes);
+    }
+    return low_byte_first ? little_endian<std::uint16_t>(bytes) : big_endian<std::uint16_t>(bytes);
+  };
+  const std::size_t directory = number(4, true);
+  if (directory > tiff.size() || tiff.size() - directory < 2) return 1;
+  const std::size_t entries = number(directory, false);
+  for (std::size_t i = 0; i < entries; ++i) {
+    const std::size_t at = directory + 2 + i * kEntry;
+    if (at + kEntry > tiff.size()) return 1;
+    if (number(at, false) != kOrientation || number(at + 2, false) != kShort) continue;
+    const std::uint32_t value = number(at + 8, false);
+    return value >= 1 && value <= 8 ? static_cast<int>(value) : 1;
+  }
+  return 1;
+}
+
+/// Likewise of a JPEG: Exif data is in a segment APP1 before the first scan.
+int jpeg_orientation(std::span<const std::byte> jpeg) {
+  constexpr std::uint32_t kApp1 = 0xFFE1, kStartOfScan = 0xFFDA;
+  constexpr std::string_view kExifMark{"Exif\0\0", 6};
+  for (std::size_t at = 2; at + 4 <= jpeg.size();) {
+    const auto marker = big_endian<std::uint16_t>(jpeg.subspan(at));
+    const std::size_t length = big_endian<std::uint16_t>(jpeg.subspan(at + 2));
+    if (marker == kStartOfScan || length < 2 || at + 2 + length > jpeg.size()) return 1;
+    const auto data = jpeg.subspan(at + 4, length - 2);
+    if (marker == kApp1 && data.size() > kExifMark.size() &&
+        std::memcmp(data.data(), kExifMark.data(), kExifMark.size()) == 0) {
+      return exif_orientation(data.subspan(kExifMark.size()));
+    }
+    at += 2 + length;
+  }
+  return 1;
+}
+
 void list_jpeg(PictureFile& file) {
   const std::string_view text{reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
   if (has_overfull_huffman_table(text)) {
@@ -112,6 +160,10 @@ void list_jpeg(PictureFile& file) {
   }
   if (is_cut_jpeg(text)) refuse_as_damaged("the JPEG", "its end is missing");
   list_channels(file, "the JPEG", NumberType::unsigned8);
+  file.exif_orientation = jpeg_orientation(file.bytes);
+  if (file.exif_orientation != 1) {
+    file.remark = "EXIF orientation " + std::to_string(file.exif_orientation);
+  }
   if (pixels_of(file) > kMostPixelsOfJpegByte * file.bytes.size()) {
     refuse_as_damaged("the JPEG", "it is too small a file for the size that it claims");
   }

@@ -97,6 +97,20 @@ void check_png_chunks(std::span<const std::byte> png) {
   }
 }
 
+bool has_transparent_colour(std::span<const std::byte> png) {
+  constexpr std::size_t kColourTypeAt = 8 + 8 + 9;  // behind the signature and IHDR's frame
+  if (png.size() <= kColourTypeAt) return false;
+  const std::byte colour_type = png[kColourTypeAt];
+  if (colour_type != std::byte{0} && colour_type != std::byte{2}) return false;
+  for (auto rest = png.subspan(kPngSignature.size()); rest.size() >= kFrame;) {
+    const std::string_view type = text_of(rest.subspan(4, 4));
+    if (type == "tRNS") return true;
+    if (type == "IDAT") return false;
+    rest = rest.subspan(kFrame + big_endian<std::uint32_t>(rest));
+  }
+  return false;
+}
+
 std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
                                       const std::vector<PngText>& texts) {
   std::vector<std::byte> result{png.begin(), png.begin() + kHeaderEnd};

@@ -22,6 +22,10 @@ void append_png_chunk(std::vector<std::byte>& bytes, std::string_view type, std:
 /// bytes do, and for a side beyond kMaxImageSize.
 void check_png_chunks(std::span<const std::byte> png);
 
+/// Whether a grey or coloured PNG without an alpha says which of its colours is transparent (tRNS,
+/// 11.3.2.1), so that stb gives it an alpha. Needs sound chunks (check_png_chunks()).
+bool has_transparent_colour(std::span<const std::byte> png);
+
 struct PngText {
   std::string_view keyword;  ///< 1 to 79 Latin letters, digits and single blanks
   std::string text;          ///< UTF-8

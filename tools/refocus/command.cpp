@@ -25,7 +25,7 @@ void check_outputs(const RefocusOptions& options) {
   if (options.reading.mask) inputs.push_back({*options.reading.mask, "the mask"});
   check_not_read("-o", options.output, inputs);
   if (const auto sidecar = sidecar_place(options.output, options.format))
-    check_not_read("-o", *sidecar, inputs);
+    check_not_read("the sidecar of -o", *sidecar, inputs);
 }
 
 /// In memory.

@@ -40,9 +40,14 @@ HighlightCurve parse_highlights(const std::string& text) {
   constexpr const char* kWanted =
       "a gain from 1 and a threshold from 0 as GAIN,THRESHOLD, such as 8,0.9";
   const auto comma = text.find(',');
-  if (comma == text.npos) throw UsageError("--highlights '" + text + "': give " + kWanted);
-  return {parse_number("--highlights", text.substr(0, comma), 1.0, 1e4, kWanted),
-          parse_number("--highlights", text.substr(comma + 1), 0.0, 1e4, kWanted)};
+  try {
+    if (comma != text.npos) {
+      return {parse_number("", text.substr(0, comma), 1.0, 1e4, ""),
+              parse_number("", text.substr(comma + 1), 0.0, 1e4, "")};
+    }
+  } catch (const UsageError&) {  // which knows one number alone
+  }
+  throw UsageError("--highlights '" + text + "': give " + kWanted);
 }
 
 void raise_highlights(const HighlightCurve& highlights, const PlaneValues& opacity,

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
+#include <utility>
 
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -53,6 +55,52 @@ std::optional<std::size_t> likely_depth(const PictureFile& file, const DepthOpti
   }
 }
 
+/// Numbers whose meaning is not known, as a map, without those that mean nothing anyway.
+DepthMap map_of_numbers(PlaneValues values, const PictureFile& file, const DepthOptions& reading) {
+  for (float& value : values) {
+    const auto& missing = reading.missing_codes;
+    const bool is_missing =
+        std::find(missing.begin(), missing.end(), static_cast<double>(value)) != missing.end();
+    if (is_missing || value == -std::numeric_limits<float>::infinity()) value = kNoDepthThere;
+  }
+  return {file.width, file.height, std::move(values)};
+}
+
+/// What the plane found to be the depth has.
+void look_at_depth(InspectedFile& found, PlaneValues values, const DepthOptions& reading) {
+  const PictureFile& file = found.file;
+  const std::size_t plane = *found.depth_plane;
+  const NumberType type = file.planes[plane].type;
+  found.believed = reading.encoding != nullptr
+                       ? BelievedEncoding{reading.encoding, "--depth-encoding says so"}
+                       : believed_encoding(found.planes[plane].seen, type, found.notes.has_value());
+  const DepthEncoding* encoding = found.believed.encoding;
+  try {
+    if (encoding != nullptr) check_depth_numbers(*encoding, reading.numbers);
+  } catch (const UsageError& error) {
+    found.believed.why += "; " + std::string{error.what()};
+    encoding = nullptr;
+  }
+  found.in_metres = encoding != nullptr;
+  const DepthReading as_said{
+      .encoding = encoding, .numbers = reading.numbers, .missing_codes = reading.missing_codes};
+  const DepthMap map = found.in_metres ? depth_of_codes(std::move(values), type, file.width,
+                                                        file.height, as_said, {})
+                                       : map_of_numbers(std::move(values), file, reading);
+  found.missing = missing_depths(map);
+  found.histogram = depth_histogram(map, !found.in_metres);
+}
+
+/// A depth that was written as a grey picture of three equal channels.
+std::optional<PlaneValues> grey_in_colours(const InspectedFile& found) {
+  if (found.colours.size() != 1 || found.file.reader == &kExrReader) return std::nullopt;
+  try {
+    return depth_codes(found.file, found.colours.front().red);
+  } catch (const UsageError&) {  // the channels differ
+    return std::nullopt;
+  }
+}
+
 /// Reads one plane after the other, so that a file of forty layers takes the memory of one.
 InspectedFile inspected(const std::string& name, const DepthOptions& reading) {
   InspectedFile found{.file = open_picture_file(name)};
@@ -63,27 +111,15 @@ InspectedFile inspected(const std::string& name, const DepthOptions& reading) {
   found.depth_plane = likely_depth(file, reading);
   for (std::size_t i = 0; i < file.planes.size(); ++i) {
     const NumberType type = file.planes[i].type;
-    const PlaneValues values = read_planes(file, {&i, 1}, 0.0f)[0];
+    const bool is_depth = found.depth_plane == i;
+    PlaneValues values = std::move(read_planes(file, {&i, 1}, is_depth ? kNoDepthThere : 0.0f)[0]);
     found.planes.push_back({file.planes[i], numbers_seen(values, type)});
-    if (found.depth_plane != i) continue;
-    found.believed = reading.encoding != nullptr
-                         ? BelievedEncoding{reading.encoding, "--depth-encoding says so"}
-                         : believed_encoding(found.planes[i].seen, type, found.notes.has_value());
-    const DepthEncoding* encoding = found.believed.encoding;
-    try {
-      if (encoding != nullptr) check_depth_numbers(*encoding, reading.numbers);
-    } catch (const UsageError& error) {
-      found.believed.why += "; " + std::string{error.what()};
-      encoding = nullptr;
-    }
-    found.in_metres = encoding != nullptr;
-    const DepthEncoding* const plain = find_depth_encoding("metres");
-    const DepthReading as_said{.encoding = found.in_metres ? encoding : plain,
-                               .numbers = found.in_metres ? reading.numbers : DepthNumbers{},
-                               .missing_codes = reading.missing_codes};
-    const DepthMap map = depth_of_codes(values, type, file.width, file.height, as_said, {});
-    found.missing = missing_depths(map);
-    found.histogram = depth_histogram(map, !found.in_metres);
+    if (is_depth) look_at_depth(found, std::move(values), reading);
+  }
+  if (found.depth_plane) return found;
+  if (std::optional<PlaneValues> grey = grey_in_colours(found)) {
+    found.depth_plane = found.colours.front().red;
+    look_at_depth(found, std::move(*grey), reading);
   }
   return found;
 }
@@ -94,7 +130,9 @@ std::string padded(std::string text, std::size_t width) {
 }
 
 std::string seen_text(const NumbersSeen& seen) {
-  std::string text = short_number(seen.least) + " to " + short_number(seen.largest);
+  const bool is_any_finite = seen.infinities + seen.nans < seen.count;
+  std::string text = is_any_finite ? short_number(seen.least) + " to " + short_number(seen.largest)
+                                   : "nothing finite";
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) text += ", " + std::to_string(count) + " " + what;
   };
@@ -119,7 +157,7 @@ std::string histogram_text(const DepthHistogram& histogram, bool in_metres) {
   for (const DepthBin& bin : histogram.bins) {
     line(short_number(bin.from) + " to " + short_number(bin.to) + unit, bin.count);
   }
-  if (histogram.infinite > 0) line("infinitely far", histogram.infinite);
+  if (histogram.infinite > 0) line(in_metres ? "infinitely far" : "infinite", histogram.infinite);
   return text;
 }
 

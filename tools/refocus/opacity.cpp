@@ -31,8 +31,10 @@ bool may_be_opacity(const PictureSources& sources) {
   return alpha && !is_depth && !is_ours;
 }
 
+bool is_sure_of_alpha(const PictureFile& file) { return file.reader == &kExrReader; }
+
 void take_opacity(const PictureFile& file, float whole, PlaneValues& alpha, Image& colour) {
-  for (float& value : alpha) value /= whole;
+  for (float& value : alpha) value = value > 0.0f ? std::min(value / whole, 1.0f) : 0.0f;
   if (file.reader != &kExrReader) multiply(alpha, colour);
 }
 
@@ -42,8 +44,9 @@ PlaneValues take_opacity(const PictureSources& sources, Image& colour) {
   const PictureFile& file = sources.colour_file;
   PlaneValues opacity = std::move(read_planes(file, {&plane, 1}, 0.0f)[0]);
   const auto whole = static_cast<float>(full_scale(file.planes[plane].type));
-  if (std::any_of(opacity.begin(), opacity.end(),
-                  [&](float value) { return !(value >= 0.0f && value <= whole); })) {
+  if (!is_sure_of_alpha(file) && std::any_of(opacity.begin(), opacity.end(), [&](float value) {
+        return !(value >= 0.0f && value <= whole);
+      })) {
     return {};
   }
   take_opacity(file, whole, opacity, colour);

@@ -28,7 +28,7 @@ void add_border_option(CLI::App& parser, Border& border) {
                 border = known;
                 return;
               }
-              throw UsageError("--border '" + text + "': there are clamp, mirror, black");
+              refuse_name("--border", text, {"clamp", "mirror", "black"});
             });
 }
 

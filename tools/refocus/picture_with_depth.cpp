@@ -171,6 +171,10 @@ void settle_encoding(const PictureSources& sources, const DepthOptions& options,
     const bool is_ours = !sources.depth_file && sources.notes;
     const BelievedEncoding believed =
         believed_encoding(read.seen, file.planes[sources.depth_plane].type, is_ours);
+    if (knows_nothing(read.seen)) {
+      throw UsageError("'" + file.path.string() + "' has no depth: " + believed.why +
+                       "; give another file, or --depth-layer");
+    }
     if (believed.encoding == nullptr) {
       throw UsageError("'" + file.path.string() + "': " + believed.why +
                        "; give a --depth-encoding");

@@ -115,7 +115,7 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
       survey.farthest_m = std::max(survey.farthest_m, metres);
     }
   });
-  survey.has_opacity = has_alpha && alpha.is_alpha;
+  survey.has_opacity = has_alpha && (alpha.is_alpha || is_sure_of_alpha(file));
   survey.is_opaque = !survey.has_opacity || alpha.is_opaque;
   if (survey.depth.filled == 0) return true;
   why = std::to_string(survey.depth.filled) +

@@ -149,6 +149,12 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
   for (const std::string& fault : sources.lens.faults) {
     made.warnings.push_back("'" + options.colour + "': " + fault + "; it is ignored");
   }
+  if (const int orientation = sources.colour_file.exif_orientation; orientation != 1) {
+    made.warnings.push_back("'" + options.colour + "' has the EXIF orientation " +
+                            std::to_string(orientation) +
+                            ", which is not followed: the result lies as the pixels do; "
+                            "exiftran -a -i FILE turns them, and the depth must lie as they do");
+  }
   if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
     made.warnings.push_back("circles of more than " +
                             std::to_string(static_cast<int>(kLargestMaxCoc)) +

@@ -84,7 +84,7 @@ LensViewInput lens_view_input(const Scene& scene, const CameraMatrices& view, co
 Image sampled_picture(const LensViewInput& input, RenderRecord& record, ThreadPool& pool) {
   SampledPicture sampled = record.used.method.of_scene->render(input, pool);
   if (record.used.method.of_scene->samples_lens) {
-    record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples};
+    record.sampled = {sampled.samples, sampled.half_set_rms, sampled.mean_samples, sampled.unseen};
   }
   return std::move(sampled.picture);
 }

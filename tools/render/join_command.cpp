@@ -89,7 +89,9 @@ void check_output(const JoinOptions& options) {
   inputs.reserve(options.parts.size());
   for (const std::string& part : options.parts) inputs.push_back({part, "one of the parts"});
   check_not_read("-o", options.picture.output, inputs);
-  if (const auto sidecar = sidecar_place(options.picture)) check_not_read("-o", *sidecar, inputs);
+  if (const auto sidecar = sidecar_place(options.picture)) {
+    check_not_read("the sidecar of -o", *sidecar, inputs);
+  }
 }
 
 void write_picture(const Image& picture, const PictureNotes& notes, const RenderOptions& options) {

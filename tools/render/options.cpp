@@ -266,6 +266,8 @@ constexpr std::uint64_t kLayerBytesPerPixel = 12;
 /// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredBytesPerPixel = kSamplingBytesPerPixel + 8 * 8;
+/// Of each view that is drawn to be warped: four planes of binary32.
+constexpr std::uint64_t kWarpedBytesPerPixel = 4 * 4;
 
 /// And for transparent surfaces: four layers with their depths (12 bytes each), two pictures of
 /// each for the filter, and the opaque picture.
@@ -285,8 +287,11 @@ std::uint64_t bytes_per_pixel(const RenderOptions& options) {
                   [](const ChosenEffect& chosen) { return is_of_frames(*chosen.effect); });
   const bool may_sample = options.method.of_scene != nullptr || options.method.is_auto();
   const bool may_filter_views = options.method.name() == "filtered-views";
+  const bool warps = options.method.of_scene != nullptr && options.method.of_scene->warps_views;
   return kRenderBytesPerPixel + (has_history ? kHistoryBytesPerPixel : 0) +
          (layers_of(options) - 1) * kLayerBytesPerPixel +
+         (warps ? static_cast<std::uint64_t>(options.sampling.drawn_views) * kWarpedBytesPerPixel
+                : 0) +
          (may_filter_views ? kFilteredBytesPerPixel
           : may_sample     ? kSamplingBytesPerPixel
                            : 0);

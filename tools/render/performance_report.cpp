@@ -241,6 +241,10 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       json["sampling"]["mean_samples"] = *record.sampled->mean_samples;
       json["sampling"]["most_samples"] = record.used.sampling.samples;
     }
+    if (record.sampled->unseen) {
+      json["sampling"]["views"] = record.used.sampling.drawn_views;
+      json["sampling"]["unseen"] = *record.sampled->unseen;
+    }
     if (record.sampled->half_set_rms)
       json["sampling"]["half_set_rms"] = *record.sampled->half_set_rms;
   }

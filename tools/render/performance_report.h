@@ -46,6 +46,7 @@ struct UsedSamples {
   int samples = 0;
   std::optional<double> half_set_rms;
   std::optional<double> mean_samples;  ///< of a pixel, with Sampling::by_tile
+  std::optional<double> unseen = {};   ///< of views that are warped: SampledPicture::unseen
 };
 
 struct RenderRecord {

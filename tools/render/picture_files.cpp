@@ -79,7 +79,7 @@ void check_outputs(const RenderOptions& options, const Scene& scene) {
     }
   }
   if (const auto sidecar = sidecar_place(options)) {
-    check_not_read("-o", *sidecar, inputs);
+    check_not_read("the sidecar of -o", *sidecar, inputs);
     if (options.depth_output && is_same_file(*options.depth_output, *sidecar)) {
       throw UsageError("--depth-output '" + *options.depth_output +
                        "' is where -o writes the picture's lens; give another name");

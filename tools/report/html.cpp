@@ -46,7 +46,7 @@ std::string table_head(const std::vector<Column>& columns) {
   std::string head = "<thead><tr>";
   for (const Column& column : columns) {
     head += column.word ? "<th class=\"word\" scope=\"col\">" : "<th scope=\"col\">";
-    head += "<button type=\"button\">" + std::string{column.name} + "</button></th>";
+    head += "<button type=\"button\">" + column.name + "</button></th>";
   }
   return head + "</tr></thead>\n";
 }

@@ -24,7 +24,7 @@ std::string word_cell(const std::string& html);
 
 /// A table's head: names of columns, those of text first, then those of numbers.
 struct Column {
-  const char* name;
+  std::string name;
   bool word = false;
 };
 std::string table_head(const std::vector<Column>& columns);

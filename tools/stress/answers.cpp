@@ -6,6 +6,7 @@
 
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/frame_parts.h"
+#include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/velocity.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/lens_view_method.h"
@@ -25,6 +26,38 @@ constexpr std::string_view kBeforeMotionBlur = "disc-layers";
 
 bool is_motion_blur(const std::string& method) {
   return std::find(kMotionBlurs.begin(), kMotionBlurs.end(), method) != kMotionBlurs.end();
+}
+
+struct ShadowAnswer {
+  std::string_view method;
+  ShadowKind kind;
+  ShadowMapSettings map{};
+  VolumeCount count = VolumeCount::z_fail;
+};
+constexpr std::array kShadowAnswers{
+    ShadowAnswer{"projected", ShadowKind::projected},
+    ShadowAnswer{"volumes", ShadowKind::volumes},
+    ShadowAnswer{"volumes-z-pass", ShadowKind::volumes, {}, VolumeCount::z_pass},
+    ShadowAnswer{"map", ShadowKind::map},
+    ShadowAnswer{"map-kernel", ShadowKind::map, {.kernel = 3}},
+    ShadowAnswer{"map-cascades", ShadowKind::map, {.cascades = 3}}};
+
+const ShadowAnswer* find_shadow_answer(const std::string& method) {
+  const auto* const found =
+      std::find_if(kShadowAnswers.begin(), kShadowAnswers.end(),
+                   [&](const ShadowAnswer& of) { return of.method == method; });
+  return found == kShadowAnswers.end() ? nullptr : found;
+}
+
+Image shadowed(const ShadowAnswer& answer, const StressFrame& frame, ThreadPool& pool) {
+  Scene scene = frame.scene->scene;
+  set_shadows(scene, answer.kind);
+  for (Light& light : scene.lights) light.map = answer.map;
+  PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
+  prepared.shadows->volume_count = answer.count;
+  Image picture = make_image(Format::rgba16f, frame.sharp.width, frame.sharp.height);
+  draw_scene(prepared, frame.scene->camera, 0.0, picture, pool);
+  return picture;
 }
 
 constexpr std::string_view kViewsMethod = "accumulation", kChoosingMethod = "auto";
@@ -81,12 +114,17 @@ Image method_picture(const std::string& method, const StressFrame& frame, Thread
     return of_scene->render(views_input(frame, 1), pool).picture;
   }
   if (is_motion_blur(method)) return motion_blurred(method, frame, pool);
+  if (const ShadowAnswer* answer = find_shadow_answer(method)) {
+    return shadowed(*answer, frame, pool);
+  }
   return filtered(*find_method(method), frame, frame.settings.max_coc_px, pool);
 }
 
 /// While the shutter is open a filter of depth of field has no part; the pinhole shows an instant.
 bool can_answer(const std::string& method, const StressFrame& frame) {
   if (!frame.scene) return find_method(method) != nullptr;
+  const bool is_shadow = find_shadow_answer(method) != nullptr;
+  if (is_shadow || frame.scene->shadows) return is_shadow && frame.scene->shadows;
   const bool is_open = frame.scene->shutter_frames > 0.0;
   if (is_motion_blur(method)) return is_open;
   return !is_open || method == kViewsMethod || method == "pinhole";
@@ -103,6 +141,7 @@ std::vector<std::string> stress_methods() {
   }
   names.emplace_back(kChoosingMethod);
   names.insert(names.end(), kMotionBlurs.begin(), kMotionBlurs.end());
+  for (const ShadowAnswer& answer : kShadowAnswers) names.emplace_back(answer.method);
   return names;
 }
 

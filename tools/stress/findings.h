@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/stress/stress_case.h"
+#include "tools/stress/cases/stress_case.h"
 #include "tools/stress/stress_options.h"
 
 namespace softfocus {

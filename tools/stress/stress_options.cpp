@@ -55,7 +55,7 @@ void add_stress_options(CLI::App& parser, StressOptions& options) {
             [&options](const std::string& text) { options.directory = text; });
   begin_group(parser, "What is measured");
   add_value(parser, "--methods", "A,B,...",
-            "Methods (default: all filters, accumulation, surface-splatting, auto)",
+            "Methods (default: all; each case takes those that it is for)",
             [&options](const std::string& text) {
               options.methods = known_names("--methods", text, stress_methods());
             });

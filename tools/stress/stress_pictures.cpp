@@ -8,7 +8,7 @@
 #include "tools/files/base64.h"
 #include "tools/pictures/image_file.h"
 #include "tools/report/worst_crop.h"
-#include "tools/stress/stress_measures.h"
+#include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {
 namespace {

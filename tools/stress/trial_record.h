@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tools/files/json.h"
-#include "tools/stress/stress_case.h"
+#include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
 

@@ -1,9 +1,7 @@
 #include "scenes/shadows/maps/draw_map_side.h"
 
 #include <algorithm>
-#include <atomic>
 #include <limits>
-#include <utility>
 
 #include "raster/pipeline/setup.h"
 #include "scenes/shadows/light_grid.h"
@@ -22,31 +20,13 @@ double inside_by(const SideCuts& cuts, glm::dvec3 p, int side) {
   }
 }
 
-// A triangle of a caster. Nearness is (over_u * u + over_v * v) + at_origin, from `least` to
-// `most`, which its corners have: the pipeline snaps corners, so a centre can lie beside the
-// caster, and a caster that is nearly edge-on has any nearness there.
-struct MapTriangle {
-  std::array<WindowVertex, 3> window;
-  double over_u, over_v, at_origin;
-  double least, most;
-};
-
-struct RowRange {
-  int begin, end;
-};
-
-// What a task makes of its casters, for tasks that each draw some rows.
-struct CasterChunk {
-  std::vector<MapTriangle> triangles;
-  std::vector<RowRange> rows;
-};
-
-constexpr std::size_t kCastersOfChunk = 1024;
+// Casters of a part, which a task cuts, for tasks that each draw some rows.
+constexpr std::size_t kCastersOfPart = 1024;
 constexpr int kRowsOfBand = 32;
 
-class ChunkWriter {
+class CasterCutter {
  public:
-  ChunkWriter(const ShadowLight& light, const MapSide& side, int size, double least_z)
+  CasterCutter(const ShadowLight& light, const MapSide& side, int size, double least_z)
       : side_(side), size_(size) {
     // A texel's room around the centres, so that no cut runs between them.
     cuts_.low = side.low - 1.0 / side.texels;
@@ -55,7 +35,7 @@ class ChunkWriter {
     cuts_.is_directional = light.w == 0.0;
   }
 
-  void add(const Facet& facet, const FacetPlane& plane, CasterChunk& chunk) const {
+  void add(const Facet& facet, const FacetPlane& plane, CutCasters& part) const {
     MapPolygon polygon;
     for (const glm::dvec3& corner : facet.corners) {
       const glm::dvec3 q = corner - side_.origin;
@@ -68,7 +48,7 @@ class ChunkWriter {
     triangle.least = std::numeric_limits<double>::infinity();
     triangle.most = -triangle.least;
     std::array<WindowVertex, 9> window{};
-    RowRange rows{size_, 0};
+    CutCasters::Rows rows{size_, 0};
     for (std::size_t i = 0; i < polygon.count; ++i) {
       const glm::dvec3& p = polygon.corners[i];
       const double w = cuts_.is_directional ? 1.0 : p.z;
@@ -85,8 +65,8 @@ class ChunkWriter {
     }
     for (std::size_t i = 2; i < polygon.count; ++i) {
       triangle.window = {window[0], window[i - 1], window[i]};
-      chunk.triangles.push_back(triangle);
-      chunk.rows.push_back(rows);
+      part.triangles.push_back(triangle);
+      part.rows.push_back(rows);
     }
   }
 
@@ -151,21 +131,26 @@ void cut_to_side(MapPolygon& polygon, const SideCuts& cuts) {
   }
 }
 
-void draw_map_side(const Facets& facets, const ShadowLight& light, int size, const Profile& profile,
-                   MapSide& side, ThreadPool& pool) {
+std::vector<CutCasters> cut_casters(const Facets& facets, const ShadowLight& light, int size,
+                                    const MapSide& side, ThreadPool& pool) {
   const std::size_t count = facets.facets.size();
-  std::vector<CasterChunk> chunks((count + kCastersOfChunk - 1) / kCastersOfChunk);
-  const ChunkWriter writer{light, side, size, facets.epsilon_m};
-  pool.for_each(static_cast<int>(chunks.size()), [&](int number) {
-    const std::size_t begin = static_cast<std::size_t>(number) * kCastersOfChunk;
-    for (std::size_t i = begin; i < std::min(begin + kCastersOfChunk, count); ++i) {
+  std::vector<CutCasters> parts((count + kCastersOfPart - 1) / kCastersOfPart);
+  const CasterCutter cutter{light, side, size, facets.epsilon_m};
+  pool.for_each(static_cast<int>(parts.size()), [&](int number) {
+    const std::size_t begin = static_cast<std::size_t>(number) * kCastersOfPart;
+    for (std::size_t i = begin; i < std::min(begin + kCastersOfPart, count); ++i) {
       if (!stops_light(facets.facets[i], facets.planes[i], light)) continue;
-      writer.add(facets.facets[i], facets.planes[i], chunks[static_cast<std::size_t>(number)]);
+      cutter.add(facets.facets[i], facets.planes[i], parts[static_cast<std::size_t>(number)]);
     }
   });
+  return parts;
+}
+
+void draw_casters(std::span<const CutCasters> casters, int size, const Profile& profile,
+                  MapSide& side, ThreadPool& pool) {
   side.nearness.clear();
-  if (std::all_of(chunks.begin(), chunks.end(),
-                  [](const CasterChunk& chunk) { return chunk.triangles.empty(); })) {
+  if (std::all_of(casters.begin(), casters.end(),
+                  [](const CutCasters& part) { return part.triangles.empty(); })) {
     return;
   }
   side.nearness.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
@@ -176,13 +161,18 @@ void draw_map_side(const Facets& facets, const ShadowLight& light, int size, con
       return side.nearness.begin() + static_cast<std::ptrdiff_t>(y) * size;
     };
     std::fill(texel(band.y_begin), texel(band.y_end), -std::numeric_limits<float>::infinity());
-    for (const CasterChunk& chunk : chunks) {
-      for (std::size_t i = 0; i < chunk.rows.size(); ++i) {
-        if (chunk.rows[i].begin >= band.y_end || chunk.rows[i].end <= band.y_begin) continue;
-        fill(chunk.triangles[i], band, profile, side);
+    for (const CutCasters& part : casters) {
+      for (std::size_t i = 0; i < part.rows.size(); ++i) {
+        if (part.rows[i].begin >= band.y_end || part.rows[i].end <= band.y_begin) continue;
+        fill(part.triangles[i], band, profile, side);
       }
     }
   });
+}
+
+void draw_map_side(const Facets& facets, const ShadowLight& light, int size, const Profile& profile,
+                   MapSide& side, ThreadPool& pool) {
+  draw_casters(cut_casters(facets, light, size, side, pool), size, profile, side, pool);
 }
 
 }  // namespace softfocus

@@ -5,7 +5,10 @@
 #include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
+#include <vector>
 
+#include "raster/pipeline/viewport.h"
 #include "scenes/shadows/maps/shadow_map.h"
 
 namespace softfocus {
@@ -26,7 +29,34 @@ struct SideCuts {
 
 void cut_to_side(MapPolygon& polygon, const SideCuts& cuts);
 
-/// Sets the side's nearness. It stays empty if no caster is before the side.
+/// A triangle of a caster, in texels. Nearness is over_u * u + (over_v * v + at_origin), from
+/// `least` to `most`, which its corners have: the pipeline snaps corners, so a centre can lie
+/// beside the caster, and a caster that is nearly edge-on has any nearness there.
+struct MapTriangle {
+  std::array<WindowVertex, 3> window;
+  double over_u, over_v, at_origin;
+  double least, most;
+};
+
+/// Triangles, and the rows of texels that each may cover: begin <= row < end.
+struct CutCasters {
+  struct Rows {
+    int begin, end;
+  };
+  std::vector<MapTriangle> triangles;
+  std::vector<Rows> rows;
+};
+
+/// The casters cut to a side, in parts.
+std::vector<CutCasters> cut_casters(const Facets& facets, const ShadowLight& light, int size,
+                                    const MapSide& side, ThreadPool& pool);
+
+/// Covers a side's texels with cut casters, and keeps the nearest: sets its nearness, which stays
+/// empty if there are none.
+void draw_casters(std::span<const CutCasters> casters, int size, const Profile& profile,
+                  MapSide& side, ThreadPool& pool);
+
+/// Both.
 void draw_map_side(const Facets& facets, const ShadowLight& light, int size, const Profile& profile,
                    MapSide& side, ThreadPool& pool);
 

@@ -58,21 +58,6 @@ MapErrors& operator+=(MapErrors& sum, const MapErrors& more) {
   return sum;
 }
 
-std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
-                                      int width, int height, ThreadPool& pool) {
-  std::vector<std::uint8_t> is_dark(seen.size());
-  pool.for_each(height, [&](int y) {
-    std::vector<std::uint32_t> memory;
-    for (int x = 0; x < width; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                static_cast<std::size_t>(x);
-      if (!shows_facet(seen[pixel])) continue;
-      is_dark[pixel] = truth.is_dark(seen[pixel], {x + 0.5, y + 0.5}, memory) ? 1 : 0;
-    }
-  });
-  return is_dark;
-}
-
 MapErrors map_errors(const Facets& facets, const ShadowMap& map, const ShadowTruth& truth,
                      std::span<const std::uint8_t> is_dark, std::span<const SeenFacet> seen,
                      std::span<const std::uint8_t> mask, int bit,

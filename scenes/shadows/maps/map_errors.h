@@ -36,10 +36,6 @@ struct MapErrors {
 
 MapErrors& operator+=(MapErrors& sum, const MapErrors& more);
 
-/// Whether each pixel is dark, 0 or 1, by rays.
-std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
-                                      int width, int height, ThreadPool& pool);
-
 /// `is_dark` is the truth's. Bit `bit` of the mask is the map's, likewise its shares
 /// (map_lookup.h).
 MapErrors map_errors(const Facets& facets, const ShadowMap& map, const ShadowTruth& truth,

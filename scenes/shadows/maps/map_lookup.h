@@ -27,4 +27,18 @@ void look_up_maps(const Facets& facets, std::span<const MapLookup> lookups,
                   std::span<const SeenFacet> seen, const ShadowView& view, glm::dvec3 eye,
                   std::span<std::uint8_t> mask, ThreadPool& pool);
 
+/// What a pixel is compared with, for who compares by other means.
+struct PixelComparison {
+  std::uint32_t side = 0;  ///< 1 + its number in the map; 0: nothing is nearer
+  MapComparison with{0, 0, 0.0};
+};
+
+/// Of each pixel. Pixels whose bit is set in the mask are dark sides, and are compared with
+/// nothing.
+std::vector<PixelComparison> pixel_comparisons(const Facets& facets, const ShadowMap& map, int bit,
+                                               std::span<const SeenFacet> seen,
+                                               const ShadowView& view, glm::dvec3 eye,
+                                               std::span<const std::uint8_t> mask,
+                                               ThreadPool& pool);
+
 }  // namespace softfocus

@@ -299,25 +299,31 @@ double bias_m(const ShadowMapSettings& settings, const MapPlace& place) {
   return place.reach_m * settings.bias + of_slope;
 }
 
-int blocked_texels(const ShadowMap& map, const MapPlace& place) {
+std::optional<MapComparison> map_comparison(const ShadowMap& map, const MapPlace& place) {
   const int size = map.settings.size;
-  const std::vector<float>& nearness = place.side->nearness;
   // Not a number, at the light itself, is lit.
-  if (nearness.empty() || !(place.u >= 0.0 && place.u < size && place.v >= 0.0 && place.v < size)) {
-    return 0;
+  if (place.side->nearness.empty() ||
+      !(place.u >= 0.0 && place.u < size && place.v >= 0.0 && place.v < size)) {
+    return std::nullopt;
   }
   const double bias_m = place.reach_m * (map.settings.bias + map.settings.slope_bias * place.slope);
   const double z = place.z - bias_m;
-  if (map.light.w != 0.0 && !(z > 0.0)) return 0;
-  const double own = map.light.w != 0.0 ? 1.0 / z : -z;
-  const int half = map.settings.kernel / 2;
-  const int u = static_cast<int>(place.u), v = static_cast<int>(place.v);
+  if (map.light.w != 0.0 && !(z > 0.0)) return std::nullopt;
+  return MapComparison{static_cast<int>(place.u), static_cast<int>(place.v),
+                       map.light.w != 0.0 ? 1.0 / z : -z};
+}
+
+int blocked_texels(const ShadowMap& map, const MapPlace& place) {
+  const std::optional<MapComparison> compared = map_comparison(map, place);
+  if (!compared) return 0;
+  const int size = map.settings.size, half = map.settings.kernel / 2;
   int blocked = 0;
-  for (int j = std::max(v - half, 0); j <= std::min(v + half, size - 1); ++j) {
+  for (int j = std::max(compared->v - half, 0); j <= std::min(compared->v + half, size - 1); ++j) {
     const float* row =
-        nearness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(size);
-    for (int i = std::max(u - half, 0); i <= std::min(u + half, size - 1); ++i) {
-      blocked += static_cast<double>(row[i]) > own ? 1 : 0;
+        place.side->nearness.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(size);
+    for (int i = std::max(compared->u - half, 0); i <= std::min(compared->u + half, size - 1);
+         ++i) {
+      blocked += static_cast<double>(row[i]) > compared->own ? 1 : 0;
     }
   }
   return blocked;

@@ -91,6 +91,16 @@ MapPlace map_place(const ShadowMap& map, const Receiver& receiver, glm::dvec3 po
 ///   s
 double bias_m(const ShadowMapSettings& settings, const MapPlace& place);
 
+/// What is compared: the texels of the kernel around (u, v) that the side has, each with `own`, the
+/// nearness of the place moved by bias_m().
+struct MapComparison {
+  int u, v;
+  double own;
+};
+
+/// Nothing for a place that is lit without a look.
+std::optional<MapComparison> map_comparison(const ShadowMap& map, const MapPlace& place);
+
 /// How many of the kernel's texels hold something nearer to the light than the place, moved by
 /// bias_m(): 0 to kernel * kernel (percentage closer filtering, Reeves, Salesin and Cook 1987).
 int blocked_texels(const ShadowMap& map, const MapPlace& place);

@@ -16,13 +16,13 @@
 namespace softfocus {
 
 /// The pixels of a block's row, which the widest unit takes at once.
-inline constexpr int kBlockSize = 8;
+inline constexpr int kSampleBlockSize = 8;
 
 /// Pixels are counted in blocks, which most faces cover whole or not at all, in bands of blocks,
 /// which are tasks.
-inline constexpr int kBlockPixels = kBlockSize * kBlockSize;
-inline constexpr int kBandRows = 4 * kBlockSize;
-inline constexpr int kBlockRows = kBandRows / kBlockSize;
+inline constexpr int kSampleBlockPixels = kSampleBlockSize * kSampleBlockSize;
+inline constexpr int kBandRows = 4 * kSampleBlockSize;
+inline constexpr int kSampleBlockRows = kBandRows / kSampleBlockSize;
 
 /// How far a sample may lie from its pixel's centre, in pixels.
 inline constexpr double kFarthest = 0.5;

@@ -28,7 +28,7 @@ struct CountedFace {
 struct Samples {
   const double *x, *y, *q;
   std::int64_t* counts;
-  std::size_t count;  // a multiple of kBlockSize
+  std::size_t count;  // a multiple of kSampleBlockSize
 };
 
 }  // namespace
@@ -111,7 +111,7 @@ class BandCounter {
         space_(space),
         faces_(faces),
         y_begin_(y_begin),
-        blocks_across_((view.width + kBlockSize - 1) / kBlockSize),
+        blocks_across_((view.width + kSampleBlockSize - 1) / kSampleBlockSize),
         count_samples_(count_samples_by<kCount>(isa)),
         band_(band) {}
 
@@ -140,20 +140,20 @@ class BandCounter {
     const double depth = dot(v[0], glm::dvec3{face.edges[0].a, face.edges[0].b, face.edges[0].c});
     const Outline outline = outline_of(of, faces_, kCount, space_, view_);
     const Extremes rows = rows_of(outline);
-    for (int row = 0; row < kBlockRows; ++row) {
-      const int y = y_begin_ + row * kBlockSize;
-      const double y_low = y - kReach, y_high = y + kBlockSize + kReach;
+    for (int row = 0; row < kSampleBlockRows; ++row) {
+      const int y = y_begin_ + row * kSampleBlockSize;
+      const double y_low = y - kReach, y_high = y + kSampleBlockSize + kReach;
       if (rows.high < y_low || rows.low > y_high) continue;
       const Extremes columns = columns_of(outline, y_low, y_high);
-      const Cells blocks =
-          cells_within(columns.low - kReach, columns.high + kReach, kBlockSize, blocks_across_);
+      const Cells blocks = cells_within(columns.low - kReach, columns.high + kReach,
+                                        kSampleBlockSize, blocks_across_);
       for (int column = blocks.begin; column < blocks.end; ++column) {
         const std::size_t number = static_cast<std::size_t>(row * blocks_across_ + column);
         Band::Block& block = band_.blocks[number];
         if (!(block.q.low <= block.q.high)) continue;
-        const double x = column * kBlockSize;
-        const BlockArea area{x + 0.5 - kFarthest, x + kBlockSize - 0.5 + kFarthest,
-                             y + 0.5 - kFarthest, y + kBlockSize - 0.5 + kFarthest};
+        const double x = column * kSampleBlockSize;
+        const BlockArea area{x + 0.5 - kFarthest, x + kSampleBlockSize - 0.5 + kFarthest,
+                             y + 0.5 - kFarthest, y + kSampleBlockSize - 0.5 + kFarthest};
         // With the sign of E: which sides can be met, which must be.
         bool may_be_positive = true, may_be_negative = true;
         bool is_positive = true, is_negative = true;
@@ -197,17 +197,17 @@ class BandCounter {
             continue;
           }
         }
-        const std::size_t first = number * kBlockPixels;
+        const std::size_t first = number * kSampleBlockPixels;
         const auto within = [&](double at_row) {
-          return std::clamp(static_cast<int>(std::clamp(at_row, 0.0, 8.0)), 0, kBlockSize);
+          return std::clamp(static_cast<int>(std::clamp(at_row, 0.0, 8.0)), 0, kSampleBlockSize);
         };
         const int row_begin = within(std::floor(rows.low - kReach - y));
         const int row_end = within(std::floor(rows.high + kReach - y) + 1.0);
         if (row_begin >= row_end) continue;
-        const std::size_t from = first + static_cast<std::size_t>(row_begin * kBlockSize);
+        const std::size_t from = first + static_cast<std::size_t>(row_begin * kSampleBlockSize);
         count_samples_(face, {band_.x.data() + from, band_.y.data() + from, band_.q.data() + from,
                               band_.counts.data() + from,
-                              static_cast<std::size_t>((row_end - row_begin) * kBlockSize)});
+                              static_cast<std::size_t>((row_end - row_begin) * kSampleBlockSize)});
       }
     }
   }
@@ -242,40 +242,53 @@ std::size_t draw_far_samples(const Facets& facets, const JoinedFacets& joined,
   return sum;
 }
 
-template <VolumeCount kCount>
-std::size_t draw_counted(const Facets& facets, const JoinedFacets& joined, ShadowVolumes& volumes,
-                         std::span<const LitSide> lit, std::uint8_t bit,
-                         std::span<const SeenFacet> seen, const ShadowView& view, glm::dvec3 eye,
-                         std::span<std::uint8_t> mask, ThreadPool& pool) {
-  constexpr bool kByPass = kCount == VolumeCount::z_pass;
-  const PixelSpace space = pixel_space(view, eye);
-  const std::vector<glm::dvec3> corners = corners_in_pixels(space, joined, volumes.light, pool);
-  const SeenFaces faces{
-      {volumes.faces.data(), kByPass ? volumes.faces_before_far_caps : volumes.faces.size()},
-      corners,
-      static_cast<std::uint32_t>(joined.corners.size())};
-  const Bands bands = sort_into_bands(faces, kCount, space, view, pool);
-  const std::int32_t of_eye =
-      kByPass ? volumes_that_hold(facets, joined, volumes.light, volumes.casters, eye) : 0;
-  const SampledScene sampled{facets, volumes.light, lit};
+// What the bands of a picture are counted with.
+struct BandsOfView {
+  const SampledScene& scene;
+  MaskRows rows;  // all
+  const ShadowView& view;
+  const PixelSpace& space;
+};
 
+// Calls use(rows, band) for each band with samples. Returns those that lie elsewhere, by bands.
+template <VolumeCount kCount, class Use>
+std::vector<std::vector<FarSample>> count_bands(const SeenFaces& faces, const BandsOfView& of,
+                                                ThreadPool& pool, const Use& use) {
+  const Bands bands = sort_into_bands(faces, kCount, of.space, of.view, pool);
   std::vector<std::vector<FarSample>> far(bands.begins.size() - 1);
   ScratchShelf<Band> shelf;
   pool.for_each(static_cast<int>(far.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    const int y_begin = number * kBandRows;
-    const MaskRows rows{seen, mask, bit, y_begin, std::min(y_begin + kBandRows, view.height)};
+    MaskRows rows = of.rows;
+    rows.y_begin = number * kBandRows;
+    rows.y_end = std::min(rows.y_begin + kBandRows, of.view.height);
     Band band = shelf.take();
-    if (find_samples(sampled, rows, view, space, band, far[i])) {
-      BandCounter<kCount> counter{view, space, faces, y_begin, pool.isa(), band};
+    if (find_samples(of.scene, rows, of.view, of.space, band, far[i])) {
+      BandCounter<kCount> counter{of.view, of.space, faces, rows.y_begin, pool.isa(), band};
       for (std::size_t k = bands.begins[i]; k < bands.begins[i + 1]; ++k) {
         counter.count(faces.faces[bands.faces[k]]);
       }
-      set_mask(rows, view.width, of_eye, band);
+      use(rows, band);
     }
     shelf.put_back(std::move(band));
   });
-  return draw_far_samples(facets, joined, volumes, bit, far, mask, pool);
+  return far;
+}
+
+template <class Use>
+std::vector<std::vector<FarSample>> count_bands_by(VolumeCount count, const SeenFaces& faces,
+                                                   const BandsOfView& of, ThreadPool& pool,
+                                                   const Use& use) {
+  return count == VolumeCount::z_fail ? count_bands<VolumeCount::z_fail>(faces, of, pool, use)
+                                      : count_bands<VolumeCount::z_pass>(faces, of, pool, use);
+}
+
+SeenFaces seen_faces(const ShadowVolumes& volumes, const JoinedFacets& joined, VolumeCount count,
+                     std::span<const glm::dvec3> corners) {
+  const bool by_pass = count == VolumeCount::z_pass;
+  return {{volumes.faces.data(), by_pass ? volumes.faces_before_far_caps : volumes.faces.size()},
+          corners,
+          static_cast<std::uint32_t>(joined.corners.size())};
 }
 
 }  // namespace
@@ -285,9 +298,48 @@ std::size_t draw_volume_mask(const Facets& facets, const JoinedFacets& joined,
                              std::span<const SeenFacet> seen, const ShadowView& view,
                              glm::dvec3 eye, VolumeCount count, std::span<std::uint8_t> mask,
                              ThreadPool& pool) {
-  const auto draw = count == VolumeCount::z_fail ? draw_counted<VolumeCount::z_fail>
-                                                 : draw_counted<VolumeCount::z_pass>;
-  return draw(facets, joined, volumes, lit, bit, seen, view, eye, mask, pool);
+  const PixelSpace space = pixel_space(view, eye);
+  const std::vector<glm::dvec3> corners = corners_in_pixels(space, joined, volumes.light, pool);
+  const SampledScene sampled{facets, volumes.light, lit};
+  const std::int32_t of_eye =
+      count == VolumeCount::z_pass
+          ? volumes_that_hold(facets, joined, volumes.light, volumes.casters, eye)
+          : 0;
+  const auto far = count_bands_by(
+      count, seen_faces(volumes, joined, count, corners),
+      {sampled, {seen, mask, bit, 0, view.height}, view, space}, pool,
+      [&](const MaskRows& rows, const Band& band) { set_mask(rows, view.width, of_eye, band); });
+  return draw_far_samples(facets, joined, volumes, bit, far, mask, pool);
+}
+
+VolumeCounts count_volumes(const Facets& facets, const JoinedFacets& joined,
+                           const ShadowVolumes& volumes, std::span<const LitSide> lit,
+                           std::uint8_t bit, std::span<const SeenFacet> seen,
+                           const ShadowView& view, glm::dvec3 eye, VolumeCount count,
+                           std::span<std::uint8_t> mask, ThreadPool& pool) {
+  const PixelSpace space = pixel_space(view, eye);
+  VolumeCounts counted;
+  counted.corners = corners_in_pixels(space, joined, volumes.light, pool);
+  const SeenFaces faces = seen_faces(volumes, joined, count, counted.corners);
+  counted.faces = faces.faces.size();
+  counted.samples.resize(seen.size());
+  counted.counts.resize(seen.size());
+  const SampledScene sampled{facets, volumes.light, lit};
+  count_bands_by(count, faces, {sampled, {seen, mask, bit, 0, view.height}, view, space}, pool,
+                 [&](const MaskRows& rows, const Band& band) {
+                   for (int y = rows.y_begin; y < rows.y_end; ++y) {
+                     const std::size_t row =
+                         static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width);
+                     for (int x = 0; x < view.width; ++x) {
+                       const std::size_t from = place_in_band(x, y - rows.y_begin, view.width);
+                       if (band.counted[from] == 0) continue;
+                       const std::size_t pixel = row + static_cast<std::size_t>(x);
+                       counted.samples[pixel] = {band.x[from], band.y[from], band.q[from]};
+                       counted.counts[pixel] = count_at(band, from);
+                     }
+                   }
+                 });
+  return counted;
 }
 
 }  // namespace softfocus

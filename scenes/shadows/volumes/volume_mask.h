@@ -15,7 +15,9 @@
 // with a common edge get the same E to the bit: no gaps, and nothing counts twice.
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <span>
+#include <vector>
 
 #include "raster/threads/parallel.h"
 #include "scenes/shadows/projected_shadows.h"
@@ -34,5 +36,21 @@ std::size_t draw_volume_mask(const Facets& facets, const JoinedFacets& joined,
                              std::span<const SeenFacet> seen, const ShadowView& view,
                              glm::dvec3 eye, VolumeCount count, std::span<std::uint8_t> mask,
                              ThreadPool& pool);
+
+/// What pixels' samples come to, for who counts by other means.
+struct VolumeCounts {
+  std::vector<glm::dvec3> corners;  ///< in pixels (pixel_space.h), as the faces number them
+  std::size_t faces = 0;            ///< so many of the light's are counted
+  /// Of each pixel: x, y and q = 1 / w. Zero if it has none, or if that lies elsewhere.
+  std::vector<glm::dvec3> samples;
+  std::vector<std::int64_t> counts;  ///< of each pixel with a sample; without the eye's volumes
+};
+
+/// As draw_volume_mask() counts them for that mask.
+VolumeCounts count_volumes(const Facets& facets, const JoinedFacets& joined,
+                           const ShadowVolumes& volumes, std::span<const LitSide> lit,
+                           std::uint8_t bit, std::span<const SeenFacet> seen,
+                           const ShadowView& view, glm::dvec3 eye, VolumeCount count,
+                           std::span<std::uint8_t> mask, ThreadPool& pool);
 
 }  // namespace softfocus

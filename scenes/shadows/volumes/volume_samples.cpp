@@ -57,20 +57,21 @@ class Sampler {
   double light_height_ = 0.0, over_ = 0.0;
 };
 
-std::size_t place_in_band(int x, int row, int blocks_across) {
-  const int block = row / kBlockSize * blocks_across + x / kBlockSize;
-  return static_cast<std::size_t>(block * kBlockPixels + row % kBlockSize * kBlockSize +
-                                  x % kBlockSize);
-}
-
 }  // namespace
+
+std::size_t place_in_band(int x, int row, int width) {
+  const int blocks_across = (width + kSampleBlockSize - 1) / kSampleBlockSize;
+  const int block = row / kSampleBlockSize * blocks_across + x / kSampleBlockSize;
+  return static_cast<std::size_t>(block * kSampleBlockPixels +
+                                  row % kSampleBlockSize * kSampleBlockSize + x % kSampleBlockSize);
+}
 
 bool find_samples(const SampledScene& scene, const MaskRows& rows, const ShadowView& view,
                   const PixelSpace& space, Band& band, std::vector<FarSample>& far) {
   Sampler sampler{scene, space};
-  const int across = (view.width + kBlockSize - 1) / kBlockSize;
-  const std::size_t blocks = static_cast<std::size_t>(across) * kBlockRows;
-  const std::size_t pixels = blocks * kBlockPixels;
+  const int across = (view.width + kSampleBlockSize - 1) / kSampleBlockSize;
+  const std::size_t blocks = static_cast<std::size_t>(across) * kSampleBlockRows;
+  const std::size_t pixels = blocks * kSampleBlockPixels;
   // What pixels without a sample count to does not matter.
   band.x.resize(pixels);
   band.y.resize(pixels);
@@ -98,12 +99,12 @@ bool find_samples(const SampledScene& scene, const MaskRows& rows, const ShadowV
         far.push_back({pixel, space.eye + from_pixels(space, sample)});
         continue;
       }
-      const std::size_t to = place_in_band(x, y - rows.y_begin, across);
+      const std::size_t to = place_in_band(x, y - rows.y_begin, view.width);
       band.x[to] = at_x;
       band.y[to] = at_y;
       band.q[to] = q;
       band.counted[to] = 1;
-      widen(band.blocks[to / kBlockPixels].q, q);
+      widen(band.blocks[to / kSampleBlockPixels].q, q);
       any = true;
     }
   }
@@ -111,15 +112,12 @@ bool find_samples(const SampledScene& scene, const MaskRows& rows, const ShadowV
 }
 
 void set_mask(const MaskRows& rows, int width, std::int32_t of_eye, const Band& band) {
-  const int across = (width + kBlockSize - 1) / kBlockSize;
   for (int y = rows.y_begin; y < rows.y_end; ++y) {
     std::uint8_t* mask =
         rows.mask.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
     for (int x = 0; x < width; ++x) {
-      const std::size_t from = place_in_band(x, y - rows.y_begin, across);
-      const std::int64_t count =
-          of_eye + band.blocks[from / kBlockPixels].count + band.counts[from];
-      if (band.counted[from] != 0 && count > 0) {
+      const std::size_t from = place_in_band(x, y - rows.y_begin, width);
+      if (band.counted[from] != 0 && of_eye + count_at(band, from) > 0) {
         mask[x] = static_cast<std::uint8_t>(mask[x] | rows.bit);
       }
     }

@@ -48,6 +48,14 @@ struct MaskRows {
 bool find_samples(const SampledScene& scene, const MaskRows& rows, const ShadowView& view,
                   const PixelSpace& space, Band& band, std::vector<FarSample>& far);
 
+/// Of a pixel of the picture, with the row of the band that it is in.
+std::size_t place_in_band(int x, int row, int width);
+
+/// Of a pixel with a sample.
+inline std::int64_t count_at(const Band& band, std::size_t place) {
+  return band.blocks[place / kSampleBlockPixels].count + band.counts[place];
+}
+
 /// Sets the bits of pixels that a volume holds. `of_eye` is added to each count.
 void set_mask(const MaskRows& rows, int width, std::int32_t of_eye, const Band& band);
 

@@ -10,7 +10,12 @@
 #include <limits>
 #include <vector>
 
+#include "raster/pipeline/setup.h"
+#include "scenes/draw/shadowed_layers.h"
+#include "scenes/load/load_scene.h"
 #include "scenes/shadows/light_grid.h"
+#include "scenes/shadows/maps/draw_map_side.h"
+#include "scenes/shadows/maps/map_lookup.h"
 #include "tests/support/random.h"
 #include "tests/support/shadow_facets.h"
 
@@ -144,6 +149,63 @@ TEST_CASE("a texel holds the nearest caster that a ray of the light meets") {
   }
 }
 
+TEST_CASE("a side drawn in bands has the bits of its casters drawn one by one") {
+  const Facets facets = facet_soup(4, 300, 0.4);
+  ThreadPool pool{2};
+  const int size = 150;
+  const Rectangle whole{0, 0, size, size};
+  for (const ShadowLight& light : {kSun, ShadowLight{{0.2, 0.1, -0.3}, 1.0}}) {
+    for (const MapSide& side : drawn(facets, light, of_scene(size, 0.0, 0.0)).sides) {
+      if (side.nearness.empty()) continue;
+      std::vector<float> expected(side.nearness.size(), -std::numeric_limits<float>::infinity());
+      for (const CutCasters& part : cut_casters(facets, light, size, side, pool)) {
+        for (const MapTriangle& triangle : part.triangles) {
+          const auto setup =
+              set_up_triangle(triangle.window, Cull::none, FrontFace::counter_clockwise, whole, {});
+          if (!setup) continue;
+          for (int y = setup->bounds.y_begin; y < setup->bounds.y_end; ++y) {
+            const Span span = covered_span(*setup, y, setup->bounds.x_begin, setup->bounds.x_end);
+            for (int x = span.x_begin; x < span.x_end; ++x) {
+              const double plain =
+                  triangle.over_u * (x + 0.5) + (triangle.over_v * (y + 0.5) + triangle.at_origin);
+              float& texel = expected[static_cast<std::size_t>(size * y + x)];
+              texel = std::max(
+                  texel, static_cast<float>(std::clamp(plain, triangle.least, triangle.most)));
+            }
+          }
+        }
+      }
+      CHECK(side.nearness == expected);
+    }
+  }
+}
+
+TEST_CASE("a caster that the light sees edge-on is no nearer than its corners") {
+  for (const double lean : {1e-2, 1e-4, 1e-6}) {
+    std::vector<Facet> corners;
+    add_quad(corners, {-1, 0, 0.5}, {1, 0.3, 0.5}, {1 + lean, 1, 0.7}, {-1 + lean, 1, 0.7});
+    const Facets facets = make_facets(std::move(corners));
+    const ShadowLight light{normalize(glm::dvec3{lean * 0.1, 0.7, 0.14}), 0.0};
+    const ShadowMap map = drawn(facets, light, of_scene(64, 0.0, 0.0));
+    double nearest = -std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (const Facet& facet : facets.facets) {
+      for (const glm::dvec3& corner : facet.corners) {
+        const double nearness = dot(corner - map.sides[0].origin, light.place);
+        nearest = std::max(nearest, nearness);
+        farthest = std::min(farthest, nearness);
+      }
+    }
+    int covered = 0;
+    for (const float nearness : map.sides[0].nearness) {
+      if (nearness < -1e30f) continue;
+      ++covered;
+      REQUIRE(static_cast<double>(nearness) <= nearest + 1e-6);
+      REQUIRE(static_cast<double>(nearness) >= farthest - 1e-6);
+    }
+    CHECK(covered > 0);
+  }
+}
+
 TEST_CASE("a larger map is less wrong") {
   for (const ShadowLight& light : {kSun, kLamp}) {
     const int at_32 = wrong_points(light, of_scene(32, 0.1, 0.75));
@@ -171,6 +233,27 @@ TEST_CASE(
       CHECK(dark_points(0.0) > 1000);
       // sqrt(1/2), and the 1/256 texel that corners are snapped to. Perspective is not linear in z.
       CHECK(dark_points(0.75) == 0);
+    }
+  }
+}
+
+TEST_CASE("a long plane does not shade itself along its texels' longer side") {
+  for (const bool is_along_x : {false, true}) {
+    std::vector<Facet> corners;
+    const double x = is_along_x ? 40.0 : 1.0, z = is_along_x ? 1.0 : 40.0;
+    add_quad(corners, {-x, 0, z}, {x, 0, z}, {x, 0, -z}, {-x, 0, -z});
+    const Facets facets = make_facets(std::move(corners));
+    for (const glm::dvec3& towards : {glm::dvec3{1, 0.4, 0}, {0, 0.4, 1}, {0.7, 0.4, 0.7}}) {
+      const ShadowMap map = drawn(facets, {normalize(towards), 0.0}, of_scene(64, 0.0, 0.75));
+      int dark = 0;
+      for (double across = -0.99; across < 1.0; across += 0.023) {
+        for (double along = -0.99; along < 1.0; along += 0.0047) {
+          const glm::dvec3 point{x * (is_along_x ? along : across), 0,
+                                 z * (is_along_x ? across : along)};
+          dark += blocked_texels(map, map_place(map, facets.receivers[0], point));
+        }
+      }
+      CHECK(dark == 0);
     }
   }
 }
@@ -327,4 +410,46 @@ TEST_CASE("a scene of nothing, or of what does not cast, has a map that darkens 
                 map, map_place(map, Receiver{{{0, 1, 0}, 0.0}, true, {}, 0}, {0.1, 0, 0.2})) == 0);
     }
   }
+}
+
+TEST_CASE(
+    "counted by hand, what pixels are compared with gives the bits and shares of the look-up") {
+  Scene scene = load_scene("cube-room", scene_search_path({}));
+  set_shadows(scene, ShadowKind::map);
+  for (Light& light : scene.lights) light.map = {.size = 64, .kernel = 3};
+  ThreadPool pool{2};
+  PreparedScene prepared = prepare_scene(scene, {}, pool);
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, 61, 47);
+  Image picture = make_image(Format::rgba16f, 61, 47);
+  draw_scene(prepared, camera, 0.0, picture, pool);
+  const SceneShadows& shadows = *prepared.shadows;
+  const std::vector<std::uint8_t> dark = cut_shadows(shadows, camera, 61, 47, pool).dark;
+  const ShadowView view{multiply(camera.eye_to_clip, camera.world_to_eye), 61, 47, {}};
+  int compared = 0, partly = 0;
+  for (std::size_t light = 0; light < shadows.lights.size(); ++light) {
+    const ShadowMap& map = shadows.maps[light];
+    const std::vector<PixelComparison> pixels =
+        pixel_comparisons(shadows.facets, map, static_cast<int>(light), shadows.seen[0], view,
+                          camera.eye, dark, pool);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if ((dark[i] >> light & 1) != 0) {
+        REQUIRE(pixels[i].side == 0);
+        REQUIRE(shadows.shares[0][light][i] == 0);
+        continue;
+      }
+      int nearer = 0;
+      for (int k = 0; k < 9 && pixels[i].side != 0; ++k) {
+        const int u = pixels[i].with.u + k % 3 - 1, v = pixels[i].with.v + k / 3 - 1;
+        const std::vector<float>& nearness = map.sides[pixels[i].side - 1].nearness;
+        const bool is_there = std::min(u, v) >= 0 && std::max(u, v) < 64;
+        if (is_there) nearer += nearness[static_cast<std::size_t>(64 * v + u)] > pixels[i].with.own;
+      }
+      REQUIRE((shadows.masks[0][i] >> light & 1) == (nearer == 9 ? 1 : 0));
+      REQUIRE(shadows.shares[0][light][i] == nearer % 9);
+      compared += pixels[i].side != 0 ? 1 : 0;
+      partly += nearer % 9 != 0 ? 1 : 0;
+    }
+  }
+  CHECK(compared > 1000);
+  CHECK(partly > 10);
 }

@@ -29,8 +29,8 @@ std::string page_of(const std::vector<ChartPanel>& panels) {
                      .size = "64x64",
                      .machine = "a <CPU>",
                      .summary_svg = "<svg>summary</svg>",
-                     .flip_svg = few ? "<svg/>" : "",
-                     .hdr_flip_svg = few ? "<svg>hdr</svg>" : ""});
+                     .first_svg = few ? "<svg/>" : "",
+                     .second_svg = few ? "<svg>hdr</svg>" : ""});
 }
 
 std::string page() {
@@ -100,7 +100,7 @@ TEST_CASE("chart page: a point without pictures is in the table, without a link"
 
 TEST_CASE("chart page: with many scenes it shows the summary and the best, no row a point") {
   std::vector<ChartPanel> panels;
-  for (int i = 0; i < 17; ++i) {
+  for (std::size_t i = 0; i <= kMostPanels; ++i) {
     ChartPanel panel = test::chart_panel("random:" + std::to_string(i));
     panel.truth_picture.clear();
     for (ChartPoint& point : panel.points) point.pictures = {};
@@ -111,13 +111,13 @@ TEST_CASE("chart page: with many scenes it shows the summary and the best, no ro
   CHECK(contains(html, "id=\"summary\""));
   CHECK(contains(html, "id=\"best\""));
   CHECK(contains(html, "They are in chart.csv"));
-  CHECK(contains(html, "on the scene where its FLIP is largest"));
+  CHECK(contains(html, "on the scene where its error is largest"));
   CHECK(values_after(html, "src=\"").size() == 1);
 }
 
 TEST_CASE("chart plot: each series has one style, and the front and the noise are drawn") {
   const std::string script = plot_script({test::chart_panel("figures"), test::chart_panel("it's")},
-                                         kRankedErrors[0], "svg", "out.svg");
+                                         kPictureErrors[0], "svg", "out.svg");
   CHECK(contains(script, "set terminal svg size "));
   CHECK(contains(script, "set output 'out.svg'"));
   CHECK(contains(script, "set title 'it''s'"));
@@ -133,7 +133,7 @@ TEST_CASE("chart plot: each series has one style, and the front and the noise ar
 TEST_CASE("chart plot: HDR-FLIP has a front of its own") {
   ChartPanel panel = test::chart_panel("figures");
   panel.points[2].errors.hdr_flip = 0.05;
-  const std::string script = plot_script({panel}, kRankedErrors[1], "svg", "out.svg");
+  const std::string script = plot_script({panel}, kPictureErrors[1], "svg", "out.svg");
   CHECK(contains(script, "$p0_front << END\n6 0.4\n12 0.2\n13.5 0.05\n700 0.02\n910 0.02\nEND\n"));
   CHECK(contains(script, "mean HDR-FLIP"));
 }
@@ -142,7 +142,7 @@ TEST_CASE("chart plot: an error of 0 is drawn at the least that there is") {
   ChartPanel panel = test::chart_panel("figures");
   for (ChartPoint& point : panel.points) point.errors.flip = 0.0;
   panel.noise_floor.flip = 0.0;
-  const std::string script = plot_script({panel}, kRankedErrors[0], "svg", "out.svg");
+  const std::string script = plot_script({panel}, kPictureErrors[0], "svg", "out.svg");
   CHECK(contains(script, "6 1e-05\n"));
   CHECK(contains(script, "set yrange [7.69231e-06:1.3e-05]"));
 }

@@ -24,9 +24,10 @@ std::vector<std::string> texts(const std::string& method, int height_px, bool qu
 
 TEST_CASE("chart settings: every method has some, but those that take rays") {
   const auto names = chart_methods();
-  CHECK(names.size() == methods().size() + 4);
+  CHECK(names.size() == methods().size() + 5);
   CHECK(names[methods().size()] == "accumulation");
   CHECK(names[methods().size() + 1] == "filtered-views");
+  CHECK(names[methods().size() + 2] == "warped-accumulation");
   CHECK(names.back() == "auto");
   for (const Method& method : methods()) {
     CAPTURE(method.name);
@@ -58,6 +59,7 @@ TEST_CASE("chart settings: no two entries have an id in common") {
   CHECK(ids.contains("two-pass-r16-fixed-8"));
   CHECK(ids.contains("accumulation-s8"));
   CHECK(ids.contains("filtered-views-s8"));
+  CHECK(ids.contains("warped-accumulation-s64-v7"));
   CHECK(ids.contains("auto-e0.02"));
   CHECK(ids.contains("pinhole"));
 }

@@ -8,10 +8,12 @@
 
 #include "dof/halve.h"
 #include "dof/measure/measures.h"
+#include "tools/chart/front.h"
 #include "tools/chart/options.h"
 #include "tools/chart/runner.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/truth.h"
+#include "tools/cli/errors.h"
 
 using namespace softfocus;
 
@@ -141,6 +143,77 @@ TEST_CASE("chart of anti-aliasing: what looks from more places in the pixel is n
   CHECK(twice < 0.6 * none);
   CHECK(after_frames < 0.6 * none);
   CHECK(sixteen < twice);
+}
+
+TEST_CASE(
+    "chart of shadows: projected and volumes have no wrong pixel, maps have, a pinhole more") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("shadows", "figures", pool, {96, 96});
+  const Image truth = truth_of(scene, pool);
+  ChartRunner runner{scene, pool};
+  const auto wrong = [&](const char* method) {
+    const ChartEntry entry = entry_of("shadows", method, 0);
+    runner.run_warm(entry);
+    return runner.wrong_pixels(entry);
+  };
+  const double without = wrong("pinhole");
+  for (const char* method : {"projected", "projected-kept", "volumes", "volumes-z-pass"}) {
+    CAPTURE(method);
+    CHECK(wrong(method) == 0.0);
+  }
+  CHECK(wrong("by-rays") == 0.0);
+  CHECK(equal(runner.result(), truth));
+  CHECK_FALSE(equal(scene.pinhole, truth));
+  for (const char* method : {"map", "map-kernel", "map-cascades", "map-kept"}) {
+    CAPTURE(method);
+    const double of_map = wrong(method);
+    CHECK(of_map > 0.0);
+    CHECK(of_map < 0.2 * without);
+  }
+}
+
+TEST_CASE("chart of shadows: without a shadow all that a ray finds dark is wrong") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("shadows", "cube-room", pool);
+  ChartRunner runner{scene, pool};
+  const ChartEntry rays = entry_of("shadows", "by-rays", 0);
+  const ChartEntry none = entry_of("shadows", "pinhole", 0);
+  runner.run(none);
+  const double first = runner.wrong_pixels(none);
+  runner.run(rays);
+  CHECK(runner.wrong_pixels(rays) == 0.0);
+  CHECK(runner.wrong_pixels(none) == first);
+  CHECK(first > 0.05 * 64 * 48);
+}
+
+TEST_CASE("chart of shadows: a scene without lights is refused by name") {
+  ThreadPool pool{1};
+  ChartScene scene = scene_of("shadows", "figures", pool);
+  scene.scene.lights.clear();
+  CHECK_THROWS_WITH_AS(truth_of(scene, pool),
+                       "--scenes 'figures': has 0 lights; for shadows 1 to 8 would do", UsageError);
+}
+
+TEST_CASE("chart of shadows: what has fewer wrong pixels is better, whatever its FLIP") {
+  ChartPanel panel;
+  panel.ranked = kShadowErrors;
+  const auto point = [&](const char* method, double ms, double wrong, double flip) {
+    ChartPoint of{.entry = entry_of("shadows", method, 0)};
+    of.errors.wrong_pixels = wrong;
+    of.errors.flip = flip;
+    of.times.frame_ms = {ms};
+    panel.points.push_back(of);
+  };
+  point("pinhole", 1, 900, 0.1);
+  point("map", 2, 40, 0.01);
+  point("volumes", 3, 0, 0.02);
+  point("map-kernel", 4, 50, 0.001);
+  settle_points(panel);
+  const std::vector<ChartPoint>& points = panel.points;
+  CHECK(points[0].on_front);
+  CHECK(points[1].on_front);
+  CHECK(points[2].on_front);
+  CHECK_FALSE(points[3].on_front);
 }
 
 TEST_CASE("chart runner: its pictures are those of what it times") {

@@ -24,7 +24,7 @@ OverScenes over(const std::vector<double>& numbers) {
 /// "method setting" of the best for a budget by one of the errors.
 std::string best_of(const std::vector<BestForBudget>& list, double budget, std::size_t ranked) {
   for (const BestForBudget& of : list) {
-    if (of.budget == budget && of.ranked == ranked) return entry_id(of.point->entry);
+    if (of.budget == budget && of.rank == ranked) return entry_id(of.point->entry);
   }
   return "";
 }

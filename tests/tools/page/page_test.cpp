@@ -9,7 +9,7 @@
 #include "tests/support/gl_drivers.h"
 #include "tests/support/run_program.h"
 #include "tools/page/page.h"
-#include "tools/stress/make_frame.h"
+#include "tools/stress/cases/make_frame.h"
 
 using namespace softfocus;
 

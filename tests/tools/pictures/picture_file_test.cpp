@@ -15,6 +15,7 @@
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/pictures/exr_file.h"
+#include "tools/pictures/image_file.h"
 #include "tools/pictures/png_text.h"
 #include "tools/pictures/srgb16.h"
 
@@ -134,6 +135,25 @@ TEST_CASE("PNG: grey of one bit goes from 0 to 255, grey with alpha has two plan
   CHECK(names(grey) == "Y, A");
   CHECK(all_planes(grey)[0] == PlaneValues{16, 32});
   CHECK(all_planes(grey)[1] == PlaneValues{255, 128});
+}
+
+TEST_CASE("PNG: a transparent colour is an alpha, of grey, of colours and of 16 bits") {
+  const auto png = [](int bits, int colour_type, std::string_view rows, std::string_view colour) {
+    return plain_png(2, 1, bits, colour_type, bytes_of(rows), {}, colour);
+  };
+  using namespace std::string_view_literals;
+  const PictureFile grey = open_picture_file(png(8, 0, "\0\x10\x20"sv, "\0\x20"sv), "a.png");
+  CHECK(names(grey) == "Y, A");
+  CHECK(all_planes(grey)[0] == PlaneValues{16, 32});
+  CHECK(all_planes(grey)[1] == PlaneValues{255, 0});
+  const Bytes colours = png(8, 2, "\0\1\2\3\1\2\4"sv, "\0\1\0\2\0\3"sv);
+  const PictureFile colour = open_picture_file(colours, "a.png");
+  CHECK(names(colour) == "R, G, B, A");
+  CHECK(all_planes(colour)[3] == PlaneValues{0, 255});
+  CHECK(decode_picture(colours, "a.png").has_alpha);
+  const PictureFile wide = open_picture_file(png(16, 0, "\0\1\2\1\3"sv, "\1\3"sv), "a.png");
+  CHECK(names(wide) == "Y, A");
+  CHECK(all_planes(wide)[1] == PlaneValues{65535, 0});
 }
 
 TEST_CASE("NPY: every type and both orders give the same planes") {
@@ -295,15 +315,46 @@ TEST_CASE("JPEG: a picture has the colours of its sRGB numbers") {
   CHECK(load_texel(picture.image, 13, 4).z > 5.0f * load_texel(picture.image, 13, 4).x);
 }
 
+/// The test's JPEG with Exif data: a TIFF of one entry, the orientation.
+Bytes turned_jpeg(std::string_view tiff) {
+  Bytes jpeg = read_picture_bytes(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg");
+  const Bytes data = bytes_of(std::string{"Exif\0\0", 6} + std::string{tiff});
+  Bytes segment = bytes_of("\xFF\xE1");
+  segment.push_back(std::byte{0});
+  segment.push_back(static_cast<std::byte>(data.size() + 2));
+  segment.insert(segment.end(), data.begin(), data.end());
+  jpeg.insert(jpeg.begin() + 2, segment.begin(), segment.end());
+  return jpeg;
+}
+
+TEST_CASE("JPEG: the orientation of Exif data is told, of either byte order, and damage is none") {
+  using namespace std::string_view_literals;
+  const auto orientation = [](std::string_view tiff) {
+    return open_picture_file(turned_jpeg(tiff), "a.jpg").exif_orientation;
+  };
+  const auto big = "MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0"sv;
+  CHECK(orientation(big) == 6);
+  CHECK(orientation("II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0\x08\0\0\0\0\0\0\0"sv) == 8);
+  CHECK(open_picture_file(turned_jpeg(big), "a.jpg").remark == "EXIF orientation 6");
+  for (std::size_t length = 0; length < 22; ++length)
+    CHECK(orientation(big.substr(0, length)) == 1);
+  CHECK(orientation("MM\0*\xFF\xFF\xFF\xFF\0\1"sv) == 1);
+  CHECK(orientation("MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\x09\0\0"sv) == 1);
+  CHECK(open_picture_file(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg").exif_orientation == 1);
+}
+
 TEST_CASE("a picture that is not read is named, and the program that converts it") {
-  CHECK(has(error_of(bytes_of(std::string_view{"II*\0abcdefgh", 12})), "oiiotool"));
+  // Whole numbers would be other ones in an EXR.
+  CHECK(has(error_of(bytes_of(std::string_view{"II*\0abcdefgh", 12})), "oiiotool IN -o OUT.png"));
   CHECK(has(error_of(bytes_of(std::string_view{"\0\0\0\x18"
                                                "ftypheic....",
                                                16})),
             "heif-convert"));
   CHECK(has(error_of(bytes_of("RIFF....WEBPVP8 ")), "dwebp"));
   CHECK(has(error_of(bytes_of("hello")), "none of PNG"));
-  CHECK(has(error_of({}), "none of PNG"));
+  CHECK(has(error_of(bytes_of("P2\n1 1\n9\n5\n")), "pnmtopng"));
+  CHECK(has(error_of(bytes_of("\xFF\x0A....")), "djxl"));
+  CHECK(has(error_of({}), "it is empty"));
 }
 
 TEST_CASE("a small file that claims a large picture is refused before there is memory for it") {

@@ -49,7 +49,7 @@ void check_all_equal(const std::string& driver) {
       "frame",    "two-pass-tiled",   "one-pass-tiled", "peel",        "blend",
       "kernel",   "pyramid",          "bilateral",      "bloom",       "lens-flare",
       "tone-map", "velocity",         "reproject",      "motion-blur", "reprojection",
-      "temporal", "polygon",          "shadow"};
+      "temporal", "polygon",          "shadow",         "shadow-map",  "shadow-volume"};
   CHECK(stages == all);
 }
 
@@ -166,6 +166,13 @@ TEST_CASE("crosscheck: another order of operations in a shader is caught" *
                       "(a.x * b.x + a.y * b.y) + a.z * b.z", "a.x * b.x + (a.y * b.y + a.z * b.z)");
   check_shader_caught("frame/figures-128x96-frame7-two-pass", "weights.glsl",
                       "depth_m - focus_m) / depth_m", "depth_m - focus_m) * (1.0 / depth_m)");
+  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "double(gl_FragCoord.x)",
+                      "double(gl_FragCoord.x - 0.5)");
+  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "most < raised ? most : raised",
+                      "raised");
+  check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "kernel / 2", "kernel");
+  check_shader_caught("shadow-volume/near-fence 65x41 z-fail", "volume.frag", "q * of_w - finite",
+                      "q * of_w");
 }
 
 TEST_CASE("crosscheck: a difference is told with its pixel, both values and a picture") {

@@ -133,7 +133,8 @@ TEST_CASE("ground truth: bad input") {
     check_refused_render(option, {option[0], "two-pass", "accumulation"});
   }
   check_refused_render(accumulation_with({"--gl", "llvmpipe"}), {"--gl", "accumulation"});
-  check_refused_render({"--method", "raytraced"}, {"'raytraced'", "filtered-views, ray-traced"});
+  check_refused_render({"--method", "raytraced"},
+                       {"'raytraced'", "warped-accumulation, ray-traced"});
 }
 
 TEST_CASE("ground truth: without Embree, ray-traced says how to get it") {

@@ -72,6 +72,7 @@ TEST_CASE("habits: a mistyped name is answered with the one that was meant") {
   means({"refocus", "a.exr", "-o", out, "--depth-encoding", "meters"}, "metres");
   means({"refocus", "a.exr", "-o", out, "--sensor", "fullframe"}, "full-frame");
   means({"refocus", "a.exr", "-o", out, "--upsample", "color"}, "colour");
+  means({"refocus", "a.exr", "-o", out, "--border", "miror"}, "mirror");
   means({"chart", "-o", directory.file("c"), "--methods", "disk-layers"}, "disc-layers");
   means({"stress", "-o", directory.file("s"), "--cases", "near-egde"}, "near-edge");
 }

@@ -127,7 +127,7 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
                     "ray-distribution-buffer", "pentagonal", "hexagonal", "diffusion", "generalised-diffusion",
                     "anisotropic-diffusion", "ring-bucket", "circular-1", "circular-2",
                     "disc-layers", "layered", "object-identification", "post-process", "mipmap",
-                    "accumulation", "filtered-views", "ray-traced", "surface-splatting", "auto"});
+                    "accumulation", "filtered-views", "warped-accumulation", "ray-traced", "surface-splatting", "auto"});
   // clang-format on
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe", "swiftshader"});
 }

@@ -70,6 +70,14 @@ TEST_CASE("shadows --vs: a driver draws the same stencil") {
   CHECK(out.find("; 0 of 3072 pixels differ; llvmpipe") != std::string::npos);
 }
 
+TEST_CASE("shadows --vs: a driver draws the same maps") {
+  if (!has_driver("llvmpipe")) return;
+  const std::string out =
+      measured({"near-fence", "--shadows", "map", "--map", "size=64", "--vs", "llvmpipe"});
+  CHECK(out.find("; 0 of ") != std::string::npos);
+  CHECK(out.find(" texels differ; llvmpipe") != std::string::npos);
+}
+
 TEST_CASE("render --shadows overrules a scene file's lights, and none is the scene without") {
   const TemporaryDirectory folder;
   const std::string plain = folder.file("plain.toml"), shadowed = folder.file("shadowed.toml");
@@ -124,6 +132,8 @@ TEST_CASE("shadows and render --shadows: what does not go together is one clear 
   refused({"shadows", "figures", "--z-pass"}, {"--z-pass", "--shadows volumes"});
   refused({"shadows", "figures", "--shadows", "volumes", "--vs", "llvmpipe"},
           {"--vs", "--shadows projected"});
+  refused({"shadows", "figures", "--shadows", "map", "--map-table", "--vs", "llvmpipe"},
+          {"--vs", "--map-table"});
   refused({"shadows", "figures", "--map-table"}, {"--map-table", "--shadows map"});
   refused({"shadows", "figures", "--shadows", "fog"}, {"'fog'", "projected, volumes, map"});
   refused({"shadows", "figures", "--terminator-table"}, {"--terminator-table", "SCENE"});

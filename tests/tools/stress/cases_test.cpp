@@ -9,8 +9,8 @@
 
 #include "raster/images/texel.h"
 #include "tools/stress/answers.h"
-#include "tools/stress/stress_case.h"
-#include "tools/stress/stress_measures.h"
+#include "tools/stress/cases/stress_case.h"
+#include "tools/stress/cases/stress_measures.h"
 
 using namespace softfocus;
 
@@ -82,7 +82,7 @@ TEST_CASE("stress: cases have names of their own, limits and severities that fit
     CHECK(quick.size() <= 3);
     CHECK(quick.front() == of.severities.front());
   }
-  CHECK(names.size() == 40);
+  CHECK(names.size() == 49);
 }
 
 TEST_CASE("stress: circles that do not fit the picture are left out") {
@@ -137,7 +137,8 @@ TEST_CASE("stress: a calculated truth is what the lens sees, where the case is a
   ThreadPool pool{2};
   int compared = 0;
   for (const Posed& made : posed_cases(pool)) {
-    if (made.of.views > 0 || !made.trial.frames[0].scene) continue;
+    const auto& scene = made.trial.frames[0].scene;
+    if (made.of.views > 0 || !scene || scene->shadows) continue;
     CAPTURE(std::string{made.of.name});
     const Image views = make_stress_truth(made.trial, 512, pool).pictures[0];
     double difference = 0.0, light = 0.0;
@@ -173,6 +174,20 @@ TEST_CASE("stress: methods that draw the scene have no answer to a picture") {
   const auto pinhole = method_pictures("pinhole", trial, pool);
   REQUIRE(pinhole);
   CHECK(equal((*pinhole)[0], trial.frames[0].sharp));
+}
+
+TEST_CASE("stress: only kinds of shadows answer cases of shadows, and projected ones are right") {
+  ThreadPool pool{2};
+  for (const Posed& made : posed_cases(pool)) {
+    const auto& scene = made.trial.frames[0].scene;
+    CAPTURE(std::string{made.of.name});
+    const auto projected = method_pictures("projected", made.trial, pool);
+    REQUIRE(projected.has_value() == (scene && scene->shadows));
+    if (!projected) continue;
+    CHECK(measured(made, *projected, pool) <= made.of.limit);
+    CHECK_FALSE(method_pictures("pinhole", made.trial, pool));
+    CHECK_FALSE(method_pictures("accumulation", made.trial, pool));
+  }
 }
 
 TEST_CASE("stress: while the shutter is closed motion blur has no answer") {

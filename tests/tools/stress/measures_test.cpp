@@ -1,6 +1,6 @@
 // The atlas's measures on pictures whose numbers are known.
 
-#include "tools/stress/stress_measures.h"
+#include "tools/stress/cases/stress_measures.h"
 
 #include <doctest/doctest.h>
 

@@ -25,9 +25,9 @@ std::vector<BestForBudget> best_for_budgets(const std::vector<ChartPanel>& panel
   std::vector<BestForBudget> list;
   for (const ChartPanel& panel : panels) {
     const auto add = [&](double budget) {
-      for (std::size_t i = 0; i < kRankedErrors.size(); ++i) {
-        const ChartPoint* point = best_within(panel, budget, kRankedErrors[i].value);
-        if (point != nullptr) list.push_back({panel.scene, budget, i, point});
+      for (std::size_t i = 0; i < panel.ranked.size(); ++i) {
+        const ChartPoint* point = best_within(panel, budget, panel.ranked[i].value);
+        if (point != nullptr) list.push_back({panel.scene, budget, i, panel.ranked[i], point});
       }
     };
     if (has_times(panel)) {

@@ -17,7 +17,8 @@ inline constexpr double kAnyTime = std::numeric_limits<double>::infinity();
 struct BestForBudget {
   std::string scene;
   double budget;
-  std::size_t ranked;  ///< by which of kRankedErrors
+  std::size_t rank;  ///< by which of the panel's errors: 0 or 1
+  RankedError ranked;
   const ChartPoint* point;
 };
 

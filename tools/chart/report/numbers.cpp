@@ -65,7 +65,7 @@ Json chart_json(const std::vector<ChartPanel>& panels) {
 Json best_json(const std::vector<BestForBudget>& best) {
   Json list = Json::array();
   for (const BestForBudget& of : best) {
-    const RankedError& ranked = kRankedErrors[of.ranked];
+    const RankedError& ranked = of.ranked;
     list.push_back({{"scene", of.scene},
                     {"budget", number_or_null(of.budget)},
                     {"measure", ranked.key},
@@ -92,8 +92,8 @@ Json summary_json(const std::vector<SummaryRow>& summary) {
       json[name + "_worst"] = number_or_null(of.worst);
       json[name + "_worst_scene"] = of.worst_scene;
     };
-    for (std::size_t i = 0; i < kRankedErrors.size(); ++i) {
-      const std::string key{kRankedErrors[i].key};
+    for (std::size_t i = 0; i < row.ranked.size(); ++i) {
+      const std::string key{row.ranked[i].key};
       add(key + "_ratio", row.ratios[i]);
       add(key, row.errors[i]);
     }

@@ -29,6 +29,10 @@ std::string times_text(const ChartPoint& point) {
   return ms_text(point.median_ms) + " ms, ";
 }
 
+std::string error_text(const RankedError& error, const ChartPoint& point) {
+  return std::string{error.title} + " " + decimals(point.errors.*error.value, error.places);
+}
+
 std::string point_section(const ChartPanel& panel, const ChartPoint& point) {
   const std::string name = full_name(point) + " on " + panel.scene;
   const ChartPictures& pictures = point.pictures;
@@ -36,8 +40,8 @@ std::string point_section(const ChartPanel& panel, const ChartPoint& point) {
                             std::to_string(point.worst.x) + ", " + std::to_string(point.worst.y);
   constexpr const char* kCrop = "class=\"crop\" loading=\"lazy\"";
   return "<section class=\"point\" id=\"" + element_id(panel, point) + "\">\n<h3>" +
-         html_text(full_name(point)) + "</h3>\n<p>" + times_text(point) + "FLIP " +
-         decimals(point.errors.flip, 4) + ", HDR-FLIP " + decimals(point.errors.hdr_flip, 4) +
+         html_text(full_name(point)) + "</h3>\n<p>" + times_text(point) +
+         error_text(panel.ranked[0], point) + ", " + error_text(panel.ranked[1], point) +
          (point.on_front ? ": nothing is both faster and nearer to the truth" : "") +
          "</p>\n<div class=\"row\">" +
          figure(pictures.picture, "Picture by " + name, "the picture") +
@@ -80,8 +84,8 @@ std::string introduction(const ChartPage& page) {
         "medians; the contenders were run in turn. A pinhole frame is the time of the scene's "
         "sharp picture";
   }
-  return html + ". " + html_text(page.machine) +
-         ".</p>\n<p>FLIP is what an eye sees when the two pictures alternate: 0 is the same, 1 as "
+  return html + ". " + html_text(page.machine) + ".</p>\n<p>" + std::string{page.subject.measure} +
+         " FLIP is what an eye sees when the two pictures alternate: 0 is the same, 1 as "
          "different as can be. It cuts light to 1, as a screen does; HDR-FLIP is the largest FLIP "
          "over all exposures, and sees highlights.</p>\n";
 }
@@ -93,9 +97,9 @@ std::string summary_part(const ChartPage& page) {
         "The ratio is a contender's error over the least error that any contender reaches in "
         "its time or less: 1 is the best for its time. ";
   }
-  return html +
-         "In colour: each method at the setting with its least FLIP, scene by scene. 90 %: nine "
-         "scenes of ten have at most this.</p>\n" +
+  return html + "In colour: each method at the setting with its least " +
+         std::string{page.summary.front().ranked[0].title} +
+         ", scene by scene. 90 %: nine scenes of ten have at most this.</p>\n" +
          plot_image(page.summary_svg,
                     "Each method over all scenes; the table below has the "
                     "numbers") +
@@ -103,15 +107,17 @@ std::string summary_part(const ChartPage& page) {
 }
 
 std::string chart_part(const ChartPage& page) {
-  if (page.flip_svg.empty()) return "";
+  if (page.first_svg.empty()) return "";
+  const RankedErrors& ranked = page.panels.front().ranked;
   return "<h2>Scene by scene</h2>\n<p>The stair joins what is best for its time: nothing is both "
          "faster and nearer to the truth. The broken line is the noise of the truth itself: below "
          "it no difference means anything. The rings are auto, which chooses from the "
          "others.</p>\n" +
-         plot_image(page.flip_svg,
-                    "Time of a frame against FLIP, a panel for each scene; the "
-                    "table below has the numbers") +
-         plot_image(page.hdr_flip_svg, "Time of a frame against HDR-FLIP, a panel for each scene");
+         plot_image(page.first_svg, "Time of a frame against " + std::string{ranked[0].title} +
+                                        ", a panel for each scene; the table below has the "
+                                        "numbers") +
+         plot_image(page.second_svg, "Time of a frame against " + std::string{ranked[1].title} +
+                                         ", a panel for each scene");
 }
 
 std::string best_part(const ChartPage& page) {

@@ -16,11 +16,12 @@ struct ChartPage {
   const std::vector<ChartPanel>& panels;
   const std::vector<BestForBudget>& best;  ///< of these panels
   const std::vector<SummaryRow>& summary;
-  std::string size;          ///< "1024x1024"
-  std::string machine;       ///< machine_key()
-  std::string summary_svg;   ///< the file's text
-  std::string flip_svg;      ///< empty where there are too many scenes, or no times
-  std::string hdr_flip_svg;  ///< likewise
+  std::string size;         ///< "1024x1024"
+  std::string machine;      ///< machine_key()
+  std::string summary_svg;  ///< the file's text
+  std::string
+      first_svg;  ///< of the first error; empty where there are too many scenes, or no times
+  std::string second_svg;  ///< likewise
 };
 
 /// The plots, the tables, and the pictures of the points that have some. A point's row leads to

@@ -11,13 +11,18 @@
 namespace softfocus {
 namespace {
 
-constexpr int kFlipPlaces = 4, kRatioPlaces = 2;
+constexpr int kFlipPlaces = kPictureErrors[0].places, kRatioPlaces = 2;
 
 std::string ms_cell(double ms) { return number_cell(ms, ms_text(ms)); }
 
-std::string error_cells(const ChartErrors& errors) {
-  std::string cells = number_cell(errors.psnr_db, 2) + number_cell(errors.ssim, 4) +
-                      number_cell(errors.flip, kFlipPlaces);
+bool is_of_shadows(const ChartPanel& panel) {
+  return panel.ranked[0].value == kShadowErrors[0].value;
+}
+
+std::string error_cells(const ChartPanel& panel, const ChartErrors& errors) {
+  std::string cells = is_of_shadows(panel) ? number_cell(errors.wrong_pixels, 0) : "";
+  cells += number_cell(errors.psnr_db, 2) + number_cell(errors.ssim, 4) +
+           number_cell(errors.flip, kFlipPlaces);
   for (const double flip : errors.flip_by_region) cells += number_cell(flip, kFlipPlaces);
   cells += number_cell(errors.hdr_flip, kFlipPlaces);
   for (const double flip : errors.hdr_flip_by_region) cells += number_cell(flip, kFlipPlaces);
@@ -32,14 +37,14 @@ std::string point_row(const ChartPanel& panel, const ChartPoint& point) {
          word_cell(html_text(settings_text(point.entry))) + ms_cell(point.median_ms) +
          number_cell(point.pinhole_frames, kRatioPlaces) +
          ms_cell(filter_ms.empty() ? kNotTimed : spread_of(filter_ms).median) +
-         error_cells(point.errors) + number_cell(rounds, 0) + "</tr>\n";
+         error_cells(panel, point.errors) + number_cell(rounds, 0) + "</tr>\n";
 }
 
 std::string floor_row(const ChartPanel& panel) {
   const std::string none = number_cell(kNotTimed, "");
   return "<tr>" + word_cell(html_text(panel.scene)) + word_cell("noise of the truth") +
          word_cell("half its " + std::to_string(panel.truth_samples) + " samples against half") +
-         none + none + none + error_cells(panel.noise_floor) + none + "</tr>\n";
+         none + none + none + error_cells(panel, panel.noise_floor) + none + "</tr>\n";
 }
 
 const ChartPanel& panel_of(const std::vector<ChartPanel>& panels, const std::string& scene) {
@@ -60,58 +65,42 @@ std::string points_table(const std::vector<ChartPanel>& panels) {
     for (const ChartPoint& point : panel.points) rows += point_row(panel, point);
     rows += floor_row(panel);
   }
-  return table_of("results",
-                  table_head({{"scene", true},
-                              {"method", true},
-                              {"settings", true},
-                              {"frame, ms"},
-                              {"pinhole frames"},
-                              {"filter, ms"},
-                              {"PSNR, dB"},
-                              {"SSIM"},
-                              {"FLIP"},
-                              {"silhouette"},
-                              {"near"},
-                              {"focus"},
-                              {"far"},
-                              {"HDR-FLIP"},
-                              {"silhouette"},
-                              {"near"},
-                              {"focus"},
-                              {"far"},
-                              {"rounds"}}),
-                  rows);
+  std::vector<Column> columns{{"scene", true}, {"method", true},   {"settings", true},
+                              {"frame, ms"},   {"pinhole frames"}, {"filter, ms"}};
+  if (is_of_shadows(panels.front())) columns.push_back({"wrong pixels"});
+  for (const char* name : {"PSNR, dB", "SSIM", "FLIP", "silhouette", "near", "focus", "far",
+                           "HDR-FLIP", "silhouette", "near", "focus", "far", "rounds"}) {
+    columns.push_back({name});
+  }
+  return table_of("results", table_head(columns), rows);
 }
 
 std::string best_table(const std::vector<ChartPanel>& panels,
                        const std::vector<BestForBudget>& best) {
   std::string rows;
   for (const BestForBudget& of : best) {
-    const RankedError& ranked = kRankedErrors[of.ranked];
+    const RankedError& ranked = of.ranked;
     const ChartPanel& panel = panel_of(panels, of.scene);
-    if (of.ranked == 0) {
+    if (of.rank == 0) {
       rows += "<tr>" + word_cell(html_text(of.scene)) +
               (std::isfinite(of.budget) ? number_cell(of.budget, short_number(of.budget))
                                         : "<td data-n=\"1e9\">any</td>");
     }
     rows += word_cell(method_link(panel, *of.point)) +
             word_cell(html_text(settings_text(of.point->entry))) +
-            number_cell(of.point->errors.*ranked.value, kFlipPlaces) +
+            number_cell(of.point->errors.*ranked.value, ranked.places) +
             number_cell(of.point->pinhole_frames, kRatioPlaces);
-    if (of.ranked + 1 == kRankedErrors.size()) rows += "</tr>\n";
+    if (of.rank + 1 == panel.ranked.size()) rows += "</tr>\n";
   }
-  return table_of("best",
-                  table_head({{"scene", true},
-                              {"budget, pinhole frames"},
-                              {"least FLIP", true},
-                              {"settings", true},
-                              {"FLIP"},
-                              {"pinhole frames"},
-                              {"least HDR-FLIP", true},
-                              {"settings", true},
-                              {"HDR-FLIP"},
-                              {"pinhole frames"}}),
-                  rows);
+  std::vector<Column> columns{{"scene", true}, {"budget, pinhole frames"}};
+  for (const RankedError& ranked : panels.front().ranked) {
+    const std::string title{ranked.title};
+    for (const Column& column : {Column{"least " + title, true}, Column{"settings", true},
+                                 Column{title}, Column{"pinhole frames"}}) {
+      columns.push_back(column);
+    }
+  }
+  return table_of("best", table_head(columns), rows);
 }
 
 std::string summary_table(const std::vector<SummaryRow>& summary) {
@@ -122,27 +111,29 @@ std::string summary_table(const std::vector<SummaryRow>& summary) {
         word_cell(html_text(row.method)) + word_cell(html_text(row.settings)) +
         number_cell(row.scenes, 0) + number_cell(row.pinhole_frames.median, kRatioPlaces) +
         over_cells(row.ratios[0], kRatioPlaces) + word_cell(html_text(row.ratios[0].worst_scene)) +
-        over_cells(row.errors[0], kFlipPlaces) + word_cell(html_text(row.errors[0].worst_scene)) +
-        over_cells(row.ratios[1], kRatioPlaces) + over_cells(row.errors[1], kFlipPlaces) +
-        "</tr>\n";
+        over_cells(row.errors[0], row.ranked[0].places) +
+        word_cell(html_text(row.errors[0].worst_scene)) + over_cells(row.ratios[1], kRatioPlaces) +
+        over_cells(row.errors[1], row.ranked[1].places) + "</tr>\n";
   }
+  const RankedErrors& ranked = summary.front().ranked;
+  const std::string first{ranked[0].title}, second{ranked[1].title};
   return table_of("summary",
                   table_head({{"method", true},
                               {"settings", true},
                               {"scenes"},
                               {"pinhole frames"},
-                              {"FLIP ratio: median"},
+                              {first + " ratio: median"},
                               {"90 %"},
                               {"worst"},
                               {"on", true},
-                              {"FLIP: median"},
+                              {first + ": median"},
                               {"90 %"},
                               {"worst"},
                               {"on", true},
-                              {"HDR-FLIP ratio: median"},
+                              {second + " ratio: median"},
                               {"90 %"},
                               {"worst"},
-                              {"HDR-FLIP: median"},
+                              {second + ": median"},
                               {"90 %"},
                               {"worst"}}),
                   rows);

@@ -1,6 +1,7 @@
 #include "tools/chart/report/plot.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/chart/front.h"
 #include "tools/chart/report/gnuplot.h"
@@ -26,11 +27,13 @@ struct Layout {
 
 /// The error that a plot shows, and its series.
 struct Shown {
-  double ChartErrors::*error;
+  RankedError error;
   std::vector<std::string> series;
   std::string label;  ///< in quotes
 
-  double of(const ChartErrors& errors) const { return std::max(errors.*error, kLeastShown); }
+  double of(const ChartErrors& errors) const {
+    return std::max(errors.*error.value, error.least_shown);
+  }
 };
 
 std::vector<std::string> series_of(const std::vector<ChartPanel>& panels) {
@@ -84,17 +87,18 @@ std::string front_data(const ChartPanel& panel, const Shown& shown, double right
 
 std::string panel_script(std::size_t index, const ChartPanel& panel, const Shown& shown,
                          const Layout& layout) {
-  const double floor = shown.of(panel.noise_floor);
+  const bool has_floor = !std::isnan(panel.noise_floor.*shown.error.value);
+  const double floor = has_floor ? shown.of(panel.noise_floor) : 0.0;
   PlotRange ms, errors;
-  widen(errors, floor);
+  if (has_floor) widen(errors, floor);
   for (const ChartPoint& point : panel.points) {
     widen(ms, point.median_ms);
     widen(errors, shown.of(point.errors));
   }
   const std::string block = "$p" + std::to_string(index) + "_";
   std::string data = block + "front << END\n" + front_data(panel, shown, ms.most * 1.3) + "END\n";
-  std::string plots = "plot " + block + "front" + kFrontStyle + " notitle, " + short_number(floor) +
-                      kFloorStyle + " notitle";
+  std::string plots = "plot " + block + "front" + kFrontStyle + " notitle";
+  if (has_floor) plots += ", " + short_number(floor) + kFloorStyle + " notitle";
   for (std::size_t i = 0; i < shown.series.size(); ++i) {
     std::string lines;
     for (const ChartPoint& point : panel.points) {
@@ -117,8 +121,10 @@ std::string panel_script(std::size_t index, const ChartPanel& panel, const Shown
 
 std::string plot_script(const std::vector<ChartPanel>& panels, const RankedError& error,
                         std::string_view terminal, const std::filesystem::path& file) {
-  const Shown shown{error.value, series_of(panels),
-                    "'mean " + std::string{error.title} + " against the truth: lower is better'"};
+  const Shown shown{error, series_of(panels),
+                    "'" + std::string{error.places > 0 ? "mean " : ""} + std::string{error.title} +
+                        " against the truth" + (error.places > 0 ? "" : " (0.5 is none)") +
+                        ": lower is better'"};
   const Layout layout = layout_of(panels.size(), shown.series.size());
   std::string script = plot_head(terminal, file.string(), layout.size) +
                        "set logscale xy\nset xtics " + log_tics() + "\nset ytics " + log_tics() +
@@ -131,7 +137,11 @@ std::string plot_script(const std::vector<ChartPanel>& panels, const RankedError
     key.push_back({series_style(shown.series[i], i), shown.series[i]});
   }
   key.push_back({kFrontStyle, "best for its time"});
-  key.push_back({kFloorStyle, "noise of the truth"});
+  if (std::any_of(panels.begin(), panels.end(), [&](const ChartPanel& panel) {
+        return !std::isnan(panel.noise_floor.*error.value);
+      })) {
+    key.push_back({kFloorStyle, "noise of the truth"});
+  }
   return script + key_script(key, layout.size) + "unset multiplot\nset output\n";
 }
 

@@ -7,9 +7,6 @@
 
 namespace softfocus {
 
-/// Stands for an error of 0, the truth itself, which has no logarithm.
-inline constexpr double kLeastShown = 1e-5;
-
 /// Room around a panel's axes for what is written there, in pixels.
 inline constexpr int kLeft = 92, kRight = 16, kTop = 44, kBottom = 58;
 

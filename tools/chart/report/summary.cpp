@@ -8,9 +8,6 @@
 namespace softfocus {
 namespace {
 
-/// Stands for an error of 0 where the truth has no noise either.
-constexpr double kLeastError = 1e-6;
-
 struct Contender {
   const ChartPanel* panel;
   const ChartPoint* point;
@@ -22,12 +19,14 @@ ChartEntry without_choice(ChartEntry entry) {
   return entry;
 }
 
-double seen_error(const ChartPanel& panel, const ChartPoint& point, double ChartErrors::*error) {
-  return std::max({point.errors.*error, panel.noise_floor.*error, kLeastError});
+double seen_error(const ChartPanel& panel, const ChartPoint& point, const RankedError& error) {
+  const double noise = panel.noise_floor.*error.value;
+  const double own = std::max(point.errors.*error.value, error.least_in_ratio);
+  return std::isnan(noise) ? own : std::max(own, noise);
 }
 
 /// Over the least error within the contender's time. NaN without times.
-double ratio_of(const Contender& of, double ChartErrors::*error) {
+double ratio_of(const Contender& of, const RankedError& error) {
   if (std::isnan(of.point->median_ms)) return kNotTimed;
   const double own = seen_error(*of.panel, *of.point, error);
   double least = own;
@@ -51,10 +50,11 @@ SummaryRow row_of(std::string method, std::string settings,
     return over_scenes(numbers);
   };
   row.pinhole_frames = over([](const Contender& of) { return of.point->pinhole_frames; });
-  for (std::size_t i = 0; i < kRankedErrors.size(); ++i) {
-    double ChartErrors::*const error = kRankedErrors[i].value;
+  if (!contenders.empty()) row.ranked = contenders.front().panel->ranked;
+  for (std::size_t i = 0; i < row.ranked.size(); ++i) {
+    const RankedError& error = row.ranked[i];
     row.ratios[i] = over([&](const Contender& of) { return ratio_of(of, error); });
-    row.errors[i] = over([&](const Contender& of) { return of.point->errors.*error; });
+    row.errors[i] = over([&](const Contender& of) { return of.point->errors.*error.value; });
   }
   return row;
 }

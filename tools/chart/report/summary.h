@@ -23,10 +23,11 @@ struct SummaryRow {
   std::string settings;  ///< "max-coc 16"; kBestSetting: on each scene its best
   int scenes = 0;        ///< on which it can run
   OverScenes pinhole_frames{};
-  /// By kRankedErrors: its error over the least that any contender has in its time or less. Errors
+  RankedErrors ranked = kPictureErrors;
+  /// By `ranked`: its error over the least that any contender has in its time or less. Errors
   /// below the noise of the truth count as that noise.
-  std::array<OverScenes, kRankedErrors.size()> ratios{};
-  std::array<OverScenes, kRankedErrors.size()> errors{};
+  std::array<OverScenes, std::tuple_size_v<RankedErrors>> ratios{};
+  std::array<OverScenes, std::tuple_size_v<RankedErrors>> errors{};
 };
 
 inline constexpr std::string_view kBestSetting = "best setting";

@@ -26,7 +26,7 @@ std::vector<std::string> series_of(const std::vector<SummaryRow>& summary) {
 
 /// A panel of ratios over times.
 struct RatioPanel {
-  std::size_t ranked;  ///< of kRankedErrors
+  std::size_t ranked;  ///< of a row's errors
   double OverScenes::*number;
   const char* name;
 };
@@ -50,8 +50,8 @@ std::string ratio_panel(std::size_t index, const RatioPanel& panel,
     plots.append(plots.empty() ? "plot " : ", ").append(name);
     plots.append(series_style(series[i], i)).append(" notitle");
   }
-  const std::string title = std::string{panel.name} +
-                            " over the scenes: " + std::string{kRankedErrors[panel.ranked].title};
+  const std::string title = std::string{panel.name} + " over the scenes: " +
+                            std::string{summary.front().ranked[panel.ranked].title};
   return data + "set title " + gnuplot_quoted(title) + " offset 0,-0.4\nset xrange " +
          range_text(frames) + "\nset yrange " + range_text(ratios) + "\n" + plots + "\n";
 }
@@ -103,6 +103,7 @@ std::vector<SummaryRow> best_rows(const std::vector<SummaryRow>& summary) {
 /// A line of "error place median 90th worst" for each row, from the top down.
 std::string error_panel(std::size_t ranked, const std::vector<SummaryRow>& rows) {
   const std::string name = "$e" + std::to_string(ranked);
+  const RankedError& of_rank = rows.front().ranked[ranked];
   PlotRange errors;
   std::string data = name + " << END\n", labels;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -110,7 +111,7 @@ std::string error_panel(std::size_t ranked, const std::vector<SummaryRow>& rows)
     const std::string place = std::to_string(rows.size() - i);
     data += place;
     for (const double error : {of.median, of.p90, of.worst}) {
-      const double shown = std::max(error, kLeastShown);
+      const double shown = std::max(error, of_rank.least_shown);
       widen(errors, shown);
       data += " " + short_number(shown);
     }
@@ -118,8 +119,7 @@ std::string error_panel(std::size_t ranked, const std::vector<SummaryRow>& rows)
     labels += (i == 0 ? "" : ", ") + gnuplot_quoted(rows[i].method) + " " + place;
   }
   return data + "END\nset title " +
-         gnuplot_quoted(std::string{kRankedErrors[ranked].title} +
-                        " of each method at its best setting") +
+         gnuplot_quoted(std::string{of_rank.title} + " of each method at its best setting") +
          " offset 0,-0.4\nset xrange " + range_text(errors) +
          "\nset yrange [0.4:" + std::to_string(rows.size()) + ".6]\nset ytics (" + labels +
          ")\nplot " + name +
@@ -138,7 +138,7 @@ std::string script_without_times(const std::vector<SummaryRow>& summary, std::st
   std::string script = plot_head(terminal, file.string(), size) + "set logscale x\nset xtics " +
                        log_tics() +
                        "\nset xlabel 'mean error against the truth: further left is better'\n";
-  for (std::size_t i = 0; i < kRankedErrors.size(); ++i) {
+  for (std::size_t i = 0; i < rows.front().ranked.size(); ++i) {
     const int left = static_cast<int>(i) * size.width / 2;
     script += margins({left + kNames, left + size.width / 2 - kRight, below + kBottom,
                        below + panel_height - kTop},

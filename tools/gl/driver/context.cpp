@@ -120,6 +120,7 @@ bool GlContext::open(EGLDisplay display) {
         version.major >= 4
             ? "#version " + std::to_string(version.major * 100 + version.minor * 10) + " core\n"
             : "#version 330 core\n#define precise\n";
+    has_doubles_ = version.major >= 4 || epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
     return true;
   }
   // Whatever there is, to say what is too old.

@@ -36,6 +36,9 @@ class GlContext {
   /// `noperspective` means nothing to shaders.
   bool has_linear_varyings() const { return has_linear_varyings_; }
 
+  /// Whether shaders can compute in binary64: OpenGL 4.0, or GL_ARB_gpu_shader_fp64.
+  bool has_doubles() const { return has_doubles_; }
+
   /// Whether a browser has taken the driver away: nothing works from then on.
   bool is_lost() const;
 
@@ -47,6 +50,7 @@ class GlContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 #endif
   bool has_linear_varyings_ = true;
+  bool has_doubles_ = false;
   std::string renderer_;
   std::string version_;
   std::string shader_header_;

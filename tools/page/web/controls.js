@@ -5,7 +5,7 @@ import { make_number } from "./numbers.js";
 import { kSensors, kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
 import { kSizes } from "./state.js";
 
-const kSampled = ["accumulation", "filtered-views", "ray-traced"];
+const kSampled = ["accumulation", "filtered-views", "warped-accumulation", "ray-traced"];
 
 function checked_of(name) {
   return document.querySelector(`input[name="${name}"]:checked`)?.value;

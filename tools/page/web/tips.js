@@ -22,7 +22,7 @@ const kTips = {
   flip: ["How different two pictures look to somebody who flips between them: 0 equal, 1 most. The truth stops growing when its own noise is small against the errors.",
          "FLIP (Andersson et al. 2020)", "dof/measure; docs/measures.md; docs/ground-truth.md"],
   severity: ["How hard the case is. A method fails from the severity on at which its error passes the limit.",
-             "docs/failures.md has the limits", "tools/stress/stress_case.h"],
+             "docs/failures.md has the limits", "tools/stress/cases/stress_case.h"],
 };
 
 /** Every button of class "why" shows its tip: pointed at, focused or pressed. */

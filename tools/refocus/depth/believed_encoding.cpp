@@ -41,8 +41,11 @@ NumbersSeen numbers_seen(const PlaneValues& values, NumberType type) {
   return counter.seen();
 }
 
+bool knows_nothing(const NumbersSeen& seen) { return seen.count > 0 && seen.nans == seen.count; }
+
 BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours) {
   if (is_ours) return {find_depth_encoding("metres"), "softfocus wrote it, in metres"};
+  if (knows_nothing(seen)) return {nullptr, "all its numbers are NaN, or beyond the data window"};
   switch (type) {
     case NumberType::unsigned8:
       return {nullptr,
@@ -63,7 +66,12 @@ BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, boo
     return {find_depth_encoding("blender-z"), "1e10 is what Blender writes where there is nothing"};
   }
   if (seen.negatives > 0) {
-    return {nullptr, "there are numbers below 0, which are no distances: perhaps midas"};
+    return {nullptr,
+            "there are numbers below 0, which are no distances: perhaps midas, or metres, where "
+            "they are missing"};
+  }
+  if (seen.infinities + seen.nans == seen.count) {
+    return {nullptr, "no number is finite: metres, if all of it is infinitely far"};
   }
   if (seen.largest <= 1.0) {
     return {nullptr,

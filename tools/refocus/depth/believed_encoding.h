@@ -35,6 +35,9 @@ class NumberCounter {
   std::vector<bool> there_;  // of whole numbers up to 16 bits
 };
 
+/// Whether there are numbers, but all are NaN.
+bool knows_nothing(const NumbersSeen& seen);
+
 NumbersSeen numbers_seen(const PlaneValues& values, NumberType type);
 
 struct BelievedEncoding {

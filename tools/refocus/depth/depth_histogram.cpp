@@ -8,7 +8,7 @@ namespace softfocus {
 
 DepthHistogram depth_histogram(const DepthMap& map, bool even) {
   DepthHistogram histogram;
-  double least = std::numeric_limits<double>::infinity(), largest = 0.0;
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (const float metres : map.metres) {
     histogram.infinite += std::isinf(metres);
     if (!std::isfinite(metres)) continue;

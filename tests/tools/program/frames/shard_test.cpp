@@ -210,7 +210,7 @@ TEST_CASE("join: a header that promises much takes no memory") {
 
 TEST_CASE("shards: what cannot be shared out is refused") {
   const Words accumulation{"--method", "accumulation"};
-  for (const char* method : {"two-pass", "filtered-views", "surface-splatting", "auto"}) {
+  for (const char* method : {"two-pass", "filtered-views", "warped-accumulation", "surface-splatting", "auto"}) {
     check_options_refused({"--method", method}, {"--shard", "accumulation"});
   }
   check_options_refused({}, {"--shard", "accumulation"});
@@ -236,7 +236,7 @@ TEST_CASE("shards: what cannot be shared out is refused") {
   for (const char* shard : {"0/2", "3/2", "1", "1/", "/2", "1/2/3", "1.5/2", "-1/2", "a/b", ""}) {
     Words words{"render", "figures", "-o", directory.file("a.sum"), "--shard", shard};
     words.insert(words.end(), accumulation.begin(), accumulation.end());
-    check_refused(directory, words, 2, {"--shard", "I/N"});
+    check_refused(directory, words, 2, {std::string{"--shard '"} + shard + "'", "I/N"});
   }
 }
 

@@ -214,6 +214,20 @@ TEST_CASE("bad input: refocus writes over nothing that it reads, links and sidec
       files.directory,
       {"refocus", files.colour, files.depth, "-o", files.out, "-o", files.directory.file("b.png")},
       2, {"-o", "twice"});
+  const std::string sidecar = files.directory.file("d.npy.json");
+  std::filesystem::copy_file(files.depth, sidecar);
+  check_refused(files.directory,
+                {"refocus", files.colour, sidecar, "-o", files.directory.file("d.npy")}, 2,
+                {"the sidecar of -o", "write over"});
+}
+
+TEST_CASE("bad input: an empty name, as of a variable that is not set, is no file") {
+  const SmallPair files;
+  check_refused(files.directory, {"refocus", "", files.depth, "-o", files.out}, 1,
+                {"cannot read ''"});
+  check_refused(files.directory,
+                {"refocus", files.colour, files.depth, "-o", files.out, "--mask", ""}, 1,
+                {"cannot read ''"});
 }
 
 TEST_CASE("bad input: a place that refocus cannot write, and a full disk") {

@@ -74,6 +74,49 @@ TEST_CASE("inspect: what cannot be told is said, with what it may be") {
   CHECK(said["histogram"].back()["to"].get<double>() == doctest::Approx(9.0));
 }
 
+TEST_CASE("inspect: of numbers that cannot be told the histogram counts 0 and what is below") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("d.pfm");
+  write_pfm(file, {-1.0f, 0.0f, 0.0f, 0.5f, NAN, INFINITY}, 3, 2);
+  const json found = inspected_json({file})[0]["depth"];
+  CHECK(found["encoding"].is_null());
+  CHECK(found["missing"] == 1);
+  CHECK(found["infinite"] == 1);
+  CHECK(found["histogram"].front()["from"] == -1.0);
+  int counted = 0;
+  for (const json& bin : found["histogram"]) counted += bin["count"].get<int>();
+  CHECK(counted == 4);
+}
+
+TEST_CASE("inspect: a depth in three equal channels is one, as refocus takes it") {
+  const TemporaryDirectory directory;
+  Image grey = make_image(Format::rgba16f, 4, 3);
+  for (int i = 0; i < 12; ++i)
+    store_texel(grey, i % 4, i / 4, glm::vec4{0.1f * static_cast<float>(i % 4)}, {});
+  const auto put = [&](const std::string& name) {
+    const Bytes bytes = encode_png(grey);
+    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return inspected_json({directory.file(name)})[0]["depth"];
+  };
+  const json depth = put("grey.png");
+  REQUIRE(!depth.is_null());
+  CHECK(depth["plane"] == "R");
+  CHECK(depth["missing"] == 0);
+  store_texel(grey, 0, 0, {1.0f, 0.0f, 0.0f, 0.0f}, {});
+  CHECK(put("colour.png").is_null());
+}
+
+TEST_CASE("inspect, refocus: a depth without a known number is said to be none") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("d.pfm");
+  write_pfm(file, {NAN, NAN}, 2, 1);
+  CHECK(contains(run_program({"inspect", file}).out, "not to be told: all its numbers are NaN"));
+  check_refused(directory, {"refocus", file, file, "-o", directory.file("o.png")}, 2,
+                {"d.pfm", "has no depth", "another file"});
+  write_pfm(file, {INFINITY, NAN}, 2, 1);
+  CHECK(contains(run_program({"inspect", file}).out, "no number is finite"));
+}
+
 TEST_CASE("inspect: -o shows the circles, black where it is sharp") {
   const TemporaryDirectory directory;
   const std::string colour = directory.file("a.png"), depth = directory.file("d.pfm");

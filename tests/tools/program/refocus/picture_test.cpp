@@ -152,6 +152,34 @@ TEST_CASE("refocus: alpha is filtered as a grey picture of it is") {
   }
 }
 
+TEST_CASE("refocus: an EXR's alpha a little beyond 0 and 1, and NaN, is kept, cut to 0 and 1") {
+  if (!missing_exr().empty()) return;
+  const TemporaryDirectory directory;
+  put_depth(directory);
+  const Image picture = picture_of(random_colour);
+  const auto put_exr = [&](const std::string& name, float least, float largest, float unknown) {
+    put(directory, name,
+        encode_exr(picture, ExrNumbers::half, "", {.alpha = plane_of([&](int x, int y) {
+                                                     if (x == 3) return unknown;
+                                                     return opacity_at(x, y) == 0.0f ? least
+                                                            : opacity_at(x, y) == 1.0f
+                                                                ? largest
+                                                                : opacity_at(x, y);
+                                                   })}));
+  };
+  put_exr("a.exr", -0.002f, 1.001f, NAN);
+  put_exr("b.exr", 0.0f, 1.0f, 0.0f);
+  for (const Words& way : {Words{}, Words{"--method", "scatter"}}) {  // by rows, and whole
+    refocus(directory, "a.exr", "oa.exr", way);
+    refocus(directory, "b.exr", "ob.exr", way);
+    for (const std::string plane : {"R", "A"}) {
+      const bool same =
+          read_plane(directory, "oa.exr", plane) == read_plane(directory, "ob.exr", plane);
+      CHECK(same);
+    }
+  }
+}
+
 TEST_CASE("refocus: an alpha that is opaque everywhere changes no colour") {
   const TemporaryDirectory directory;
   const Image picture = picture_of(random_colour);
@@ -324,7 +352,7 @@ TEST_CASE("refocus: an aperture's blades, turn and stretch are drawn, or refused
                 {"--border", "clamp, mirror, black"});
   for (const std::string value : {"8", "0.5,1", "8,-1", "8,x", ","}) {
     check_refused(directory, {"refocus", a, d, "-o", out, "--highlights", value}, 2,
-                  {"--highlights", "GAIN,THRESHOLD"});
+                  {"--highlights '" + value + "'", "GAIN,THRESHOLD"});
   }
 }
 

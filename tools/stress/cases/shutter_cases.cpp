@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "tools/stress/make_frame.h"
-#include "tools/stress/stress_measures.h"
+#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {
 namespace {

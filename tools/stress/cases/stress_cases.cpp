@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/stress/stress_case.h"
+#include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
 
 std::vector<StressCase> stress_cases() {
   std::vector<StressCase> all;
-  for (const auto cases : {edge_cases(), light_cases(), crowd_cases(), glass_cases(), plane_cases(),
-                           depth_cases(), plain_cases(), motion_cases(), shutter_cases()}) {
+  for (const auto cases :
+       {edge_cases(), light_cases(), crowd_cases(), glass_cases(), plane_cases(), depth_cases(),
+        plain_cases(), motion_cases(), shutter_cases(), shadow_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

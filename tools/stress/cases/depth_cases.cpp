@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "raster/numbers/random_bits.h"
-#include "tools/stress/make_frame.h"
-#include "tools/stress/stress_measures.h"
+#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/stress/make_frame.h"
+#include "tools/stress/cases/make_frame.h"
 
 #include <cmath>
 

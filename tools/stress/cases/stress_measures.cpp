@@ -1,4 +1,4 @@
-#include "tools/stress/stress_measures.h"
+#include "tools/stress/cases/stress_measures.h"
 
 #include <algorithm>
 #include <cmath>

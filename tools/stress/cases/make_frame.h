@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "raster/images/texel.h"
-#include "tools/stress/stress_case.h"
+#include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
 

@@ -7,8 +7,8 @@
 
 #include "dof/measure/point_image.h"
 #include "raster/numbers/random_bits.h"
-#include "tools/stress/make_frame.h"
-#include "tools/stress/stress_measures.h"
+#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-// A case of the atlas: pictures that are hard to blur, their true answers, and a number for how
-// far a method's answer is from the truth.
+// A case of the atlas: pictures that are hard to blur or scenes whose shadows are hard to find,
+// their true answers, and a number for how far a method's answer is from the truth.
 
 #include <optional>
 #include <span>
@@ -21,6 +21,7 @@ struct StressScene {
   double focus_m = 1.0;
   double aperture_m = 0.0;      ///< its radius
   double shutter_frames = 0.0;  ///< how long the shutter is open: above 0 all of it is the truth
+  bool shadows = false;         ///< of all lights: kinds of shadows answer, and nothing is blurred
 };
 
 /// One picture to blur. Most trials have one, those of motion and of resolution two.
@@ -80,6 +81,7 @@ std::span<const StressCase> depth_cases();
 std::span<const StressCase> plain_cases();
 std::span<const StressCase> motion_cases();
 std::span<const StressCase> shutter_cases();
+std::span<const StressCase> shadow_cases();
 
 /// The severities for a picture of that size: radii and widths in pixels are at most a quarter of
 /// it. `quick` takes the first, the telling and the last one.

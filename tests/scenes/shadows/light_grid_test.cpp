@@ -1,0 +1,89 @@
+// The grid of a light's casters: it may name too many, and must name all that a ray meets.
+
+#include "scenes/shadows/light_grid.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "tests/support/shadow_facets.h"
+
+using namespace softfocus;
+using namespace softfocus::test;
+
+namespace {
+
+// Before the light.
+bool meets(const Facet& facet, glm::dvec3 from, const ShadowLight& light) {
+  const glm::dvec3 ray = light.place - from * light.w;
+  const auto& [a, b, c] = facet.corners;
+  const glm::dvec3 p = cross(ray, c - a), q = cross(from - a, b - a);
+  const double determinant = dot(b - a, p);
+  if (determinant == 0.0) return false;
+  const double s = dot(from - a, p) / determinant, t = dot(ray, q) / determinant;
+  const double along = dot(c - a, q) / determinant;
+  return s >= 0.0 && t >= 0.0 && s + t <= 1.0 && along > 0.0 && (light.w == 0.0 || along < 1.0);
+}
+
+// From behind a point of the facet, seen from the light.
+glm::dvec3 behind(glm::dvec3 target, const ShadowLight& light) {
+  return target + (target * light.w - light.place) * 0.7;
+}
+
+// Returns how many casters rays met. Each must be named where its ray begins.
+int check_grid(const Facets& facets, const ShadowLight& light) {
+  const LightGrid grid = make_light_grid(facets, light);
+  std::vector<std::uint32_t> found;
+  int met = 0;
+  for (std::size_t f = 0; f < facets.facets.size(); ++f) {
+    const auto& [a, b, c] = facets.facets[f].corners;
+    for (const glm::dvec3& target :
+         {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0}) {
+      const glm::dvec3 from = behind(target, light);
+      find_casters(grid, {&from, 1}, found);
+      for (std::uint32_t i = 0; i < facets.facets.size(); ++i) {
+        if (!stops_light(facets.facets[i], facets.planes[i], light)) continue;
+        if (!meets(facets.facets[i], from, light)) continue;
+        ++met;
+        REQUIRE(std::binary_search(found.begin(), found.end(), i));
+      }
+    }
+  }
+  return met;
+}
+
+}  // namespace
+
+TEST_CASE("a light's grid names every caster that a ray to the light meets, at its corners too") {
+  for (std::uint32_t seed = 1; seed < 4; ++seed) {
+    CAPTURE(seed);
+    const Facets facets = facet_soup(seed, 200, 0.4);
+    for (const ShadowLight& light :
+         {ShadowLight{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0}, ShadowLight{{0, -1, 0}, 0.0},
+          ShadowLight{{0.2, 0.1, -0.3}, 1.0}, ShadowLight{{3, 1, 2}, 1.0},
+          ShadowLight{facets.facets[9].corners[0], 1.0}}) {
+      CHECK(check_grid(facets, light) > 500);
+    }
+  }
+}
+
+TEST_CASE("casters that meet at the borders of cells are named on both sides of them") {
+  // The corners of these squares are the corners of cells.
+  std::vector<Facet> corners;
+  for (int x = -4; x < 4; ++x) {
+    for (int z = -4; z < 4; ++z) {
+      add_quad(corners, {x, 1, z + 1}, {x + 1, 1, z + 1}, {x + 1, 1, z}, {x, 1, z});
+    }
+  }
+  const Facets facets = make_facets(std::move(corners));
+  CHECK(check_grid(facets, {{0, 1, 0}, 0.0}) > 500);
+  CHECK(check_grid(facets, {normalize(glm::dvec3{0.3, 1, 0.7}), 0.0}) > 500);
+  // Along x, so that they stay corners of cells, but for rounding.
+  for (double x = 0.1; x < 2.0; x += 0.1) {
+    CHECK(check_grid(facets, {normalize(glm::dvec3{x, 1, 0}), 0.0}) > 500);
+  }
+  CHECK(check_grid(facets, {{0, 5, 0}, 1.0}) > 500);
+  CHECK(check_grid(facets, {{0.1, 1.5, 0.3}, 1.0}) > 500);
+}
