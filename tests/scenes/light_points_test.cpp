@@ -11,6 +11,7 @@
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/shadowed_layers.h"
+#include "scenes/lens_views/accumulation.h"
 #include "scenes/shadows/shadow_errors.h"
 #include "tests/support/shadow_scene.h"
 
@@ -186,6 +187,15 @@ TEST_CASE("soft shadows have the same bits on every vector unit and number of th
     ThreadPool pool{3, isa};
     CHECK(equal(drawn(scene, pool), expected));
   }
+}
+
+TEST_CASE("accumulation of one pinhole view shows the soft shadows of the picture") {
+  ThreadPool pool{2};
+  const Scene scene = soft_scene(3);
+  const CameraMatrices camera = camera_matrices(scene.camera, 5.0, 120, 80);
+  const Image pinhole = drawn(scene, pool);
+  const LensViewInput input{scene, camera, 5.0, pinhole, 1.0, 0.0, {.samples = 1}, {}, {}};
+  CHECK(equal(accumulation(input, pool).picture, pinhole));
 }
 
 TEST_CASE("soft shadows lie on the surfaces behind the first, and volumes and maps have them") {

@@ -98,6 +98,25 @@ TEST_CASE("lights are read, of both kinds") {
   CHECK(scene.lights[1].colour == glm::vec3{7, 8, 9});
 }
 
+TEST_CASE("a light's size, its shadows' darkness and where it ends are read") {
+  const Scene scene = read(
+      "light_points = 12\n"
+      "[[light]]\nkind = \"directional\"\ndirection = [1, 2, 3]\nangular_radius_degrees = 0.5\n"
+      "[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\nradius_m = 0.25\n"
+      "shadow_darkness = 0.75\nterminators = \"fade\"\n");
+  CHECK(scene.light_points == 12);
+  CHECK(scene.lights[0].angular_radius_degrees == 0.5);
+  CHECK(scene.lights[0].shadow_darkness == 1.0f);
+  CHECK(scene.lights[0].terminator == Terminator::facets);
+  CHECK(scene.lights[1].radius_m == 0.25);
+  CHECK(scene.lights[1].shadow_darkness == 0.75f);
+  CHECK(scene.lights[1].terminator == Terminator::fade);
+  CHECK(contains(complaint("light_points = 5000\n"), "a.toml:1: light_points: "));
+  CHECK(contains(complaint("[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\n"
+                           "angular_radius_degrees = 1\n"),
+                 "light.angular_radius_degrees: there is no such key"));
+}
+
 TEST_CASE("a colour may be a color, but not both") {
   const Scene scene = read(
       "[[light]]\nkind = \"point\"\nposition = [4, 5, 6]\ncolor = [7, 8, 9]\n"

@@ -191,6 +191,31 @@ void add_map_hashes(std::string_view name, Scene scene, const CameraMatrices& vi
       {.size = 128, .bias = 0.5, .slope_bias = 0.75, .kernel = 3, .cascades = 2});
 }
 
+/// Soft shadows that take half of the light.
+NamedHash soft_hash(std::string_view name, Scene scene, const CameraMatrices& view,
+                    const FrameSize& size, const Profile& profile, const std::string& where,
+                    ThreadPool& pool) {
+  set_shadows(scene, ShadowKind::projected);
+  for (Light& light : scene.lights) {
+    light.radius_m = 0.2;
+    light.angular_radius_degrees = 2.0;
+    light.shadow_darkness = 0.5f;
+  }
+  scene.light_points = 3;
+  return {entry_name(name, "shadows-soft", where),
+          hash_image(draw_scene(scene, view, kFrame, size.width, size.height, profile, pool))};
+}
+
+/// Shadows whose terminators have a rule.
+NamedHash terminator_hash(std::string_view name, Scene scene, Terminator rule,
+                          std::string_view entry, const CameraMatrices& view, const FrameSize& size,
+                          const Profile& profile, const std::string& where, ThreadPool& pool) {
+  set_shadows(scene, ShadowKind::projected);
+  for (Light& light : scene.lights) light.terminator = rule;
+  return {entry_name(name, entry, where),
+          hash_image(draw_scene(scene, view, kFrame, size.width, size.height, profile, pool))};
+}
+
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
   const Scene scene = load_scene(name, scene_search_path({}));
   const auto [width, height] = kSizes[1];
@@ -290,6 +315,15 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
     if (known.name == "ieee") {
       add_shadow_hashes(name, scene, ShadowKind::volumes, "shadows-volumes", view, size, profile,
                         where, hashes, pool);
+      if (name != "sphere-world") {
+        hashes.push_back(soft_hash(name, scene, view, size, profile, where, pool));
+      }
+      if (name == "figures") {
+        hashes.push_back(terminator_hash(name, scene, Terminator::normals, "shadows-normals", view,
+                                         size, profile, where, pool));
+        hashes.push_back(terminator_hash(name, scene, Terminator::fade, "shadows-fade", view, size,
+                                         profile, where, pool));
+      }
     }
   }
   for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {

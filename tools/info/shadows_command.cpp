@@ -180,6 +180,9 @@ void time_projection(const Facets& facets, const std::vector<ShadowLight>& light
 
 int measure_shadows(const ShadowsOptions& options) {
   if (options.terminator_table) {
+    if (!options.scene.empty() || options.triangles) {
+      throw UsageError("--terminator-table: has shapes of its own; give no SCENE or --triangles");
+    }
     ThreadPool pool{options.pool.threads, options.pool.isa};
     print_terminator_table(options.size, pool);
     return kDone;
@@ -219,6 +222,10 @@ int measure_shadows(const ShadowsOptions& options) {
     throw UsageError("--vs: does not go with --map-table");
   }
   set_maps(options.map, scene);
+  if (options.check_embree && (has_map || has_soft_shadows(scene))) {
+    throw UsageError(
+        "--check-embree: checks projected shadows and volumes, of lights without a size");
+  }
   if (options.soft_table && !has_soft_shadows(scene)) {
     throw UsageError("--soft-table: no light has a size; give --light-radius or --light-angle");
   }

@@ -136,6 +136,13 @@ TEST_CASE("shadows and render --shadows: what does not go together is one clear 
           {"--vs", "--map-table"});
   refused({"shadows", "figures", "--map-table"}, {"--map-table", "--shadows map"});
   refused({"shadows", "figures", "--shadows", "fog"}, {"'fog'", "projected, volumes, map"});
+  refused({"shadows", "figures", "--terminator-table"}, {"--terminator-table", "SCENE"});
+  if (run_program(
+          {"shadows", "--triangles", "1500", "--size", "8x8", "--runs", "1", "--check-embree"})
+          .status == 0) {
+    refused({"shadows", "figures", "--shadows", "map", "--check-embree"},
+            {"--check-embree", "projected"});
+  }
   refused({"shadows", "figures", "--soft-table"}, {"--soft-table", "--light-angle"});
   refused({"shadows", "figures", "--soft", "5000"}, {"'5000'", "1 to 4096"});
   refused({"shadows", "cube-room", "--light-radius", ".2", "--vs", "llvmpipe"},
