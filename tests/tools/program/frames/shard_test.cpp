@@ -210,7 +210,8 @@ TEST_CASE("join: a header that promises much takes no memory") {
 
 TEST_CASE("shards: what cannot be shared out is refused") {
   const Words accumulation{"--method", "accumulation"};
-  for (const char* method : {"two-pass", "filtered-views", "warped-accumulation", "surface-splatting", "auto"}) {
+  for (const char* method :
+       {"two-pass", "filtered-views", "warped-accumulation", "surface-splatting", "auto"}) {
     check_options_refused({"--method", method}, {"--shard", "accumulation"});
   }
   check_options_refused({}, {"--shard", "accumulation"});
