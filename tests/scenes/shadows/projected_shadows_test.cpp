@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "tests/support/random.h"
 #include "tests/support/shadow_facets.h"
 
 using namespace softfocus;

@@ -428,7 +428,7 @@ TEST_CASE("bands, blocks and outlines leave out no face that counts") {
     const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
     return glm::dvec3{x, y, random.between(-1.0, 1.0)};
   };
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const glm::dvec3 at = place() * 2.0 + glm::dvec3{0, 1, 0};
     add_triangle(corners, at + place() * 0.3, at + place() * 0.3, at + place() * 0.3);
   }
