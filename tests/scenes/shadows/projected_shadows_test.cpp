@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "tests/support/random.h"
 #include "tests/support/shadow_facets.h"
 
 using namespace softfocus;
@@ -91,6 +92,32 @@ TEST_CASE("coplanar neighbours are one receiver") {
   const Facets facets = make_facets(std::move(corners));
   REQUIRE(facets.receivers.size() == 2);
   for (std::size_t i = 0; i < 8; ++i) CHECK(facets.receiver_of[i] == 0);
+}
+
+TEST_CASE("coplanar neighbours of which one alone is two-sided are two receivers") {
+  std::vector<Facet> corners;
+  add_triangle(corners, {0, 0, 1}, {1, 0, 1}, {1, 0, 0});
+  add_triangle(corners, {0, 0, 1}, {1, 0, 0}, {0, 0, 0});
+  corners[1].two_sided = false;
+  CHECK(make_facets(corners).receivers.size() == 2);
+  corners[0].two_sided = false;
+  CHECK(make_facets(corners).receivers.size() == 1);
+}
+
+TEST_CASE("a light is on a receiver's back if it has one, and in its plane on neither side") {
+  std::vector<Facet> corners;
+  add_floor(corners, 9);
+  Receiver floor = make_facets(corners).receivers[0];
+  const double epsilon = make_facets(corners).epsilon_m;
+  const auto side_of = [&](double height) {
+    return lit_side(floor, {{1, height, 2}, 1.0}, epsilon);
+  };
+  CHECK(side_of(2.0 * epsilon) == LitSide::front);
+  CHECK(side_of(0.5 * epsilon) == LitSide::none);
+  CHECK(side_of(-2.0 * epsilon) == LitSide::back);
+  floor.two_sided = false;
+  CHECK(side_of(-2.0 * epsilon) == LitSide::none);
+  CHECK(lit_side(floor, {{1, 1e-14, 0}, 0.0}, epsilon) == LitSide::none);
 }
 
 TEST_CASE("two walls of a corner that both face the light cast nothing on each other") {

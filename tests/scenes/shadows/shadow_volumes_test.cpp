@@ -16,6 +16,7 @@
 #include "scenes/load/load_scene.h"
 #include "scenes/shadows/point_in_shadow.h"
 #include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/volumes/pixel_space.h"
 #include "scenes/shadows/volumes/volume_mask.h"
 #include "tests/support/random.h"
 #include "tests/support/shadow_facets.h"
@@ -341,6 +342,8 @@ TEST_CASE("what is a little more than epsilon over a receiver casts, what is les
       camera.fov_y_degrees = 26.0;
       for (const ShadowLight& light : {ShadowLight{normalize(glm::dvec3{1.0, 0.5, 0.13}), 0.0},
                                        ShadowLight{normalize(glm::dvec3{-1.0, 0.5, 0.13}), 0.0},
+                                       // Its samples leave their pixels.
+                                       ShadowLight{normalize(glm::dvec3{1.0, 0.05, 0.13}), 0.0},
                                        ShadowLight{middle + glm::dvec3{0.4, 0.2, 0.1}, 1.0}}) {
         check_masks(corners, light, camera, bend == 0.0);
       }
@@ -414,6 +417,62 @@ TEST_CASE("a pixel with a sample is dark exactly if its count and the eye's are 
     }
     CHECK(samples > 500);
   }
+}
+
+TEST_CASE("bands, blocks and outlines leave out no face that counts") {
+  // Of 100 km across, so that samples lie up to half a pixel beside their centres.
+  std::vector<Facet> corners;
+  add_floor(corners, 4);
+  test::Random random{21};
+  const auto place = [&] {
+    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0);
+    return glm::dvec3{x, y, random.between(-1.0, 1.0)};
+  };
+  for (int i = 0; i < 200; ++i) {
+    const glm::dvec3 at = place() * 2.0 + glm::dvec3{0, 1, 0};
+    add_triangle(corners, at + place() * 0.3, at + place() * 0.3, at + place() * 0.3);
+  }
+  add_triangle(corners, {1e5, 0, 0}, {1e5, 1, 0}, {1e5, 0, 1});
+  const Facets facets = make_facets(corners);
+  const JoinedFacets joined = join_facets(facets);
+  const CameraMatrices camera = camera_matrices(kCamera, 0.0, kWidth, kHeight);
+  const std::vector<SeenFacet> seen = seen_by_rays(facets, camera);
+  std::vector<std::uint8_t> mask(seen.size());
+  ThreadPool pool{2};
+  int beside = 0;
+  for (const ShadowLight& light : {kSun, kLamp, ShadowLight{{0.3, 0.5, 2.0}, 1.0}}) {
+    const ShadowVolumes volumes = make_shadow_volumes(facets, joined, light);
+    const auto first_far = static_cast<std::uint32_t>(joined.corners.size());
+    const VolumeCounts counted =
+        count_volumes(facets, joined, volumes, lit_sides(facets, light), 1, seen, view_of(camera),
+                      camera.eye, VolumeCount::z_fail, mask, pool);
+    const double facing = pixel_space(view_of(camera), camera.eye).facing;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const glm::dvec3 sample = counted.samples[i];
+      if (sample.z == 0.0) continue;
+      beside += std::fabs(sample.x - std::floor(sample.x) - 0.5) > 0.1 ? 1 : 0;
+      std::int64_t sum = 0;
+      for (const VolumeFace& face : volumes.faces) {
+        double of_w = 0.0, finite = 0.0;
+        int positive = 0, negative = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const glm::dvec3 e = cross(counted.corners[face.corners[(k + 1) % 3]],
+                                     counted.corners[face.corners[(k + 2) % 3]]);
+          const double at = (e.x * sample.x + e.y * sample.y) + e.z;
+          positive += at > 0.0 ? 1 : 0;
+          negative += at < 0.0 ? 1 : 0;
+          of_w += at * counted.corners[face.corners[k]].z;
+          finite += face.corners[k] < first_far ? at : 0.0;
+        }
+        const double beyond = sample.z * of_w - finite;
+        const int times = facing > 0.0 ? -face.times : face.times;
+        if (positive == 3 && beyond > 0.0) sum += times;
+        if (negative == 3 && beyond < 0.0) sum -= times;
+      }
+      REQUIRE(counted.counts[i] == sum);
+    }
+  }
+  CHECK(beside > 1000);
 }
 
 TEST_CASE("a sample on a common edge of two casters is in the volume of one") {
