@@ -1,6 +1,6 @@
 #pragma once
 // A relief impostor: an object as one relief texture, which serves as long as its errors are small
-// (4 and 5 of the source on relief impostors). For each view one of three things is done:
+// (chapters 4 and 5 of Clua 2004). For each view one of three things is done:
 //
 //   sprite  the last warp is mapped again: from here it differs by less than a pixel (Schaufler
 //   1995) warp    the relief is pre-warped for this view renew   the object is drawn anew as this

@@ -1,7 +1,7 @@
 #pragma once
 // The pre-warped picture: texels moved to their new places in the plane, and what came apart
 // between two neighbours filled by a straight line between them. Four ways (Oliveira 2000; 8.2 of
-// the source on relief impostors). All take texels in the order that is compatible with occlusion,
+// Clua 2004). All take texels in the order that is compatible with occlusion,
 // so none compares depths:
 //
 //   two-pass      rows, then columns. A texel between two others has a depth on the straight line
@@ -31,7 +31,7 @@ enum class Resampling : std::uint8_t { two_pass, asymmetric, compensated, intert
 struct NamedResampling {
   std::string_view name;
   Resampling resampling;
-  double source_ms;  ///< of the source, 256x256 texels on a Pentium IV at 2.6 GHz
+  double source_ms;  ///< of Clua 2004: 256x256 texels on a Pentium IV at 2.6 GHz
 };
 inline constexpr std::array kResamplings{
     NamedResampling{"two-pass", Resampling::two_pass, 47.406},
@@ -82,7 +82,7 @@ void warp_relief(const ReliefTexture& relief, const ReliefExtent& extent, glm::d
 
 /// Equation 8-1: the depth, in metres, that moves a texel of row `v` to the place (1 - t) place_a +
 /// t place_b within its column, between a texel A there and B of depth `depth_b`. Their places are
-/// v' of both. Solved for the depth, the pre-warp says the same as the source's eight coefficients:
+/// v' of both. Solved for the depth, the pre-warp says the same as 8-1's coefficients:
 ///   (p - v) / (k2 - p k3)    p: the place
 /// On the epipole's row no depth moves anything; `otherwise` is returned.
 float compensated_depth(const PreWarp& warp, float v, float place, float otherwise);

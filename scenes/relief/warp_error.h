@@ -1,7 +1,7 @@
 #pragma once
 // How far a pre-warp pulls neighbours apart: what lies between them was never seen, and is made up.
 //
-// The critical point (5.5 of the source on relief impostors) is the pair of neighbours whose depths
+// The critical point (5.5 of Clua 2004) is the pair of neighbours whose depths
 // differ most. Where they come to lie is known before any other texel is warped: equations 5-5 to
 // 5-7, with the true distance in place of a squared one, in texels. Neighbours of one depth are at
 // most one texel apart.

@@ -75,6 +75,27 @@ TEST_CASE("help names every option of every subcommand, with units") {
                         "--max-error E"});
   names_all("inspect",
             {"FILES", "-o,--output FILE", "--depth-encoding NAME", "--focus METRES", "--json"});
+  names_all("relief", {"ACTION",
+                       "INPUT",
+                       "-o,--output FILE",
+                       "--texels WxH",
+                       "--depth-bits 8|16",
+                       "--normals",
+                       "--yaw DEGREES",
+                       "--pitch DEGREES",
+                       "--distance D",
+                       "--show image|depth|normals",
+                       "--resampling NAME",
+                       "--fixed",
+                       "--frames N",
+                       "--every N",
+                       "--tolerance TEXELS",
+                       "--texels-per-pixel K",
+                       "--zoom Z",
+                       "--no-sprites",
+                       "--runs N",
+                       "--threads N",
+                       "--isa NAME"});
   names_all("lens",
             {"--focus METRES", "--focal-length MM", "--f-number N", "--coc-scale S",
              "--fov DEGREES", "--height PIXELS", "--max-coc-film MM", "--at METRES ...", "--json"});

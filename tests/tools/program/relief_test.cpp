@@ -73,7 +73,7 @@ TEST_CASE("relief: wrong words and bad files get one line") {
   const std::string picture = folder.file("a.png");
   const std::string broken = folder.file("broken.relief");
   write_file(broken, std::string_view{read_file(relief)}.substr(0, 500));
-  check_refused(folder, {"relief", "make", "figures"}, 2, {"ACTION", "make"});
+  check_refused(folder, {"relief", "mend", "figures"}, 2, {"ACTION", "make"});
   check_refused(folder, {"relief", "make", "figures"}, 2, {"-o is missing"});
   check_refused(folder, {"relief", "make", "figures", "--texels", "2x9", "-o", picture}, 2,
                 {"--texels", "4 to 4096"});
