@@ -9,8 +9,8 @@
 namespace softfocus {
 namespace {
 
-// Columns that a task takes at a time: a line of the cache has so many colours.
-constexpr int kColumns = 16;
+// Columns that a task of the second pass takes.
+constexpr int kBandColumns = 64;
 
 struct CountedPieces {
   WarpCounts counts;
@@ -167,31 +167,85 @@ void warp_rows(const Numbers& numbers, const WarpWork& work, int v, Isa isa,
            });
 }
 
+/// The end of a column's walk. Columns walk side by side, row by row, so that memory is read and
+/// written in its order.
 template <class Numbers>
-void warp_column(const Numbers& numbers, const WarpWork& work, int x, CountedPieces& counted) {
+struct ColumnWalk {
+  WalkTexel<Numbers> before = {};
+  int reached = 0;
+  bool in_run = false;
+};
+
+/// The columns of `limits`, rows from `row_begin` to before `row_end`: walk() of each.
+template <class Numbers, int sign>
+void walk_columns(const Numbers& numbers, const WarpWork& work, const WalkLimits& limits,
+                  int row_begin, int row_end, CountedPieces& counted) {
   const std::uint32_t* colours = work.warped.row_colours.data();
   const typename Numbers::Place* places = places_of<Numbers>(work.warped).data();
   const typename Numbers::Depth* depths = depths_of<Numbers>(work.warped).data();
-  walk_to_epipole(
-      numbers, work.extent.y_begin, work.extent.y_end, work.warp.epipole_v, work.rows(),
-      [&](int v, WalkTexel<Numbers>& texel) {
-        const std::size_t at = work.at(x, v - work.extent.y_begin);
-        texel = {places[at], 0, depths[at], colours[at]};
-        return colours[at] != 0;
-      },
-      [&](int y, std::uint32_t colour, auto, auto depth, bool stretched) {
+  std::uint32_t* to_colours = work.warped.colours.data();
+  float* to_depths = work.warped.depths_m.data();
+  const WalkLimits rows = work.rows();
+  std::array<ColumnWalk<Numbers>, kBandColumns> walks{};
+  // One row more, of nothing, ends the runs.
+  for (int v = row_begin; sign * v <= sign * row_end; v += sign) {
+    const std::size_t first = v == row_end ? 0 : work.at(limits.begin, v - work.extent.y_begin);
+    for (int x = limits.begin; x < limits.end; ++x) {
+      const auto column = static_cast<std::size_t>(x - limits.begin);
+      ColumnWalk<Numbers>& of = walks[column];
+      const auto put = [&](int y, std::uint32_t colour, auto, auto depth, bool stretched) {
         const std::size_t at = work.at(x, y - work.place.y_begin);
-        counted.add(work.warped.colours[at], stretched);
-        work.warped.colours[at] = colour;
-        work.warped.depths_m[at] = numbers.metres(depth);
-      });
+        counted.add(to_colours[at], stretched);
+        to_colours[at] = colour;
+        to_depths[at] = numbers.metres(depth);
+      };
+      const auto end_run = [&] {
+        if (!of.in_run) return;
+        const auto half = numbers.half_texel(of.before.depth);
+        fill_flat<Numbers, sign>(of.before, of.before.along, of.before.along + sign * half, rows,
+                                 put);
+      };
+      const std::size_t at = first + column;
+      if (v == row_end || colours[at] == 0) {
+        end_run();
+        of.in_run = false;
+        continue;
+      }
+      const WalkTexel<Numbers> texel{places[at], 0, depths[at], colours[at]};
+      const int reached = last_reached<Numbers, sign>(texel.along);
+      if (of.in_run && sign * texel.along >= sign * of.before.along) {
+        fill_between<Numbers, sign>(of.before, texel, of.reached, reached, rows, put);
+      } else {
+        end_run();
+        const auto half = numbers.half_texel(texel.depth);
+        fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along, rows, put);
+        of.in_run = true;
+      }
+      of.before = texel;
+      of.reached = reached;
+    }
+  }
+}
+
+/// The first row past the walk from above: the others are walked from below.
+int split_row(const WarpWork& work) {
+  const double last =
+      std::fmin(std::fmax(work.warp.epipole_v, work.extent.y_begin - 1.0), work.extent.y_end - 1.0);
+  return static_cast<int>(std::floor(last)) + 1;
+}
+
+void clear_columns(const WarpWork& work, const WalkLimits& limits) {
+  for (int y = 0; y < work.place.height; ++y) {
+    std::fill_n(work.warped.colours.data() + work.at(limits.begin, y), limits.end - limits.begin,
+                0u);
+  }
 }
 
 template <class Numbers>
 WarpCounts warp_in_two_passes(const Numbers& numbers, const WarpWork& work, bool counting,
                               ThreadPool& pool) {
   const int rows = work.extent.y_end - work.extent.y_begin;
-  const int bands = (work.place.width + kColumns - 1) / kColumns;
+  const int bands = (work.place.width + kBandColumns - 1) / kBandColumns;
   const auto row_texels =
       static_cast<std::size_t>(rows) * static_cast<std::size_t>(work.place.width);
   if (work.warped.row_colours.size() < row_texels) work.warped.row_colours.resize(row_texels);
@@ -208,40 +262,37 @@ WarpCounts warp_in_two_passes(const Numbers& numbers, const WarpWork& work, bool
     }
   });
   const WalkLimits columns = work.columns();
+  const int split = split_row(work);
   pool.for_each(bands, [&](int band) {
-    const int begin = columns.begin + band * kColumns;
-    const int end = std::min(begin + kColumns, columns.end);
-    for (int y = 0; y < work.place.height; ++y) {
-      std::fill_n(work.warped.colours.data() + work.at(begin, y), end - begin, 0u);
-    }
-    for (int x = begin; x < end; ++x) {
-      warp_column(numbers, work, x, counted[static_cast<std::size_t>(rows + band)]);
-    }
+    const int begin = columns.begin + band * kBandColumns;
+    const WalkLimits limits{begin, std::min(begin + kBandColumns, columns.end)};
+    clear_columns(work, limits);
+    CountedPieces& some = counted[static_cast<std::size_t>(rows + band)];
+    walk_columns<Numbers, 1>(numbers, work, limits, work.extent.y_begin, split, some);
+    walk_columns<Numbers, -1>(numbers, work, limits, work.extent.y_end - 1, split - 1, some);
   });
   return total_of(counted);
 }
 
 // --- one pass ---
 
-/// The texels of a column's last row that had some: two surfaces at the most, the first and the
-/// last that the row put there. A later texel of the next row is a neighbour of the one whose depth
-/// is nearer.
+/// The texels that a row put into a column: two surfaces at the most, the first and the last. A
+/// texel of the next row is a neighbour of the one whose depth is nearer.
 template <class Numbers>
 struct ColumnEnd {
-  int row = -2;
-  int count = 0;
-  WalkTexel<Numbers> texels[2] = {};
+  int row;
+  int count;
+  WalkTexel<Numbers> texels[2];
+  bool goes_on[2];  ///< whether a texel of the next row was joined to it
 };
 
 template <class Numbers>
-const WalkTexel<Numbers>& nearer_end(const ColumnEnd<Numbers>& end,
-                                     const WalkTexel<Numbers>& texel) {
-  if (end.count == 1) return end.texels[0];
+int nearer_end(const ColumnEnd<Numbers>& end, const WalkTexel<Numbers>& texel) {
+  if (end.count == 1) return 0;
   const auto from_first = end.texels[0].depth - texel.depth;
   const auto from_last = end.texels[1].depth - texel.depth;
-  const bool is_first =
-      (from_first < 0 ? -from_first : from_first) < (from_last < 0 ? -from_last : from_last);
-  return end.texels[is_first ? 0 : 1];
+  return (from_first < 0 ? -from_first : from_first) < (from_last < 0 ? -from_last : from_last) ? 0
+                                                                                                : 1;
 }
 
 /// A column's ends in the row before and in this one.
@@ -250,45 +301,80 @@ struct ColumnEnds {
   ColumnEnd<Numbers> before, now;
 };
 
+/// What walks of rows put into a band of columns.
+template <class Numbers, int sign>
+struct ColumnFill {
+  const Numbers& numbers;
+  const WarpWork& work;
+  CountedPieces& counted;
+
+  auto put_at(int x, bool stretched_row) const {
+    return [this, x, stretched_row](int y, std::uint32_t colour, auto, auto depth, bool stretched) {
+      const std::size_t at = work.at(x, y - work.place.y_begin);
+      counted.add(work.warped.colours[at], stretched_row || stretched);
+      work.warped.colours[at] = colour;
+      work.warped.depths_m[at] = numbers.metres(depth);
+    };
+  }
+
+  /// Half a texel past each end that no texel was joined to, but for end number `but`.
+  void end_runs(ColumnEnd<Numbers>& ends, int x, int but) const {
+    for (int i = 0; i < ends.count; ++i) {
+      if (i == but || ends.goes_on[i]) continue;
+      ends.goes_on[i] = true;
+      const WalkTexel<Numbers>& end = ends.texels[i];
+      fill_flat<Numbers, sign>(end, end.along, end.along + sign * numbers.half_texel(end.depth),
+                               work.rows(), put_at(x, false));
+    }
+  }
+
+  void add(ColumnEnds<Numbers>& column, int x, int v, const WalkTexel<Numbers>& texel,
+           bool stretched_row) const {
+    if (column.now.count == 0 || column.now.row != v) {
+      end_runs(column.before, x, -1);
+      column.before = column.now;
+      column.now.row = v;
+      column.now.count = 0;
+    }
+    ColumnEnd<Numbers>& before = column.before;
+    const auto put = put_at(x, stretched_row);
+    int joined = before.count > 0 && before.row == v - sign ? nearer_end(before, texel) : -1;
+    if (joined >= 0 && sign * texel.along < sign * before.texels[joined].along) joined = -1;
+    end_runs(before, x, joined);
+    if (joined >= 0) {
+      const WalkTexel<Numbers>& end = before.texels[joined];
+      fill_between<Numbers, sign>(end, texel, last_reached<Numbers, sign>(end.along),
+                                  last_reached<Numbers, sign>(texel.along), work.rows(), put);
+      before.goes_on[joined] = true;
+    } else {
+      const auto half = numbers.half_texel(texel.depth);
+      fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along, work.rows(), put);
+    }
+    const int place = column.now.count == 0 ? 0 : 1;
+    column.now.texels[place] = texel;
+    column.now.goes_on[place] = false;
+    column.now.count = place + 1;
+  }
+};
+
 template <class Numbers, int sign>
 void warp_band_rows(const Numbers& numbers, const WarpWork& work, const WalkLimits& limits,
                     int row_begin, int row_end, Isa isa, CountedPieces& counted) {
   std::vector<ColumnEnds<Numbers>> ends(static_cast<std::size_t>(limits.end - limits.begin));
+  const ColumnFill<Numbers, sign> fill{numbers, work, counted};
   typename RowOf<Numbers>::Type row;
   for (int v = row_begin; sign * v < sign * row_end; v += sign) {
     place_row(numbers, work, v, isa, row);
     walk_row(numbers, work, v, row, limits,
-             [&](int x, std::uint32_t colour, auto across, auto depth, bool stretched_row) {
-               const WalkTexel<Numbers> texel =
-                   in_column(numbers, Resampling::asymmetric, v, colour, across, depth);
-               const auto put = [&](int y, std::uint32_t mixed, auto, auto mixed_depth,
-                                    bool stretched_column) {
-                 const std::size_t at = work.at(x, y - work.place.y_begin);
-                 counted.add(work.warped.colours[at], stretched_row || stretched_column);
-                 work.warped.colours[at] = mixed;
-                 work.warped.depths_m[at] = numbers.metres(mixed_depth);
-               };
-               ColumnEnds<Numbers>& column = ends[static_cast<std::size_t>(x - limits.begin)];
-               if (column.now.row != v) {
-                 column.before = column.now;
-                 column.now.row = v;
-                 column.now.count = 0;
-               }
-               const auto half = numbers.half_texel(texel.depth);
-               const WalkTexel<Numbers>* before =
-                   column.before.row == v - sign ? &nearer_end(column.before, texel) : nullptr;
-               if (before != nullptr && sign * texel.along >= sign * before->along) {
-                 fill_between<Numbers, sign>(*before, texel, work.rows(), put);
-               } else {
-                 fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along,
-                                          work.rows(), put);
-               }
-               // Whether another row follows is not known yet; it will cover this.
-               fill_flat<Numbers, sign>(texel, texel.along, texel.along + sign * half, work.rows(),
-                                        put);
-               column.now.texels[column.now.count == 0 ? 0 : 1] = texel;
-               column.now.count = std::min(column.now.count + 1, 2);
+             [&](int x, std::uint32_t colour, auto across, auto depth, bool stretched) {
+               fill.add(ends[static_cast<std::size_t>(x - limits.begin)], x, v,
+                        {across, across, depth, colour}, stretched);
              });
+  }
+  for (int x = limits.begin; x < limits.end; ++x) {
+    ColumnEnds<Numbers>& column = ends[static_cast<std::size_t>(x - limits.begin)];
+    fill.end_runs(column.before, x, -1);
+    fill.end_runs(column.now, x, -1);
   }
 }
 
@@ -296,22 +382,18 @@ template <class Numbers>
 WarpCounts warp_in_one_pass(const Numbers& numbers, const WarpWork& work, bool counting,
                             ThreadPool& pool) {
   const WalkLimits columns = work.columns();
-  const int bands = std::min(pool.threads(), (work.place.width + kColumns - 1) / kColumns);
-  const double epipole = work.warp.epipole_v;
-  const int row_begin = work.extent.y_begin, row_end = work.extent.y_end;
-  const double last = std::fmin(std::fmax(epipole, row_begin - 1.0), row_end - 1.0);
-  const int split = static_cast<int>(std::floor(last)) + 1;
+  // Each band walks all rows, and puts what falls into it.
+  const int bands = std::min(pool.threads(), work.place.width);
+  const int split = split_row(work);
   std::vector<CountedPieces> counted(static_cast<std::size_t>(bands), {{}, counting});
   pool.for_each(bands, [&](int band) {
     const auto border = [&](int i) { return columns.begin + work.place.width * i / bands; };
     const WalkLimits limits{border(band), border(band + 1)};
-    for (int y = 0; y < work.place.height; ++y) {
-      std::fill_n(work.warped.colours.data() + work.at(limits.begin, y), limits.end - limits.begin,
-                  0u);
-    }
+    clear_columns(work, limits);
     CountedPieces& some = counted[static_cast<std::size_t>(band)];
-    warp_band_rows<Numbers, 1>(numbers, work, limits, row_begin, split, pool.isa(), some);
-    warp_band_rows<Numbers, -1>(numbers, work, limits, row_end - 1, split - 1, pool.isa(), some);
+    warp_band_rows<Numbers, 1>(numbers, work, limits, work.extent.y_begin, split, pool.isa(), some);
+    warp_band_rows<Numbers, -1>(numbers, work, limits, work.extent.y_end - 1, split - 1, pool.isa(),
+                                some);
   });
   return total_of(counted);
 }

@@ -101,34 +101,37 @@ struct WalkLimits {
   int begin, end;
 };
 
-/// Of texels on a step from `from`, without it, to `to`, the first and the last in the walk's
-/// direction; `sign` -1 walks towards smaller numbers.
+/// The last texel that a step to `place` reaches; `sign` -1 walks towards smaller numbers. A step
+/// fills the texels past the last one of where it began.
 template <class Numbers, int sign, class Place>
-inline WalkLimits texels_between(Place from, Place to, const WalkLimits& limits) {
-  if constexpr (sign > 0) {
-    return {std::max(Numbers::floor(from) + 1, limits.begin),
-            std::min(Numbers::floor(to), limits.end - 1)};
-  } else {
-    return {std::min(Numbers::ceil(from) - 1, limits.end - 1),
-            std::max(Numbers::ceil(to), limits.begin)};
-  }
+inline int last_reached(Place place) {
+  return sign > 0 ? Numbers::floor(place) : Numbers::ceil(place);
+}
+
+/// Cuts a step, from the texel after `from` to `to`, to what may be written.
+template <int sign>
+inline WalkLimits step_within(int from, int to, const WalkLimits& limits) {
+  return sign > 0 ? WalkLimits{std::max(from + 1, limits.begin), std::min(to, limits.end - 1)}
+                  : WalkLimits{std::min(from - 1, limits.end - 1), std::max(to, limits.begin)};
 }
 
 /// Puts one texel's colour everywhere between two places.
 template <class Numbers, int sign, class Place, class Put>
 inline void fill_flat(const WalkTexel<Numbers>& texel, Place from, Place to,
                       const WalkLimits& limits, const Put& put) {
-  const WalkLimits between = texels_between<Numbers, sign>(from, to, limits);
+  const WalkLimits between =
+      step_within<sign>(last_reached<Numbers, sign>(from), last_reached<Numbers, sign>(to), limits);
   for (int x = between.begin; sign * x <= sign * between.end; x += sign) {
     put(x, texel.colour, texel.across, texel.depth, false);
   }
 }
 
-/// Fills the way between two neighbours.
+/// Fills the way between two neighbours, whose last texels reached are known.
 template <class Numbers, int sign, class Put>
 inline void fill_between(const WalkTexel<Numbers>& from, const WalkTexel<Numbers>& to,
-                         const WalkLimits& limits, const Put& put) {
-  const WalkLimits between = texels_between<Numbers, sign>(from.along, to.along, limits);
+                         int from_reached, int to_reached, const WalkLimits& limits,
+                         const Put& put) {
+  const WalkLimits between = step_within<sign>(from_reached, to_reached, limits);
   const bool apart = sign * (to.along - from.along) > Numbers::place_of(kApart);
   for (int x = between.begin; sign * x <= sign * between.end; x += sign) {
     const auto share = Numbers::share(x, from.along, to.along);
@@ -143,6 +146,7 @@ template <class Numbers, int sign, class Get, class Put>
 inline void walk(const Numbers& numbers, int begin, int end, const WalkLimits& limits,
                  const Get& get, const Put& put) {
   WalkTexel<Numbers> before{};
+  int before_reached = 0;
   bool in_run = false;
   const auto end_run = [&] {
     if (!in_run) return;
@@ -156,8 +160,9 @@ inline void walk(const Numbers& numbers, int begin, int end, const WalkLimits& l
       in_run = false;
       continue;
     }
+    const int reached = last_reached<Numbers, sign>(texel.along);
     if (in_run && sign * texel.along >= sign * before.along) {
-      fill_between<Numbers, sign>(before, texel, limits, put);
+      fill_between<Numbers, sign>(before, texel, before_reached, reached, limits, put);
     } else {
       end_run();
       const auto half = numbers.half_texel(texel.depth);
@@ -165,6 +170,7 @@ inline void walk(const Numbers& numbers, int begin, int end, const WalkLimits& l
       in_run = true;
     }
     before = texel;
+    before_reached = reached;
   }
   end_run();
 }
