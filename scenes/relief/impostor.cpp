@@ -71,6 +71,10 @@ bool can_serve(const Impostor& impostor, const ImpostorSettings& settings, glm::
          warped_extent(*impostor.relief, *impostor.extent, eye).has_value();
 }
 
+double impostor_error(const Impostor& impostor, glm::dvec3 eye) {
+  return impostor.critical ? mean_critical_error(*impostor.relief, *impostor.critical, eye) : 0.0;
+}
+
 ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
                              const ImpostorSettings& settings, const CameraMatrices& camera,
                              glm::dvec3 up, int height_px, ThreadPool& pool) {
@@ -78,13 +82,16 @@ ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
   const glm::dvec3 eye = camera.eye;
   ImpostorStep step = ImpostorStep::warp;
   if (!can_serve(impostor, settings, eye, pixel_tangent) ||
-      (impostor.critical &&
-       critical_error(*impostor.relief, *impostor.critical, eye) > settings.tolerance_texels)) {
+      impostor_error(impostor, eye) > settings.tolerance_texels) {
     step = ImpostorStep::renew;
     const ReliefForm form = impostor_form(maker, camera, settings, up, height_px);
     impostor.relief = make_relief(maker, {eye, up}, form, pool);
     impostor.extent = relief_extent(*impostor.relief);
-    impostor.critical = critical_point(*impostor.relief);
+    impostor.critical.reset();
+    if (impostor.extent) {
+      impostor.critical =
+          critical_regions(*impostor.relief, *impostor.extent, settings.regions, settings.regions);
+    }
     impostor.pixel_tangent = pixel_tangent;
   } else if (settings.sprites &&
              parallax_tangent(*impostor.relief, impostor.warped_for, eye) <= pixel_tangent) {

@@ -18,7 +18,8 @@ struct ImpostorSettings {
   Resampling resampling = Resampling::intertwined;
   PlaceNumbers numbers = PlaceNumbers::floats;
   int depth_bits = 8;
-  double tolerance_texels = 8.0;  ///< the critical point's error that makes a renewal
+  double tolerance_texels = 8.0;  ///< the critical error that makes a renewal
+  int regions = 1;                ///< 1: of one point; more: the mean of regions x regions points
   double texels_per_pixel = 1.0;  ///< of a relief when it is drawn
   double sharpness = 1.5;  ///< K of 4-1: a relief whose texels came to be so many pixels wide
                            ///< is renewed, and one whose texels are 1/4 of a pixel
@@ -30,7 +31,7 @@ enum class ImpostorStep : std::uint8_t { sprite, warp, renew };
 struct Impostor {
   std::optional<ReliefTexture> relief;
   std::optional<ReliefExtent> extent;
-  std::optional<CriticalPoint> critical;
+  std::optional<CriticalRegions> critical;
   WarpedRelief warped;
   glm::dvec3 warped_for{0.0};  ///< the eye
   double pixel_tangent = 0.0;  ///< of the picture that the relief was drawn for
@@ -52,6 +53,9 @@ double parallax_tangent(const ReliefTexture& relief, glm::dvec3 old_eye, glm::dv
 /// texel became too large or too small.
 bool can_serve(const Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye,
                double pixel_tangent);
+
+/// The error by which an impostor is renewed: of one critical point, or the mean of all regions.
+double impostor_error(const Impostor& impostor, glm::dvec3 eye);
 
 /// Brings the impostor up to date for a view, and says how. `up` is the camera's.
 ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,

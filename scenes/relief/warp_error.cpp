@@ -1,6 +1,7 @@
 #include "scenes/relief/warp_error.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 
@@ -69,18 +70,66 @@ double critical_error(const ReliefTexture& relief, const CriticalPoint& point, g
                           scales.at(point.u2, point.v2, point.code2));
 }
 
-double error_bound(const ReliefTexture& relief, const ReliefExtent& extent,
-                   const CriticalPoint& point, glm::dvec3 eye) {
+CriticalRegions critical_regions(const ReliefTexture& relief, const ReliefExtent& extent,
+                                 int columns, int rows) {
+  assert(columns >= 1 && columns <= kMostRegions && rows >= 1 && rows <= kMostRegions);
+  CriticalRegions cut{extent, columns, rows, {}};
+  cut.regions.resize(static_cast<std::size_t>(columns * rows));
+  const int width = extent.x_end - extent.x_begin, height = extent.y_end - extent.y_begin;
+  for_each_pair(relief, [&](const CriticalPoint& pair) {
+    const int column = (pair.u1 - extent.x_begin) * columns / width;
+    const int row = (pair.v1 - extent.y_begin) * rows / height;
+    std::optional<CriticalRegion>& region =
+        cut.regions[static_cast<std::size_t>(row * columns + column)];
+    const int least = std::min(pair.code1, pair.code2);
+    if (!region) region = CriticalRegion{pair, least};
+    region->least_code = std::min(region->least_code, least);
+    if (std::abs(pair.code1 - pair.code2) > std::abs(region->point.code1 - region->point.code2)) {
+      region->point = pair;
+    }
+  });
+  return cut;
+}
+
+double mean_critical_error(const ReliefTexture& relief, const CriticalRegions& regions,
+                           glm::dvec3 eye) {
+  double sum = 0.0;
+  int count = 0;
+  for (const std::optional<CriticalRegion>& region : regions.regions) {
+    if (!region) continue;
+    sum += critical_error(relief, region->point, eye);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+double error_bound(const ReliefTexture& relief, const CriticalRegions& regions, glm::dvec3 eye) {
   const WarpScales scales = warp_scales(relief, eye);
   const double h = scales.warp.height_m;
-  const double step = std::abs(point.code1 - point.code2) * scales.step_m;
-  const double least = extent.least_code * scales.step_m;
-  const double across = std::fmax(std::fabs(extent.x_begin - scales.warp.epipole_u),
-                                  std::fabs(extent.x_end - 1 - scales.warp.epipole_u));
-  const double along = std::fmax(std::fabs(extent.y_begin - scales.warp.epipole_v),
-                                 std::fabs(extent.y_end - 1 - scales.warp.epipole_v));
-  const double scale_step = h * step / ((h + least) * (h + least + step));
-  return 1.0 + scale_step * std::sqrt(across * across + along * along);
+  const ReliefExtent& extent = regions.extent;
+  const auto farthest = [](int begin, int size, int i, int parts, double epipole) {
+    // The texels of a part begin at the first whose share of the size reaches it.
+    const double first = begin + (static_cast<double>(i) * size) / parts;
+    const double last = begin + (static_cast<double>(i + 1) * size) / parts;
+    return std::fmax(std::fabs(first - epipole), std::fabs(last - epipole));
+  };
+  double bound = 0.0;
+  for (int row = 0; row < regions.rows; ++row) {
+    for (int column = 0; column < regions.columns; ++column) {
+      const std::optional<CriticalRegion>& region =
+          regions.regions[static_cast<std::size_t>(row * regions.columns + column)];
+      if (!region) continue;
+      const double step = std::abs(region->point.code1 - region->point.code2) * scales.step_m;
+      const double least = h + region->least_code * scales.step_m;
+      const double across = farthest(extent.x_begin, extent.x_end - extent.x_begin, column,
+                                     regions.columns, scales.warp.epipole_u);
+      const double along = farthest(extent.y_begin, extent.y_end - extent.y_begin, row,
+                                    regions.rows, scales.warp.epipole_v);
+      const double scale_step = h * step / (least * (least + step));
+      bound = std::fmax(bound, h / least + scale_step * std::sqrt(across * across + along * along));
+    }
+  }
+  return bound;
 }
 
 double largest_error(const ReliefTexture& relief, glm::dvec3 eye) {

@@ -167,7 +167,7 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 13> options;
+  std::array<std::string_view, 14> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
@@ -183,18 +183,18 @@ constexpr std::array kReliefActions{
         {"-o", "--format", "--size", "--yaw", "--pitch", "--distance", "--resampling", "--fixed"}},
     ReliefAction{
         "bench", bench_relief, false, {"--size", "--yaw", "--pitch", "--distance", "--runs"}},
-    ReliefAction{
-        "turn",
-        turn_impostor,
-        false,
-        {"-o", "--scene-path", "--frame", "--size", "--depth-bits", "--resampling", "--fixed",
-         "--frames", "--every", "--tolerance", "--texels-per-pixel", "--no-sprites", "--zoom"}}};
+    ReliefAction{"turn",
+                 turn_impostor,
+                 false,
+                 {"-o", "--scene-path", "--frame", "--size", "--depth-bits", "--resampling",
+                  "--fixed", "--frames", "--every", "--tolerance", "--texels-per-pixel",
+                  "--no-sprites", "--zoom", "--regions"}}};
 
-constexpr std::array<std::string_view, 21> kReliefOptions{
-    "-o",           "--format",  "--scene-path", "--frame", "--size",      "--texels",
-    "--depth-bits", "--normals", "--yaw",        "--pitch", "--distance",  "--show",
-    "--resampling", "--fixed",   "--frames",     "--every", "--tolerance", "--texels-per-pixel",
-    "--no-sprites", "--zoom",    "--runs"};
+constexpr std::array<std::string_view, 22> kReliefOptions{
+    "-o",           "--format",  "--scene-path", "--frame",  "--size",      "--texels",
+    "--depth-bits", "--normals", "--yaw",        "--pitch",  "--distance",  "--show",
+    "--resampling", "--fixed",   "--frames",     "--every",  "--tolerance", "--texels-per-pixel",
+    "--no-sprites", "--zoom",    "--runs",       "--regions"};
 
 int run_relief(const CLI::App& parser, ReliefOptions& options) {
   for (const ReliefAction& action : kReliefActions) {
@@ -345,6 +345,8 @@ Command add_relief_command(CLI::App& program) {
         "a number from 1 to 10000", &ReliefOptions::every);
   number("--tolerance", "TEXELS", "The critical point's error that renews a relief (default: 8)",
          1.0, 1e4, "a number from 1 to 10000", &ReliefOptions::tolerance);
+  whole("--regions", "By the mean of N x N critical points, 1 to 64 (default: 1, the largest step)",
+        1, kMostRegions, "a number from 1 to 64", &ReliefOptions::regions);
   number("--texels-per-pixel", "K", "Of a relief when it is drawn (default: 1)", 0.1, 4.0,
          "a number from 0.1 to 4", &ReliefOptions::texels_per_pixel);
   number("--zoom", "Z", "The object so many times as large in the picture (default: 1)", 0.01, 10.0,

@@ -33,6 +33,7 @@ struct ReliefOptions {
   int frames = 360;  ///< of a turn
   int every = 10;    ///< so many frames, errors are measured
   double tolerance = 8.0, texels_per_pixel = 1.0, zoom = 1.0;
+  int regions = 1;
   bool no_sprites = false;
   int runs = 20;
   PoolOptions pool;

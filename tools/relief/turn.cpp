@@ -21,6 +21,9 @@
 namespace softfocus {
 namespace {
 
+/// Of the bound on the error, each way.
+constexpr int kBoundRegions = 16;
+
 template <class Work>
 double milliseconds_of(const Work& work) {
   const auto start = std::chrono::steady_clock::now();
@@ -209,6 +212,7 @@ int turn_impostor(const ReliefOptions& options) {
                                   .numbers = place_numbers(options),
                                   .depth_bits = options.depth_bits,
                                   .tolerance_texels = options.tolerance,
+                                  .regions = options.regions,
                                   .texels_per_pixel = options.texels_per_pixel,
                                   .sprites = !options.no_sprites};
   const glm::vec4 background = clear_colour(scene);
@@ -220,6 +224,8 @@ int turn_impostor(const ReliefOptions& options) {
   const Image blank = shown;
   prepared.depth = make_image(Format::r32f, width, height);
   Impostor impostor;
+  std::optional<CriticalRegions> bounds;
+  std::optional<CriticalPoint> point;
   TurnSums sums;
   for (int frame = 0; frame < options.frames; ++frame) {
     const CameraMatrices matrices = camera_matrices(camera, frame, width, height);
@@ -251,11 +257,14 @@ int turn_impostor(const ReliefOptions& options) {
     const ReliefTexture& relief = *impostor.relief;
     sums.most_bytes = std::max(
         sums.most_bytes, relief.depths.size() * (2 + 4) + impostor.warped.colours.size() * (4 + 4));
-    if (impostor.critical) {
+    if (step == ImpostorStep::renew && impostor.extent) {
+      bounds = critical_regions(relief, *impostor.extent, kBoundRegions, kBoundRegions);
+      point = critical_point(relief);
+    }
+    if (point) {
       const double largest = largest_error(relief, matrices.eye);
-      sums.predicted.push_back(critical_error(relief, *impostor.critical, matrices.eye) / largest);
-      sums.bound.push_back(error_bound(relief, *impostor.extent, *impostor.critical, matrices.eye) /
-                           largest);
+      sums.predicted.push_back(critical_error(relief, *point, matrices.eye) / largest);
+      sums.bound.push_back(error_bound(relief, *bounds, matrices.eye) / largest);
     }
     if (frame % options.every != 0) continue;
     measure_frame(redrawn, shown, background_depth, pool, sums);

@@ -90,6 +90,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--frames N",
                        "--every N",
                        "--tolerance TEXELS",
+                       "--regions N",
                        "--texels-per-pixel K",
                        "--zoom Z",
                        "--no-sprites",
