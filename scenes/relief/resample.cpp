@@ -57,6 +57,21 @@ struct FloatRow {
   std::array<float, kMostReliefSize> along, across;
 };
 
+/// The texels of a row, `limits`, that can reach columns `band`: those before the first step into
+/// it, and behind the last, are left out. A texel that is kept has its neighbour beside it.
+WalkLimits reaching(const FloatRow& row, WalkLimits limits, const WalkLimits& band) {
+  const auto low = static_cast<float>(band.begin - 1), high = static_cast<float>(band.end + 1);
+  const auto at = [&](int u) { return row.along[static_cast<std::size_t>(u)]; };
+  const auto is_outside = [&](int u, int v) {
+    return (at(u) < low && at(v) < low) || (at(u) > high && at(v) > high);
+  };
+  while (limits.begin + 1 < limits.end && is_outside(limits.begin, limits.begin + 1)) {
+    ++limits.begin;
+  }
+  while (limits.begin + 1 < limits.end && is_outside(limits.end - 2, limits.end - 1)) --limits.end;
+  return limits;
+}
+
 void place_row(const FloatPlaces& numbers, const WarpWork& work, int v, Isa isa, FloatRow& row) {
   const std::uint16_t* codes =
       work.relief.depths.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;
@@ -74,6 +89,8 @@ bool take(const FloatPlaces& numbers, const FloatRow& row, int u, int v, std::ui
 }
 
 struct FixedRow {};
+
+WalkLimits reaching(const FixedRow&, const WalkLimits& limits, const WalkLimits&) { return limits; }
 
 void place_row(const FixedPlaces&, const WarpWork&, int, Isa, FixedRow&) {}
 
@@ -106,8 +123,9 @@ void walk_row(const Numbers& numbers, const WarpWork& work, int v,
   const std::uint16_t* codes = work.relief.depths.data() + first;
   const std::uint32_t* colours = work.relief.colours.data() + first;
   const std::uint16_t empty = empty_depth(work.relief.depth_bits);
+  const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
   walk_to_epipole(
-      numbers, work.extent.x_begin, work.extent.x_end, work.warp.epipole_u, limits,
+      numbers, texels.begin, texels.end, work.warp.epipole_u, limits,
       [&](int u, WalkTexel<Numbers>& texel) {
         if (codes[u] == empty) return false;
         texel.colour = colours[u];
@@ -167,16 +185,8 @@ void warp_rows(const Numbers& numbers, const WarpWork& work, int v, Isa isa,
            });
 }
 
-/// The end of a column's walk. Columns walk side by side, row by row, so that memory is read and
-/// written in its order.
-template <class Numbers>
-struct ColumnWalk {
-  WalkTexel<Numbers> before = {};
-  int reached = 0;
-  bool in_run = false;
-};
-
-/// The columns of `limits`, rows from `row_begin` to before `row_end`: walk() of each.
+/// The columns of `limits`, rows from `row_begin` to before `row_end`: walk() of each. Columns walk
+/// side by side, row by row, so that memory is read and written in its order.
 template <class Numbers, int sign>
 void walk_columns(const Numbers& numbers, const WarpWork& work, const WalkLimits& limits,
                   int row_begin, int row_end, CountedPieces& counted) {
@@ -186,43 +196,39 @@ void walk_columns(const Numbers& numbers, const WarpWork& work, const WalkLimits
   std::uint32_t* to_colours = work.warped.colours.data();
   float* to_depths = work.warped.depths_m.data();
   const WalkLimits rows = work.rows();
-  std::array<ColumnWalk<Numbers>, kBandColumns> walks{};
   // One row more, of nothing, ends the runs.
   for (int v = row_begin; sign * v <= sign * row_end; v += sign) {
-    const std::size_t first = v == row_end ? 0 : work.at(limits.begin, v - work.extent.y_begin);
+    const bool is_row = v != row_end, follows = v != row_begin;
+    const std::size_t first = work.at(limits.begin, (is_row ? v : v - sign) - work.extent.y_begin);
+    const std::size_t first_before =
+        work.at(limits.begin, (follows ? v - sign : v) - work.extent.y_begin);
     for (int x = limits.begin; x < limits.end; ++x) {
       const auto column = static_cast<std::size_t>(x - limits.begin);
-      ColumnWalk<Numbers>& of = walks[column];
-      const auto put = [&](int y, std::uint32_t colour, auto, auto depth, bool stretched) {
-        const std::size_t at = work.at(x, y - work.place.y_begin);
-        counted.add(to_colours[at], stretched);
-        to_colours[at] = colour;
-        to_depths[at] = numbers.metres(depth);
+      const std::size_t at = first + column, at_before = first_before + column;
+      const std::uint32_t colour = is_row ? colours[at] : 0;
+      const std::uint32_t colour_before = follows ? colours[at_before] : 0;
+      if ((colour | colour_before) == 0) continue;
+      const auto put = [&](int y, std::uint32_t put_colour, auto, auto depth, bool stretched) {
+        const std::size_t to = work.at(x, y - work.place.y_begin);
+        counted.add(to_colours[to], stretched);
+        to_colours[to] = put_colour;
+        to_depths[to] = numbers.metres(depth);
       };
-      const auto end_run = [&] {
-        if (!of.in_run) return;
-        const auto half = numbers.half_texel(of.before.depth);
-        fill_flat<Numbers, sign>(of.before, of.before.along, of.before.along + sign * half, rows,
-                                 put);
-      };
-      const std::size_t at = first + column;
-      if (v == row_end || colours[at] == 0) {
-        end_run();
-        of.in_run = false;
+      const WalkTexel<Numbers> texel{places[at], 0, depths[at], colour};
+      const WalkTexel<Numbers> before{places[at_before], 0, depths[at_before], colour_before};
+      if (colour != 0 && colour_before != 0 && sign * texel.along >= sign * before.along) {
+        fill_between<Numbers, sign>(before, texel, last_reached<Numbers, sign>(before.along),
+                                    last_reached<Numbers, sign>(texel.along), rows, put);
         continue;
       }
-      const WalkTexel<Numbers> texel{places[at], 0, depths[at], colours[at]};
-      const int reached = last_reached<Numbers, sign>(texel.along);
-      if (of.in_run && sign * texel.along >= sign * of.before.along) {
-        fill_between<Numbers, sign>(of.before, texel, of.reached, reached, rows, put);
-      } else {
-        end_run();
+      if (colour_before != 0) {
+        const auto half = numbers.half_texel(before.depth);
+        fill_flat<Numbers, sign>(before, before.along, before.along + sign * half, rows, put);
+      }
+      if (colour != 0) {
         const auto half = numbers.half_texel(texel.depth);
         fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along, rows, put);
-        of.in_run = true;
       }
-      of.before = texel;
-      of.reached = reached;
     }
   }
 }
