@@ -2,9 +2,12 @@
 
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <span>
+#include <type_traits>
 
 #include "scenes/relief/resample_walk.h"
+#include "scenes/relief/step_lanes.h"
 
 namespace softfocus {
 namespace {
@@ -88,6 +91,13 @@ bool take(const FloatPlaces& numbers, const FloatRow& row, int u, int v, std::ui
   return true;
 }
 
+/// What step_texels() reads beside a row's places, and what it gives.
+struct FloatSteps {
+  std::array<float, kMostReliefSize> depths, across, to_depths;
+  std::array<std::int32_t, kMostReliefSize> reached;
+  std::array<std::uint32_t, kMostReliefSize> colours;
+};
+
 struct FixedRow {};
 
 WalkLimits reaching(const FixedRow&, const WalkLimits& limits, const WalkLimits&) { return limits; }
@@ -163,26 +173,107 @@ std::vector<typename Numbers::Depth>& depths_of(WarpedRelief& warped) {
     return warped.row_codes;
 }
 
+/// Half of a row's walk in lanes: walk_row() with the column's places of `resampling`, for floats.
+template <int sign, class Put>
+void step_row(const FloatPlaces& numbers, const WarpWork& work, Resampling resampling, int v,
+              const FloatRow& row, FloatSteps& steps, int begin, int end, const WalkLimits& limits,
+              Isa isa, const Put& put) {
+  if (sign * begin >= sign * end) return;
+  const std::uint32_t* colours =
+      work.relief.colours.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;
+  const float* along = row.along.data();
+  const float* across = row.across.data();
+  const float* depths = steps.depths.data();
+  const bool compensated = resampling == Resampling::compensated;
+  const StepRule rule{
+      numbers.warp, numbers.most_m, sign, v, compensated || resampling == Resampling::two_pass,
+      compensated};
+  // Steps to the second texel of the walk and on, in the order of memory.
+  const int low = std::min(begin + sign, end - sign), count = std::abs(end - begin) - 1;
+  const int first = sign > 0 ? begin + 1 : low;
+  if (count > 0) {
+    step_texels({along + first - sign, along + first, across + first - sign, across + first,
+                 depths + first - sign, depths + first, colours + first - sign, colours + first},
+                rule, count,
+                {steps.reached.data() + first, steps.colours.data() + first,
+                 steps.across.data() + first, steps.to_depths.data() + first},
+                isa);
+  }
+  const auto texel_at = [&](int u) {
+    return WalkTexel<FloatPlaces>{along[u], across[u], depths[u], colours[u]};
+  };
+  const auto put_step = [&](int x, std::uint32_t colour, float place, float depth, bool stretched) {
+    const WalkTexel<FloatPlaces> texel = in_column(numbers, resampling, v, colour, place, depth);
+    put(x, texel, stretched);
+  };
+  step<FloatPlaces, sign>(numbers, false, texel_at(begin), colours[begin] != 0, texel_at(begin),
+                          limits, put_step);
+  for (int u = begin + sign; sign * u < sign * end; u += sign) {
+    const auto at = static_cast<std::size_t>(u);
+    const std::int32_t x = steps.reached[at];
+    if (x == kNoTexel) continue;
+    if (x != kOtherStep) {
+      if (x < limits.begin || x >= limits.end) continue;
+      const bool stretched = sign * (along[u] - along[u - sign]) > FloatPlaces::place_of(kApart);
+      put(x,
+          WalkTexel<FloatPlaces>{steps.across[at], steps.across[at], steps.to_depths[at],
+                                 steps.colours[at]},
+          stretched);
+      continue;
+    }
+    step<FloatPlaces, sign>(numbers, colours[u - sign] != 0, texel_at(u - sign), colours[u] != 0,
+                            texel_at(u), limits, put_step);
+  }
+  step<FloatPlaces, sign>(numbers, colours[end - sign] != 0, texel_at(end - sign), false,
+                          texel_at(begin), limits, put_step);
+}
+
+/// Both halves. `put(x, texel of the column, stretched)`.
+template <class Numbers, class Put>
+void put_row(const Numbers& numbers, const WarpWork& work, Resampling resampling, int v,
+             const WalkLimits& limits, Isa isa, typename RowOf<Numbers>::Type& row,
+             FloatSteps& steps, const Put& put) {
+  place_row(numbers, work, v, isa, row);
+  if constexpr (std::is_same_v<Numbers, FloatPlaces>) {
+    if (isa != Isa::scalar) {
+      const std::uint16_t* codes =
+          work.relief.depths.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;
+      for (int u = work.extent.x_begin; u < work.extent.x_end; ++u) {
+        steps.depths[static_cast<std::size_t>(u)] =
+            static_cast<float>(codes[u]) * numbers.warp.step_m;
+      }
+      const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
+      const int split = walk_split(texels.begin, texels.end, work.warp.epipole_u);
+      step_row<1>(numbers, work, resampling, v, row, steps, texels.begin, split, limits, isa, put);
+      step_row<-1>(numbers, work, resampling, v, row, steps, texels.end - 1, split - 1, limits, isa,
+                   put);
+      return;
+    }
+  }
+  walk_row(numbers, work, v, row, limits,
+           [&](int x, std::uint32_t colour, auto across, auto depth, bool stretched) {
+             put(x, in_column(numbers, resampling, v, colour, across, depth), stretched);
+           });
+}
+
 template <class Numbers>
 void warp_rows(const Numbers& numbers, const WarpWork& work, int v, Isa isa,
                CountedPieces& counted) {
   typename RowOf<Numbers>::Type row;
-  place_row(numbers, work, v, isa, row);
+  FloatSteps steps;
   std::uint32_t* colours = work.warped.row_colours.data();
   typename Numbers::Place* places = places_of<Numbers>(work.warped).data();
   typename Numbers::Depth* depths = depths_of<Numbers>(work.warped).data();
   const int line = v - work.extent.y_begin;
   std::fill_n(colours + work.at(work.place.x_begin, line), work.place.width, 0u);
-  walk_row(numbers, work, v, row, work.columns(),
-           [&](int x, std::uint32_t colour, auto across, auto depth, bool stretched) {
-             const std::size_t at = work.at(x, line);
-             counted.add(colours[at], stretched);
-             const WalkTexel<Numbers> texel =
-                 in_column(numbers, work.resampling, v, colour, across, depth);
-             colours[at] = colour;
-             places[at] = texel.along;
-             depths[at] = texel.depth;
-           });
+  put_row(numbers, work, work.resampling, v, work.columns(), isa, row, steps,
+          [&](int x, const WalkTexel<Numbers>& texel, bool stretched) {
+            const std::size_t at = work.at(x, line);
+            counted.add(colours[at], stretched);
+            colours[at] = texel.colour;
+            places[at] = texel.along;
+            depths[at] = texel.depth;
+          });
 }
 
 /// The columns of `limits`, rows from `row_begin` to before `row_end`: walk() of each. Columns walk
@@ -216,28 +307,61 @@ void walk_columns(const Numbers& numbers, const WarpWork& work, const WalkLimits
       };
       const WalkTexel<Numbers> texel{places[at], 0, depths[at], colour};
       const WalkTexel<Numbers> before{places[at_before], 0, depths[at_before], colour_before};
-      if (colour != 0 && colour_before != 0 && sign * texel.along >= sign * before.along) {
-        fill_between<Numbers, sign>(before, texel, last_reached<Numbers, sign>(before.along),
-                                    last_reached<Numbers, sign>(texel.along), rows, put);
-        continue;
-      }
-      if (colour_before != 0) {
-        const auto half = numbers.half_texel(before.depth);
-        fill_flat<Numbers, sign>(before, before.along, before.along + sign * half, rows, put);
-      }
-      if (colour != 0) {
-        const auto half = numbers.half_texel(texel.depth);
-        fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along, rows, put);
-      }
+      step<Numbers, sign>(numbers, colour_before != 0, before, colour != 0, texel, rows, put);
     }
   }
 }
 
-/// The first row past the walk from above: the others are walked from below.
-int split_row(const WarpWork& work) {
-  const double last =
-      std::fmin(std::fmax(work.warp.epipole_v, work.extent.y_begin - 1.0), work.extent.y_end - 1.0);
-  return static_cast<int>(std::floor(last)) + 1;
+/// The same in lanes, for floats and without counting.
+template <int sign>
+void step_columns(const FloatPlaces& numbers, const WarpWork& work, const WalkLimits& limits,
+                  int row_begin, int row_end, Isa isa) {
+  const int columns = limits.end - limits.begin;
+  std::array<std::int32_t, kBandColumns> reached;
+  std::array<std::uint32_t, kBandColumns> mixed;
+  std::array<float, kBandColumns> across, depth;
+  const std::array<float, kBandColumns> no_places{};
+  const std::array<std::uint32_t, kBandColumns> no_colours{};
+  const WalkLimits rows = work.rows();
+  const StepRule rule{numbers.warp, numbers.most_m, sign, 0, false, false};
+  for (int v = row_begin; sign * v <= sign * row_end; v += sign) {
+    const auto row_of = [&](int row, bool is_there) {
+      const std::size_t at = is_there ? work.at(limits.begin, row - work.extent.y_begin) : 0;
+      struct RowPointers {
+        const float *place, *depth;
+        const std::uint32_t* colour;
+      };
+      return is_there ? RowPointers{work.warped.row_places.data() + at,
+                                    work.warped.row_depths_m.data() + at,
+                                    work.warped.row_colours.data() + at}
+                      : RowPointers{no_places.data(), no_places.data(), no_colours.data()};
+    };
+    const auto now = row_of(v, v != row_end), before = row_of(v - sign, v != row_begin);
+    step_texels({before.place, now.place, no_places.data(), no_places.data(), before.depth,
+                 now.depth, before.colour, now.colour},
+                rule, columns, {reached.data(), mixed.data(), across.data(), depth.data()}, isa);
+    for (int i = 0; i < columns; ++i) {
+      const auto column = static_cast<std::size_t>(i);
+      const std::int32_t y = reached[column];
+      if (y == kNoTexel) continue;
+      const int x = limits.begin + i;
+      if (y != kOtherStep) {
+        if (y < rows.begin || y >= rows.end) continue;
+        const std::size_t at = work.at(x, y - work.place.y_begin);
+        work.warped.colours[at] = mixed[column];
+        work.warped.depths_m[at] = depth[column];
+        continue;
+      }
+      const auto put = [&](int to, std::uint32_t colour, float, float to_depth, bool) {
+        const std::size_t at = work.at(x, to - work.place.y_begin);
+        work.warped.colours[at] = colour;
+        work.warped.depths_m[at] = to_depth;
+      };
+      step<FloatPlaces, sign>(
+          numbers, before.colour[i] != 0, {before.place[i], 0, before.depth[i], before.colour[i]},
+          now.colour[i] != 0, {now.place[i], 0, now.depth[i], now.colour[i]}, rows, put);
+    }
+  }
 }
 
 void clear_columns(const WarpWork& work, const WalkLimits& limits) {
@@ -268,12 +392,19 @@ WarpCounts warp_in_two_passes(const Numbers& numbers, const WarpWork& work, bool
     }
   });
   const WalkLimits columns = work.columns();
-  const int split = split_row(work);
+  const int split = walk_split(work.extent.y_begin, work.extent.y_end, work.warp.epipole_v);
   pool.for_each(bands, [&](int band) {
     const int begin = columns.begin + band * kBandColumns;
     const WalkLimits limits{begin, std::min(begin + kBandColumns, columns.end)};
     clear_columns(work, limits);
     CountedPieces& some = counted[static_cast<std::size_t>(rows + band)];
+    if constexpr (std::is_same_v<Numbers, FloatPlaces>) {
+      if (pool.isa() != Isa::scalar && !counting) {
+        step_columns<1>(numbers, work, limits, work.extent.y_begin, split, pool.isa());
+        step_columns<-1>(numbers, work, limits, work.extent.y_end - 1, split - 1, pool.isa());
+        return;
+      }
+    }
     walk_columns<Numbers, 1>(numbers, work, limits, work.extent.y_begin, split, some);
     walk_columns<Numbers, -1>(numbers, work, limits, work.extent.y_end - 1, split - 1, some);
   });
@@ -369,13 +500,12 @@ void warp_band_rows(const Numbers& numbers, const WarpWork& work, const WalkLimi
   std::vector<ColumnEnds<Numbers>> ends(static_cast<std::size_t>(limits.end - limits.begin));
   const ColumnFill<Numbers, sign> fill{numbers, work, counted};
   typename RowOf<Numbers>::Type row;
+  FloatSteps steps;
   for (int v = row_begin; sign * v < sign * row_end; v += sign) {
-    place_row(numbers, work, v, isa, row);
-    walk_row(numbers, work, v, row, limits,
-             [&](int x, std::uint32_t colour, auto across, auto depth, bool stretched) {
-               fill.add(ends[static_cast<std::size_t>(x - limits.begin)], x, v,
-                        {across, across, depth, colour}, stretched);
-             });
+    put_row(numbers, work, Resampling::asymmetric, v, limits, isa, row, steps,
+            [&](int x, const WalkTexel<Numbers>& texel, bool stretched) {
+              fill.add(ends[static_cast<std::size_t>(x - limits.begin)], x, v, texel, stretched);
+            });
   }
   for (int x = limits.begin; x < limits.end; ++x) {
     ColumnEnds<Numbers>& column = ends[static_cast<std::size_t>(x - limits.begin)];
@@ -390,7 +520,7 @@ WarpCounts warp_in_one_pass(const Numbers& numbers, const WarpWork& work, bool c
   const WalkLimits columns = work.columns();
   // Each band walks all rows, and puts what falls into it.
   const int bands = std::min(pool.threads(), work.place.width);
-  const int split = split_row(work);
+  const int split = walk_split(work.extent.y_begin, work.extent.y_end, work.warp.epipole_v);
   std::vector<CountedPieces> counted(static_cast<std::size_t>(bands), {{}, counting});
   pool.for_each(bands, [&](int band) {
     const auto border = [&](int i) { return columns.begin + work.place.width * i / bands; };

@@ -141,46 +141,54 @@ inline void fill_between(const WalkTexel<Numbers>& from, const WalkTexel<Numbers
   }
 }
 
+/// A step from one neighbour to the next, each of which may be missing: `is_from`, `is_there`.
+/// Where the walk runs on, it fills the way; where not, a run ends half a texel past `from`, and
+/// another begins half a texel before `texel`.
+template <class Numbers, int sign, class Put>
+inline void step(const Numbers& numbers, bool is_from, const WalkTexel<Numbers>& from,
+                 bool is_there, const WalkTexel<Numbers>& texel, const WalkLimits& limits,
+                 const Put& put) {
+  if (is_from && is_there && sign * texel.along >= sign * from.along) {
+    fill_between<Numbers, sign>(from, texel, last_reached<Numbers, sign>(from.along),
+                                last_reached<Numbers, sign>(texel.along), limits, put);
+    return;
+  }
+  if (is_from) {
+    const auto half = numbers.half_texel(from.depth);
+    fill_flat<Numbers, sign>(from, from.along, from.along + sign * half, limits, put);
+  }
+  if (is_there) {
+    const auto half = numbers.half_texel(texel.depth);
+    fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along, limits, put);
+  }
+}
+
 /// Walks from texel `begin` to before `end`. `get(i, texel)` says whether texel i shows something.
 template <class Numbers, int sign, class Get, class Put>
 inline void walk(const Numbers& numbers, int begin, int end, const WalkLimits& limits,
                  const Get& get, const Put& put) {
-  WalkTexel<Numbers> before{};
-  int before_reached = 0;
-  bool in_run = false;
-  const auto end_run = [&] {
-    if (!in_run) return;
-    const auto half = numbers.half_texel(before.depth);
-    fill_flat<Numbers, sign>(before, before.along, before.along + sign * half, limits, put);
-  };
+  WalkTexel<Numbers> from{}, texel{};
+  bool is_from = false;
   for (int i = begin; sign * i < sign * end; i += sign) {
-    WalkTexel<Numbers> texel;
-    if (!get(i, texel)) {
-      end_run();
-      in_run = false;
-      continue;
-    }
-    const int reached = last_reached<Numbers, sign>(texel.along);
-    if (in_run && sign * texel.along >= sign * before.along) {
-      fill_between<Numbers, sign>(before, texel, before_reached, reached, limits, put);
-    } else {
-      end_run();
-      const auto half = numbers.half_texel(texel.depth);
-      fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along, limits, put);
-      in_run = true;
-    }
-    before = texel;
-    before_reached = reached;
+    const bool is_there = get(i, texel);
+    step<Numbers, sign>(numbers, is_from, from, is_there, texel, limits, put);
+    from = texel;
+    is_from = is_there;
   }
-  end_run();
+  step<Numbers, sign>(numbers, is_from, from, false, texel, limits, put);
+}
+
+/// Where a row's or a column's walks meet: the first texel that is walked from the end.
+inline int walk_split(int begin, int end, double epipole) {
+  const double last = epipole < begin ? begin - 1.0 : (epipole >= end ? end - 1.0 : epipole);
+  return static_cast<int>(std::floor(last)) + 1;
 }
 
 /// Both walks of a row or a column, from its borders to the epipole.
 template <class Numbers, class Get, class Put>
 inline void walk_to_epipole(const Numbers& numbers, int begin, int end, double epipole,
                             const WalkLimits& limits, const Get& get, const Put& put) {
-  const double last = epipole < begin ? begin - 1.0 : (epipole >= end ? end - 1.0 : epipole);
-  const int split = static_cast<int>(std::floor(last)) + 1;
+  const int split = walk_split(begin, end, epipole);
   walk<Numbers, 1>(numbers, begin, split, limits, get, put);
   walk<Numbers, -1>(numbers, end - 1, split - 1, limits, get, put);
 }
