@@ -1,31 +1,16 @@
 #include "scenes/relief/resample.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
 #include <span>
 #include <type_traits>
+#include <utility>
 
-#include "scenes/relief/resample_walk.h"
-#include "scenes/relief/step_lanes.h"
+#include "scenes/relief/resample_columns.h"
 
 namespace softfocus {
 namespace {
-
-// Columns that a task of the second pass takes.
-constexpr int kBandColumns = 64;
-
-struct CountedPieces {
-  WarpCounts counts;
-  bool wanted;
-
-  void add(std::uint32_t covered, bool stretched) {
-    if (!wanted) return;
-    ++counts.pieces;
-    counts.overlaps += covered != 0 ? 1 : 0;
-    counts.stretched += stretched ? 1 : 0;
-  }
-};
 
 WarpCounts total_of(std::span<const CountedPieces> all) {
   WarpCounts total;
@@ -35,125 +20,6 @@ WarpCounts total_of(std::span<const CountedPieces> all) {
     total.stretched += some.counts.stretched;
   }
   return total;
-}
-
-/// What all tasks of a warp read.
-struct WarpWork {
-  const ReliefTexture& relief;
-  ReliefExtent extent;
-  PreWarp warp;
-  PlaneRectangle place;
-  Resampling resampling;
-  WarpedRelief& warped;
-
-  WalkLimits columns() const { return {place.x_begin, place.x_begin + place.width}; }
-  WalkLimits rows() const { return {place.y_begin, place.y_begin + place.height}; }
-  std::size_t at(int x, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(place.width) +
-           static_cast<std::size_t>(x - place.x_begin);
-  }
-};
-
-// --- a row's places, in either arithmetic ---
-
-struct FloatRow {
-  std::array<float, kMostReliefSize> along, across;
-};
-
-/// The texels of a row, `limits`, that can reach columns `band`: those before the first step into
-/// it, and behind the last, are left out. A texel that is kept has its neighbour beside it.
-WalkLimits reaching(const FloatRow& row, WalkLimits limits, const WalkLimits& band) {
-  const auto low = static_cast<float>(band.begin - 1), high = static_cast<float>(band.end + 1);
-  const auto at = [&](int u) { return row.along[static_cast<std::size_t>(u)]; };
-  const auto is_outside = [&](int u, int v) {
-    return (at(u) < low && at(v) < low) || (at(u) > high && at(v) > high);
-  };
-  while (limits.begin + 1 < limits.end && is_outside(limits.begin, limits.begin + 1)) {
-    ++limits.begin;
-  }
-  while (limits.begin + 1 < limits.end && is_outside(limits.end - 2, limits.end - 1)) --limits.end;
-  return limits;
-}
-
-void place_row(const FloatPlaces& numbers, const WarpWork& work, int v, Isa isa, FloatRow& row) {
-  const std::uint16_t* codes =
-      work.relief.depths.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;
-  warp_row(numbers.warp, codes, work.extent.x_end, v, row.along.data(), row.across.data(), isa);
-}
-
-bool take(const FloatPlaces& numbers, const FloatRow& row, int u, int v, std::uint16_t code,
-          WalkTexel<FloatPlaces>& texel) {
-  const auto at = static_cast<std::size_t>(u);
-  static_cast<void>(v);
-  texel.along = row.along[at];
-  texel.across = row.across[at];
-  texel.depth = static_cast<float>(code) * numbers.warp.step_m;
-  return true;
-}
-
-/// What step_texels() reads beside a row's places, and what it gives.
-struct FloatSteps {
-  std::array<float, kMostReliefSize> depths, across, to_depths;
-  std::array<std::int32_t, kMostReliefSize> reached;
-  std::array<std::uint32_t, kMostReliefSize> colours;
-};
-
-struct FixedRow {};
-
-WalkLimits reaching(const FixedRow&, const WalkLimits& limits, const WalkLimits&) { return limits; }
-
-void place_row(const FixedPlaces&, const WarpWork&, int, Isa, FixedRow&) {}
-
-bool take(const FixedPlaces& numbers, const FixedRow&, int u, int v, std::uint16_t code,
-          WalkTexel<FixedPlaces>& texel) {
-  const FixedDepth& depth = numbers.table[code];
-  texel.along = fixed_place(u * 256, depth.shift_u, depth.scale);
-  texel.across = fixed_place(v * 256, depth.shift_v, depth.scale);
-  texel.depth = code;
-  return true;
-}
-
-template <class Numbers>
-struct RowOf;
-template <>
-struct RowOf<FloatPlaces> {
-  using Type = FloatRow;
-};
-template <>
-struct RowOf<FixedPlaces> {
-  using Type = FixedRow;
-};
-
-/// Walks a row of the relief.
-template <class Numbers, class Put>
-void walk_row(const Numbers& numbers, const WarpWork& work, int v,
-              const typename RowOf<Numbers>::Type& row, const WalkLimits& limits, const Put& put) {
-  const std::size_t first =
-      static_cast<std::size_t>(v) * static_cast<std::size_t>(work.relief.width);
-  const std::uint16_t* codes = work.relief.depths.data() + first;
-  const std::uint32_t* colours = work.relief.colours.data() + first;
-  const std::uint16_t empty = empty_depth(work.relief.depth_bits);
-  const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
-  walk_to_epipole(
-      numbers, texels.begin, texels.end, work.warp.epipole_u, limits,
-      [&](int u, WalkTexel<Numbers>& texel) {
-        if (codes[u] == empty) return false;
-        texel.colour = colours[u];
-        return take(numbers, row, u, v, codes[u], texel);
-      },
-      put);
-}
-
-/// A texel of a row's walk, with its place in the column as the resampling has it.
-template <class Numbers>
-WalkTexel<Numbers> in_column(const Numbers& numbers, Resampling resampling, int v,
-                             std::uint32_t colour, typename Numbers::Place across,
-                             typename Numbers::Depth depth) {
-  if (resampling == Resampling::compensated) depth = numbers.compensated(v, across, depth);
-  if (resampling == Resampling::two_pass || resampling == Resampling::compensated) {
-    across = numbers.place_in_column(v, depth);
-  }
-  return {across, across, depth, colour};
 }
 
 // --- two passes ---
@@ -173,100 +39,15 @@ std::vector<typename Numbers::Depth>& depths_of(WarpedRelief& warped) {
     return warped.row_codes;
 }
 
-/// Half of a row's walk in lanes: walk_row() with the column's places of `resampling`, for floats.
-template <int sign, class Put>
-void step_row(const FloatPlaces& numbers, const WarpWork& work, Resampling resampling, int v,
-              const FloatRow& row, FloatSteps& steps, int begin, int end, const WalkLimits& limits,
-              Isa isa, const Put& put) {
-  if (sign * begin >= sign * end) return;
-  const std::uint32_t* colours =
-      work.relief.colours.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;
-  const float* along = row.along.data();
-  const float* across = row.across.data();
-  const float* depths = steps.depths.data();
-  const bool compensated = resampling == Resampling::compensated;
-  const StepRule rule{
-      numbers.warp, numbers.most_m, sign, v, compensated || resampling == Resampling::two_pass,
-      compensated};
-  // Steps to the second texel of the walk and on, in the order of memory.
-  const int low = std::min(begin + sign, end - sign), count = std::abs(end - begin) - 1;
-  const int first = sign > 0 ? begin + 1 : low;
-  if (count > 0) {
-    step_texels({along + first - sign, along + first, across + first - sign, across + first,
-                 depths + first - sign, depths + first, colours + first - sign, colours + first},
-                rule, count,
-                {steps.reached.data() + first, steps.colours.data() + first,
-                 steps.across.data() + first, steps.to_depths.data() + first},
-                isa);
-  }
-  const auto texel_at = [&](int u) {
-    return WalkTexel<FloatPlaces>{along[u], across[u], depths[u], colours[u]};
-  };
-  const auto put_step = [&](int x, std::uint32_t colour, float place, float depth, bool stretched) {
-    const WalkTexel<FloatPlaces> texel = in_column(numbers, resampling, v, colour, place, depth);
-    put(x, texel, stretched);
-  };
-  step<FloatPlaces, sign>(numbers, false, texel_at(begin), colours[begin] != 0, texel_at(begin),
-                          limits, put_step);
-  for (int u = begin + sign; sign * u < sign * end; u += sign) {
-    const auto at = static_cast<std::size_t>(u);
-    const std::int32_t x = steps.reached[at];
-    if (x == kNoTexel) continue;
-    if (x != kOtherStep) {
-      if (x < limits.begin || x >= limits.end) continue;
-      const bool stretched = sign * (along[u] - along[u - sign]) > FloatPlaces::place_of(kApart);
-      put(x,
-          WalkTexel<FloatPlaces>{steps.across[at], steps.across[at], steps.to_depths[at],
-                                 steps.colours[at]},
-          stretched);
-      continue;
-    }
-    step<FloatPlaces, sign>(numbers, colours[u - sign] != 0, texel_at(u - sign), colours[u] != 0,
-                            texel_at(u), limits, put_step);
-  }
-  step<FloatPlaces, sign>(numbers, colours[end - sign] != 0, texel_at(end - sign), false,
-                          texel_at(begin), limits, put_step);
-}
-
-/// Both halves. `put(x, texel of the column, stretched)`.
-template <class Numbers, class Put>
-void put_row(const Numbers& numbers, const WarpWork& work, Resampling resampling, int v,
-             const WalkLimits& limits, Isa isa, typename RowOf<Numbers>::Type& row,
-             FloatSteps& steps, const Put& put) {
-  place_row(numbers, work, v, isa, row);
-  if constexpr (std::is_same_v<Numbers, FloatPlaces>) {
-    if (isa != Isa::scalar) {
-      const std::uint16_t* codes =
-          work.relief.depths.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;
-      for (int u = work.extent.x_begin; u < work.extent.x_end; ++u) {
-        steps.depths[static_cast<std::size_t>(u)] =
-            static_cast<float>(codes[u]) * numbers.warp.step_m;
-      }
-      const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
-      const int split = walk_split(texels.begin, texels.end, work.warp.epipole_u);
-      step_row<1>(numbers, work, resampling, v, row, steps, texels.begin, split, limits, isa, put);
-      step_row<-1>(numbers, work, resampling, v, row, steps, texels.end - 1, split - 1, limits, isa,
-                   put);
-      return;
-    }
-  }
-  walk_row(numbers, work, v, row, limits,
-           [&](int x, std::uint32_t colour, auto across, auto depth, bool stretched) {
-             put(x, in_column(numbers, resampling, v, colour, across, depth), stretched);
-           });
-}
-
 template <class Numbers>
 void warp_rows(const Numbers& numbers, const WarpWork& work, int v, Isa isa,
-               CountedPieces& counted) {
-  typename RowOf<Numbers>::Type row;
-  FloatSteps steps;
+               typename RowOf<Numbers>::Type& row, CountedPieces& counted) {
   std::uint32_t* colours = work.warped.row_colours.data();
   typename Numbers::Place* places = places_of<Numbers>(work.warped).data();
   typename Numbers::Depth* depths = depths_of<Numbers>(work.warped).data();
   const int line = v - work.extent.y_begin;
   std::fill_n(colours + work.at(work.place.x_begin, line), work.place.width, 0u);
-  put_row(numbers, work, work.resampling, v, work.columns(), isa, row, steps,
+  put_row(numbers, work, work.resampling, v, work.columns(), isa, row,
           [&](int x, const WalkTexel<Numbers>& texel, bool stretched) {
             const std::size_t at = work.at(x, line);
             counted.add(colours[at], stretched);
@@ -279,88 +60,21 @@ void warp_rows(const Numbers& numbers, const WarpWork& work, int v, Isa isa,
 /// The columns of `limits`, rows from `row_begin` to before `row_end`: walk() of each. Columns walk
 /// side by side, row by row, so that memory is read and written in its order.
 template <class Numbers, int sign>
-void walk_columns(const Numbers& numbers, const WarpWork& work, const WalkLimits& limits,
-                  int row_begin, int row_end, CountedPieces& counted) {
-  const std::uint32_t* colours = work.warped.row_colours.data();
-  const typename Numbers::Place* places = places_of<Numbers>(work.warped).data();
-  const typename Numbers::Depth* depths = depths_of<Numbers>(work.warped).data();
-  std::uint32_t* to_colours = work.warped.colours.data();
-  float* to_depths = work.warped.depths_m.data();
-  const WalkLimits rows = work.rows();
+void warp_columns(const Numbers& numbers, const WarpWork& work, const WalkLimits& limits,
+                  int row_begin, int row_end, Isa isa, CountedPieces& counted) {
+  const BandRow<Numbers> nothing{static_cast<std::size_t>(kBandColumns)};
+  const auto row_of = [&](int v, bool is_there) {
+    if (!is_there) return nothing.first_layer(0);
+    const std::size_t at = work.at(limits.begin, v - work.extent.y_begin);
+    return ColumnTexels<Numbers>{places_of<Numbers>(work.warped).data() + at,
+                                 depths_of<Numbers>(work.warped).data() + at,
+                                 work.warped.row_colours.data() + at};
+  };
   // One row more, of nothing, ends the runs.
   for (int v = row_begin; sign * v <= sign * row_end; v += sign) {
-    const bool is_row = v != row_end, follows = v != row_begin;
-    const std::size_t first = work.at(limits.begin, (is_row ? v : v - sign) - work.extent.y_begin);
-    const std::size_t first_before =
-        work.at(limits.begin, (follows ? v - sign : v) - work.extent.y_begin);
-    for (int x = limits.begin; x < limits.end; ++x) {
-      const auto column = static_cast<std::size_t>(x - limits.begin);
-      const std::size_t at = first + column, at_before = first_before + column;
-      const std::uint32_t colour = is_row ? colours[at] : 0;
-      const std::uint32_t colour_before = follows ? colours[at_before] : 0;
-      if ((colour | colour_before) == 0) continue;
-      const auto put = [&](int y, std::uint32_t put_colour, auto, auto depth, bool stretched) {
-        const std::size_t to = work.at(x, y - work.place.y_begin);
-        counted.add(to_colours[to], stretched);
-        to_colours[to] = put_colour;
-        to_depths[to] = numbers.metres(depth);
-      };
-      const WalkTexel<Numbers> texel{places[at], 0, depths[at], colour};
-      const WalkTexel<Numbers> before{places[at_before], 0, depths[at_before], colour_before};
-      step<Numbers, sign>(numbers, colour_before != 0, before, colour != 0, texel, rows, put);
-    }
-  }
-}
-
-/// The same in lanes, for floats and without counting.
-template <int sign>
-void step_columns(const FloatPlaces& numbers, const WarpWork& work, const WalkLimits& limits,
-                  int row_begin, int row_end, Isa isa) {
-  const int columns = limits.end - limits.begin;
-  std::array<std::int32_t, kBandColumns> reached;
-  std::array<std::uint32_t, kBandColumns> mixed;
-  std::array<float, kBandColumns> across, depth;
-  const std::array<float, kBandColumns> no_places{};
-  const std::array<std::uint32_t, kBandColumns> no_colours{};
-  const WalkLimits rows = work.rows();
-  const StepRule rule{numbers.warp, numbers.most_m, sign, 0, false, false};
-  for (int v = row_begin; sign * v <= sign * row_end; v += sign) {
-    const auto row_of = [&](int row, bool is_there) {
-      const std::size_t at = is_there ? work.at(limits.begin, row - work.extent.y_begin) : 0;
-      struct RowPointers {
-        const float *place, *depth;
-        const std::uint32_t* colour;
-      };
-      return is_there ? RowPointers{work.warped.row_places.data() + at,
-                                    work.warped.row_depths_m.data() + at,
-                                    work.warped.row_colours.data() + at}
-                      : RowPointers{no_places.data(), no_places.data(), no_colours.data()};
-    };
-    const auto now = row_of(v, v != row_end), before = row_of(v - sign, v != row_begin);
-    step_texels({before.place, now.place, no_places.data(), no_places.data(), before.depth,
-                 now.depth, before.colour, now.colour},
-                rule, columns, {reached.data(), mixed.data(), across.data(), depth.data()}, isa);
-    for (int i = 0; i < columns; ++i) {
-      const auto column = static_cast<std::size_t>(i);
-      const std::int32_t y = reached[column];
-      if (y == kNoTexel) continue;
-      const int x = limits.begin + i;
-      if (y != kOtherStep) {
-        if (y < rows.begin || y >= rows.end) continue;
-        const std::size_t at = work.at(x, y - work.place.y_begin);
-        work.warped.colours[at] = mixed[column];
-        work.warped.depths_m[at] = depth[column];
-        continue;
-      }
-      const auto put = [&](int to, std::uint32_t colour, float, float to_depth, bool) {
-        const std::size_t at = work.at(x, to - work.place.y_begin);
-        work.warped.colours[at] = colour;
-        work.warped.depths_m[at] = to_depth;
-      };
-      step<FloatPlaces, sign>(
-          numbers, before.colour[i] != 0, {before.place[i], 0, before.depth[i], before.colour[i]},
-          now.colour[i] != 0, {now.place[i], 0, now.depth[i], now.colour[i]}, rows, put);
-    }
+    step_columns<Numbers, sign>(
+        numbers, work, limits.begin, limits.end - limits.begin, row_of(v - sign, v != row_begin),
+        row_of(v, v != row_end), isa, counted, [](int) { return false; }, [](int) {});
   }
 }
 
@@ -386,8 +100,9 @@ WarpCounts warp_in_two_passes(const Numbers& numbers, const WarpWork& work, bool
   std::vector<CountedPieces> counted(static_cast<std::size_t>(rows + bands), {{}, counting});
   constexpr int kRows = 8;
   pool.for_each((rows + kRows - 1) / kRows, [&](int band) {
+    typename RowOf<Numbers>::Type memory{work.relief.width};
     for (int row = kRows * band; row < std::min(kRows * (band + 1), rows); ++row) {
-      warp_rows(numbers, work, work.extent.y_begin + row, pool.isa(),
+      warp_rows(numbers, work, work.extent.y_begin + row, pool.isa(), memory,
                 counted[static_cast<std::size_t>(row)]);
     }
   });
@@ -398,119 +113,46 @@ WarpCounts warp_in_two_passes(const Numbers& numbers, const WarpWork& work, bool
     const WalkLimits limits{begin, std::min(begin + kBandColumns, columns.end)};
     clear_columns(work, limits);
     CountedPieces& some = counted[static_cast<std::size_t>(rows + band)];
-    if constexpr (std::is_same_v<Numbers, FloatPlaces>) {
-      if (pool.isa() != Isa::scalar && !counting) {
-        step_columns<1>(numbers, work, limits, work.extent.y_begin, split, pool.isa());
-        step_columns<-1>(numbers, work, limits, work.extent.y_end - 1, split - 1, pool.isa());
-        return;
-      }
-    }
-    walk_columns<Numbers, 1>(numbers, work, limits, work.extent.y_begin, split, some);
-    walk_columns<Numbers, -1>(numbers, work, limits, work.extent.y_end - 1, split - 1, some);
+    warp_columns<Numbers, 1>(numbers, work, limits, work.extent.y_begin, split, pool.isa(), some);
+    warp_columns<Numbers, -1>(numbers, work, limits, work.extent.y_end - 1, split - 1, pool.isa(),
+                              some);
   });
   return total_of(counted);
 }
 
 // --- one pass ---
 
-/// The texels that a row put into a column: two surfaces at the most, the first and the last. A
-/// texel of the next row is a neighbour of the one whose depth is nearer.
-template <class Numbers>
-struct ColumnEnd {
-  int row;
-  int count;
-  WalkTexel<Numbers> texels[2];
-  bool goes_on[2];  ///< whether a texel of the next row was joined to it
-};
-
-template <class Numbers>
-int nearer_end(const ColumnEnd<Numbers>& end, const WalkTexel<Numbers>& texel) {
-  if (end.count == 1) return 0;
-  const auto from_first = end.texels[0].depth - texel.depth;
-  const auto from_last = end.texels[1].depth - texel.depth;
-  return (from_first < 0 ? -from_first : from_first) < (from_last < 0 ? -from_last : from_last) ? 0
-                                                                                                : 1;
-}
-
-/// A column's ends in the row before and in this one.
-template <class Numbers>
-struct ColumnEnds {
-  ColumnEnd<Numbers> before, now;
-};
-
-/// What walks of rows put into a band of columns.
-template <class Numbers, int sign>
-struct ColumnFill {
-  const Numbers& numbers;
-  const WarpWork& work;
-  CountedPieces& counted;
-
-  auto put_at(int x, bool stretched_row) const {
-    return [this, x, stretched_row](int y, std::uint32_t colour, auto, auto depth, bool stretched) {
-      const std::size_t at = work.at(x, y - work.place.y_begin);
-      counted.add(work.warped.colours[at], stretched_row || stretched);
-      work.warped.colours[at] = colour;
-      work.warped.depths_m[at] = numbers.metres(depth);
-    };
-  }
-
-  /// Half a texel past each end that no texel was joined to, but for end number `but`.
-  void end_runs(ColumnEnd<Numbers>& ends, int x, int but) const {
-    for (int i = 0; i < ends.count; ++i) {
-      if (i == but || ends.goes_on[i]) continue;
-      ends.goes_on[i] = true;
-      const WalkTexel<Numbers>& end = ends.texels[i];
-      fill_flat<Numbers, sign>(end, end.along, end.along + sign * numbers.half_texel(end.depth),
-                               work.rows(), put_at(x, false));
-    }
-  }
-
-  void add(ColumnEnds<Numbers>& column, int x, int v, const WalkTexel<Numbers>& texel,
-           bool stretched_row) const {
-    if (column.now.count == 0 || column.now.row != v) {
-      end_runs(column.before, x, -1);
-      column.before = column.now;
-      column.now.row = v;
-      column.now.count = 0;
-    }
-    ColumnEnd<Numbers>& before = column.before;
-    const auto put = put_at(x, stretched_row);
-    int joined = before.count > 0 && before.row == v - sign ? nearer_end(before, texel) : -1;
-    if (joined >= 0 && sign * texel.along < sign * before.texels[joined].along) joined = -1;
-    end_runs(before, x, joined);
-    if (joined >= 0) {
-      const WalkTexel<Numbers>& end = before.texels[joined];
-      fill_between<Numbers, sign>(end, texel, last_reached<Numbers, sign>(end.along),
-                                  last_reached<Numbers, sign>(texel.along), work.rows(), put);
-      before.goes_on[joined] = true;
-    } else {
-      const auto half = numbers.half_texel(texel.depth);
-      fill_flat<Numbers, sign>(texel, texel.along - sign * half, texel.along, work.rows(), put);
-    }
-    const int place = column.now.count == 0 ? 0 : 1;
-    column.now.texels[place] = texel;
-    column.now.goes_on[place] = false;
-    column.now.count = place + 1;
-  }
-};
-
+/// Rows into a band of columns, each at once.
 template <class Numbers, int sign>
 void warp_band_rows(const Numbers& numbers, const WarpWork& work, const WalkLimits& limits,
                     int row_begin, int row_end, Isa isa, CountedPieces& counted) {
-  std::vector<ColumnEnds<Numbers>> ends(static_cast<std::size_t>(limits.end - limits.begin));
-  const ColumnFill<Numbers, sign> fill{numbers, work, counted};
-  typename RowOf<Numbers>::Type row;
-  FloatSteps steps;
-  for (int v = row_begin; sign * v < sign * row_end; v += sign) {
-    put_row(numbers, work, Resampling::asymmetric, v, limits, isa, row, steps,
-            [&](int x, const WalkTexel<Numbers>& texel, bool stretched) {
-              fill.add(ends[static_cast<std::size_t>(x - limits.begin)], x, v, texel, stretched);
-            });
-  }
-  for (int x = limits.begin; x < limits.end; ++x) {
-    ColumnEnds<Numbers>& column = ends[static_cast<std::size_t>(x - limits.begin)];
-    fill.end_runs(column.before, x, -1);
-    fill.end_runs(column.now, x, -1);
+  const int columns = limits.end - limits.begin;
+  typename RowOf<Numbers>::Type row{work.relief.width};
+  BandRow<Numbers> from{static_cast<std::size_t>(columns)}, to = from;
+  for (int v = row_begin; sign * v <= sign * row_end; v += sign) {
+    to.clear();
+    std::int64_t covered = 0;
+    if (v != row_end) {
+      put_row(numbers, work, Resampling::asymmetric, v, limits, isa, row,
+              [&](int x, const WalkTexel<Numbers>& texel, bool) {
+                const auto column = static_cast<std::size_t>(x - limits.begin);
+                covered += to.colours[1][column] != 0 ? 1 : 0;
+                to.put(column, texel);
+              });
+    }
+    counted.counts.overlaps += covered;
+    for (int begin = 0; begin < columns; begin += kBandColumns) {
+      const auto column_of = [&](int i) { return static_cast<std::size_t>(begin + i); };
+      step_columns<Numbers, sign>(
+          numbers, work, limits.begin + begin, std::min(kBandColumns, columns - begin),
+          from.first_layer(begin), to.first_layer(begin), isa, counted,
+          [&](int i) { return (from.colours[1][column_of(i)] | to.colours[1][column_of(i)]) != 0; },
+          [&](int i) {
+            step_two_layers<Numbers, sign>(numbers, work, from, to, column_of(i),
+                                           {numbers, work, counted, limits.begin + begin + i});
+          });
+    }
+    std::swap(from, to);
   }
 }
 
