@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "raster/numbers/vector_math.h"
 
@@ -19,7 +20,50 @@ glm::dvec3 middle_of_plane(const ReliefTexture& relief) {
          plane.b * (0.5 * (relief.height - 1));
 }
 
-bool has_extent(const Impostor& impostor) { return impostor.relief && impostor.extent; }
+/// Whether a relief serves a view within the tolerance.
+bool is_fresh(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+              double pixel_tangent) {
+  return can_serve(relief, settings, eye, pixel_tangent) &&
+         impostor_error(relief, eye) <= settings.tolerance_texels;
+}
+
+/// Puts the stale relief into the cache, and makes room for it.
+void keep_stale(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye) {
+  if (!impostor.drawn) return;
+  std::vector<DrawnRelief>& cache = impostor.cache;
+  cache.push_back(std::move(*impostor.drawn));
+  impostor.drawn.reset();
+  const auto bytes = [&] {
+    std::size_t sum = 0;
+    for (const DrawnRelief& relief : cache) sum += bytes_of(relief);
+    return sum;
+  };
+  while (!cache.empty() && bytes() > settings.cache_bytes) {
+    std::size_t farthest = 0;
+    for (std::size_t i = 1; i < cache.size(); ++i) {
+      if (length_of(cache[i].eye - eye) > length_of(cache[farthest].eye - eye)) farthest = i;
+    }
+    cache.erase(cache.begin() + static_cast<std::ptrdiff_t>(farthest));
+  }
+}
+
+/// Takes the relief with the least error out of the cache, if one serves.
+std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& settings,
+                                    glm::dvec3 eye, double pixel_tangent) {
+  std::optional<std::size_t> best;
+  double least = settings.tolerance_texels;
+  for (std::size_t i = 0; i < impostor.cache.size(); ++i) {
+    if (!can_serve(impostor.cache[i], settings, eye, pixel_tangent)) continue;
+    const double error = impostor_error(impostor.cache[i], eye);
+    if (error > least || (best && error == least)) continue;
+    best = i;
+    least = error;
+  }
+  if (!best) return std::nullopt;
+  DrawnRelief relief = std::move(impostor.cache[*best]);
+  impostor.cache.erase(impostor.cache.begin() + static_cast<std::ptrdiff_t>(*best));
+  return relief;
+}
 
 }  // namespace
 
@@ -60,19 +104,26 @@ double parallax_tangent(const ReliefTexture& relief, glm::dvec3 old_eye, glm::dv
   return largest;
 }
 
-bool can_serve(const Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye,
-               double pixel_tangent) {
-  if (!has_extent(impostor) || !sees_front(*impostor.relief, eye)) return false;
-  const ReliefCamera& plane = impostor.relief->camera;
-  const double texel_m = std::max(length_of(plane.a), length_of(plane.b));
-  const double texel_tangent = texel_m / length_of(middle_of_plane(*impostor.relief) - eye);
-  const double wide = texel_tangent * settings.texels_per_pixel;
-  return wide <= settings.sharpness * pixel_tangent && wide >= 0.25 * pixel_tangent &&
-         warped_extent(*impostor.relief, *impostor.extent, eye).has_value();
+std::size_t bytes_of(const DrawnRelief& relief) {
+  const ReliefTexture& texture = relief.texture;
+  return texture.depths.size() * sizeof(std::uint16_t) +
+         (texture.colours.size() + texture.normals.size()) * sizeof(std::uint32_t) +
+         relief.critical.regions.size() * sizeof(relief.critical.regions[0]);
 }
 
-double impostor_error(const Impostor& impostor, glm::dvec3 eye) {
-  return impostor.critical ? mean_critical_error(*impostor.relief, *impostor.critical, eye) : 0.0;
+bool can_serve(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+               double pixel_tangent) {
+  if (!sees_front(relief.texture, eye)) return false;
+  const ReliefCamera& plane = relief.texture.camera;
+  const double texel_m = std::max(length_of(plane.a), length_of(plane.b));
+  const double texel_tangent = texel_m / length_of(middle_of_plane(relief.texture) - eye);
+  const double wide = texel_tangent * settings.texels_per_pixel;
+  return wide <= settings.sharpness * pixel_tangent && wide >= 0.25 * pixel_tangent &&
+         warped_extent(relief.texture, relief.extent, eye).has_value();
+}
+
+double impostor_error(const DrawnRelief& relief, glm::dvec3 eye) {
+  return mean_critical_error(relief.texture, relief.critical, eye);
 }
 
 ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
@@ -80,42 +131,46 @@ ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
                              glm::dvec3 up, int height_px, ThreadPool& pool) {
   const double pixel_tangent = 2.0 * half_view(camera) / height_px;
   const glm::dvec3 eye = camera.eye;
+  std::optional<DrawnRelief>& drawn = impostor.drawn;
   ImpostorStep step = ImpostorStep::warp;
-  if (!can_serve(impostor, settings, eye, pixel_tangent) ||
-      impostor_error(impostor, eye) > settings.tolerance_texels) {
-    step = ImpostorStep::renew;
-    const ReliefForm form = impostor_form(maker, camera, settings, up, height_px);
-    impostor.relief = make_relief(maker, {eye, up}, form, pool);
-    impostor.extent = relief_extent(*impostor.relief);
-    impostor.critical.reset();
-    if (impostor.extent) {
-      impostor.critical =
-          critical_regions(*impostor.relief, *impostor.extent, settings.regions, settings.regions);
+  if (!drawn || !is_fresh(*drawn, settings, eye, pixel_tangent)) {
+    std::optional<DrawnRelief> kept = recalled(impostor, settings, eye, pixel_tangent);
+    keep_stale(impostor, settings, eye);
+    if (kept) {
+      step = ImpostorStep::recall;
+      drawn = std::move(kept);
+    } else {
+      step = ImpostorStep::renew;
+      const ReliefForm form = impostor_form(maker, camera, settings, up, height_px);
+      ReliefTexture texture = make_relief(maker, {eye, up}, form, pool);
+      if (const std::optional<ReliefExtent> extent = relief_extent(texture)) {
+        CriticalRegions critical =
+            critical_regions(texture, *extent, settings.regions, settings.regions);
+        drawn = DrawnRelief{std::move(texture), *extent, std::move(critical), eye};
+      }
     }
-    impostor.pixel_tangent = pixel_tangent;
   } else if (settings.sprites &&
-             parallax_tangent(*impostor.relief, impostor.warped_for, eye) <= pixel_tangent) {
+             parallax_tangent(drawn->texture, impostor.warped_for, eye) <= pixel_tangent) {
     return ImpostorStep::sprite;
   }
   const std::optional<PlaneRectangle> place =
-      impostor.extent ? warped_extent(*impostor.relief, *impostor.extent, eye) : std::nullopt;
+      drawn ? warped_extent(drawn->texture, drawn->extent, eye) : std::nullopt;
   if (!place) {
     impostor.warped.place = {0, 0, 0, 0};
     return step;
   }
-  warp_relief(*impostor.relief, *impostor.extent, eye, *place, settings.resampling,
-              settings.numbers, impostor.warped, pool);
+  warp_relief(drawn->texture, drawn->extent, eye, *place, settings.warp, impostor.warped, pool);
   impostor.warped_for = eye;
   return step;
 }
 
 void draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
                    ThreadPool& pool) {
-  if (!impostor.relief || impostor.warped.place.width == 0) return;
-  map_relief(
-      impostor.warped,
-      plane_mapping(*impostor.relief, camera, impostor.warped.place, picture.width, picture.height),
-      picture, pool);
+  if (!impostor.drawn || impostor.warped.place.width == 0) return;
+  map_relief(impostor.warped,
+             plane_mapping(impostor.drawn->texture, camera, impostor.warped.place, picture.width,
+                           picture.height),
+             picture, pool);
 }
 
 }  // namespace softfocus

@@ -224,26 +224,28 @@ std::optional<PlaneRectangle> warped_extent(const ReliefTexture& relief, const R
 }
 
 void warp_relief(const ReliefTexture& relief, const ReliefExtent& extent, glm::dvec3 eye,
-                 const PlaneRectangle& place, Resampling resampling, PlaceNumbers numbers,
-                 WarpedRelief& warped, ThreadPool& pool, WarpCounts* counts) {
-  assert(sees_front(relief, eye));
+                 const PlaneRectangle& place, const WarpRule& rule, WarpedRelief& warped,
+                 ThreadPool& pool, WarpCounts* counts) {
+  assert(sees_front(relief, eye) && rule.join_texels >= 2.0);
   const PreWarp warp = pre_warp(relief, eye);
   const std::size_t texels =
       static_cast<std::size_t>(place.width) * static_cast<std::size_t>(place.height);
   warped.place = place;
   warped.colours.resize(texels);
   warped.depths_m.resize(texels);
-  const WarpWork work{relief, extent, warp, place, resampling, warped};
+  const WarpWork work{relief, extent, warp, place, rule.resampling, warped};
   WarpCounts counted;
-  if (numbers == PlaceNumbers::floats) {
+  if (rule.numbers == PlaceNumbers::floats) {
     const float most_m = static_cast<float>(last_depth(relief.depth_bits)) * warp.step_m;
-    counted = warp_by(FloatPlaces{warp, most_m}, work, counts != nullptr, pool);
+    counted = warp_by(FloatPlaces{warp, most_m, static_cast<float>(rule.join_texels)}, work,
+                      counts != nullptr, pool);
   } else {
     const std::vector<FixedDepth> table = fixed_warp_table(warp, relief.depth_bits);
     const double share = static_cast<double>(warp.step_m) / warp.height_m;
     counted = warp_by(
         FixedPlaces{table.data(), last_depth(relief.depth_bits), warp.step_m,
-                    std::llrint(warp.epipole_v * share * 0x1p40), std::llrint(share * 0x1p32)},
+                    std::llrint(warp.epipole_v * share * 0x1p40), std::llrint(share * 0x1p32),
+                    static_cast<std::int32_t>(rule.join_texels * 256.0)},
         work, counts != nullptr, pool);
   }
   if (counts != nullptr) *counts = counted;

@@ -42,6 +42,17 @@ inline constexpr std::array kResamplings{
 /// How places are computed: in binary32, or in integers of 256ths of a texel.
 enum class PlaceNumbers : std::uint8_t { floats, fixed };
 
+/// How a relief is warped.
+struct WarpRule {
+  Resampling resampling = Resampling::intertwined;
+  PlaceNumbers numbers = PlaceNumbers::floats;
+  /// Neighbours that come farther apart are not joined: what was behind them stays a hole. Clua
+  /// (2004) joins all. 2 or more.
+  double join_texels = kJoinAll;
+
+  static constexpr double kJoinAll = 1e6;
+};
+
 /// In texels of the relief's plane.
 struct PlaneRectangle {
   int x_begin, y_begin, width, height;
@@ -77,8 +88,8 @@ inline constexpr int kApart = 2;
 /// Warps for a view; `place` is warped_extent()'s. The same bits for any number of threads and any
 /// vector unit. With `counts` it takes longer.
 void warp_relief(const ReliefTexture& relief, const ReliefExtent& extent, glm::dvec3 eye,
-                 const PlaneRectangle& place, Resampling resampling, PlaceNumbers numbers,
-                 WarpedRelief& warped, ThreadPool& pool, WarpCounts* counts = nullptr);
+                 const PlaneRectangle& place, const WarpRule& rule, WarpedRelief& warped,
+                 ThreadPool& pool, WarpCounts* counts = nullptr);
 
 /// Equation 8-1: the depth, in metres, that moves a texel of row `v` to the place (1 - t) place_a +
 /// t place_b within its column, between a texel A there and B of depth `depth_b`. Their places are

@@ -136,8 +136,9 @@ void step_two_layers(const Numbers& numbers, const WarpWork& work, const BandRow
       joined[layer] = end;
       nearest = away;
     }
-    if (joined[layer] != kNone && sign * texel.along < sign * from.places[joined[layer]][column]) {
-      joined[layer] = kNone;
+    if (joined[layer] != kNone) {
+      const auto way = sign * (texel.along - from.places[joined[layer]][column]);
+      if (way < 0 || way > numbers.join_texels) joined[layer] = kNone;
     }
     if (joined[layer] != kNone) goes_on[joined[layer]] = true;
   }

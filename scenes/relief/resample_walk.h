@@ -25,7 +25,8 @@ struct FloatPlaces {
   using Place = float;
   using Depth = float;
   PreWarp warp;
-  float most_m;  ///< the last depth
+  float most_m;       ///< the last depth
+  float join_texels;  ///< neighbours that come farther apart are not joined
 
   static int floor(float place) {
     const int whole = static_cast<int>(place);
@@ -60,7 +61,8 @@ struct FixedPlaces {
   const FixedDepth* table;
   std::int32_t last_code;
   float step_m;
-  std::int64_t k2, k3;  ///< of a code: 2^-40 and 2^-32
+  std::int64_t k2, k3;       ///< of a code: 2^-40 and 2^-32
+  std::int32_t join_texels;  ///< in 256ths
 
   static int floor(std::int32_t place) { return place >> 8; }
   static int ceil(std::int32_t place) { return (place + 255) >> 8; }
@@ -148,7 +150,8 @@ template <class Numbers, int sign, class Put>
 inline void step(const Numbers& numbers, bool is_from, const WalkTexel<Numbers>& from,
                  bool is_there, const WalkTexel<Numbers>& texel, const WalkLimits& limits,
                  const Put& put) {
-  if (is_from && is_there && sign * texel.along >= sign * from.along) {
+  const auto way = sign * (texel.along - from.along);
+  if (is_from && is_there && way >= 0 && way <= numbers.join_texels) {
     fill_between<Numbers, sign>(from, texel, last_reached<Numbers, sign>(from.along),
                                 last_reached<Numbers, sign>(texel.along), limits, put);
     return;

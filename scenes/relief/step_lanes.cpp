@@ -31,7 +31,7 @@ void step_texel_alone(const WalkSteps& steps, const StepRule& rule, int i,
     put.reached[i] = passed == 0 ? kNoTexel : kOtherStep;
     return;
   }
-  const FloatPlaces numbers{rule.warp, rule.most_m};
+  const FloatPlaces numbers{rule.warp, rule.most_m, 0.0f};
   const int texel = reached_by(to);
   const float share = FloatPlaces::share(texel, from, to);
   put.reached[i] = texel;

@@ -76,27 +76,21 @@ inline ReliefTexture rough_relief(int width, int height, int depth_bits, std::ui
   return relief;
 }
 
-struct WarpSetting {
-  Resampling resampling;
-  PlaceNumbers numbers;
-};
-
-inline std::vector<WarpSetting> all_warps() {
-  std::vector<WarpSetting> all;
+inline std::vector<WarpRule> all_warps() {
+  std::vector<WarpRule> all;
   for (const NamedResampling& choice : kResamplings) {
     for (const PlaceNumbers numbers : {PlaceNumbers::floats, PlaceNumbers::fixed}) {
-      all.push_back({choice.resampling, numbers});
+      all.push_back({choice.resampling, numbers, WarpRule::kJoinAll});
     }
   }
   return all;
 }
 
-inline WarpedRelief warped(const ReliefTexture& relief, glm::dvec3 eye, const WarpSetting& setting,
+inline WarpedRelief warped(const ReliefTexture& relief, glm::dvec3 eye, const WarpRule& rule,
                            ThreadPool& pool, WarpCounts* counts = nullptr) {
   const ReliefExtent extent = *relief_extent(relief);
   WarpedRelief result;
-  warp_relief(relief, extent, eye, *warped_extent(relief, extent, eye), setting.resampling,
-              setting.numbers, result, pool, counts);
+  warp_relief(relief, extent, eye, *warped_extent(relief, extent, eye), rule, result, pool, counts);
   return result;
 }
 

@@ -41,13 +41,13 @@ int bench_relief(const ReliefOptions& options) {
   for (const NamedResampling& choice : kResamplings) {
     const auto by = [&](ThreadPool& threads, PlaceNumbers numbers) {
       return [&, numbers] {
-        warp_relief(relief, extent, camera.eye, *place, choice.resampling, numbers, warped,
-                    threads);
+        warp_relief(relief, extent, camera.eye, *place,
+                    {.resampling = choice.resampling, .numbers = numbers}, warped, threads);
       };
     };
     WarpCounts counts;
-    warp_relief(relief, extent, camera.eye, *place, choice.resampling, PlaceNumbers::floats, warped,
-                pool, &counts);
+    warp_relief(relief, extent, camera.eye, *place, {.resampling = choice.resampling}, warped, pool,
+                &counts);
     std::vector<Milliseconds> times{{"1 thread"}, {"all"}, {"fixed"}};
     time_in_turn(times, options.runs, by(one, PlaceNumbers::floats), by(pool, PlaceNumbers::floats),
                  by(pool, PlaceNumbers::fixed));

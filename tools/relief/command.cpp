@@ -147,8 +147,7 @@ int warp(const ReliefOptions& options) {
   ThreadPool pool{options.pool.threads, options.pool.isa};
   WarpedRelief warped;
   WarpCounts counts;
-  warp_relief(relief, extent, matrices.eye, *place, options.resampling, place_numbers(options),
-              warped, pool, &counts);
+  warp_relief(relief, extent, matrices.eye, *place, warp_rule(options), warped, pool, &counts);
   Image picture = make_image(Format::rgba16f, width, height);
   clear_image(picture, {0.0f, 0.0f, 0.0f, 65504.0f}, Profile{});
   map_relief(warped, plane_mapping(relief, matrices, *place, width, height), picture, pool);
@@ -167,7 +166,7 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 14> options;
+  std::array<std::string_view, 17> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
@@ -176,11 +175,11 @@ constexpr std::array kReliefActions{
                  {"-o", "--scene-path", "--frame", "--texels", "--depth-bits", "--normals", "--yaw",
                   "--pitch"}},
     ReliefAction{"show", show, true, {"-o", "--format", "--show"}},
-    ReliefAction{
-        "warp",
-        warp,
-        true,
-        {"-o", "--format", "--size", "--yaw", "--pitch", "--distance", "--resampling", "--fixed"}},
+    ReliefAction{"warp",
+                 warp,
+                 true,
+                 {"-o", "--format", "--size", "--yaw", "--pitch", "--distance", "--resampling",
+                  "--fixed", "--join"}},
     ReliefAction{
         "bench", bench_relief, false, {"--size", "--yaw", "--pitch", "--distance", "--runs"}},
     ReliefAction{"turn",
@@ -188,13 +187,14 @@ constexpr std::array kReliefActions{
                  false,
                  {"-o", "--scene-path", "--frame", "--size", "--depth-bits", "--resampling",
                   "--fixed", "--frames", "--every", "--tolerance", "--texels-per-pixel",
-                  "--no-sprites", "--zoom", "--regions"}}};
+                  "--no-sprites", "--zoom", "--regions", "--join", "--turns", "--cache"}}};
 
-constexpr std::array<std::string_view, 22> kReliefOptions{
-    "-o",           "--format",  "--scene-path", "--frame",  "--size",      "--texels",
-    "--depth-bits", "--normals", "--yaw",        "--pitch",  "--distance",  "--show",
-    "--resampling", "--fixed",   "--frames",     "--every",  "--tolerance", "--texels-per-pixel",
-    "--no-sprites", "--zoom",    "--runs",       "--regions"};
+constexpr std::array<std::string_view, 25> kReliefOptions{
+    "-o",           "--format",  "--scene-path", "--frame",   "--size",      "--texels",
+    "--depth-bits", "--normals", "--yaw",        "--pitch",   "--distance",  "--show",
+    "--resampling", "--fixed",   "--frames",     "--every",   "--tolerance", "--texels-per-pixel",
+    "--no-sprites", "--zoom",    "--runs",       "--regions", "--join",      "--turns",
+    "--cache"};
 
 int run_relief(const CLI::App& parser, ReliefOptions& options) {
   for (const ReliefAction& action : kReliefActions) {
@@ -214,8 +214,9 @@ int run_relief(const CLI::App& parser, ReliefOptions& options) {
 
 }  // namespace
 
-PlaceNumbers place_numbers(const ReliefOptions& options) {
-  return options.fixed ? PlaceNumbers::fixed : PlaceNumbers::floats;
+WarpRule warp_rule(const ReliefOptions& options) {
+  return {options.resampling, options.fixed ? PlaceNumbers::fixed : PlaceNumbers::floats,
+          options.join_texels};
 }
 
 glm::dvec3 relief_middle(const ReliefTexture& relief) {
@@ -338,7 +339,14 @@ Command add_relief_command(CLI::App& program) {
             });
   offer(*parser, "--resampling", [] { return names_in(kResamplings); });
   add_flag(*parser, "--fixed", "Places in integers of 1/256 texel", options->fixed);
+  number("--join", "TEXELS",
+         "Neighbours that come farther apart are not joined: a hole stays (default: all are)", 2.0,
+         WarpRule::kJoinAll, "a number from 2 to 1000000", &ReliefOptions::join_texels);
   begin_group(*parser, "Turn");
+  whole("--turns", "Full turns, 1 to 100 (default: 1)", 1, 100, "a number from 1 to 100",
+        &ReliefOptions::turns);
+  number("--cache", "MB", "Of stale reliefs that are kept, in millions of bytes (default: 0)", 0.0,
+         1e5, "a number from 0 to 100000", &ReliefOptions::cache_mb);
   whole("--frames", "Frames of a full turn, 4 to 10000 (default: 360)", 4, 10000,
         "a number from 4 to 10000", &ReliefOptions::frames);
   whole("--every", "Errors are measured every N frames (default: 10)", 1, 10000,

@@ -34,12 +34,15 @@ struct ReliefOptions {
   int every = 10;    ///< so many frames, errors are measured
   double tolerance = 8.0, texels_per_pixel = 1.0, zoom = 1.0;
   int regions = 1;
+  double join_texels = WarpRule::kJoinAll;
+  int turns = 1;
+  double cache_mb = 0.0;
   bool no_sprites = false;
   int runs = 20;
   PoolOptions pool;
 };
 
-PlaceNumbers place_numbers(const ReliefOptions& options);
+WarpRule warp_rule(const ReliefOptions& options);
 
 /// A point in the middle of the relief's box, and the box's diagonal.
 glm::dvec3 relief_middle(const ReliefTexture& relief);

@@ -33,7 +33,7 @@ double milliseconds_of(const Work& work) {
 }
 
 struct TurnSums {
-  std::vector<double> redrawn_ms, impostor_ms, renew_ms, warp_ms, sprite_ms;
+  std::vector<double> redrawn_ms, impostor_ms, renew_ms, recall_ms, warp_ms, sprite_ms;
   std::vector<double> flip, object_flip, outline_px;
   double most_outline_px = 0.0;
   std::size_t lost = 0, gained = 0, seen = 0;  ///< pixels, of measured frames
@@ -151,9 +151,10 @@ void print_sums(const Scene& scene, const ReliefOptions& options, const TurnSums
   std::printf("%s: %zu triangles, %d frames of %dx%d, tolerance %g texels\n", scene.name.c_str(),
               triangle_count(scene), options.frames, options.size.width, options.size.height,
               options.tolerance);
-  std::printf("renewals %zu, warps %zu, sprites %zu; relief and warp at most %.2f MB\n",
-              sums.renew_ms.size(), sums.warp_ms.size(), sums.sprite_ms.size(),
-              static_cast<double>(sums.most_bytes) / 1e6);
+  std::printf(
+      "renewals %zu, recalls %zu, warps %zu, sprites %zu; reliefs and warp at most %.2f MB\n",
+      sums.renew_ms.size(), sums.recall_ms.size(), sums.warp_ms.size(), sums.sprite_ms.size(),
+      static_cast<double>(sums.most_bytes) / 1e6);
   const double redrawn = mean_of(sums.redrawn_ms), impostor = mean_of(sums.impostor_ms);
   std::printf(
       "ms a frame: redrawn %.3f, impostor %.3f, ratio %.2f; medians: redrawn %.3f, renew "
@@ -208,13 +209,13 @@ int turn_impostor(const ReliefOptions& options) {
   camera.far_m = distance * 10.0;
   camera.orbit_degrees_per_frame = 360.0 / options.frames;
 
-  const ImpostorSettings settings{.resampling = options.resampling,
-                                  .numbers = place_numbers(options),
+  const ImpostorSettings settings{.warp = warp_rule(options),
                                   .depth_bits = options.depth_bits,
                                   .tolerance_texels = options.tolerance,
                                   .regions = options.regions,
                                   .texels_per_pixel = options.texels_per_pixel,
-                                  .sprites = !options.no_sprites};
+                                  .sprites = !options.no_sprites,
+                                  .cache_bytes = static_cast<std::size_t>(options.cache_mb * 1e6)};
   const glm::vec4 background = clear_colour(scene);
   const glm::vec4 clear{glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
   const std::uint16_t background_depth = float_to_half(clear.w, HalfRounding::nearest_even);
@@ -227,7 +228,7 @@ int turn_impostor(const ReliefOptions& options) {
   std::optional<CriticalRegions> bounds;
   std::optional<CriticalPoint> point;
   TurnSums sums;
-  for (int frame = 0; frame < options.frames; ++frame) {
+  for (int frame = 0; frame < options.turns * options.frames; ++frame) {
     const CameraMatrices matrices = camera_matrices(camera, frame, width, height);
     const auto redraw = [&] {
       RenderPass& pass = prepared.pass;
@@ -250,21 +251,26 @@ int turn_impostor(const ReliefOptions& options) {
       step = update_impostor(impostor, maker, settings, matrices, camera.up, height, pool);
       draw_impostor(impostor, matrices, shown, pool);
     }));
-    (step == ImpostorStep::renew  ? sums.renew_ms
-     : step == ImpostorStep::warp ? sums.warp_ms
-                                  : sums.sprite_ms)
+    (step == ImpostorStep::renew    ? sums.renew_ms
+     : step == ImpostorStep::recall ? sums.recall_ms
+     : step == ImpostorStep::warp   ? sums.warp_ms
+                                    : sums.sprite_ms)
         .push_back(sums.impostor_ms.back());
-    const ReliefTexture& relief = *impostor.relief;
-    sums.most_bytes = std::max(
-        sums.most_bytes, relief.depths.size() * (2 + 4) + impostor.warped.colours.size() * (4 + 4));
-    if (step == ImpostorStep::renew && impostor.extent) {
-      bounds = critical_regions(relief, *impostor.extent, kBoundRegions, kBoundRegions);
-      point = critical_point(relief);
-    }
-    if (point) {
-      const double largest = largest_error(relief, matrices.eye);
-      sums.predicted.push_back(critical_error(relief, *point, matrices.eye) / largest);
-      sums.bound.push_back(error_bound(relief, *bounds, matrices.eye) / largest);
+    std::size_t bytes = impostor.warped.colours.size() * (4 + 4);
+    if (impostor.drawn) bytes += bytes_of(*impostor.drawn);
+    for (const DrawnRelief& kept : impostor.cache) bytes += bytes_of(kept);
+    sums.most_bytes = std::max(sums.most_bytes, bytes);
+    if (impostor.drawn) {
+      const ReliefTexture& relief = impostor.drawn->texture;
+      if (!bounds || step == ImpostorStep::renew || step == ImpostorStep::recall) {
+        bounds = critical_regions(relief, impostor.drawn->extent, kBoundRegions, kBoundRegions);
+        point = critical_point(relief);
+      }
+      if (point) {
+        const double largest = largest_error(relief, matrices.eye);
+        sums.predicted.push_back(critical_error(relief, *point, matrices.eye) / largest);
+        sums.bound.push_back(error_bound(relief, *bounds, matrices.eye) / largest);
+      }
     }
     if (frame % options.every != 0) continue;
     measure_frame(redrawn, shown, background_depth, pool, sums);

@@ -53,7 +53,7 @@ TEST_CASE("an impostor drawn for a view shows what is drawn, at its depths") {
   const float far = load_texel(cleared(scene), 0, 0).w;
   for (const NamedResampling& choice : kResamplings) {
     Impostor impostor;
-    const ImpostorSettings settings{.resampling = choice.resampling, .depth_bits = 16};
+    const ImpostorSettings settings{.warp = {.resampling = choice.resampling}, .depth_bits = 16};
     CHECK(update_impostor(impostor, maker, settings, camera, scene.camera.up, kSize, pool) ==
           ImpostorStep::renew);
     Image shown = cleared(scene);
@@ -148,4 +148,27 @@ TEST_CASE("from where a relief was warped nothing is displaced") {
   CHECK(parallax_tangent(relief, eye, eye) < 1e-7);
   CHECK(parallax_tangent(relief, eye, seen_at(scene, 1.0).eye) >
         parallax_tangent(relief, eye, seen_at(scene, 0.5).eye));
+}
+
+TEST_CASE("a stale relief is kept within the budget, and serves again where it did") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const auto steps_with = [&](std::size_t bytes) {
+    Impostor impostor;
+    ImpostorSettings settings;
+    settings.cache_bytes = bytes;
+    std::vector<ImpostorStep> steps;
+    for (const double frame : {0.0, 120.0, 240.0, 0.0}) {
+      steps.push_back(update_impostor(impostor, maker, settings, seen_at(scene, frame),
+                                      scene.camera.up, kSize, pool));
+      std::size_t kept = 0;
+      for (const DrawnRelief& relief : impostor.cache) kept += bytes_of(relief);
+      CHECK(kept <= bytes);
+    }
+    return steps;
+  };
+  using enum ImpostorStep;
+  CHECK(steps_with(1 << 20) == std::vector{renew, renew, renew, recall});
+  CHECK(steps_with(0) == std::vector{renew, renew, renew, renew});
 }

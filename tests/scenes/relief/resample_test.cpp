@@ -111,7 +111,7 @@ TEST_CASE("what has no depth stays where it is") {
   ThreadPool pool(1);
   ReliefTexture flat = rough_relief(33, 21, 8, 1);
   for (std::uint16_t& code : flat.depths) code = code == 255 ? 255 : 0;
-  for (const WarpSetting& setting : all_warps()) {
+  for (const WarpRule& setting : all_warps()) {
     const WarpedRelief result = warped(flat, {0.2, 0.1, 0.8}, setting, pool);
     bool same = true;
     for (int y = -1; y <= flat.height; ++y) {
@@ -133,7 +133,8 @@ TEST_CASE("both passes do what a line's rule says, texel by texel") {
       const ReliefTexture relief = rough_relief(24, 19, 8, seed);
       for (const glm::dvec3& eye : kEyes) {
         const auto plane = warped_by_oracle(relief, eye, resampling);
-        const WarpedRelief result = warped(relief, eye, {resampling, PlaceNumbers::floats}, pool);
+        const WarpedRelief result =
+            warped(relief, eye, {resampling, PlaceNumbers::floats, WarpRule::kJoinAll}, pool);
         for (int y = 0; y < result.place.height; ++y) {
           for (int x = 0; x < result.place.width; ++x) {
             const int u = x + result.place.x_begin, v = y + result.place.y_begin;
@@ -155,7 +156,7 @@ TEST_CASE("both passes do what a line's rule says, texel by texel") {
 TEST_CASE("a warp has the same bits for any number of threads and vector unit") {
   const ReliefTexture relief = rough_relief(61, 47, 16, 5);
   ThreadPool plain(1, Isa::scalar);
-  for (const WarpSetting& setting : all_warps()) {
+  for (const WarpRule& setting : all_warps()) {
     for (const glm::dvec3& eye : {kEyes[1], kEyes[5]}) {
       const WarpedRelief right = warped(relief, eye, setting, plain);
       for (const Isa isa : available_isas()) {
@@ -179,7 +180,7 @@ TEST_CASE("a near square covers the far wall behind it, from everywhere") {
       relief.colours[texel_at(relief, x, y)] = is_near ? kNear : kFar;
     }
   }
-  for (const WarpSetting& setting : all_warps()) {
+  for (const WarpRule& setting : all_warps()) {
     for (const glm::dvec3& eye : kEyes) {
       const WarpedRelief result = warped(relief, eye, setting, pool);
       const auto place = [&](double u, double v) {
@@ -206,7 +207,7 @@ TEST_CASE("a warped sphere shows what a ray through the texel meets") {
   const ReliefTexture relief = sphere_relief(size, 16);
   const double radius = (0.5 * size - 1.0) * 0.01;
   const glm::dvec3 centre{0.0, 0.0, -radius}, eye{0.45, 0.3, 1.6};
-  for (const WarpSetting& setting : all_warps()) {
+  for (const WarpRule& setting : all_warps()) {
     const WarpedRelief result = warped(relief, eye, setting, pool);
     int seen = 0, wrong = 0;
     for (int y = 0; y < result.place.height; ++y) {
@@ -266,7 +267,7 @@ TEST_CASE("overlaps and stretched texels are counted") {
   const ReliefTexture sphere = sphere_relief(64, 8);
   ReliefTexture flat = sphere;
   for (std::uint16_t& code : flat.depths) code = code == 255 ? 255 : 9;
-  for (const WarpSetting& setting : all_warps()) {
+  for (const WarpRule& setting : all_warps()) {
     WarpCounts counts;
     warped(flat, {0.3, 0.2, 1.2}, setting, pool, &counts);
     CHECK(counts.stretched == 0);
@@ -274,5 +275,28 @@ TEST_CASE("overlaps and stretched texels are counted") {
     CHECK(counts.stretched > 0);
     CHECK(counts.overlaps > 0);
     CHECK(counts.pieces > counts.overlaps);
+  }
+}
+
+TEST_CASE("neighbours that come farther apart than asked for leave a hole between them") {
+  ThreadPool pool(1);
+  ReliefTexture relief = empty_relief(40, 8, 8, 0.4);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      relief.depths[texel_at(relief, x, y)] = x < 20 ? 0 : 250;
+      relief.colours[texel_at(relief, x, y)] = x < 20 ? 0xFF0000FFu : 0xFF00FF00u;
+    }
+  }
+  const glm::dvec3 eye{0.6, 0.0, 1.0};  // from the right, past the near part's edge
+  for (WarpRule rule : all_warps()) {
+    const auto holes_by = [&](double join_texels) {
+      rule.join_texels = join_texels;
+      const WarpedRelief result = warped(relief, eye, rule, pool);
+      int holes = 0;
+      for (int u = 20; u < 30; ++u) holes += plane_colour(result, u, 4) == 0 ? 1 : 0;
+      return holes;
+    };
+    CHECK(holes_by(WarpRule::kJoinAll) == 0);
+    CHECK(holes_by(4.0) >= 8);
   }
 }
