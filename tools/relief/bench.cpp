@@ -1,11 +1,14 @@
 // softfocus relief bench: each resampling's time beside Clua's (2004).
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "raster/images/texel.h"
+#include "scenes/relief/march_relief.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/info/time_in_turn.h"
@@ -36,7 +39,7 @@ int bench_relief(const ReliefOptions& options) {
   std::printf("%dx%d texels, %lld of them filled, warped to %dx%d; %d threads, %s\n", relief.width,
               relief.height, static_cast<long long>(extent.filled), place->width, place->height,
               pool.threads(), std::string{isa_name(pool.isa())}.c_str());
-  std::printf("%-12s %10s %10s %10s %12s %10s %8s %9s %9s\n", "resampling", "1 thread", "all",
+  std::printf("%-16s %18s %18s %18s %10s %8s %6s %9s %9s\n", "median, least ms", "1 thread", "all",
               "fixed, all", "Mtexels/s", "2004 ms", "ratio", "overlaps", "stretched");
   for (const NamedResampling& choice : kResamplings) {
     const auto by = [&](ThreadPool& threads, PlaceNumbers numbers) {
@@ -53,8 +56,9 @@ int bench_relief(const ReliefOptions& options) {
                  by(pool, PlaceNumbers::fixed));
     for (Milliseconds& of : times) std::sort(of.ms.begin(), of.ms.end());
     const double all_ms = median_of(times[1]);
-    std::printf("%-12s %10.3f %10.3f %10.3f %12.0f %10.1f %8.0f %9lld %9lld\n",
-                std::string{choice.name}.c_str(), median_of(times[0]), all_ms, median_of(times[2]),
+    std::printf("%-16s %9.3f %8.3f %9.3f %8.3f %9.3f %8.3f %10.0f %8.1f %6.0f %9lld %9lld\n",
+                std::string{choice.name}.c_str(), median_of(times[0]), times[0].ms.front(), all_ms,
+                times[1].ms.front(), median_of(times[2]), times[2].ms.front(),
                 texels / all_ms / 1e3, choice.source_ms, choice.source_ms / all_ms,
                 static_cast<long long>(counts.overlaps), static_cast<long long>(counts.stretched));
   }
@@ -76,6 +80,24 @@ int bench_relief(const ReliefOptions& options) {
   std::vector<Milliseconds> times{{"mapping, 1 thread"}, {"mapping, all threads"}};
   time_in_turn(times, options.runs, map_by(one), map_by(pool));
   print_times(times);
+
+  // 8 to 128 slices: frames a second of Clua, table 6.1.
+  constexpr std::array kSlices{std::pair{8, 17.0}, std::pair{16, 7.0}, std::pair{32, 3.0},
+                               std::pair{64, 1.0}, std::pair{128, 0.4}};
+  const MarchMapping march = march_mapping(relief, extent, camera, width, height);
+  for (const std::pair<int, double>& of : kSlices) {
+    std::vector<Milliseconds> marched{{"slices"}, {"bisected"}};
+    const auto by = [&](int bisections) {
+      return [&, bisections] {
+        std::copy(blank.bytes.begin(), blank.bytes.end(), picture.bytes.begin());
+        march_relief(relief, march, {of.first, bisections}, picture, pool);
+      };
+    };
+    time_in_turn(marched, std::min(options.runs, 10), by(0), by(6));
+    for (Milliseconds& times_of : marched) std::sort(times_of.ms.begin(), times_of.ms.end());
+    std::printf("%3d slices %9.2f ms, with 6 bisections %9.2f ms; in 2004 %.1f frames a second\n",
+                of.first, median_of(marched[0]), median_of(marched[1]), of.second);
+  }
   return kDone;
 }
 
