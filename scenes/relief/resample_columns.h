@@ -1,6 +1,7 @@
 #pragma once
 // Texels that a row put into columns, moved within the columns, from row to row.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 

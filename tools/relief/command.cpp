@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <span>
+#include <string_view>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"

@@ -11,7 +11,9 @@
 
 #include "dof/measure/measures.h"
 #include "raster/images/texel.h"
+#include "raster/numbers/half.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/files/whole_file.h"
@@ -191,7 +193,7 @@ int turn_impostor(const ReliefOptions& options) {
   }
   const Scene scene = relief_scene(options);
   ThreadPool pool{options.pool.threads, options.pool.isa};
-  const auto [width, height] = options.size;
+  const int width = options.size.width, height = options.size.height;
   ReliefMaker maker = prepare_relief(scene, options.frame, pool);
   PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "raster/numbers/vector_math.h"
 #include "scenes/relief/resample_walk.h"
 #include "tests/support/relief_pictures.h"
 
