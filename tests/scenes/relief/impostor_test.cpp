@@ -172,3 +172,20 @@ TEST_CASE("a stale relief is kept within the budget, and serves again where it d
   CHECK(steps_with(1 << 20) == std::vector{renew, renew, renew, recall});
   CHECK(steps_with(0) == std::vector{renew, renew, renew, renew});
 }
+
+TEST_CASE("if the cache is full, the relief whose eye is farthest away goes") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  Impostor impostor;
+  ImpostorSettings settings;
+  const auto step_at = [&](double frame) {
+    return update_impostor(impostor, maker, settings, seen_at(scene, frame), scene.camera.up, kSize,
+                           pool);
+  };
+  CHECK(step_at(0.0) == ImpostorStep::renew);
+  settings.cache_bytes = bytes_of(*impostor.drawn) * 3 / 2;  // one
+  CHECK(step_at(170.0) == ImpostorStep::renew);
+  CHECK(step_at(60.0) == ImpostorStep::renew);  // 60 degrees from the first, 110 from the second
+  CHECK(step_at(0.0) == ImpostorStep::recall);
+}
