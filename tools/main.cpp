@@ -58,9 +58,10 @@ int run(std::vector<std::string> arguments) {
       add_lens_command(*program),       add_compare_command(*program),
       add_crosscheck_command(*program), add_probe_command(*program),
       add_shaders_command(*program),    add_bench_command(*program),
-      add_shadows_command(*program),    add_chart_command(*program),
-      add_stress_command(*program),     add_selftest_command(*program),
-      add_help_command(*program),       add_documentation_command(*program)};
+      add_shadows_command(*program),    add_relief_command(*program),
+      add_chart_command(*program),      add_stress_command(*program),
+      add_selftest_command(*program),   add_help_command(*program),
+      add_documentation_command(*program)};
   try {
     const Parsed parsed = parse(*program, with_autofocus_joined(std::move(arguments)));
     if (parsed.answered) return finish(kDone, kFailed);

@@ -35,6 +35,7 @@ Command add_probe_command(CLI::App& program);
 Command add_shaders_command(CLI::App& program);
 Command add_bench_command(CLI::App& program);
 Command add_shadows_command(CLI::App& program);
+Command add_relief_command(CLI::App& program);
 Command add_chart_command(CLI::App& program);
 Command add_stress_command(CLI::App& program);
 Command add_selftest_command(CLI::App& program);

@@ -1,0 +1,176 @@
+#include "scenes/relief/impostor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "raster/numbers/vector_math.h"
+
+namespace softfocus {
+namespace {
+
+/// Half the height of the view, a metre before the camera.
+double half_view(const CameraMatrices& camera) { return 1.0 / std::fabs(camera.eye_to_clip[1][1]); }
+
+double length_of(glm::dvec3 v) { return std::sqrt(dot(v, v)); }
+
+glm::dvec3 middle_of_plane(const ReliefTexture& relief) {
+  const ReliefCamera& plane = relief.camera;
+  return (plane.origin + plane.a * (0.5 * (relief.width - 1))) +
+         plane.b * (0.5 * (relief.height - 1));
+}
+
+/// Whether a relief serves a view within the tolerance.
+bool is_fresh(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+              double pixel_tangent) {
+  return can_serve(relief, settings, eye, pixel_tangent) &&
+         impostor_error(relief, eye) <= settings.tolerance_texels;
+}
+
+/// Puts the stale relief into the cache, and makes room for it.
+void keep_stale(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye) {
+  if (!impostor.drawn) return;
+  std::vector<DrawnRelief>& cache = impostor.cache;
+  cache.push_back(std::move(*impostor.drawn));
+  impostor.drawn.reset();
+  const auto bytes = [&] {
+    std::size_t sum = 0;
+    for (const DrawnRelief& relief : cache) sum += bytes_of(relief);
+    return sum;
+  };
+  while (!cache.empty() && bytes() > settings.cache_bytes) {
+    std::size_t farthest = 0;
+    for (std::size_t i = 1; i < cache.size(); ++i) {
+      if (length_of(cache[i].eye - eye) > length_of(cache[farthest].eye - eye)) farthest = i;
+    }
+    cache.erase(cache.begin() + static_cast<std::ptrdiff_t>(farthest));
+  }
+}
+
+/// Takes the relief with the least error out of the cache, if one serves.
+std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& settings,
+                                    glm::dvec3 eye, double pixel_tangent) {
+  std::optional<std::size_t> best;
+  double least = settings.tolerance_texels;
+  for (std::size_t i = 0; i < impostor.cache.size(); ++i) {
+    if (!can_serve(impostor.cache[i], settings, eye, pixel_tangent)) continue;
+    const double error = impostor_error(impostor.cache[i], eye);
+    if (error > least || (best && error == least)) continue;
+    best = i;
+    least = error;
+  }
+  if (!best) return std::nullopt;
+  DrawnRelief relief = std::move(impostor.cache[*best]);
+  impostor.cache.erase(impostor.cache.begin() + static_cast<std::ptrdiff_t>(*best));
+  return relief;
+}
+
+}  // namespace
+
+double pixels_across(double pixels, double size_m, double distance_m, double half_view_tangent) {
+  return pixels * size_m / (2.0 * distance_m * half_view_tangent);
+}
+
+ReliefForm impostor_form(const ReliefMaker& maker, const CameraMatrices& camera,
+                         const ImpostorSettings& settings, glm::dvec3 up, int height_px) {
+  // Two texels each way are margin; of any size, the camera's width and height are the object's.
+  constexpr int kAny = 4;
+  const ReliefCamera plane = relief_camera(maker, {camera.eye, up}, kAny, kAny);
+  const double distance = std::max(dot(plane.origin - camera.eye, plane.f), 1e-3 * maker.radius_m);
+  const auto texels = [&](double size_m) {
+    const double wanted =
+        settings.texels_per_pixel * pixels_across(height_px, size_m, distance, half_view(camera));
+    const double whole = std::ceil(std::fmin(wanted, kMostReliefSize - 2.0));
+    return std::clamp(static_cast<int>(whole) + 2, kAny, kMostReliefSize);
+  };
+  return {texels(length_of(plane.a) * (kAny - 2)), texels(length_of(plane.b) * (kAny - 2)),
+          settings.depth_bits, false};
+}
+
+double parallax_tangent(const ReliefTexture& relief, glm::dvec3 old_eye, glm::dvec3 new_eye) {
+  double largest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const double u = (corner & 1) != 0 ? relief.width - 1 : 0;
+    const double v = (corner & 2) != 0 ? relief.height - 1 : 0;
+    const double code = (corner & 4) != 0 ? last_depth(relief.depth_bits) : 0;
+    const glm::dvec3 point = relief_point(relief, u, v, code);
+    const WarpedPlace seen = projected_place(relief, old_eye, u, v, code * depth_step(relief));
+    const glm::dvec3 to_point = point - new_eye;
+    const glm::dvec3 to_sprite = relief_point(relief, seen.u, seen.v, 0) - new_eye;
+    const double along = dot(to_point, to_sprite);
+    if (!(along > 0.0)) return HUGE_VAL;
+    largest = std::max(largest, length_of(cross(to_point, to_sprite)) / along);
+  }
+  return largest;
+}
+
+std::size_t bytes_of(const DrawnRelief& relief) {
+  const ReliefTexture& texture = relief.texture;
+  return texture.depths.size() * sizeof(std::uint16_t) +
+         (texture.colours.size() + texture.normals.size()) * sizeof(std::uint32_t) +
+         relief.critical.regions.size() * sizeof(relief.critical.regions[0]);
+}
+
+bool can_serve(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+               double pixel_tangent) {
+  if (!sees_front(relief.texture, eye)) return false;
+  const ReliefCamera& plane = relief.texture.camera;
+  const double texel_m = std::max(length_of(plane.a), length_of(plane.b));
+  const double texel_tangent = texel_m / length_of(middle_of_plane(relief.texture) - eye);
+  const double wide = texel_tangent * settings.texels_per_pixel;
+  return wide <= settings.sharpness * pixel_tangent && wide >= 0.25 * pixel_tangent &&
+         warped_extent(relief.texture, relief.extent, eye).has_value();
+}
+
+double impostor_error(const DrawnRelief& relief, glm::dvec3 eye) {
+  return mean_critical_error(relief.texture, relief.critical, eye);
+}
+
+ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
+                             const ImpostorSettings& settings, const CameraMatrices& camera,
+                             glm::dvec3 up, int height_px, ThreadPool& pool) {
+  const double pixel_tangent = 2.0 * half_view(camera) / height_px;
+  const glm::dvec3 eye = camera.eye;
+  std::optional<DrawnRelief>& drawn = impostor.drawn;
+  ImpostorStep step = ImpostorStep::warp;
+  if (!drawn || !is_fresh(*drawn, settings, eye, pixel_tangent)) {
+    std::optional<DrawnRelief> kept = recalled(impostor, settings, eye, pixel_tangent);
+    keep_stale(impostor, settings, eye);
+    if (kept) {
+      step = ImpostorStep::recall;
+      drawn = std::move(kept);
+    } else {
+      step = ImpostorStep::renew;
+      const ReliefForm form = impostor_form(maker, camera, settings, up, height_px);
+      ReliefTexture texture = make_relief(maker, {eye, up}, form, pool);
+      if (const std::optional<ReliefExtent> extent = relief_extent(texture)) {
+        CriticalRegions critical =
+            critical_regions(texture, *extent, settings.regions, settings.regions);
+        drawn = DrawnRelief{std::move(texture), *extent, std::move(critical), eye};
+      }
+    }
+  } else if (settings.sprites &&
+             parallax_tangent(drawn->texture, impostor.warped_for, eye) <= pixel_tangent) {
+    return ImpostorStep::sprite;
+  }
+  const std::optional<PlaneRectangle> place =
+      drawn ? warped_extent(drawn->texture, drawn->extent, eye) : std::nullopt;
+  if (!place) {
+    impostor.warped.place = {0, 0, 0, 0};
+    return step;
+  }
+  warp_relief(drawn->texture, drawn->extent, eye, *place, settings.warp, impostor.warped, pool);
+  impostor.warped_for = eye;
+  return step;
+}
+
+void draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
+                   ThreadPool& pool) {
+  if (!impostor.drawn || impostor.warped.place.width == 0) return;
+  map_relief(impostor.warped,
+             plane_mapping(impostor.drawn->texture, camera, impostor.warped.place, picture.width,
+                           picture.height),
+             picture, pool);
+}
+
+}  // namespace softfocus

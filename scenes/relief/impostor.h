@@ -1,0 +1,80 @@
+#pragma once
+// A relief impostor: an object as one relief texture, which serves as long as its errors are small
+// (chapters 4 and 5 of Clua 2004). For each view one of four things is done:
+//
+//   sprite  the last warp is mapped again: from here it differs by less than a pixel (Schaufler
+//   1995) warp    the relief is pre-warped for this view renew   the object is drawn anew as this
+//   view's relief, and warped
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "scenes/relief/make_relief.h"
+#include "scenes/relief/map_relief.h"
+#include "scenes/relief/warp_error.h"
+
+namespace softfocus {
+
+struct ImpostorSettings {
+  WarpRule warp;
+  int depth_bits = 8;
+  double tolerance_texels = 8.0;  ///< the critical error that makes a renewal
+  int regions = 1;                ///< 1: of one point; more: the mean of regions x regions points
+  double texels_per_pixel = 1.0;  ///< of a relief when it is drawn
+  double sharpness = 1.5;  ///< K of 4-1: a relief whose texels came to be so many pixels wide
+                           ///< is renewed, and one whose texels are 1/4 of a pixel
+  bool sprites = true;     ///< Schaufler's test; without it every view is warped
+  /// Of stale reliefs that are kept. If there are more, the one whose eye is farthest away goes.
+  std::size_t cache_bytes = 0;
+};
+
+enum class ImpostorStep : std::uint8_t { sprite, warp, recall, renew };
+
+/// A relief and what is known of it.
+struct DrawnRelief {
+  ReliefTexture texture;
+  ReliefExtent extent;
+  CriticalRegions critical;
+  glm::dvec3 eye;  ///< for which it was drawn
+};
+
+std::size_t bytes_of(const DrawnRelief& relief);
+
+struct Impostor {
+  std::optional<DrawnRelief> drawn;  ///< none before the first view, and if nothing was seen
+  WarpedRelief warped;
+  glm::dvec3 warped_for{0.0};      ///< the eye
+  std::vector<DrawnRelief> cache;  ///< stale ones, the oldest first
+};
+
+/// Equation 5-1: how many pixels something is wide that is `size_m` wide, `distance_m` before the
+/// camera, in a picture of `pixels` pixels over an angle of view of 2 atan(half_view_tangent).
+double pixels_across(double pixels, double size_m, double distance_m, double half_view_tangent);
+
+/// The form of an object's relief for a view: 5-1 at the relief's plane, times texels_per_pixel.
+ReliefForm impostor_form(const ReliefMaker& maker, const CameraMatrices& camera,
+                         const ImpostorSettings& settings, glm::dvec3 up, int height_px);
+
+/// Schaufler's angle for a sideways move, as a tangent: the largest angle at which the new eye sees
+/// a corner of the relief's box and the place in the plane where the old eye saw it.
+double parallax_tangent(const ReliefTexture& relief, glm::dvec3 old_eye, glm::dvec3 new_eye);
+
+/// Whether the relief can serve this eye at all: it sees its front, and not along its plane, and no
+/// texel became too large or too small.
+bool can_serve(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+               double pixel_tangent);
+
+/// The error by which a relief is stale: of one critical point, or the mean of all regions.
+double impostor_error(const DrawnRelief& relief, glm::dvec3 eye);
+
+/// Brings the impostor up to date for a view, and says how. `up` is the camera's.
+ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
+                             const ImpostorSettings& settings, const CameraMatrices& camera,
+                             glm::dvec3 up, int height_px, ThreadPool& pool);
+
+/// Lays it over a picture of the view, if it shows anything.
+void draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
+                   ThreadPool& pool);
+
+}  // namespace softfocus

@@ -1,0 +1,58 @@
+#pragma once
+// Relief textures of a scene's opaque surfaces, drawn by the pipeline.
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "raster/threads/parallel.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/relief/relief_texture.h"
+
+namespace softfocus {
+
+/// From where a relief is drawn: it looks from the eye at the middle of all.
+struct ReliefView {
+  glm::dvec3 eye{0.0, 0.0, 3.0};  ///< highlights are this eye's
+  glm::dvec3 up{0.0, 1.0, 0.0};   ///< not along the way to the middle
+};
+
+struct ReliefForm {
+  int width = 256, height = 256;  ///< 4 to kMostReliefSize
+  int depth_bits = 8;             ///< or 16
+  bool with_normals = false;
+};
+
+/// A scene made ready to be drawn as reliefs at one frame. The scene must outlive it.
+struct ReliefMaker {
+  const Scene* scene;
+  double frame;
+  PreparedScene prepared;
+  std::vector<glm::dvec3> points;          ///< of all meshes, in the world
+  glm::dvec3 middle;                       ///< of the box along the world's axes that holds them
+  double radius_m;                         ///< from the middle to the farthest
+  std::vector<std::uint8_t> code_of_half;  ///< linear_to_srgb8() of each half
+  Image picture;
+};
+
+/// Needs a scene with a triangle. `pool` is the one that will draw.
+ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool);
+
+/// The camera that holds all of the object from border to border, but for a margin of a texel, and
+/// from the first depth to the last but for a share of kDepthMargin.
+ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int width, int height);
+inline constexpr double kDepthMargin = 1e-4;
+
+/// Surfaces as draw_scene() has them without shadows, colours cut to 0..1. The same bits for any
+/// number of threads.
+ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
+                          ThreadPool& pool);
+
+/// The matrices that draw a relief: the texel (x, y) is the pixel (x, y), and the buffer's depth
+/// is d / depth_m. Clip w is 1.
+CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height, glm::dvec3 eye);
+
+/// Draws the nearest surfaces' normals by these matrices: RGBA16F, alpha 1 where something is.
+Image draw_normals(const Scene& scene, const CameraMatrices& camera, double frame, int width,
+                   int height, ThreadPool& pool);
+
+}  // namespace softfocus

@@ -1,0 +1,45 @@
+#pragma once
+// The second half of relief texture mapping: a pre-warped relief on its plane as an ordinary
+// texture, seen by a camera.
+//
+// A pixel's ray D meets the plane at t = h / D.f, at u = e1 + t D.a/a.a and v = e2 + t D.b/b.b,
+// three planes over the picture and a division. Texels are filtered by bilinear_sum_unorm8() as
+// they are stored, with 8 fractional bits of place. Where half of the weight or more lies on texels
+// that show something, the pixel shows their mean. So a silhouette is as sharp as a drawn one.
+//
+// The point itself lies behind the plane at t (1 + k3 d), which is the pixel's depth, in alpha. It
+// is written where that is less than the picture has.
+
+#include <glm/vec3.hpp>
+
+#include "raster/images/image.h"
+#include "raster/pipeline/state.h"
+#include "raster/threads/parallel.h"
+#include "scenes/draw/frame_matrices.h"
+#include "scenes/relief/resample.h"
+
+namespace softfocus {
+
+/// The texels of a warped relief on a camera's picture.
+struct PlaneMapping {
+  // Of the pixel (x, y): base + x step_x + y step_y, in binary64.
+  struct Planar {
+    double base, step_x, step_y;
+    double at(double x, double y) const { return base + x * step_x + y * step_y; }
+  };
+  Planar u, v;  ///< times q, in texels from the warped relief's first
+  Planar q;     ///< D.f
+  double height_m;
+  float k3;
+  Rectangle area;  ///< pixels that can show something
+};
+
+/// `place` is that of the warp for this camera's eye.
+PlaneMapping plane_mapping(const ReliefTexture& relief, const CameraMatrices& camera,
+                           const PlaneRectangle& place, int width, int height);
+
+/// Lays a warped relief over an RGBA16F picture with depth in alpha, both of the camera.
+void map_relief(const WarpedRelief& warped, const PlaneMapping& mapping, Image& picture,
+                ThreadPool& pool);
+
+}  // namespace softfocus

@@ -1,0 +1,59 @@
+#pragma once
+// A relief texture: colour, depth and perhaps normals of an object under an orthographic camera
+// (Oliveira, Bishop and McAllister 2000). A texel of depth d shows the point
+//
+//   X = C + u a + v b + d f        u, v: whole numbers at the texels' centres
+//
+// Depths are codes, evenly spaced from 0, the plane of C, to the last one but one; the last code,
+// 255 of 8 bits and 65535 of 16, is a texel that shows nothing.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+namespace softfocus {
+
+struct ReliefCamera {
+  glm::dvec3 origin{0.0};        ///< C: the centre of the first texel, where the depth is 0
+  glm::dvec3 a{1.0, 0.0, 0.0};   ///< from a texel to its right neighbour
+  glm::dvec3 b{0.0, -1.0, 0.0};  ///< and to the one below; a, b and f are perpendicular
+  glm::dvec3 f{0.0, 0.0, -1.0};  ///< away from the viewer, of length 1
+  double depth_m = 1.0;          ///< what last_depth() stands for
+};
+
+inline constexpr int kMostReliefSize = 4096;
+
+struct ReliefTexture {
+  int width = 0, height = 0;  ///< 1 to kMostReliefSize
+  int depth_bits = 8;         ///< or 16
+  ReliefCamera camera;
+  std::vector<std::uint16_t> depths;  ///< codes, row by row
+  /// Red + 256 green + 65536 blue in the sRGB curve + 255 2^24; 0 where nothing is.
+  std::vector<std::uint32_t> colours;
+  /// Of the world: x + 256 y + 65536 z, each 127 n + 128 rounded. Empty if there are none.
+  std::vector<std::uint32_t> normals;
+};
+
+constexpr std::uint16_t empty_depth(int bits) { return bits == 8 ? 255 : 65535; }
+constexpr int last_depth(int bits) { return bits == 8 ? 254 : 65534; }
+
+/// Metres a code.
+inline double depth_step(const ReliefTexture& relief) {
+  return relief.camera.depth_m / last_depth(relief.depth_bits);
+}
+
+/// The point that a texel shows.
+glm::dvec3 relief_point(const ReliefTexture& relief, double u, double v, double code);
+
+/// Which texels show something.
+struct ReliefExtent {
+  int x_begin, x_end, y_begin, y_end;
+  int least_code, most_code;
+  std::int64_t filled;
+};
+
+/// None if all texels are empty.
+std::optional<ReliefExtent> relief_extent(const ReliefTexture& relief);
+
+}  // namespace softfocus

@@ -1,0 +1,61 @@
+#pragma once
+// How far a pre-warp pulls neighbours apart: what lies between them was never seen, and is made up.
+//
+// The critical point (5.5 of Clua 2004) is the pair of neighbours whose depths
+// differ most. Where they come to lie is known before any other texel is warped: equations 5-5 to
+// 5-7, with the true distance in place of a squared one, in texels. Neighbours of one depth are at
+// most one texel apart.
+
+#include <optional>
+#include <vector>
+
+#include "scenes/relief/pre_warp.h"
+
+namespace softfocus {
+
+/// Two neighbours in a row or a column that both show something.
+struct CriticalPoint {
+  int u1, v1, u2, v2;
+  int code1, code2;
+};
+
+/// The pair with the largest step of depth, the first of several; none if no two are neighbours.
+std::optional<CriticalPoint> critical_point(const ReliefTexture& relief);
+
+/// Equations 5-5 to 5-7: the distance between the pair's two texels as the eye sees them, in
+/// texels.
+double critical_error(const ReliefTexture& relief, const CriticalPoint& point, glm::dvec3 eye);
+
+/// A relief cut into N x M regions, each with a critical point of its own (5.6 of Clua 2004), so
+/// that one rough place does not speak for all. A pair belongs to the region of its first texel.
+struct CriticalRegion {
+  CriticalPoint point;
+  int least_code;  ///< of all pairs
+};
+struct CriticalRegions {
+  ReliefExtent extent;
+  int columns, rows;
+  /// Row by row; none where no two neighbours show something.
+  std::vector<std::optional<CriticalRegion>> regions;
+};
+
+/// Cuts the extent, not the texture. Needs 1 to kMostRegions columns and rows.
+CriticalRegions critical_regions(const ReliefTexture& relief, const ReliefExtent& extent,
+                                 int columns, int rows);
+inline constexpr int kMostRegions = 64;
+
+/// The mean of the critical errors of all regions that have a point; 0 if none has.
+double mean_critical_error(const ReliefTexture& relief, const CriticalRegions& regions,
+                           glm::dvec3 eye);
+
+/// What no pair of neighbours can exceed. Two neighbours move by scales s1 and s2 towards the
+/// epipole, so they come to lie at most s2 + |s1 - s2| R texels apart, where R is the distance of
+/// the first from the epipole. In a region, R is at most that of its farthest corner, s2 at most
+/// h / (h + d), and |s1 - s2| at most h D / ((h + d) (h + d + D)), with the largest step of depth D
+/// and the least depth d. The largest of all regions: the more regions, the nearer it is.
+double error_bound(const ReliefTexture& relief, const CriticalRegions& regions, glm::dvec3 eye);
+
+/// The largest distance of all pairs of neighbours: what the two above are measured against.
+double largest_error(const ReliefTexture& relief, glm::dvec3 eye);
+
+}  // namespace softfocus

@@ -1,0 +1,191 @@
+#include "scenes/relief/impostor.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "raster/images/texel.h"
+#include "scenes/make/shapes.h"
+#include "scenes/surfaces/surface_stages.h"
+#include "tests/support/test_images.h"
+
+using namespace softfocus;
+
+namespace {
+
+constexpr int kSize = 96;
+
+Scene torus_scene() {
+  Scene scene;
+  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
+  scene.materials.emplace_back();
+  scene.meshes.push_back(make_torus(0.7, 0.3, 96, 48));
+  scene.objects.push_back({});
+  scene.camera.position = {1.5, 2.0, 3.5};
+  scene.camera.orbit_degrees_per_frame = 1.0;
+  return scene;
+}
+
+CameraMatrices seen_at(const Scene& scene, double frame) {
+  return camera_matrices(scene.camera, frame, kSize, kSize);
+}
+
+Image cleared(const Scene& scene) {
+  Image picture = make_image(Format::rgba16f, kSize, kSize);
+  clear_image(picture, {0.0f, 0.0f, 0.0f, alpha_depth(static_cast<float>(scene.camera.far_m))},
+              Profile{});
+  return picture;
+}
+
+}  // namespace
+
+TEST_CASE("an object of a metre, five metres away, is as wide as equation 5-1 says") {
+  // 90 degrees: the picture is 10 m high there.
+  CHECK(pixels_across(1000.0, 1.0, 5.0, 1.0) == doctest::Approx(100.0));
+}
+
+TEST_CASE("an impostor drawn for a view shows what is drawn, at its depths") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const CameraMatrices camera = seen_at(scene, 0.0);
+  const Image drawn = draw_scene(scene, camera, 0.0, kSize, kSize, Profile{}, pool);
+  const float far = load_texel(cleared(scene), 0, 0).w;
+  for (const NamedResampling& choice : kResamplings) {
+    Impostor impostor;
+    const ImpostorSettings settings{.warp = {.resampling = choice.resampling}, .depth_bits = 16};
+    CHECK(update_impostor(impostor, maker, settings, camera, scene.camera.up, kSize, pool) ==
+          ImpostorStep::renew);
+    Image shown = cleared(scene);
+    draw_impostor(impostor, camera, shown, pool);
+    int seen = 0, lost = 0, gained = 0, wrong_depths = 0, wrong_colours = 0;
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 0; x < kSize; ++x) {
+        const glm::vec4 right = load_texel(drawn, x, y), own = load_texel(shown, x, y);
+        if (right.w == far) {
+          gained += own.w != far ? 1 : 0;
+          continue;
+        }
+        ++seen;
+        if (own.w == far) {
+          ++lost;
+          continue;
+        }
+        wrong_depths += std::fabs(own.w - right.w) > 0.03f * right.w ? 1 : 0;
+        wrong_colours += std::fabs(own.y - right.y) > 0.08f ? 1 : 0;
+      }
+    }
+    CAPTURE(choice.name);
+    CHECK(seen > 1500);
+    // Of an outline of some 300 pixels.
+    CHECK(lost < 60);
+    CHECK(gained < 60);
+    CHECK(wrong_depths < seen / 50);
+    CHECK(wrong_colours < seen / 50);
+  }
+}
+
+TEST_CASE("a picture with an impostor has the same bits on every vector unit") {
+  const Scene scene = torus_scene();
+  ThreadPool plain(1, Isa::scalar);
+  const auto picture_by = [&](ThreadPool& pool) {
+    ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+    Impostor impostor;
+    update_impostor(impostor, maker, {}, seen_at(scene, 0.0), scene.camera.up, kSize, pool);
+    update_impostor(impostor, maker, {}, seen_at(scene, 5.0), scene.camera.up, kSize, pool);
+    Image picture = cleared(scene);
+    draw_impostor(impostor, seen_at(scene, 5.0), picture, pool);
+    return picture;
+  };
+  const Image right = picture_by(plain);
+  for (const Isa isa : available_isas()) {
+    ThreadPool pool(3, isa);
+    CHECK_MESSAGE(equal(picture_by(pool), right), isa_name(isa));
+  }
+}
+
+TEST_CASE("a nearer surface in the picture stays before the impostor") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(1);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const CameraMatrices camera = seen_at(scene, 0.0);
+  Impostor impostor;
+  update_impostor(impostor, maker, {}, camera, scene.camera.up, kSize, pool);
+  Image picture = make_image(Format::rgba16f, kSize, kSize);
+  clear_image(picture, {1.0f, 0.0f, 0.0f, 0.5f}, Profile{});
+  const Image before = picture;
+  draw_impostor(impostor, camera, picture, pool);
+  CHECK(equal(picture, before));
+}
+
+TEST_CASE(
+    "an impostor stays a sprite while the parallax is below a pixel, then is warped, then "
+    "renewed") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  Impostor impostor;
+  const auto step_at = [&](double frame, double tolerance) {
+    ImpostorSettings settings;
+    settings.tolerance_texels = tolerance;
+    return update_impostor(impostor, maker, settings, seen_at(scene, frame), scene.camera.up, kSize,
+                           pool);
+  };
+  CHECK(step_at(0.0, 8.0) == ImpostorStep::renew);
+  CHECK(step_at(0.0, 8.0) == ImpostorStep::sprite);
+  CHECK(step_at(0.05, 8.0) == ImpostorStep::sprite);
+  CHECK(step_at(10.0, 8.0) == ImpostorStep::warp);
+  CHECK(step_at(11.0, 1.0) == ImpostorStep::renew);
+  CHECK(step_at(170.0, 1e9) == ImpostorStep::renew);  // from behind
+}
+
+TEST_CASE("from where a relief was warped nothing is displaced") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(1);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const glm::dvec3 eye = seen_at(scene, 0.0).eye;
+  const ReliefTexture relief = make_relief(maker, {eye, scene.camera.up}, {32, 32, 8, false}, pool);
+  CHECK(parallax_tangent(relief, eye, eye) < 1e-7);
+  CHECK(parallax_tangent(relief, eye, seen_at(scene, 1.0).eye) >
+        parallax_tangent(relief, eye, seen_at(scene, 0.5).eye));
+}
+
+TEST_CASE("a stale relief is kept within the budget, and serves again where it did") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const auto steps_with = [&](std::size_t bytes) {
+    Impostor impostor;
+    ImpostorSettings settings;
+    settings.cache_bytes = bytes;
+    std::vector<ImpostorStep> steps;
+    for (const double frame : {0.0, 120.0, 240.0, 0.0}) {
+      steps.push_back(update_impostor(impostor, maker, settings, seen_at(scene, frame),
+                                      scene.camera.up, kSize, pool));
+      std::size_t kept = 0;
+      for (const DrawnRelief& relief : impostor.cache) kept += bytes_of(relief);
+      CHECK(kept <= bytes);
+    }
+    return steps;
+  };
+  using enum ImpostorStep;
+  CHECK(steps_with(1 << 20) == std::vector{renew, renew, renew, recall});
+  CHECK(steps_with(0) == std::vector{renew, renew, renew, renew});
+}
+
+TEST_CASE("if the cache is full, the relief whose eye is farthest away goes") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  Impostor impostor;
+  ImpostorSettings settings;
+  const auto step_at = [&](double frame) {
+    return update_impostor(impostor, maker, settings, seen_at(scene, frame), scene.camera.up, kSize,
+                           pool);
+  };
+  CHECK(step_at(0.0) == ImpostorStep::renew);
+  settings.cache_bytes = bytes_of(*impostor.drawn) * 3 / 2;  // one
+  CHECK(step_at(170.0) == ImpostorStep::renew);
+  CHECK(step_at(60.0) == ImpostorStep::renew);  // 60 degrees from the first, 110 from the second
+  CHECK(step_at(0.0) == ImpostorStep::recall);
+}

@@ -1,0 +1,91 @@
+#include "scenes/relief/make_relief.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "raster/numbers/vector_math.h"
+#include "scenes/make/shapes.h"
+
+using namespace softfocus;
+
+namespace {
+
+/// A sphere of a metre's radius, beside the origin.
+Scene sphere_scene() {
+  Scene scene;
+  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
+  scene.materials.emplace_back();
+  scene.meshes.push_back(make_sphere(1.0, 96, 48));
+  scene.objects.push_back({});
+  scene.objects[0].position = {0.5, -0.25, 0.75};
+  return scene;
+}
+
+constexpr ReliefView kView{{2.5, 1.0, 4.0}, {0.0, 1.0, 0.0}};
+
+}  // namespace
+
+TEST_CASE("a relief's texels are points of the surface, with the surface's normals") {
+  const Scene scene = sphere_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  for (const int bits : {8, 16}) {
+    const ReliefTexture relief = make_relief(maker, kView, {64, 64, bits, true}, pool);
+    int filled = 0;
+    double most_away = 0.0, least_cosine = 1.0;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const auto at = static_cast<std::size_t>(64 * y + x);
+        CHECK((relief.depths[at] == empty_depth(bits)) == (relief.colours[at] == 0));
+        if (relief.colours[at] == 0) continue;
+        ++filled;
+        const glm::dvec3 out =
+            relief_point(relief, x, y, relief.depths[at]) - scene.objects[0].position;
+        most_away = std::fmax(most_away, std::fabs(std::sqrt(dot(out, out)) - 1.0));
+        const auto part = [&](int shift) {
+          return (static_cast<int>(relief.normals[at] >> shift & 255u) - 128) / 127.0;
+        };
+        const glm::dvec3 normal{part(0), part(8), part(16)};
+        least_cosine = std::fmin(least_cosine, dot(normal, normalize(out)));
+      }
+    }
+    // A disc within one texel of margin on each side; facets of 96 segments.
+    CHECK(filled == doctest::Approx(62 * 62 * 0.785).epsilon(0.02));
+    CHECK(most_away < (bits == 8 ? 0.012 : 0.006));
+    CHECK(least_cosine > 0.99);
+  }
+}
+
+TEST_CASE("a relief holds its object from border to border, and its axes are at right angles") {
+  const Scene scene = sphere_scene();
+  ThreadPool pool(1);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefTexture relief = make_relief(maker, kView, {40, 72, 8, false}, pool);
+  const ReliefExtent extent = *relief_extent(relief);
+  CHECK(extent.x_begin <= 2);
+  CHECK(extent.x_end >= 38);
+  CHECK(extent.y_begin <= 2);
+  CHECK(extent.y_end >= 70);
+  CHECK(extent.least_code <= 1);
+  const ReliefCamera& camera = relief.camera;
+  CHECK(dot(camera.a, camera.b) == doctest::Approx(0.0));
+  CHECK(dot(camera.a, camera.f) == doctest::Approx(0.0));
+  CHECK(dot(camera.f, camera.f) == doctest::Approx(1.0));
+  CHECK(dot(camera.f, maker.middle - kView.eye) > 0.0);
+}
+
+TEST_CASE("a relief has the same bits for any number of threads and vector unit") {
+  const Scene scene = sphere_scene();
+  ThreadPool plain(1, Isa::scalar);
+  ReliefMaker maker = prepare_relief(scene, 0.0, plain);
+  const ReliefTexture right = make_relief(maker, kView, {48, 48, 16, true}, plain);
+  for (const Isa isa : available_isas()) {
+    ThreadPool pool(3, isa);
+    ReliefMaker own = prepare_relief(scene, 0.0, pool);
+    const ReliefTexture relief = make_relief(own, kView, {48, 48, 16, true}, pool);
+    CHECK(relief.depths == right.depths);
+    CHECK(relief.colours == right.colours);
+    CHECK(relief.normals == right.normals);
+  }
+}

@@ -1,0 +1,93 @@
+// softfocus relief, from end to end.
+
+#include <doctest/doctest.h>
+
+#include "tests/support/cli_refused.h"
+#include "tools/pictures/image_file.h"
+
+using namespace softfocus;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::string relief_by(const TemporaryDirectory& folder, const Words& more = {}) {
+  const std::string file = folder.file("a.relief");
+  Words words{"relief", "make", "figures", "--texels", "48x40", "-o", file};
+  words.insert(words.end(), more.begin(), more.end());
+  const ProgramRun run = run_program(words);
+  CHECK(run.err == "");
+  REQUIRE(run.status == 0);
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("relief: a scene's relief is made, shown and warped") {
+  const TemporaryDirectory folder;
+  const std::string relief = relief_by(folder, {"--normals", "--depth-bits", "16"});
+  for (const char* part : {"image", "depth", "normals"}) {
+    const std::string picture = folder.file(std::string{part} + ".npy");
+    const ProgramRun run = run_program({"relief", "show", relief, "--show", part, "-o", picture});
+    CHECK(run.err == "");
+    REQUIRE(run.status == 0);
+    const Image image = read_image_file(picture).image;
+    CHECK(image.width == 48);
+    CHECK(image.height == 40);
+  }
+  const std::string first = folder.file("first.npy"), second = folder.file("second.npy");
+  const ProgramRun run = run_program(
+      {"relief", "warp", relief, "--yaw", "10", "--size", "64x64", "--threads", "1", "-o", first});
+  REQUIRE(run.status == 0);
+  CHECK(contains(run.err, " texels; "));
+  CHECK(contains(run.err, " over others, "));
+  REQUIRE(run_program({"relief", "warp", relief, "--yaw", "10", "--size", "64x64", "--threads", "3",
+                       "-o", second})
+              .status == 0);
+  CHECK(hash_image(read_image_file(first).image) == hash_image(read_image_file(second).image));
+}
+
+TEST_CASE("relief bench and turn say what they measured") {
+  const TemporaryDirectory folder;
+  const std::string relief = relief_by(folder);
+  const ProgramRun bench = run_program({"relief", "bench", relief, "--runs", "2", "--yaw", "15"});
+  CHECK(bench.err == "");
+  REQUIRE(bench.status == 0);
+  for (const char* part : {"two-pass", "asymmetric", "compensated", "intertwined", "49.6"}) {
+    CHECK(contains(bench.out, part));
+  }
+  const ProgramRun turn = run_program({"relief", "turn", "figures", "--frames", "12", "--every",
+                                       "6", "--size", "96x96", "-o", folder.file("t_%02d.npy")});
+  CHECK(turn.err == "");
+  REQUIRE(turn.status == 0);
+  CHECK(contains(turn.out, "renewals "));
+  CHECK(contains(turn.out, "FLIP "));
+  const Image pair = read_image_file(folder.file("t_06.npy")).image;
+  CHECK(pair.width == 192);
+  CHECK(pair.height == 96);
+}
+
+TEST_CASE("relief: wrong words and bad files get one line") {
+  const TemporaryDirectory folder;
+  const std::string relief = relief_by(folder);
+  const std::string picture = folder.file("a.png");
+  const std::string broken = folder.file("broken.relief");
+  write_file(broken, std::string_view{read_file(relief)}.substr(0, 500));
+  check_refused(folder, {"relief", "mend", "figures"}, 2, {"ACTION", "make"});
+  check_refused(folder, {"relief", "make", "figures"}, 2, {"-o is missing"});
+  check_refused(folder, {"relief", "make", "figures", "--texels", "2x9", "-o", picture}, 2,
+                {"--texels", "4 to 4096"});
+  check_refused(folder, {"relief", "make", "figures", "--depth-bits", "12", "-o", picture}, 2,
+                {"--depth-bits", "8 or 16"});
+  check_refused(folder, {"relief", "show", relief, "--runs", "3", "-o", picture}, 2,
+                {"--runs", "show does not read it"});
+  check_refused(folder, {"relief", "show", relief, "--show", "normals", "-o", picture}, 2,
+                {"--show normals", "has none"});
+  check_refused(folder, {"relief", "warp", relief, "--yaw", "120", "-o", picture}, 2,
+                {"--yaw", "front"});
+  check_refused(folder, {"relief", "warp", broken, "-o", picture}, 1, {"broken.relief", "bytes"});
+  check_refused(folder, {"relief", "warp", "nowhere.relief", "-o", picture}, 1, {"nowhere.relief"});
+  check_refused(folder, {"relief", "turn", "figures", "-o", picture}, 2, {"-o", "%04d"});
+  check_refused(folder, {"relief", "show", relief, "-o", relief + ".png", "--format", "xyz"}, 2,
+                {"--format"});
+}

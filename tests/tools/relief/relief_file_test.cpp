@@ -1,0 +1,89 @@
+#include "tools/relief/relief_file.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "tests/support/relief_pictures.h"
+#include "tools/cli/errors.h"
+
+using namespace softfocus;
+using namespace softfocus::test;
+
+namespace {
+
+std::string text_of(const ReliefTexture& relief) {
+  const std::vector<std::byte> bytes = encode_relief(relief);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::string complaint_of(const std::string& bytes) {
+  try {
+    decode_relief(bytes, "a.relief");
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool says(const std::string& bytes, const std::string& part) {
+  const std::string complaint = complaint_of(bytes);
+  CAPTURE(complaint);
+  CHECK(complaint.starts_with("'a.relief'"));
+  CHECK(complaint.find('\n') == std::string::npos);
+  return complaint.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a relief comes back from its file as it was") {
+  for (const int bits : {8, 16}) {
+    ReliefTexture relief = rough_relief(13, 7, bits, 4);
+    if (bits == 16) relief.normals.assign(relief.colours.size(), 0x00812345u);
+    const ReliefTexture back = decode_relief(text_of(relief), "a.relief");
+    CHECK(back.width == 13);
+    CHECK(back.height == 7);
+    CHECK(back.depth_bits == bits);
+    CHECK(back.depths == relief.depths);
+    CHECK(back.colours == relief.colours);
+    CHECK(back.normals == relief.normals);
+    CHECK(back.camera.origin == relief.camera.origin);
+    CHECK(back.camera.a == relief.camera.a);
+    CHECK(back.camera.b == relief.camera.b);
+    CHECK(back.camera.f == relief.camera.f);
+    CHECK(back.camera.depth_m == relief.camera.depth_m);
+  }
+}
+
+TEST_CASE("a relief's file that was cut short or made longer is refused at any length") {
+  const std::string whole = text_of(rough_relief(5, 4, 8, 4));
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    CHECK(complaint_of(whole.substr(0, length)) != "");
+  }
+  CHECK(says(whole.substr(0, 20), "cut short"));
+  CHECK(says(whole + "x", "bytes; 5x4 texels take"));
+}
+
+TEST_CASE("a changed byte is found") {
+  const std::string whole = text_of(rough_relief(5, 4, 8, 4));
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 4);
+    CHECK(complaint_of(changed) != "");
+  }
+}
+
+TEST_CASE("wrong sizes, bits, cameras and empty depths get a line that says so") {
+  const auto with = [](const auto& change) {
+    ReliefTexture relief = rough_relief(5, 4, 8, 4);
+    change(relief);
+    return text_of(relief);
+  };
+  CHECK(says("PNG", "is no relief texture"));
+  CHECK(says(with([](ReliefTexture& r) { r.width = 5000; }), "claims 5000x4 texels"));
+  CHECK(says(with([](ReliefTexture& r) { r.depth_bits = 12; }), "12 bits of depth"));
+  CHECK(says(with([](ReliefTexture& r) { r.camera.f *= 2.0; }), "right angles"));
+  CHECK(says(with([](ReliefTexture& r) { r.camera.a = r.camera.b; }), "right angles"));
+  CHECK(says(with([](ReliefTexture& r) { r.camera.depth_m = 0.0; }), "depth above 0"));
+  CHECK(says(with([](ReliefTexture& r) { r.depths.assign(20, 255); }), "shows nothing"));
+}

@@ -1,0 +1,104 @@
+// softfocus relief bench: each resampling's time beside Clua's (2004).
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "raster/images/texel.h"
+#include "scenes/relief/march_relief.h"
+#include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
+#include "tools/info/time_in_turn.h"
+#include "tools/relief/relief_file.h"
+#include "tools/relief/relief_options.h"
+
+namespace softfocus {
+namespace {
+
+double median_of(const Milliseconds& times) { return times.ms[times.ms.size() / 2]; }
+
+}  // namespace
+
+int bench_relief(const ReliefOptions& options) {
+  const ReliefTexture relief = read_relief_file(options.input);
+  const ReliefExtent extent = *relief_extent(relief);
+  const auto [width, height] = options.size;
+  const CameraMatrices camera = camera_matrices(camera_before(relief, options), 0.0, width, height);
+  const std::optional<PlaneRectangle> place = warped_extent(relief, extent, camera.eye);
+  if (!place) {
+    throw UsageError(
+        "--yaw, --pitch and --distance: from there the relief is not seen from its "
+        "front; smaller angles would be right");
+  }
+  ThreadPool pool{options.pool.threads, options.pool.isa}, one{1, options.pool.isa};
+  WarpedRelief warped;
+  const double texels = static_cast<double>(relief.width) * relief.height;
+  std::printf("%dx%d texels, %lld of them filled, warped to %dx%d; %d threads, %s\n", relief.width,
+              relief.height, static_cast<long long>(extent.filled), place->width, place->height,
+              pool.threads(), std::string{isa_name(pool.isa())}.c_str());
+  std::printf("%-16s %18s %18s %18s %10s %8s %6s %9s %9s\n", "median, least ms", "1 thread", "all",
+              "fixed, all", "Mtexels/s", "2004 ms", "ratio", "overlaps", "stretched");
+  for (const NamedResampling& choice : kResamplings) {
+    const auto by = [&](ThreadPool& threads, PlaceNumbers numbers) {
+      return [&, numbers] {
+        warp_relief(relief, extent, camera.eye, *place,
+                    {.resampling = choice.resampling, .numbers = numbers}, warped, threads);
+      };
+    };
+    WarpCounts counts;
+    warp_relief(relief, extent, camera.eye, *place, {.resampling = choice.resampling}, warped, pool,
+                &counts);
+    std::vector<Milliseconds> times{{"1 thread"}, {"all"}, {"fixed"}};
+    time_in_turn(times, options.runs, by(one, PlaceNumbers::floats), by(pool, PlaceNumbers::floats),
+                 by(pool, PlaceNumbers::fixed));
+    for (Milliseconds& of : times) std::sort(of.ms.begin(), of.ms.end());
+    const double all_ms = median_of(times[1]);
+    std::printf("%-16s %9.3f %8.3f %9.3f %8.3f %9.3f %8.3f %10.0f %8.1f %6.0f %9lld %9lld\n",
+                std::string{choice.name}.c_str(), median_of(times[0]), times[0].ms.front(), all_ms,
+                times[1].ms.front(), median_of(times[2]), times[2].ms.front(),
+                texels / all_ms / 1e3, choice.source_ms, choice.source_ms / all_ms,
+                static_cast<long long>(counts.overlaps), static_cast<long long>(counts.stretched));
+  }
+  Image picture = make_image(Format::rgba16f, width, height);
+  clear_image(picture, {0.0f, 0.0f, 0.0f, 65504.0f}, Profile{});
+  const Image blank = picture;
+  const PlaneMapping mapping = plane_mapping(relief, camera, *place, width, height);
+  const auto map_by = [&](ThreadPool& threads) {
+    return [&] {
+      // Or the second run's depths would be no nearer than the first's.
+      threads.for_each(mapping.area.y_end - mapping.area.y_begin, [&](int i) {
+        const int y = mapping.area.y_begin + i;
+        const auto from = row<std::uint16_t>(blank, y);
+        std::copy(from.begin(), from.end(), row<std::uint16_t>(picture, y).begin());
+      });
+      map_relief(warped, mapping, picture, threads);
+    };
+  };
+  std::vector<Milliseconds> times{{"mapping, 1 thread"}, {"mapping, all threads"}};
+  time_in_turn(times, options.runs, map_by(one), map_by(pool));
+  print_times(times);
+
+  // 8 to 128 slices: frames a second of Clua, table 6.1.
+  constexpr std::array kSlices{std::pair{8, 17.0}, std::pair{16, 7.0}, std::pair{32, 3.0},
+                               std::pair{64, 1.0}, std::pair{128, 0.4}};
+  const MarchMapping march = march_mapping(relief, extent, camera, width, height);
+  for (const std::pair<int, double>& of : kSlices) {
+    std::vector<Milliseconds> marched{{"slices"}, {"bisected"}};
+    const auto by = [&](int bisections) {
+      return [&, bisections] {
+        std::copy(blank.bytes.begin(), blank.bytes.end(), picture.bytes.begin());
+        march_relief(relief, march, {of.first, bisections}, picture, pool);
+      };
+    };
+    time_in_turn(marched, std::min(options.runs, 10), by(0), by(6));
+    for (Milliseconds& times_of : marched) std::sort(times_of.ms.begin(), times_of.ms.end());
+    std::printf("%3d slices %9.2f ms, with 6 bisections %9.2f ms; in 2004 %.1f frames a second\n",
+                of.first, median_of(marched[0]), median_of(marched[1]), of.second);
+  }
+  return kDone;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,181 @@
+#include "tools/relief/relief_file.h"
+
+#include <bit>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "raster/numbers/hash.h"
+#include "raster/numbers/vector_math.h"
+#include "scenes/files/file_bytes.h"
+#include "tools/cli/errors.h"
+#include "tools/files/byte_order.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::string_view kReliefMagic = "SFRELIEF";
+constexpr std::uint32_t kReliefVersion = 1;
+constexpr std::size_t kReliefHeader = 8 + 5 * 4 + 13 * 8, kReliefSum = 8;
+constexpr std::size_t kMostReliefBytes =
+    kReliefHeader + std::size_t{kMostReliefSize} * kMostReliefSize * 8 + kReliefSum;
+
+std::uint64_t sum_of(std::span<const std::byte> bytes) {
+  Hash hash;
+  for (const std::byte byte : bytes) add_to_hash(hash, std::to_integer<std::uint8_t>(byte));
+  return hash.value;
+}
+
+void append_number(std::vector<std::byte>& bytes, double value) {
+  append_little_endian(bytes, std::bit_cast<std::uint64_t>(value));
+}
+
+void append_vector(std::vector<std::byte>& bytes, const glm::dvec3& v) {
+  for (int i = 0; i < 3; ++i) append_number(bytes, v[i]);
+}
+
+void append_threes(std::vector<std::byte>& bytes, const std::vector<std::uint32_t>& values) {
+  for (const std::uint32_t value : values) {
+    for (int i = 0; i < 3; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i) & 255u));
+  }
+}
+
+/// What is left to read of the bytes, which were measured before.
+struct ReliefReader {
+  std::span<const std::byte> rest;
+
+  template <class T>
+  T take() {
+    const T value = little_endian<T>(rest);
+    rest = rest.subspan(sizeof(T));
+    return value;
+  }
+  double take_number() { return std::bit_cast<double>(take<std::uint64_t>()); }
+  glm::dvec3 take_vector() {
+    glm::dvec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = take_number();
+    return v;
+  }
+  std::uint32_t take_three() {
+    std::uint32_t value = 0;
+    for (int i = 0; i < 3; ++i) value |= std::uint32_t{take<std::uint8_t>()} << (8 * i);
+    return value;
+  }
+};
+
+[[noreturn]] void refuse_relief(const std::filesystem::path& file, const std::string& why) {
+  throw FileError("'" + file.string() + "': " + why);
+}
+
+bool is_camera(const ReliefCamera& camera) {
+  const double a = std::sqrt(dot(camera.a, camera.a)), b = std::sqrt(dot(camera.b, camera.b));
+  const double f = std::sqrt(dot(camera.f, camera.f));
+  for (const double value : {camera.origin.x, camera.origin.y, camera.origin.z, a, b, f}) {
+    if (!std::isfinite(value)) return false;
+  }
+  constexpr double kSquare = 1e-6;
+  return a > 0.0 && b > 0.0 && std::fabs(f - 1.0) < kSquare && camera.depth_m > 0.0 &&
+         std::isfinite(camera.depth_m) && std::fabs(dot(camera.a, camera.b)) < kSquare * a * b &&
+         std::fabs(dot(camera.a, camera.f)) < kSquare * a &&
+         std::fabs(dot(camera.b, camera.f)) < kSquare * b;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_relief(const ReliefTexture& relief) {
+  std::vector<std::byte> bytes;
+  for (const char letter : kReliefMagic) bytes.push_back(static_cast<std::byte>(letter));
+  append_little_endian(bytes, kReliefVersion);
+  append_little_endian(bytes, static_cast<std::uint32_t>(relief.width));
+  append_little_endian(bytes, static_cast<std::uint32_t>(relief.height));
+  append_little_endian(bytes, static_cast<std::uint32_t>(relief.depth_bits));
+  append_little_endian(bytes, std::uint32_t{relief.normals.empty() ? 0u : 1u});
+  const ReliefCamera& camera = relief.camera;
+  for (const glm::dvec3& v : {camera.origin, camera.a, camera.b, camera.f}) append_vector(bytes, v);
+  append_number(bytes, camera.depth_m);
+  for (const std::uint16_t code : relief.depths) {
+    if (relief.depth_bits == 8) {
+      bytes.push_back(static_cast<std::byte>(code));
+    } else {
+      append_little_endian(bytes, code);
+    }
+  }
+  append_threes(bytes, relief.colours);
+  append_threes(bytes, relief.normals);
+  append_little_endian(bytes, sum_of(bytes));
+  return bytes;
+}
+
+ReliefTexture decode_relief(std::string_view text, const std::filesystem::path& file) {
+  const std::span<const std::byte> bytes{reinterpret_cast<const std::byte*>(text.data()),
+                                         text.size()};
+  if (!text.starts_with(kReliefMagic)) {
+    refuse_relief(file, "is no relief texture; softfocus relief make writes one");
+  }
+  if (bytes.size() < kReliefHeader + kReliefSum) {
+    refuse_relief(file, "is cut short, in its first " + std::to_string(kReliefHeader) + " bytes");
+  }
+  ReliefReader reader{bytes.subspan(kReliefMagic.size())};
+  const auto version = reader.take<std::uint32_t>();
+  const auto width = reader.take<std::uint32_t>(), height = reader.take<std::uint32_t>();
+  const auto bits = reader.take<std::uint32_t>(), with_normals = reader.take<std::uint32_t>();
+  if (version != kReliefVersion) {
+    refuse_relief(file, "has version " + std::to_string(version) + "; 1 would be right");
+  }
+  if (width < 1 || width > kMostReliefSize || height < 1 || height > kMostReliefSize) {
+    refuse_relief(file, "claims " + std::to_string(width) + "x" + std::to_string(height) +
+                            " texels; each side has 1 to " + std::to_string(kMostReliefSize));
+  }
+  if ((bits != 8 && bits != 16) || with_normals > 1) {
+    refuse_relief(file, "claims " + std::to_string(bits) + " bits of depth and " +
+                            std::to_string(with_normals) +
+                            " maps of normals; 8 or 16, and 0 or 1 would be right");
+  }
+  const std::size_t texels = std::size_t{width} * height;
+  const std::size_t wanted =
+      kReliefHeader + texels * (bits / 8 + 3 + 3 * with_normals) + kReliefSum;
+  if (bytes.size() != wanted) {
+    refuse_relief(file, "has " + std::to_string(bytes.size()) + " bytes; " + std::to_string(width) +
+                            "x" + std::to_string(height) + " texels take " +
+                            std::to_string(wanted));
+  }
+  if (little_endian<std::uint64_t>(bytes.last(kReliefSum)) !=
+      sum_of(bytes.first(bytes.size() - kReliefSum))) {
+    refuse_relief(file, "was changed since it was written: its sum is wrong; make it anew");
+  }
+  ReliefTexture relief;
+  relief.width = static_cast<int>(width);
+  relief.height = static_cast<int>(height);
+  relief.depth_bits = static_cast<int>(bits);
+  ReliefCamera& camera = relief.camera;
+  for (glm::dvec3* v : {&camera.origin, &camera.a, &camera.b, &camera.f}) *v = reader.take_vector();
+  camera.depth_m = reader.take_number();
+  if (!is_camera(camera)) {
+    refuse_relief(file,
+                  "has no camera: a, b and f must be at right angles, f of length 1, and the "
+                  "depth above 0");
+  }
+  relief.depths.reserve(texels);
+  for (std::size_t i = 0; i < texels; ++i) {
+    relief.depths.push_back(bits == 8 ? reader.take<std::uint8_t>() : reader.take<std::uint16_t>());
+  }
+  const std::uint16_t empty = empty_depth(relief.depth_bits);
+  for (std::size_t i = 0; i < texels; ++i) {
+    const std::uint32_t colour = reader.take_three();
+    relief.colours.push_back(relief.depths[i] == empty ? 0 : colour | 0xFF000000u);
+  }
+  for (std::size_t i = 0; i < texels * with_normals; ++i) {
+    relief.normals.push_back(reader.take_three());
+  }
+  if (!relief_extent(relief)) {
+    refuse_relief(
+        file, "shows nothing: all its depths are " + std::to_string(empty) + ", which is empty");
+  }
+  return relief;
+}
+
+ReliefTexture read_relief_file(const std::filesystem::path& file) {
+  return decode_relief(read_file_bytes(file, kMostReliefBytes), file);
+}
+
+}  // namespace softfocus

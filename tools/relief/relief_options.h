@@ -1,0 +1,62 @@
+#pragma once
+// What `softfocus relief` reads, whatever it does.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/relief/impostor.h"
+#include "tools/cli/option_values.h"
+#include "tools/options/run_options.h"
+
+namespace softfocus {
+
+/// What of a relief is shown.
+enum class ReliefPart : std::uint8_t { image, depth, normals };
+
+struct ReliefOptions {
+  std::string action, input;
+  std::string output;
+  FileFormat format = FileFormat::png;
+  std::vector<std::filesystem::path> scene_path;
+  double frame = 0.0;
+  PictureSize size{1024, 1024};  ///< of pictures
+  PictureSize texels{256, 256};  ///< of the relief
+  int depth_bits = 8;
+  bool normals = false;
+  double yaw_degrees = 0.0, pitch_degrees = 0.0;
+  double distance = 2.5;  ///< of the eye from the relief's middle, in diagonals of its box
+  ReliefPart part = ReliefPart::image;
+  Resampling resampling = Resampling::intertwined;
+  bool fixed = false;
+  int frames = 360;  ///< of a turn
+  int every = 10;    ///< so many frames, errors are measured
+  double tolerance = 8.0, texels_per_pixel = 1.0, zoom = 1.0;
+  int regions = 1;
+  double join_texels = WarpRule::kJoinAll;
+  int turns = 1;
+  double cache_mb = 0.0;
+  bool no_sprites = false;
+  int runs = 20;
+  PoolOptions pool;
+};
+
+WarpRule warp_rule(const ReliefOptions& options);
+
+/// A point in the middle of the relief's box, and the box's diagonal.
+glm::dvec3 relief_middle(const ReliefTexture& relief);
+double relief_diagonal(const ReliefTexture& relief);
+
+/// A camera about the relief's middle, as the options turn it away from the relief's own view.
+Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options);
+
+// --- the actions; each returns the exit status ---
+
+int bench_relief(const ReliefOptions& options);
+int turn_impostor(const ReliefOptions& options);
+
+/// Reads the scene that an action takes, and says what it lacks.
+Scene relief_scene(const ReliefOptions& options);
+
+}  // namespace softfocus
