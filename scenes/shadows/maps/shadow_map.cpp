@@ -284,19 +284,7 @@ MapPlace map_place(const ShadowMap& map, const Receiver& receiver, glm::dvec3 po
   double n_ahead = dot(plane.normal, side.axes[2]);
   if (is_point) n_ahead = (n_x * x + n_y * y) + n_ahead;
   place.slope = std::sqrt(n_x * n_x + n_y * n_y) / std::fabs(n_ahead);
-  if (!(place.slope > kMostSlope)) return place;
-  for (const glm::dvec3& corner : receiver.corners_of_outline()) {
-    place.rises_m = std::max(place.rises_m, p.z - in_side(side, corner).z);
-  }
   return place;
-}
-
-double bias_m(const ShadowMapSettings& settings, const MapPlace& place) {
-  const auto by = [&](double slope) { return place.reach_m * settings.slope_bias * slope; };
-  const double most = std::max(by(kMostSlope), place.rises_m);
-  const double of_slope =
-      place.slope > kMostSlope ? std::min(by(place.slope), most) : by(place.slope);
-  return place.reach_m * settings.bias + of_slope;
 }
 
 std::optional<MapComparison> map_comparison(const ShadowMap& map, const MapPlace& place) {

@@ -74,25 +74,12 @@ struct MapPlace {
   double z = 0.0;           ///< metres before the side's origin
   double reach_m = 0.0;     ///< what the kernel reaches there: its width
   double slope = 0.0;       ///< of the plane: z's change over a metre across
-  /// Of a receiver steeper than kMostSlope: how far it comes nearer to the light than the point,
-  /// and so the most that it can shade itself by.
-  double rises_m = 0.0;
 };
-
-/// What the light sees edge-on would be moved to infinity by a slope's bias. It is moved as what
-/// has this slope; with half as much curved surfaces shade themselves, with three times as much
-/// they lose their shadows (docs/shadows.md).
-inline constexpr double kMostSlope = 32.0;
 
 MapPlace map_place(const ShadowMap& map, const Receiver& receiver, glm::dvec3 point);
 
-/// How far a place is moved towards the light:
-///   reach_m * bias + min(by(slope), max(by(kMostSlope), rises_m)), by(s) = reach_m * slope_bias *
-///   s
-double bias_m(const ShadowMapSettings& settings, const MapPlace& place);
-
 /// What is compared: the texels of the kernel around (u, v) that the side has, each with `own`, the
-/// nearness of the place moved by bias_m().
+/// nearness of the place moved towards the light by reach_m * (bias + slope_bias * slope).
 struct MapComparison {
   int u, v;
   double own;
@@ -101,8 +88,8 @@ struct MapComparison {
 /// Nothing for a place that is lit without a look.
 std::optional<MapComparison> map_comparison(const ShadowMap& map, const MapPlace& place);
 
-/// How many of the kernel's texels hold something nearer to the light than the place, moved by
-/// bias_m(): 0 to kernel * kernel (percentage closer filtering, Reeves, Salesin and Cook 1987).
+/// How many of the kernel's texels hold something nearer to the light than the moved place: 0 to
+/// kernel * kernel (percentage closer filtering, Reeves, Salesin and Cook 1987).
 int blocked_texels(const ShadowMap& map, const MapPlace& place);
 
 }  // namespace softfocus
