@@ -67,6 +67,7 @@ void update(SceneShadows& shadows, const Scene& scene, std::span<const Light> li
             ThreadPool& pool) {
   const bool has_facets = shadows.frame && (*shadows.frame == frame || !shadows.moves);
   std::vector<ShadowLight> placed;
+  placed.reserve(shadows.lights.size());
   for (const std::size_t number : shadows.lights) placed.push_back(shadow_light(lights[number]));
   if (has_facets && placed == shadows.placed) return;
   if (!has_facets) {
@@ -88,6 +89,7 @@ void update(SceneShadows& shadows, const Scene& scene, std::span<const Light> li
 
 std::vector<const ProjectedShadows*> pointers_to(const std::vector<ProjectedShadows>& projected) {
   std::vector<const ProjectedShadows*> of_lights;
+  of_lights.reserve(projected.size());
   for (const ProjectedShadows& of_light : projected) of_lights.push_back(&of_light);
   return of_lights;
 }

@@ -19,7 +19,7 @@ TEST_CASE("what is no TOML is a complaint with the line") {
 TEST_CASE("every unknown key is an error that names the line and the keys there are") {
   CHECK(complaint("title = \"x\"\ntitel = \"y\"\n") ==
         "a.toml:2: titel: there is no such key; here are title, background, ambient_light, "
-        "camera, lens, light, effect, texture, material, object and scatter");
+        "camera, lens, light_points, light, effect, texture, material, object and scatter");
   CHECK(contains(complaint("mm = 1\nzz = 2\naa = 3\n"), "a.toml:1: mm: there is no such key"));
   CHECK(complaint("[lens]\nfocus_m = 2\nfocus = 3\n") ==
         "a.toml:3: lens.focus: there is no such key; here are focal_length_mm, f_number, "

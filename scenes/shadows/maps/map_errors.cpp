@@ -29,8 +29,8 @@ bool is_at_edge(const Facets& facets, const ShadowMap& map, const ShadowTruth& t
   const auto differs = [&](double u, double v) {
     return truth.is_dark_at(seen, point_at(map, *place.side, plane, u, v), memory) != is_dark;
   };
-  const int kernel = map.settings.kernel;
-  const double u = std::floor(place.u) - kernel / 2, v = std::floor(place.v) - kernel / 2;
+  const int kernel = map.settings.kernel, before = kernel / 2;
+  const double u = std::floor(place.u) - before, v = std::floor(place.v) - before;
   for (int j = 0; j < kernel; ++j) {
     for (int i = 0; i < kernel; ++i) {
       if (differs(u + i + 0.5, v + j + 0.5)) return true;
