@@ -318,6 +318,8 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
       if (name != "sphere-world") {
         hashes.push_back(soft_hash(name, scene, view, size, profile, where, pool));
       }
+      const std::vector<NamedHash> of_relief = relief_hashes(golden, pool);
+      hashes.insert(hashes.end(), of_relief.begin(), of_relief.end());
       if (name == "figures") {
         hashes.push_back(terminator_hash(name, scene, Terminator::normals, "shadows-normals", view,
                                          size, profile, where, pool));

@@ -45,7 +45,11 @@ std::span<const FrameSize> golden_sizes(GoldenSet set = GoldenSet::all);
 std::vector<NamedHash> frame_hashes(const GoldenScene& scene, const FrameSize& size,
                                     const NamedProfile& profile, ThreadPool& pool);
 
-/// The same for all scenes, at all sizes, under all profiles.
+/// "SCENE relief-WHAT ieee WIDTHxHEIGHT": textures of both depths, every resampling with both kinds
+/// of numbers, and the last of them mapped.
+std::vector<NamedHash> relief_hashes(const GoldenScene& scene, ThreadPool& pool);
+
+/// frame_hashes() for all scenes, at all sizes, under all profiles.
 std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
                                     std::span<const FrameSize> sizes,
                                     std::span<const NamedProfile> profiles, ThreadPool& pool);

@@ -1,0 +1,69 @@
+#include "raster/images/image_hash.h"
+#include "raster/numbers/hash.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/relief/make_relief.h"
+#include "scenes/relief/map_relief.h"
+#include "scenes/relief/resample.h"
+#include "tools/golden/hashes.h"
+
+namespace softfocus {
+namespace {
+
+template <class Numbers>
+void add_all(Hash& hash, const Numbers& numbers) {
+  for (const auto number : numbers) add_to_hash(hash, number);
+}
+
+std::uint64_t hash_of(const ReliefTexture& relief) {
+  Hash hash;
+  add_all(hash, relief.depths);
+  add_all(hash, relief.colours);
+  add_all(hash, relief.normals);
+  return hash.value;
+}
+
+}  // namespace
+
+std::vector<NamedHash> relief_hashes(const GoldenScene& golden, ThreadPool& pool) {
+  constexpr int kWidth = 61, kHeight = 43, kPicture = 64;
+  const auto named = [&](std::string_view what) {
+    return golden.name + " relief-" + std::string{what} + " ieee " + std::to_string(kWidth) + 'x' +
+           std::to_string(kHeight);
+  };
+  std::vector<NamedHash> hashes;
+  ReliefMaker maker = prepare_relief(golden.scene, 0.0, pool);
+  const glm::dvec3 ahead{0.0, 0.0, 2.5 * maker.radius_m};
+  const ReliefView view{.eye = maker.middle + ahead};
+  const ReliefForm form{.width = kWidth, .height = kHeight, .with_normals = true};
+  hashes.push_back(
+      {named("16-bits"), hash_of(make_relief(maker, view, {kWidth, kHeight, 16, false}, pool))});
+  const ReliefTexture relief = make_relief(maker, view, form, pool);
+  hashes.push_back({named("8-bits"), hash_of(relief)});
+  const ReliefExtent extent = relief_extent(relief).value();
+  Camera camera = golden.scene.camera;
+  camera.target = maker.middle;
+  camera.position = maker.middle + ahead + glm::dvec3{0.5, 0.25, -0.25} * maker.radius_m;
+  const PlaneRectangle place = warped_extent(relief, extent, camera.position).value();
+  const CameraMatrices matrices = camera_matrices(camera, 0.0, kPicture, kPicture);
+  WarpedRelief warped;
+  for (const NamedResampling& of : kResamplings) {
+    for (const PlaceNumbers numbers : {PlaceNumbers::floats, PlaceNumbers::fixed}) {
+      warp_relief(relief, extent, camera.position, place, {of.resampling, numbers}, warped, pool);
+      Hash hash;
+      add_all(hash, warped.colours);
+      // Where nothing is a depth means nothing.
+      for (std::size_t i = 0; i < warped.depths_m.size(); ++i) {
+        if (warped.colours[i] != 0) add_to_hash(hash, warped.depths_m[i]);
+      }
+      const std::string name{of.name};
+      hashes.push_back(
+          {named(numbers == PlaceNumbers::fixed ? name + "-fixed" : name), hash.value});
+    }
+  }
+  Image picture = draw_scene(golden.scene, matrices, 0.0, kPicture, kPicture, Profile{}, pool);
+  map_relief(warped, plane_mapping(relief, matrices, place, kPicture, kPicture), picture, pool);
+  hashes.push_back({named("mapped"), hash_image(picture)});
+  return hashes;
+}
+
+}  // namespace softfocus
