@@ -133,6 +133,7 @@ TEST_CASE("a frame with soft shadows is the exact mean of its points' frames") {
   const Scene scene = soft_scene(kFew);
   const Image picture = drawn(scene, pool);
   std::vector<Image> frames;
+  frames.reserve(kFew);
   for (int i = 0; i < kFew; ++i) frames.push_back(drawn(at_point(scene, i), pool));
   CHECK_FALSE(equal(frames[0], frames[1]));
   for (int y = 0; y < 80; ++y) {

@@ -72,6 +72,7 @@ TEST_CASE("a row's places have the table's bits on every vector unit") {
   const PreWarp warp = pre_warp(relief, {0.4, -0.2, 1.5});
   const std::vector<WarpedDepth> table = warp_table(warp, 16);
   std::vector<std::uint16_t> codes;
+  codes.reserve(77);
   for (int i = 0; i < 77; ++i) codes.push_back(static_cast<std::uint16_t>(random.whole(0, 65534)));
   for (const Isa isa : available_isas()) {
     std::vector<float> u(77), v(77);

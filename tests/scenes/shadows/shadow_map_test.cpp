@@ -97,8 +97,10 @@ bool is_as_rays_say(const Facets& facets, const ShadowMap& map, const MapSide& s
 // Calls use(point, blocked_texels()) for a grid on the floor, which facet 0 is of.
 template <class Use>
 void for_each_point(const Facets& facets, const ShadowMap& map, const Use& use) {
-  for (double x = -2.91; x < 3.0; x += 0.0253) {
-    for (double z = -2.93; z < 3.0; z += 0.0257) {
+  for (int x_step = 0; - 2.91 + 0.0253 * x_step < 3.0; ++x_step) {
+    const double x = -2.91 + 0.0253 * x_step;
+    for (int z_step = 0; - 2.93 + 0.0257 * z_step < 3.0; ++z_step) {
+      const double z = -2.93 + 0.0257 * z_step;
       const glm::dvec3 point{x, 0, z};
       use(point, blocked_texels(map, map_place(map, facets.receivers[0], point)));
     }
@@ -274,8 +276,10 @@ TEST_CASE("a long plane does not shade itself along its texels' longer side") {
     for (const glm::dvec3& towards : {glm::dvec3{1, 0.4, 0}, {0, 0.4, 1}, {0.7, 0.4, 0.7}}) {
       const ShadowMap map = drawn(facets, {normalize(towards), 0.0}, of_scene(64, 0.0, 0.75));
       int dark = 0;
-      for (double across = -0.99; across < 1.0; across += 0.023) {
-        for (double along = -0.99; along < 1.0; along += 0.0047) {
+      for (int across_step = 0; - 0.99 + 0.023 * across_step < 1.0; ++across_step) {
+        const double across = -0.99 + 0.023 * across_step;
+        for (int along_step = 0; - 0.99 + 0.0047 * along_step < 1.0; ++along_step) {
+          const double along = -0.99 + 0.0047 * along_step;
           const glm::dvec3 point{x * (is_along_x ? along : across), 0,
                                  z * (is_along_x ? across : along)};
           dark += blocked_texels(map, map_place(map, facets.receivers[0], point));
@@ -318,8 +322,10 @@ TEST_CASE("a share is the part of the kernel's texels that are nearer than the b
     for (const int kernel : {3, 5}) {
       const ShadowMap map = drawn(facets, light, of_scene(64, 0.25, 0.75, kernel));
       int partly = 0;
-      for (double x = -2.9; x < 3.0; x += 0.11) {
-        for (double z = -2.9; z < 3.0; z += 0.13) {
+      for (int x_step = 0; - 2.9 + 0.11 * x_step < 3.0; ++x_step) {
+        const double x = -2.9 + 0.11 * x_step;
+        for (int z_step = 0; - 2.9 + 0.13 * z_step < 3.0; ++z_step) {
+          const double z = -2.9 + 0.13 * z_step;
           const MapPlace place = map_place(map, facets.receivers[0], {x, 0, z});
           const double at = place.z - place.reach_m * (0.25 + 0.75 * place.slope);
           int nearer = 0;

@@ -68,10 +68,10 @@ std::vector<SeenFacet> seen_by_rays(const Facets& facets, const CameraMatrices& 
       const FacetPlane& plane = facets.planes[i];
       const double of_eye = height_over(plane, camera.eye);
       if (!has_plane(plane) || (of_eye < 0.0 && !facets.facets[i].two_sided)) continue;
+      const auto column = pixel % kWidth, line = pixel / kWidth;
       const glm::dvec3 p = seen_point(
           plane, view.world_to_clip, camera.eye,
-          {static_cast<double>(pixel % kWidth) + 0.5, static_cast<double>(pixel / kWidth) + 0.5},
-          kWidth, kHeight);
+          {static_cast<double>(column) + 0.5, static_cast<double>(line) + 0.5}, kWidth, kHeight);
       const auto& c = facets.facets[i].corners;
       bool inside = true;
       for (std::size_t k = 0; k < 3; ++k) {

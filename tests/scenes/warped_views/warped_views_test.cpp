@@ -55,6 +55,7 @@ Warped warped(const WarpSource& source, glm::vec2 shift, const Rectangle& area, 
 Image random_picture(int width, int height) {
   test::Random random{.state = 7};
   std::vector<float> depths;
+  depths.reserve(64);
   for (int i = 0; i < 64; ++i) depths.push_back(depth_of(random.between(-7.0f, 7.5f)));
   return picture_of(width, height, [&](int x, int y) {
     const float slope = 0.002f * static_cast<float>(x % 13 + y % 5);
