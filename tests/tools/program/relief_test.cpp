@@ -12,7 +12,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 std::string relief_by(const TemporaryDirectory& folder, const Words& more = {}) {
-  const std::string file = folder.file("a.relief");
+  std::string file = folder.file("a.relief");
   Words words{"relief", "make", "figures", "--texels", "48x40", "-o", file};
   words.insert(words.end(), more.begin(), more.end());
   const ProgramRun run = run_program(words);
