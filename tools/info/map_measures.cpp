@@ -1,8 +1,9 @@
 #include "tools/info/map_measures.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -198,7 +199,9 @@ void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int run
         const auto of_row = row<float>(theirs, y);
         const float* from = ours.data() + static_cast<std::size_t>(y) * of_row.size();
         for (std::size_t x = 0; x < of_row.size(); ++x) {
-          differ += std::memcmp(&of_row[x], from + x, sizeof(float)) != 0 ? 1 : 0;
+          differ += std::bit_cast<std::uint32_t>(of_row[x]) != std::bit_cast<std::uint32_t>(from[x])
+                        ? 1
+                        : 0;
         }
       }
     }

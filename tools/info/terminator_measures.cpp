@@ -86,7 +86,7 @@ ShapePicture draw_shape(Scene scene, const RuleName& rule, PictureSize size, Thr
   return drawn;
 }
 
-enum ShapeRegion : std::uint8_t { kElsewhere, kFloor, kShape, kBand };
+enum ShapeRegion : std::uint8_t { elsewhere, on_floor, on_shape, in_band };
 constexpr std::size_t kShapeRegions = 4;
 
 // The band is where facets and their corners' normals disagree about the light.
@@ -95,18 +95,18 @@ std::vector<ShapeRegion> regions_of(const ShapePicture& drawn, const Scene& scen
   const ShadowLight light = shadow_light(scene.lights[0]);
   std::vector<ShapeRegion> regions;
   for (const SeenFacet seen : drawn.seen) {
-    regions.push_back(kElsewhere);
+    regions.push_back(elsewhere);
     if (!shows_facet(seen)) continue;
     const std::uint32_t facet = facet_of(seen);
     const bool back = seen_from_back(seen);
-    regions.back() = surfaces.object_of[facet] == 1 ? kFloor : kShape;
-    if (regions.back() == kFloor) continue;
+    regions.back() = surfaces.object_of[facet] == 1 ? on_floor : on_shape;
+    if (regions.back() == on_floor) continue;
     const std::array<double, 3> cosines =
         corner_cosines(drawn.facets, surfaces, facet, back, light);
     const auto [least, most] = std::minmax({cosines[0], cosines[1], cosines[2]});
     const double faces = (back ? -1.0 : 1.0) * height_over(drawn.facets.planes[facet], light);
     if (faces > 0.0 ? least <= 0.0 : most > 0.0) {
-      regions.back() = kBand;
+      regions.back() = in_band;
     }
   }
   return regions;
@@ -121,11 +121,11 @@ void print_row(std::string_view name, const PixelMap& flip,
     ++counts[regions[i]];
   }
   std::printf("  %-12s %9.4f", std::string{name}.c_str(), mean(flip));
-  for (const ShapeRegion region : {kBand, kShape, kFloor}) {
+  for (const ShapeRegion region : {in_band, on_shape, on_floor}) {
     std::printf(" %9.4f",
                 counts[region] == 0 ? 0.0 : sums[region] / static_cast<double>(counts[region]));
   }
-  std::printf(" %9zu\n", counts[kBand]);
+  std::printf(" %9zu\n", counts[in_band]);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ class ExrInput : public Imf::IStream {
       while (at_ < end) at_ += static_cast<std::uint64_t>(claimed(number()));
       is_at = at_;
     } else if (type == "chlist") {
-      while (!name().empty()) seekg(at_ + 16);
+      while (!name().empty()) ExrInput::seekg(at_ + 16);
       is_at = at_;
     } else if (type == "preview") {
       const auto width = static_cast<std::uint32_t>(number());
@@ -123,7 +123,7 @@ class ExrInput : public Imf::IStream {
 
   int number() {
     std::array<char, 4> bytes{};
-    read(bytes.data(), 4);
+    ExrInput::read(bytes.data(), 4);
     std::uint32_t value = 0;  // little-endian, on every machine
     for (int i = 3; i >= 0; --i) {
       value = value << 8 | static_cast<unsigned char>(bytes[static_cast<std::size_t>(i)]);
@@ -134,7 +134,7 @@ class ExrInput : public Imf::IStream {
   std::string name() {
     std::string text;
     char c = 0;
-    while (read(&c, 1), c != 0) {
+    while (ExrInput::read(&c, 1), c != 0) {
       if (text.size() == kLongestName) throw FileError("the EXR is damaged: a name has no end");
       text += c;
     }
