@@ -128,7 +128,8 @@ StressTrial make_bars(double width_px, int size, ThreadPool& pool) {
   bar.material = kThingMaterial;
   bar.scale = {width, 0.9, width};
   for (int i = 0; i < kBars; ++i) {
-    bar.position = {0.27 * (i - kBars / 2), 0.45, 0.11 * i - 0.6};
+    const int from_middle = i - kBars / 2;
+    bar.position = {0.27 * from_middle, 0.45, 0.11 * i - 0.6};
     scene.objects.push_back(bar);
   }
   add_usual_light(scene);
