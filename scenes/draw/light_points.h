@@ -14,10 +14,10 @@
 //   point        middle + radius (x, y, z), z = sqrt(1 - r^2) sin(360 t degrees)
 //
 // The points of a ball have the density 1 / sqrt(1 - |p|^2): (x, y, z) and sqrt(1 - r^2) cos are
-// uniform on the sphere of four dimensions, of which any two axes have a uniform disc. So from far
-// away on every side the ball looks like a uniform disc, as a glowing ball does. A disc that faces
-// each pixel would be the same to the first order of radius / distance, but its points would differ
-// from pixel to pixel, and no shadow of theirs could be projected.
+// uniform on the sphere of four dimensions. Seen along any two of its axes it is a uniform disc. So
+// from far away on every side the ball looks like a uniform disc, as a glowing ball does. A disc
+// that faces each pixel would be the same to the first order of radius / distance, but its points
+// would differ from pixel to pixel, and no shadow of theirs could be projected.
 
 #include <cstdint>
 #include <span>

@@ -147,7 +147,7 @@ template <class Numbers, int sign, class Put>
   }
 }
 
-/// A step from one neighbour to the next, each of which may be missing: `is_from`, `is_there`.
+/// A step from one neighbour to the next. Either may be missing: `is_from`, `is_there`.
 /// Where the walk runs on, it fills the way; where not, a run ends half a texel past `from`, and
 /// another begins half a texel before `texel`.
 template <class Numbers, int sign, class Put>

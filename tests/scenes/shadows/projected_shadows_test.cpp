@@ -94,7 +94,7 @@ TEST_CASE("coplanar neighbours are one receiver") {
   for (std::size_t i = 0; i < 8; ++i) CHECK(facets.receiver_of[i] == 0);
 }
 
-TEST_CASE("coplanar neighbours of which one alone is two-sided are two receivers") {
+TEST_CASE("a two-sided facet and a one-sided one beside it in its plane are two receivers") {
   std::vector<Facet> corners;
   add_triangle(corners, {0, 0, 1}, {1, 0, 1}, {1, 0, 0});
   add_triangle(corners, {0, 0, 1}, {1, 0, 0}, {0, 0, 0});

@@ -19,7 +19,7 @@ namespace {
 
 constexpr PixelCoc kCircles{8.0f, 2.0f};
 
-/// Depths of which the circles are `radius_px`.
+/// The depth whose circle is `radius_px`.
 float depth_of(float radius_px) {
   return kCircles.focus_m / (1.0f - radius_px / kCircles.radius_at_infinity_px);
 }
