@@ -8,6 +8,7 @@
 
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/jpeg_check.h"
+#include "scenes/files/png_check.h"
 #include "scenes/files/scene_error.h"
 
 // What a damaged file leaves unset is 0 then, and not what was there before.
@@ -52,6 +53,9 @@ Texture load_texture(const std::filesystem::path& file) {
   if (lacks_huffman_table(bytes)) {
     fail(file,
          "is damaged (a scan without its Huffman table); a complete PNG or JPEG file would do");
+  }
+  if (has_cut_png_chunk(bytes)) {
+    fail(file, "is damaged (a chunk goes on past the end); a complete PNG or JPEG file would do");
   }
   int width = 0;
   int height = 0;

@@ -83,6 +83,21 @@ TEST_CASE("a PNG that is cut short is damaged, wherever it is cut") {
   }
 }
 
+TEST_CASE("no memory is taken for what a chunk of a PNG claims and the file does not have") {
+  // The length of IDAT, behind the signature and IHDR's 25 bytes.
+  std::string png = png_bytes(64, 64);
+  REQUIRE(png.substr(37, 4) == "IDAT");
+  png.replace(33, 4, std::string("\x7D\xFF\xFF\xFF", 4));
+  CHECK(complaint(png).starts_with("is damaged (a chunk goes on past the end)"));
+}
+
+TEST_CASE("what comes behind the end of a PNG does not matter") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("longer.png");
+  write_file(file, png_bytes(64, 64) + "\x7F\xFF\xFF\xFFmore than this");
+  CHECK(load_texture(file).levels[0].width == 64);
+}
+
 TEST_CASE("a JPEG that is cut short is damaged, not half grey") {
   const std::string whole = read_file(kJpeg);
   REQUIRE(whole.size() > 100);
