@@ -9,11 +9,9 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <vector>
 
-#include "scenes/draw/shadowed_layers.h"
-#include "scenes/load/load_scene.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/shadows/point_in_shadow.h"
 #include "scenes/shadows/shadow_errors.h"
 #include "scenes/shadows/volumes/pixel_space.h"
@@ -142,37 +140,6 @@ std::size_t check_masks(const std::vector<Facet>& corners, const ShadowLight& li
 
 const ShadowLight kSun{normalize(glm::dvec3{-0.7, 1, 0.4}), 0.0};
 const ShadowLight kLamp{{-1.3, 2.6, 1.1}, 1.0};
-
-void check_scene(const std::string& name, int width, int height) {
-  Scene scene = load_scene(name, scene_search_path({}));
-  set_shadows(scene, ShadowKind::volumes);
-  ThreadPool pool{2};
-  const CameraMatrices camera = camera_matrices(scene.camera, 5.0, width, height);
-  std::vector<ShadowLight> lights;
-  for (const Light& light : scene.lights) lights.push_back(shadow_light(light));
-  PreparedScene prepared = prepare_scene(scene, {}, pool);
-  Image picture = make_image(Format::rgba16f, width, height);
-  std::vector<Image> behind(1, picture);
-  std::vector<std::vector<std::uint8_t>> first;
-  for (const VolumeCount count : {VolumeCount::z_fail, VolumeCount::z_pass}) {
-    prepared.shadows->volume_count = count;
-    draw_layers(prepared, camera, 5.0, picture, behind, pool);
-    const SceneShadows& shadows = *prepared.shadows;
-    if (first.empty()) first = shadows.masks;
-    for (std::size_t layer = 0; layer < 2; ++layer) {
-      CAPTURE(layer);
-      const ShadowErrors errors =
-          shadow_errors(shadows.facets, lights, shadows.seen[layer], shadows.masks[layer],
-                        {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, {}},
-                        camera.eye, true, pool);
-      CHECK(errors.in_shadow > errors.seen / 100);
-      CHECK(errors.in_shadow < errors.seen);
-      CHECK(errors.wrong == 0);
-      CHECK(errors.near_edge <= 1);
-      CHECK(differences(first[layer], shadows.masks[layer]) <= errors.near_edge);
-    }
-  }
-}
 
 }  // namespace
 
@@ -504,32 +471,5 @@ TEST_CASE("a sample on a common edge of two casters is in the volume of one") {
       on_edge += counted.samples[i].x == 0.5 && from_middle < 1.0 ? 1 : 0;
     }
     CHECK(on_edge > 5);
-  }
-}
-
-TEST_CASE("cube-room's volumes are right") { check_scene("cube-room", 160, 120); }
-
-TEST_CASE("figures' volumes are right") { check_scene("figures", 160, 120); }
-
-TEST_CASE("sphere-world's volumes are right" * doctest::test_suite("long")) {
-  check_scene("sphere-world", 200, 150);
-}
-
-TEST_CASE("volumes give the same bits on every vector unit and number of threads" *
-          doctest::test_suite("threads")) {
-  Scene scene = load_scene("cube-room", scene_search_path({}));
-  set_shadows(scene, ShadowKind::volumes);
-  const CameraMatrices camera = camera_matrices(scene.camera, 5.0, 150, 97);
-  const auto mask_by = [&](ThreadPool& pool) {
-    PreparedScene prepared = prepare_scene(scene, {}, pool);
-    Image picture = make_image(Format::rgba16f, 150, 97);
-    draw_scene(prepared, camera, 5.0, picture, pool);
-    return prepared.shadows->masks[0];
-  };
-  ThreadPool scalar{1, Isa::scalar};
-  const std::vector<std::uint8_t> expected = mask_by(scalar);
-  for (const Isa isa : {Isa::baseline, widest_isa()}) {
-    ThreadPool pool{3, isa};
-    CHECK(mask_by(pool) == expected);
   }
 }
