@@ -71,11 +71,21 @@ double pixels_across(double pixels, double size_m, double distance_m, double hal
   return pixels * size_m / (2.0 * distance_m * half_view_tangent);
 }
 
+ReliefView impostor_view(const ReliefMaker& maker, const CameraMatrices& camera,
+                         const ImpostorSettings& settings, glm::dvec3 up) {
+  ReliefView view{camera.eye, up, settings.projection};
+  if (view.projection == ReliefProjection::perspective && !can_project(maker, view)) {
+    view.projection = ReliefProjection::orthographic;
+  }
+  return view;
+}
+
 ReliefForm impostor_form(const ReliefMaker& maker, const CameraMatrices& camera,
                          const ImpostorSettings& settings, glm::dvec3 up, int height_px) {
   // Two texels each way are margin; of any size, the camera's width and height are the object's.
   constexpr int kAny = 4;
-  const ReliefCamera plane = relief_camera(maker, {camera.eye, up}, kAny, kAny);
+  const ReliefCamera plane =
+      relief_camera(maker, impostor_view(maker, camera, settings, up), kAny, kAny);
   const double distance = std::max(dot(plane.origin - camera.eye, plane.f), 1e-3 * maker.radius_m);
   const auto texels = [&](double size_m) {
     const double wanted =
@@ -142,7 +152,8 @@ ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
     } else {
       step = ImpostorStep::renew;
       const ReliefForm form = impostor_form(maker, camera, settings, up, height_px);
-      ReliefTexture texture = make_relief(maker, {eye, up}, form, pool);
+      ReliefTexture texture =
+          make_relief(maker, impostor_view(maker, camera, settings, up), form, pool);
       if (const std::optional<ReliefExtent> extent = relief_extent(texture)) {
         CriticalRegions critical =
             critical_regions(texture, *extent, settings.regions, settings.regions);

@@ -18,6 +18,7 @@ namespace softfocus {
 
 struct ImpostorSettings {
   WarpRule warp;
+  ReliefProjection projection = ReliefProjection::orthographic;
   int depth_bits = 8;
   double tolerance_texels = 8.0;  ///< the critical error that makes a renewal
   int regions = 1;                ///< 1: of one point; more: the mean of regions x regions points
@@ -52,7 +53,12 @@ struct Impostor {
 /// camera, in a picture of `pixels` pixels over an angle of view of 2 atan(half_view_tangent).
 double pixels_across(double pixels, double size_m, double distance_m, double half_view_tangent);
 
-/// The form of an object's relief for a view: 5-1 at the relief's plane, times texels_per_pixel.
+/// From where an object's relief is drawn for a view. Orthographic, too, if the eye is so near that
+/// a perspective camera would not hold the object.
+ReliefView impostor_view(const ReliefMaker& maker, const CameraMatrices& camera,
+                         const ImpostorSettings& settings, glm::dvec3 up);
+
+/// The form of its relief: 5-1 at the relief's plane, times texels_per_pixel.
 ReliefForm impostor_form(const ReliefMaker& maker, const CameraMatrices& camera,
                          const ImpostorSettings& settings, glm::dvec3 up, int height_px);
 

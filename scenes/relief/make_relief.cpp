@@ -8,6 +8,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/relief/packed_texel.h"
 
 namespace softfocus {
 namespace {
@@ -26,18 +27,85 @@ ReliefAxes relief_axes(glm::dvec3 eye, glm::dvec3 middle, glm::dvec3 up) {
   return axes;
 }
 
-// A colour's code; the byte that a signed unit is.
-std::uint32_t packed_colour(const std::uint16_t* texel, const std::vector<std::uint8_t>& codes) {
-  return std::uint32_t{codes[texel[0]]} | std::uint32_t{codes[texel[1]]} << 8 |
-         std::uint32_t{codes[texel[2]]} << 16 | 0xFF000000u;
+/// The least box along the view's axes: x right, y down, z forward.
+struct SeenBox {
+  glm::dvec3 low{kFarAway}, high{-kFarAway};
+
+  void add(const glm::dvec3& seen) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], seen[i]);
+      high[i] = std::max(high[i], seen[i]);
+    }
+  }
+  /// What has no width or depth gets some: texels and codes have a size.
+  void give_size(double least_m) {
+    for (int i = 0; i < 3; ++i) {
+      if (high[i] - low[i] >= least_m) continue;
+      low[i] -= least_m;
+      high[i] += least_m;
+    }
+  }
+};
+
+/// How far before the eye the object begins and ends.
+struct SpanBefore {
+  double nearest = kFarAway, farthest = -kFarAway;
+};
+SpanBefore span_before(const ReliefMaker& maker, const ReliefView& view, const ReliefAxes& axes) {
+  SpanBefore span;
+  for (const glm::dvec3& point : maker.points) {
+    const double away = dot(point - view.eye, axes.forward);
+    span.nearest = std::min(span.nearest, away);
+    span.farthest = std::max(span.farthest, away);
+  }
+  return span;
 }
 
-std::uint32_t packed_normal(const glm::vec4& n) {
-  const glm::vec3 unit = normalize(glm::vec3{n});
-  const auto byte = [](float v) {
-    return static_cast<std::uint32_t>(std::lrint(127.0f * v + 128.0f));
-  };
-  return byte(unit.x) | byte(unit.y) << 8 | byte(unit.z) << 16;
+/// The plane lies before the nearest point; texels are even on it.
+ReliefCamera perspective_camera(const ReliefMaker& maker, const ReliefView& view,
+                                const ReliefAxes& axes, int width, int height) {
+  const auto [nearest, last_point] = span_before(maker, view, axes);
+  const double farthest = std::max(last_point, nearest * (1.0 + 1e-6));
+  const double n = nearest - std::min((farthest - nearest) * kDepthMargin, 0.5 * nearest);
+  SeenBox box;
+  for (const glm::dvec3& point : maker.points) {
+    const glm::dvec3 ray = point - view.eye;
+    const double on_plane = n / dot(ray, axes.forward);
+    box.add({dot(ray, axes.right) * on_plane, dot(ray, axes.down) * on_plane, 0.0});
+  }
+  box.give_size(1e-6 * std::max(maker.radius_m, 1e-30) * n / nearest);
+  ReliefCamera camera;
+  const double across = (box.high.x - box.low.x) / (width - 2);
+  const double along = (box.high.y - box.low.y) / (height - 2);
+  camera.a = axes.right * across;
+  camera.b = axes.down * along;
+  camera.f = axes.forward;
+  camera.origin = ((view.eye + axes.right * (box.low.x - 0.5 * across)) +
+                   axes.down * (box.low.y - 0.5 * along)) +
+                  axes.forward * n;
+  // Of the last point: n z / (n + z).
+  const double last = farthest + (farthest - nearest) * kDepthMargin;
+  camera.depth_m = n * ((last - n) / last);
+  camera.eye = view.eye;
+  return camera;
+}
+
+/// x, y and depth as relief_matrices() has them; d = n - n^2 / w.
+glm::dmat4 perspective_clip(const ReliefCamera& camera, int width, int height) {
+  const double across = std::sqrt(dot(camera.a, camera.a));
+  const double along = std::sqrt(dot(camera.b, camera.b));
+  const glm::dvec3 corner = camera.origin - *camera.eye;
+  const double n = source_distance(camera);
+  glm::dmat4 clip{0.0};
+  clip[0][0] = 2.0 * n / (width * across);
+  clip[1][1] = -2.0 * n / (height * along);
+  // The eye looks along -z.
+  clip[2][0] = 1.0 - 1.0 / width + 2.0 * dot(corner, camera.a) / (across * across * width);
+  clip[2][1] = 1.0 - 1.0 / height + 2.0 * dot(corner, camera.b) / (along * along * height);
+  clip[2][2] = 1.0 - 2.0 * n / camera.depth_m;
+  clip[2][3] = -1.0;
+  clip[3][2] = -2.0 * n * n / camera.depth_m;
+  return clip;
 }
 
 }  // namespace
@@ -77,25 +145,25 @@ ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
   return maker;
 }
 
+bool can_project(const ReliefMaker& maker, const ReliefView& view) {
+  const auto [nearest, farthest] =
+      span_before(maker, view, relief_axes(view.eye, maker.middle, view.up));
+  return nearest > 0.0 && farthest <= kMostSpan * nearest;
+}
+
 ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int width,
                            int height) {
   const ReliefAxes axes = relief_axes(view.eye, maker.middle, view.up);
-  glm::dvec3 low{kFarAway}, high{-kFarAway};
+  if (view.projection == ReliefProjection::perspective) {
+    assert(can_project(maker, view));
+    return perspective_camera(maker, view, axes, width, height);
+  }
+  SeenBox box;
   for (const glm::dvec3& point : maker.points) {
-    const glm::dvec3 seen{dot(point, axes.right), dot(point, axes.down), dot(point, axes.forward)};
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], seen[i]);
-      high[i] = std::max(high[i], seen[i]);
-    }
+    box.add({dot(point, axes.right), dot(point, axes.down), dot(point, axes.forward)});
   }
-  // What has no width or depth gets some: texels and codes have a size.
-  for (int i = 0; i < 3; ++i) {
-    const double least = 1e-6 * std::max(maker.radius_m, 1e-30);
-    if (high[i] - low[i] < least) {
-      low[i] -= least;
-      high[i] += least;
-    }
-  }
+  box.give_size(1e-6 * std::max(maker.radius_m, 1e-30));
+  const auto [low, high] = box;
   ReliefCamera camera;
   const double across = (high.x - low.x) / (width - 2), along = (high.y - low.y) / (height - 2);
   const double margin = (high.z - low.z) * kDepthMargin;
@@ -110,6 +178,7 @@ ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int
 
 CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height, glm::dvec3 eye) {
   const glm::dvec3 right = normalize(camera.a), down = normalize(camera.b);
+  const glm::dvec3 centre = camera.eye ? *camera.eye : camera.origin;
   CameraMatrices matrices{};
   matrices.eye = eye;
   matrices.world_to_eye = glm::dmat4{1.0};
@@ -118,10 +187,14 @@ CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height
     matrices.world_to_eye[i][1] = -down[i];
     matrices.world_to_eye[i][2] = -camera.f[i];
   }
-  matrices.world_to_eye[3][0] = -dot(right, camera.origin);
-  matrices.world_to_eye[3][1] = dot(down, camera.origin);
-  matrices.world_to_eye[3][2] = dot(camera.f, camera.origin);
+  matrices.world_to_eye[3][0] = -dot(right, centre);
+  matrices.world_to_eye[3][1] = dot(down, centre);
+  matrices.world_to_eye[3][2] = dot(camera.f, centre);
   matrices.eye_to_clip = glm::dmat4{1.0};
+  if (camera.eye) {
+    matrices.eye_to_clip = perspective_clip(camera, width, height);
+    return matrices;
+  }
   matrices.eye_to_clip[0][0] = 2.0 / (width * std::sqrt(dot(camera.a, camera.a)));
   matrices.eye_to_clip[1][1] = -2.0 / (height * std::sqrt(dot(camera.b, camera.b)));
   matrices.eye_to_clip[2][2] = -2.0 / camera.depth_m;
@@ -171,7 +244,7 @@ ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const Reli
       relief.depths[at] = static_cast<std::uint16_t>(std::lrint(depths[x] * last));
       relief.colours[at] = packed_colour(colours + 4 * x, maker.code_of_half);
       if (form.with_normals) {
-        relief.normals[at] = packed_normal(load_texel<Format::rgba16f>(normals, x, y));
+        relief.normals[at] = packed_normal(glm::vec3{load_texel<Format::rgba16f>(normals, x, y)});
       }
     }
   });

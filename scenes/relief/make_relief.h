@@ -1,7 +1,10 @@
 #pragma once
 // Relief textures of a scene's opaque surfaces, drawn by the pipeline.
 
+#include <array>
+#include <cstdint>
 #include <glm/vec3.hpp>
+#include <string_view>
 #include <vector>
 
 #include "raster/threads/parallel.h"
@@ -10,10 +13,21 @@
 
 namespace softfocus {
 
+enum class ReliefProjection : std::uint8_t { orthographic, perspective };
+
+struct NamedProjection {
+  std::string_view name;
+  ReliefProjection projection;
+};
+inline constexpr std::array kReliefProjections{
+    NamedProjection{"orthographic", ReliefProjection::orthographic},
+    NamedProjection{"perspective", ReliefProjection::perspective}};
+
 /// From where a relief is drawn: it looks from the eye at the middle of all.
 struct ReliefView {
   glm::dvec3 eye{0.0, 0.0, 3.0};  ///< highlights are this eye's
   glm::dvec3 up{0.0, 1.0, 0.0};   ///< not along the way to the middle
+  ReliefProjection projection = ReliefProjection::orthographic;
 };
 
 struct ReliefForm {
@@ -37,8 +51,15 @@ struct ReliefMaker {
 /// Needs a scene with a triangle. `pool` is the one that will draw.
 ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool);
 
+/// Whether a perspective view's eye sees all of the object: it lies before the eye, the farthest
+/// point not more than kMostSpan times as far, along the axis, as the nearest. So d stays below n,
+/// even of the code that is empty.
+bool can_project(const ReliefMaker& maker, const ReliefView& view);
+inline constexpr double kMostSpan = 64.0;
+
 /// The camera that holds all of the object from border to border, but for a margin of a texel, and
-/// from the first depth to the last but for a share of kDepthMargin.
+/// from the first depth to the last but for a share of kDepthMargin. A perspective view needs
+/// can_project().
 ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int width, int height);
 inline constexpr double kDepthMargin = 1e-4;
 
@@ -48,7 +69,8 @@ ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const Reli
                           ThreadPool& pool);
 
 /// The matrices that draw a relief: the texel (x, y) is the pixel (x, y), and the buffer's depth
-/// is d / depth_m. Clip w is 1.
+/// is d / depth_m. Clip w is 1, or the distance from a perspective camera's eye along f. `eye` is
+/// the one whose highlights are seen.
 CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height, glm::dvec3 eye);
 
 /// Draws the nearest surfaces' normals by these matrices: RGBA16F, alpha 1 where something is.

@@ -20,7 +20,7 @@ namespace softfocus {
 struct MappedRow {
   float u, v, q;                 ///< at pixel 0
   float step_u, step_v, step_q;  ///< a pixel
-  float height_m, k3;
+  float height_m, k3, source_per_m, behind_m;
   const std::uint32_t* colours;
   const float* depths_m;
   int width, height;                 ///< of the texels; 2 or more
@@ -78,9 +78,10 @@ void map_pixel(const MappedRow& row, int x, std::uint16_t* pixel) {
     most = weight;
     depth = row.depths_m[at[i]];
   }
-  const float far = row.height_m * inverse * (1.0f + row.k3 * depth);
+  const float far =
+      row.height_m * inverse * (1.0f + row.k3 * depth) / (1.0f - row.source_per_m * depth);
   const float cut = far < 65504.0f ? far : 65504.0f;
-  if (!(cut < half_to_float(pixel[3]))) return;
+  if (!(cut + row.behind_m < half_to_float(pixel[3]))) return;
   for (int i = 0; i < 3; ++i) {
     const float share = static_cast<float>(sum(i)) / static_cast<float>(alpha);
     pixel[i] =
@@ -143,15 +144,16 @@ PlaneMapping plane_mapping(const ReliefTexture& relief, const CameraMatrices& ca
   PlaneMapping mapping{};
   mapping.q = planar([&](glm::dvec3 d) { return dot(d, plane.f); });
   mapping.u = planar([&](glm::dvec3 d) {
-    return (warp.epipole_u - place.x_begin) * dot(d, plane.f) +
+    return (warp.foot_u - place.x_begin) * dot(d, plane.f) +
            warp.height_m * (dot(d, plane.a) / dot(plane.a, plane.a));
   });
   mapping.v = planar([&](glm::dvec3 d) {
-    return (warp.epipole_v - place.y_begin) * dot(d, plane.f) +
+    return (warp.foot_v - place.y_begin) * dot(d, plane.f) +
            warp.height_m * (dot(d, plane.b) / dot(plane.b, plane.b));
   });
   mapping.height_m = warp.height_m;
   mapping.k3 = warp.k3;
+  mapping.source_per_m = static_cast<float>(warp.source_per_m);
   mapping.area = seen_area(plane, camera, place, width, height);
   return mapping;
 }
@@ -174,6 +176,8 @@ void map_relief(const WarpedRelief& warped, const PlaneMapping& mapping, Image& 
                           static_cast<float>(mapping.q.step_x),
                           static_cast<float>(mapping.height_m),
                           mapping.k3,
+                          mapping.source_per_m,
+                          mapping.behind_m,
                           warped.colours.data(),
                           warped.depths_m.data(),
                           warped.place.width,
@@ -263,10 +267,11 @@ int map_vectors(const MappedRow& row, int x, int end, std::uint16_t* pixels) {
     take_depth(row, texels.c10, first + 1, weight_u * (256 - weight_v), shown, most, depth);
     take_depth(row, texels.c01, first + row.width, (256 - weight_u) * weight_v, shown, most, depth);
     take_depth(row, texels.c11, first + row.width + 1, weight_u * weight_v, shown, most, depth);
-    const Floats far = row.height_m * inverse * (1.0f + row.k3 * depth);
+    const Floats far =
+        row.height_m * inverse * (1.0f + row.k3 * depth) / (1.0f - row.source_per_m * depth);
     const Floats cut = select(far < 65504.0f, far, splat(65504.0f));
     HalfTexels pixel = load_half_texels(pixels + 4 * x);
-    shown &= cut < half_to_float(pixel.a);
+    shown &= cut + row.behind_m < half_to_float(pixel.a);
     if (!any(shown)) continue;
     const Floats sum = select(shown, to_floats(alpha), splat(1.0f));
     pixel.r =

@@ -7,8 +7,9 @@
 // they are stored, with 8 fractional bits of place. Where half of the weight or more lies on texels
 // that show something, the pixel shows their mean. So a silhouette is as sharp as a drawn one.
 //
-// The point itself lies behind the plane at t (1 + k3 d), which is the pixel's depth, in alpha. It
-// is written where that is less than the picture has.
+// The point itself lies behind the plane at t (1 + k3 d) / (1 - d / n), which is the pixel's depth,
+// in alpha. It is written where that is less than the picture has. (h + z is the eye's distance,
+// along f, from a point z behind the plane: with z = d / (1 - d / n), h times that fraction.)
 
 #include <glm/vec3.hpp>
 
@@ -31,7 +32,9 @@ struct PlaneMapping {
   Planar q;     ///< D.f
   double height_m;
   float k3;
-  Rectangle area;  ///< pixels that can show something
+  float source_per_m;  ///< 1 / n; 0 of an orthographic relief
+  float behind_m;      ///< a pixel is written if it is nearer than the picture by more than this; 0
+  Rectangle area;      ///< pixels that can show something
 };
 
 /// `place` is that of the warp for this camera's eye.

@@ -104,7 +104,9 @@ void march_relief(const ReliefTexture& relief, const MarchMapping& march,
                          {u, v, u * warp.k3 - warp.k1, v * warp.k3 - warp.k2}, texel)) {
         continue;
       }
-      const float far = static_cast<float>(mapping.height_m) / q * (1.0f + warp.k3 * texel.depth_m);
+      const float far = static_cast<float>(mapping.height_m) / q *
+                        (1.0f + warp.k3 * texel.depth_m) /
+                        (1.0f - mapping.source_per_m * texel.depth_m);
       const float cut = far < 65504.0f ? far : 65504.0f;
       if (!(cut < load_texel<Format::rgba16f>(picture, x, y).w)) continue;
       const std::uint32_t colour = relief.colours[texel.at];

@@ -13,6 +13,17 @@
 
 namespace softfocus {
 
+namespace {
+
+/// Where texels do not move, along one axis. Without a scale all move one way, as if towards a
+/// point at infinity.
+double epipole_of(double shift, double scale) {
+  if (scale != 0.0) return shift / scale;
+  return shift == 0.0 ? 0.0 : std::copysign(HUGE_VAL, shift);
+}
+
+}  // namespace
+
 bool sees_front(const ReliefTexture& relief, glm::dvec3 eye) {
   return dot(relief.camera.origin - eye, relief.camera.f) >
          relief.camera.depth_m * kLeastShareBefore;
@@ -20,16 +31,37 @@ bool sees_front(const ReliefTexture& relief, glm::dvec3 eye) {
 
 PreWarp pre_warp(const ReliefTexture& relief, glm::dvec3 eye) {
   const ReliefCamera& camera = relief.camera;
-  const glm::dvec3 c = camera.origin - eye;
+  const auto foot_of = [&](glm::dvec3 point, glm::dvec3 axis) {
+    return -dot(camera.origin - point, axis) / dot(axis, axis);
+  };
   PreWarp warp;
-  warp.height_m = dot(c, camera.f);
-  warp.epipole_u = -dot(c, camera.a) / dot(camera.a, camera.a);
-  warp.epipole_v = -dot(c, camera.b) / dot(camera.b, camera.b);
-  warp.k1 = static_cast<float>(warp.epipole_u / warp.height_m);
-  warp.k2 = static_cast<float>(warp.epipole_v / warp.height_m);
-  warp.k3 = static_cast<float>(1.0 / warp.height_m);
+  warp.height_m = dot(camera.origin - eye, camera.f);
+  warp.foot_u = warp.epipole_u = foot_of(eye, camera.a);
+  warp.foot_v = warp.epipole_v = foot_of(eye, camera.b);
+  double k1 = warp.foot_u / warp.height_m, k2 = warp.foot_v / warp.height_m;
+  double k3 = 1.0 / warp.height_m;
+  if (camera.eye) {
+    warp.source_u = foot_of(*camera.eye, camera.a);
+    warp.source_v = foot_of(*camera.eye, camera.b);
+    warp.source_per_m = 1.0 / source_distance(camera);
+    k1 -= warp.source_u * warp.source_per_m;
+    k2 -= warp.source_v * warp.source_per_m;
+    k3 -= warp.source_per_m;
+    warp.epipole_u = epipole_of(k1, k3);
+    warp.epipole_v = epipole_of(k2, k3);
+    warp.outwards = k3 < 0.0;
+  }
+  warp.k1 = static_cast<float>(k1);
+  warp.k2 = static_cast<float>(k2);
+  warp.k3 = static_cast<float>(k3);
   warp.step_m = static_cast<float>(depth_step(relief));
   return warp;
+}
+
+WarpedPlace exact_place(const PreWarp& warp, double u, double v, double depth_m) {
+  const DepthShares shares = shares_of(warp, depth_m);
+  const double scale = 1.0 / (1.0 + shares.scale);
+  return {(u + shares.u) * scale, (v + shares.v) * scale};
 }
 
 std::vector<WarpedDepth> warp_table(const PreWarp& warp, int depth_bits) {
@@ -49,9 +81,9 @@ std::vector<FixedDepth> fixed_warp_table(const PreWarp& warp, int depth_bits) {
   };
   for (std::size_t code = 0; code < table.size(); ++code) {
     const double depth = static_cast<double>(code) * static_cast<double>(warp.step_m);
-    const double share = depth / warp.height_m;
-    table[code] = {fixed(warp.epipole_u * share, 256.0), fixed(warp.epipole_v * share, 256.0),
-                   fixed(1.0 / (1.0 + share), 65536.0)};
+    const DepthShares shares = shares_of(warp, depth);
+    table[code] = {fixed(shares.u, 256.0), fixed(shares.v, 256.0),
+                   fixed(1.0 / (1.0 + shares.scale), 65536.0)};
   }
   return table;
 }
@@ -72,7 +104,9 @@ void warp_row(const PreWarp& warp, const std::uint16_t* codes, int width, int v,
 WarpedPlace pre_warp_oracle(const ReliefTexture& relief, glm::dvec3 eye, double u, double v,
                             double depth_m) {
   const ReliefCamera& camera = relief.camera;
-  const glm::dvec3 a = camera.a, b = camera.b, f = camera.f, c = camera.origin - eye;
+  const glm::dvec3 a = camera.a, b = camera.b, c = camera.origin - eye;
+  const glm::dvec3 f =
+      camera.eye ? (eye - *camera.eye) * (1.0 / source_distance(camera)) : camera.f;
   const double k1 = dot(f, cross(b, c)) / dot(a, cross(b, c));
   const double k2 = dot(f, cross(c, a)) / dot(b, cross(c, a));
   const double k3 = dot(f, cross(a, b)) / dot(c, cross(a, b));
@@ -82,8 +116,7 @@ WarpedPlace pre_warp_oracle(const ReliefTexture& relief, glm::dvec3 eye, double 
 WarpedPlace projected_place(const ReliefTexture& relief, glm::dvec3 eye, double u, double v,
                             double depth_m) {
   const ReliefCamera& camera = relief.camera;
-  const glm::dvec3 point = ((camera.origin + camera.a * u) + camera.b * v) + camera.f * depth_m;
-  const glm::dvec3 ray = point - eye;
+  const glm::dvec3 ray = point_at_depth(camera, u, v, depth_m) - eye;
   const double along = dot(camera.origin - eye, camera.f) / dot(ray, camera.f);
   const glm::dvec3 in_plane = (eye + ray * along) - camera.origin;
   return {dot(in_plane, camera.a) / dot(camera.a, camera.a),

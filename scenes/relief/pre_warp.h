@@ -6,15 +6,26 @@
 //   u' = (u + k1 d) / (1 + k3 d)      v' = (v + k2 d) / (1 + k3 d)
 //   k1 = f.(b x c) / a.(b x c)   k2 = f.(c x a) / b.(c x a)   k3 = f.(a x b) / c.(a x b)
 //
-// with c = C - eye. As a, b and f are perpendicular here, k3 = 1/(c.f), k1 = e1 k3 and k2 = e2 k3,
-// where (e1, e2) = (-c.a/a.a, -c.b/b.b) is the epipole: the eye, dropped onto the plane. So
+// with c = C - eye. As a, b and f are perpendicular here, k3 = 1/h, k1 = e1/h and k2 = e2/h, where
+// h = c.f is the eye's distance from the plane, and (e1, e2) = (-c.a/a.a, -c.b/b.b) its foot: the
+// eye, dropped onto the plane.
 //
-//   u' - e1 = (u - e1) h / (h + d)    h = c.f, the eye's distance from the plane
+// Under a perspective camera a point X = S + p / w, with p = C + u a + v b - S and w = 1 - d/n, is
+// seen along (X - eye) w = c + u a + v b + d m, with m = (eye - S)/n in the place of f. So the
+// equations stay, with m for f; and with the source's foot (s1, s2), S dropped onto the plane,
 //
-// and every texel moves straight towards the epipole, the farther the deeper it is, and never past
-// it. Of two texels at one place the one that started nearer to the epipole is in front. Texels
-// that are taken from the borders towards the epipole cover each other rightly: the order that is
-// compatible with occlusion.
+//   k3 = 1/h - 1/n      k1 = e1/h - s1/n      k2 = e2/h - s2/n
+//
+// of which an orthographic camera is the case of n without end. For the eye S itself all three are
+// 0: no texel moves.
+//
+// What does not move is the epipole (k1, k2) / k3: where the line from S to the eye meets the
+// plane; if S is at infinity, the foot. u' - k1/k3 = (u - k1/k3) / (1 + k3 d): so every texel moves
+// on a line through the epipole, the farther the deeper it is, and never past it. If k3 > 0 (eyes
+// nearer to the plane than S), texels move towards it: of two at one place the one that started
+// nearer to the epipole is in front, and texels that are taken from the borders towards the epipole
+// cover each other rightly: the order that is compatible with occlusion. If k3 < 0, they move away
+// from it, the one that started farther is in front, and the order is from the epipole outwards.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -28,10 +39,25 @@ namespace softfocus {
 /// A view's constants. Depths are in metres.
 struct PreWarp {
   float k1 = 0.0f, k2 = 0.0f, k3 = 0.0f;
-  float step_m = 0.0f;  ///< of a code
-  double epipole_u = 0.0, epipole_v = 0.0;
-  double height_m = 0.0;  ///< h
+  float step_m = 0.0f;                ///< of a code
+  double foot_u = 0.0, foot_v = 0.0;  ///< the eye, dropped onto the plane
+  double height_m = 0.0;              ///< h
+  // The perspective camera's; of an orthographic one all three are 0.
+  double source_u = 0.0, source_v = 0.0;    ///< its foot
+  double source_per_m = 0.0;                ///< 1 / n
+  double epipole_u = 0.0, epipole_v = 0.0;  ///< may be infinite
+  bool outwards = false;                    ///< k3 < 0: texels move away from the epipole
 };
+
+/// k1 d, k2 d and k3 d in binary64.
+struct DepthShares {
+  double u, v, scale;
+};
+inline DepthShares shares_of(const PreWarp& warp, double depth_m) {
+  const double share = depth_m / warp.height_m, of_source = depth_m * warp.source_per_m;
+  return {warp.foot_u * share - warp.source_u * of_source,
+          warp.foot_v * share - warp.source_v * of_source, share - of_source};
+}
 
 /// Needs an eye before the plane of depth 0: sees_front().
 PreWarp pre_warp(const ReliefTexture& relief, glm::dvec3 eye);
@@ -70,11 +96,14 @@ constexpr std::int32_t fixed_place(std::int32_t place, std::int32_t shift, std::
 void warp_row(const PreWarp& warp, const std::uint16_t* codes, int width, int v, float* along_u,
               float* along_v, Isa isa);
 
-/// The oracles, in binary64: the equation with the products of vectors as they stand above, and the
-/// point's projection onto the plane.
+/// The pre-warp in binary64.
 struct WarpedPlace {
   double u, v;
 };
+WarpedPlace exact_place(const PreWarp& warp, double u, double v, double depth_m);
+
+/// The oracles, in binary64: the equation with the products of vectors as they stand above, and the
+/// point's projection onto the plane.
 WarpedPlace pre_warp_oracle(const ReliefTexture& relief, glm::dvec3 eye, double u, double v,
                             double depth_m);
 WarpedPlace projected_place(const ReliefTexture& relief, glm::dvec3 eye, double u, double v,

@@ -1,12 +1,25 @@
 #include "scenes/relief/relief_texture.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "raster/numbers/vector_math.h"
 
 namespace softfocus {
 
+double source_distance(const ReliefCamera& camera) {
+  if (!camera.eye) return std::numeric_limits<double>::infinity();
+  return dot(camera.origin - *camera.eye, camera.f);
+}
+
+glm::dvec3 point_at_depth(const ReliefCamera& camera, double u, double v, double depth_m) {
+  const glm::dvec3 in_plane = (camera.origin + camera.a * u) + camera.b * v;
+  if (!camera.eye) return in_plane + camera.f * depth_m;
+  return *camera.eye + (in_plane - *camera.eye) * (1.0 / (1.0 - depth_m / source_distance(camera)));
+}
+
 glm::dvec3 relief_point(const ReliefTexture& relief, double u, double v, double code) {
-  const ReliefCamera& camera = relief.camera;
-  return ((camera.origin + camera.a * u) + camera.b * v) + camera.f * (code * depth_step(relief));
+  return point_at_depth(relief.camera, u, v, code * depth_step(relief));
 }
 
 std::optional<ReliefExtent> relief_extent(const ReliefTexture& relief) {

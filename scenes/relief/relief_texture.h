@@ -1,8 +1,14 @@
 #pragma once
-// A relief texture: colour, depth and perhaps normals of an object under an orthographic camera
-// (Oliveira, Bishop and McAllister 2000). A texel of depth d shows the point
+// A relief texture: colour, depth and perhaps normals of an object under an orthographic or a
+// perspective camera (Oliveira, Bishop and McAllister 2000). A texel of depth d shows the point
 //
-//   X = C + u a + v b + d f        u, v: whole numbers at the texels' centres
+//   orthographic   X = C + u a + v b + d f        u, v: whole numbers at the texels' centres
+//   perspective    X = S + (C + u a + v b - S) / (1 - d / n)
+//
+// S is the eye that a perspective camera has, n its distance from the plane. A point that lies z
+// behind the plane has d = z there, and d = n z / (n + z) here: n times its generalised disparity
+// (McMillan 1997). With this d the pre-warp of both is one equation (pre_warp.h), d is even along
+// what a depth buffer keeps, and what is a plane in space is one over the texture.
 //
 // Depths are codes, evenly spaced from 0, the plane of C, to the last one but one; the last code,
 // 255 of 8 bits and 65535 of 16, is a texel that shows nothing.
@@ -20,6 +26,9 @@ struct ReliefCamera {
   glm::dvec3 b{0.0, -1.0, 0.0};  ///< and to the one below; a, b and f are perpendicular
   glm::dvec3 f{0.0, 0.0, -1.0};  ///< away from the viewer, of length 1
   double depth_m = 1.0;          ///< what last_depth() stands for
+  /// S of a perspective camera, before the plane; depth_m is below its distance n from the plane.
+  /// None: the camera is orthographic.
+  std::optional<glm::dvec3> eye = {};
 };
 
 inline constexpr int kMostReliefSize = 4096;
@@ -42,6 +51,12 @@ constexpr int last_depth(int bits) { return bits == 8 ? 254 : 65534; }
 inline double depth_step(const ReliefTexture& relief) {
   return relief.camera.depth_m / last_depth(relief.depth_bits);
 }
+
+/// n, or infinity: how far a perspective camera's eye is from the plane.
+double source_distance(const ReliefCamera& camera);
+
+/// The point that a place of the texture shows at a depth, d in metres.
+glm::dvec3 point_at_depth(const ReliefCamera& camera, double u, double v, double depth_m);
 
 /// The point that a texel shows.
 glm::dvec3 relief_point(const ReliefTexture& relief, double u, double v, double code);

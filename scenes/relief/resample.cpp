@@ -107,15 +107,17 @@ WarpCounts warp_in_two_passes(const Numbers& numbers, const WarpWork& work, bool
     }
   });
   const WalkLimits columns = work.columns();
-  const int split = walk_split(work.extent.y_begin, work.extent.y_end, work.warp.epipole_v);
+  const HalfWalks walks =
+      half_walks(work.extent.y_begin, work.extent.y_end, work.warp.epipole_v, work.warp.outwards);
   pool.for_each(bands, [&](int band) {
     const int begin = columns.begin + band * kBandColumns;
     const WalkLimits limits{begin, std::min(begin + kBandColumns, columns.end)};
     clear_columns(work, limits);
     CountedPieces& some = counted[static_cast<std::size_t>(rows + band)];
-    warp_columns<Numbers, 1>(numbers, work, limits, work.extent.y_begin, split, pool.isa(), some);
-    warp_columns<Numbers, -1>(numbers, work, limits, work.extent.y_end - 1, split - 1, pool.isa(),
-                              some);
+    warp_columns<Numbers, 1>(numbers, work, limits, walks.forward.begin, walks.forward.end,
+                             pool.isa(), some);
+    warp_columns<Numbers, -1>(numbers, work, limits, walks.backward.begin, walks.backward.end,
+                              pool.isa(), some);
   });
   return total_of(counted);
 }
@@ -162,16 +164,18 @@ WarpCounts warp_in_one_pass(const Numbers& numbers, const WarpWork& work, bool c
   const WalkLimits columns = work.columns();
   // Each band walks all rows, and puts what falls into it.
   const int bands = std::min(pool.threads(), work.place.width);
-  const int split = walk_split(work.extent.y_begin, work.extent.y_end, work.warp.epipole_v);
+  const HalfWalks walks =
+      half_walks(work.extent.y_begin, work.extent.y_end, work.warp.epipole_v, work.warp.outwards);
   std::vector<CountedPieces> counted(static_cast<std::size_t>(bands), {{}, counting});
   pool.for_each(bands, [&](int band) {
     const auto border = [&](int i) { return columns.begin + work.place.width * i / bands; };
     const WalkLimits limits{border(band), border(band + 1)};
     clear_columns(work, limits);
     CountedPieces& some = counted[static_cast<std::size_t>(band)];
-    warp_band_rows<Numbers, 1>(numbers, work, limits, work.extent.y_begin, split, pool.isa(), some);
-    warp_band_rows<Numbers, -1>(numbers, work, limits, work.extent.y_end - 1, split - 1, pool.isa(),
-                                some);
+    warp_band_rows<Numbers, 1>(numbers, work, limits, walks.forward.begin, walks.forward.end,
+                               pool.isa(), some);
+    warp_band_rows<Numbers, -1>(numbers, work, limits, walks.backward.begin, walks.backward.end,
+                                pool.isa(), some);
   });
   return total_of(counted);
 }
@@ -197,25 +201,25 @@ std::optional<PlaneRectangle> warped_extent(const ReliefTexture& relief, const R
   struct Ends {
     double low, high;
   };
-  const auto ends = [&](double begin, double end, double epipole) {
-    Ends found{begin, end};
-    bool is_first = true;
-    for (const int code : {extent.least_code, extent.most_code}) {
-      const double scale =
-          warp.height_m / (warp.height_m + static_cast<double>(code) * depth_step(relief));
-      for (const double border : {begin, end}) {
-        const double place = epipole + (border - epipole) * scale;
-        found.low = is_first ? place : std::fmin(found.low, place);
-        found.high = is_first ? place : std::fmax(found.high, place);
-        is_first = false;
-      }
-    }
-    return found;
+  Ends u{HUGE_VAL, -HUGE_VAL}, v = u;
+  const auto widen = [](Ends& ends, double place) {
+    ends.low = std::fmin(ends.low, place);
+    ends.high = std::fmax(ends.high, place);
   };
-  const Ends u = ends(extent.x_begin - 0.5, extent.x_end - 0.5, warp.epipole_u);
-  const Ends v = ends(extent.y_begin - 0.5, extent.y_end - 0.5, warp.epipole_v);
-  if (u.high - u.low > kMostStretch * relief.width ||
-      v.high - v.low > kMostStretch * relief.height) {
+  // Places go one way with the depth, and with the texel.
+  for (const int code : {extent.least_code, extent.most_code}) {
+    const double depth_m = static_cast<double>(code) * depth_step(relief);
+    const WarpedPlace first =
+        exact_place(warp, extent.x_begin - 0.5, extent.y_begin - 0.5, depth_m);
+    const WarpedPlace last = exact_place(warp, extent.x_end - 0.5, extent.y_end - 0.5, depth_m);
+    for (const WarpedPlace& place : {first, last}) {
+      widen(u, place.u);
+      widen(v, place.v);
+    }
+  }
+  if (!(u.high - u.low <= kMostStretch * relief.width &&
+        v.high - v.low <= kMostStretch * relief.height && std::fabs(u.low) < kFarthestPlace &&
+        std::fabs(v.low) < kFarthestPlace)) {
     return std::nullopt;
   }
   const auto whole = [](double place) { return static_cast<int>(std::floor(place)); };
@@ -241,12 +245,11 @@ void warp_relief(const ReliefTexture& relief, const ReliefExtent& extent, glm::d
                       counts != nullptr, pool);
   } else {
     const std::vector<FixedDepth> table = fixed_warp_table(warp, relief.depth_bits);
-    const double share = static_cast<double>(warp.step_m) / warp.height_m;
-    counted = warp_by(
-        FixedPlaces{table.data(), last_depth(relief.depth_bits), warp.step_m,
-                    std::llrint(warp.epipole_v * share * 0x1p40), std::llrint(share * 0x1p32),
-                    static_cast<std::int32_t>(rule.join_texels * 256.0)},
-        work, counts != nullptr, pool);
+    const DepthShares share = shares_of(warp, static_cast<double>(warp.step_m));
+    counted = warp_by(FixedPlaces{table.data(), last_depth(relief.depth_bits), warp.step_m,
+                                  std::llrint(share.v * 0x1p40), std::llrint(share.scale * 0x1p32),
+                                  static_cast<std::int32_t>(rule.join_texels * 256.0)},
+                      work, counts != nullptr, pool);
   }
   if (counts != nullptr) *counts = counted;
 }

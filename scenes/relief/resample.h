@@ -59,11 +59,12 @@ struct PlaneRectangle {
 };
 
 /// Texels that a relief's can move to, and one more on each side. None if the eye does not see the
-/// front, or if they would be more than kMostStretch times as wide or high as the relief: the eye
-/// looks along the plane.
+/// front, or if they would be more than kMostStretch times as wide or high as the relief, or
+/// farther than kFarthestPlace from its first texel: the eye looks along the plane.
 std::optional<PlaneRectangle> warped_extent(const ReliefTexture& relief, const ReliefExtent& extent,
                                             glm::dvec3 eye);
 inline constexpr int kMostStretch = 4;
+inline constexpr double kFarthestPlace = 0x1p20;
 
 /// Texel (0, 0) lies at (x_begin, y_begin) of the plane.
 struct WarpedRelief {

@@ -130,8 +130,9 @@ void walk_row(const Numbers& numbers, const WarpWork& work, int v,
   const std::uint32_t* colours = work.relief.colours.data() + first;
   const std::uint16_t empty = empty_depth(work.relief.depth_bits);
   const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
-  walk_to_epipole(
-      numbers, texels.begin, texels.end, work.warp.epipole_u, limits,
+  walk_both(
+      numbers, half_walks(texels.begin, texels.end, work.warp.epipole_u, work.warp.outwards),
+      limits,
       [&](int u, WalkTexel<Numbers>& texel) {
         if (codes[u] == empty) return false;
         texel.colour = colours[u];
@@ -222,9 +223,11 @@ void put_row(const Numbers& numbers, const WarpWork& work, Resampling resampling
             static_cast<float>(codes[u]) * numbers.warp.step_m;
       }
       const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
-      const int split = walk_split(texels.begin, texels.end, work.warp.epipole_u);
-      step_row<1>(numbers, work, resampling, v, row, texels.begin, split, limits, isa, put);
-      step_row<-1>(numbers, work, resampling, v, row, texels.end - 1, split - 1, limits, isa, put);
+      const auto [forward, backward] =
+          half_walks(texels.begin, texels.end, work.warp.epipole_u, work.warp.outwards);
+      step_row<1>(numbers, work, resampling, v, row, forward.begin, forward.end, limits, isa, put);
+      step_row<-1>(numbers, work, resampling, v, row, backward.begin, backward.end, limits, isa,
+                   put);
       return;
     }
   }

@@ -191,13 +191,23 @@ inline int walk_split(int begin, int end, double epipole) {
   return static_cast<int>(std::floor(last)) + 1;
 }
 
-/// Both walks of a row or a column, from its borders to the epipole.
-template <class Numbers, class Get, class Put>
-inline void walk_to_epipole(const Numbers& numbers, int begin, int end, double epipole,
-                            const WalkLimits& limits, const Get& get, const Put& put) {
+/// Both walks of a row or a column: from its borders to the epipole, or, where texels move away
+/// from it, from the epipole outwards. Each from its first texel to before its end; the backward
+/// one goes down.
+struct HalfWalks {
+  WalkLimits forward, backward;
+};
+inline HalfWalks half_walks(int begin, int end, double epipole, bool outwards) {
   const int split = walk_split(begin, end, epipole);
-  walk<Numbers, 1>(numbers, begin, split, limits, get, put);
-  walk<Numbers, -1>(numbers, end - 1, split - 1, limits, get, put);
+  if (outwards) return {{split, end}, {split - 1, begin - 1}};
+  return {{begin, split}, {end - 1, split - 1}};
+}
+
+template <class Numbers, class Get, class Put>
+inline void walk_both(const Numbers& numbers, const HalfWalks& walks, const WalkLimits& limits,
+                      const Get& get, const Put& put) {
+  walk<Numbers, 1>(numbers, walks.forward.begin, walks.forward.end, limits, get, put);
+  walk<Numbers, -1>(numbers, walks.backward.begin, walks.backward.end, limits, get, put);
 }
 
 }  // namespace softfocus

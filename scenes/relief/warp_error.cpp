@@ -14,9 +14,7 @@ struct WarpScales {
   double step_m;
 
   WarpedPlace at(double u, double v, int code) const {
-    const double scale = warp.height_m / (warp.height_m + code * step_m);
-    return {warp.epipole_u + (u - warp.epipole_u) * scale,
-            warp.epipole_v + (v - warp.epipole_v) * scale};
+    return exact_place(warp, u, v, code * step_m);
   }
 };
 
@@ -81,9 +79,10 @@ CriticalRegions critical_regions(const ReliefTexture& relief, const ReliefExtent
     const int row = (pair.v1 - extent.y_begin) * rows / height;
     std::optional<CriticalRegion>& region =
         cut.regions[static_cast<std::size_t>(row * columns + column)];
-    const int least = std::min(pair.code1, pair.code2);
-    if (!region) region = CriticalRegion{pair, least};
+    const int least = std::min(pair.code1, pair.code2), most = std::max(pair.code1, pair.code2);
+    if (!region) region = CriticalRegion{pair, least, most};
     region->least_code = std::min(region->least_code, least);
+    region->most_code = std::max(region->most_code, most);
     if (std::abs(pair.code1 - pair.code2) > std::abs(region->point.code1 - region->point.code2)) {
       region->point = pair;
     }
@@ -105,13 +104,15 @@ double mean_critical_error(const ReliefTexture& relief, const CriticalRegions& r
 
 double error_bound(const ReliefTexture& relief, const CriticalRegions& regions, glm::dvec3 eye) {
   const WarpScales scales = warp_scales(relief, eye);
-  const double h = scales.warp.height_m;
+  const DepthShares metre = shares_of(scales.warp, 1.0);
+  const auto scale_of = [&](double depth_m) { return 1.0 / (1.0 + metre.scale * depth_m); };
   const ReliefExtent& extent = regions.extent;
-  const auto farthest = [](int begin, int size, int i, int parts, double epipole) {
+  // |k1 - k3 u|, or the same of v.
+  const auto farthest = [&](int begin, int size, int i, int parts, double shift) {
     // The texels of a part begin at the first whose share of the size reaches it.
     const double first = begin + (static_cast<double>(i) * size) / parts;
     const double last = begin + (static_cast<double>(i + 1) * size) / parts;
-    return std::fmax(std::fabs(first - epipole), std::fabs(last - epipole));
+    return std::fmax(std::fabs(shift - metre.scale * first), std::fabs(shift - metre.scale * last));
   };
   double bound = 0.0;
   for (int row = 0; row < regions.rows; ++row) {
@@ -120,13 +121,16 @@ double error_bound(const ReliefTexture& relief, const CriticalRegions& regions, 
           regions.regions[static_cast<std::size_t>(row * regions.columns + column)];
       if (!region) continue;
       const double step = std::abs(region->point.code1 - region->point.code2) * scales.step_m;
-      const double least = h + region->least_code * scales.step_m;
-      const double across = farthest(extent.x_begin, extent.x_end - extent.x_begin, column,
-                                     regions.columns, scales.warp.epipole_u);
-      const double along = farthest(extent.y_begin, extent.y_end - extent.y_begin, row,
-                                    regions.rows, scales.warp.epipole_v);
-      const double scale_step = h * step / (least * (least + step));
-      bound = std::fmax(bound, h / least + scale_step * std::sqrt(across * across + along * along));
+      const double least = region->least_code * scales.step_m;
+      const double most = region->most_code * scales.step_m;
+      const double scale = scale_of(metre.scale < 0.0 ? most : least);
+      const double other = scale_of(metre.scale < 0.0 ? most - step : least + step);
+      const double across =
+          farthest(extent.x_begin, extent.x_end - extent.x_begin, column, regions.columns, metre.u);
+      const double along =
+          farthest(extent.y_begin, extent.y_end - extent.y_begin, row, regions.rows, metre.v);
+      bound = std::fmax(bound,
+                        scale + step * scale * other * std::sqrt(across * across + along * along));
     }
   }
   return bound;

@@ -30,7 +30,7 @@ double critical_error(const ReliefTexture& relief, const CriticalPoint& point, g
 /// that one rough place does not speak for all. A pair belongs to the region of its first texel.
 struct CriticalRegion {
   CriticalPoint point;
-  int least_code;  ///< of all pairs
+  int least_code, most_code;  ///< of all pairs
 };
 struct CriticalRegions {
   ReliefExtent extent;
@@ -48,11 +48,12 @@ inline constexpr int kMostRegions = 64;
 double mean_critical_error(const ReliefTexture& relief, const CriticalRegions& regions,
                            glm::dvec3 eye);
 
-/// What no pair of neighbours can exceed. Two neighbours move by scales s1 and s2 towards the
-/// epipole, so they come to lie at most s2 + |s1 - s2| R texels apart, where R is the distance of
-/// the first from the epipole. In a region, R is at most that of its farthest corner, s2 at most
-/// h / (h + d), and |s1 - s2| at most h D / ((h + d) (h + d + D)), with the largest step of depth D
-/// and the least depth d. The largest of all regions: the more regions, the nearer it is.
+/// What no pair of neighbours can exceed. Two neighbours at u and u + 1 of depths d1 and d2 move by
+/// scales s = 1 / (1 + k3 d), and come to lie s2 + (k1 - k3 u) (d2 - d1) s1 s2 apart. |k1 - k3 u|
+/// is |k3| times the distance from the epipole; in a region it is at most that of the farthest
+/// corner. s is at most that of the least depth, or, if k3 < 0, of the greatest; |d2 - d1| at most
+/// the largest step D, and s1 s2 at most the product of the largest scale and that of a depth D
+/// beside. The largest of all regions: the more regions, the nearer it is.
 double error_bound(const ReliefTexture& relief, const CriticalRegions& regions, glm::dvec3 eye);
 
 /// The largest distance of all pairs of neighbours: what the two above are measured against.

@@ -12,6 +12,7 @@
 #include "tools/files/profile_file.h"
 #include "tools/pictures/exr_file.h"
 #include "tools/pictures/sums_file.h"
+#include "tools/relief/relief_file.h"
 #include "tools/sequence/journal.h"
 
 #ifdef SOFTFOCUS_EXR_SEEDS
@@ -180,6 +181,25 @@ void put_texts(const fs::path& all) {
   Seeds{all, "fixed"}.put("bytes", std::string(300, '\x11'));
 }
 
+/// Both bits of depth, both cameras, with normals and without.
+void put_reliefs(const fs::path& all) {
+  const Seeds reliefs{all, "relief"};
+  for (const int bits : {8, 16}) {
+    ReliefTexture relief;
+    relief.width = 4;
+    relief.height = 3;
+    relief.depth_bits = bits;
+    for (std::uint16_t i = 0; i < 12; ++i) {
+      relief.depths.push_back(i % 5 == 0 ? empty_depth(bits) : static_cast<std::uint16_t>(20 * i));
+      relief.colours.push_back(i % 5 == 0 ? 0 : 0xFF102030u * i | 0xFF000000u);
+    }
+    reliefs.put("plain-" + std::to_string(bits), encode_relief(relief));
+    relief.normals.assign(12, 0x00FF8080u);
+    relief.camera.eye = glm::dvec3{0.5, -0.5, 3.0};
+    reliefs.put("eye-" + std::to_string(bits), encode_relief(relief));
+  }
+}
+
 void put_sums(const fs::path& all) {
   const SampleSums sums = make_sample_sums(4, 3);
   PictureNotes notes = small_notes();
@@ -203,6 +223,7 @@ int main(int argc, char** argv) {
 #endif
   put_texts(all);
   put_sums(all);
+  put_reliefs(all);
   const Seeds scenes{all, "scene"};
   for (const fs::directory_entry& entry : fs::directory_iterator{argv[3]}) {
     if (entry.path().extension() == ".toml") scenes.copy(entry.path());

@@ -28,6 +28,13 @@ inline ReliefTexture empty_relief(int width, int height, int depth_bits, double 
   return relief;
 }
 
+/// The same texels under a perspective camera, whose eye is farther before the plane than the
+/// relief is deep.
+inline ReliefTexture seen_from_eye(ReliefTexture relief, glm::dvec3 eye) {
+  relief.camera.eye = eye;
+  return relief;
+}
+
 inline std::size_t texel_at(const ReliefTexture& relief, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(relief.width) +
          static_cast<std::size_t>(x);

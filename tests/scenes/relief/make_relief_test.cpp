@@ -57,6 +57,51 @@ TEST_CASE("a relief's texels are points of the surface, with the surface's norma
   }
 }
 
+TEST_CASE("a perspective relief's texels are points of the surface, evenly spaced for its eye") {
+  const Scene scene = sphere_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  ReliefView view = kView;
+  view.projection = ReliefProjection::perspective;
+  REQUIRE(can_project(maker, view));
+  const ReliefTexture relief = make_relief(maker, view, {64, 64, 16, true}, pool);
+  CHECK(relief.camera.eye == view.eye);
+  int filled = 0;
+  double most_away = 0.0, least_cosine = 1.0;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const auto at = static_cast<std::size_t>(64 * y + x);
+      if (relief.colours[at] == 0) continue;
+      ++filled;
+      const glm::dvec3 point = relief_point(relief, x, y, relief.depths[at]);
+      const glm::dvec3 out = point - scene.objects[0].position;
+      most_away = std::fmax(most_away, std::fabs(std::sqrt(dot(out, out)) - 1.0));
+      const auto part = [&](int shift) {
+        return (static_cast<int>(relief.normals[at] >> shift & 255u) - 128) / 127.0;
+      };
+      const glm::dvec3 normal{part(0), part(8), part(16)};
+      least_cosine = std::fmin(least_cosine, dot(normal, normalize(out)));
+      // The eye sees none of the sphere's far side.
+      CHECK(dot(out, view.eye - point) > -0.2);
+    }
+  }
+  CHECK(filled == doctest::Approx(62 * 62 * 0.785).epsilon(0.02));
+  CHECK(most_away < 0.006);
+  CHECK(least_cosine > 0.99);
+}
+
+TEST_CASE("an eye beside part of an object has no perspective relief of it") {
+  const Scene scene = sphere_scene();
+  ThreadPool pool(1);
+  const ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const auto is_seen_whole = [&](glm::dvec3 eye) {
+    return can_project(maker, {eye, {0.0, 1.0, 0.0}, ReliefProjection::perspective});
+  };
+  CHECK(is_seen_whole({0.5, -0.25, 2.75}));
+  CHECK(!is_seen_whole({0.5, -0.25, 1.5}));
+  CHECK(!is_seen_whole({0.5, -0.25, 1.76}));  // too near: 1 cm before it
+}
+
 TEST_CASE("a relief holds its object from border to border, and its axes are at right angles") {
   const Scene scene = sphere_scene();
   ThreadPool pool(1);
@@ -79,11 +124,13 @@ TEST_CASE("a relief has the same bits for any number of threads and vector unit"
   const Scene scene = sphere_scene();
   ThreadPool plain(1, Isa::scalar);
   ReliefMaker maker = prepare_relief(scene, 0.0, plain);
-  const ReliefTexture right = make_relief(maker, kView, {48, 48, 16, true}, plain);
+  ReliefView view = kView;
+  view.projection = ReliefProjection::perspective;
+  const ReliefTexture right = make_relief(maker, view, {48, 48, 16, true}, plain);
   for (const Isa isa : available_isas()) {
     ThreadPool pool(3, isa);
     ReliefMaker own = prepare_relief(scene, 0.0, pool);
-    const ReliefTexture relief = make_relief(own, kView, {48, 48, 16, true}, pool);
+    const ReliefTexture relief = make_relief(own, view, {48, 48, 16, true}, pool);
     CHECK(relief.depths == right.depths);
     CHECK(relief.colours == right.colours);
     CHECK(relief.normals == right.normals);

@@ -22,6 +22,13 @@ ReliefTexture turned_relief(Random& random, int bits) {
   return relief;
 }
 
+/// An eye's distance from the plane, 1.5 times the depth and more.
+ReliefTexture in_perspective(const ReliefTexture& relief, Random& random) {
+  const glm::dvec3 on_plane =
+      relief_point(relief, random.between(-60.0, 90.0), random.between(-60.0, 90.0), 0.0);
+  return seen_from_eye(relief, on_plane - relief.camera.f * random.between(0.75, 3.0));
+}
+
 glm::dvec3 eye_before(const ReliefTexture& relief, Random& random) {
   const glm::dvec3 middle = relief_point(relief, 20.0, 15.0, 0.0);
   const glm::dvec3 aside =
@@ -34,7 +41,8 @@ glm::dvec3 eye_before(const ReliefTexture& relief, Random& random) {
 TEST_CASE("the pre-warp's equation is the point's projection onto the plane") {
   Random random{7};
   for (int i = 0; i < 200; ++i) {
-    const ReliefTexture relief = turned_relief(random, 8);
+    const ReliefTexture turned = turned_relief(random, 8);
+    const ReliefTexture relief = i % 2 == 0 ? turned : in_perspective(turned, random);
     const glm::dvec3 eye = eye_before(relief, random);
     const double u = random.between(0.0, 39.0), v = random.between(0.0, 29.0);
     const double depth = random.between(0.0, 0.5);
@@ -42,13 +50,53 @@ TEST_CASE("the pre-warp's equation is the point's projection onto the plane") {
     const WarpedPlace seen = projected_place(relief, eye, u, v, depth);
     CHECK(moved.u == doctest::Approx(seen.u).epsilon(1e-9));
     CHECK(moved.v == doctest::Approx(seen.v).epsilon(1e-9));
+    const WarpedPlace exact = exact_place(pre_warp(relief, eye), u, v, depth);
+    CHECK(exact.u == doctest::Approx(seen.u).epsilon(1e-9));
+    CHECK(exact.v == doctest::Approx(seen.v).epsilon(1e-9));
   }
+}
+
+TEST_CASE("a perspective texel's point lies on the eye's ray, its depth n z / (n + z)") {
+  Random random{12};
+  for (int i = 0; i < 50; ++i) {
+    const ReliefTexture relief = in_perspective(turned_relief(random, 8), random);
+    const ReliefCamera& camera = relief.camera;
+    const double u = random.between(0.0, 39.0), v = random.between(0.0, 29.0);
+    const double d = random.between(0.0, 0.5), n = source_distance(camera);
+    const glm::dvec3 point = point_at_depth(camera, u, v, d);
+    const glm::dvec3 ray = normalize(point_at_depth(camera, u, v, 0.0) - *camera.eye);
+    const glm::dvec3 away = cross(point - *camera.eye, ray);
+    CHECK(dot(away, away) < 1e-20);
+    const double z = dot(point - camera.origin, camera.f);
+    CHECK(n * z / (n + z) == doctest::Approx(d).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("texels move on lines through the epipole: towards it, or away if the eye is farther") {
+  Random random{13};
+  int outwards = 0;
+  for (int i = 0; i < 50; ++i) {
+    const ReliefTexture relief = in_perspective(turned_relief(random, 8), random);
+    const glm::dvec3 eye = eye_before(relief, random);
+    const PreWarp warp = pre_warp(relief, eye);
+    outwards += warp.outwards ? 1 : 0;
+    CHECK(warp.outwards == (source_distance(relief.camera) < warp.height_m));
+    const WarpedPlace moved = pre_warp_oracle(relief, eye, 7.0, 9.0, 0.3);
+    const double u = 7.0 - warp.epipole_u, v = 9.0 - warp.epipole_v;
+    const double scale = (moved.u - warp.epipole_u) / u;
+    CHECK((moved.v - warp.epipole_v) / v == doctest::Approx(scale).epsilon(1e-6));
+    CHECK((scale > 1.0) == warp.outwards);
+    CHECK(scale > 0.0);
+  }
+  CHECK(outwards > 5);
+  CHECK(outwards < 45);
 }
 
 TEST_CASE("a look into the table, two additions and two products give the equation's place") {
   Random random{8};
   for (const int bits : {8, 16}) {
-    const ReliefTexture relief = turned_relief(random, bits);
+    const ReliefTexture turned = turned_relief(random, bits);
+    const ReliefTexture relief = bits == 8 ? turned : in_perspective(turned, random);
     const glm::dvec3 eye = eye_before(relief, random);
     const PreWarp warp = pre_warp(relief, eye);
     const std::vector<WarpedDepth> table = warp_table(warp, bits);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -18,6 +19,10 @@ namespace {
 const glm::dvec3 kEyes[] = {{0.0, 0.0, 1.5},   {0.5, 0.3, 1.2},   {-0.6, 0.1, 1.0},
                             {0.05, -0.7, 0.9}, {-0.4, -0.5, 1.4}, {0.03, 0.02, 0.4}};
 
+/// Of a perspective relief. Some of the eyes are nearer to the plane, some farther: texels move
+/// towards the epipole or away from it.
+constexpr glm::dvec3 kSource{-0.2, 0.15, 1.1};
+
 /// The oracle of the passes: a line of texels, written down as the rule reads. `along` is the place
 /// on the line, `carried` what else is mixed.
 struct LineTexel {
@@ -27,10 +32,10 @@ struct LineTexel {
 };
 using Line = std::map<int, LineTexel>;
 
-void fill_line(const Line& texels, double epipole, int sign, Line& filled) {
+void fill_line(const Line& texels, double epipole, bool outwards, int sign, Line& filled) {
   std::vector<int> order;
   for (const auto& [i, texel] : texels) {
-    if ((sign > 0) == (i <= std::floor(epipole))) order.push_back(i);
+    if ((sign > 0) == ((i <= std::floor(epipole)) != outwards)) order.push_back(i);
   }
   if (sign < 0) std::reverse(order.begin(), order.end());
   const auto put_flat = [&](const LineTexel& texel, double from, double to) {
@@ -68,7 +73,9 @@ std::map<std::pair<int, int>, std::uint32_t> warped_by_oracle(const ReliefTextur
                                                               glm::dvec3 eye,
                                                               Resampling resampling) {
   const PreWarp warp = pre_warp(relief, eye);
-  const double h = warp.height_m;
+  const auto half_texel = [&](double depth_m) {
+    return 0.5 / (1.0 + shares_of(warp, depth_m).scale);
+  };
   std::map<int, Line> columns;
   for (int v = 0; v < relief.height; ++v) {
     Line row, filled;
@@ -77,21 +84,23 @@ std::map<std::pair<int, int>, std::uint32_t> warped_by_oracle(const ReliefTextur
       if (relief.depths[at] == empty_depth(relief.depth_bits)) continue;
       const double depth = relief.depths[at] * depth_step(relief);
       const WarpedPlace place = pre_warp_oracle(relief, eye, u, v, depth);
-      row[u] = {place.u, 0.5 * h / (h + depth), {place.v, depth}, relief.colours[at]};
+      row[u] = {place.u, half_texel(depth), {place.v, depth}, relief.colours[at]};
     }
-    for (const int sign : {1, -1}) fill_line(row, warp.epipole_u, sign, filled);
+    for (const int sign : {1, -1}) fill_line(row, warp.epipole_u, warp.outwards, sign, filled);
     for (auto& [x, texel] : filled) {
       const double depth = texel.carried[1];
       if (resampling == Resampling::two_pass) {
         texel.carried[0] = pre_warp_oracle(relief, eye, x, v, depth).v;
       }
-      columns[x][v] = {texel.carried[0], 0.5 * h / (h + depth), {0.0, depth}, texel.colour};
+      columns[x][v] = {texel.carried[0], half_texel(depth), {0.0, depth}, texel.colour};
     }
   }
   std::map<std::pair<int, int>, std::uint32_t> plane;
   for (const auto& [x, column] : columns) {
     Line filled;
-    for (const int sign : {1, -1}) fill_line(column, warp.epipole_v, sign, filled);
+    for (const int sign : {1, -1}) {
+      fill_line(column, warp.epipole_v, warp.outwards, sign, filled);
+    }
     for (const auto& [y, texel] : filled) plane[{x, y}] = texel.colour;
   }
   return plane;
@@ -126,12 +135,28 @@ TEST_CASE("what has no depth stays where it is") {
   }
 }
 
+TEST_CASE("for the eye that a perspective relief was drawn for, it is its own picture") {
+  ThreadPool pool(2);
+  const ReliefTexture relief = seen_from_eye(rough_relief(33, 21, 8, 3), kSource);
+  for (const WarpRule& setting : all_warps()) {
+    const WarpedRelief result = warped(relief, kSource, setting, pool);
+    bool same = true;
+    for (int y = 0; y < relief.height; ++y) {
+      for (int x = 0; x < relief.width; ++x) {
+        same &= plane_colour(result, x, y) == relief.colours[texel_at(relief, x, y)];
+      }
+    }
+    CHECK(same);
+  }
+}
+
 TEST_CASE("both passes do what a line's rule says, texel by texel") {
   ThreadPool pool(1);
   for (const Resampling resampling : {Resampling::two_pass, Resampling::asymmetric}) {
     std::size_t wrong = 0, all = 0;
-    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-      const ReliefTexture relief = rough_relief(24, 19, 8, seed);
+    const std::array reliefs{rough_relief(24, 19, 8, 1),
+                             seen_from_eye(rough_relief(24, 19, 8, 2), kSource)};
+    for (const ReliefTexture& relief : reliefs) {
       for (const glm::dvec3& eye : kEyes) {
         const auto plane = warped_by_oracle(relief, eye, resampling);
         const WarpedRelief result =
@@ -157,13 +182,15 @@ TEST_CASE("both passes do what a line's rule says, texel by texel") {
 TEST_CASE("a warp has the same bits for any number of threads and vector unit") {
   const ReliefTexture relief = rough_relief(61, 47, 16, 5);
   ThreadPool plain(1, Isa::scalar);
-  for (const WarpRule& setting : all_warps()) {
-    for (const glm::dvec3& eye : {kEyes[1], kEyes[5]}) {
-      const WarpedRelief right = warped(relief, eye, setting, plain);
-      for (const Isa isa : available_isas()) {
-        for (const int threads : {1, 3}) {
-          ThreadPool pool(threads, isa);
-          CHECK(warped(relief, eye, setting, pool).colours == right.colours);
+  for (const ReliefTexture& of : {relief, seen_from_eye(relief, kSource)}) {
+    for (const WarpRule& setting : all_warps()) {
+      for (const glm::dvec3& eye : {kEyes[1], kEyes[5]}) {
+        const WarpedRelief right = warped(of, eye, setting, plain);
+        for (const Isa isa : available_isas()) {
+          for (const int threads : {1, 3}) {
+            ThreadPool pool(threads, isa);
+            CHECK(warped(of, eye, setting, pool).colours == right.colours);
+          }
         }
       }
     }
@@ -172,16 +199,19 @@ TEST_CASE("a warp has the same bits for any number of threads and vector unit") 
 
 TEST_CASE("a near square covers the far wall behind it, from everywhere") {
   ThreadPool pool(1);
-  ReliefTexture relief = empty_relief(48, 48, 8, 0.4);
+  ReliefTexture orthographic = empty_relief(48, 48, 8, 0.4);
   constexpr std::uint32_t kNear = 0xFF0000C8u, kFar = 0xFF00C800u;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 48; ++x) {
       const bool is_near = x >= 20 && x < 29 && y >= 17 && y < 27;
-      relief.depths[texel_at(relief, x, y)] = is_near ? 20 : 220;
-      relief.colours[texel_at(relief, x, y)] = is_near ? kNear : kFar;
+      orthographic.depths[texel_at(orthographic, x, y)] = is_near ? 20 : 220;
+      orthographic.colours[texel_at(orthographic, x, y)] = is_near ? kNear : kFar;
     }
   }
-  for (const WarpRule& setting : all_warps()) {
+  const std::array reliefs{orthographic, seen_from_eye(orthographic, kSource)};
+  for (std::size_t i = 0; i < 2 * all_warps().size(); ++i) {
+    const WarpRule setting = all_warps()[i / 2];
+    const ReliefTexture& relief = reliefs[i % 2];
     for (const glm::dvec3& eye : kEyes) {
       const WarpedRelief result = warped(relief, eye, setting, pool);
       const auto place = [&](double u, double v) {

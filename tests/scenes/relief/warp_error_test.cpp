@@ -27,7 +27,8 @@ TEST_CASE("the critical point is the pair of neighbours with the largest step of
 TEST_CASE("no pair of neighbours comes farther apart than the bound") {
   Random random{11};
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    const ReliefTexture relief = rough_relief(40, 30, seed % 2 == 0 ? 8 : 16, seed);
+    ReliefTexture relief = rough_relief(40, 30, seed % 2 == 0 ? 8 : 16, seed);
+    if (seed % 4 < 2) relief.camera.eye = glm::dvec3{0.3, -0.1, 1.2};
     const glm::dvec3 eye{random.between(-2.0, 2.0), random.between(-2.0, 2.0),
                          random.between(0.1, 3.0)};
     const CriticalPoint point = *critical_point(relief);
@@ -38,7 +39,7 @@ TEST_CASE("no pair of neighbours comes farther apart than the bound") {
       const CriticalRegions regions =
           critical_regions(relief, *relief_extent(relief), parts, parts);
       const double bound = error_bound(relief, regions, eye);
-      CHECK(largest <= bound);
+      CHECK(largest <= bound * (1.0 + 1e-12));
       CHECK(bound <= before * 1.05);
       before = bound;
     }
