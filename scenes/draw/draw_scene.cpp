@@ -1,8 +1,11 @@
 #include "scenes/draw/draw_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cassert>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "raster/images/texel.h"
@@ -23,23 +26,25 @@ const DecodedTexture* decoded(const PreparedScene& prepared, const Texture* text
 }
 
 template <SurfaceVariant variant>
-void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {
+void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface,
+                  std::span<const std::uint32_t> indices, RenderPass& pass) {
   const SurfaceVertexInput& input = surface.input;
   const auto vertices = static_cast<std::uint32_t>(input.mesh->positions.size());
   const SurfaceVertexStage<variant> vertex_stage{input};
   SurfaceFragmentStage<variant> fragment_stage{surface.texture, input.material->sampler,
                                                pass.profile, surface.opacity};
   if (!can_draw_in_lanes(pass, surface.state)) {
-    draw(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage);
+    draw(pass, surface.state, indices, vertices, vertex_stage, fragment_stage);
     return;
   }
   fragment_stage.decoded = decoded(prepared, surface.texture);
   fragment_stage.decoded_opacity = decoded(prepared, surface.opacity.texture);
-  draw_in_lanes(pass, surface.state, input.mesh->indices, vertices, vertex_stage, fragment_stage,
+  draw_in_lanes(pass, surface.state, indices, vertices, vertex_stage, fragment_stage,
                 surface_lane_stages<variant>(pass.isa));
 }
 
-using DrawSurface = void (*)(const PreparedScene&, const SurfaceDraw&, RenderPass&);
+using DrawSurface = void (*)(const PreparedScene&, const SurfaceDraw&,
+                             std::span<const std::uint32_t>, RenderPass&);
 
 constexpr SurfaceVariant variant_of(std::size_t number) {
   return {(number & 1) != 0, (number & 2) != 0, (number & 4) != 0, (number & 8) != 0};
@@ -50,11 +55,23 @@ constexpr auto kVariants = []<std::size_t... number>(std::index_sequence<number.
 }
 (std::make_index_sequence<16>{});
 
-void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {
+void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface,
+                  std::span<const std::uint32_t> indices, RenderPass& pass) {
   const SurfaceVariant variant = surface.variant;
   const std::size_t number = (variant.textured ? 1u : 0u) + (variant.specular ? 2u : 0u) +
                              (variant.two_sided ? 4u : 0u) + (variant.holed ? 8u : 0u);
-  kVariants[number](prepared, surface, pass);
+  kVariants[number](prepared, surface, indices, pass);
+}
+
+void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {
+  draw_surface(prepared, surface, surface.input.mesh->indices, pass);
+}
+
+/// Parts are of whole chunks, so that a draw's batches are what they are without parts.
+constexpr std::size_t kChunkIndices = 3 * std::size_t{kChunkTriangles};
+
+std::size_t chunks_of_mesh(const Mesh& mesh) {
+  return (mesh.indices.size() + kChunkIndices - 1) / kChunkIndices;
 }
 
 }  // namespace
@@ -104,6 +121,41 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
   for (SurfaceDraw& surface : surface_draws(*prepared.scene, camera, frame)) {
     surface.input.lights = lights;
     if (!surface.opacity.blends) draw_surface(prepared, surface, pass);
+  }
+}
+
+void record_scene_part(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                       int part, int parts, RenderPass& pass) {
+  assert(part >= 0 && part < parts);
+  pass.clear_colour.reset();
+  pass.clear_depth.reset();
+  if (part == 0) {
+    pass.clear_colour = clear_colour(*prepared.scene);
+    pass.clear_depth = 1.0f;
+  }
+  const std::vector<SurfaceDraw> surfaces = surface_draws(*prepared.scene, camera, frame);
+  std::size_t all = 0;
+  for (const SurfaceDraw& surface : surfaces) {
+    if (!surface.opacity.blends) all += chunks_of_mesh(*surface.input.mesh);
+  }
+  const auto border = [&](int i) {
+    return all * static_cast<std::size_t>(i) / static_cast<std::size_t>(parts);
+  };
+  const std::size_t part_begin = border(part), part_end = border(part + 1);
+  std::size_t first = 0;
+  for (const SurfaceDraw& surface : surfaces) {
+    if (surface.opacity.blends) continue;
+    const Mesh& mesh = *surface.input.mesh;
+    const std::size_t chunks = chunks_of_mesh(mesh);
+    const std::size_t begin = std::clamp(part_begin, first, first + chunks) - first;
+    const std::size_t end = std::clamp(part_end, first, first + chunks) - first;
+    first += chunks;
+    if (begin == end) continue;
+    const std::size_t indices_end = std::min(end * kChunkIndices, mesh.indices.size());
+    draw_surface(
+        prepared, surface,
+        std::span{mesh.indices}.subspan(begin * kChunkIndices, indices_end - begin * kChunkIndices),
+        pass);
   }
 }
 

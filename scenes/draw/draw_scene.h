@@ -84,6 +84,12 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
 void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                   RenderPass& pass, std::span<const Light> lights);
 
+/// One of `parts` parts of record_scene(), each for a pass of its own on the same targets, whose
+/// depths are kept. The first clears. Part after part they draw what record_scene() draws, in its
+/// order: the same bits.
+void record_scene_part(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                       int part, int parts, RenderPass& pass);
+
 /// Records the transparent draws of a frame into a pass that has set_targets().
 void record_transparent(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                         RenderPass& pass);

@@ -20,51 +20,6 @@ glm::dvec3 middle_of_plane(const ReliefTexture& relief) {
          plane.b * (0.5 * (relief.height - 1));
 }
 
-/// Whether a relief serves a view within the tolerance.
-bool is_fresh(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
-              double pixel_tangent) {
-  return can_serve(relief, settings, eye, pixel_tangent) &&
-         impostor_error(relief, eye) <= settings.tolerance_texels;
-}
-
-/// Puts the stale relief into the cache, and makes room for it.
-void keep_stale(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye) {
-  if (!impostor.drawn) return;
-  std::vector<DrawnRelief>& cache = impostor.cache;
-  cache.push_back(std::move(*impostor.drawn));
-  impostor.drawn.reset();
-  const auto bytes = [&] {
-    std::size_t sum = 0;
-    for (const DrawnRelief& relief : cache) sum += bytes_of(relief);
-    return sum;
-  };
-  while (!cache.empty() && bytes() > settings.cache_bytes) {
-    std::size_t farthest = 0;
-    for (std::size_t i = 1; i < cache.size(); ++i) {
-      if (length_of(cache[i].eye - eye) > length_of(cache[farthest].eye - eye)) farthest = i;
-    }
-    cache.erase(cache.begin() + static_cast<std::ptrdiff_t>(farthest));
-  }
-}
-
-/// Takes the relief with the least error out of the cache, if one serves.
-std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& settings,
-                                    glm::dvec3 eye, double pixel_tangent) {
-  std::optional<std::size_t> best;
-  double least = settings.tolerance_texels;
-  for (std::size_t i = 0; i < impostor.cache.size(); ++i) {
-    if (!can_serve(impostor.cache[i], settings, eye, pixel_tangent)) continue;
-    const double error = impostor_error(impostor.cache[i], eye);
-    if (error > least || (best && error == least)) continue;
-    best = i;
-    least = error;
-  }
-  if (!best) return std::nullopt;
-  DrawnRelief relief = std::move(impostor.cache[*best]);
-  impostor.cache.erase(impostor.cache.begin() + static_cast<std::ptrdiff_t>(*best));
-  return relief;
-}
-
 }  // namespace
 
 double pixels_across(double pixels, double size_m, double distance_m, double half_view_tangent) {
@@ -136,10 +91,65 @@ double impostor_error(const DrawnRelief& relief, glm::dvec3 eye) {
   return mean_critical_error(relief.texture, relief.critical, eye);
 }
 
+double pixel_tangent_of(const CameraMatrices& camera, int height_px) {
+  return 2.0 * half_view(camera) / height_px;
+}
+
+bool is_fresh(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+              double pixel_tangent) {
+  return can_serve(relief, settings, eye, pixel_tangent) &&
+         impostor_error(relief, eye) <= settings.tolerance_texels;
+}
+
+void keep_stale(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye) {
+  if (!impostor.drawn) return;
+  std::vector<DrawnRelief>& cache = impostor.cache;
+  cache.push_back(std::move(*impostor.drawn));
+  impostor.drawn.reset();
+  const auto bytes = [&] {
+    std::size_t sum = 0;
+    for (const DrawnRelief& relief : cache) sum += bytes_of(relief);
+    return sum;
+  };
+  while (!cache.empty() && bytes() > settings.cache_bytes) {
+    std::size_t farthest = 0;
+    for (std::size_t i = 1; i < cache.size(); ++i) {
+      if (length_of(cache[i].eye - eye) > length_of(cache[farthest].eye - eye)) farthest = i;
+    }
+    cache.erase(cache.begin() + static_cast<std::ptrdiff_t>(farthest));
+  }
+}
+
+std::optional<DrawnRelief> known_relief(ReliefTexture texture, const ImpostorSettings& settings,
+                                        glm::dvec3 eye, ThreadPool& pool) {
+  const std::optional<ReliefExtent> extent = relief_extent(texture);
+  if (!extent) return std::nullopt;
+  CriticalRegions critical =
+      critical_regions(texture, *extent, settings.regions, settings.regions, &pool);
+  return DrawnRelief{std::move(texture), *extent, std::move(critical), eye};
+}
+
+std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& settings,
+                                    glm::dvec3 eye, double pixel_tangent) {
+  std::optional<std::size_t> best;
+  double least = settings.tolerance_texels;
+  for (std::size_t i = 0; i < impostor.cache.size(); ++i) {
+    if (!can_serve(impostor.cache[i], settings, eye, pixel_tangent)) continue;
+    const double error = impostor_error(impostor.cache[i], eye);
+    if (error > least || (best && error == least)) continue;
+    best = i;
+    least = error;
+  }
+  if (!best) return std::nullopt;
+  DrawnRelief relief = std::move(impostor.cache[*best]);
+  impostor.cache.erase(impostor.cache.begin() + static_cast<std::ptrdiff_t>(*best));
+  return relief;
+}
+
 ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
                              const ImpostorSettings& settings, const CameraMatrices& camera,
                              glm::dvec3 up, int height_px, ThreadPool& pool) {
-  const double pixel_tangent = 2.0 * half_view(camera) / height_px;
+  const double pixel_tangent = pixel_tangent_of(camera, height_px);
   const glm::dvec3 eye = camera.eye;
   std::optional<DrawnRelief>& drawn = impostor.drawn;
   ImpostorStep step = ImpostorStep::warp;
@@ -152,36 +162,38 @@ ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
     } else {
       step = ImpostorStep::renew;
       const ReliefForm form = impostor_form(maker, camera, settings, up, height_px);
-      ReliefTexture texture =
-          make_relief(maker, impostor_view(maker, camera, settings, up), form, pool);
-      if (const std::optional<ReliefExtent> extent = relief_extent(texture)) {
-        CriticalRegions critical =
-            critical_regions(texture, *extent, settings.regions, settings.regions);
-        drawn = DrawnRelief{std::move(texture), *extent, std::move(critical), eye};
-      }
+      drawn =
+          known_relief(make_relief(maker, impostor_view(maker, camera, settings, up), form, pool),
+                       settings, eye, pool);
     }
   } else if (settings.sprites &&
              parallax_tangent(drawn->texture, impostor.warped_for, eye) <= pixel_tangent) {
     return ImpostorStep::sprite;
   }
+  warp_impostor(impostor, settings, eye, pool);
+  return step;
+}
+
+void warp_impostor(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye,
+                   ThreadPool& pool) {
+  const std::optional<DrawnRelief>& drawn = impostor.drawn;
   const std::optional<PlaneRectangle> place =
       drawn ? warped_extent(drawn->texture, drawn->extent, eye) : std::nullopt;
   if (!place) {
     impostor.warped.place = {0, 0, 0, 0};
-    return step;
+    return;
   }
   warp_relief(drawn->texture, drawn->extent, eye, *place, settings.warp, impostor.warped, pool);
   impostor.warped_for = eye;
-  return step;
 }
 
-void draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
-                   ThreadPool& pool) {
-  if (!impostor.drawn || impostor.warped.place.width == 0) return;
-  map_relief(impostor.warped,
-             plane_mapping(impostor.drawn->texture, camera, impostor.warped.place, picture.width,
-                           picture.height),
-             picture, pool);
+Rectangle draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
+                        ThreadPool& pool) {
+  if (!impostor.drawn || impostor.warped.place.width == 0) return {0, 0, 0, 0};
+  const PlaneMapping mapping = plane_mapping(impostor.drawn->texture, camera, impostor.warped.place,
+                                             picture.width, picture.height);
+  map_relief(impostor.warped, mapping, picture, pool);
+  return mapping.area;
 }
 
 }  // namespace softfocus

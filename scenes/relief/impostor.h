@@ -74,13 +74,39 @@ bool can_serve(const DrawnRelief& relief, const ImpostorSettings& settings, glm:
 /// The error by which a relief is stale: of one critical point, or the mean of all regions.
 double impostor_error(const DrawnRelief& relief, glm::dvec3 eye);
 
+/// Whether a relief serves a view within the tolerance.
+bool is_fresh(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+              double pixel_tangent);
+
+/// A pixel's width, a metre before the camera.
+double pixel_tangent_of(const CameraMatrices& camera, int height_px);
+
+// --- the steps of update_impostor(), for those that take them apart ---
+
+/// What was drawn for an eye, with what is known of it; none if it shows nothing.
+std::optional<DrawnRelief> known_relief(ReliefTexture texture, const ImpostorSettings& settings,
+                                        glm::dvec3 eye, ThreadPool& pool);
+
+/// Puts the stale relief into the cache, and makes room for it.
+void keep_stale(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye);
+
+/// Takes the relief with the least error out of the cache, if one serves.
+std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& settings,
+                                    glm::dvec3 eye, double pixel_tangent);
+
+/// Warps the relief that is there for an eye. If there is none, or the eye does not see its front,
+/// nothing is shown.
+void warp_impostor(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye,
+                   ThreadPool& pool);
+
 /// Brings the impostor up to date for a view, and says how. `up` is the camera's.
 ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
                              const ImpostorSettings& settings, const CameraMatrices& camera,
                              glm::dvec3 up, int height_px, ThreadPool& pool);
 
-/// Lays it over a picture of the view, if it shows anything.
-void draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
-                   ThreadPool& pool);
+/// Lays it over a picture of the view, if it shows anything. Returns the pixels that it may have
+/// changed.
+Rectangle draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
+                        ThreadPool& pool);
 
 }  // namespace softfocus

@@ -111,7 +111,7 @@ glm::dmat4 perspective_clip(const ReliefCamera& camera, int width, int height) {
 }  // namespace
 
 ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
-  ReliefMaker maker{&scene, frame, prepare_scene(scene, Profile{}, pool), {}, {}, 0.0, {}, {}};
+  ReliefMaker maker{&scene, frame, prepare_scene(scene, Profile{}, pool), {}, {}, {}, 0.0, {}, {}};
   glm::dvec3 low{kFarAway}, high{-kFarAway};
   for (const Object& object : scene.objects) {
     const glm::dmat4 to_world = object_matrix(object, frame);
@@ -128,6 +128,7 @@ ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
     }
   }
   assert(!maker.points.empty());
+  maker.chunks = chunks_of(maker.points);
   maker.middle = (low + high) * 0.5;
   for (const glm::dvec3& point : maker.points) {
     const glm::dvec3 out = point - maker.middle;
@@ -159,8 +160,11 @@ ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int
     return perspective_camera(maker, view, axes, width, height);
   }
   SeenBox box;
-  for (const glm::dvec3& point : maker.points) {
-    box.add({dot(point, axes.right), dot(point, axes.down), dot(point, axes.forward)});
+  const glm::dvec3 directions[3] = {axes.right, axes.down, axes.forward};
+  for (int i = 0; i < 3; ++i) {
+    const PointReach reach = reach_along(maker.points, maker.chunks, directions[i]);
+    box.low[i] = reach.low;
+    box.high[i] = reach.high;
   }
   box.give_size(1e-6 * std::max(maker.radius_m, 1e-30));
   const auto [low, high] = box;
@@ -204,8 +208,7 @@ CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height
   return matrices;
 }
 
-ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
-                          ThreadPool& pool) {
+ReliefTexture begin_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form) {
   const int width = form.width, height = form.height;
   assert(width >= 4 && width <= kMostReliefSize && height >= 4 && height <= kMostReliefSize);
   ReliefTexture relief;
@@ -213,27 +216,37 @@ ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const Reli
   relief.height = height;
   relief.depth_bits = form.depth_bits;
   relief.camera = relief_camera(maker, view, width, height);
-  const CameraMatrices matrices = relief_matrices(relief.camera, width, height, view.eye);
-
   if (maker.picture.width != width || maker.picture.height != height) {
     maker.picture = make_image(Format::rgba16f, width, height);
     maker.prepared.depth = make_image(Format::r32f, width, height);
   }
+  return relief;
+}
+
+void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, glm::dvec3 eye, int part,
+                      int parts, ThreadPool& pool) {
   RenderPass& pass = maker.prepared.pass;
   pass.targets.colour[0] = &maker.picture;
   pass.targets.depth = &maker.prepared.depth;
-  record_scene(maker.prepared, matrices, maker.frame, pass);
+  record_scene_part(maker.prepared,
+                    relief_matrices(relief.camera, relief.width, relief.height, eye), maker.frame,
+                    part, parts, pass);
   pass.keep_depth = true;
   finish(pass, pool);
-  const Image normals = form.with_normals
-                            ? draw_normals(*maker.scene, matrices, maker.frame, width, height, pool)
-                            : Image{};
+}
 
+void read_relief(ReliefMaker& maker, glm::dvec3 eye, bool with_normals, ReliefTexture& relief,
+                 ThreadPool& pool) {
+  const int width = relief.width, height = relief.height;
+  const Image normals =
+      with_normals ? draw_normals(*maker.scene, relief_matrices(relief.camera, width, height, eye),
+                                  maker.frame, width, height, pool)
+                   : Image{};
   const std::size_t texels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  relief.depths.assign(texels, empty_depth(form.depth_bits));
+  relief.depths.assign(texels, empty_depth(relief.depth_bits));
   relief.colours.assign(texels, 0);
-  if (form.with_normals) relief.normals.assign(texels, 0);
-  const auto last = static_cast<float>(last_depth(form.depth_bits));
+  if (with_normals) relief.normals.assign(texels, 0);
+  const auto last = static_cast<float>(last_depth(relief.depth_bits));
   pool.for_each(height, [&](int y) {
     const float* depths = row<float>(maker.prepared.depth, y).data();
     const std::uint16_t* colours = row<std::uint16_t>(maker.picture, y).data();
@@ -243,11 +256,18 @@ ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const Reli
       const std::size_t at = first + static_cast<std::size_t>(x);
       relief.depths[at] = static_cast<std::uint16_t>(std::lrint(depths[x] * last));
       relief.colours[at] = packed_colour(colours + 4 * x, maker.code_of_half);
-      if (form.with_normals) {
+      if (with_normals) {
         relief.normals[at] = packed_normal(glm::vec3{load_texel<Format::rgba16f>(normals, x, y)});
       }
     }
   });
+}
+
+ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
+                          ThreadPool& pool) {
+  ReliefTexture relief = begin_relief(maker, view, form);
+  draw_relief_part(maker, relief, view.eye, 0, 1, pool);
+  read_relief(maker, view.eye, form.with_normals, relief, pool);
   return relief;
 }
 

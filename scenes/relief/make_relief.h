@@ -9,6 +9,7 @@
 
 #include "raster/threads/parallel.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/relief/point_extents.h"
 #include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
@@ -42,6 +43,7 @@ struct ReliefMaker {
   double frame;
   PreparedScene prepared;
   std::vector<glm::dvec3> points;          ///< of all meshes, in the world
+  std::vector<PointChunk> chunks;          ///< chunks_of() them
   glm::dvec3 middle;                       ///< of the box along the world's axes that holds them
   double radius_m;                         ///< from the middle to the farthest
   std::vector<std::uint8_t> code_of_half;  ///< linear_to_srgb8() of each half
@@ -67,6 +69,21 @@ inline constexpr double kDepthMargin = 1e-4;
 /// number of threads.
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool);
+
+// make_relief() in parts, so that other work can be done between them; the same bits. In this
+// order: begin_relief(), draw_relief_part() of each part, read_relief(). A maker draws one relief
+// at a time.
+
+/// The relief's camera; it has no texels yet.
+ReliefTexture begin_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form);
+
+/// Draws one of `parts` parts of the triangles.
+void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, glm::dvec3 eye, int part,
+                      int parts, ThreadPool& pool);
+
+/// The texels of what was drawn.
+void read_relief(ReliefMaker& maker, glm::dvec3 eye, bool with_normals, ReliefTexture& relief,
+                 ThreadPool& pool);
 
 /// The matrices that draw a relief: the texel (x, y) is the pixel (x, y), and the buffer's depth
 /// is d / depth_m. Clip w is 1, or the distance from a perspective camera's eye along f. `eye` is

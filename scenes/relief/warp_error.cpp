@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 
 namespace softfocus {
@@ -48,6 +49,39 @@ void for_each_pair(const ReliefTexture& relief, const With& with) {
   }
 }
 
+/// The first texel of a part: its share of the size, times `parts`, reaches `part`.
+int part_begin(int begin, int end, int part, int parts) {
+  return begin + ((end - begin) * part + parts - 1) / parts;
+}
+
+/// The pairs whose first texel is one of a row's from `begin` to before `end`.
+void add_pairs(const ReliefTexture& relief, int v, int begin, int end,
+               std::optional<CriticalRegion>& region) {
+  const std::uint16_t empty = empty_depth(relief.depth_bits);
+  const std::uint16_t* codes = relief.depths.data() + std::ptrdiff_t{v} * relief.width;
+  const std::uint16_t* below = v + 1 < relief.height ? codes + relief.width : nullptr;
+  int most = region ? std::abs(region->point.code1 - region->point.code2) : -1;
+  int least = region ? region->least_code : empty, largest = region ? region->most_code : 0;
+  const auto add = [&](int u, int u2, int v2, int code, int other) {
+    least = std::min(least, std::min(code, other));
+    largest = std::max(largest, std::max(code, other));
+    const int step = std::abs(code - other);
+    if (step <= most) return;
+    most = step;
+    region = CriticalRegion{{u, v, u2, v2, code, other}, least, largest};
+  };
+  for (int u = begin; u < end; ++u) {
+    const int code = codes[u];
+    if (code == empty) continue;
+    if (u + 1 < relief.width && codes[u + 1] != empty) add(u, u + 1, v, code, codes[u + 1]);
+    if (below != nullptr && below[u] != empty) add(u, u, v + 1, code, below[u]);
+  }
+  if (region) {
+    region->least_code = least;
+    region->most_code = largest;
+  }
+}
+
 }  // namespace
 
 std::optional<CriticalPoint> critical_point(const ReliefTexture& relief) {
@@ -69,24 +103,25 @@ double critical_error(const ReliefTexture& relief, const CriticalPoint& point, g
 }
 
 CriticalRegions critical_regions(const ReliefTexture& relief, const ReliefExtent& extent,
-                                 int columns, int rows) {
+                                 int columns, int rows, ThreadPool* pool) {
   assert(columns >= 1 && columns <= kMostRegions && rows >= 1 && rows <= kMostRegions);
   CriticalRegions cut{extent, columns, rows, {}};
   cut.regions.resize(static_cast<std::size_t>(columns * rows));
-  const int width = extent.x_end - extent.x_begin, height = extent.y_end - extent.y_begin;
-  for_each_pair(relief, [&](const CriticalPoint& pair) {
-    const int column = (pair.u1 - extent.x_begin) * columns / width;
-    const int row = (pair.v1 - extent.y_begin) * rows / height;
-    std::optional<CriticalRegion>& region =
-        cut.regions[static_cast<std::size_t>(row * columns + column)];
-    const int least = std::min(pair.code1, pair.code2), most = std::max(pair.code1, pair.code2);
-    if (!region) region = CriticalRegion{pair, least, most};
-    region->least_code = std::min(region->least_code, least);
-    region->most_code = std::max(region->most_code, most);
-    if (std::abs(pair.code1 - pair.code2) > std::abs(region->point.code1 - region->point.code2)) {
-      region->point = pair;
+  const auto cut_row = [&](int row) {
+    const int v_end = part_begin(extent.y_begin, extent.y_end, row + 1, rows);
+    for (int v = part_begin(extent.y_begin, extent.y_end, row, rows); v < v_end; ++v) {
+      for (int column = 0; column < columns; ++column) {
+        add_pairs(relief, v, part_begin(extent.x_begin, extent.x_end, column, columns),
+                  part_begin(extent.x_begin, extent.x_end, column + 1, columns),
+                  cut.regions[static_cast<std::size_t>(row * columns + column)]);
+      }
     }
-  });
+  };
+  if (pool != nullptr) {
+    pool->for_each(rows, cut_row);
+  } else {
+    for (int row = 0; row < rows; ++row) cut_row(row);
+  }
   return cut;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "raster/threads/parallel.h"
 #include "scenes/relief/pre_warp.h"
 
 namespace softfocus {
@@ -39,9 +40,10 @@ struct CriticalRegions {
   std::vector<std::optional<CriticalRegion>> regions;
 };
 
-/// Cuts the extent, not the texture. Needs 1 to kMostRegions columns and rows.
+/// Cuts the extent, not the texture. Needs 1 to kMostRegions columns and rows. The same for any
+/// pool, and without.
 CriticalRegions critical_regions(const ReliefTexture& relief, const ReliefExtent& extent,
-                                 int columns, int rows);
+                                 int columns, int rows, ThreadPool* pool = nullptr);
 inline constexpr int kMostRegions = 64;
 
 /// The mean of the critical errors of all regions that have a point; 0 if none has.

@@ -33,6 +33,15 @@ constexpr std::array kReliefParts{NamedPart{"image", ReliefPart::image},
                                   NamedPart{"depth", ReliefPart::depth},
                                   NamedPart{"normals", ReliefPart::normals}};
 
+struct NamedTurnSchedule {
+  std::string_view name;
+  TurnSchedule schedule;
+};
+constexpr std::array kTurnSchedules{NamedTurnSchedule{"serial", TurnSchedule::serial},
+                                    NamedTurnSchedule{"split", TurnSchedule::split},
+                                    NamedTurnSchedule{"slices", TurnSchedule::slices},
+                                    NamedTurnSchedule{"own-thread", TurnSchedule::own_thread}};
+
 /// `v` turned about a unit axis (Rodrigues).
 glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees) {
   const double cosine = exact_math::cos_degrees(degrees), sine = exact_math::sin_degrees(degrees);
@@ -168,7 +177,7 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 17> options;
+  std::array<std::string_view, 22> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
@@ -187,16 +196,59 @@ constexpr std::array kReliefActions{
     ReliefAction{"turn",
                  turn_impostor,
                  false,
-                 {"-o", "--scene-path", "--frame", "--size", "--depth-bits", "--resampling",
-                  "--fixed", "--frames", "--every", "--tolerance", "--texels-per-pixel",
-                  "--no-sprites", "--zoom", "--regions", "--join", "--turns", "--cache"}}};
+                 {"-o",
+                  "--scene-path",
+                  "--frame",
+                  "--size",
+                  "--depth-bits",
+                  "--resampling",
+                  "--fixed",
+                  "--frames",
+                  "--every",
+                  "--tolerance",
+                  "--texels-per-pixel",
+                  "--no-sprites",
+                  "--zoom",
+                  "--regions",
+                  "--join",
+                  "--turns",
+                  "--cache",
+                  "--schedule",
+                  "--aside",
+                  "--update-frames",
+                  "--slice-ms",
+                  "--predict"}}};
 
-constexpr std::array<std::string_view, 25> kReliefOptions{
-    "-o",           "--format",  "--scene-path", "--frame",   "--size",      "--texels",
-    "--depth-bits", "--normals", "--yaw",        "--pitch",   "--distance",  "--show",
-    "--resampling", "--fixed",   "--frames",     "--every",   "--tolerance", "--texels-per-pixel",
-    "--no-sprites", "--zoom",    "--runs",       "--regions", "--join",      "--turns",
-    "--cache"};
+constexpr std::array<std::string_view, 30> kReliefOptions{"-o",           "--format",
+                                                          "--scene-path", "--frame",
+                                                          "--size",       "--texels",
+                                                          "--depth-bits", "--normals",
+                                                          "--yaw",        "--pitch",
+                                                          "--distance",   "--show",
+                                                          "--resampling", "--fixed",
+                                                          "--frames",     "--every",
+                                                          "--tolerance",  "--texels-per-pixel",
+                                                          "--no-sprites", "--zoom",
+                                                          "--runs",       "--regions",
+                                                          "--join",       "--turns",
+                                                          "--cache",      "--schedule",
+                                                          "--aside",      "--update-frames",
+                                                          "--slice-ms",   "--predict"};
+
+/// Options of work aside need a schedule that has some.
+void check_schedule(const CLI::App& parser, const ReliefOptions& options) {
+  const bool is_sliced = options.schedule == TurnSchedule::slices;
+  if (!is_sliced && options.schedule != TurnSchedule::own_thread) {
+    for (const char* name : {"--aside", "--update-frames"}) {
+      if (is_given(parser, name)) {
+        throw UsageError(std::string{name} + " needs --schedule slices or own-thread");
+      }
+    }
+  }
+  if (is_given(parser, "--slice-ms") && (!is_sliced || options.update_frames > 0)) {
+    throw UsageError("--slice-ms needs --schedule slices, without --update-frames");
+  }
+}
 
 int run_relief(const CLI::App& parser, ReliefOptions& options) {
   for (const ReliefAction& action : kReliefActions) {
@@ -208,6 +260,7 @@ int run_relief(const CLI::App& parser, ReliefOptions& options) {
         throw UsageError(std::string{name} + ": relief " + options.action + " does not read it");
       }
     }
+    check_schedule(parser, options);
     if (action.writes_picture) settle_format(parser, options.output, options.format);
     return action.work(options);
   }
@@ -363,6 +416,37 @@ Command add_relief_command(CLI::App& program) {
          "a number from 0.01 to 10", &ReliefOptions::zoom);
   add_flag(*parser, "--no-sprites", "Warp every frame, whatever Schaufler's test says",
            options->no_sprites);
+  begin_group(*parser, "Schedule of a turn");
+  add_value(*parser, "--schedule", "NAME",
+            "Who works when: " + names_of(kTurnSchedules) +
+                " (default: split, in the frame by all threads)",
+            [options](const std::string& text) {
+              for (const NamedTurnSchedule& choice : kTurnSchedules) {
+                if (choice.name == text) {
+                  options->schedule = choice.schedule;
+                  return;
+                }
+              }
+              refuse_name("--schedule", text, names_in(kTurnSchedules));
+            });
+  offer(*parser, "--schedule", [] { return names_in(kTurnSchedules); });
+  add_value(*parser, "--aside", "renewals|warps",
+            "What slices or the own thread do: draw reliefs, or warp them, too (default: renewals)",
+            [options](const std::string& text) {
+              if (text != "renewals" && text != "warps") {
+                throw UsageError("--aside '" + text + "': give renewals or warps");
+              }
+              options->warps_aside = text == "warps";
+            });
+  whole("--update-frames",
+        "What begins in a frame is shown N frames later, 1 to 64 (default: when it is done)", 1,
+        kMostUpdateFrames, "a number from 1 to 64", &ReliefOptions::update_frames);
+  number("--slice-ms", "X",
+         "Of slices without --update-frames: pieces are done until a frame took so long (default: "
+         "2)",
+         0.01, 1e4, "a number from 0.01 to 10000", &ReliefOptions::slice_ms);
+  add_flag(*parser, "--predict", "Work for the eye that will be, if it goes on as it goes",
+           options->predicts);
   begin_group(*parser, "Run");
   whole("--runs", "bench times each N times, 1 to 1000 (default: 20)", 1, 1000,
         "a number from 1 to 1000", &ReliefOptions::runs);

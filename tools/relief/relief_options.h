@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/relief/impostor.h"
+#include "scenes/relief/impostor_schedule.h"
 #include "tools/cli/option_values.h"
 #include "tools/options/run_options.h"
 
@@ -14,6 +14,10 @@ namespace softfocus {
 
 /// What of a relief is shown.
 enum class ReliefPart : std::uint8_t { image, depth, normals };
+
+/// When a turn's work is done (scenes/relief/impostor_schedule.h): in the frame by one thread or
+/// by all, in slices, or beside the frames.
+enum class TurnSchedule : std::uint8_t { serial, split, slices, own_thread };
 
 struct ReliefOptions {
   std::string action, input;
@@ -38,6 +42,11 @@ struct ReliefOptions {
   int turns = 1;
   double cache_mb = 0.0;
   bool no_sprites = false;
+  TurnSchedule schedule = TurnSchedule::split;
+  bool warps_aside = false;
+  int update_frames = 0;  ///< 0: not fixed
+  double slice_ms = 2.0;
+  bool predicts = false;
   int runs = 20;
   PoolOptions pool;
 };

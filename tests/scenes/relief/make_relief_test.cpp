@@ -136,3 +136,33 @@ TEST_CASE("a relief has the same bits for any number of threads and vector unit"
     CHECK(relief.normals == right.normals);
   }
 }
+
+TEST_CASE("a relief that is drawn in parts has the bits of one that is drawn at once") {
+  Scene scene;
+  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
+  scene.materials.emplace_back();
+  scene.meshes.push_back(make_torus(0.7, 0.3, 60, 30));
+  // The second lies where the first is: which one is seen depends on the order alone.
+  scene.materials.emplace_back();
+  scene.materials[1].diffuse = {0.1f, 0.9f, 0.2f};
+  scene.objects.push_back({});
+  scene.objects.push_back({});
+  scene.objects[1].material = 1;
+  const ReliefView view{{1.0, 2.0, 3.0}, {0.0, 1.0, 0.0}};
+  const ReliefForm form{40, 30, 16, true};
+  for (const Isa isa : {Isa::scalar, widest_isa()}) {
+    ThreadPool pool(2, isa);
+    ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+    const ReliefTexture whole = make_relief(maker, view, form, pool);
+    for (const int parts : {2, 3, 50}) {
+      ReliefTexture relief = begin_relief(maker, view, form);
+      for (int part = 0; part < parts; ++part) {
+        draw_relief_part(maker, relief, view.eye, part, parts, pool);
+      }
+      read_relief(maker, view.eye, true, relief, pool);
+      CHECK(relief.depths == whole.depths);
+      CHECK(relief.colours == whole.colours);
+      CHECK(relief.normals == whole.normals);
+    }
+  }
+}

@@ -2,7 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <vector>
 
 #include "tests/support/relief_pictures.h"
 
@@ -65,6 +69,48 @@ TEST_CASE("a pair counts in the region of its first texel") {
   CHECK(cut.regions[2]->point.v1 == 5);
   CHECK(cut.regions[2]->least_code == 90);
   CHECK(cut.regions[0]->point.code1 == cut.regions[0]->point.code2);
+}
+
+TEST_CASE(
+    "regions have the pairs that a walk over all pairs gives them, in any number of threads") {
+  ThreadPool pool(3);
+  for (const int parts : {1, 3, 7, 64}) {
+    const ReliefTexture relief = rough_relief(37, 29, 8, static_cast<std::uint64_t>(parts));
+    const ReliefExtent extent = *relief_extent(relief);
+    std::vector<std::optional<CriticalRegion>> right(static_cast<std::size_t>(parts * parts));
+    const auto add = [&](int u, int v, int u2, int v2) {
+      if (u2 == relief.width || v2 == relief.height) return;
+      const int code = relief.depths[texel_at(relief, u, v)];
+      const int other = relief.depths[texel_at(relief, u2, v2)];
+      if (code == 255 || other == 255) return;
+      const int column = (u - extent.x_begin) * parts / (extent.x_end - extent.x_begin);
+      const int row = (v - extent.y_begin) * parts / (extent.y_end - extent.y_begin);
+      std::optional<CriticalRegion>& region = right[static_cast<std::size_t>(row * parts + column)];
+      const CriticalPoint pair{u, v, u2, v2, code, other};
+      if (!region) region = CriticalRegion{pair, code};
+      region->least_code = std::min(region->least_code, std::min(code, other));
+      if (std::abs(code - other) > std::abs(region->point.code1 - region->point.code2)) {
+        region->point = pair;
+      }
+    };
+    for (int v = 0; v < relief.height; ++v) {
+      for (int u = 0; u < relief.width; ++u) {
+        add(u, v, u + 1, v);
+        add(u, v, u, v + 1);
+      }
+    }
+    for (ThreadPool* threads : {static_cast<ThreadPool*>(nullptr), &pool}) {
+      const CriticalRegions cut = critical_regions(relief, extent, parts, parts, threads);
+      for (std::size_t i = 0; i < right.size(); ++i) {
+        REQUIRE(cut.regions[i].has_value() == right[i].has_value());
+        if (!right[i]) continue;
+        CHECK(cut.regions[i]->least_code == right[i]->least_code);
+        CHECK(cut.regions[i]->point.u1 == right[i]->point.u1);
+        CHECK(cut.regions[i]->point.v1 == right[i]->point.v1);
+        CHECK(cut.regions[i]->point.v2 == right[i]->point.v2);
+      }
+    }
+  }
 }
 
 TEST_CASE("from straight before a pair, a step of depth pulls nothing apart") {
