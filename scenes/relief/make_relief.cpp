@@ -133,14 +133,20 @@ CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height
 
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool) {
+  return draw_relief(maker, relief_camera(maker, view, form.width, form.height), view.eye, form,
+                     pool);
+}
+
+ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::dvec3 eye,
+                          const ReliefForm& form, ThreadPool& pool) {
   const int width = form.width, height = form.height;
   assert(width >= 4 && width <= kMostReliefSize && height >= 4 && height <= kMostReliefSize);
   ReliefTexture relief;
   relief.width = width;
   relief.height = height;
   relief.depth_bits = form.depth_bits;
-  relief.camera = relief_camera(maker, view, width, height);
-  const CameraMatrices matrices = relief_matrices(relief.camera, width, height, view.eye);
+  relief.camera = camera;
+  const CameraMatrices matrices = relief_matrices(camera, width, height, eye);
 
   if (maker.picture.width != width || maker.picture.height != height) {
     maker.picture = make_image(Format::rgba16f, width, height);

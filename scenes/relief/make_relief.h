@@ -47,6 +47,10 @@ inline constexpr double kDepthMargin = 1e-4;
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool);
 
+/// The same by any camera that has the object between its first depth and its last.
+ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::dvec3 eye,
+                          const ReliefForm& form, ThreadPool& pool);
+
 /// The matrices that draw a relief: the texel (x, y) is the pixel (x, y), and the buffer's depth
 /// is d / depth_m. Clip w is 1.
 CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height, glm::dvec3 eye);

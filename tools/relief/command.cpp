@@ -14,6 +14,7 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/relief/octahedral_atlas.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -168,7 +169,7 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 17> options;
+  std::array<std::string_view, 21> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
@@ -187,16 +188,39 @@ constexpr std::array kReliefActions{
     ReliefAction{"turn",
                  turn_impostor,
                  false,
-                 {"-o", "--scene-path", "--frame", "--size", "--depth-bits", "--resampling",
-                  "--fixed", "--frames", "--every", "--tolerance", "--texels-per-pixel",
-                  "--no-sprites", "--zoom", "--regions", "--join", "--turns", "--cache"}}};
+                 {"-o",
+                  "--scene-path",
+                  "--frame",
+                  "--size",
+                  "--depth-bits",
+                  "--resampling",
+                  "--fixed",
+                  "--frames",
+                  "--every",
+                  "--tolerance",
+                  "--texels-per-pixel",
+                  "--no-sprites",
+                  "--zoom",
+                  "--regions",
+                  "--join",
+                  "--turns",
+                  "--cache",
+                  "--rival",
+                  "--views",
+                  "--hemisphere",
+                  "--parallax"}}};
 
-constexpr std::array<std::string_view, 25> kReliefOptions{
-    "-o",           "--format",  "--scene-path", "--frame",   "--size",      "--texels",
-    "--depth-bits", "--normals", "--yaw",        "--pitch",   "--distance",  "--show",
-    "--resampling", "--fixed",   "--frames",     "--every",   "--tolerance", "--texels-per-pixel",
-    "--no-sprites", "--zoom",    "--runs",       "--regions", "--join",      "--turns",
-    "--cache"};
+constexpr std::array<std::string_view, 29> kReliefOptions{
+    "-o",           "--format",    "--scene-path",
+    "--frame",      "--size",      "--texels",
+    "--depth-bits", "--normals",   "--yaw",
+    "--pitch",      "--distance",  "--show",
+    "--resampling", "--fixed",     "--frames",
+    "--every",      "--tolerance", "--texels-per-pixel",
+    "--no-sprites", "--zoom",      "--runs",
+    "--regions",    "--join",      "--turns",
+    "--cache",      "--rival",     "--views",
+    "--hemisphere", "--parallax"};
 
 int run_relief(const CLI::App& parser, ReliefOptions& options) {
   for (const ReliefAction& action : kReliefActions) {
@@ -363,6 +387,18 @@ Command add_relief_command(CLI::App& program) {
          "a number from 0.01 to 10", &ReliefOptions::zoom);
   add_flag(*parser, "--no-sprites", "Warp every frame, whatever Schaufler's test says",
            options->no_sprites);
+  begin_group(*parser, "Rival");
+  add_value(*parser, "--rival", "octahedral",
+            "Turn an octahedral impostor atlas instead of an impostor",
+            [options](const std::string& text) {
+              if (text != "octahedral") refuse_name("--rival", text, {"octahedral"});
+              options->rival = true;
+            });
+  whole("--views", "Of the atlas, N x N, 2 to 64 (default: 6)", 2, kMostOctahedralViews,
+        "a number from 2 to 64", &ReliefOptions::views);
+  add_flag(*parser, "--hemisphere", "All views of the atlas are from above", options->hemisphere);
+  whole("--parallax", "Steps from the texel that a ray meets to its depth, 0 to 8 (default: 1)", 0,
+        kMostParallaxSteps, "a number from 0 to 8", &ReliefOptions::parallax);
   begin_group(*parser, "Run");
   whole("--runs", "bench times each N times, 1 to 1000 (default: 20)", 1, 1000,
         "a number from 1 to 1000", &ReliefOptions::runs);
