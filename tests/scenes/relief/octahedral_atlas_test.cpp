@@ -66,6 +66,23 @@ int wrong_pixels(const Image& shown, const Scene& scene, const CameraMatrices& c
   return wrong;
 }
 
+/// The mean error of depth of pixels that both show.
+double depth_error(const Image& shown, const Scene& scene, const CameraMatrices& camera) {
+  ThreadPool pool(2);
+  const Image drawn = draw_scene(scene, camera, 0.0, kSize, kSize, Profile{}, pool);
+  double sum = 0.0;
+  int pixels = 0;
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const float own = load_texel(shown, x, y).w, right = load_texel(drawn, x, y).w;
+      if (own > 10.0f || right > 10.0f) continue;
+      sum += std::fabs(static_cast<double>(own - right));
+      ++pixels;
+    }
+  }
+  return sum / pixels;
+}
+
 }  // namespace
 
 TEST_CASE("a direction comes back from its place on the octahedron's square") {
@@ -109,26 +126,28 @@ TEST_CASE("shares of a view sum to one, and all weight is the view's own where o
 
 TEST_CASE("an atlas shows a sphere as it is drawn, but for pixels at its outline") {
   const Scene scene = one_mesh(make_sphere(0.8, 64, 32));
-  const OctahedralAtlas atlas = atlas_of(scene, {.views = 6, .texels = 64});
+  const OctahedralAtlas atlas = atlas_of(scene, {.views = 16, .texels = 48});
   for (const glm::dvec3 eye :
        {glm::dvec3{0.4, 1.0, 2.6}, glm::dvec3{0.0, 3.0, 0.1}, glm::dvec3{-2.0, -2.0, 0.3}}) {
     const CameraMatrices camera = seen_from(eye);
     const Image shown = shown_by(atlas, camera, 1);
-    CHECK(wrong_pixels(shown, scene, camera) < 24);
+    CHECK(wrong_pixels(shown, scene, camera) < 60);
     // The nearest point, on the axis.
     CHECK(std::fabs(static_cast<double>(load_texel(shown, kSize / 2, kSize / 2).w) -
                     (std::sqrt(dot(eye, eye)) - 0.8)) < 0.02);
   }
 }
 
-TEST_CASE("a step of parallax puts a slab's texels where they are, and a flat picture does not") {
-  const Scene scene = one_mesh(make_torus(0.7, 0.2, 48, 24));
-  const OctahedralAtlas atlas = atlas_of(scene, {.views = 6, .texels = 96, .depth_bits = 16});
+TEST_CASE("each step of parallax brings a ring's depths nearer to where they are") {
+  const Scene scene = one_mesh(make_torus(0.7, 0.25, 48, 24));
+  const OctahedralAtlas atlas = atlas_of(scene, {.views = 8, .texels = 64, .depth_bits = 16});
   const CameraMatrices camera = seen_from({0.7, 1.1, 2.6});
-  const int flat = wrong_pixels(shown_by(atlas, camera, 0), scene, camera);
-  const int one = wrong_pixels(shown_by(atlas, camera, 1), scene, camera);
-  CHECK(one > 0);
-  CHECK(flat > 2 * one);
+  const double flat = depth_error(shown_by(atlas, camera, 0), scene, camera);
+  const double one = depth_error(shown_by(atlas, camera, 1), scene, camera);
+  const double three = depth_error(shown_by(atlas, camera, 3), scene, camera);
+  MESSAGE(flat << ", " << one << ", " << three);
+  CHECK(one < 0.85 * flat);
+  CHECK(three < one);
 }
 
 TEST_CASE("what is nearer in the picture stays, and a hemisphere is seen from below from its rim") {
