@@ -83,7 +83,11 @@ void run_piece(ImpostorUpdate& update, ReliefMaker& maker, const ImpostorSetting
                const std::optional<DrawnRelief>& old, ThreadPool& pool) {
   int piece = update.done++;
   if (update.draws) {
-    if (piece == 0) update.texture = begin_relief(maker, update.view, update.form);
+    if (piece == 0) {
+      update.texture = begin_relief(
+          maker, relief_camera(maker, update.view, update.form.width, update.form.height),
+          update.form);
+    }
     if (piece < update.draw_parts) {
       draw_relief_part(maker, update.texture, update.view.eye, piece, update.draw_parts, pool);
       return;

@@ -208,14 +208,14 @@ CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height
   return matrices;
 }
 
-ReliefTexture begin_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form) {
+ReliefTexture begin_relief(ReliefMaker& maker, const ReliefCamera& camera, const ReliefForm& form) {
   const int width = form.width, height = form.height;
   assert(width >= 4 && width <= kMostReliefSize && height >= 4 && height <= kMostReliefSize);
   ReliefTexture relief;
   relief.width = width;
   relief.height = height;
   relief.depth_bits = form.depth_bits;
-  relief.camera = relief_camera(maker, view, width, height);
+  relief.camera = camera;
   if (maker.picture.width != width || maker.picture.height != height) {
     maker.picture = make_image(Format::rgba16f, width, height);
     maker.prepared.depth = make_image(Format::r32f, width, height);
@@ -263,12 +263,18 @@ void read_relief(ReliefMaker& maker, glm::dvec3 eye, bool with_normals, ReliefTe
   });
 }
 
+ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::dvec3 eye,
+                          const ReliefForm& form, ThreadPool& pool) {
+  ReliefTexture relief = begin_relief(maker, camera, form);
+  draw_relief_part(maker, relief, eye, 0, 1, pool);
+  read_relief(maker, eye, form.with_normals, relief, pool);
+  return relief;
+}
+
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool) {
-  ReliefTexture relief = begin_relief(maker, view, form);
-  draw_relief_part(maker, relief, view.eye, 0, 1, pool);
-  read_relief(maker, view.eye, form.with_normals, relief, pool);
-  return relief;
+  return draw_relief(maker, relief_camera(maker, view, form.width, form.height), view.eye, form,
+                     pool);
 }
 
 }  // namespace softfocus

@@ -70,12 +70,16 @@ inline constexpr double kDepthMargin = 1e-4;
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool);
 
+/// The same by any camera that has the object between its first depth and its last.
+ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::dvec3 eye,
+                          const ReliefForm& form, ThreadPool& pool);
+
 // make_relief() in parts, so that other work can be done between them; the same bits. In this
 // order: begin_relief(), draw_relief_part() of each part, read_relief(). A maker draws one relief
 // at a time.
 
 /// The relief's camera; it has no texels yet.
-ReliefTexture begin_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form);
+ReliefTexture begin_relief(ReliefMaker& maker, const ReliefCamera& camera, const ReliefForm& form);
 
 /// Draws one of `parts` parts of the triangles.
 void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, glm::dvec3 eye, int part,

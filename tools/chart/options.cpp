@@ -48,8 +48,8 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
             [&options](const std::string& text) { options.directory = text; });
   begin_group(parser, "What is measured");
   add_value(parser, "--of", "SUBJECT",
-            "What the pictures are to show: depth-of-field, motion-blur, anti-aliasing, bloom or "
-            "shadows (default: depth-of-field)",
+            "What the pictures are to show: depth-of-field, motion-blur, anti-aliasing, bloom, "
+            "shadows or impostors (default: depth-of-field)",
             [&options](const std::string& text) {
               options.subject = find_chart_subject(text);
               if (options.subject == nullptr) {

@@ -26,6 +26,11 @@ struct ChartErrors {
   /// Of shadows: pixels times lights in the light that should be in shadow, or the other way about.
   /// NaN of other subjects.
   double wrong_pixels = std::numeric_limits<double>::quiet_NaN();
+  /// Of impostors: wrong pixels a pixel of outline, how often a turn was drawn anew, and the most
+  /// memory that was taken. NaN of other subjects.
+  double outline_px = std::numeric_limits<double>::quiet_NaN();
+  double renewals = std::numeric_limits<double>::quiet_NaN();
+  double megabytes = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Needs pictures measured with HDR-FLIP.
@@ -49,6 +54,10 @@ inline constexpr RankedErrors kPictureErrors{
 inline constexpr RankedErrors kShadowErrors{
     RankedError{"wrong_pixels", "wrong pixels", &ChartErrors::wrong_pixels, 0, 0.5, 0.5},
     RankedError{"flip", "FLIP", &ChartErrors::flip}};
+
+inline constexpr RankedErrors kTurnErrors{
+    RankedError{"flip", "FLIP", &ChartErrors::flip},
+    RankedError{"outline_px", "outline, px", &ChartErrors::outline_px, 3, 1e-3, 1e-3}};
 
 /// Milliseconds, run by run: of the whole frame, from the drawing to the result, and of the
 /// filter's share in it. Nothing is filtered in an accumulation: `filter_ms` is empty.

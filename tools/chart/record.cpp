@@ -1,5 +1,6 @@
 #include "tools/chart/record.h"
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -26,6 +27,16 @@ const std::array<FlipMembers, 2>& flips() {
   return members;
 }
 
+/// Errors that only some subjects have.
+struct OwnError {
+  const char* key;
+  double ChartErrors::*value;
+};
+constexpr std::array kOwnErrors{OwnError{"wrong_pixels", &ChartErrors::wrong_pixels},
+                                OwnError{"outline_px", &ChartErrors::outline_px},
+                                OwnError{"renewals", &ChartErrors::renewals},
+                                OwnError{"megabytes", &ChartErrors::megabytes}};
+
 std::string region_key(const FlipMembers& of, Region region) {
   return of.name + "_" + std::string{region_name(region)};
 }
@@ -50,7 +61,9 @@ Json errors_json(const ChartErrors& errors) {
           number_or_null((errors.*of.by_region)[static_cast<std::size_t>(region)]);
     }
   }
-  if (!std::isnan(errors.wrong_pixels)) json["wrong_pixels"] = errors.wrong_pixels;
+  for (const OwnError& of : kOwnErrors) {
+    if (!std::isnan(errors.*of.value)) json[of.key] = errors.*of.value;
+  }
   return json;
 }
 
@@ -65,7 +78,9 @@ ChartErrors errors_of(const Json& json) {
           number_or(json.at(region_key(of, region)), std::numeric_limits<double>::quiet_NaN());
     }
   }
-  if (const Json* wrong = json.find("wrong_pixels")) errors.wrong_pixels = wrong->number();
+  for (const OwnError& of : kOwnErrors) {
+    if (const Json* own = json.find(of.key)) errors.*of.value = own->number();
+  }
   return errors;
 }
 

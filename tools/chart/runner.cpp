@@ -40,13 +40,15 @@ RunTime ChartRunner::run(const ChartEntry& entry) {
   if (entry.of_scene != nullptr) return draw_otherwise(*entry.of_scene);
   if (is_of_effects(entry)) return draw_with_effects(entry);
   if (entry.shadows) return draw_with_shadows(entry);
+  if (entry.turn) return {turn_contenders().run(*entry.turn, result_), std::nullopt};
   if (entry.method == kOfFilteredViews) return filter_views(entry.samples);
   if (entry.drawn_views > 0) return warp_views(entry.samples, entry.drawn_views);
   return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
 }
 
 RunTime ChartRunner::run_warm(const ChartEntry& entry) {
-  warm_up(entry);
+  // A turn is long: its own first frames warm it up.
+  if (!entry.turn) warm_up(entry);
   return run(entry);
 }
 
@@ -169,6 +171,15 @@ RunTime ChartRunner::draw_with_shadows(const ChartEntry& entry) {
   const Clock::time_point start = Clock::now();
   contenders.draw(result_);
   return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+TurnContenders& ChartRunner::turn_contenders() {
+  if (!turns_) turns_.emplace(scene_, pool_);
+  return *turns_;
+}
+
+void ChartRunner::add_turn_errors(const Image& truth, ChartErrors& errors) {
+  if (turns_) turns_->add_errors(truth, result_, errors);
 }
 
 double ChartRunner::wrong_pixels(const ChartEntry& entry) {

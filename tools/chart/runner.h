@@ -13,6 +13,7 @@
 #include "tools/chart/scene.h"
 #include "tools/chart/settings.h"
 #include "tools/chart/shadow_contenders.h"
+#include "tools/chart/turn_contenders.h"
 
 namespace softfocus {
 
@@ -41,6 +42,8 @@ class ChartRunner {
   const Image& result() const { return result_; }
   /// Of a chart of shadows: ChartErrors::wrong_pixels of the last run, which was of that entry.
   double wrong_pixels(const ChartEntry& entry);
+  /// Of a chart of impostors: outline, renewals and memory of the last run.
+  void add_turn_errors(const Image& truth, ChartErrors& errors);
   /// What auto chose last, in words.
   const std::string& chosen() const { return chosen_; }
 
@@ -49,6 +52,7 @@ class ChartRunner {
   RunTime draw_with_effects(const ChartEntry& entry);
   RunTime draw_with_shadows(const ChartEntry& entry);
   ShadowContenders& shadow_contenders();
+  TurnContenders& turn_contenders();
   Image with_effect(ChosenEffect chosen, const Image& before);
   RunTime draw_after_frames(const ChosenEffect& chosen, int frames);
   RunTime accumulate(int samples);
@@ -78,6 +82,7 @@ class ChartRunner {
   SampleSums sums_;
   std::optional<PreparedScene> prepared_large_;  // of what is drawn larger
   std::optional<ShadowContenders> shadows_;
+  std::optional<TurnContenders> turns_;
   Image drawn_, large_;
   std::vector<Image> behind_;                    ///< as many layers as the method reads
   std::vector<TransparentPicture> transparent_;  ///< layers before drawn_

@@ -24,8 +24,9 @@ bool moves(const Scene& scene) {
 // What the subject makes of a scene.
 void prepare_for(const ChartSubject& subject, ChartScene& chart) {
   chart.sampling = subject.sampling;
-  // Its pinhole is without, and each contender gives all lights its own.
-  if (subject.ranked[0].value == kShadowErrors[0].value) set_shadows(chart.scene, ShadowKind::none);
+  // Its pinhole is without, and each contender gives all lights its own. Reliefs have none.
+  if (subject.ranked[0].value == kShadowErrors[0].value || subject.turns)
+    set_shadows(chart.scene, ShadowKind::none);
   if (subject.sampling.shutter_frames == 0.0) return;
   Camera& camera = chart.scene.camera;
   if (camera.shutter_frames > 0.0) chart.sampling.shutter_frames = camera.shutter_frames;
@@ -67,6 +68,7 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
   chart.coc = checked_pixel_coc(chart.lens, chart.scene.camera.fov_y_degrees, height, coc_scale);
   if (options.subject->through_lens) chart.aperture_m = aperture_radius_m(chart.lens, coc_scale);
   chart.pinhole = draw_scene(chart.scene, chart.view, chart.frame, width, height, Profile{}, pool);
+  if (options.subject->turns) chart.pinhole = options.subject->truth_of(chart, pool);
   chart.labels = label_regions(chart.pinhole, chart.coc);
   return chart;
 }

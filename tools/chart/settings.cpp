@@ -65,7 +65,7 @@ bool is_of_effects(const ChartEntry& entry) {
 }
 
 bool is_of_pinhole(const ChartEntry& entry) {
-  return is_of_effects(entry) || entry.shadows.has_value();
+  return is_of_effects(entry) || entry.shadows.has_value() || entry.turn.has_value();
 }
 
 std::vector<std::string> chart_methods() {

@@ -11,6 +11,7 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/effects/effect.h"
 #include "scenes/lens_views/lens_view_method.h"
+#include "scenes/relief/resample.h"
 #include "scenes/scene.h"
 #include "scenes/shadows/volumes/volume_mask.h"
 #include "tools/files/json.h"
@@ -26,7 +27,20 @@ struct ChartShadows {
   bool kept = false;  ///< from frame to frame; else all is found anew
 };
 
-/// A setting of an effect or of shadows: "sigma", 2.
+/// How an object is shown through a turn.
+enum class TurnBy : std::uint8_t { redraw, impostor, slices, bisection, octahedral };
+struct ChartTurn {
+  TurnBy by = TurnBy::redraw;
+  int frames = 192;  ///< a multiple of 16
+  Resampling resampling = Resampling::intertwined;
+  int regions = 1;
+  double tolerance_texels = 8.0;
+  int slices = 0;
+  int views = 0;  ///< of an atlas, each way
+  int parallax = 0;
+};
+
+/// A setting of an effect, of shadows or of a turn: "sigma", 2.
 struct EffectSetting {
   std::string name{};
   double value = 0.0;
@@ -49,13 +63,15 @@ struct ChartEntry {
   std::vector<ChosenEffect> effects{};  ///< on the pinhole's picture, one after the other
   int supersample = 1;                  ///< drawn at so many times the width and height
   std::optional<ChartShadows> shadows{};
-  EffectSetting setting{};  ///< in what effects or shadows differ from others of the method
+  std::optional<ChartTurn> turn{};
+  EffectSetting setting{};  ///< in what effects, shadows or turns differ from others of the method
 };
 
 /// Whether it is the pinhole's picture with effects, or drawn larger and halved.
 bool is_of_effects(const ChartEntry& entry);
 
-/// Whether it is the pinhole's picture with something more: effects, a larger size, shadows.
+/// Whether it is the pinhole's picture with something more: effects, a larger size, shadows; or a
+/// turn.
 bool is_of_pinhole(const ChartEntry& entry);
 
 inline constexpr std::string_view kPinhole = "pinhole";

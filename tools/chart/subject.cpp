@@ -6,6 +6,7 @@
 #include "tools/chart/bloom_truth.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/shadow_contenders.h"
+#include "tools/chart/turn_contenders.h"
 
 namespace softfocus {
 namespace {
@@ -140,8 +141,8 @@ std::vector<ChartEntry> bloom_entries(const std::string& method, int, bool quick
   return entries;
 }
 
-const std::array<ChartSubject, 5>& subjects() {
-  static const std::array<ChartSubject, 5> all{
+const std::array<ChartSubject, 6>& subjects() {
+  static const std::array<ChartSubject, 6> all{
       ChartSubject{.name = "depth-of-field",
                    .title = "Depth of field",
                    .truth = "the mean of pictures from many points of the lens",
@@ -195,6 +196,22 @@ const std::array<ChartSubject, 5>& subjects() {
                               "from it, or from within 1/256 pixel of it, gives its answer.",
                    .methods = shadow_methods,
                    .entries = shadow_entries},
+      ChartSubject{.name = "impostors",
+                   .title = "Impostors",
+                   .truth = "16 views of a full turn about the scene, redrawn",
+                   .sample = "",
+                   .scenes = {"figures", "windmill", "clutter", "lattice"},
+                   .truth_samples = 0,
+                   .quick_truth_samples = 0,
+                   .through_lens = false,
+                   .truth_of = truth_of_turn,
+                   .turns = true,
+                   .ranked = kTurnErrors,
+                   .measure = "Of a whole turn, a frame's time is the mean, renewals included; the "
+                              "pinhole redraws. The outline is wrong pixels a pixel of outline. An "
+                              "atlas is drawn before the turn.",
+                   .methods = turn_methods,
+                   .entries = turn_entries},
   };
   return all;
 }

@@ -34,6 +34,8 @@ struct ChartSubject {
 
   /// The truth, calculated. Null: it is the mean of views.
   Image (*truth_of)(const ChartScene& scene, ThreadPool& pool) = nullptr;
+  /// Whether the picture is a sheet of views of a turn, the sharp one too.
+  bool turns = false;
   RankedErrors ranked = kPictureErrors;
   std::string_view measure{};  ///< sentences of the page on an error of its own
 

@@ -114,7 +114,8 @@ FoundTruth truth_of(Work& work, const ChartScene& scene, const std::string& key,
 /// Where no circle is larger than the smallest radius, all radii give one picture.
 const ChartPoint* same_picture(const ChartPoint& point, const std::vector<ChartPoint>& before) {
   // A light may be too weak for a pixel to show whether its shadow is right.
-  if (point.entry.shadows) return nullptr;
+  // And two turns of one picture may differ in renewals and memory.
+  if (point.entry.shadows || point.entry.turn) return nullptr;
   const auto same = std::find_if(before.begin(), before.end(), [&](const ChartPoint& other) {
     return other.picture_hash == point.picture_hash;
   });
@@ -151,6 +152,7 @@ void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth
     } else {
       point.errors = measure_picture(runner.result(), truth.picture, scene.labels, work.pool);
       point.errors.wrong_pixels = runner.wrong_pixels(entry);
+      runner.add_turn_errors(truth.picture, point.errors);
       save_errors(point, key, file);
       work.left.done(kMeasure, 1);
     }

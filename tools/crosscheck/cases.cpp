@@ -25,6 +25,7 @@ std::vector<Case> crosscheck_cases() {
   add_temporal_cases(cases);
   add_filter_cases(cases);
   add_polygon_cases(cases);
+  if (!kIsWebGl) add_relief_cases(cases);  // not tried there
   return cases;
 }
 

@@ -50,6 +50,7 @@ void add_filter_cases(std::vector<Case>& cases);
 void add_shadow_cases(std::vector<Case>& cases);
 void add_shadow_map_cases(std::vector<Case>& cases);
 void add_shadow_volume_cases(std::vector<Case>& cases);
+void add_relief_cases(std::vector<Case>& cases);
 void add_polygon_cases(std::vector<Case>& cases);
 
 /// Random numbers for making cases up.

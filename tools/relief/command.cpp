@@ -14,6 +14,7 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/relief/octahedral_atlas.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -177,7 +178,7 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 22> options;
+  std::array<std::string_view, 26> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
@@ -217,9 +218,13 @@ constexpr std::array kReliefActions{
                   "--aside",
                   "--update-frames",
                   "--slice-ms",
-                  "--predict"}}};
+                  "--predict",
+                  "--rival",
+                  "--views",
+                  "--hemisphere",
+                  "--parallax"}}};
 
-constexpr std::array<std::string_view, 30> kReliefOptions{"-o",           "--format",
+constexpr std::array<std::string_view, 34> kReliefOptions{"-o",           "--format",
                                                           "--scene-path", "--frame",
                                                           "--size",       "--texels",
                                                           "--depth-bits", "--normals",
@@ -233,7 +238,9 @@ constexpr std::array<std::string_view, 30> kReliefOptions{"-o",           "--for
                                                           "--join",       "--turns",
                                                           "--cache",      "--schedule",
                                                           "--aside",      "--update-frames",
-                                                          "--slice-ms",   "--predict"};
+                                                          "--slice-ms",   "--predict",
+                                                          "--rival",      "--views",
+                                                          "--hemisphere", "--parallax"};
 
 /// Options of work aside need a schedule that has some.
 void check_schedule(const CLI::App& parser, const ReliefOptions& options) {
@@ -447,6 +454,18 @@ Command add_relief_command(CLI::App& program) {
          0.01, 1e4, "a number from 0.01 to 10000", &ReliefOptions::slice_ms);
   add_flag(*parser, "--predict", "Work for the eye that will be, if it goes on as it goes",
            options->predicts);
+  begin_group(*parser, "Rival");
+  add_value(*parser, "--rival", "octahedral",
+            "Turn an octahedral impostor atlas instead of an impostor",
+            [options](const std::string& text) {
+              if (text != "octahedral") refuse_name("--rival", text, {"octahedral"});
+              options->rival = true;
+            });
+  whole("--views", "Of the atlas, N x N, 2 to 64 (default: 6)", 2, kMostOctahedralViews,
+        "a number from 2 to 64", &ReliefOptions::views);
+  add_flag(*parser, "--hemisphere", "All views of the atlas are from above", options->hemisphere);
+  whole("--parallax", "Steps from the texel that a ray meets to its depth, 0 to 8 (default: 1)", 0,
+        kMostParallaxSteps, "a number from 0 to 8", &ReliefOptions::parallax);
   begin_group(*parser, "Run");
   whole("--runs", "bench times each N times, 1 to 1000 (default: 20)", 1, 1000,
         "a number from 1 to 1000", &ReliefOptions::runs);

@@ -47,6 +47,10 @@ struct ReliefOptions {
   int update_frames = 0;  ///< 0: not fixed
   double slice_ms = 2.0;
   bool predicts = false;
+  bool rival = false;  ///< turn an octahedral atlas instead
+  int views = 6;       ///< of the atlas, each way
+  bool hemisphere = false;
+  int parallax = 1;  ///< steps of the atlas
   int runs = 20;
   PoolOptions pool;
 };
@@ -64,6 +68,7 @@ Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options);
 
 int bench_relief(const ReliefOptions& options);
 int turn_impostor(const ReliefOptions& options);
+int turn_octahedral(const ReliefOptions& options);
 
 /// Reads the scene that an action takes, and says what it lacks.
 Scene relief_scene(const ReliefOptions& options);

@@ -3,67 +3,20 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
-#include "raster/numbers/vector_math.h"
-#include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/commands.h"
-#include "tools/cli/errors.h"
-#include "tools/files/whole_file.h"
-#include "tools/relief/relief_options.h"
+#include "tools/relief/turn_frames.h"
 #include "tools/relief/turn_sums.h"
-#include "tools/sequence/frame_names.h"
 
 namespace softfocus {
 namespace {
 
 /// Of the bound on the error, each way.
 constexpr int kBoundRegions = 16;
-
-template <class Work>
-double milliseconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
-
-/// The redrawn frame, and the impostor to its right.
-void write_pair(const std::string& name, const Image& redrawn, const Image& shown,
-                FileFormat format) {
-  Image pair = make_image(Format::rgba16f, 2 * redrawn.width, redrawn.height);
-  for (int y = 0; y < pair.height; ++y) {
-    std::uint16_t* to = row<std::uint16_t>(pair, y).data();
-    const auto left = row<std::uint16_t>(redrawn, y), right = row<std::uint16_t>(shown, y);
-    std::copy(left.begin(), left.end(), to);
-    std::copy(right.begin(), right.end(), to + left.size());
-  }
-  WholeFile file{name};
-  file.write(encode(pair, format));
-  file.commit();
-}
-
-/// About the object's middle, from the scene's camera on.
-Camera turning_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOptions& options) {
-  Camera camera = scene.camera;
-  const glm::dvec3 arm = camera.position - camera.target;
-  const double zoomed = 1.0 / options.zoom;
-  camera.target = maker.middle;
-  camera.position = maker.middle + arm * zoomed;
-  const double distance = std::sqrt(dot(arm, arm)) * zoomed;
-  if (distance <= 1.2 * maker.radius_m) {
-    throw UsageError("--zoom: the eye would come into the object's box; a smaller one is right");
-  }
-  camera.near_m = (distance - maker.radius_m) * 0.5;
-  camera.far_m = distance * 10.0;
-  camera.orbit_degrees_per_frame = 360.0 / options.frames;
-  return camera;
-}
 
 ImpostorSettings turn_settings(const ReliefOptions& options) {
   return {.warp = warp_rule(options),
@@ -152,17 +105,8 @@ std::size_t bytes_of_impostor(const ScheduledImpostor& impostor) {
 }  // namespace
 
 int turn_impostor(const ReliefOptions& options) {
-  std::optional<NumberedName> name;
-  FileFormat format = FileFormat::png;
-  if (!options.output.empty()) {
-    name = numbered_name("-o", options.output);
-    const auto by_name = format_by_extension(options.output);
-    if (!name || !by_name) {
-      throw UsageError("-o '" + options.output +
-                       "': a turn has many frames; a name such as turn_%04d.png would be right");
-    }
-    format = *by_name;
-  }
+  if (options.rival) return turn_octahedral(options);
+  const TurnPictures pictures = turn_pictures(options);
   const Scene scene = relief_scene(options);
   ThreadPool pool{options.pool.threads, options.pool.isa};
   // Of the frames: the own thread is one of all.
@@ -174,10 +118,9 @@ int turn_impostor(const ReliefOptions& options) {
   const int width = options.size.width, height = options.size.height;
   ReliefMaker maker = prepare_relief(scene, options.frame, pool);
   PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
-  const Camera camera = turning_camera(scene, maker, options);
+  const Camera camera = turn_camera(scene, maker, options);
   const ImpostorSettings settings = turn_settings(options);
-  const glm::vec4 background = clear_colour(scene);
-  const glm::vec4 clear{glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
+  const glm::vec4 clear = turn_background(scene, camera);
   const std::uint16_t background_depth = float_to_half(clear.w, HalfRounding::nearest_even);
   Image redrawn = make_image(Format::rgba16f, width, height);
   Image shown = make_image(Format::rgba16f, width, height);
@@ -191,16 +134,12 @@ int turn_impostor(const ReliefOptions& options) {
                                                   options.pool.isa);
   TurnSums sums;
   const auto redraw = [&](int frame) {
-    RenderPass& pass = prepared.pass;
-    pass.targets.colour[0] = &redrawn;
-    pass.targets.depth = &prepared.depth;
-    record_scene(prepared, camera_matrices(camera, frame, width, height), options.frame, pass);
-    pass.clear_colour = clear;
-    finish(pass, pool);
+    redraw_turned(prepared, camera_matrices(camera, frame, width, height), options, clear, redrawn,
+                  pool);
   };
   const auto measure = [&](int frame, const Image& picture) {
-    measure_frame(redrawn, picture, background_depth, pool, sums);
-    if (name) write_pair(name_at(*name, frame), redrawn, picture, format);
+    measure_frame(redrawn, picture, background_depth, pool, sums.errors);
+    write_pair(pictures, frame, redrawn, picture);
   };
   const auto is_measured = [&](int frame) { return frame % options.every == 0; };
   redraw(0);  // warms up

@@ -10,6 +10,7 @@
 #include "scenes/draw/velocity.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/lens_view_method.h"
+#include "tools/stress/relief_answers.h"
 
 namespace softfocus {
 namespace {
@@ -114,6 +115,7 @@ Image method_picture(const std::string& method, const StressFrame& frame, Thread
     return of_scene->render(views_input(frame, 1), pool).picture;
   }
   if (is_motion_blur(method)) return motion_blurred(method, frame, pool);
+  if (is_relief_answer(method)) return relief_answer(method, frame, pool);
   if (const ShadowAnswer* answer = find_shadow_answer(method)) {
     return shadowed(*answer, frame, pool);
   }
@@ -125,6 +127,8 @@ bool can_answer(const std::string& method, const StressFrame& frame) {
   if (!frame.scene) return find_method(method) != nullptr;
   const bool is_shadow = find_shadow_answer(method) != nullptr;
   if (is_shadow || frame.scene->shadows) return is_shadow && frame.scene->shadows;
+  const bool is_relief = is_relief_answer(method);
+  if (is_relief || frame.scene->relief) return is_relief && frame.scene->relief.has_value();
   const bool is_open = frame.scene->shutter_frames > 0.0;
   if (is_motion_blur(method)) return is_open;
   return !is_open || method == kViewsMethod || method == "pinhole";
@@ -142,6 +146,7 @@ std::vector<std::string> stress_methods() {
   names.emplace_back(kChoosingMethod);
   names.insert(names.end(), kMotionBlurs.begin(), kMotionBlurs.end());
   for (const ShadowAnswer& answer : kShadowAnswers) names.emplace_back(answer.method);
+  for (std::string& name : relief_answers()) names.push_back(std::move(name));
   return names;
 }
 

@@ -12,13 +12,13 @@ namespace softfocus {
 /// Views that the method `accumulation` gets.
 inline constexpr int kStressSamples = 64;
 
-/// The filters of dof/dof.h, accumulation, what draws the scene in one go, auto, motion blur, and
-/// kinds of shadows.
+/// The filters of dof/dof.h, accumulation, what draws the scene in one go, auto, motion blur,
+/// kinds of shadows, and impostors.
 std::vector<std::string> stress_methods();
 
 /// A method's pictures, or nothing if it needs a scene and the trial is made as a picture, or if it
 /// is a filter of depth of field and the trial's shutter is open, or motion blur and it is not.
-/// Kinds of shadows, and they alone, answer trials of shadows.
+/// Kinds of shadows, and they alone, answer trials of shadows; impostors those of reliefs.
 std::optional<std::vector<Image>> method_pictures(const std::string& method,
                                                   const StressTrial& trial, ThreadPool& pool);
 

@@ -155,7 +155,8 @@ TEST_CASE("a relief that is drawn in parts has the bits of one that is drawn at 
     ReliefMaker maker = prepare_relief(scene, 0.0, pool);
     const ReliefTexture whole = make_relief(maker, view, form, pool);
     for (const int parts : {2, 3, 50}) {
-      ReliefTexture relief = begin_relief(maker, view, form);
+      ReliefTexture relief =
+          begin_relief(maker, relief_camera(maker, view, form.width, form.height), form);
       for (int part = 0; part < parts; ++part) {
         draw_relief_part(maker, relief, view.eye, part, parts, pool);
       }

@@ -13,6 +13,7 @@
 #include "tools/chart/runner.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/truth.h"
+#include "tools/chart/turn_contenders.h"
 #include "tools/cli/errors.h"
 
 using namespace softfocus;
@@ -192,6 +193,49 @@ TEST_CASE("chart of shadows: a scene without lights is refused by name") {
   scene.scene.lights.clear();
   CHECK_THROWS_WITH_AS(truth_of(scene, pool),
                        "--scenes 'figures': has 0 lights; for shadows 1 to 8 would do", UsageError);
+}
+
+TEST_CASE(
+    "chart of impostors: a redrawn turn is the truth, a tighter tolerance renews more often") {
+  ThreadPool pool{2};
+  const ChartScene scene = scene_of("impostors", "figures", pool, {128, 128});
+  const Image truth = truth_of(scene, pool);
+  CHECK(equal(scene.pinhole, truth));
+  ChartRunner runner{scene, pool};
+  const auto errors_of_turn = [&](const char* method, std::size_t setting) {
+    ChartEntry entry = entry_of("impostors", method, setting);
+    entry.turn->frames = 32;
+    CHECK(runner.run_warm(entry).frame_ms > 0.0);
+    ChartErrors errors;
+    errors.flip = flip_of(truth, runner.result(), pool);
+    runner.add_turn_errors(truth, errors);
+    return errors;
+  };
+  const ChartErrors redrawn = errors_of_turn("pinhole", 0);
+  CHECK(redrawn.flip == 0.0);
+  CHECK(redrawn.outline_px == 0.0);
+  CHECK(redrawn.renewals == 0.0);
+  const ChartErrors tight = errors_of_turn("impostor-intertwined", 0);
+  const ChartErrors loose = errors_of_turn("impostor-intertwined", 4);
+  CHECK(loose.renewals >= 1.0);
+  CHECK(tight.renewals > loose.renewals);
+  CHECK(tight.flip < loose.flip);
+  CHECK(tight.outline_px < 1.0);
+  const ChartErrors marched = errors_of_turn("marched-bisection", 2);
+  CHECK(marched.renewals > 0.0);
+  CHECK(marched.megabytes < tight.megabytes);
+  const ChartErrors atlas = errors_of_turn("octahedral", 1);
+  CHECK(atlas.renewals == 0.0);
+  CHECK(atlas.megabytes > 10.0 * tight.megabytes);
+  CHECK(atlas.outline_px > tight.outline_px);
+}
+
+TEST_CASE("chart of impostors: a sheet that has no whole views is refused by its size") {
+  ThreadPool pool{1};
+  const ChartScene scene = scene_of("shadows", "figures", pool, {66, 64});
+  CHECK_THROWS_WITH_AS(truth_of_turn(scene, pool),
+                       "--size: a sheet of views has sides of 64 pixels or more, multiples of 4",
+                       UsageError);
 }
 
 TEST_CASE("chart of shadows: what has fewer wrong pixels is better, whatever its FLIP") {

@@ -43,13 +43,23 @@ void check_all_equal(const std::string& driver) {
     CHECK_FALSE(entry.contains("error"));
     stages.insert(entry["stage"]);
   }
-  const std::set<std::string> all{
-      "store",    "bilinear-rgba16f", "bilinear-rgba8", "mipmap",      "coverage",
-      "depth",    "attributes",       "scene",          "two-pass",    "one-pass",
-      "frame",    "two-pass-tiled",   "one-pass-tiled", "peel",        "blend",
-      "kernel",   "pyramid",          "bilateral",      "bloom",       "lens-flare",
-      "tone-map", "velocity",         "reproject",      "motion-blur", "reprojection",
-      "temporal", "polygon",          "shadow",         "shadow-map",  "shadow-volume"};
+  const std::set<std::string> all{"store",          "bilinear-rgba16f",
+                                  "bilinear-rgba8", "mipmap",
+                                  "coverage",       "depth",
+                                  "attributes",     "scene",
+                                  "two-pass",       "one-pass",
+                                  "frame",          "two-pass-tiled",
+                                  "one-pass-tiled", "peel",
+                                  "blend",          "kernel",
+                                  "pyramid",        "bilateral",
+                                  "bloom",          "lens-flare",
+                                  "tone-map",       "velocity",
+                                  "reproject",      "motion-blur",
+                                  "reprojection",   "temporal",
+                                  "polygon",        "shadow",
+                                  "shadow-map",     "shadow-volume",
+                                  "relief",         "march",
+                                  "octahedral"};
   CHECK(stages == all);
 }
 
@@ -173,6 +183,11 @@ TEST_CASE("crosscheck: another order of operations in a shader is caught" *
   check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "kernel / 2", "kernel");
   check_shader_caught("shadow-volume/near-fence 65x41 z-fail", "volume.frag", "q * of_w - finite",
                       "q * of_w");
+  check_shader_caught("relief/figures 97x61", "relief_map.frag", "u * 256.0 + 0.5", "u * 256.0");
+  check_shader_caught("march/figures 97x61*", "relief_march.frag", "depth_m * way + 0.5",
+                      "depth_m * way");
+  check_shader_caught("octahedral/figures 97x61*", "octahedral.frag", "1.0 - after",
+                      "0.999 - after");
 }
 
 TEST_CASE("crosscheck: a difference is told with its pixel, both values and a picture") {

@@ -102,6 +102,10 @@ TEST_CASE("help names every option of every subcommand, with units") {
                        "--texels-per-pixel K",
                        "--zoom Z",
                        "--no-sprites",
+                       "--rival octahedral",
+                       "--views N",
+                       "--hemisphere",
+                       "--parallax N",
                        "--runs N",
                        "--threads N",
                        "--isa NAME"});

@@ -82,7 +82,7 @@ TEST_CASE("stress: cases have names of their own, limits and severities that fit
     CHECK(quick.size() <= 3);
     CHECK(quick.front() == of.severities.front());
   }
-  CHECK(names.size() == 49);
+  CHECK(names.size() == 56);
 }
 
 TEST_CASE("stress: circles that do not fit the picture are left out") {
@@ -138,7 +138,7 @@ TEST_CASE("stress: a calculated truth is what the lens sees, where the case is a
   int compared = 0;
   for (const Posed& made : posed_cases(pool)) {
     const auto& scene = made.trial.frames[0].scene;
-    if (made.of.views > 0 || !scene || scene->shadows) continue;
+    if (made.of.views > 0 || !scene || scene->shadows || scene->relief) continue;
     CAPTURE(std::string{made.of.name});
     const Image views = make_stress_truth(made.trial, 512, pool).pictures[0];
     double difference = 0.0, light = 0.0;
@@ -188,6 +188,22 @@ TEST_CASE("stress: only kinds of shadows answer cases of shadows, and projected 
     CHECK_FALSE(method_pictures("pinhole", made.trial, pool));
     CHECK_FALSE(method_pictures("accumulation", made.trial, pool));
   }
+}
+
+TEST_CASE("stress: only impostors answer cases of reliefs, and are right at the mildest") {
+  ThreadPool pool{2};
+  for (const StressCase& of : relief_cases()) {
+    CAPTURE(std::string{of.name});
+    const StressTrial trial = of.make(of.severities.front(), 128, pool);
+    const auto renewed = method_pictures("impostor", trial, pool);
+    REQUIRE(renewed);
+    const double severity = of.severities.front();
+    CHECK(of.measure({trial, severity, std::span{&trial.frames[0].truth, 1}, *renewed, pool}) <
+          2.0 * of.limit);
+    CHECK_FALSE(method_pictures("pinhole", trial, pool));
+    CHECK_FALSE(method_pictures("projected", trial, pool));
+  }
+  CHECK_FALSE(method_pictures("octahedral", light_cases()[0].make(4, kSize, pool), pool));
 }
 
 TEST_CASE("stress: while the shutter is closed motion blur has no answer") {

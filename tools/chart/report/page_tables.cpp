@@ -19,8 +19,14 @@ bool is_of_shadows(const ChartPanel& panel) {
   return panel.ranked[0].value == kShadowErrors[0].value;
 }
 
+bool is_of_turns(const ChartPanel& panel) { return panel.ranked[1].value == kTurnErrors[1].value; }
+
 std::string error_cells(const ChartPanel& panel, const ChartErrors& errors) {
   std::string cells = is_of_shadows(panel) ? number_cell(errors.wrong_pixels, 0) : "";
+  if (is_of_turns(panel)) {
+    cells += number_cell(errors.outline_px, kTurnErrors[1].places) +
+             number_cell(errors.renewals, 0) + number_cell(errors.megabytes, 2);
+  }
   cells += number_cell(errors.psnr_db, 2) + number_cell(errors.ssim, 4) +
            number_cell(errors.flip, kFlipPlaces);
   for (const double flip : errors.flip_by_region) cells += number_cell(flip, kFlipPlaces);
@@ -68,6 +74,9 @@ std::string points_table(const std::vector<ChartPanel>& panels) {
   std::vector<Column> columns{{"scene", true}, {"method", true},   {"settings", true},
                               {"frame, ms"},   {"pinhole frames"}, {"filter, ms"}};
   if (is_of_shadows(panels.front())) columns.push_back({"wrong pixels"});
+  if (is_of_turns(panels.front())) {
+    for (const char* name : {"outline, px", "renewals", "MB"}) columns.push_back({name});
+  }
   for (const char* name : {"PSNR, dB", "SSIM", "FLIP", "silhouette", "near", "focus", "far",
                            "HDR-FLIP", "silhouette", "near", "focus", "far", "rounds"}) {
     columns.push_back({name});

@@ -1,7 +1,9 @@
 #pragma once
-// A case of the atlas: pictures that are hard to blur or scenes whose shadows are hard to find,
-// their true answers, and a number for how far a method's answer is from the truth.
+// A case of the atlas: pictures that are hard to blur, scenes whose shadows are hard to find,
+// objects that are hard to show from a relief, their true answers, and a number for how far a
+// method's answer is from the truth.
 
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -14,6 +16,12 @@
 
 namespace softfocus {
 
+/// Where and in which light an object was drawn, that is shown from elsewhere.
+struct StressRelief {
+  glm::dvec3 drawn_from;
+  std::vector<Light> drawn_lights;
+};
+
 /// What methods that draw the scene need beside the sharp picture.
 struct StressScene {
   Scene scene;
@@ -22,6 +30,7 @@ struct StressScene {
   double aperture_m = 0.0;      ///< its radius
   double shutter_frames = 0.0;  ///< how long the shutter is open: above 0 all of it is the truth
   bool shadows = false;         ///< of all lights: kinds of shadows answer, and nothing is blurred
+  std::optional<StressRelief> relief{};  ///< impostors answer, and nothing is blurred
 };
 
 /// One picture to blur. Most trials have one, those of motion and of resolution two.
@@ -82,6 +91,7 @@ std::span<const StressCase> plain_cases();
 std::span<const StressCase> motion_cases();
 std::span<const StressCase> shutter_cases();
 std::span<const StressCase> shadow_cases();
+std::span<const StressCase> relief_cases();
 
 /// The severities for a picture of that size: radii and widths in pixels are at most a quarter of
 /// it. `quick` takes the first, the telling and the last one.

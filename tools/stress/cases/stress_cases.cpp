@@ -9,7 +9,7 @@ std::vector<StressCase> stress_cases() {
   std::vector<StressCase> all;
   for (const auto cases :
        {edge_cases(), light_cases(), crowd_cases(), glass_cases(), plane_cases(), depth_cases(),
-        plain_cases(), motion_cases(), shutter_cases(), shadow_cases()}) {
+        plain_cases(), motion_cases(), shutter_cases(), shadow_cases(), relief_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;
