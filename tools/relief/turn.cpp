@@ -60,9 +60,30 @@ Camera turning_camera(const Scene& scene, const ReliefMaker& maker, const Relief
     throw UsageError("--zoom: the eye would come into the object's box; a smaller one is right");
   }
   camera.near_m = (distance - maker.radius_m) * 0.5;
-  camera.far_m = distance * 10.0;
-  camera.orbit_degrees_per_frame = 360.0 / options.frames;
+  camera.far_m = distance * 10.0 * std::fmax(options.approach, 1.0);
+  camera.orbit_degrees_per_frame = options.approach > 0.0 ? 0.0 : 360.0 / options.frames;
   return camera;
+}
+
+CameraMatrices matrices_at(Camera camera, const ReliefOptions& options, int frame) {
+  if (options.approach > 0.0) {
+    const double share = static_cast<double>(frame % options.frames) / (options.frames - 1);
+    const double farther = options.approach + (1.0 - options.approach) * share;
+    camera.position = camera.target + (camera.position - camera.target) * farther;
+  }
+  return camera_matrices(camera, frame, options.size.width, options.size.height);
+}
+
+/// The scene's lights, turned about the object's middle against the eye.
+void turn_lights(const Scene& scene, glm::dvec3 middle, double degrees,
+                 std::vector<Light>& lights) {
+  const glm::dvec3 up = normalize(scene.camera.up);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const glm::dvec3 from{scene.lights[i].position_or_direction};
+    lights[i].position_or_direction = glm::vec3{
+        lights[i].kind == LightKind::point ? middle + turned_about(from - middle, up, degrees)
+                                           : turned_about(from, up, degrees)};
+  }
 }
 
 ImpostorSettings turn_settings(const ReliefOptions& options) {
@@ -71,7 +92,8 @@ ImpostorSettings turn_settings(const ReliefOptions& options) {
           .tolerance_texels = options.tolerance,
           .regions = options.regions,
           .texels_per_pixel = options.texels_per_pixel,
-          .sprites = !options.no_sprites,
+          .sprites = !options.no_sprites && !options.moving_light,
+          .levels = options.levels,
           .cache_bytes = static_cast<std::size_t>(options.cache_mb * 1e6)};
 }
 
@@ -164,6 +186,11 @@ int turn_impostor(const ReliefOptions& options) {
     format = *by_name;
   }
   const Scene scene = relief_scene(options);
+  if (options.moving_light && scene.materials.size() > kMostReliefMaterials) {
+    throw UsageError("--moving-light: '" + scene.name + "' has " +
+                     std::to_string(scene.materials.size()) + " materials; at most " +
+                     std::to_string(kMostReliefMaterials) + " are lit anew");
+  }
   ThreadPool pool{options.pool.threads, options.pool.isa};
   // Of the frames: the own thread is one of all.
   const bool has_own_thread = options.schedule == TurnSchedule::own_thread;
@@ -175,7 +202,14 @@ int turn_impostor(const ReliefOptions& options) {
   ReliefMaker maker = prepare_relief(scene, options.frame, pool);
   PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
   const Camera camera = turning_camera(scene, maker, options);
-  const ImpostorSettings settings = turn_settings(options);
+  std::vector<Light> lights = scene.lights;
+  const ReliefLights laid = relief_lights(scene.ambient_light, lights);
+  ImpostorSettings settings = turn_settings(options);
+  if (options.moving_light) settings.lights = &laid;
+  const auto move_lights = [&](int frame) {
+    if (!options.moving_light) return;
+    turn_lights(scene, maker.middle, -360.0 * frame / options.frames, lights);
+  };
   const glm::vec4 background = clear_colour(scene);
   const glm::vec4 clear{glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
   const std::uint16_t background_depth = float_to_half(clear.w, HalfRounding::nearest_even);
@@ -194,7 +228,7 @@ int turn_impostor(const ReliefOptions& options) {
     RenderPass& pass = prepared.pass;
     pass.targets.colour[0] = &redrawn;
     pass.targets.depth = &prepared.depth;
-    record_scene(prepared, camera_matrices(camera, frame, width, height), options.frame, pass);
+    record_scene(prepared, matrices_at(camera, options, frame), options.frame, pass, lights);
     pass.clear_colour = clear;
     finish(pass, pool);
   };
@@ -209,7 +243,8 @@ int turn_impostor(const ReliefOptions& options) {
   std::vector<KeptFrame> kept;
   const int frames = options.turns * options.frames;
   for (int frame = 0; frame < frames; ++frame) {
-    const CameraMatrices matrices = camera_matrices(camera, frame, width, height);
+    const CameraMatrices matrices = matrices_at(camera, options, frame);
+    move_lights(frame);
     // An own thread must not get the time that redrawing takes: that comes after the turn.
     if (!has_own_thread) sums.redrawn_ms.push_back(milliseconds_of([&] { redraw(frame); }));
     ScheduledFrame done{};
@@ -237,6 +272,7 @@ int turn_impostor(const ReliefOptions& options) {
   }
   finish_update(impostor);
   for (int frame = 0; has_own_thread && frame < frames; ++frame) {
+    move_lights(frame);
     sums.redrawn_ms.push_back(milliseconds_of([&] { redraw(frame); }));
     if (!is_measured(frame)) continue;
     const KeptFrame& part = kept[static_cast<std::size_t>(frame / options.every)];
