@@ -11,8 +11,9 @@ namespace {
 /// The eye comes no nearer than this, in the object's radii, as far as is foreseen.
 constexpr double kNearest = 1.2;
 
-// Of variable slices: a piece is so many triangles, or such a part of a warp.
-constexpr std::size_t kPartTriangles = 8192;
+// Of variable slices: a piece is so many triangles, or such a part of a warp. Each piece finds the
+// places of all vertices of its objects.
+constexpr std::size_t kPartTriangles = 32768;
 constexpr int kVariableStrips = 8;
 
 /// What update_scheduled() was called with.

@@ -236,7 +236,10 @@ constexpr std::array kReliefActions{
                   "--aside",
                   "--update-frames",
                   "--slice-ms",
-                  "--predict"}}};
+                  "--predict",
+                  "--moving-light",
+                  "--approach",
+                  "--levels"}}};
 
 constexpr std::array<std::string_view, 35> kReliefOptions{"-o",
                                                           "--format",
