@@ -125,7 +125,7 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
 }
 
 void record_scene_part(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                       int part, int parts, RenderPass& pass) {
+                       int part, int parts, RenderPass& pass, std::span<const Material> materials) {
   assert(part >= 0 && part < parts);
   pass.clear_colour.reset();
   pass.clear_depth.reset();
@@ -133,7 +133,7 @@ void record_scene_part(const PreparedScene& prepared, const CameraMatrices& came
     pass.clear_colour = clear_colour(*prepared.scene);
     pass.clear_depth = 1.0f;
   }
-  const std::vector<SurfaceDraw> surfaces = surface_draws(*prepared.scene, camera, frame);
+  std::vector<SurfaceDraw> surfaces = surface_draws(*prepared.scene, camera, frame);
   std::size_t all = 0;
   for (const SurfaceDraw& surface : surfaces) {
     if (!surface.opacity.blends) all += chunks_of_mesh(*surface.input.mesh);
@@ -143,8 +143,12 @@ void record_scene_part(const PreparedScene& prepared, const CameraMatrices& came
   };
   const std::size_t part_begin = border(part), part_end = border(part + 1);
   std::size_t first = 0;
-  for (const SurfaceDraw& surface : surfaces) {
+  for (SurfaceDraw& surface : surfaces) {
     if (surface.opacity.blends) continue;
+    if (!materials.empty()) {
+      surface.input.material = &materials[static_cast<std::size_t>(
+          surface.input.material - prepared.scene->materials.data())];
+    }
     const Mesh& mesh = *surface.input.mesh;
     const std::size_t chunks = chunks_of_mesh(mesh);
     const std::size_t begin = std::clamp(part_begin, first, first + chunks) - first;

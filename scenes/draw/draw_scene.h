@@ -86,9 +86,11 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
 
 /// One of `parts` parts of record_scene(), each for a pass of its own on the same targets, whose
 /// depths are kept. The first clears. Part after part they draw what record_scene() draws, in its
-/// order: the same bits.
+/// order: the same bits. With `materials` they stand for the scene's, one each, with its textures;
+/// they must outlive finish().
 void record_scene_part(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                       int part, int parts, RenderPass& pass);
+                       int part, int parts, RenderPass& pass,
+                       std::span<const Material> materials = {});
 
 /// Records the transparent draws of a frame into a pass that has set_targets().
 void record_transparent(const PreparedScene& prepared, const CameraMatrices& camera, double frame,

@@ -40,6 +40,7 @@ struct NormalFragmentStage {
 
   SurfaceOpacity opacity;
   Profile profile;
+  float mark;
 
   FragmentOutput<1> operator()(const Fragment<kVaryings>& in) const {
     if constexpr (holed) {
@@ -52,17 +53,17 @@ struct NormalFragmentStage {
     }
     // A two-sided surface is lit on the side that is seen.
     const float side = in.front_facing ? 1.0f : -1.0f;
-    return {{glm::vec4{side * in.varyings[0], side * in.varyings[1], side * in.varyings[2], 1.0f}},
+    return {{glm::vec4{side * in.varyings[0], side * in.varyings[1], side * in.varyings[2], mark}},
             false};
   }
 };
 
 template <bool holed>
-void record_normals(const SurfaceDraw& surface, RenderPass& pass) {
+void record_normals(const SurfaceDraw& surface, float mark, RenderPass& pass) {
   const Mesh& mesh = *surface.input.mesh;
   draw(pass, surface.state, mesh.indices, static_cast<std::uint32_t>(mesh.positions.size()),
        NormalVertexStage<holed>{surface.input},
-       NormalFragmentStage<holed>{surface.opacity, pass.profile});
+       NormalFragmentStage<holed>{surface.opacity, pass.profile, mark});
 }
 
 }  // namespace
@@ -81,8 +82,10 @@ Image draw_normals(const Scene& scene, const CameraMatrices& camera, double fram
   const std::vector<SurfaceDraw> surfaces = surface_draws(scene, camera, frame);
   for (const SurfaceDraw& surface : surfaces) {
     if (surface.opacity.blends) continue;
-    (surface.opacity.texture != nullptr ? record_normals<true> : record_normals<false>)(surface,
-                                                                                        pass);
+    const auto material = surface.input.material - scene.materials.data();
+    (surface.opacity.texture != nullptr
+         ? record_normals<true>
+         : record_normals<false>)(surface, static_cast<float>(1 + material), pass);
   }
   finish(pass, pool);
   return normals;

@@ -5,9 +5,13 @@
 #include <utility>
 
 #include "raster/numbers/vector_math.h"
+#include "scenes/relief/coarser_relief.h"
 
 namespace softfocus {
 namespace {
+
+/// A relief with fewer texels a side has no coarser level.
+constexpr int kLeastLevelSize = 16;
 
 /// Half the height of the view, a metre before the camera.
 double half_view(const CameraMatrices& camera) { return 1.0 / std::fabs(camera.eye_to_clip[1][1]); }
@@ -18,6 +22,17 @@ glm::dvec3 middle_of_plane(const ReliefTexture& relief) {
   const ReliefCamera& plane = relief.camera;
   return (plane.origin + plane.a * (0.5 * (relief.width - 1))) +
          plane.b * (0.5 * (relief.height - 1));
+}
+
+/// A texel's width as the eye sees it, over its distance.
+double texel_tangent(const ReliefTexture& relief, glm::dvec3 eye) {
+  const ReliefCamera& plane = relief.camera;
+  const double texel_m = std::max(length_of(plane.a), length_of(plane.b));
+  return texel_m / length_of(middle_of_plane(relief) - eye);
+}
+
+const ReliefTexture& texture_of(const DrawnRelief& relief, std::size_t level) {
+  return level == 0 ? relief.texture : relief.coarser[level - 1].texture;
 }
 
 }  // namespace
@@ -49,7 +64,7 @@ ReliefForm impostor_form(const ReliefMaker& maker, const CameraMatrices& camera,
     return std::clamp(static_cast<int>(whole) + 2, kAny, kMostReliefSize);
   };
   return {texels(length_of(plane.a) * (kAny - 2)), texels(length_of(plane.b) * (kAny - 2)),
-          settings.depth_bits, false};
+          settings.depth_bits, settings.lights != nullptr, settings.lights != nullptr};
 }
 
 double parallax_tangent(const ReliefTexture& relief, glm::dvec3 old_eye, glm::dvec3 new_eye) {
@@ -70,21 +85,36 @@ double parallax_tangent(const ReliefTexture& relief, glm::dvec3 old_eye, glm::dv
 }
 
 std::size_t bytes_of(const DrawnRelief& relief) {
-  const ReliefTexture& texture = relief.texture;
-  return texture.depths.size() * sizeof(std::uint16_t) +
-         (texture.colours.size() + texture.normals.size()) * sizeof(std::uint32_t) +
-         relief.critical.regions.size() * sizeof(relief.critical.regions[0]);
+  const auto bytes = [](const ReliefTexture& texture) {
+    return texture.depths.size() * sizeof(std::uint16_t) +
+           (texture.colours.size() + texture.normals.size() + texture.unlit.size()) *
+               sizeof(std::uint32_t);
+  };
+  std::size_t sum =
+      bytes(relief.texture) + relief.critical.regions.size() * sizeof(relief.critical.regions[0]);
+  for (const ReliefLevel& level : relief.coarser) sum += bytes(level.texture);
+  return sum;
 }
 
 bool can_serve(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
                double pixel_tangent) {
   if (!sees_front(relief.texture, eye)) return false;
-  const ReliefCamera& plane = relief.texture.camera;
-  const double texel_m = std::max(length_of(plane.a), length_of(plane.b));
-  const double texel_tangent = texel_m / length_of(middle_of_plane(relief.texture) - eye);
-  const double wide = texel_tangent * settings.texels_per_pixel;
-  return wide <= settings.sharpness * pixel_tangent && wide >= 0.25 * pixel_tangent &&
+  // A relief of one resolution is kept as fine as it was drawn.
+  const bool has_levels = settings.levels > 1;
+  const double wide =
+      texel_tangent(relief.texture, eye) * (has_levels ? 1.0 : settings.texels_per_pixel);
+  const double least = 0.25 / static_cast<double>(1 << (settings.levels - 1));
+  return wide <= settings.sharpness * pixel_tangent && wide >= least * pixel_tangent &&
          warped_extent(relief.texture, relief.extent, eye).has_value();
+}
+
+std::size_t level_for(const DrawnRelief& relief, glm::dvec3 eye, double pixel_tangent) {
+  std::size_t level = 0;
+  while (level < relief.coarser.size() &&
+         texel_tangent(relief.coarser[level].texture, eye) <= pixel_tangent) {
+    ++level;
+  }
+  return level;
 }
 
 double impostor_error(const DrawnRelief& relief, glm::dvec3 eye) {
@@ -126,7 +156,16 @@ std::optional<DrawnRelief> known_relief(ReliefTexture texture, const ImpostorSet
   if (!extent) return std::nullopt;
   CriticalRegions critical =
       critical_regions(texture, *extent, settings.regions, settings.regions, &pool);
-  return DrawnRelief{std::move(texture), *extent, std::move(critical), eye};
+  DrawnRelief drawn{std::move(texture), *extent, std::move(critical), eye, {}};
+  for (int i = 1; i < settings.levels; ++i) {
+    const ReliefTexture& finer = texture_of(drawn, drawn.coarser.size());
+    if (finer.width < kLeastLevelSize || finer.height < kLeastLevelSize) break;
+    ReliefTexture coarser = coarser_relief(finer);
+    const std::optional<ReliefExtent> shown = relief_extent(coarser);
+    if (!shown) break;
+    drawn.coarser.push_back({std::move(coarser), *shown});
+  }
+  return drawn;
 }
 
 std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& settings,
@@ -170,28 +209,32 @@ ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
              parallax_tangent(drawn->texture, impostor.warped_for, eye) <= pixel_tangent) {
     return ImpostorStep::sprite;
   }
-  warp_impostor(impostor, settings, eye, pool);
+  warp_impostor(impostor, settings, eye, pixel_tangent, pool);
   return step;
 }
 
 void warp_impostor(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye,
-                   ThreadPool& pool) {
-  const std::optional<DrawnRelief>& drawn = impostor.drawn;
-  const std::optional<PlaneRectangle> place =
-      drawn ? warped_extent(drawn->texture, drawn->extent, eye) : std::nullopt;
-  if (!place) {
-    impostor.warped.place = {0, 0, 0, 0};
-    return;
-  }
-  warp_relief(drawn->texture, drawn->extent, eye, *place, settings.warp, impostor.warped, pool);
+                   double pixel_tangent, ThreadPool& pool) {
+  impostor.warped.place = {0, 0, 0, 0};
+  if (!impostor.drawn) return;
+  DrawnRelief& drawn = *impostor.drawn;
+  impostor.warped_level = level_for(drawn, eye, pixel_tangent);
+  const std::size_t level = impostor.warped_level;
+  ReliefTexture& texture = level == 0 ? drawn.texture : drawn.coarser[level - 1].texture;
+  const ReliefExtent& extent = level == 0 ? drawn.extent : drawn.coarser[level - 1].extent;
+  if (settings.lights != nullptr) light_relief(texture, *settings.lights, eye, pool);
+  const std::optional<PlaneRectangle> place = warped_extent(texture, extent, eye);
+  if (!place) return;
+  warp_relief(texture, extent, eye, *place, settings.warp, impostor.warped, pool);
   impostor.warped_for = eye;
 }
 
 Rectangle draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
                         ThreadPool& pool) {
   if (!impostor.drawn || impostor.warped.place.width == 0) return {0, 0, 0, 0};
-  const PlaneMapping mapping = plane_mapping(impostor.drawn->texture, camera, impostor.warped.place,
-                                             picture.width, picture.height);
+  const PlaneMapping mapping =
+      plane_mapping(texture_of(*impostor.drawn, impostor.warped_level), camera,
+                    impostor.warped.place, picture.width, picture.height);
   map_relief(impostor.warped, mapping, picture, pool);
   return mapping.area;
 }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "scenes/relief/light_relief.h"
 #include "scenes/relief/make_relief.h"
 #include "scenes/relief/map_relief.h"
 #include "scenes/relief/warp_error.h"
@@ -26,19 +27,34 @@ struct ImpostorSettings {
   double sharpness = 1.5;  ///< K of 4-1: a relief whose texels came to be so many pixels wide
                            ///< is renewed, and one whose texels are 1/4 of a pixel
   bool sprites = true;     ///< Schaufler's test; without it every view is warped
+  /// If there are such, reliefs are unlit, and lit by these before each warp. They may change from
+  /// frame to frame, without `sprites`. Not with warps aside.
+  const ReliefLights* lights = nullptr;
+  /// 1: a relief has one resolution. More: its coarser ones, too. Then it is drawn with
+  /// texels_per_pixel, kept until its finest texels are `sharpness` pixels wide, and warped at the
+  /// coarsest level whose texels are no wider than a pixel. Not with warps aside.
+  int levels = 1;
   /// Of stale reliefs that are kept. If there are more, the one whose eye is farthest away goes.
   std::size_t cache_bytes = 0;
 };
 
 enum class ImpostorStep : std::uint8_t { sprite, warp, recall, renew };
 
+/// A relief at a lower resolution.
+struct ReliefLevel {
+  ReliefTexture texture;
+  ReliefExtent extent;
+};
+
 /// A relief and what is known of it.
 struct DrawnRelief {
   ReliefTexture texture;
   ReliefExtent extent;
   CriticalRegions critical;
-  glm::dvec3 eye;  ///< for which it was drawn
+  glm::dvec3 eye;                      ///< for which it was drawn
+  std::vector<ReliefLevel> coarser{};  ///< each with half the texels of the one before
 };
+inline constexpr int kMostReliefLevels = 6;
 
 std::size_t bytes_of(const DrawnRelief& relief);
 
@@ -46,6 +62,7 @@ struct Impostor {
   std::optional<DrawnRelief> drawn;  ///< none before the first view, and if nothing was seen
   WarpedRelief warped;
   glm::dvec3 warped_for{0.0};      ///< the eye
+  std::size_t warped_level = 0;    ///< 0: the relief itself; else coarser[warped_level - 1]
   std::vector<DrawnRelief> cache;  ///< stale ones, the oldest first
 };
 
@@ -97,7 +114,10 @@ std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& 
 /// Warps the relief that is there for an eye. If there is none, or the eye does not see its front,
 /// nothing is shown.
 void warp_impostor(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye,
-                   ThreadPool& pool);
+                   double pixel_tangent, ThreadPool& pool);
+
+/// The level that warp_impostor() takes: the coarsest whose texels are no wider than a pixel.
+std::size_t level_for(const DrawnRelief& relief, glm::dvec3 eye, double pixel_tangent);
 
 /// Brings the impostor up to date for a view, and says how. `up` is the camera's.
 ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,

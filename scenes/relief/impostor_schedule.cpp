@@ -11,8 +11,9 @@ namespace {
 /// The eye comes no nearer than this, in the object's radii, as far as is foreseen.
 constexpr double kNearest = 1.2;
 
-// Of variable slices: a piece is so many triangles, or such a part of a warp.
-constexpr std::size_t kPartTriangles = 8192;
+// Of variable slices: a piece is so many triangles, or such a part of a warp. Each piece finds the
+// places of all vertices of its objects.
+constexpr std::size_t kPartTriangles = 32768;
 constexpr int kVariableStrips = 8;
 
 /// What update_scheduled() was called with.
@@ -89,11 +90,12 @@ void run_piece(ImpostorUpdate& update, ReliefMaker& maker, const ImpostorSetting
           update.form);
     }
     if (piece < update.draw_parts) {
-      draw_relief_part(maker, update.texture, update.view.eye, piece, update.draw_parts, pool);
+      draw_relief_part(maker, update.texture, update.form, update.view.eye, piece,
+                       update.draw_parts, pool);
       return;
     }
     if (piece == update.draw_parts) {
-      read_relief(maker, update.view.eye, update.form.with_normals, update.texture, pool);
+      read_relief(maker, update.form, update.view.eye, update.texture, pool);
       update.relief = known_relief(std::move(update.texture), settings, update.view.eye, pool);
       // The eye may have been foreseen where it does not come.
       if (update.warps && update.relief && old &&
@@ -168,6 +170,7 @@ void take_update(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFr
   }
   if (update.warps) {
     std::swap(shown.warped, update.warped);
+    shown.warped_level = 0;
     std::swap(impostor.spare_warp, update.warped);
     std::swap(impostor.spare_strip, update.strip);
     shown.warped_for = update.warp_eye;
@@ -205,7 +208,7 @@ void warp_in_frame(ScheduledImpostor& impostor, const FrameWork& work, bool is_n
     frame.step = ImpostorStep::sprite;
     return;
   }
-  warp_impostor(shown, work.settings, eye, work.pool);
+  warp_impostor(shown, work.settings, eye, work.pixel_tangent, work.pool);
 }
 
 void do_in_frame(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFrame& frame) {
@@ -332,7 +335,7 @@ void do_aside(ScheduledImpostor& impostor, const FrameWork& work,
       is_new = true;
     }
     if (impostor.schedule.warps_aside) {
-      warp_impostor(shown, work.settings, eye, work.pool);
+      warp_impostor(shown, work.settings, eye, work.pixel_tangent, work.pool);
       impostor.shown_warp_frame = work.frame;
     }
   }

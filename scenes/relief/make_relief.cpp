@@ -4,10 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/relief/light_relief.h"
 #include "scenes/relief/packed_texel.h"
 
 namespace softfocus {
@@ -111,7 +113,8 @@ glm::dmat4 perspective_clip(const ReliefCamera& camera, int width, int height) {
 }  // namespace
 
 ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
-  ReliefMaker maker{&scene, frame, prepare_scene(scene, Profile{}, pool), {}, {}, {}, 0.0, {}, {}};
+  ReliefMaker maker{&scene, frame, prepare_scene(scene, Profile{}, pool), {}, {}, {}, 0.0, {},
+                    {},     {}};
   glm::dvec3 low{kFarAway}, high{-kFarAway};
   for (const Object& object : scene.objects) {
     const glm::dmat4 to_world = object_matrix(object, frame);
@@ -135,6 +138,11 @@ ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
     maker.radius_m = std::max(maker.radius_m, dot(out, out));
   }
   maker.radius_m = std::sqrt(maker.radius_m);
+  maker.unlit = scene.materials;
+  for (Material& material : maker.unlit) {
+    material.lit = false;
+    material.specular = glm::vec3{0.0f};
+  }
   maker.code_of_half.resize(65536);
   pool.for_each(256, [&](int high_byte) {
     for (int low_byte = 0; low_byte < 256; ++low_byte) {
@@ -223,20 +231,23 @@ ReliefTexture begin_relief(ReliefMaker& maker, const ReliefCamera& camera, const
   return relief;
 }
 
-void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, glm::dvec3 eye, int part,
-                      int parts, ThreadPool& pool) {
+void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, const ReliefForm& form,
+                      glm::dvec3 eye, int part, int parts, ThreadPool& pool) {
   RenderPass& pass = maker.prepared.pass;
   pass.targets.colour[0] = &maker.picture;
   pass.targets.depth = &maker.prepared.depth;
-  record_scene_part(maker.prepared,
-                    relief_matrices(relief.camera, relief.width, relief.height, eye), maker.frame,
-                    part, parts, pass);
+  record_scene_part(
+      maker.prepared, relief_matrices(relief.camera, relief.width, relief.height, eye), maker.frame,
+      part, parts, pass,
+      form.unlit ? std::span<const Material>{maker.unlit} : std::span<const Material>{});
   pass.keep_depth = true;
   finish(pass, pool);
 }
 
-void read_relief(ReliefMaker& maker, glm::dvec3 eye, bool with_normals, ReliefTexture& relief,
+void read_relief(ReliefMaker& maker, const ReliefForm& form, glm::dvec3 eye, ReliefTexture& relief,
                  ThreadPool& pool) {
+  const bool with_normals = form.with_normals;
+  assert(with_normals || !form.unlit);
   const int width = relief.width, height = relief.height;
   const Image normals =
       with_normals ? draw_normals(*maker.scene, relief_matrices(relief.camera, width, height, eye),
@@ -257,17 +268,26 @@ void read_relief(ReliefMaker& maker, glm::dvec3 eye, bool with_normals, ReliefTe
       relief.depths[at] = static_cast<std::uint16_t>(std::lrint(depths[x] * last));
       relief.colours[at] = packed_colour(colours + 4 * x, maker.code_of_half);
       if (with_normals) {
-        relief.normals[at] = packed_normal(glm::vec3{load_texel<Format::rgba16f>(normals, x, y)});
+        const glm::vec4 normal = load_texel<Format::rgba16f>(normals, x, y);
+        relief.normals[at] = packed_normal(glm::vec3{normal});
+        if (form.unlit) relief.normals[at] |= static_cast<std::uint32_t>(normal.w - 1.0f) << 24;
       }
     }
   });
+  if (!form.unlit) return;
+  relief.unlit = relief.colours;
+  relief.materials.clear();
+  relief.materials.reserve(maker.scene->materials.size());
+  for (const Material& material : maker.scene->materials) {
+    relief.materials.push_back(relief_material(material));
+  }
 }
 
 ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::dvec3 eye,
                           const ReliefForm& form, ThreadPool& pool) {
   ReliefTexture relief = begin_relief(maker, camera, form);
-  draw_relief_part(maker, relief, eye, 0, 1, pool);
-  read_relief(maker, eye, form.with_normals, relief, pool);
+  draw_relief_part(maker, relief, form, eye, 0, 1, pool);
+  read_relief(maker, form, eye, relief, pool);
   return relief;
 }
 

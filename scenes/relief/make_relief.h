@@ -35,6 +35,7 @@ struct ReliefForm {
   int width = 256, height = 256;  ///< 4 to kMostReliefSize
   int depth_bits = 8;             ///< or 16
   bool with_normals = false;
+  bool unlit = false;  ///< light can be laid on it anew; needs normals
 };
 
 /// A scene made ready to be drawn as reliefs at one frame. The scene must outlive it.
@@ -48,6 +49,7 @@ struct ReliefMaker {
   double radius_m;                         ///< from the middle to the farthest
   std::vector<std::uint8_t> code_of_half;  ///< linear_to_srgb8() of each half
   Image picture;
+  std::vector<Material> unlit;  ///< the scene's, with neither light nor highlight
 };
 
 /// Needs a scene with a triangle. `pool` is the one that will draw.
@@ -66,7 +68,8 @@ ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int
 inline constexpr double kDepthMargin = 1e-4;
 
 /// Surfaces as draw_scene() has them without shadows, colours cut to 0..1. The same bits for any
-/// number of threads.
+/// number of threads. The colours of an unlit one are its unlit colours, until light_relief().
+/// Needs kMostReliefMaterials at most then.
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool);
 
@@ -82,11 +85,11 @@ ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::d
 ReliefTexture begin_relief(ReliefMaker& maker, const ReliefCamera& camera, const ReliefForm& form);
 
 /// Draws one of `parts` parts of the triangles.
-void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, glm::dvec3 eye, int part,
-                      int parts, ThreadPool& pool);
+void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, const ReliefForm& form,
+                      glm::dvec3 eye, int part, int parts, ThreadPool& pool);
 
 /// The texels of what was drawn.
-void read_relief(ReliefMaker& maker, glm::dvec3 eye, bool with_normals, ReliefTexture& relief,
+void read_relief(ReliefMaker& maker, const ReliefForm& form, glm::dvec3 eye, ReliefTexture& relief,
                  ThreadPool& pool);
 
 /// The matrices that draw a relief: the texel (x, y) is the pixel (x, y), and the buffer's depth
@@ -94,7 +97,8 @@ void read_relief(ReliefMaker& maker, glm::dvec3 eye, bool with_normals, ReliefTe
 /// the one whose highlights are seen.
 CameraMatrices relief_matrices(const ReliefCamera& camera, int width, int height, glm::dvec3 eye);
 
-/// Draws the nearest surfaces' normals by these matrices: RGBA16F, alpha 1 where something is.
+/// Draws the nearest surfaces' normals by these matrices: RGBA16F, alpha 1 + the material's number
+/// where something is.
 Image draw_normals(const Scene& scene, const CameraMatrices& camera, double frame, int width,
                    int height, ThreadPool& pool);
 

@@ -13,6 +13,7 @@
 // Depths are codes, evenly spaced from 0, the plane of C, to the last one but one; the last code,
 // 255 of 8 bits and 65535 of 16, is a texel that shows nothing.
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -33,6 +34,15 @@ struct ReliefCamera {
 
 inline constexpr int kMostReliefSize = 4096;
 
+/// How an unlit texel answers light (light_relief.h).
+struct ReliefMaterial {
+  glm::vec3 ambient;  ///< a share of the unlit colour, for the scene's ambient light
+  glm::vec3 specular;
+  int shininess;
+  bool lit;  ///< false: the unlit colour as it is
+};
+inline constexpr std::size_t kMostReliefMaterials = 256;
+
 struct ReliefTexture {
   int width = 0, height = 0;  ///< 1 to kMostReliefSize
   int depth_bits = 8;         ///< or 16
@@ -41,7 +51,12 @@ struct ReliefTexture {
   /// Red + 256 green + 65536 blue in the sRGB curve + 255 2^24; 0 where nothing is.
   std::vector<std::uint32_t> colours;
   /// Of the world: x + 256 y + 65536 z, each 127 n + 128 rounded. Empty if there are none.
+  /// Of an unlit relief + the material's number 2^24.
   std::vector<std::uint32_t> normals;
+  /// If light can be laid on it anew: as `colours`, the diffuse colour times the texture. Else
+  /// empty, and so are the materials.
+  std::vector<std::uint32_t> unlit;
+  std::vector<ReliefMaterial> materials;
 };
 
 constexpr std::uint16_t empty_depth(int bits) { return bits == 8 ? 255 : 65535; }

@@ -1,6 +1,9 @@
+#include <array>
+
 #include "raster/images/image_hash.h"
 #include "raster/numbers/hash.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/relief/light_relief.h"
 #include "scenes/relief/make_relief.h"
 #include "scenes/relief/map_relief.h"
 #include "scenes/relief/resample.h"
@@ -63,6 +66,20 @@ std::vector<NamedHash> relief_hashes(const GoldenScene& golden, ThreadPool& pool
   Image picture = draw_scene(golden.scene, matrices, 0.0, kPicture, kPicture, Profile{}, pool);
   map_relief(warped, plane_mapping(relief, matrices, place, kPicture, kPicture), picture, pool);
   hashes.push_back({named("mapped"), hash_image(picture)});
+
+  // Lit anew by a lamp and the scene's sun, which has turned.
+  ReliefTexture unlit = make_relief(maker, view, {kWidth, kHeight, 8, true, true}, pool);
+  Hash all;
+  add_all(all, unlit.unlit);
+  add_all(all, unlit.normals);
+  hashes.push_back({named("unlit"), all.value});
+  const glm::vec3 lamp{maker.middle + glm::dvec3{1.0, 2.0, 1.5} * maker.radius_m};
+  const std::array lights{Light{LightKind::directional, {-0.5f, 0.25f, 1.0f}, {0.75f, 0.5f, 0.25f}},
+                          Light{LightKind::point, lamp, {0.25f, 0.5f, 1.0f}}};
+  light_relief(unlit, relief_lights(golden.scene.ambient_light, lights), camera.position, pool);
+  Hash lit;
+  add_all(lit, unlit.colours);
+  hashes.push_back({named("lit"), lit.value});
   return hashes;
 }
 

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "raster/images/texel.h"
@@ -14,6 +16,7 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/relief/light_relief.h"
 #include "scenes/relief/octahedral_atlas.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -42,12 +45,6 @@ constexpr std::array kTurnSchedules{NamedTurnSchedule{"serial", TurnSchedule::se
                                     NamedTurnSchedule{"split", TurnSchedule::split},
                                     NamedTurnSchedule{"slices", TurnSchedule::slices},
                                     NamedTurnSchedule{"own-thread", TurnSchedule::own_thread}};
-
-/// `v` turned about a unit axis (Rodrigues).
-glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees) {
-  const double cosine = exact_math::cos_degrees(degrees), sine = exact_math::sin_degrees(degrees);
-  return v * cosine + cross(axis, v) * sine + axis * (dot(axis, v) * (1.0 - cosine));
-}
 
 /// To the right by yaw, then up by pitch: where the eye goes.
 glm::dvec3 turned_view(glm::dvec3 towards_eye, glm::dvec3 right, glm::dvec3 up,
@@ -79,6 +76,13 @@ void check_output(const ReliefOptions& options) {
   }
 }
 
+void check_materials(const Scene& scene) {
+  if (scene.materials.size() <= kMostReliefMaterials) return;
+  throw UsageError("'" + scene.name + "' has " + std::to_string(scene.materials.size()) +
+                   " materials; a relief that is unlit has at most " +
+                   std::to_string(kMostReliefMaterials));
+}
+
 int make(const ReliefOptions& options) {
   if (options.output.empty()) throw UsageError("-o is missing: give a file for the relief");
   check_output(options);
@@ -90,11 +94,17 @@ int make(const ReliefOptions& options) {
   const glm::dvec3 up = normalize(scene.camera.up);
   const glm::dvec3 right = normalize(cross(up, back));
   const ReliefView view{maker.middle + turned_view(back, right, up, options), up};
-  const ReliefTexture relief = make_relief(
-      maker, view,
-      {options.texels.width, options.texels.height, options.depth_bits, options.normals}, pool);
+  if (options.unlit) check_materials(scene);
+  ReliefTexture relief =
+      make_relief(maker, view,
+                  {options.texels.width, options.texels.height, options.depth_bits,
+                   options.normals || options.unlit, options.unlit},
+                  pool);
   if (!relief_extent(relief)) {
     throw UsageError("'" + scene.name + "': nothing opaque is seen from there");
+  }
+  if (options.unlit) {
+    light_relief(relief, relief_lights(scene.ambient_light, scene.lights), view.eye, pool);
   }
   write_output(options, encode_relief(relief));
   return kDone;
@@ -145,7 +155,12 @@ int show(const ReliefOptions& options) {
 
 int warp(const ReliefOptions& options) {
   check_output(options);
-  const ReliefTexture relief = read_relief_file(options.input);
+  ReliefTexture relief = read_relief_file(options.input);
+  if (options.light && relief.unlit.empty()) {
+    throw UsageError("--light: '" + options.input +
+                     "' is lit once and for all; softfocus relief make --unlit makes one that is "
+                     "not");
+  }
   const auto [width, height] = options.size;
   const Camera camera = camera_before(relief, options);
   const CameraMatrices matrices = camera_matrices(camera, 0.0, width, height);
@@ -157,6 +172,10 @@ int warp(const ReliefOptions& options) {
         "front; smaller angles would be right");
   }
   ThreadPool pool{options.pool.threads, options.pool.isa};
+  if (options.light) {
+    const std::array lights{Light{LightKind::directional, *options.light, glm::vec3{1.0f}}};
+    light_relief(relief, relief_lights(Scene{}.ambient_light, lights), matrices.eye, pool);
+  }
   WarpedRelief warped;
   WarpCounts counts;
   warp_relief(relief, extent, matrices.eye, *place, warp_rule(options), warped, pool, &counts);
@@ -178,20 +197,20 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 26> options;
+  std::array<std::string_view, 29> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
                  make,
                  false,
-                 {"-o", "--scene-path", "--frame", "--texels", "--depth-bits", "--normals", "--yaw",
-                  "--pitch"}},
+                 {"-o", "--scene-path", "--frame", "--texels", "--depth-bits", "--normals",
+                  "--unlit", "--yaw", "--pitch"}},
     ReliefAction{"show", show, true, {"-o", "--format", "--show"}},
     ReliefAction{"warp",
                  warp,
                  true,
                  {"-o", "--format", "--size", "--yaw", "--pitch", "--distance", "--resampling",
-                  "--fixed", "--join"}},
+                  "--fixed", "--join", "--light"}},
     ReliefAction{
         "bench", bench_relief, false, {"--size", "--yaw", "--pitch", "--distance", "--runs"}},
     ReliefAction{"turn",
@@ -219,28 +238,68 @@ constexpr std::array kReliefActions{
                   "--update-frames",
                   "--slice-ms",
                   "--predict",
+                  "--moving-light",
+                  "--approach",
+                  "--levels",
                   "--rival",
                   "--views",
                   "--hemisphere",
                   "--parallax"}}};
 
-constexpr std::array<std::string_view, 34> kReliefOptions{"-o",           "--format",
-                                                          "--scene-path", "--frame",
-                                                          "--size",       "--texels",
-                                                          "--depth-bits", "--normals",
-                                                          "--yaw",        "--pitch",
-                                                          "--distance",   "--show",
-                                                          "--resampling", "--fixed",
-                                                          "--frames",     "--every",
-                                                          "--tolerance",  "--texels-per-pixel",
-                                                          "--no-sprites", "--zoom",
-                                                          "--runs",       "--regions",
-                                                          "--join",       "--turns",
-                                                          "--cache",      "--schedule",
-                                                          "--aside",      "--update-frames",
-                                                          "--slice-ms",   "--predict",
-                                                          "--rival",      "--views",
-                                                          "--hemisphere", "--parallax"};
+constexpr std::array<std::string_view, 39> kReliefOptions{"-o",
+                                                          "--format",
+                                                          "--scene-path",
+                                                          "--frame",
+                                                          "--size",
+                                                          "--texels",
+                                                          "--depth-bits",
+                                                          "--normals",
+                                                          "--yaw",
+                                                          "--pitch",
+                                                          "--distance",
+                                                          "--show",
+                                                          "--resampling",
+                                                          "--fixed",
+                                                          "--frames",
+                                                          "--every",
+                                                          "--tolerance",
+                                                          "--texels-per-pixel",
+                                                          "--no-sprites",
+                                                          "--zoom",
+                                                          "--runs",
+                                                          "--regions",
+                                                          "--join",
+                                                          "--turns",
+                                                          "--cache",
+                                                          "--schedule",
+                                                          "--aside",
+                                                          "--update-frames",
+                                                          "--slice-ms",
+                                                          "--predict",
+                                                          "--unlit",
+                                                          "--light",
+                                                          "--moving-light",
+                                                          "--approach",
+                                                          "--levels",
+                                                          "--rival",
+                                                          "--views",
+                                                          "--hemisphere",
+                                                          "--parallax"};
+
+/// X,Y,Z that are not all 0.
+glm::vec3 parse_towards(const std::string& text) {
+  glm::vec3 towards{0.0f};
+  std::size_t begin = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t end = i < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos) break;
+    towards[i] = static_cast<float>(parse_number("--light", text.substr(begin, end - begin), -1e6,
+                                                 1e6, "three numbers such as 1,2,3"));
+    begin = end + 1;
+    if (i == 2 && towards != glm::vec3{0.0f}) return towards;
+  }
+  throw UsageError("--light '" + text + "': give three numbers such as 1,2,3, not all 0");
+}
 
 /// Options of work aside need a schedule that has some.
 void check_schedule(const CLI::App& parser, const ReliefOptions& options) {
@@ -251,6 +310,9 @@ void check_schedule(const CLI::App& parser, const ReliefOptions& options) {
         throw UsageError(std::string{name} + " needs --schedule slices or own-thread");
       }
     }
+  }
+  if (options.warps_aside && (options.moving_light || options.levels > 1)) {
+    throw UsageError("--aside warps has neither --moving-light nor --levels; renewals has");
   }
   if (is_given(parser, "--slice-ms") && (!is_sliced || options.update_frames > 0)) {
     throw UsageError("--slice-ms needs --schedule slices, without --update-frames");
@@ -275,6 +337,11 @@ int run_relief(const CLI::App& parser, ReliefOptions& options) {
 }
 
 }  // namespace
+
+glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees) {
+  const double cosine = exact_math::cos_degrees(degrees), sine = exact_math::sin_degrees(degrees);
+  return v * cosine + cross(axis, v) * sine + axis * (dot(axis, v) * (1.0 - cosine));
+}
 
 WarpRule warp_rule(const ReliefOptions& options) {
   return {options.resampling, options.fixed ? PlaceNumbers::fixed : PlaceNumbers::floats,
@@ -361,6 +428,8 @@ Command add_relief_command(CLI::App& program) {
               options->depth_bits = text == "8" ? 8 : 16;
             });
   add_flag(*parser, "--normals", "Keep normals, too", options->normals);
+  add_flag(*parser, "--unlit",
+           "Keep unlit colours, normals and materials, so that warp has --light", options->unlit);
   begin_group(*parser, "View");
   number("--yaw", "DEGREES", "The eye goes to the right about the middle (default: 0)", -180.0,
          180.0, "a number from -180 to 180", &ReliefOptions::yaw_degrees);
@@ -368,6 +437,9 @@ Command add_relief_command(CLI::App& program) {
          &ReliefOptions::pitch_degrees);
   number("--distance", "D", "From the middle, in diagonals of the relief's box (default: 2.5)", 0.6,
          1e4, "a number from 0.6 to 10000", &ReliefOptions::distance);
+  add_value(*parser, "--light", "X,Y,Z",
+            "An unlit relief is lit from there, in white (default: as it was made)",
+            [options](const std::string& text) { options->light = parse_towards(text); });
   add_scene_path(*parser, options->scene_path);
   add_size(*parser, options->size);
   add_frame(*parser, options->frame);
@@ -421,6 +493,16 @@ Command add_relief_command(CLI::App& program) {
          "a number from 0.1 to 4", &ReliefOptions::texels_per_pixel);
   number("--zoom", "Z", "The object so many times as large in the picture (default: 1)", 0.01, 10.0,
          "a number from 0.01 to 10", &ReliefOptions::zoom);
+  add_flag(*parser, "--moving-light",
+           "The scene's lights turn against the eye; reliefs are unlit, and lit each frame",
+           options->moving_light);
+  number("--approach", "F",
+         "In place of a turn the eye comes straight nearer, from F times the distance", 1.0, 100.0,
+         "a number from 1 to 100", &ReliefOptions::approach);
+  whole("--levels",
+        "Reliefs have N resolutions, each half the one before, 1 to 6 (default: 1); the first has "
+        "--texels-per-pixel",
+        1, kMostReliefLevels, "a number from 1 to 6", &ReliefOptions::levels);
   add_flag(*parser, "--no-sprites", "Warp every frame, whatever Schaufler's test says",
            options->no_sprites);
   begin_group(*parser, "Schedule of a turn");

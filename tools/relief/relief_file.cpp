@@ -1,5 +1,6 @@
 #include "tools/relief/relief_file.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <span>
@@ -16,9 +17,12 @@ namespace {
 
 constexpr std::string_view kReliefMagic = "SFRELIEF";
 constexpr std::uint32_t kReliefVersion = 1;
+constexpr std::size_t kMaterialBytes = 6 * 4 + 2 * 4;
+constexpr int kMostShininess = 1024;
 constexpr std::size_t kReliefHeader = 8 + 5 * 4 + 13 * 8, kReliefSum = 8;
-constexpr std::size_t kMostReliefBytes =
-    kReliefHeader + std::size_t{kMostReliefSize} * kMostReliefSize * 8 + kReliefSum;
+constexpr std::size_t kMostReliefBytes = kReliefHeader +
+                                         std::size_t{kMostReliefSize} * kMostReliefSize * 12 + 4 +
+                                         kMostReliefMaterials * kMaterialBytes + kReliefSum;
 
 std::uint64_t sum_of(std::span<const std::byte> bytes) {
   Hash hash;
@@ -67,6 +71,61 @@ struct ReliefReader {
   throw FileError("'" + file.string() + "': " + why);
 }
 
+void append_unlit(std::vector<std::byte>& bytes, const ReliefTexture& relief) {
+  append_threes(bytes, relief.unlit);
+  for (const std::uint32_t normal : relief.normals) {
+    bytes.push_back(static_cast<std::byte>(normal >> 24));
+  }
+  append_little_endian(bytes, static_cast<std::uint32_t>(relief.materials.size()));
+  for (const ReliefMaterial& material : relief.materials) {
+    for (const glm::vec3& v : {material.ambient, material.specular}) {
+      for (int i = 0; i < 3; ++i) append_little_endian(bytes, std::bit_cast<std::uint32_t>(v[i]));
+    }
+    append_little_endian(bytes, static_cast<std::uint32_t>(material.shininess));
+    append_little_endian(bytes, std::uint32_t{material.lit ? 1u : 0u});
+  }
+}
+
+/// What comes after the normals of an unlit relief, in a file of the right length.
+void read_unlit(ReliefReader& reader, const std::filesystem::path& file, ReliefTexture& relief) {
+  const std::uint16_t empty = empty_depth(relief.depth_bits);
+  relief.unlit.reserve(relief.depths.size());
+  for (const std::uint16_t depth : relief.depths) {
+    const std::uint32_t colour = reader.take_three();
+    relief.unlit.push_back(depth == empty ? 0 : colour | 0xFF000000u);
+  }
+  std::uint32_t most = 0;
+  for (std::uint32_t& normal : relief.normals) {
+    const std::uint32_t number = reader.take<std::uint8_t>();
+    most = std::max(most, number);
+    normal |= number << 24;
+  }
+  const auto count = reader.take<std::uint32_t>();
+  if (most >= count) {
+    refuse_relief(file, "has a texel of material " + std::to_string(most) + " of " +
+                            std::to_string(count) + "; the first is 0");
+  }
+  relief.materials.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ReliefMaterial& material = relief.materials.emplace_back();
+    bool is_right = true;
+    for (glm::vec3* v : {&material.ambient, &material.specular}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        (*v)[axis] = std::bit_cast<float>(reader.take<std::uint32_t>());
+        is_right = is_right && std::isfinite((*v)[axis]) && (*v)[axis] >= 0.0f;
+      }
+    }
+    const auto shininess = reader.take<std::uint32_t>(), lit = reader.take<std::uint32_t>();
+    if (!is_right || shininess < 1 || shininess > kMostShininess || lit > 1) {
+      refuse_relief(file, "has a wrong material " + std::to_string(i) +
+                              ": shares must be 0 or more, a shininess from 1 to " +
+                              std::to_string(kMostShininess) + ", and lit 0 or 1");
+    }
+    material.shininess = static_cast<int>(shininess);
+    material.lit = lit == 1;
+  }
+}
+
 bool is_camera(const ReliefCamera& camera) {
   const double a = std::sqrt(dot(camera.a, camera.a)), b = std::sqrt(dot(camera.b, camera.b));
   const double f = std::sqrt(dot(camera.f, camera.f));
@@ -89,7 +148,9 @@ std::vector<std::byte> encode_relief(const ReliefTexture& relief) {
   append_little_endian(bytes, static_cast<std::uint32_t>(relief.width));
   append_little_endian(bytes, static_cast<std::uint32_t>(relief.height));
   append_little_endian(bytes, static_cast<std::uint32_t>(relief.depth_bits));
-  append_little_endian(bytes, std::uint32_t{relief.normals.empty() ? 0u : 1u});
+  append_little_endian(bytes, std::uint32_t{!relief.unlit.empty()     ? 2u
+                                            : !relief.normals.empty() ? 1u
+                                                                      : 0u});
   const ReliefCamera& camera = relief.camera;
   for (const glm::dvec3& v : {camera.origin, camera.a, camera.b, camera.f}) append_vector(bytes, v);
   append_number(bytes, camera.depth_m);
@@ -102,6 +163,7 @@ std::vector<std::byte> encode_relief(const ReliefTexture& relief) {
   }
   append_threes(bytes, relief.colours);
   append_threes(bytes, relief.normals);
+  if (!relief.unlit.empty()) append_unlit(bytes, relief);
   append_little_endian(bytes, sum_of(bytes));
   return bytes;
 }
@@ -118,7 +180,7 @@ ReliefTexture decode_relief(std::string_view text, const std::filesystem::path& 
   ReliefReader reader{bytes.subspan(kReliefMagic.size())};
   const auto version = reader.take<std::uint32_t>();
   const auto width = reader.take<std::uint32_t>(), height = reader.take<std::uint32_t>();
-  const auto bits = reader.take<std::uint32_t>(), with_normals = reader.take<std::uint32_t>();
+  const auto bits = reader.take<std::uint32_t>(), maps = reader.take<std::uint32_t>();
   if (version != kReliefVersion) {
     refuse_relief(file, "has version " + std::to_string(version) + "; 1 would be right");
   }
@@ -126,14 +188,26 @@ ReliefTexture decode_relief(std::string_view text, const std::filesystem::path& 
     refuse_relief(file, "claims " + std::to_string(width) + "x" + std::to_string(height) +
                             " texels; each side has 1 to " + std::to_string(kMostReliefSize));
   }
-  if ((bits != 8 && bits != 16) || with_normals > 1) {
+  if ((bits != 8 && bits != 16) || maps > 2) {
     refuse_relief(file, "claims " + std::to_string(bits) + " bits of depth and " +
-                            std::to_string(with_normals) +
-                            " maps of normals; 8 or 16, and 0 or 1 would be right");
+                            std::to_string(maps) +
+                            " for its maps; 8 or 16, and 0, 1 or 2 would be right");
   }
   const std::size_t texels = std::size_t{width} * height;
-  const std::size_t wanted =
-      kReliefHeader + texels * (bits / 8 + 3 + 3 * with_normals) + kReliefSum;
+  const std::size_t with_normals = maps > 0 ? 1 : 0, is_unlit = maps == 2 ? 1 : 0;
+  std::size_t wanted =
+      kReliefHeader + texels * (bits / 8 + 3 + 3 * with_normals + 4 * is_unlit) + kReliefSum;
+  if (maps == 2) {
+    wanted += 4;
+    if (bytes.size() >= wanted) {
+      const auto count = little_endian<std::uint32_t>(bytes.subspan(wanted - kReliefSum - 4));
+      if (count < 1 || count > kMostReliefMaterials) {
+        refuse_relief(file, "claims " + std::to_string(count) + " materials; 1 to " +
+                                std::to_string(kMostReliefMaterials) + " would be right");
+      }
+      wanted += count * kMaterialBytes;
+    }
+  }
   if (bytes.size() != wanted) {
     refuse_relief(file, "has " + std::to_string(bytes.size()) + " bytes; " + std::to_string(width) +
                             "x" + std::to_string(height) + " texels take " +
@@ -167,6 +241,7 @@ ReliefTexture decode_relief(std::string_view text, const std::filesystem::path& 
   for (std::size_t i = 0; i < texels * with_normals; ++i) {
     relief.normals.push_back(reader.take_three());
   }
+  if (maps == 2) read_unlit(reader, file, relief);
   if (!relief_extent(relief)) {
     refuse_relief(
         file, "shows nothing: all its depths are " + std::to_string(empty) + ", which is empty");

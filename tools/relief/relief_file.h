@@ -2,11 +2,19 @@
 // A relief texture's file, all numbers least significant byte first:
 //
 //   8 bytes   "SFRELIEF"
-//   5 x u32   version, 1; width; height; bits of depth, 8 or 16; 1 if there are normals, else 0
+//   5 x u32   version, 1; width; height; bits of depth, 8 or 16; 2 if the relief is unlit, else 1
+//   if
+//             there are normals, else 0
 //   13 x f64  the camera: C, a, b, f (x, y, z each), and the metres of the last depth
 //   depths    width x height codes of one or two bytes
 //   colours   width x height x 3 bytes: red, green, blue in the sRGB curve; 0 where nothing is
 //   normals   the same: x, y, z, each 127 n + 128; if there are any
+//   of an unlit one
+//     unlit     the same as the colours
+//     numbers   width x height x 1 byte: each texel's material
+//     u32       materials, 1 to 256; of each
+//     6 x f32     its share of ambient light and its highlight, red, green and blue each
+//     2 x u32     shininess, 1 to 1024; 1 if it is lit, else 0
 //   u64       FNV-1a of all bytes before
 
 #include <filesystem>

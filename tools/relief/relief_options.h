@@ -2,6 +2,7 @@
 // What `softfocus relief` reads, whatever it does.
 
 #include <filesystem>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct ReliefOptions {
   PictureSize texels{256, 256};  ///< of the relief
   int depth_bits = 8;
   bool normals = false;
+  bool unlit = false;
+  std::optional<glm::vec3> light;  ///< towards it, in the world
   double yaw_degrees = 0.0, pitch_degrees = 0.0;
   double distance = 2.5;  ///< of the eye from the relief's middle, in diagonals of its box
   ReliefPart part = ReliefPart::image;
@@ -51,6 +54,9 @@ struct ReliefOptions {
   int views = 6;       ///< of the atlas, each way
   bool hemisphere = false;
   int parallax = 1;  ///< steps of the atlas
+  bool moving_light = false;
+  double approach = 0.0;  ///< so many times as far away the eye begins; 0: it turns
+  int levels = 1;
   int runs = 20;
   PoolOptions pool;
 };
@@ -63,6 +69,9 @@ double relief_diagonal(const ReliefTexture& relief);
 
 /// A camera about the relief's middle, as the options turn it away from the relief's own view.
 Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options);
+
+/// `v` turned about a unit axis (Rodrigues).
+glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees);
 
 // --- the actions; each returns the exit status ---
 

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
+#include "raster/numbers/vector_math.h"
 #include "tools/cli/commands.h"
+#include "tools/cli/errors.h"
 #include "tools/relief/turn_frames.h"
 #include "tools/relief/turn_sums.h"
 
@@ -18,13 +21,35 @@ namespace {
 /// Of the bound on the error, each way.
 constexpr int kBoundRegions = 16;
 
+CameraMatrices matrices_at(Camera camera, const ReliefOptions& options, int frame) {
+  if (options.approach > 0.0) {
+    const double share = static_cast<double>(frame % options.frames) / (options.frames - 1);
+    const double farther = options.approach + (1.0 - options.approach) * share;
+    camera.position = camera.target + (camera.position - camera.target) * farther;
+  }
+  return camera_matrices(camera, frame, options.size.width, options.size.height);
+}
+
+/// The scene's lights, turned about the object's middle against the eye.
+void turn_lights(const Scene& scene, glm::dvec3 middle, double degrees,
+                 std::vector<Light>& lights) {
+  const glm::dvec3 up = normalize(scene.camera.up);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const glm::dvec3 from{scene.lights[i].position_or_direction};
+    lights[i].position_or_direction = glm::vec3{
+        lights[i].kind == LightKind::point ? middle + turned_about(from - middle, up, degrees)
+                                           : turned_about(from, up, degrees)};
+  }
+}
+
 ImpostorSettings turn_settings(const ReliefOptions& options) {
   return {.warp = warp_rule(options),
           .depth_bits = options.depth_bits,
           .tolerance_texels = options.tolerance,
           .regions = options.regions,
           .texels_per_pixel = options.texels_per_pixel,
-          .sprites = !options.no_sprites,
+          .sprites = !options.no_sprites && !options.moving_light,
+          .levels = options.levels,
           .cache_bytes = static_cast<std::size_t>(options.cache_mb * 1e6)};
 }
 
@@ -108,6 +133,11 @@ int turn_impostor(const ReliefOptions& options) {
   if (options.rival) return turn_octahedral(options);
   const TurnPictures pictures = turn_pictures(options);
   const Scene scene = relief_scene(options);
+  if (options.moving_light && scene.materials.size() > kMostReliefMaterials) {
+    throw UsageError("--moving-light: '" + scene.name + "' has " +
+                     std::to_string(scene.materials.size()) + " materials; at most " +
+                     std::to_string(kMostReliefMaterials) + " are lit anew");
+  }
   ThreadPool pool{options.pool.threads, options.pool.isa};
   // Of the frames: the own thread is one of all.
   const bool has_own_thread = options.schedule == TurnSchedule::own_thread;
@@ -119,7 +149,14 @@ int turn_impostor(const ReliefOptions& options) {
   ReliefMaker maker = prepare_relief(scene, options.frame, pool);
   PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
   const Camera camera = turn_camera(scene, maker, options);
-  const ImpostorSettings settings = turn_settings(options);
+  std::vector<Light> lights = scene.lights;
+  const ReliefLights laid = relief_lights(scene.ambient_light, lights);
+  ImpostorSettings settings = turn_settings(options);
+  if (options.moving_light) settings.lights = &laid;
+  const auto move_lights = [&](int frame) {
+    if (!options.moving_light) return;
+    turn_lights(scene, maker.middle, -360.0 * frame / options.frames, lights);
+  };
   const glm::vec4 clear = turn_background(scene, camera);
   const std::uint16_t background_depth = float_to_half(clear.w, HalfRounding::nearest_even);
   Image redrawn = make_image(Format::rgba16f, width, height);
@@ -134,7 +171,7 @@ int turn_impostor(const ReliefOptions& options) {
                                                   options.pool.isa);
   TurnSums sums;
   const auto redraw = [&](int frame) {
-    redraw_turned(prepared, camera_matrices(camera, frame, width, height), options, clear, redrawn,
+    redraw_turned(prepared, matrices_at(camera, options, frame), options, lights, clear, redrawn,
                   pool);
   };
   const auto measure = [&](int frame, const Image& picture) {
@@ -148,7 +185,8 @@ int turn_impostor(const ReliefOptions& options) {
   std::vector<KeptFrame> kept;
   const int frames = options.turns * options.frames;
   for (int frame = 0; frame < frames; ++frame) {
-    const CameraMatrices matrices = camera_matrices(camera, frame, width, height);
+    const CameraMatrices matrices = matrices_at(camera, options, frame);
+    move_lights(frame);
     // An own thread must not get the time that redrawing takes: that comes after the turn.
     if (!has_own_thread) sums.redrawn_ms.push_back(milliseconds_of([&] { redraw(frame); }));
     ScheduledFrame done{};
@@ -176,6 +214,7 @@ int turn_impostor(const ReliefOptions& options) {
   }
   finish_update(impostor);
   for (int frame = 0; has_own_thread && frame < frames; ++frame) {
+    move_lights(frame);
     sums.redrawn_ms.push_back(milliseconds_of([&] { redraw(frame); }));
     if (!is_measured(frame)) continue;
     const KeptFrame& part = kept[static_cast<std::size_t>(frame / options.every)];

@@ -38,8 +38,8 @@ Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOpt
     throw UsageError("--zoom: the eye would come into the object's box; a smaller one is right");
   }
   camera.near_m = (distance - maker.radius_m) * 0.5;
-  camera.far_m = distance * 10.0;
-  camera.orbit_degrees_per_frame = 360.0 / options.frames;
+  camera.far_m = distance * 10.0 * std::fmax(options.approach, 1.0);
+  camera.orbit_degrees_per_frame = options.approach > 0.0 ? 0.0 : 360.0 / options.frames;
   return camera;
 }
 
@@ -49,12 +49,12 @@ glm::vec4 turn_background(const Scene& scene, const Camera& camera) {
 }
 
 void redraw_turned(PreparedScene& prepared, const CameraMatrices& camera,
-                   const ReliefOptions& options, glm::vec4 clear, Image& picture,
-                   ThreadPool& pool) {
+                   const ReliefOptions& options, std::span<const Light> lights, glm::vec4 clear,
+                   Image& picture, ThreadPool& pool) {
   RenderPass& pass = prepared.pass;
   pass.targets.colour[0] = &picture;
   pass.targets.depth = &prepared.depth;
-  record_scene(prepared, camera, options.frame, pass);
+  record_scene(prepared, camera, options.frame, pass, lights);
   pass.clear_colour = clear;
   finish(pass, pool);
 }

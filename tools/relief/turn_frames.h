@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scenes/draw/draw_scene.h"
@@ -25,8 +26,8 @@ double mean_of(const std::vector<double>& values);
 /// The value at a share of 0..1 of the sorted ones; 0 of none.
 double sorted_at(std::vector<double> values, double share);
 
-/// About the object's middle, from the scene's camera on, a full turn in --frames. Throws
-/// UsageError if --zoom would take the eye into the object.
+/// About the object's middle, from the scene's camera on: a full turn in --frames, or none with
+/// --approach. Throws UsageError if --zoom would take the eye into the object.
 Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOptions& options);
 
 /// The scene's background at the camera's far distance.
@@ -34,7 +35,8 @@ glm::vec4 turn_background(const Scene& scene, const Camera& camera);
 
 /// A frame of the turn, by the pipeline; `prepared` has a depth buffer of the picture's size.
 void redraw_turned(PreparedScene& prepared, const CameraMatrices& camera,
-                   const ReliefOptions& options, glm::vec4 clear, Image& picture, ThreadPool& pool);
+                   const ReliefOptions& options, std::span<const Light> lights, glm::vec4 clear,
+                   Image& picture, ThreadPool& pool);
 
 /// Copies a picture of the same size and format.
 void copy_rows(const Image& from, Image& to, ThreadPool& pool);

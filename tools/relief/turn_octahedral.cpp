@@ -55,7 +55,9 @@ int turn_octahedral(const ReliefOptions& options) {
   std::vector<double> redrawn_ms, shown_ms;
   for (int frame = 0; frame < options.frames; ++frame) {
     const CameraMatrices matrices = camera_matrices(camera, frame, width, height);
-    const auto redraw = [&] { redraw_turned(prepared, matrices, options, clear, redrawn, pool); };
+    const auto redraw = [&] {
+      redraw_turned(prepared, matrices, options, scene.lights, clear, redrawn, pool);
+    };
     if (frame == 0) redraw();  // warms up
     redrawn_ms.push_back(milliseconds_of(redraw));
     shown_ms.push_back(milliseconds_of([&] {

@@ -192,3 +192,35 @@ TEST_CASE("if the cache is full, the relief whose eye is farthest away goes") {
   CHECK(step_at(60.0) == ImpostorStep::renew);  // 60 degrees from the first, 110 from the second
   CHECK(step_at(0.0) == ImpostorStep::recall);
 }
+
+TEST_CASE("an eye that comes nearer sees finer levels of one relief, and no renewal") {
+  Scene scene = torus_scene();
+  scene.camera.orbit_degrees_per_frame = 0.0;
+  const glm::dvec3 near = scene.camera.position;
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  Impostor with, without;
+  ImpostorSettings settings;
+  settings.tolerance_texels = 1e3;
+  ImpostorSettings levels = settings;
+  levels.levels = 3;
+  levels.texels_per_pixel = 4.0;
+  int renewals = 0;
+  std::size_t before = 2;
+  for (const double farther : {4.0, 3.0, 2.2, 1.6, 1.3, 1.0}) {
+    scene.camera.position = near * farther;
+    const CameraMatrices camera = seen_at(scene, 0.0);
+    const auto step_of = [&](Impostor& impostor, const ImpostorSettings& by) {
+      return update_impostor(impostor, maker, by, camera, scene.camera.up, kSize, pool);
+    };
+    renewals += step_of(without, settings) == ImpostorStep::renew ? 1 : 0;
+    CHECK((step_of(with, levels) == ImpostorStep::renew) == (farther == 4.0));
+    CHECK(with.warped_level <= before);
+    before = with.warped_level;
+    // Not a texel too many: half as many would be too few.
+    CHECK(with.warped.place.width < 2.2 * without.warped.place.width);
+    CHECK(with.warped.place.width > 0.6 * without.warped.place.width);
+  }
+  CHECK(before == 0);
+  CHECK(renewals == 3);
+}

@@ -158,9 +158,9 @@ TEST_CASE("a relief that is drawn in parts has the bits of one that is drawn at 
       ReliefTexture relief =
           begin_relief(maker, relief_camera(maker, view, form.width, form.height), form);
       for (int part = 0; part < parts; ++part) {
-        draw_relief_part(maker, relief, view.eye, part, parts, pool);
+        draw_relief_part(maker, relief, form, view.eye, part, parts, pool);
       }
-      read_relief(maker, view.eye, true, relief, pool);
+      read_relief(maker, form, view.eye, relief, pool);
       CHECK(relief.depths == whole.depths);
       CHECK(relief.colours == whole.colours);
       CHECK(relief.normals == whole.normals);

@@ -87,3 +87,30 @@ TEST_CASE("wrong sizes, bits, cameras and empty depths get a line that says so")
   CHECK(says(with([](ReliefTexture& r) { r.camera.depth_m = 0.0; }), "depth above 0"));
   CHECK(says(with([](ReliefTexture& r) { r.depths.assign(20, 255); }), "shows nothing"));
 }
+
+TEST_CASE("an unlit relief comes back from its file as it was, cut short nowhere") {
+  ReliefTexture relief = rough_relief(5, 4, 8, 4);
+  relief.unlit = relief.colours;
+  relief.materials = {{glm::vec3{0.25f}, glm::vec3{0.5f}, 32, true},
+                      {glm::vec3{0.0f}, glm::vec3{0.0f}, 1, false}};
+  relief.normals.assign(20, 0x01808080u);
+  const std::string whole = text_of(relief);
+  const ReliefTexture back = decode_relief(whole, "f");
+  CHECK(back.unlit == relief.unlit);
+  CHECK(back.normals == relief.normals);
+  REQUIRE(back.materials.size() == 2);
+  CHECK(back.materials[0].specular == glm::vec3{0.5f});
+  CHECK(back.materials[0].shininess == 32);
+  CHECK(back.materials[0].lit);
+  CHECK(!back.materials[1].lit);
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    CHECK(complaint_of(whole.substr(0, length)) != "");
+  }
+  relief.normals[3] |= 2u << 24;
+  CHECK(says(text_of(relief), "a texel of material 3 of 2"));
+  relief.normals[3] = 0;
+  relief.materials[1].shininess = 0;
+  CHECK(says(text_of(relief), "wrong material 1"));
+  relief.materials.clear();
+  CHECK(says(text_of(relief), "claims 0 materials"));
+}
