@@ -13,6 +13,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/relief/relief_box.h"
 #include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -39,6 +40,7 @@ struct TurnSums {
   std::vector<double> flip, object_flip, outline_px;
   double most_outline_px = 0.0;
   std::size_t lost = 0, gained = 0, seen = 0;  ///< pixels, of measured frames
+  std::size_t unseen = 0;                      ///< by any face of a box
   std::vector<double> predicted, bound;        ///< times the measured error
   std::size_t most_bytes = 0;
 };
@@ -169,6 +171,10 @@ void print_sums(const Scene& scene, const ReliefOptions& options, const TurnSums
       mean_of(sums.flip), sorted_at(sums.flip, 1.0), mean_of(sums.object_flip),
       mean_of(sums.outline_px), sorted_at(sums.outline_px, 1.0), sums.most_outline_px);
   std::printf("of %zu pixels %zu lost, %zu gained\n", sums.seen, sums.lost, sums.gained);
+  if (options.box) {
+    std::printf("%zu show what no face has\n", sums.unseen);
+    return;
+  }
   std::printf(
       "error at the critical point / largest error: %.2f to %.2f, median %.2f; bound / "
       "largest error: %.2f to %.2f, median %.2f\n",
@@ -212,6 +218,7 @@ int turn_impostor(const ReliefOptions& options) {
   camera.orbit_degrees_per_frame = 360.0 / options.frames;
 
   const ImpostorSettings settings{.warp = warp_rule(options),
+                                  .projection = options.projection,
                                   .depth_bits = options.depth_bits,
                                   .tolerance_texels = options.tolerance,
                                   .regions = options.regions,
@@ -227,6 +234,12 @@ int turn_impostor(const ReliefOptions& options) {
   const Image blank = shown;
   prepared.depth = make_image(Format::r32f, width, height);
   Impostor impostor;
+  std::optional<ReliefBox> box;
+  BoxMemory box_memory;
+  if (options.box) {
+    box = draw_relief_box(
+        maker, {std::max(options.texels.width, options.texels.height), options.depth_bits}, pool);
+  }
   std::optional<CriticalRegions> bounds;
   std::optional<CriticalPoint> point;
   TurnSums sums;
@@ -250,6 +263,11 @@ int turn_impostor(const ReliefOptions& options) {
           std::copy(from.begin(), from.end(), row<std::uint16_t>(shown, y).begin());
         }
       });
+      if (box) {
+        step = ImpostorStep::warp;
+        draw_box(*box, matrices, settings.warp, box_memory, shown, pool);
+        return;
+      }
       step = update_impostor(impostor, maker, settings, matrices, camera.up, height, pool);
       draw_impostor(impostor, matrices, shown, pool);
     }));
@@ -259,6 +277,7 @@ int turn_impostor(const ReliefOptions& options) {
                                     : sums.sprite_ms)
         .push_back(sums.impostor_ms.back());
     std::size_t bytes = impostor.warped.colours.size() * (4 + 4);
+    if (box) bytes += bytes_of(*box) + bytes_of(box_memory);
     if (impostor.drawn) bytes += bytes_of(*impostor.drawn);
     for (const DrawnRelief& kept : impostor.cache) bytes += bytes_of(kept);
     sums.most_bytes = std::max(sums.most_bytes, bytes);
@@ -276,6 +295,12 @@ int turn_impostor(const ReliefOptions& options) {
     }
     if (frame % options.every != 0) continue;
     measure_frame(redrawn, shown, background_depth, pool, sums);
+    if (box) {
+      const float far_m = half_to_float(background_depth);
+      for (const std::uint8_t mark : unseen_pixels(*box, matrices, redrawn, far_m, pool)) {
+        sums.unseen += mark;
+      }
+    }
     if (name) write_pair(name_at(*name, frame), redrawn, shown, format);
   }
   print_sums(scene, options, sums);
