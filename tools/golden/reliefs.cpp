@@ -17,6 +17,16 @@ void add_all(Hash& hash, const Numbers& numbers) {
   for (const auto number : numbers) add_to_hash(hash, number);
 }
 
+std::uint64_t hash_of(const WarpedRelief& warped) {
+  Hash hash;
+  add_all(hash, warped.colours);
+  // Where nothing is a depth means nothing.
+  for (std::size_t i = 0; i < warped.depths_m.size(); ++i) {
+    if (warped.colours[i] != 0) add_to_hash(hash, warped.depths_m[i]);
+  }
+  return hash.value;
+}
+
 std::uint64_t hash_of(const ReliefTexture& relief) {
   Hash hash;
   add_all(hash, relief.depths);
@@ -52,15 +62,9 @@ std::vector<NamedHash> relief_hashes(const GoldenScene& golden, ThreadPool& pool
   for (const NamedResampling& of : kResamplings) {
     for (const PlaceNumbers numbers : {PlaceNumbers::floats, PlaceNumbers::fixed}) {
       warp_relief(relief, extent, camera.position, place, {of.resampling, numbers}, warped, pool);
-      Hash hash;
-      add_all(hash, warped.colours);
-      // Where nothing is a depth means nothing.
-      for (std::size_t i = 0; i < warped.depths_m.size(); ++i) {
-        if (warped.colours[i] != 0) add_to_hash(hash, warped.depths_m[i]);
-      }
       const std::string name{of.name};
       hashes.push_back(
-          {named(numbers == PlaceNumbers::fixed ? name + "-fixed" : name), hash.value});
+          {named(numbers == PlaceNumbers::fixed ? name + "-fixed" : name), hash_of(warped)});
     }
   }
   Image picture = draw_scene(golden.scene, matrices, 0.0, kPicture, kPicture, Profile{}, pool);
@@ -80,6 +84,27 @@ std::vector<NamedHash> relief_hashes(const GoldenScene& golden, ThreadPool& pool
   Hash lit;
   add_all(lit, unlit.colours);
   hashes.push_back({named("lit"), lit.value});
+
+  // Under a perspective camera, from before its eye and behind it: texels go in and out.
+  ReliefView by_eye = view;
+  by_eye.projection = ReliefProjection::perspective;
+  const ReliefTexture perspective = make_relief(maker, by_eye, {kWidth, kHeight, 16, false}, pool);
+  hashes.push_back({named("perspective"), hash_of(perspective)});
+  const ReliefExtent shown = relief_extent(perspective).value();
+  const auto warp_from = [&](glm::dvec3 eye, const WarpRule& rule) {
+    const PlaneRectangle there = warped_extent(perspective, shown, eye).value();
+    warp_relief(perspective, shown, eye, there, rule, warped, pool);
+    return there;
+  };
+  warp_from(view.eye + glm::dvec3{0.5, 0.25, 1.0} * maker.radius_m,
+            {Resampling::compensated, PlaceNumbers::fixed});
+  hashes.push_back({named("perspective-outwards"), hash_of(warped)});
+  const PlaneRectangle there = warp_from(camera.position, {});
+  hashes.push_back({named("perspective-inwards"), hash_of(warped)});
+  picture = draw_scene(golden.scene, matrices, 0.0, kPicture, kPicture, Profile{}, pool);
+  map_relief(warped, plane_mapping(perspective, matrices, there, kPicture, kPicture), picture,
+             pool);
+  hashes.push_back({named("perspective-mapped"), hash_image(picture)});
   return hashes;
 }
 

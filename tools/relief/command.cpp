@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -12,8 +11,6 @@
 #include <string_view>
 
 #include "raster/images/texel.h"
-#include "raster/numbers/exact_math.h"
-#include "raster/numbers/vector_math.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/relief/light_relief.h"
@@ -25,6 +22,7 @@
 #include "tools/files/whole_file.h"
 #include "tools/relief/relief_file.h"
 #include "tools/relief/relief_options.h"
+#include "tools/sequence/frame_names.h"
 
 namespace softfocus {
 namespace {
@@ -33,9 +31,10 @@ struct NamedPart {
   std::string_view name;
   ReliefPart part;
 };
-constexpr std::array kReliefParts{NamedPart{"image", ReliefPart::image},
-                                  NamedPart{"depth", ReliefPart::depth},
-                                  NamedPart{"normals", ReliefPart::normals}};
+constexpr std::array kReliefParts{
+    NamedPart{"image", ReliefPart::image}, NamedPart{"depth", ReliefPart::depth},
+    NamedPart{"normals", ReliefPart::normals}, NamedPart{"faces", ReliefPart::faces},
+    NamedPart{"unseen", ReliefPart::unseen}};
 
 struct NamedTurnSchedule {
   std::string_view name;
@@ -46,23 +45,6 @@ constexpr std::array kTurnSchedules{NamedTurnSchedule{"serial", TurnSchedule::se
                                     NamedTurnSchedule{"slices", TurnSchedule::slices},
                                     NamedTurnSchedule{"own-thread", TurnSchedule::own_thread}};
 
-/// To the right by yaw, then up by pitch: where the eye goes.
-glm::dvec3 turned_view(glm::dvec3 towards_eye, glm::dvec3 right, glm::dvec3 up,
-                       const ReliefOptions& options) {
-  const glm::dvec3 lifted = turned_about(towards_eye, right, -options.pitch_degrees);
-  return turned_about(lifted, up, options.yaw_degrees);
-}
-
-void write_output(const ReliefOptions& options, std::span<const std::byte> bytes) {
-  if (options.output == "-") {
-    write_to_standard_output(bytes);
-    return;
-  }
-  WholeFile file{options.output};
-  file.write(bytes);
-  file.commit();
-}
-
 void check_output(const ReliefOptions& options) {
   if (options.output == "-") {
     if (is_terminal(kStandardOutput)) {
@@ -71,43 +53,26 @@ void check_output(const ReliefOptions& options) {
     return;
   }
   check_writable(options.output);
-  if (options.action != "make") {
+  if (options.height_field) {
+    check_not_read("-o", options.output,
+                   {{options.input, "the heights"}, {options.colour, "--colour"}});
+  } else if (options.action != "make" && options.action != "box") {
     check_not_read("-o", options.output, {{options.input, "the relief"}});
   }
-}
-
-void check_materials(const Scene& scene) {
-  if (scene.materials.size() <= kMostReliefMaterials) return;
-  throw UsageError("'" + scene.name + "' has " + std::to_string(scene.materials.size()) +
-                   " materials; a relief that is unlit has at most " +
-                   std::to_string(kMostReliefMaterials));
 }
 
 int make(const ReliefOptions& options) {
   if (options.output.empty()) throw UsageError("-o is missing: give a file for the relief");
   check_output(options);
-  const Scene scene = relief_scene(options);
-  ThreadPool pool{options.pool.threads, options.pool.isa};
-  ReliefMaker maker = prepare_relief(scene, options.frame, pool);
-  const CameraMatrices camera = camera_matrices(scene.camera, options.frame, 1, 1);
-  const glm::dvec3 back = camera.eye - maker.middle;
-  const glm::dvec3 up = normalize(scene.camera.up);
-  const glm::dvec3 right = normalize(cross(up, back));
-  const ReliefView view{maker.middle + turned_view(back, right, up, options), up};
-  if (options.unlit) check_materials(scene);
-  ReliefTexture relief =
-      make_relief(maker, view,
-                  {options.texels.width, options.texels.height, options.depth_bits,
-                   options.normals || options.unlit, options.unlit},
-                  pool);
-  if (!relief_extent(relief)) {
-    throw UsageError("'" + scene.name + "': nothing opaque is seen from there");
+  return make_relief_file(options);
+}
+
+int box(const ReliefOptions& options) {
+  if (options.part == ReliefPart::depth || options.part == ReliefPart::normals) {
+    throw UsageError("--show: box shows image, faces or unseen");
   }
-  if (options.unlit) {
-    light_relief(relief, relief_lights(scene.ambient_light, scene.lights), view.eye, pool);
-  }
-  write_output(options, encode_relief(relief));
-  return kDone;
+  if (!numbered_name("-o", options.output)) check_output(options);
+  return show_box(options);
 }
 
 glm::vec3 shown_part(const ReliefTexture& relief, ReliefPart part, std::size_t at) {
@@ -130,6 +95,9 @@ glm::vec3 shown_part(const ReliefTexture& relief, ReliefPart part, std::size_t a
 
 int show(const ReliefOptions& options) {
   check_output(options);
+  if (options.part == ReliefPart::faces || options.part == ReliefPart::unseen) {
+    throw UsageError("--show: show shows image, depth or normals; relief box has faces");
+  }
   const ReliefTexture relief = read_relief_file(options.input);
   if (options.part == ReliefPart::normals && relief.normals.empty()) {
     throw UsageError("--show normals: '" + options.input +
@@ -149,7 +117,7 @@ int show(const ReliefOptions& options) {
           Profile{});
     }
   }
-  write_output(options, encode(picture, options.format));
+  write_relief_output(options.output, encode(picture, options.format));
   return kDone;
 }
 
@@ -182,7 +150,7 @@ int warp(const ReliefOptions& options) {
   Image picture = make_image(Format::rgba16f, width, height);
   clear_image(picture, {0.0f, 0.0f, 0.0f, 65504.0f}, Profile{});
   map_relief(warped, plane_mapping(relief, matrices, *place, width, height), picture, pool);
-  write_output(options, encode(picture, options.format));
+  write_relief_output(options.output, encode(picture, options.format));
   std::fprintf(stderr,
                "%lld texels; %lld pieces, %lld over others, %lld stretched between neighbours more "
                "than %d texels apart\n",
@@ -197,20 +165,27 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 29> options;
+  std::array<std::string_view, 32> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
                  make,
                  false,
                  {"-o", "--scene-path", "--frame", "--texels", "--depth-bits", "--normals",
-                  "--unlit", "--yaw", "--pitch"}},
+                  "--unlit", "--yaw", "--pitch", "--projection", "--height-field", "--colour",
+                  "--height", "--empty", "--traced"}},
     ReliefAction{"show", show, true, {"-o", "--format", "--show"}},
     ReliefAction{"warp",
                  warp,
                  true,
                  {"-o", "--format", "--size", "--yaw", "--pitch", "--distance", "--resampling",
                   "--fixed", "--join", "--light"}},
+    ReliefAction{"box",
+                 box,
+                 true,
+                 {"-o", "--format", "--scene-path", "--frame", "--size", "--texels", "--depth-bits",
+                  "--normals", "--yaw", "--pitch", "--distance", "--show", "--resampling",
+                  "--fixed", "--join"}},
     ReliefAction{
         "bench", bench_relief, false, {"--size", "--yaw", "--pitch", "--distance", "--runs"}},
     ReliefAction{"turn",
@@ -244,9 +219,12 @@ constexpr std::array kReliefActions{
                   "--rival",
                   "--views",
                   "--hemisphere",
-                  "--parallax"}}};
+                  "--parallax",
+                  "--projection",
+                  "--box",
+                  "--texels"}}};
 
-constexpr std::array<std::string_view, 39> kReliefOptions{"-o",
+constexpr std::array<std::string_view, 46> kReliefOptions{"-o",
                                                           "--format",
                                                           "--scene-path",
                                                           "--frame",
@@ -284,7 +262,14 @@ constexpr std::array<std::string_view, 39> kReliefOptions{"-o",
                                                           "--rival",
                                                           "--views",
                                                           "--hemisphere",
-                                                          "--parallax"};
+                                                          "--parallax",
+                                                          "--projection",
+                                                          "--height-field",
+                                                          "--colour",
+                                                          "--height",
+                                                          "--empty",
+                                                          "--box",
+                                                          "--traced"};
 
 /// X,Y,Z that are not all 0.
 glm::vec3 parse_towards(const std::string& text) {
@@ -319,6 +304,27 @@ void check_schedule(const CLI::App& parser, const ReliefOptions& options) {
   }
 }
 
+/// Of options of make: those that read a scene, and those that read heights.
+constexpr std::array<std::string_view, 7> kOfScene{
+    "--scene-path", "--frame", "--texels", "--yaw", "--pitch", "--projection", "--traced"};
+constexpr std::array<std::string_view, 3> kOfHeights{"--colour", "--height", "--empty"};
+
+void check_pairs(const CLI::App& parser, const ReliefOptions& options) {
+  for (const std::string_view name : kOfScene) {
+    if (options.height_field && is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + ": --height-field does not read it");
+    }
+  }
+  for (const std::string_view name : kOfHeights) {
+    if (!options.height_field && is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + ": is of a height field; give --height-field too");
+    }
+  }
+  if (options.action == "turn" && !options.box && is_given(parser, "--texels")) {
+    throw UsageError("--texels: an impostor has as many as the view needs; it is of turn --box");
+  }
+}
+
 int run_relief(const CLI::App& parser, ReliefOptions& options) {
   for (const ReliefAction& action : kReliefActions) {
     if (action.name != options.action) continue;
@@ -330,7 +336,10 @@ int run_relief(const CLI::App& parser, ReliefOptions& options) {
       }
     }
     check_schedule(parser, options);
-    if (action.writes_picture) settle_format(parser, options.output, options.format);
+    check_pairs(parser, options);
+    const bool is_box_files = action.work == box && numbered_name("-o", options.output);
+    if (action.writes_picture && !is_box_files)
+      settle_format(parser, options.output, options.format);
     return action.work(options);
   }
   refuse_name("ACTION", options.action, names_in(kReliefActions));
@@ -338,40 +347,19 @@ int run_relief(const CLI::App& parser, ReliefOptions& options) {
 
 }  // namespace
 
-glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees) {
-  const double cosine = exact_math::cos_degrees(degrees), sine = exact_math::sin_degrees(degrees);
-  return v * cosine + cross(axis, v) * sine + axis * (dot(axis, v) * (1.0 - cosine));
+void write_relief_output(const std::string& output, std::span<const std::byte> bytes) {
+  if (output == "-") {
+    write_to_standard_output(bytes);
+    return;
+  }
+  WholeFile file{output};
+  file.write(bytes);
+  file.commit();
 }
 
 WarpRule warp_rule(const ReliefOptions& options) {
   return {options.resampling, options.fixed ? PlaceNumbers::fixed : PlaceNumbers::floats,
           options.join_texels};
-}
-
-glm::dvec3 relief_middle(const ReliefTexture& relief) {
-  return relief_point(relief, 0.5 * (relief.width - 1), 0.5 * (relief.height - 1),
-                      0.5 * last_depth(relief.depth_bits));
-}
-
-double relief_diagonal(const ReliefTexture& relief) {
-  const glm::dvec3 across =
-      relief_point(relief, relief.width - 1, relief.height - 1, last_depth(relief.depth_bits)) -
-      relief_point(relief, 0, 0, 0);
-  return std::sqrt(dot(across, across));
-}
-
-Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options) {
-  const glm::dvec3 right = normalize(relief.camera.a), up = normalize(relief.camera.b) * -1.0;
-  const double diagonal = relief_diagonal(relief);
-  Camera camera;
-  camera.target = relief_middle(relief);
-  camera.position = camera.target + turned_view(relief.camera.f * -1.0, right, up, options) *
-                                        (options.distance * diagonal);
-  camera.up = up;
-  // The box fills the picture a diagonal and a half away.
-  camera.near_m = 1e-3 * diagonal;
-  camera.far_m = (options.distance + 2.0) * diagonal;
-  return camera;
 }
 
 Scene relief_scene(const ReliefOptions& options) {
@@ -405,11 +393,13 @@ Command add_relief_command(CLI::App& program) {
   };
   add_argument(
       *parser, "ACTION",
-      "make a scene's relief; show or warp a relief's file; bench its warps; turn around a "
-      "scene as an impostor",
+      "make a scene's relief; show or warp a relief's file; box: a scene as six reliefs; bench a "
+      "file's warps; turn around a scene as an impostor",
       options->action);
   offer(*parser, "ACTION", [] { return names_in(kReliefActions); });
-  add_argument(*parser, "INPUT", "A scene for make and turn, else a relief's file", options->input);
+  add_argument(*parser, "INPUT",
+               "A scene or heights for make, a scene for box and turn, else a relief's file",
+               options->input);
   begin_group(*parser, "Relief");
   add_value(*parser, "--texels", "WxH", "Texels of the relief, 4 to 4096 a side (default: 256x256)",
             [options](const std::string& text) {
@@ -427,9 +417,39 @@ Command add_relief_command(CLI::App& program) {
               }
               options->depth_bits = text == "8" ? 8 : 16;
             });
+  add_value(*parser, "--projection", "NAME",
+            "Of the relief's camera: " + names_of(kReliefProjections) + " (default: orthographic)",
+            [options](const std::string& text) {
+              for (const NamedProjection& choice : kReliefProjections) {
+                if (choice.name == text) {
+                  options->projection = choice.projection;
+                  return;
+                }
+              }
+              refuse_name("--projection", text, names_in(kReliefProjections));
+            });
+  offer(*parser, "--projection", [] { return names_in(kReliefProjections); });
   add_flag(*parser, "--normals", "Keep normals, too", options->normals);
   add_flag(*parser, "--unlit",
            "Keep unlit colours, normals and materials, so that warp has --light", options->unlit);
+  add_flag(*parser, "--traced",
+           "By a ray a texel, where Embree is built in; says how it differs from a drawn one",
+           options->traced);
+  begin_group(*parser, "Height field");
+  add_flag(*parser, "--height-field", "make: INPUT is a grey picture of heights, of any kind",
+           options->height_field);
+  add_value(*parser, "--colour", "FILE", "Its colours, a picture of its size (default: lit white)",
+            [options](const std::string& text) { options->colour = text; });
+  number("--height", "M",
+         "Metres of a height of 1, or of the largest whole number, if the longer side of the field "
+         "has one (default: 0.25)",
+         1e-6, 1e6, "a number from 0.000001 to 1000000", &ReliefOptions::height_m);
+  add_value(*parser, "--empty", "VALUE",
+            "Texels of this height are empty, as those are that are transparent or no number",
+            [options](const std::string& text) {
+              options->empty_height = static_cast<float>(
+                  parse_number("--empty", text, -3e38, 3e38, "a number as the file has it"));
+            });
   begin_group(*parser, "View");
   number("--yaw", "DEGREES", "The eye goes to the right about the middle (default: 0)", -180.0,
          180.0, "a number from -180 to 180", &ReliefOptions::yaw_degrees);
@@ -444,12 +464,15 @@ Command add_relief_command(CLI::App& program) {
   add_size(*parser, options->size);
   add_frame(*parser, options->frame);
   begin_group(*parser, "Output");
-  add_value(*parser, "-o,--output", "FILE",
-            "The relief of make; the picture of show and warp; of turn, with %d in the name, every "
-            "measured frame beside the redrawn one",
-            [options](const std::string& text) { options->output = text; });
+  add_value(
+      *parser, "-o,--output", "FILE",
+      "The relief of make; the picture of show, warp and box; of box, with %d in the name, six "
+      "reliefs; of turn, with %d, every "
+      "measured frame beside the redrawn one",
+      [options](const std::string& text) { options->output = text; });
   add_format_option(*parser, options->format);
-  add_value(*parser, "--show", "image|depth|normals", "What of a relief is shown",
+  add_value(*parser, "--show", "PART",
+            "What of a relief is shown: image, depth or normals; of a box: image, faces or unseen",
             [options](const std::string& text) {
               for (const NamedPart& part : kReliefParts) {
                 if (part.name == text) {
@@ -493,6 +516,7 @@ Command add_relief_command(CLI::App& program) {
          "a number from 0.1 to 4", &ReliefOptions::texels_per_pixel);
   number("--zoom", "Z", "The object so many times as large in the picture (default: 1)", 0.01, 10.0,
          "a number from 0.01 to 10", &ReliefOptions::zoom);
+  add_flag(*parser, "--box", "Six faces, drawn once, in place of an impostor", options->box);
   add_flag(*parser, "--moving-light",
            "The scene's lights turn against the eye; reliefs are unlit, and lit each frame",
            options->moving_light);

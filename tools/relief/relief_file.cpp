@@ -16,11 +16,11 @@ namespace softfocus {
 namespace {
 
 constexpr std::string_view kReliefMagic = "SFRELIEF";
-constexpr std::uint32_t kReliefVersion = 1;
+constexpr std::uint32_t kOrthographicVersion = 1, kPerspectiveVersion = 2;
 constexpr std::size_t kMaterialBytes = 6 * 4 + 2 * 4;
 constexpr int kMostShininess = 1024;
-constexpr std::size_t kReliefHeader = 8 + 5 * 4 + 13 * 8, kReliefSum = 8;
-constexpr std::size_t kMostReliefBytes = kReliefHeader +
+constexpr std::size_t kReliefHeader = 8 + 5 * 4 + 13 * 8, kReliefEye = 3 * 8, kReliefSum = 8;
+constexpr std::size_t kMostReliefBytes = kReliefHeader + kReliefEye +
                                          std::size_t{kMostReliefSize} * kMostReliefSize * 12 + 4 +
                                          kMostReliefMaterials * kMaterialBytes + kReliefSum;
 
@@ -126,17 +126,30 @@ void read_unlit(ReliefReader& reader, const std::filesystem::path& file, ReliefT
   }
 }
 
+/// In metres: with these, all constants of a warp are numbers of binary32.
+constexpr double kLeastReliefSize = 1e-9, kMostReliefPlace = 1e9;
+
+bool is_place(const glm::dvec3& place) {
+  return std::fabs(place.x) <= kMostReliefPlace && std::fabs(place.y) <= kMostReliefPlace &&
+         std::fabs(place.z) <= kMostReliefPlace;
+}
+
+bool is_size(double size_m) { return size_m >= kLeastReliefSize && size_m <= kMostReliefPlace; }
+
 bool is_camera(const ReliefCamera& camera) {
   const double a = std::sqrt(dot(camera.a, camera.a)), b = std::sqrt(dot(camera.b, camera.b));
   const double f = std::sqrt(dot(camera.f, camera.f));
-  for (const double value : {camera.origin.x, camera.origin.y, camera.origin.z, a, b, f}) {
-    if (!std::isfinite(value)) return false;
-  }
   constexpr double kSquare = 1e-6;
-  return a > 0.0 && b > 0.0 && std::fabs(f - 1.0) < kSquare && camera.depth_m > 0.0 &&
-         std::isfinite(camera.depth_m) && std::fabs(dot(camera.a, camera.b)) < kSquare * a * b &&
+  return is_place(camera.origin) && is_size(a) && is_size(b) && is_size(camera.depth_m) &&
+         std::fabs(f - 1.0) < kSquare && std::fabs(dot(camera.a, camera.b)) < kSquare * a * b &&
          std::fabs(dot(camera.a, camera.f)) < kSquare * a &&
          std::fabs(dot(camera.b, camera.f)) < kSquare * b;
+}
+
+/// Of a perspective camera: its eye sees the last depth at a finite distance, and would see the
+/// code that is empty.
+bool is_eye_before(const ReliefCamera& camera) {
+  return is_place(*camera.eye) && camera.depth_m * (255.0 / 254.0) < source_distance(camera);
 }
 
 }  // namespace
@@ -144,7 +157,7 @@ bool is_camera(const ReliefCamera& camera) {
 std::vector<std::byte> encode_relief(const ReliefTexture& relief) {
   std::vector<std::byte> bytes;
   for (const char letter : kReliefMagic) bytes.push_back(static_cast<std::byte>(letter));
-  append_little_endian(bytes, kReliefVersion);
+  append_little_endian(bytes, relief.camera.eye ? kPerspectiveVersion : kOrthographicVersion);
   append_little_endian(bytes, static_cast<std::uint32_t>(relief.width));
   append_little_endian(bytes, static_cast<std::uint32_t>(relief.height));
   append_little_endian(bytes, static_cast<std::uint32_t>(relief.depth_bits));
@@ -154,6 +167,7 @@ std::vector<std::byte> encode_relief(const ReliefTexture& relief) {
   const ReliefCamera& camera = relief.camera;
   for (const glm::dvec3& v : {camera.origin, camera.a, camera.b, camera.f}) append_vector(bytes, v);
   append_number(bytes, camera.depth_m);
+  if (camera.eye) append_vector(bytes, *camera.eye);
   for (const std::uint16_t code : relief.depths) {
     if (relief.depth_bits == 8) {
       bytes.push_back(static_cast<std::byte>(code));
@@ -181,8 +195,8 @@ ReliefTexture decode_relief(std::string_view text, const std::filesystem::path& 
   const auto version = reader.take<std::uint32_t>();
   const auto width = reader.take<std::uint32_t>(), height = reader.take<std::uint32_t>();
   const auto bits = reader.take<std::uint32_t>(), maps = reader.take<std::uint32_t>();
-  if (version != kReliefVersion) {
-    refuse_relief(file, "has version " + std::to_string(version) + "; 1 would be right");
+  if (version != kOrthographicVersion && version != kPerspectiveVersion) {
+    refuse_relief(file, "has version " + std::to_string(version) + "; 1 or 2 would be right");
   }
   if (width < 1 || width > kMostReliefSize || height < 1 || height > kMostReliefSize) {
     refuse_relief(file, "claims " + std::to_string(width) + "x" + std::to_string(height) +
@@ -195,8 +209,8 @@ ReliefTexture decode_relief(std::string_view text, const std::filesystem::path& 
   }
   const std::size_t texels = std::size_t{width} * height;
   const std::size_t with_normals = maps > 0 ? 1 : 0, is_unlit = maps == 2 ? 1 : 0;
-  std::size_t wanted =
-      kReliefHeader + texels * (bits / 8 + 3 + 3 * with_normals + 4 * is_unlit) + kReliefSum;
+  std::size_t wanted = kReliefHeader + (version == kPerspectiveVersion ? kReliefEye : 0) +
+                       texels * (bits / 8 + 3 + 3 * with_normals + 4 * is_unlit) + kReliefSum;
   if (maps == 2) {
     wanted += 4;
     if (bytes.size() >= wanted) {
@@ -226,8 +240,15 @@ ReliefTexture decode_relief(std::string_view text, const std::filesystem::path& 
   camera.depth_m = reader.take_number();
   if (!is_camera(camera)) {
     refuse_relief(file,
-                  "has no camera: a, b and f must be at right angles, f of length 1, and the "
-                  "depth above 0");
+                  "has no camera: a, b and f must be at right angles, f of length 1, the depth "
+                  "above 0, sizes from 1e-9 to 1e9 m, and places within 1e9 m");
+  }
+  if (version == kPerspectiveVersion) {
+    camera.eye = reader.take_vector();
+    if (!is_eye_before(camera)) {
+      refuse_relief(file,
+                    "has no camera: its eye must be before the plane, by more than the last depth");
+    }
   }
   relief.depths.reserve(texels);
   for (std::size_t i = 0; i < texels; ++i) {

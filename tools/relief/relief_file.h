@@ -2,10 +2,10 @@
 // A relief texture's file, all numbers least significant byte first:
 //
 //   8 bytes   "SFRELIEF"
-//   5 x u32   version, 1; width; height; bits of depth, 8 or 16; 2 if the relief is unlit, else 1
-//   if
-//             there are normals, else 0
+//   5 x u32   version, 1, or 2 of a perspective camera; width; height; bits of depth, 8 or 16; 2
+//             if the relief is unlit, else 1 if there are normals, else 0
 //   13 x f64  the camera: C, a, b, f (x, y, z each), and the metres of the last depth
+//   3 x f64   of version 2: the eye
 //   depths    width x height codes of one or two bytes
 //   colours   width x height x 3 bytes: red, green, blue in the sRGB curve; 0 where nothing is
 //   normals   the same: x, y, z, each 127 n + 128; if there are any
@@ -28,7 +28,8 @@ namespace softfocus {
 std::vector<std::byte> encode_relief(const ReliefTexture& relief);
 
 /// The way back. Throws FileError, which names `file`, for what is not such a file, is cut short or
-/// too long, was changed, has a camera whose axes are not at right angles, or shows nothing.
+/// too long, was changed, has a camera whose axes are not at right angles or whose eye is not
+/// before its plane, or shows nothing.
 ReliefTexture decode_relief(std::string_view bytes, const std::filesystem::path& file);
 
 ReliefTexture read_relief_file(const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@
 
 namespace softfocus {
 
-/// What of a relief is shown.
-enum class ReliefPart : std::uint8_t { image, depth, normals };
+/// What of a relief is shown, and of six.
+enum class ReliefPart : std::uint8_t { image, depth, normals, faces, unseen };
 
 /// When a turn's work is done (scenes/relief/impostor_schedule.h): in the frame by one thread or
 /// by all, in slices, or beside the frames.
@@ -29,9 +30,15 @@ struct ReliefOptions {
   PictureSize size{1024, 1024};  ///< of pictures
   PictureSize texels{256, 256};  ///< of the relief
   int depth_bits = 8;
+  ReliefProjection projection = ReliefProjection::orthographic;
   bool normals = false;
   bool unlit = false;
   std::optional<glm::vec3> light;  ///< towards it, in the world
+  bool traced = false;
+  bool height_field = false;  ///< the input is a picture of heights
+  std::filesystem::path colour;
+  double height_m = 0.25;  ///< of a height of 1, if the longer side has a metre
+  std::optional<float> empty_height;
   double yaw_degrees = 0.0, pitch_degrees = 0.0;
   double distance = 2.5;  ///< of the eye from the relief's middle, in diagonals of its box
   ReliefPart part = ReliefPart::image;
@@ -57,6 +64,7 @@ struct ReliefOptions {
   bool moving_light = false;
   double approach = 0.0;  ///< so many times as far away the eye begins; 0: it turns
   int levels = 1;
+  bool box = false;  ///< a turn of six faces
   int runs = 20;
   PoolOptions pool;
 };
@@ -72,12 +80,27 @@ Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options);
 
 /// `v` turned about a unit axis (Rodrigues).
 glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees);
+/// A relief of the picture of heights that is the input.
+ReliefTexture relief_of_height_file(const ReliefOptions& options);
 
 // --- the actions; each returns the exit status ---
 
+int make_relief_file(const ReliefOptions& options);
 int bench_relief(const ReliefOptions& options);
 int turn_impostor(const ReliefOptions& options);
 int turn_octahedral(const ReliefOptions& options);
+int turn_box(const ReliefOptions& options);
+int show_box(const ReliefOptions& options);
+
+/// From a scene's middle to its camera, as the options turn it.
+glm::dvec3 turned_arm(const ReliefMaker& maker, const Scene& scene, const ReliefOptions& options);
+
+/// A camera about a scene's middle, as the options turn it away from the scene's own. A diagonal is
+/// twice the radius.
+Camera camera_about(const ReliefMaker& maker, const Scene& scene, const ReliefOptions& options);
+
+/// Writes a whole file, or to standard output for "-".
+void write_relief_output(const std::string& output, std::span<const std::byte> bytes);
 
 /// Reads the scene that an action takes, and says what it lacks.
 Scene relief_scene(const ReliefOptions& options);

@@ -44,6 +44,7 @@ void turn_lights(const Scene& scene, glm::dvec3 middle, double degrees,
 
 ImpostorSettings turn_settings(const ReliefOptions& options) {
   return {.warp = warp_rule(options),
+          .projection = options.projection,
           .depth_bits = options.depth_bits,
           .tolerance_texels = options.tolerance,
           .regions = options.regions,
@@ -131,6 +132,7 @@ std::size_t bytes_of_impostor(const ScheduledImpostor& impostor) {
 
 int turn_impostor(const ReliefOptions& options) {
   if (options.rival) return turn_octahedral(options);
+  if (options.box) return turn_box(options);
   const TurnPictures pictures = turn_pictures(options);
   const Scene scene = relief_scene(options);
   if (options.moving_light && scene.materials.size() > kMostReliefMaterials) {

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "raster/images/texel.h"
 #include "tests/support/cli_refused.h"
 #include "tools/pictures/image_file.h"
 
@@ -67,6 +68,75 @@ TEST_CASE("relief bench and turn say what they measured") {
   CHECK(pair.height == 96);
 }
 
+TEST_CASE("relief: a picture of heights becomes a relief, with holes where it says so") {
+  const TemporaryDirectory folder;
+  std::vector<std::uint16_t> heights;
+  heights.reserve(20 * 10);
+  for (int i = 0; i < 200; ++i) heights.push_back(static_cast<std::uint16_t>(300 * (i % 20)));
+  const auto put = [&](const char* name, const Bytes& bytes) {
+    std::string file = folder.file(name);
+    write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return file;
+  };
+  const std::string grey = put("h.png", encode_grey_png_16(heights, 20, 10));
+  const std::string red = put("red.png", encode_png(make_image(Format::rgba16f, 20, 10)));
+  const std::string small = put("small.png", encode_png(make_image(Format::rgba16f, 9, 9)));
+  const std::string file = folder.file("h.relief"), picture = folder.file("h.npy");
+  const ProgramRun run = run_program({"relief", "make", "--height-field", grey, "--colour", red,
+                                      "--empty", "600", "--height", "0.5", "-o", file});
+  CHECK(run.err == "");
+  REQUIRE(run.status == 0);
+  REQUIRE(run_program({"relief", "show", file, "--show", "depth", "-o", picture}).status == 0);
+  const Image depths = read_image_file(picture).image;
+  CHECK(depths.width == 20);
+  CHECK(load_texel(depths, 19, 3).x == 1.0f);  // the highest
+  CHECK(load_texel(depths, 0, 3).x == 0.0f);   // the lowest
+  CHECK(load_texel(depths, 2, 3).w == 0.0f);   // a hole
+  const std::string to = folder.file("to.relief");
+  check_refused(folder, {"relief", "make", "--height-field", grey, "--colour", small, "-o", to}, 1,
+                {"small.png", "9x9", "20x10"});
+  check_refused(folder, {"relief", "make", "figures", "--colour", red, "-o", to}, 2,
+                {"--colour", "--height-field"});
+  check_refused(folder, {"relief", "make", "--height-field", grey, "--yaw", "3", "-o", to}, 2,
+                {"--yaw", "--height-field"});
+  check_refused(folder, {"relief", "make", "--height-field", red, "--empty", "0", "-o", to}, 1,
+                {"red.png", "no height"});
+  check_refused(folder, {"relief", "make", "--height-field", grey, "-o", grey}, 2,
+                {"-o", "the heights"});
+}
+
+TEST_CASE("relief: a box of six faces is shown, measured and written") {
+  const TemporaryDirectory folder;
+  const Words words{"relief", "box", "figures", "--texels", "40x40",
+                    "--yaw",  "20",  "--size",  "48x40"};
+  for (const char* part : {"image", "faces", "unseen"}) {
+    Words own = words;
+    const std::string picture = folder.file(std::string{part} + ".npy");
+    own.insert(own.end(), {"--show", part, "-o", picture});
+    const ProgramRun run = run_program(own);
+    CHECK(run.err == "");
+    REQUIRE(run.status == 0);
+    CHECK(contains(run.out, "; seen"));
+    CHECK(contains(run.out, "no face has"));
+    CHECK(read_image_file(picture).image.width == 48);
+  }
+  Words faces = words;
+  faces.insert(faces.end(), {"-o", folder.file("f_%d.relief")});
+  REQUIRE(run_program(faces).status == 0);
+  CHECK(run_program({"relief", "show", folder.file("f_4.relief"), "-o", folder.file("f.png")})
+            .status == 0);
+  check_refused(folder, {"relief", "box", "figures", "--show", "depth", "-o", folder.file("a.png")},
+                2, {"--show", "faces"});
+  check_refused(folder, {"relief", "box", "figures"}, 2, {"-o"});
+  check_refused(folder, {"relief", "turn", "figures", "--texels", "64x64"}, 2,
+                {"--texels", "--box"});
+  const ProgramRun turn =
+      run_program({"relief", "turn", "figures", "--box", "--texels", "40x40", "--frames", "4",
+                   "--every", "4", "--size", "48x48", "--zoom", "0.2"});
+  CHECK(turn.err == "");
+  CHECK(contains(turn.out, "no face has"));
+}
+
 TEST_CASE("relief: wrong words and bad files get one line") {
   const TemporaryDirectory folder;
   const std::string relief = relief_by(folder);
@@ -79,6 +149,11 @@ TEST_CASE("relief: wrong words and bad files get one line") {
                 {"--texels", "4 to 4096"});
   check_refused(folder, {"relief", "make", "figures", "--depth-bits", "12", "-o", picture}, 2,
                 {"--depth-bits", "8 or 16"});
+  check_refused(folder, {"relief", "make", "figures", "--projection", "fisheye", "-o", picture}, 2,
+                {"--projection", "perspective"});
+  check_refused(folder,
+                {"relief", "make", "cube-room", "--projection", "perspective", "-o", picture}, 2,
+                {"--projection perspective", "beside the eye"});
   check_refused(folder, {"relief", "show", relief, "--runs", "3", "-o", picture}, 2,
                 {"--runs", "show does not read it"});
   check_refused(folder, {"relief", "show", relief, "--show", "normals", "-o", picture}, 2,

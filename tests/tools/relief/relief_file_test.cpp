@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 
 #include "tests/support/relief_pictures.h"
@@ -55,6 +56,15 @@ TEST_CASE("a relief comes back from its file as it was") {
   }
 }
 
+TEST_CASE("a perspective relief's file keeps its eye, and an eye that cannot be is refused") {
+  const ReliefTexture relief = seen_from_eye(rough_relief(13, 7, 8, 4), {0.1, -0.2, 0.9});
+  const ReliefTexture back = decode_relief(text_of(relief), "a.relief");
+  CHECK(back.camera.eye == relief.camera.eye);
+  CHECK(back.colours == relief.colours);
+  CHECK(says(text_of(seen_from_eye(relief, {0.0, 0.0, 0.2})), "eye must be before the plane"));
+  CHECK(says(text_of(seen_from_eye(relief, {0.0, NAN, 0.9})), "eye must be before the plane"));
+}
+
 TEST_CASE("a relief's file that was cut short or made longer is refused at any length") {
   const std::string whole = text_of(rough_relief(5, 4, 8, 4));
   for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -86,6 +96,37 @@ TEST_CASE("wrong sizes, bits, cameras and empty depths get a line that says so")
   CHECK(says(with([](ReliefTexture& r) { r.camera.a = r.camera.b; }), "right angles"));
   CHECK(says(with([](ReliefTexture& r) { r.camera.depth_m = 0.0; }), "depth above 0"));
   CHECK(says(with([](ReliefTexture& r) { r.depths.assign(20, 255); }), "shows nothing"));
+  CHECK(says(with([](ReliefTexture& r) { r.camera.a *= 1e-12; }), "1e-9 to 1e9 m"));
+  CHECK(says(with([](ReliefTexture& r) { r.camera.depth_m = INFINITY; }), "1e-9 to 1e9 m"));
+  CHECK(says(with([](ReliefTexture& r) { r.camera.origin.y = NAN; }), "within 1e9 m"));
+}
+
+TEST_CASE("every number of a header that cannot be is refused with what would be right") {
+  struct BadNumber {
+    std::size_t at;  // of a header's number of 32 bits
+    std::uint32_t value;
+    const char* says;
+  };
+  constexpr std::size_t kVersion = 8, kWidth = 12, kHeight = 16, kBits = 20, kNormals = 24;
+  const std::string whole = text_of(rough_relief(5, 4, 8, 4));
+  for (const BadNumber& bad : {BadNumber{kVersion, 0, "has version 0; 1 or 2"},
+                               {kVersion, 3, "has version 3; 1 or 2"},
+                               {kVersion, 2, "texels take"},
+                               {kWidth, 0, "claims 0x4 texels; each side has 1 to 4096"},
+                               {kWidth, 6, "6x4 texels take"},
+                               {kHeight, 0xFFFFFFFFu, "claims 5x4294967295 texels"},
+                               {kHeight, 3, "5x3 texels take"},
+                               {kBits, 0, "claims 0 bits"},
+                               {kBits, 16, "texels take"},
+                               {kNormals, 1, "texels take"},
+                               {kNormals, 2, "2 maps of normals; 8 or 16, and 0 or 1"}}) {
+    std::string changed = whole;
+    for (std::size_t i = 0; i < 4; ++i) {
+      changed[bad.at + i] = static_cast<char>(bad.value >> (8 * i) & 255u);
+    }
+    CAPTURE(bad.says);
+    CHECK(says(changed, bad.says));
+  }
 }
 
 TEST_CASE("an unlit relief comes back from its file as it was, cut short nowhere") {

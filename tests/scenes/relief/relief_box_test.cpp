@@ -1,0 +1,184 @@
+#include "scenes/relief/relief_box.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "raster/images/texel.h"
+#include "scenes/make/shapes.h"
+#include "tests/support/test_images.h"
+
+using namespace softfocus;
+
+namespace {
+
+constexpr int kBoxSize = 72;
+constexpr float kBoxFar = 1000.0f;
+
+Scene lit_scene(Mesh mesh) {
+  Scene scene;
+  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
+  scene.materials.emplace_back();
+  scene.meshes.push_back(std::move(mesh));
+  scene.objects.push_back({});
+  return scene;
+}
+
+/// Two walls side by side, turned by 45 degrees: a slit that no face sees into.
+Scene slit_scene() {
+  Scene scene = lit_scene(make_cube(1.0, 1));
+  for (const double side : {-1.0, 1.0}) {
+    Object wall;
+    wall.scale = {2.0, 0.05, 2.0};
+    wall.rotation_degrees = {0.0, 0.0, 45.0};
+    wall.position = glm::dvec3{-0.7071, 0.7071, 0.0} * (0.25 * side);
+    scene.objects.push_back(wall);
+  }
+  scene.objects.erase(scene.objects.begin());
+  return scene;
+}
+
+CameraMatrices box_seen_from(glm::dvec3 eye) {
+  Camera camera;
+  camera.position = eye;
+  camera.target = {0.0, 0.0, 0.0};
+  return camera_matrices(camera, 0.0, kBoxSize, kBoxSize);
+}
+
+Image far_picture() {
+  Image picture = make_image(Format::rgba16f, kBoxSize, kBoxSize);
+  clear_image(picture, {0.0f, 0.0f, 0.0f, kBoxFar}, Profile{});
+  return picture;
+}
+
+Image drawn_from(const Scene& scene, const CameraMatrices& camera, ThreadPool& pool) {
+  PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
+  Image picture = far_picture();
+  prepared.depth = make_image(Format::r32f, kBoxSize, kBoxSize);
+  prepared.pass.targets.colour[0] = &picture;
+  prepared.pass.targets.depth = &prepared.depth;
+  record_scene(prepared, camera, 0.0, prepared.pass);
+  prepared.pass.clear_colour = glm::vec4{0.0f, 0.0f, 0.0f, kBoxFar};
+  finish(prepared.pass, pool);
+  return picture;
+}
+
+int count_of(const std::vector<std::uint8_t>& marks) {
+  int count = 0;
+  for (const std::uint8_t mark : marks) count += mark;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("from outside of a box one to three faces are seen: those that the eye lies before") {
+  const Scene scene = lit_scene(make_cube(2.0, 1));
+  ThreadPool pool(1);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 16}, pool);
+  for (const std::optional<BoxFace>& face : box.faces) REQUIRE(face);
+  CHECK(faces_seen(box, {5.0, 0.0, 0.0}) == 1u);                    // +x
+  CHECK(faces_seen(box, {0.0, -5.0, 4.0}) == (1u << 3 | 1u << 4));  // -y, +z
+  CHECK(faces_seen(box, {-5.0, 4.0, -3.0}) == (1u << 1 | 1u << 2 | 1u << 5));
+  CHECK(faces_seen(box, {0.5, 0.0, 0.2}) == 0u);
+}
+
+TEST_CASE("the faces of a box have texels of one size, the longest side as many as asked for") {
+  Scene scene = lit_scene(make_cube(1.0, 1));
+  scene.objects[0].scale = {4.0, 2.0, 1.0};
+  ThreadPool pool(1);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 42}, pool);
+  const auto size_of = [&](std::size_t face) {
+    return std::pair{box.faces[face]->texture.width, box.faces[face]->texture.height};
+  };
+  CHECK(size_of(0) == std::pair{12, 22});
+  CHECK(size_of(3) == std::pair{42, 12});
+  CHECK(size_of(4) == std::pair{42, 22});
+}
+
+TEST_CASE("a ring is whole from everywhere, its faces laid over each other by depth") {
+  const Scene scene = lit_scene(make_torus(0.7, 0.3, 48, 24));
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 96, .depth_bits = 16}, pool);
+  BoxMemory memory;
+  for (const glm::dvec3 eye : {glm::dvec3{1.5, 2.0, 3.0}, {-3.0, 1.2, 0.8}, {0.3, -3.5, 0.9}}) {
+    const CameraMatrices camera = box_seen_from(eye);
+    const Image drawn = drawn_from(scene, camera, pool);
+    Image shown = far_picture();
+    draw_box(box, camera, {}, memory, shown, pool);
+    int seen = 0, lost = 0, gained = 0, wrong_depths = 0;
+    for (int y = 0; y < kBoxSize; ++y) {
+      for (int x = 0; x < kBoxSize; ++x) {
+        const float right = load_texel(drawn, x, y).w, own = load_texel(shown, x, y).w;
+        seen += right < kBoxFar ? 1 : 0;
+        lost += right < kBoxFar && own == kBoxFar ? 1 : 0;
+        gained += right == kBoxFar && own < kBoxFar ? 1 : 0;
+        wrong_depths += right < kBoxFar && own < kBoxFar && std::fabs(own - right) > 0.1f ? 1 : 0;
+      }
+    }
+    CAPTURE(eye.x);
+    CHECK(seen > 800);
+    // The thin rims of what the faces share out.
+    CHECK(lost < seen / 8);
+    CHECK(gained < seen / 25);
+    CHECK(wrong_depths < seen / 50);
+    // Of the hole's waist, which is seen along its surface alone.
+    CHECK(count_of(unseen_pixels(box, camera, drawn, kBoxFar, pool)) < seen / 50);
+  }
+}
+
+TEST_CASE("of a ball there is nothing that no face has") {
+  const Scene scene = lit_scene(make_sphere(1.0, 48, 24));
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 64, .depth_bits = 16}, pool);
+  const CameraMatrices camera = box_seen_from({2.0, 2.0, 2.0});
+  CHECK(faces_seen(box, camera.eye) == (1u | 1u << 2 | 1u << 4));
+  CHECK(count_of(unseen_pixels(box, camera, drawn_from(scene, camera, pool), kBoxFar, pool)) == 0);
+}
+
+TEST_CASE("a slit across all axes is seen by no face, and counted") {
+  const Scene scene = slit_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 96, .depth_bits = 16}, pool);
+  const auto unseen_from = [&](glm::dvec3 eye) {
+    const CameraMatrices camera = box_seen_from(eye);
+    return count_of(unseen_pixels(box, camera, drawn_from(scene, camera, pool), kBoxFar, pool));
+  };
+  CHECK(unseen_from({2.6, 2.6, 0.0}) > 30);  // into the slit
+  CHECK(unseen_from({-3.0, 3.0, 0.3}) == 0);
+}
+
+TEST_CASE("a face has the points that its texels show, and none behind them") {
+  const Scene scene = lit_scene(make_cube(2.0, 1));
+  ThreadPool pool(1);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 40, .depth_bits = 16}, pool);
+  const BoxFace& top = *box.faces[2];
+  CHECK(has_point(top, {0.3, 1.0, -0.7}, 0.0));
+  CHECK(!has_point(top, {0.3, 0.8, -0.7}, 0.0));
+  CHECK(has_point(top, {0.3, 0.8, -0.7}, 0.2));
+  CHECK(!has_point(top, {1.5, 1.0, 0.0}, 0.0));
+}
+
+TEST_CASE("a view of a box has the same bits for any number of threads and vector unit") {
+  const Scene scene = lit_scene(make_torus(0.7, 0.3, 24, 12));
+  const CameraMatrices camera = box_seen_from({1.5, 2.0, 3.0});
+  const auto picture_by = [&](ThreadPool& pool) {
+    ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+    const ReliefBox box = draw_relief_box(maker, {.texels = 48}, pool);
+    BoxMemory memory;
+    Image picture = far_picture();
+    draw_box(box, camera, {}, memory, picture, pool);
+    return picture;
+  };
+  ThreadPool plain(1, Isa::scalar);
+  const Image right = picture_by(plain);
+  for (const Isa isa : available_isas()) {
+    ThreadPool pool(3, isa);
+    CHECK_MESSAGE(equal(picture_by(pool), right), isa_name(isa));
+  }
+}
