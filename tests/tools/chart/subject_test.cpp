@@ -221,10 +221,10 @@ TEST_CASE(
   CHECK(tight.renewals > loose.renewals);
   CHECK(tight.flip < loose.flip);
   CHECK(tight.outline_px < 1.0);
-  const ChartErrors marched = errors_of_turn("marched-bisection", 2);
+  const ChartErrors marched = errors_of_turn("marched-bisection", 1);
   CHECK(marched.renewals > 0.0);
   CHECK(marched.megabytes < tight.megabytes);
-  const ChartErrors atlas = errors_of_turn("octahedral", 1);
+  const ChartErrors atlas = errors_of_turn("octahedral", 0);
   CHECK(atlas.renewals == 0.0);
   CHECK(atlas.megabytes > 10.0 * tight.megabytes);
   CHECK(atlas.outline_px > tight.outline_px);
