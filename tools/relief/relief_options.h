@@ -86,6 +86,8 @@ ReliefTexture relief_of_height_file(const ReliefOptions& options);
 // --- the actions; each returns the exit status ---
 
 int make_relief_file(const ReliefOptions& options);
+int show_relief(const ReliefOptions& options);
+int warp_view(const ReliefOptions& options);
 int bench_relief(const ReliefOptions& options);
 int turn_impostor(const ReliefOptions& options);
 int turn_octahedral(const ReliefOptions& options);
