@@ -222,6 +222,25 @@ constexpr std::array<std::string_view, 29> kReliefOptions{
     "--cache",      "--rival",     "--views",
     "--hemisphere", "--parallax"};
 
+/// Of turn: what only a rival reads, and what only an impostor does.
+constexpr std::array<std::string_view, 3> kRivalOptions{"--views", "--hemisphere", "--parallax"};
+constexpr std::array<std::string_view, 8> kImpostorOptions{
+    "--resampling", "--fixed", "--tolerance", "--no-sprites",
+    "--regions",    "--join",  "--turns",     "--cache"};
+
+void check_rival(const CLI::App& parser, const ReliefOptions& options) {
+  for (const std::string_view name : kRivalOptions) {
+    if (!options.rival && is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + ": only relief turn --rival octahedral reads it");
+    }
+  }
+  for (const std::string_view name : kImpostorOptions) {
+    if (options.rival && is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + ": an octahedral atlas does not read it");
+    }
+  }
+}
+
 int run_relief(const CLI::App& parser, ReliefOptions& options) {
   for (const ReliefAction& action : kReliefActions) {
     if (action.name != options.action) continue;
@@ -232,6 +251,7 @@ int run_relief(const CLI::App& parser, ReliefOptions& options) {
         throw UsageError(std::string{name} + ": relief " + options.action + " does not read it");
       }
     }
+    check_rival(parser, options);
     if (action.writes_picture) settle_format(parser, options.output, options.format);
     return action.work(options);
   }
