@@ -7,6 +7,8 @@ namespace softfocus {
 
 std::vector<std::uint8_t> coverage_of(const Image& picture, std::uint16_t background_depth) {
   std::vector<std::uint8_t> covered;
+  covered.reserve(static_cast<std::size_t>(picture.width) *
+                  static_cast<std::size_t>(picture.height));
   for (int y = 0; y < picture.height; ++y) {
     const std::uint16_t* texels = row<std::uint16_t>(picture, y).data();
     for (int x = 0; x < picture.width; ++x) {

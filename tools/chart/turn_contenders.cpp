@@ -7,7 +7,6 @@
 #include "dof/measure/outline.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
-#include "raster/numbers/half.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/relief/march_relief.h"
 #include "scenes/surfaces/surface_stages.h"
@@ -64,18 +63,23 @@ const std::vector<TurnContender>& turn_contenders() {
 }
 
 /// The camera of a turn: from the scene's side, the bounding sphere almost as high as the picture.
-Camera camera_of_turn(const Scene& scene, const ReliefMaker& maker, double& distance_m) {
+Camera camera_of_turn(const Scene& scene, const ReliefMaker& maker) {
   constexpr double kRoom = 1.05;
   Camera camera = scene.camera;
   const glm::dvec3 arm = camera.position - camera.target;
   const double tangent = exact_math::tan_degrees(0.5 * camera.fov_y_degrees);
-  distance_m = kRoom * maker.radius_m * std::sqrt(1.0 + tangent * tangent) / tangent;
+  const double distance_m = kRoom * maker.radius_m * std::sqrt(1.0 + tangent * tangent) / tangent;
   camera.target = maker.middle;
   camera.position = maker.middle + normalize(arm) * distance_m;
   camera.near_m = 0.5 * (distance_m - maker.radius_m);
   camera.far_m = 10.0 * distance_m;
   camera.orbit_degrees_per_frame = 1.0;  // frames are degrees
   return camera;
+}
+
+double distance_of(const Camera& camera) {
+  const glm::dvec3 arm = camera.position - camera.target;
+  return std::sqrt(dot(arm, arm));
 }
 
 glm::vec4 turn_clear(const Scene& scene, const Camera& camera) {
@@ -162,7 +166,8 @@ TurnContenders::TurnContenders(const ChartScene& chart, ThreadPool& pool)
       height_(side_of_view(chart.pinhole.height)),
       maker_(prepare_relief(with_triangles(chart.scene), chart.frame, pool)),
       prepared_(prepare_scene(chart.scene, Profile{}, pool)),
-      camera_(camera_of_turn(chart.scene, maker_, distance_m_)),
+      camera_(camera_of_turn(chart.scene, maker_)),
+      distance_m_(distance_of(camera_)),
       blank_(make_image(Format::rgba16f, width_, height_)) {
   clear_image(blank_, turn_clear(chart.scene, camera_), Profile{});
   shown_ = blank_;

@@ -250,6 +250,38 @@ void check_pairs(const CLI::App& parser, const ReliefOptions& options) {
   }
 }
 
+/// Of turn: what only an atlas reads, what only an impostor does, and what an atlas does not.
+constexpr std::array<std::string_view, 3> kAtlasOptions{"--views", "--hemisphere", "--parallax"};
+constexpr std::array<std::string_view, 14> kImpostorOptions{
+    "--tolerance",     "--no-sprites", "--regions",  "--turns",     "--cache",
+    "--schedule",      "--aside",      "--slice-ms", "--predict",   "--moving-light",
+    "--update-frames", "--approach",   "--levels",   "--projection"};
+constexpr std::array<std::string_view, 3> kWarpOptions{"--resampling", "--fixed", "--join"};
+
+void check_turn(const CLI::App& parser, const ReliefOptions& options) {
+  if (options.rival && options.box) {
+    throw UsageError("--box: is no octahedral atlas; give --rival or --box");
+  }
+  for (const std::string_view name : kAtlasOptions) {
+    if (!options.rival && is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + ": only relief turn --rival octahedral reads it");
+    }
+  }
+  for (const std::string_view name : kWarpOptions) {
+    if (options.rival && is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + ": an octahedral atlas does not read it");
+    }
+  }
+  if (!options.rival && !options.box) return;
+  for (const std::string_view name : kImpostorOptions) {
+    if (is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + (options.box
+                                                ? ": six faces do not read it"
+                                                : ": an octahedral atlas does not read it"));
+    }
+  }
+}
+
 int run_relief(const CLI::App& parser, ReliefOptions& options) {
   for (const ReliefAction& action : kReliefActions) {
     if (action.name != options.action) continue;
@@ -262,6 +294,7 @@ int run_relief(const CLI::App& parser, ReliefOptions& options) {
     }
     check_schedule(parser, options);
     check_pairs(parser, options);
+    check_turn(parser, options);
     const bool is_box_files = action.work == box && numbered_name("-o", options.output);
     if (action.writes_picture && !is_box_files)
       settle_format(parser, options.output, options.format);

@@ -7,7 +7,6 @@
 
 #include "dof/measure/measures.h"
 #include "dof/measure/outline.h"
-#include "raster/images/texel.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/errors.h"

@@ -10,7 +10,6 @@
 #include "scenes/relief/impostor.h"
 #include "scenes/relief/march_relief.h"
 #include "scenes/relief/octahedral_atlas.h"
-#include "scenes/surfaces/surface_stages.h"
 
 namespace softfocus {
 namespace {

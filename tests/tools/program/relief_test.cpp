@@ -137,6 +137,28 @@ TEST_CASE("relief: a box of six faces is shown, measured and written") {
   CHECK(contains(turn.out, "no face has"));
 }
 
+TEST_CASE("relief turn: an octahedral atlas goes the same turn, and says what it takes") {
+  const TemporaryDirectory folder;
+  const ProgramRun turn =
+      run_program({"relief", "turn", "figures", "--rival", "octahedral", "--views", "3", "--frames",
+                   "6", "--every", "3", "--size", "64x64", "-o", folder.file("t_%02d.npy")});
+  CHECK(turn.err == "");
+  REQUIRE(turn.status == 0);
+  CHECK(contains(turn.out, "3x3 views of a sphere, "));
+  CHECK(contains(turn.out, " MB, drawn in "));
+  CHECK(contains(turn.out, "FLIP "));
+  const Image pair = read_image_file(folder.file("t_03.npy")).image;
+  CHECK(pair.width == 128);
+  check_refused(folder, {"relief", "turn", "figures", "--rival", "cube"}, 2,
+                {"--rival", "octahedral"});
+  check_refused(folder, {"relief", "turn", "figures", "--views", "1"}, 2, {"--views", "2 to 64"});
+  check_refused(folder, {"relief", "make", "figures", "--parallax", "1"}, 2, {"--parallax"});
+  check_refused(folder, {"relief", "turn", "figures", "--parallax", "1"}, 2,
+                {"--parallax", "--rival"});
+  check_refused(folder, {"relief", "turn", "figures", "--rival", "octahedral", "--tolerance", "4"},
+                2, {"--tolerance", "atlas"});
+}
+
 TEST_CASE("relief: wrong words and bad files get one line") {
   const TemporaryDirectory folder;
   const std::string relief = relief_by(folder);
