@@ -40,7 +40,7 @@ struct TurnSums {
   std::vector<double> flip, object_flip, outline_px;
   double most_outline_px = 0.0;
   std::size_t lost = 0, gained = 0, seen = 0;  ///< pixels, of measured frames
-  std::size_t unseen = 0;                      ///< by any face of a box
+  std::size_t unseen = 0, unhad = 0;           ///< by a seen face of a box, by any
   std::vector<double> predicted, bound;        ///< times the measured error
   std::size_t most_bytes = 0;
 };
@@ -172,7 +172,7 @@ void print_sums(const Scene& scene, const ReliefOptions& options, const TurnSums
       mean_of(sums.outline_px), sorted_at(sums.outline_px, 1.0), sums.most_outline_px);
   std::printf("of %zu pixels %zu lost, %zu gained\n", sums.seen, sums.lost, sums.gained);
   if (options.box) {
-    std::printf("%zu show what no face has\n", sums.unseen);
+    std::printf("%zu show what no seen face has, %zu what no face has\n", sums.unseen, sums.unhad);
     return;
   }
   std::printf(
@@ -297,8 +297,9 @@ int turn_impostor(const ReliefOptions& options) {
     measure_frame(redrawn, shown, background_depth, pool, sums);
     if (box) {
       const float far_m = half_to_float(background_depth);
-      for (const std::uint8_t mark : unseen_pixels(*box, matrices, redrawn, far_m, pool)) {
-        sums.unseen += mark;
+      for (const FacePoint had : unseen_pixels(*box, matrices, redrawn, far_m, pool)) {
+        sums.unseen += had != FacePoint::by_seen ? 1 : 0;
+        sums.unhad += had == FacePoint::by_none ? 1 : 0;
       }
     }
     if (name) write_pair(name_at(*name, frame), redrawn, shown, format);
