@@ -234,15 +234,16 @@ bool has_point(const BoxFace& face, glm::dvec3 point, double away_m) {
   return any_near(face.texture, point, away_m, [](std::size_t) { return true; });
 }
 
-std::vector<std::uint8_t> unseen_pixels(const ReliefBox& box, const CameraMatrices& camera,
-                                        const Image& drawn, float far_m, ThreadPool& pool) {
+std::vector<FacePoint> unseen_pixels(const ReliefBox& box, const CameraMatrices& camera,
+                                     const Image& drawn, float far_m, ThreadPool& pool) {
   const auto axis = [&](int i) {
     return glm::dvec3{camera.world_to_eye[0][i], camera.world_to_eye[1][i],
                       camera.world_to_eye[2][i]};
   };
   const glm::dvec3 right = axis(0), up = axis(1), back = axis(2);
-  std::vector<std::uint8_t> unseen(static_cast<std::size_t>(drawn.width) *
-                                   static_cast<std::size_t>(drawn.height));
+  const unsigned seen = faces_seen(box, camera.eye);
+  std::vector<FacePoint> unseen(static_cast<std::size_t>(drawn.width) *
+                                static_cast<std::size_t>(drawn.height));
   pool.for_each(drawn.height, [&](int y) {
     const double above = ((y + 0.5) * 2.0 / drawn.height - 1.0 + camera.eye_to_clip[2][1]) /
                          camera.eye_to_clip[1][1];
@@ -253,13 +254,14 @@ std::vector<std::uint8_t> unseen_pixels(const ReliefBox& box, const CameraMatric
                            camera.eye_to_clip[0][0];
       const auto far = static_cast<double>(depth);
       const glm::dvec3 point = camera.eye + ((right * aside + up * above) - back) * far;
-      const bool is_had =
-          std::any_of(box.faces.begin(), box.faces.end(), [&](const std::optional<BoxFace>& face) {
-            return face && has_point(*face, point, far * 0x1p-11);
-          });
+      FacePoint had = FacePoint::by_none;
+      for (std::size_t i = 0; i < kBoxFaces && had != FacePoint::by_seen; ++i) {
+        if (!box.faces[i] || !has_point(*box.faces[i], point, far * 0x1p-11)) continue;
+        had = (seen >> i & 1u) != 0 ? FacePoint::by_seen : FacePoint::by_unseen;
+      }
       const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(drawn.width) +
                              static_cast<std::size_t>(x);
-      unseen[at] = is_had ? 0 : 1;
+      unseen[at] = had;
     }
   });
   return unseen;

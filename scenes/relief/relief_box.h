@@ -76,11 +76,12 @@ void draw_box(const ReliefBox& box, const CameraMatrices& camera, const WarpRule
               BoxMemory& memory, Image& picture, ThreadPool& pool,
               std::vector<std::uint8_t>* shown = nullptr);
 
-/// Of each pixel of a drawn picture that is nearer than `far_m`: 1 if no face, seen or not, has its
-/// point. A face has a point if one of the four texels about it shows a point within kHasTexels
-/// texels, and what a half rounds off the depth.
-std::vector<std::uint8_t> unseen_pixels(const ReliefBox& box, const CameraMatrices& camera,
-                                        const Image& drawn, float far_m, ThreadPool& pool);
+/// Of each pixel of a drawn picture that is nearer than `far_m`: whether a face has its point. A
+/// face has a point if one of the four texels about it shows a point within kHasTexels texels, and
+/// what a half rounds off the depth.
+enum class FacePoint : std::uint8_t { by_seen, by_unseen, by_none };
+std::vector<FacePoint> unseen_pixels(const ReliefBox& box, const CameraMatrices& camera,
+                                     const Image& drawn, float far_m, ThreadPool& pool);
 inline constexpr double kHasTexels = 2.0;
 
 /// Whether a face has a point of the world, but for `away_m`.

@@ -26,12 +26,13 @@ constexpr std::array<glm::vec3, kBoxFaces> kFaceColours{{{0.8f, 0.1f, 0.1f},
 
 struct BoxPictures {
   Image drawn, shown;
-  std::vector<std::uint8_t> faces;   ///< of each pixel of `shown`
-  std::vector<std::uint8_t> unseen;  ///< of `drawn`
+  std::vector<std::uint8_t> faces;  ///< of each pixel of `shown`
+  std::vector<FacePoint> unseen;    ///< of `drawn`
   float far_m;
 };
 
-/// Paints the composed view: pixels by their face, or those that no face has in red.
+/// Paints the composed view: pixels by their face, or those that no seen face has in orange, that
+/// none has in red.
 Image painted(const BoxPictures& pictures, ReliefPart part) {
   Image picture = pictures.shown;
   for (int y = 0; y < picture.height; ++y) {
@@ -47,7 +48,9 @@ Image painted(const BoxPictures& pictures, ReliefPart part) {
       if (part == ReliefPart::unseen) {
         const glm::vec4 drawn = load_texel<Format::rgba16f>(pictures.drawn, x, y);
         const float grey = drawn.w < pictures.far_m ? 0.2f + 0.5f * drawn.y : 0.0f;
-        colour = pictures.unseen[at] != 0 ? glm::vec3{1.0f, 0.05f, 0.05f} : glm::vec3{grey};
+        colour = pictures.unseen[at] == FacePoint::by_none     ? glm::vec3{1.0f, 0.05f, 0.05f}
+                 : pictures.unseen[at] == FacePoint::by_unseen ? glm::vec3{1.0f, 0.45f, 0.05f}
+                                                               : glm::vec3{grey};
       }
       store_texel<Format::rgba16f>(picture, x, y, {colour, shown.w}, Profile{});
     }
@@ -65,7 +68,7 @@ void print_box(const ReliefBox& box, const BoxPictures& pictures, glm::dvec3 eye
                 box.faces[i]->texture.height, static_cast<long long>(box.faces[i]->extent.filled),
                 (seen_faces >> i & 1u) != 0 ? "; seen" : "");
   }
-  std::size_t seen = 0, lost = 0, gained = 0, unseen = 0;
+  std::size_t seen = 0, lost = 0, gained = 0, unseen = 0, unhad = 0;
   for (std::size_t at = 0; at < pictures.unseen.size(); ++at) {
     const auto width = static_cast<std::size_t>(pictures.drawn.width);
     const int x = static_cast<int>(at % width), y = static_cast<int>(at / width);
@@ -74,10 +77,13 @@ void print_box(const ReliefBox& box, const BoxPictures& pictures, glm::dvec3 eye
     seen += is ? 1 : 0;
     lost += is && !looks ? 1 : 0;
     gained += !is && looks ? 1 : 0;
-    unseen += pictures.unseen[at];
+    unseen += pictures.unseen[at] != FacePoint::by_seen ? 1 : 0;
+    unhad += pictures.unseen[at] == FacePoint::by_none ? 1 : 0;
   }
-  std::printf("%.2f MB; of %zu pixels %zu lost, %zu gained; %zu show what no face has\n",
-              static_cast<double>(bytes_of(box)) / 1e6, seen, lost, gained, unseen);
+  std::printf(
+      "%.2f MB; of %zu pixels %zu lost, %zu gained; %zu show what no seen face has, %zu what no "
+      "face has\n",
+      static_cast<double>(bytes_of(box)) / 1e6, seen, lost, gained, unseen, unhad);
 }
 
 /// Six files, numbered from 0 in the faces' order.

@@ -107,11 +107,10 @@ struct ErrorShares {
   std::optional<CriticalPoint> point;
 };
 
-void add_shares(const Impostor& impostor, ImpostorStep step, glm::dvec3 eye, ErrorShares& shares,
-                TurnSums& sums) {
+void add_shares(const Impostor& impostor, glm::dvec3 eye, ErrorShares& shares, TurnSums& sums) {
   if (!impostor.drawn || !sees_front(impostor.drawn->texture, eye)) return;
   const ReliefTexture& relief = impostor.drawn->texture;
-  if (!shares.bounds || step == ImpostorStep::renew || step == ImpostorStep::recall) {
+  if (!shares.bounds) {
     shares.bounds = critical_regions(relief, impostor.drawn->extent, kBoundRegions, kBoundRegions);
     shares.point = critical_point(relief);
   }
@@ -203,9 +202,10 @@ int turn_impostor(const ReliefOptions& options) {
       changed = draw_impostor(impostor.shown, matrices, shown, frame_pool);
     });
     add_frame(done, ms, sums);
+    if (done.takes || done.renewals > 0 || done.step == ImpostorStep::recall) shares = {};
     sums.most_bytes = std::max(sums.most_bytes, bytes_of_impostor(impostor));
     if (!has_own_thread || is_measured(frame)) {
-      add_shares(impostor.shown, done.step, matrices.eye, shares, sums);
+      add_shares(impostor.shown, matrices.eye, shares, sums);
     }
     if (!is_measured(frame)) continue;
     if (has_own_thread) {

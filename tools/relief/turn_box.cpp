@@ -32,7 +32,7 @@ int turn_box(const ReliefOptions& options) {
   const Image blank = shown;
   prepared.depth = make_image(Format::r32f, width, height);
   TurnErrors errors;
-  std::size_t unseen = 0, most_bytes = 0;
+  std::size_t unseen = 0, unhad = 0, most_bytes = 0;
   std::vector<double> redrawn_ms, shown_ms;
   for (int frame = 0; frame < options.frames; ++frame) {
     const CameraMatrices matrices = camera_matrices(camera, frame, width, height);
@@ -49,8 +49,9 @@ int turn_box(const ReliefOptions& options) {
     if (frame % options.every != 0) continue;
     measure_frame(redrawn, shown, background_depth, pool, errors);
     const float far_m = half_to_float(background_depth);
-    for (const std::uint8_t mark : unseen_pixels(box, matrices, redrawn, far_m, pool)) {
-      unseen += mark;
+    for (const FacePoint had : unseen_pixels(box, matrices, redrawn, far_m, pool)) {
+      unseen += had != FacePoint::by_seen ? 1 : 0;
+      unhad += had == FacePoint::by_none ? 1 : 0;
     }
     write_pair(pictures, frame, redrawn, shown);
   }
@@ -63,7 +64,7 @@ int turn_box(const ReliefOptions& options) {
               redrawn_mean, shown_mean, redrawn_mean / shown_mean, sorted_at(redrawn_ms, 0.5),
               sorted_at(shown_ms, 0.5));
   print_errors(errors);
-  std::printf("%zu show what no face has\n", unseen);
+  std::printf("%zu show what no seen face has, %zu what no face has\n", unseen, unhad);
   return kDone;
 }
 

@@ -88,6 +88,21 @@ TEST_CASE("an impostor drawn for a view shows what is drawn, at its depths") {
   }
 }
 
+TEST_CASE(
+    "an eye beside part of its object gets an orthographic relief, though asked for another") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(1);
+  const ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  ImpostorSettings settings;
+  settings.projection = ReliefProjection::perspective;
+  CameraMatrices camera = seen_at(scene, 0.0);
+  CHECK(impostor_view(maker, camera, settings, scene.camera.up).projection ==
+        ReliefProjection::perspective);
+  camera.eye = {0.9, 0.1, 0.0};
+  CHECK(impostor_view(maker, camera, settings, scene.camera.up).projection ==
+        ReliefProjection::orthographic);
+}
+
 TEST_CASE("a picture with an impostor has the same bits on every vector unit") {
   const Scene scene = torus_scene();
   ThreadPool plain(1, Isa::scalar);

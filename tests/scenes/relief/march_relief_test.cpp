@@ -87,6 +87,28 @@ TEST_CASE("a marched ray meets the sphere where it is, the nearer the more slice
   CHECK(coarse.largest > 1.5 * bisected.largest);
 }
 
+TEST_CASE("a wall under a perspective camera is marched and mapped at its own distance") {
+  ReliefTexture wall = seen_from_eye(empty_relief(40, 40, 16, 0.3), {0.1, -0.2, 0.8});
+  for (std::uint16_t& code : wall.depths) code = 50000;
+  for (std::uint32_t& colour : wall.colours) colour = 0xFF404040u;
+  const double d = 50000 * depth_step(wall);
+  const double z = d / (1.0 - d / 0.8);
+  const glm::dvec3 eye{0.05, 0.1, 1.2};
+  Camera ahead;
+  ahead.position = eye;
+  ahead.target = eye + glm::dvec3{0.0, 0.0, -1.0};
+  const CameraMatrices camera = camera_matrices(ahead, 0.0, kSize, kSize);
+  ThreadPool pool(1);
+  Image mapped = make_image(Format::rgba16f, kSize, kSize);
+  clear_image(mapped, {0.0f, 0.0f, 0.0f, 100.0f}, Profile{});
+  const WarpedRelief plane = warped(wall, eye, {}, pool);
+  map_relief(plane, plane_mapping(wall, camera, plane.place, kSize, kSize), mapped, pool);
+  for (const Image& picture : {marched(wall, camera, {64, 8}), mapped}) {
+    const auto depth = static_cast<double>(load_texel(picture, kSize / 2, kSize / 2).w);
+    CHECK(depth == doctest::Approx(1.2 + z).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("who does not see the relief's front sees nothing of it") {
   const ReliefTexture relief = sphere_relief(40, 8);
   const Image picture = marched(relief, seen_from({0.1, 0.0, -2.0}), {32, 0});

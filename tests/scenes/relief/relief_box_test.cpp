@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "raster/images/texel.h"
@@ -63,10 +64,8 @@ Image drawn_from(const Scene& scene, const CameraMatrices& camera, ThreadPool& p
   return picture;
 }
 
-int count_of(const std::vector<std::uint8_t>& marks) {
-  int count = 0;
-  for (const std::uint8_t mark : marks) count += mark;
-  return count;
+int count_of(const std::vector<FacePoint>& points, FacePoint which) {
+  return static_cast<int>(std::count(points.begin(), points.end(), which));
 }
 
 }  // namespace
@@ -125,7 +124,8 @@ TEST_CASE("a ring is whole from everywhere, its faces laid over each other by de
     CHECK(gained < seen / 25);
     CHECK(wrong_depths < seen / 50);
     // Of the hole's waist, which is seen along its surface alone.
-    CHECK(count_of(unseen_pixels(box, camera, drawn, kBoxFar, pool)) < seen / 50);
+    CHECK(count_of(unseen_pixels(box, camera, drawn, kBoxFar, pool), FacePoint::by_none) <
+          seen / 50);
   }
 }
 
@@ -136,7 +136,28 @@ TEST_CASE("of a ball there is nothing that no face has") {
   const ReliefBox box = draw_relief_box(maker, {.texels = 64, .depth_bits = 16}, pool);
   const CameraMatrices camera = box_seen_from({2.0, 2.0, 2.0});
   CHECK(faces_seen(box, camera.eye) == (1u | 1u << 2 | 1u << 4));
-  CHECK(count_of(unseen_pixels(box, camera, drawn_from(scene, camera, pool), kBoxFar, pool)) == 0);
+  const auto points = unseen_pixels(box, camera, drawn_from(scene, camera, pool), kBoxFar, pool);
+  CHECK(count_of(points, FacePoint::by_none) == 0);
+  CHECK(count_of(points, FacePoint::by_unseen) == 0);
+}
+
+TEST_CASE("a texel that is steep to a face is left to a seen face that has its point") {
+  const Scene scene = lit_scene(make_sphere(1.0, 48, 24));
+  ThreadPool pool(1);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 48, .depth_bits = 16}, pool);
+  BoxMemory memory;
+  const auto left_from = [&](glm::dvec3 eye) {
+    Image picture = far_picture();
+    draw_box(box, box_seen_from(eye), {}, memory, picture, pool);
+    return static_cast<double>(memory.left[0]->extent.filled) /
+           static_cast<double>(box.faces[0]->extent.filled);
+  };
+  CHECK(left_from({5.0, 0.0, 0.0}) == 1.0);  // +x alone
+  // Of the rim beyond sin 60 degrees, a quarter of the disc, what +y and +z have better.
+  CHECK(left_from({3.0, 3.0, 3.0}) > 0.8);
+  CHECK(left_from({3.0, 3.0, 3.0}) < 0.93);
+  CHECK(left_from({5.0, 0.0, 0.0}) == 1.0);
 }
 
 TEST_CASE("a slit across all axes is seen by no face, and counted") {
@@ -146,7 +167,8 @@ TEST_CASE("a slit across all axes is seen by no face, and counted") {
   const ReliefBox box = draw_relief_box(maker, {.texels = 96, .depth_bits = 16}, pool);
   const auto unseen_from = [&](glm::dvec3 eye) {
     const CameraMatrices camera = box_seen_from(eye);
-    return count_of(unseen_pixels(box, camera, drawn_from(scene, camera, pool), kBoxFar, pool));
+    return count_of(unseen_pixels(box, camera, drawn_from(scene, camera, pool), kBoxFar, pool),
+                    FacePoint::by_none);
   };
   CHECK(unseen_from({2.6, 2.6, 0.0}) > 30);  // into the slit
   CHECK(unseen_from({-3.0, 3.0, 0.3}) == 0);
