@@ -38,7 +38,6 @@ Image picture_of(int width, int height, const TexelAt& texel_at) {
 struct Warped {
   WarpTile tile;
   WarpedColours sums;
-  bool has_holes = false;
 };
 
 Warped warped(const WarpSource& source, glm::vec2 shift, const Rectangle& area, Isa isa) {
@@ -47,7 +46,7 @@ Warped warped(const WarpSource& source, glm::vec2 shift, const Rectangle& area, 
   for (std::vector<float>* plane : {&made.sums.red, &made.sums.green, &made.sums.blue}) {
     plane->assign(made.tile.radii.size(), 0.0f);
   }
-  made.has_holes = add_colours(source, shift, made.tile, made.sums, isa);
+  add_colours(source, shift, made.tile, made.sums, isa);
   return made;
 }
 
@@ -84,7 +83,7 @@ TEST_CASE("a plane out of focus is moved by its circle's radius times the lens p
   const glm::vec2 shift = warp_shift(source, {0.75, -0.5});
   CHECK(shift == glm::vec2{0.5f, 0.75f});
   const Warped made = warped(source, shift, {8, 8, 32, 24}, pool.isa());
-  CHECK_FALSE(made.has_holes);
+  CHECK(holes_of(made.tile).empty());
   for (int y = 8; y < 24; ++y) {
     for (int x = 8; x < 32; ++x) {
       const std::size_t at = tile_at(made.tile, x, y);
@@ -119,12 +118,12 @@ TEST_CASE("what is nearer is seen, and what it hid is a hole") {
   WarpSource source;
   set_source(source, picture, kCircles, {}, pool);
   const Warped made = warped(source, {-1.0f, 0.0f}, {0, 0, 32, 8}, pool.isa());
-  CHECK(made.has_holes);
+  CHECK(holes_of(made.tile).size() == std::size_t{4 * 8});
   for (int x = 0; x < 32; ++x) {
     CAPTURE(x);
     const std::size_t at = tile_at(made.tile, x, 4);
     const bool is_hole = x >= 10 && x < 14;  // 4 to the right of where it was
-    CHECK((made.tile.places[at] == kNoPlace) == is_hole);
+    CHECK((made.tile.radii[at] == kHoleRadius) == is_hole);
     CHECK(made.sums.red[at] == (is_hole ? 0.0f : x >= 14 && x < 20 ? 1.0f : 0.5f));
   }
 }
@@ -137,7 +136,25 @@ TEST_CASE("a surface that is stretched has no cracks") {
   WarpSource source;
   set_source(source, picture, kCircles, {}, pool);
   const Warped made = warped(source, {1.0f, 0.0f}, {0, 0, 64, 16}, pool.isa());
-  CHECK_FALSE(made.has_holes);
+  CHECK(holes_of(made.tile).empty());
+}
+
+TEST_CASE("where two surfaces part by a pixel, the farther is put once more beside itself") {
+  ThreadPool pool{1};
+  const Image picture = picture_of(32, 16, [](int x, int y) {
+    const bool is_near = x >= 10;
+    return glm::vec4{is_near ? 1.0f : 0.0f, static_cast<float>(y) / 16.0f, 0.0f,
+                     is_near ? depth_of(0.0f) : depth_of(1.0f)};
+  });
+  WarpSource source;
+  set_source(source, picture, kCircles, {}, pool);
+  // The far one goes one up and one to the left, away from the near one.
+  const Warped made = warped(source, {-1.0f, -1.0f}, {0, 0, 32, 16}, pool.isa());
+  for (int y = 1; y < 14; ++y) {
+    const std::size_t at = tile_at(made.tile, 9, y);
+    REQUIRE(made.sums.red[at] == 0.0f);
+    REQUIRE(made.sums.green[at] == static_cast<float>(y + 1) / 16.0f);
+  }
 }
 
 TEST_CASE("warped pictures have the same bits on every vector unit and in every tile") {
@@ -161,8 +178,7 @@ TEST_CASE("warped pictures have the same bits on every vector unit and in every 
         for (int y = area.y_begin; y < area.y_end; ++y) {
           for (int x = area.x_begin; x < area.x_end; ++x) {
             const std::size_t a = tile_at(whole.tile, x, y), b = tile_at(part.tile, x, y);
-            same = same && whole.tile.places[a] == part.tile.places[b] &&
-                   whole.tile.radii[a] == part.tile.radii[b] &&
+            same = same && whole.tile.radii[a] == part.tile.radii[b] &&
                    whole.sums.red[a] == part.sums.red[b] &&
                    whole.sums.green[a] == part.sums.green[b];
           }
