@@ -34,6 +34,19 @@ ReliefForm form_for(const FrameWork& work, glm::dvec3 eye) {
   return impostor_form(work.maker, camera, work.settings, work.up, work.height_px);
 }
 
+/// How many frames ahead of `frames` from now a relief is drawn: lead_frames(), but for an eye that
+/// comes so near that it would have many more texels than one for the eye now.
+int lead_for(const ScheduledImpostor& impostor, const FrameWork& work, int frames) {
+  if (!impostor.schedule.predicts || !impostor.shown.drawn) return 0;
+  int lead = lead_frames(*impostor.shown.drawn, work.settings, impostor.motion, work.pixel_tangent);
+  const double most = work.settings.sharpness * form_for(work, work.camera.eye).height;
+  while (lead > 0 &&
+         form_for(work, moved_eye(impostor.motion, work.camera.eye, frames + lead)).height > most) {
+    lead /= 2;
+  }
+  return lead;
+}
+
 // --- pieces of an update ---
 
 int pieces_of(const ImpostorUpdate& update) {
@@ -122,9 +135,7 @@ bool can_be_shown(const Impostor& shown, glm::dvec3 eye) {
 void renew_in_frame(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFrame& frame) {
   Impostor& shown = impostor.shown;
   const glm::dvec3 eye = work.camera.eye;
-  int lead = impostor.schedule.predicts && shown.drawn
-                 ? lead_frames(*shown.drawn, work.settings, impostor.motion, work.pixel_tangent)
-                 : 0;
+  int lead = lead_for(impostor, work, 0);
   keep_stale(shown, work.settings, eye);
   for (;; lead /= 2) {
     const glm::dvec3 drawn_for = moved_eye(impostor.motion, eye, lead);
@@ -244,10 +255,7 @@ void begin_update(ScheduledImpostor& impostor, const FrameWork& work, ScheduledF
       (draws || !work.settings.sprites ||
        parallax_tangent(shown.drawn->texture, shown.warped_for, target) > work.pixel_tangent);
   if (!draws && !warps) return;
-  int lead = 0;
-  if (draws && schedule.predicts && shown.drawn) {
-    lead = lead_frames(*shown.drawn, work.settings, impostor.motion, work.pixel_tangent);
-  }
+  const int lead = draws ? lead_for(impostor, work, ahead) : 0;
   const glm::dvec3 view_eye = lead == 0 ? target : moved_eye(impostor.motion, eye, ahead + lead);
   ImpostorUpdate update{};
   update.begun = work.frame;
@@ -349,6 +357,8 @@ int lead_frames(const DrawnRelief& relief, const ImpostorSettings& settings,
                 const EyeMotion& motion, double pixel_tangent) {
   ImpostorSettings stricter = settings;
   stricter.tolerance_texels = 1.0 + kLeadShare * (settings.tolerance_texels - 1.0);
+  // No finer, either, than it will be coarse: an eye that comes nearer needs more and more texels.
+  stricter.fineness = 1.0 / settings.sharpness;
   const auto serves = [&](int frames) {
     return is_fresh(relief, stricter, moved_eye(motion, relief.eye, -frames), pixel_tangent);
   };
