@@ -103,7 +103,7 @@ bool can_serve(const DrawnRelief& relief, const ImpostorSettings& settings, glm:
   const bool has_levels = settings.levels > 1;
   const double wide =
       texel_tangent(relief.texture, eye) * (has_levels ? 1.0 : settings.texels_per_pixel);
-  const double least = 0.25 / static_cast<double>(1 << (settings.levels - 1));
+  const double least = settings.fineness / static_cast<double>(1 << (settings.levels - 1));
   return wide <= settings.sharpness * pixel_tangent && wide >= least * pixel_tangent &&
          warped_extent(relief.texture, relief.extent, eye).has_value();
 }

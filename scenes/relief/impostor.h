@@ -25,7 +25,8 @@ struct ImpostorSettings {
   int regions = 1;                ///< 1: of one point; more: the mean of regions x regions points
   double texels_per_pixel = 1.0;  ///< of a relief when it is drawn
   double sharpness = 1.5;  ///< K of 4-1: a relief whose texels came to be so many pixels wide
-                           ///< is renewed, and one whose texels are 1/4 of a pixel
+                           ///< is renewed,
+  double fineness = 0.25;  ///< and one whose texels are this part of a pixel
   bool sprites = true;     ///< Schaufler's test; without it every view is warped
   /// If there are such, reliefs are unlit, and lit by these before each warp. They may change from
   /// frame to frame, without `sprites`. Not with warps aside.

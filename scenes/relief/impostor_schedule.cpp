@@ -17,7 +17,7 @@ constexpr std::size_t kPartTriangles = 32768;
 constexpr int kVariableStrips = 8;
 
 /// What update_scheduled() was called with.
-struct FrameWork {
+struct ScheduledWork {
   ReliefMaker& maker;
   const ImpostorSettings& settings;
   const CameraMatrices& camera;
@@ -28,16 +28,29 @@ struct FrameWork {
   int frame;
 };
 
-ReliefForm form_for(const FrameWork& work, glm::dvec3 eye) {
+ReliefForm form_for(const ScheduledWork& work, glm::dvec3 eye) {
   CameraMatrices camera = work.camera;
   camera.eye = eye;
   return impostor_form(work.maker, camera, work.settings, work.up, work.height_px);
 }
 
-ReliefView view_for(const FrameWork& work, glm::dvec3 eye) {
+ReliefView view_for(const ScheduledWork& work, glm::dvec3 eye) {
   CameraMatrices camera = work.camera;
   camera.eye = eye;
   return impostor_view(work.maker, camera, work.settings, work.up);
+}
+
+/// How many frames ahead of `frames` from now a relief is drawn: lead_frames(), but for an eye that
+/// comes so near that it would have many more texels than one for the eye now.
+int lead_for(const ScheduledImpostor& impostor, const ScheduledWork& work, int frames) {
+  if (!impostor.schedule.predicts || !impostor.shown.drawn) return 0;
+  int lead = lead_frames(*impostor.shown.drawn, work.settings, impostor.motion, work.pixel_tangent);
+  const double most = work.settings.sharpness * form_for(work, work.camera.eye).height;
+  while (lead > 0 &&
+         form_for(work, moved_eye(impostor.motion, work.camera.eye, frames + lead)).height > most) {
+    lead /= 2;
+  }
+  return lead;
 }
 
 // --- pieces of an update ---
@@ -112,14 +125,14 @@ void run_piece(ImpostorUpdate& update, ReliefMaker& maker, const ImpostorSetting
 }
 
 /// Does pieces until so many are done.
-void run_pieces(ImpostorUpdate& update, int until, const FrameWork& work,
+void run_pieces(ImpostorUpdate& update, int until, const ScheduledWork& work,
                 const std::optional<DrawnRelief>& old) {
   while (update.done < until) run_piece(update, work.maker, work.settings, old, work.pool);
 }
 
 // --- frames ---
 
-bool is_stale_at(const Impostor& shown, const FrameWork& work, glm::dvec3 eye) {
+bool is_stale_at(const Impostor& shown, const ScheduledWork& work, glm::dvec3 eye) {
   return !shown.drawn || !is_fresh(*shown.drawn, work.settings, eye, work.pixel_tangent);
 }
 
@@ -129,12 +142,10 @@ bool can_be_shown(const Impostor& shown, glm::dvec3 eye) {
 }
 
 /// A relief in the frame. With prediction it is drawn for an eye ahead, as far as that serves.
-void renew_in_frame(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFrame& frame) {
+void renew_in_frame(ScheduledImpostor& impostor, const ScheduledWork& work, ScheduledFrame& frame) {
   Impostor& shown = impostor.shown;
   const glm::dvec3 eye = work.camera.eye;
-  int lead = impostor.schedule.predicts && shown.drawn
-                 ? lead_frames(*shown.drawn, work.settings, impostor.motion, work.pixel_tangent)
-                 : 0;
+  int lead = lead_for(impostor, work, 0);
   keep_stale(shown, work.settings, eye);
   for (;; lead /= 2) {
     const glm::dvec3 drawn_for = moved_eye(impostor.motion, eye, lead);
@@ -149,7 +160,7 @@ void renew_in_frame(ScheduledImpostor& impostor, const FrameWork& work, Schedule
 }
 
 /// Shows the update, which is done, if it is better than what is shown.
-void take_update(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFrame& frame) {
+void take_update(ScheduledImpostor& impostor, const ScheduledWork& work, ScheduledFrame& frame) {
   ImpostorUpdate& update = *impostor.update;
   Impostor& shown = impostor.shown;
   const glm::dvec3 eye = work.camera.eye;
@@ -181,14 +192,14 @@ void take_update(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFr
 }
 
 /// Whether a relief in the cache serves an eye.
-bool is_kept_for(const Impostor& shown, const FrameWork& work, glm::dvec3 eye) {
+bool is_kept_for(const Impostor& shown, const ScheduledWork& work, glm::dvec3 eye) {
   for (const DrawnRelief& kept : shown.cache) {
     if (is_fresh(kept, work.settings, eye, work.pixel_tangent)) return true;
   }
   return false;
 }
 
-bool recall(Impostor& shown, const FrameWork& work) {
+bool recall(Impostor& shown, const ScheduledWork& work) {
   std::optional<DrawnRelief> kept =
       recalled(shown, work.settings, work.camera.eye, work.pixel_tangent);
   if (!kept) return false;
@@ -198,7 +209,7 @@ bool recall(Impostor& shown, const FrameWork& work) {
 }
 
 /// Warps in the frame, if the last warp does not serve as a sprite.
-void warp_in_frame(ScheduledImpostor& impostor, const FrameWork& work, bool is_new,
+void warp_in_frame(ScheduledImpostor& impostor, const ScheduledWork& work, bool is_new,
                    ScheduledFrame& frame) {
   Impostor& shown = impostor.shown;
   const glm::dvec3 eye = work.camera.eye;
@@ -211,7 +222,7 @@ void warp_in_frame(ScheduledImpostor& impostor, const FrameWork& work, bool is_n
   warp_impostor(shown, work.settings, eye, work.pixel_tangent, work.pool);
 }
 
-void do_in_frame(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFrame& frame) {
+void do_in_frame(ScheduledImpostor& impostor, const ScheduledWork& work, ScheduledFrame& frame) {
   Impostor& shown = impostor.shown;
   const bool is_new = is_stale_at(shown, work, work.camera.eye);
   if (is_new) {
@@ -234,12 +245,12 @@ bool is_due(const ScheduledImpostor& impostor, int frame) {
 }
 
 /// Does what is left of an update.
-void complete(ScheduledImpostor& impostor, const FrameWork& work) {
+void complete(ScheduledImpostor& impostor, const ScheduledWork& work) {
   if (impostor.thread) impostor.thread->wait();
   run_pieces(*impostor.update, pieces_of(*impostor.update), work, impostor.shown.drawn);
 }
 
-void begin_update(ScheduledImpostor& impostor, const FrameWork& work, ScheduledFrame& frame) {
+void begin_update(ScheduledImpostor& impostor, const ScheduledWork& work, ScheduledFrame& frame) {
   const ImpostorSchedule& schedule = impostor.schedule;
   const Impostor& shown = impostor.shown;
   const glm::dvec3 eye = work.camera.eye;
@@ -254,10 +265,7 @@ void begin_update(ScheduledImpostor& impostor, const FrameWork& work, ScheduledF
       (draws || !work.settings.sprites ||
        parallax_tangent(shown.drawn->texture, shown.warped_for, target) > work.pixel_tangent);
   if (!draws && !warps) return;
-  int lead = 0;
-  if (draws && schedule.predicts && shown.drawn) {
-    lead = lead_frames(*shown.drawn, work.settings, impostor.motion, work.pixel_tangent);
-  }
+  const int lead = draws ? lead_for(impostor, work, ahead) : 0;
   const glm::dvec3 view_eye = lead == 0 ? target : moved_eye(impostor.motion, eye, ahead + lead);
   ImpostorUpdate update{};
   update.begun = work.frame;
@@ -292,7 +300,7 @@ void begin_update(ScheduledImpostor& impostor, const FrameWork& work, ScheduledF
 }
 
 /// A slice of the update that goes on.
-void do_slice(ScheduledImpostor& impostor, const FrameWork& work,
+void do_slice(ScheduledImpostor& impostor, const ScheduledWork& work,
               const std::function<bool()>& has_time, ScheduledFrame& frame) {
   ImpostorUpdate& update = *impostor.update;
   const int pieces = pieces_of(update), before = update.done;
@@ -309,7 +317,7 @@ void do_slice(ScheduledImpostor& impostor, const FrameWork& work,
   frame.pieces = update.done - before;
 }
 
-void do_aside(ScheduledImpostor& impostor, const FrameWork& work,
+void do_aside(ScheduledImpostor& impostor, const ScheduledWork& work,
               const std::function<bool()>& has_time, ScheduledFrame& frame) {
   Impostor& shown = impostor.shown;
   const glm::dvec3 eye = work.camera.eye;
@@ -359,6 +367,8 @@ int lead_frames(const DrawnRelief& relief, const ImpostorSettings& settings,
                 const EyeMotion& motion, double pixel_tangent) {
   ImpostorSettings stricter = settings;
   stricter.tolerance_texels = 1.0 + kLeadShare * (settings.tolerance_texels - 1.0);
+  // No finer, either, than it will be coarse: an eye that comes nearer needs more and more texels.
+  stricter.fineness = 1.0 / settings.sharpness;
   const auto serves = [&](int frames) {
     return is_fresh(relief, stricter, moved_eye(motion, relief.eye, -frames), pixel_tangent);
   };
@@ -391,9 +401,9 @@ ScheduledFrame update_scheduled(ScheduledImpostor& impostor, ReliefMaker& maker,
                                 const ImpostorSettings& settings, const CameraMatrices& camera,
                                 glm::dvec3 up, int height_px, ThreadPool& pool,
                                 const std::function<bool()>& has_time) {
-  const FrameWork work{maker, settings,      camera,
-                       up,    height_px,     pixel_tangent_of(camera, height_px),
-                       pool,  impostor.frame};
+  const ScheduledWork work{maker, settings,      camera,
+                           up,    height_px,     pixel_tangent_of(camera, height_px),
+                           pool,  impostor.frame};
   ++impostor.frame;
   impostor.motion = eye_motion(maker.middle, kNearest * maker.radius_m,
                                impostor.eye.value_or(camera.eye), camera.eye);

@@ -107,8 +107,7 @@ int lead_frames(const DrawnRelief& relief, const ImpostorSettings& settings,
                 const EyeMotion& motion, double pixel_tangent);
 inline constexpr int kMostLead = 256;
 /// Of what the tolerance has above a texel: the next relief is another view, whose error grows in
-/// another way. With .65 some reliefs of a turn are too far ahead, with .45 there are as many
-/// renewals (relief.md).
+/// another way. More, and some reliefs of a turn are too far ahead (relief.md).
 inline constexpr double kLeadShare = 0.55;
 
 }  // namespace softfocus

@@ -182,3 +182,25 @@ TEST_CASE("an eye that turns back makes no frame stale for longer than an update
                                     [](int frame) { return frame < 50 ? frame : 100 - frame; });
   for (const ScheduledFrame& frame : record.frames) CHECK(frame.late_frames <= 4);
 }
+
+TEST_CASE("an eye that comes nearer is not foreseen so near that a relief has texels to waste") {
+  Scene scene = ring_scene();
+  scene.camera.orbit_degrees_per_frame = 0.0;
+  const glm::dvec3 near = scene.camera.position;
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  ScheduledImpostor impostor =
+      scheduled_impostor({ScheduleKind::in_frame, false, 0, true}, pool.isa());
+  int renewals = 0;
+  for (int frame = 0; frame <= 60; ++frame) {
+    scene.camera.position = near * (4.0 - 0.056 * frame);
+    const CameraMatrices camera = camera_matrices(scene.camera, 0.0, kSide, kSide);
+    const ScheduledFrame done = update_scheduled(impostor, maker, {}, camera, scene.camera.up,
+                                                 kSide, pool, [] { return true; });
+    renewals += done.renewals;
+    CHECK(!done.is_stale);
+    const ReliefForm now = impostor_form(maker, camera, {}, scene.camera.up, kSide);
+    CHECK(impostor.shown.drawn->texture.height <= 1.6 * now.height);
+  }
+  CHECK(renewals <= 6);
+}
