@@ -30,7 +30,7 @@ ReliefAxes relief_axes(glm::dvec3 eye, glm::dvec3 middle, glm::dvec3 up) {
 }
 
 /// The least box along the view's axes: x right, y down, z forward.
-struct SeenBox {
+struct ReliefBounds {
   glm::dvec3 low{kFarAway}, high{-kFarAway};
 
   void add(const glm::dvec3& seen) {
@@ -69,7 +69,7 @@ ReliefCamera perspective_camera(const ReliefMaker& maker, const ReliefView& view
   const auto [nearest, last_point] = span_before(maker, view, axes);
   const double farthest = std::max(last_point, nearest * (1.0 + 1e-6));
   const double n = nearest - std::min((farthest - nearest) * kDepthMargin, 0.5 * nearest);
-  SeenBox box;
+  ReliefBounds box;
   for (const glm::dvec3& point : maker.points) {
     const glm::dvec3 ray = point - view.eye;
     const double on_plane = n / dot(ray, axes.forward);
@@ -167,7 +167,7 @@ ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int
     assert(can_project(maker, view));
     return perspective_camera(maker, view, axes, width, height);
   }
-  SeenBox box;
+  ReliefBounds box;
   const glm::dvec3 directions[3] = {axes.right, axes.down, axes.forward};
   for (int i = 0; i < 3; ++i) {
     const PointReach reach = reach_along(maker.points, maker.chunks, directions[i]);

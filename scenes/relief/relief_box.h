@@ -76,9 +76,9 @@ void draw_box(const ReliefBox& box, const CameraMatrices& camera, const WarpRule
               BoxMemory& memory, Image& picture, ThreadPool& pool,
               std::vector<std::uint8_t>* shown = nullptr);
 
-/// Of each pixel of a drawn picture that is nearer than `far_m`: whether a face has its point. A
-/// face has a point if one of the four texels about it shows a point within kHasTexels texels, and
-/// what a half rounds off the depth.
+/// Of each pixel of a drawn picture: which faces have its point; by_seen if it is not nearer than
+/// `far_m`. A face has a point if one of the four texels about it shows a point within kHasTexels
+/// texels, and what a half rounds off the depth. by_unseen: only faces that the eye does not see.
 enum class FacePoint : std::uint8_t { by_seen, by_unseen, by_none };
 std::vector<FacePoint> unseen_pixels(const ReliefBox& box, const CameraMatrices& camera,
                                      const Image& drawn, float far_m, ThreadPool& pool);

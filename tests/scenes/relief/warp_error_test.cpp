@@ -87,8 +87,9 @@ TEST_CASE(
       const int row = (v - extent.y_begin) * parts / (extent.y_end - extent.y_begin);
       std::optional<CriticalRegion>& region = right[static_cast<std::size_t>(row * parts + column)];
       const CriticalPoint pair{u, v, u2, v2, code, other};
-      if (!region) region = CriticalRegion{pair, code};
+      if (!region) region = CriticalRegion{pair, code, code};
       region->least_code = std::min(region->least_code, std::min(code, other));
+      region->most_code = std::max(region->most_code, std::max(code, other));
       if (std::abs(code - other) > std::abs(region->point.code1 - region->point.code2)) {
         region->point = pair;
       }

@@ -119,7 +119,8 @@ TEST_CASE("every number of a header that cannot be is refused with what would be
                                {kBits, 0, "claims 0 bits"},
                                {kBits, 16, "texels take"},
                                {kNormals, 1, "texels take"},
-                               {kNormals, 2, "2 maps of normals; 8 or 16, and 0 or 1"}}) {
+                               {kNormals, 2, "texels take"},
+                               {kNormals, 3, "3 for its maps; 8 or 16, and 0, 1 or 2"}}) {
     std::string changed = whole;
     for (std::size_t i = 0; i < 4; ++i) {
       changed[bad.at + i] = static_cast<char>(bad.value >> (8 * i) & 255u);
