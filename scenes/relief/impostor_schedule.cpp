@@ -254,8 +254,9 @@ void begin_update(ScheduledImpostor& impostor, const ScheduledWork& work, Schedu
   const ImpostorSchedule& schedule = impostor.schedule;
   const Impostor& shown = impostor.shown;
   const glm::dvec3 eye = work.camera.eye;
-  const int wanted =
-      schedule.update_frames > 0 ? schedule.update_frames : impostor.last_update_frames;
+  // The next may take longer than the last.
+  const int last = impostor.last_update_frames;
+  const int wanted = schedule.update_frames > 0 ? schedule.update_frames : last + last / 4 + 1;
   const int ahead = schedule.predicts ? wanted : 0;
   const glm::dvec3 target = ahead == 0 ? eye : moved_eye(impostor.motion, eye, ahead);
   const bool draws = is_stale_at(shown, work, target) &&

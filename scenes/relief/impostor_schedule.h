@@ -65,7 +65,7 @@ struct ScheduledImpostor {
   int shown_warp_frame = 0;  ///< the frame for whose eye it is warped
   int frame = 0;             ///< the next
   std::optional<ImpostorUpdate> update;
-  int last_update_frames = 1;  ///< that one took
+  int last_update_frames = 8;  ///< that one took; the first may take as many
   int stale_frames = 0;        ///< in a row
   std::optional<glm::dvec3> eye;
   EyeMotion motion;
