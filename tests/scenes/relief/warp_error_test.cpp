@@ -106,6 +106,7 @@ TEST_CASE(
         REQUIRE(cut.regions[i].has_value() == right[i].has_value());
         if (!right[i]) continue;
         CHECK(cut.regions[i]->least_code == right[i]->least_code);
+        CHECK(cut.regions[i]->most_code == right[i]->most_code);
         CHECK(cut.regions[i]->point.u1 == right[i]->point.u1);
         CHECK(cut.regions[i]->point.v1 == right[i]->point.v1);
         CHECK(cut.regions[i]->point.v2 == right[i]->point.v2);
