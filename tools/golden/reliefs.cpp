@@ -6,6 +6,9 @@
 #include "scenes/relief/light_relief.h"
 #include "scenes/relief/make_relief.h"
 #include "scenes/relief/map_relief.h"
+#include "scenes/relief/march_relief.h"
+#include "scenes/relief/octahedral_atlas.h"
+#include "scenes/relief/relief_box.h"
 #include "scenes/relief/resample.h"
 #include "tools/golden/hashes.h"
 
@@ -105,6 +108,23 @@ std::vector<NamedHash> relief_hashes(const GoldenScene& golden, ThreadPool& pool
   map_relief(warped, plane_mapping(perspective, matrices, there, kPicture, kPicture), picture,
              pool);
   hashes.push_back({named("perspective-mapped"), hash_image(picture)});
+
+  // Its rivals.
+  const auto drawn = [&] {
+    return draw_scene(golden.scene, matrices, 0.0, kPicture, kPicture, Profile{}, pool);
+  };
+  picture = drawn();
+  march_relief(relief, march_mapping(relief, extent, matrices, kPicture, kPicture), {24, 5},
+               picture, pool);
+  hashes.push_back({named("marched"), hash_image(picture)});
+  picture = drawn();
+  BoxMemory memory;
+  draw_box(draw_relief_box(maker, {48}, pool), matrices, {}, memory, picture, pool);
+  hashes.push_back({named("six-faces"), hash_image(picture)});
+  picture = drawn();
+  const OctahedralForm atlas{.views = 4, .texels = 32, .distance_m = 2.5 * maker.radius_m};
+  draw_octahedral(make_octahedral_atlas(maker, atlas, pool), matrices, 1, picture, pool);
+  hashes.push_back({named("octahedral"), hash_image(picture)});
   return hashes;
 }
 
