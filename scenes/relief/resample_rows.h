@@ -58,10 +58,16 @@ struct FloatRow {
   std::vector<std::uint32_t> to_colours;
 };
 
+struct FixedRow {
+  explicit FixedRow(int width) : along(static_cast<std::size_t>(width)), across(along) {}
+  std::vector<std::int32_t> along, across;
+};
+
 /// The texels of a row, `limits`, that can reach columns `band`: those before the first step into
 /// it, and behind the last, are left out. A texel that is kept has its neighbour beside it.
-inline WalkLimits reaching(const FloatRow& row, WalkLimits limits, const WalkLimits& band) {
-  const auto low = static_cast<float>(band.begin - 1), high = static_cast<float>(band.end + 1);
+template <class Numbers, class Row>
+WalkLimits reaching(const Row& row, WalkLimits limits, const WalkLimits& band) {
+  const auto low = Numbers::place_of(band.begin - 1), high = Numbers::place_of(band.end + 1);
   const auto at = [&](int u) { return row.along[static_cast<std::size_t>(u)]; };
   const auto is_outside = [&](int u, int v) {
     return (at(u) < low && at(v) < low) || (at(u) > high && at(v) > high);
@@ -90,21 +96,22 @@ inline bool take(const FloatPlaces& numbers, const FloatRow& row, int u, int v, 
   return true;
 }
 
-struct FixedRow {
-  explicit FixedRow(int) {}
-};
-
-inline WalkLimits reaching(const FixedRow&, const WalkLimits& limits, const WalkLimits&) {
-  return limits;
+/// Empty texels have the last depth's place, which means nothing.
+inline void place_row(const FixedPlaces& numbers, const WarpWork& work, int v, Isa, FixedRow& row) {
+  const std::uint16_t* codes =
+      work.relief.depths.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;
+  for (int u = work.extent.x_begin; u < work.extent.x_end; ++u) {
+    const FixedDepth& depth = numbers.table[std::min<std::int32_t>(codes[u], numbers.last_code)];
+    row.along[static_cast<std::size_t>(u)] = fixed_place(u * 256, depth.shift_u, depth.scale);
+    row.across[static_cast<std::size_t>(u)] = fixed_place(v * 256, depth.shift_v, depth.scale);
+  }
 }
 
-inline void place_row(const FixedPlaces&, const WarpWork&, int, Isa, FixedRow&) {}
-
-inline bool take(const FixedPlaces& numbers, const FixedRow&, int u, int v, std::uint16_t code,
+inline bool take(const FixedPlaces&, const FixedRow& row, int u, int, std::uint16_t code,
                  WalkTexel<FixedPlaces>& texel) {
-  const FixedDepth& depth = numbers.table[code];
-  texel.along = fixed_place(u * 256, depth.shift_u, depth.scale);
-  texel.across = fixed_place(v * 256, depth.shift_v, depth.scale);
+  const auto at = static_cast<std::size_t>(u);
+  texel.along = row.along[at];
+  texel.across = row.across[at];
   texel.depth = code;
   return true;
 }
@@ -129,7 +136,8 @@ void walk_row(const Numbers& numbers, const WarpWork& work, int v,
   const std::uint16_t* codes = work.relief.depths.data() + first;
   const std::uint32_t* colours = work.relief.colours.data() + first;
   const std::uint16_t empty = empty_depth(work.relief.depth_bits);
-  const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
+  const WalkLimits texels =
+      reaching<Numbers>(row, {work.extent.x_begin, work.extent.x_end}, limits);
   walk_both(
       numbers, half_walks(texels.begin, texels.end, work.warp.epipole_u, work.warp.outwards),
       limits,
@@ -222,7 +230,8 @@ void put_row(const Numbers& numbers, const WarpWork& work, Resampling resampling
         row.depths[static_cast<std::size_t>(u)] =
             static_cast<float>(codes[u]) * numbers.warp.step_m;
       }
-      const WalkLimits texels = reaching(row, {work.extent.x_begin, work.extent.x_end}, limits);
+      const WalkLimits texels =
+          reaching<Numbers>(row, {work.extent.x_begin, work.extent.x_end}, limits);
       const auto [forward, backward] =
           half_walks(texels.begin, texels.end, work.warp.epipole_u, work.warp.outwards);
       step_row<1>(numbers, work, resampling, v, row, forward.begin, forward.end, limits, isa, put);

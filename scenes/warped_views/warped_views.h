@@ -48,7 +48,7 @@ struct WarpHoles {
   std::size_t unseen = 0;  ///< by any
 };
 
-/// Warps the views and adds them to the sums: in binary32 by kSampleGroup, those from one source
+/// Warps the views and adds them to the sums: in binary32 by 64, those from one source
 /// one after the other, and these sums in binary64.
 WarpHoles add_warped_views(const WarpedViewsBuffer& buffer, SampleSums& sums, ThreadPool& pool);
 

@@ -71,7 +71,7 @@ int bench_relief(const ReliefOptions& options) {
       // Or the second run's depths would be no nearer than the first's.
       threads.for_each(mapping.area.y_end - mapping.area.y_begin, [&](int i) {
         const int y = mapping.area.y_begin + i;
-        const auto from = row<std::uint16_t>(blank, y);
+        const auto from = row<std::uint16_t>(blank, 0);
         std::copy(from.begin(), from.end(), row<std::uint16_t>(picture, y).begin());
       });
       map_relief(warped, mapping, picture, threads);

@@ -62,18 +62,6 @@ ScheduleKind schedule_kind(TurnSchedule schedule) {
 
 // --- parts of RGBA16F pictures ---
 
-void copy_area(const Image& from, const Rectangle& area, Image& to, ThreadPool& pool) {
-  const int rows = area.y_end - area.y_begin;
-  pool.for_each((rows + 15) / 16, [&](int band) {
-    const int begin = area.y_begin + 16 * band;
-    for (int y = begin; y < std::min(begin + 16, area.y_end); ++y) {
-      std::copy_n(row<std::uint16_t>(from, y).data() + 4 * area.x_begin,
-                  4 * (area.x_end - area.x_begin),
-                  row<std::uint16_t>(to, y).data() + 4 * area.x_begin);
-    }
-  });
-}
-
 /// A frame that is measured later: the part of it that is not blank.
 struct KeptFrame {
   int frame;
@@ -194,7 +182,7 @@ int turn_impostor(const ReliefOptions& options) {
     const double ms = milliseconds_of([&] {
       // What the frame before has drawn is cleared. The update's slice comes last, after the frame
       // could be shown.
-      copy_area(blank, changed, shown, frame_pool);
+      clear_area(blank, changed, shown, frame_pool);
       const auto end = std::chrono::steady_clock::now() +
                        std::chrono::duration<double, std::milli>(options.slice_ms);
       done = update_scheduled(impostor, maker, settings, matrices, camera.up, height, frame_pool,

@@ -58,12 +58,15 @@ void redraw_turned(PreparedScene& prepared, const CameraMatrices& camera,
   finish(pass, pool);
 }
 
-void copy_rows(const Image& from, Image& to, ThreadPool& pool) {
+void clear_area(const Image& blank, const Rectangle& area, Image& to, ThreadPool& pool) {
   constexpr int kRows = 16;
-  pool.for_each((to.height + kRows - 1) / kRows, [&](int band) {
-    for (int y = kRows * band; y < std::min(kRows * band + kRows, to.height); ++y) {
-      const auto texels = row<std::uint16_t>(from, y);
-      std::copy(texels.begin(), texels.end(), row<std::uint16_t>(to, y).begin());
+  const int rows = area.y_end - area.y_begin;
+  const std::uint16_t* texels = row<std::uint16_t>(blank, 0).data() + 4 * area.x_begin;
+  pool.for_each((rows + kRows - 1) / kRows, [&](int band) {
+    const int begin = area.y_begin + kRows * band;
+    for (int y = begin; y < std::min(begin + kRows, area.y_end); ++y) {
+      std::copy_n(texels, 4 * (area.x_end - area.x_begin),
+                  row<std::uint16_t>(to, y).data() + 4 * area.x_begin);
     }
   });
 }

@@ -38,8 +38,9 @@ void redraw_turned(PreparedScene& prepared, const CameraMatrices& camera,
                    const ReliefOptions& options, std::span<const Light> lights, glm::vec4 clear,
                    Image& picture, ThreadPool& pool);
 
-/// Copies a picture of the same size and format.
-void copy_rows(const Image& from, Image& to, ThreadPool& pool);
+/// Copies a part from a blank RGBA16F picture of the same size. It reads the first row alone, which
+/// stays in the cache: reading all takes longer than a warp.
+void clear_area(const Image& blank, const Rectangle& area, Image& to, ThreadPool& pool);
 
 /// Errors of the measured frames.
 struct TurnErrors {

@@ -52,6 +52,7 @@ int turn_octahedral(const ReliefOptions& options) {
   const Image blank = shown;
   prepared.depth = make_image(Format::r32f, width, height);
   TurnErrors errors;
+  Rectangle changed{0, 0, 0, 0};
   std::vector<double> redrawn_ms, shown_ms;
   for (int frame = 0; frame < options.frames; ++frame) {
     const CameraMatrices matrices = camera_matrices(camera, frame, width, height);
@@ -61,8 +62,9 @@ int turn_octahedral(const ReliefOptions& options) {
     if (frame == 0) redraw();  // warms up
     redrawn_ms.push_back(milliseconds_of(redraw));
     shown_ms.push_back(milliseconds_of([&] {
-      copy_rows(blank, shown, pool);
+      clear_area(blank, changed, shown, pool);
       draw_octahedral(*atlas, matrices, options.parallax, shown, pool);
+      changed = octahedral_area(*atlas, matrices, width, height);
     }));
     if (frame % options.every != 0) continue;
     measure_frame(redrawn, shown, background_depth, pool, errors);
