@@ -42,7 +42,7 @@ int turn_box(const ReliefOptions& options) {
     if (frame == 0) redraw();  // warms up
     redrawn_ms.push_back(milliseconds_of(redraw));
     shown_ms.push_back(milliseconds_of([&] {
-      clear_area(blank, {0, width, 0, height}, shown, pool);
+      clear_area(blank, {0, 0, width, height}, shown, pool);
       draw_box(box, matrices, warp_rule(options), memory, shown, pool);
     }));
     most_bytes = std::max(most_bytes, bytes_of(box) + bytes_of(memory));
