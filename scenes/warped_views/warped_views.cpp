@@ -20,7 +20,7 @@ namespace {
 constexpr int kWarpTileWidth = 4 * kSumTile, kWarpTileHeight = kSumTile;
 
 // Views that are added in binary32 before they go to the sum in binary64: an error below 2^-18 of
-// the largest, and a fiftieth of the time.
+// the largest. By kSampleGroup that would take a twentieth of the warps' time.
 constexpr std::size_t kSettledViews = 64;
 
 // Wider margins would be drawn for the sake of a few pixels.

@@ -142,7 +142,7 @@ TEST_CASE("a surface that is stretched has no cracks") {
 TEST_CASE("where two surfaces part by a pixel, the farther is put once more beside itself") {
   ThreadPool pool{1};
   const Image picture = picture_of(32, 16, [](int x, int y) {
-    const bool is_near = x >= 10;
+    const bool is_near = x >= 10 || y >= 8;
     return glm::vec4{is_near ? 1.0f : 0.0f, static_cast<float>(y) / 16.0f, 0.0f,
                      is_near ? depth_of(0.0f) : depth_of(1.0f)};
   });
@@ -150,11 +150,16 @@ TEST_CASE("where two surfaces part by a pixel, the farther is put once more besi
   set_source(source, picture, kCircles, {}, pool);
   // The far one goes one up and one to the left, away from the near one.
   const Warped made = warped(source, {-1.0f, -1.0f}, {0, 0, 32, 16}, pool.isa());
-  for (int y = 1; y < 14; ++y) {
+  for (int y = 1; y < 7; ++y) {
     const std::size_t at = tile_at(made.tile, 9, y);
     REQUIRE(made.sums.red[at] == 0.0f);
     REQUIRE(made.sums.green[at] == static_cast<float>(y + 1) / 16.0f);
   }
+  const std::size_t below = tile_at(made.tile, 8, 7);
+  CHECK(made.sums.red[below] == 0.0f);
+  CHECK(made.sums.green[below] == 7.0f / 16.0f);
+  // In the corner it is beside neither.
+  CHECK(made.tile.radii[tile_at(made.tile, 9, 7)] == kHoleRadius);
 }
 
 TEST_CASE("warped pictures have the same bits on every vector unit and in every tile") {
