@@ -2,9 +2,11 @@
 // A relief impostor: an object as one relief texture, which serves as long as its errors are small
 // (chapters 4 and 5 of Clua 2004). For each view one of four things is done:
 //
-//   sprite  the last warp is mapped again: from here it differs by less than a pixel (Schaufler
-//   1995) warp    the relief is pre-warped for this view renew   the object is drawn anew as this
-//   view's relief, and warped
+//   sprite: the last warp is mapped again, as from here it differs by less than a pixel (Schaufler
+//   1995);
+//   warp: the relief is pre-warped for this view;
+//   recall: a relief that was drawn before is pre-warped;
+//   renew: the object is drawn anew as this view's relief, which is pre-warped.
 
 #include <cstddef>
 #include <optional>

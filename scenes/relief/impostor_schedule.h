@@ -87,7 +87,8 @@ struct ScheduledFrame {
   std::optional<int> begins_for = {};      ///< an update begins, for the eye of this frame
   bool stalls = false;    ///< nothing could be shown before an update or a renewal was done
   bool is_stale = false;  ///< the relief's error is above the tolerance
-  /// With warps aside, frames since the eye was where the warp is for. Else frames since the relief
+  /// With warps aside, frames since the eye was where the warp is for; below 0 if it will be. Else
+  /// frames since the relief
   /// came to be stale.
   int late_frames = 0;
 };
