@@ -108,7 +108,7 @@ int lead_frames(const DrawnRelief& relief, const ImpostorSettings& settings,
                 const EyeMotion& motion, double pixel_tangent);
 inline constexpr int kMostLead = 256;
 /// Of what the tolerance has above a texel: the next relief is another view, whose error grows in
-/// another way. More, and some reliefs of a turn are too far ahead (relief.md).
+/// another way. More, and some reliefs of a turn are too far ahead (impostors.md).
 inline constexpr double kLeadShare = 0.55;
 
 }  // namespace softfocus
