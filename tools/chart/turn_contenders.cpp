@@ -249,7 +249,7 @@ void TurnContenders::show(const ChartTurn& turn, const CameraMatrices& view) {
 }
 
 double TurnContenders::run(const ChartTurn& turn, Image& sheet) {
-  using Clock = std::chrono::steady_clock;
+  using std::chrono::steady_clock;
   impostor_ = {};
   renewals_ = 0;
   most_bytes_ = turn.by == TurnBy::octahedral ? bytes_of(atlas_of(turn.views)) : 0;
@@ -257,9 +257,9 @@ double TurnContenders::run(const ChartTurn& turn, Image& sheet) {
   double sum_ms = 0.0;
   for (int i = 0; i < turn.frames; ++i) {
     const CameraMatrices view = camera_matrices(camera_, 360.0 * i / turn.frames, width_, height_);
-    const Clock::time_point start = Clock::now();
+    const steady_clock::time_point start = steady_clock::now();
     show(turn, view);
-    sum_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    sum_ms += std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
     if (i % every == 0) copy_view(shown_, sheet, i / every);
   }
   return sum_ms / turn.frames;
