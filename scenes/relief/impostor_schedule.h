@@ -80,7 +80,7 @@ struct ScheduledImpostor {
 /// `isa` is that of the frames' pool.
 ScheduledImpostor scheduled_impostor(const ImpostorSchedule& schedule, Isa isa);
 
-/// What was done for a frame.
+/// The work done for a frame.
 struct ScheduledFrame {
   ImpostorStep step = ImpostorStep::warp;  ///< renew: a new relief is shown from now on
   int renewals = 0;                        ///< reliefs drawn, or begun to be

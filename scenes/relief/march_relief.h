@@ -22,7 +22,7 @@ struct MarchSettings {
   int bisections = 0;  ///< 0: slices alone
 };
 
-/// Where a camera's rays meet the plane, in the relief's own texels.
+/// The places where a camera's rays meet the plane, in the relief's own texels.
 struct MarchMapping {
   PlaneMapping mapping;
   PreWarp warp;

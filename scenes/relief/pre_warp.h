@@ -1,7 +1,7 @@
 #pragma once
-// Where the texels of a relief texture move within its plane, so that the plane, seen from a new
-// point as an ordinary texture, shows what the relief would (Oliveira, Bishop and McAllister 2000,
-// equations 3-1 and 3-2 of Clua 2004):
+// The pre-warp moves the texels of a relief texture within its plane, so that the plane, seen from
+// a new point as an ordinary texture, shows what the relief would (Oliveira, Bishop and McAllister
+// 2000, equations 3-1 and 3-2 of Clua 2004):
 //
 //   u' = (u + k1 d) / (1 + k3 d)      v' = (v + k2 d) / (1 + k3 d)
 //   k1 = f.(b x c) / a.(b x c)   k2 = f.(c x a) / b.(c x a)   k3 = f.(a x b) / c.(a x b)

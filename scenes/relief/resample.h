@@ -78,7 +78,7 @@ struct WarpedRelief {
   std::vector<std::int32_t> row_codes, row_fixed;
 };
 
-/// What a pre-warp did to texels. `pieces` are written texels, of both passes if there are two.
+/// Counts of a pre-warp. `pieces` are written texels, of both passes if there are two.
 struct WarpCounts {
   std::int64_t pieces = 0;
   std::int64_t overlaps = 0;   ///< pieces that covered an earlier one
