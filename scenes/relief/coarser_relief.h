@@ -1,14 +1,14 @@
 #pragma once
 // A relief at half its resolution, and again: the levels of a relief that was drawn finer than it
-// is seen now (4.1.1 of Clua 2004). A warp takes the coarsest whose texels are still no wider than
-// pixels, and so does no work that is lost.
+// is seen now (4.1.1 of Clua 2004). A warp takes the coarsest whose texels are no wider than
+// pixels, and so wastes no work.
 
 #include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
 
-/// Half as many texels each way, rounded up. Of four texels at least two must show something. Then
-/// theirs is the depth of the nearest, as an outline is the nearer surface's, with its normal, and
+/// Half as many texels each way, rounded up. If at least two of four texels show something, the new
+/// texel has the depth and the normal of the nearest, as an outline is the nearer surface's, and
 /// the mean of the colours of those whose depths are within kSameSurface of it. Needs more than a
 /// texel each way.
 ReliefTexture coarser_relief(const ReliefTexture& relief);

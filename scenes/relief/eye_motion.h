@@ -1,5 +1,5 @@
 #pragma once
-// Where the eye will be: its way of the last frame goes on. An object's picture depends first on
+// Prediction of the eye: its motion of the last frame goes on. An object's picture depends first on
 // the direction from which it is seen. So the motion is a turn about the object's middle, by one
 // angle a frame, and a way to it or away, by one length a frame. Clua (2004, 7.4 and 9.2) asks for
 // a prediction from the eye's velocity, and gives none.
@@ -24,7 +24,7 @@ struct EyeMotion {
 /// From the eye of a frame to that of the next. A turn by half a circle is none: no axis is known.
 EyeMotion eye_motion(glm::dvec3 middle, double least_m, glm::dvec3 eye, glm::dvec3 next_eye);
 
-/// Where an eye comes by this motion in so many frames, or was if they are negative.
+/// The eye after so many frames of this motion, or before if they are negative.
 glm::dvec3 moved_eye(const EyeMotion& motion, glm::dvec3 eye, int frames);
 
 }  // namespace softfocus

@@ -12,7 +12,7 @@ namespace softfocus {
 /// Row by row from the top; a texel's side is the unit of its heights.
 struct HeightField {
   int width = 0, height = 0;  ///< 1 to kMostReliefSize
-  /// In texels, upwards. What is not finite is a hole.
+  /// In texels, upwards. NaN and infinity are holes.
   std::vector<float> heights;
   /// As ReliefTexture has them. Empty: the surface is white, lit from the upper left.
   std::vector<std::uint32_t> colours = {};

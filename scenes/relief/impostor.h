@@ -2,11 +2,11 @@
 // A relief impostor: an object as one relief texture, which serves as long as its errors are small
 // (chapters 4 and 5 of Clua 2004). For each view one of four things is done:
 //
-//   sprite: the last warp is mapped again, as from here it differs by less than a pixel (Schaufler
-//   1995);
-//   warp: the relief is pre-warped for this view;
-//   recall: a relief that was drawn before is pre-warped;
-//   renew: the object is drawn anew as this view's relief, which is pre-warped.
+//   sprite   the last warp, mapped again: seen from here it is wrong by less than a pixel
+//            (Schaufler 1995)
+//   warp     the relief is pre-warped for this view
+//   recall   a relief from the cache is pre-warped
+//   renew    the object is drawn anew as this view's relief, which is pre-warped
 
 #include <cstddef>
 #include <optional>
@@ -26,11 +26,11 @@ struct ImpostorSettings {
   double tolerance_texels = 8.0;  ///< the critical error that makes a renewal
   int regions = 1;                ///< 1: of one point; more: the mean of regions x regions points
   double texels_per_pixel = 1.0;  ///< of a relief when it is drawn
-  double sharpness = 1.5;  ///< K of 4-1: a relief whose texels came to be so many pixels wide
-                           ///< is renewed,
-  double fineness = 0.25;  ///< and one whose texels are this part of a pixel
+  /// K of 4-1: a relief is renewed if its texels came to be wider than so many pixels,
+  double sharpness = 1.5;
+  double fineness = 0.25;  ///< or narrower than this part of a pixel
   bool sprites = true;     ///< Schaufler's test; without it every view is warped
-  /// If there are such, reliefs are unlit, and lit by these before each warp. They may change from
+  /// If not null, reliefs are unlit, and lit by these before each warp. They may change from
   /// frame to frame, without `sprites`. Not with warps aside.
   const ReliefLights* lights = nullptr;
   /// 1: a relief has one resolution. More: its coarser ones, too. Then it is drawn with
@@ -69,12 +69,12 @@ struct Impostor {
   std::vector<DrawnRelief> cache;  ///< stale ones, the oldest first
 };
 
-/// Equation 5-1: how many pixels something is wide that is `size_m` wide, `distance_m` before the
-/// camera, in a picture of `pixels` pixels over an angle of view of 2 atan(half_view_tangent).
+/// Equation 5-1: the width in pixels of `size_m`, `distance_m` before the camera, in a picture of
+/// `pixels` pixels over an angle of view of 2 atan(half_view_tangent).
 double pixels_across(double pixels, double size_m, double distance_m, double half_view_tangent);
 
-/// From where an object's relief is drawn for a view. Orthographic, too, if the eye is so near that
-/// a perspective camera would not hold the object.
+/// The eye and projection of an object's relief for a view. Orthographic in any case if the eye is
+/// so near that a perspective camera would not hold the object.
 ReliefView impostor_view(const ReliefMaker& maker, const CameraMatrices& camera,
                          const ImpostorSettings& settings, glm::dvec3 up);
 
@@ -103,7 +103,7 @@ double pixel_tangent_of(const CameraMatrices& camera, int height_px);
 
 // --- the steps of update_impostor(), for those that take them apart ---
 
-/// What was drawn for an eye, with what is known of it; none if it shows nothing.
+/// A relief that was drawn for an eye, with what is known of it; none if it shows nothing.
 std::optional<DrawnRelief> known_relief(ReliefTexture texture, const ImpostorSettings& settings,
                                         glm::dvec3 eye, ThreadPool& pool);
 

@@ -1,8 +1,8 @@
 #pragma once
 // Light on a relief's texels, so that lights can move without drawing it anew (6.4 of Clua 2004).
 // An unlit relief has, of each texel, the diffuse colour times the texture, the normal, and the
-// number of a material. The light is light_point() of scenes/surfaces/lighting.h, which draws
-// surfaces, but for each texel, where the pipeline has it for each vertex.
+// number of a material. The light is light_point() of scenes/surfaces/lighting.h, as on surfaces,
+// but for each texel; the pipeline calls it for each vertex.
 //
 // In binary32, of the texel (u, v) with the depth d and the normal's bytes n:
 //
@@ -11,8 +11,8 @@
 //   colour = base unlit + specular            of light_point() with the diffuse colour 1
 //
 // cut to 0..1, rounded to a half, as a picture has it, and encoded as make_relief() does. Texels
-// are lit before they are warped: so the point is the true one, and each material shines as it
-// should. Clua lights the pixels of the warped plane.
+// are lit before they are warped, so the point is the true one and each material has its own
+// highlight. Clua lights the pixels of the warped plane.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -36,7 +36,7 @@ struct ReliefLights {
 /// The lights must outlive the result.
 ReliefLights relief_lights(glm::vec3 ambient_light, std::span<const Light> lights);
 
-/// How a material's texels answer light. Where its diffuse colour is 0, so is its ambient one.
+/// How a material's texels answer light. If its diffuse colour is 0, so is its ambient one.
 ReliefMaterial relief_material(const Material& material);
 
 /// Sets the colours of an unlit relief as an eye sees them. The same bits for any number of threads

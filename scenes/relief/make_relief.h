@@ -24,7 +24,7 @@ inline constexpr std::array kReliefProjections{
     NamedProjection{"orthographic", ReliefProjection::orthographic},
     NamedProjection{"perspective", ReliefProjection::perspective}};
 
-/// From where a relief is drawn: it looks from the eye at the middle of all.
+/// The view of a relief: from the eye at the middle of the object.
 struct ReliefView {
   glm::dvec3 eye{0.0, 0.0, 3.0};  ///< highlights are this eye's
   glm::dvec3 up{0.0, 1.0, 0.0};   ///< not along the way to the middle
@@ -55,9 +55,9 @@ struct ReliefMaker {
 /// Needs a scene with a triangle. `pool` is the one that will draw.
 ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool);
 
-/// Whether a perspective view's eye sees all of the object: it lies before the eye, the farthest
-/// point not more than kMostSpan times as far, along the axis, as the nearest. So d stays below n,
-/// even of the code that is empty.
+/// Whether a perspective view's eye sees all of the object: all points lie before the eye, and the
+/// farthest is not more than kMostSpan times as far along the axis as the nearest. So d stays below
+/// n, even for the empty code.
 bool can_project(const ReliefMaker& maker, const ReliefView& view);
 inline constexpr double kMostSpan = 64.0;
 
@@ -68,12 +68,12 @@ ReliefCamera relief_camera(const ReliefMaker& maker, const ReliefView& view, int
 inline constexpr double kDepthMargin = 1e-4;
 
 /// Surfaces as draw_scene() has them without shadows, colours cut to 0..1. The same bits for any
-/// number of threads. The colours of an unlit one are its unlit colours, until light_relief().
-/// Needs kMostReliefMaterials at most then.
+/// number of threads. An unlit one has its unlit colours as `colours` until light_relief(), and
+/// needs kMostReliefMaterials materials at most.
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool);
 
-/// The same by any camera that has the object between its first depth and its last.
+/// As make_relief(), by any camera that has the object between its first depth and its last.
 ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::dvec3 eye,
                           const ReliefForm& form, ThreadPool& pool);
 
@@ -88,7 +88,7 @@ ReliefTexture begin_relief(ReliefMaker& maker, const ReliefCamera& camera, const
 void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, const ReliefForm& form,
                       glm::dvec3 eye, int part, int parts, ThreadPool& pool);
 
-/// The texels of what was drawn.
+/// Reads the texels of the drawn parts.
 void read_relief(ReliefMaker& maker, const ReliefForm& form, glm::dvec3 eye, ReliefTexture& relief,
                  ThreadPool& pool);
 

@@ -4,12 +4,12 @@
 //
 // A pixel's ray D meets the plane at t = h / D.f, at u = e1 + t D.a/a.a and v = e2 + t D.b/b.b,
 // three planes over the picture and a division. Texels are filtered by bilinear_sum_unorm8() as
-// they are stored, with 8 fractional bits of place. Where half of the weight or more lies on texels
+// they are stored, with 8 fractional bits of place. If half of the weight or more lies on texels
 // that show something, the pixel shows their mean. So a silhouette is as sharp as a drawn one.
 //
 // The point itself lies behind the plane at t (1 + k3 d) / (1 - d / n), which is the pixel's depth,
-// in alpha. It is written where that is less than the picture has. (h + z is the eye's distance,
-// along f, from a point z behind the plane: with z = d / (1 - d / n), h times that fraction.)
+// in alpha. A pixel is written if that is less than the picture has. (The eye's distance along f
+// from a point z behind the plane is h + z, with z = d / (1 - d / n): h times that fraction.)
 
 #include <glm/vec3.hpp>
 

@@ -4,13 +4,12 @@
 //
 //   u = u' (1 + k3 d) - k1 d = u' + d (u' k3 - k1)      v likewise
 //
-// Slices (6.5 of Clua 2004, of a relief on a polygon): d goes up in equal steps, and the first
-// slice at whose end it is behind the surface of the texel there gives that texel's colour.
-// Marching looks on between that slice and the one before, by bisection (relief mapping, Policarpo,
-// Oliveira and Comba 2005).
+// Slices (6.5 of Clua 2004, of a relief on a polygon): d goes up in equal steps, until the ray is
+// behind the surface of the texel there, whose colour the pixel gets. Bisection looks on between
+// that slice and the one before (relief mapping, Policarpo, Oliveira and Comba 2005).
 //
-// It needs no order and no memory, and finds both sides of a step of depth; but it takes `slices`
-// looks a pixel, and where the surface is steep it falls through between two slices.
+// Marching needs no order and no memory, and finds both sides of a step of depth. But it takes
+// `slices` looks a pixel, and can fall through a steep surface between two slices.
 
 #include "raster/images/image.h"
 #include "raster/threads/parallel.h"
@@ -23,7 +22,7 @@ struct MarchSettings {
   int bisections = 0;  ///< 0: slices alone
 };
 
-/// Where a camera's rays meet the plane, in the relief's own texels.
+/// The places where a camera's rays meet the plane, in the relief's own texels.
 struct MarchMapping {
   PlaneMapping mapping;
   PreWarp warp;

@@ -4,9 +4,9 @@
 //
 // The octahedron unfolds into a square (Cigolle et al. 2014): a direction becomes a place in 0..1
 // each way, and the views are the N x N places of a grid that ends on the borders. A view takes the
-// three corners of its grid triangle, with their barycentric weights. Of a cell's two diagonals the
-// one whose ends look from nearer directions cuts it: the other crosses the octahedron's edges, and
-// of 6 x 6 views its ends can lie 78 degrees apart.
+// three corners of its grid triangle, with their barycentric weights. A cell is cut by the diagonal
+// whose ends look from nearer directions: the other crosses the octahedron's edges, and with 6 x 6
+// views its ends can lie 78 degrees apart.
 //
 // A pixel's ray meets each picture's plane through the middle of the object, and takes the texel
 // there. With parallax it goes on to the depth of that texel, once, as engines do, or more often.
@@ -40,8 +40,8 @@ struct OctahedralAtlas {
   std::vector<ReliefTexture> pictures;  ///< row by row; all of one size and depth
 };
 
-/// The place of a direction, which need not be of length 1, each way in 0..1. Of a hemisphere, what
-/// looks from below looks from its rim.
+/// The place of a direction, which need not be of length 1, each way in 0..1. In a hemisphere a
+/// direction from below becomes one from its rim.
 glm::dvec2 octahedral_place(glm::dvec3 direction, bool hemisphere);
 /// And back, of length 1.
 glm::dvec3 octahedral_direction(glm::dvec2 place, bool hemisphere);
@@ -78,14 +78,14 @@ Rectangle octahedral_area(const OctahedralAtlas& atlas, const CameraMatrices& ca
                           int height);
 
 /// Lays the atlas over an RGBA16F picture with depth in alpha. `steps` of parallax: 0 to 8. The
-/// eye must be outside the bounding sphere. Where kLeastCover of the weight or more lies on texels
+/// eye must be outside the bounding sphere. If kLeastCover of the weight or more lies on texels
 /// that show something, the pixel shows their mean in linear light, at the mean of their depths, if
 /// that is less than the picture has.
 void draw_octahedral(const OctahedralAtlas& atlas, const CameraMatrices& camera, int steps,
                      Image& picture, ThreadPool& pool);
 inline constexpr int kMostParallaxSteps = 8;
-/// A third, where a masked material is usually cut. A half would lose more of an outline, which
-/// all three pictures seldom have at one place.
+/// A third, the usual cut of a masked material. A half would lose more of an outline, which the
+/// three pictures seldom have at one place.
 inline constexpr float kLeastCover = 1.0f / 3.0f;
 
 }  // namespace softfocus

@@ -1,7 +1,7 @@
 #pragma once
-// How far points reach along a direction, of many points at once: chunks of points have boxes, and
-// a chunk whose box cannot reach farther than what was found is passed over. Vertices of a mesh lie
-// near their neighbours in the list, so few chunks are looked into.
+// How far many points reach along a direction. Chunks of points have boxes, and a chunk is passed
+// over if its box cannot reach farther than the farthest point so far. Vertices of a mesh lie near
+// their neighbours in the list, so few chunks are looked into.
 
 #include <glm/vec3.hpp>
 #include <span>
@@ -21,8 +21,8 @@ struct PointReach {
   double low, high;
 };
 
-/// The least and the largest dot(point, direction), the very numbers of a loop over all points.
-/// `chunks` are the points' chunks_of(). Of no points, low is +infinity and high -infinity.
+/// The least and the largest dot(point, direction), the same numbers as by a loop over all points.
+/// `chunks` are the points' chunks_of(). Without points low is +infinity and high -infinity.
 PointReach reach_along(std::span<const glm::dvec3> points, std::span<const PointChunk> chunks,
                        glm::dvec3 direction);
 

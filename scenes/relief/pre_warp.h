@@ -1,7 +1,7 @@
 #pragma once
-// Where the texels of a relief texture move within its plane, so that the plane, seen from a new
-// point as an ordinary texture, shows what the relief would (Oliveira, Bishop and McAllister 2000,
-// equations 3-1 and 3-2 of Clua 2004):
+// The pre-warp moves the texels of a relief texture within its plane, so that the plane, seen from
+// a new point as an ordinary texture, shows what the relief would (Oliveira, Bishop and McAllister
+// 2000, equations 3-1 and 3-2 of Clua 2004):
 //
 //   u' = (u + k1 d) / (1 + k3 d)      v' = (v + k2 d) / (1 + k3 d)
 //   k1 = f.(b x c) / a.(b x c)   k2 = f.(c x a) / b.(c x a)   k3 = f.(a x b) / c.(a x b)
@@ -16,16 +16,18 @@
 //
 //   k3 = 1/h - 1/n      k1 = e1/h - s1/n      k2 = e2/h - s2/n
 //
-// of which an orthographic camera is the case of n without end. For the eye S itself all three are
-// 0: no texel moves.
+// An orthographic camera is the case of infinite n. For the eye S itself all three are 0: no texel
+// moves.
 //
-// What does not move is the epipole (k1, k2) / k3: where the line from S to the eye meets the
-// plane; if S is at infinity, the foot. u' - k1/k3 = (u - k1/k3) / (1 + k3 d): so every texel moves
-// on a line through the epipole, the farther the deeper it is, and never past it. If k3 > 0 (eyes
-// nearer to the plane than S), texels move towards it: of two at one place the one that started
-// nearer to the epipole is in front, and texels that are taken from the borders towards the epipole
-// cover each other rightly: the order that is compatible with occlusion. If k3 < 0, they move away
-// from it, the one that started farther is in front, and the order is from the epipole outwards.
+// The epipole (k1, k2) / k3 does not move. It is the point where the line from S to the eye meets
+// the plane, or the eye's foot if S is at infinity. As u' - k1/k3 = (u - k1/k3) / (1 + k3 d), every
+// texel moves on a line through the epipole, the farther the deeper it is, and never past it.
+//
+// If k3 > 0 (the eye is nearer to the plane than S), texels move towards the epipole. Of two at one
+// place the one that started nearer to the epipole is in front, so texels that are taken from the
+// borders towards the epipole cover each other rightly: the order compatible with occlusion. If
+// k3 < 0, texels move away from the epipole, the one that started farther is in front, and the
+// order is from the epipole outwards.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -77,7 +79,7 @@ inline WarpedDepth warped_depth(const PreWarp& warp, float depth_m) {
   return {warp.k1 * depth_m, warp.k2 * depth_m, 1.0f / (1.0f + warp.k3 * depth_m)};
 }
 
-/// Of each code: 255 or 65535 of them. Two additions and two multiplications a texel remain.
+/// Of each code: 255 or 65535 of them.
 std::vector<WarpedDepth> warp_table(const PreWarp& warp, int depth_bits);
 
 /// The same in fixed point: shifts and places in 256ths of a texel, scales in 65536ths.
@@ -91,8 +93,8 @@ constexpr std::int32_t fixed_place(std::int32_t place, std::int32_t shift, std::
   return static_cast<std::int32_t>(((std::int64_t{place} + shift) * scale + 32768) >> 16);
 }
 
-/// Row `v` of texels: their places. Those of empty texels are finite, and mean nothing. Lanes
-/// compute warped_depth() anew, which takes less than a look into a table and gives its bits.
+/// The places of the texels of row `v`. Those of empty texels are finite, and mean nothing. It
+/// computes warped_depth() anew, in lanes faster than a look into warp_table(), with the same bits.
 void warp_row(const PreWarp& warp, const std::uint16_t* codes, int width, int v, float* along_u,
               float* along_v, Isa isa);
 
@@ -102,8 +104,8 @@ struct WarpedPlace {
 };
 WarpedPlace exact_place(const PreWarp& warp, double u, double v, double depth_m);
 
-/// The oracles, in binary64: the equation with the products of vectors as they stand above, and the
-/// point's projection onto the plane.
+/// The oracles, in binary64: the equation above with its products of vectors, and the point's
+/// projection onto the plane.
 WarpedPlace pre_warp_oracle(const ReliefTexture& relief, glm::dvec3 eye, double u, double v,
                             double depth_m);
 WarpedPlace projected_place(const ReliefTexture& relief, glm::dvec3 eye, double u, double v,

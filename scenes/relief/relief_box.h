@@ -1,11 +1,11 @@
 #pragma once
 // A whole object as six relief textures, one for each face of a box along the world's axes (3.4.3
 // of Clua 2004; Oliveira, Bishop and McAllister 2000). Each is an orthographic picture of all of
-// the object from its side, so what is hidden from one face may be seen from another. From a point
-// outside of the box one, two or three faces are seen: those that the point lies before. Each is
-// pre-warped and mapped, and of two at a pixel the nearer is taken.
+// the object from its side, so a point hidden from one face may be seen from another. An eye
+// outside of the box sees the one, two or three faces before whose planes it lies. Each is
+// pre-warped and mapped, and the nearer of two at a pixel is taken.
 //
-// What lies in a hollow is seen by no face, wherever the eye is: unseen_pixels() finds it.
+// A point in a hollow may be on no face, wherever the eye is: unseen_pixels() finds such.
 
 #include <array>
 #include <cstddef>
@@ -45,10 +45,10 @@ struct BoxForm {
 /// Texels are squares of one size on all faces, but for what rounding to whole ones takes. The
 /// highlights are those of eyes twice the object's radius before the faces.
 ///
-/// A face shows what is steep to it by few texels far apart, of which a warp makes combs. So in a
-/// view a texel whose normal and the way out of the face have a cosine below kSteepCosine is left
-/// out, if a seen face to which it is not steep has its point, too, with such a normal. Every
-/// normal has a cosine of .577 and more to one of the faces.
+/// A face has few texels, far apart, of a surface that is steep to it, and a warp makes combs of
+/// them. A texel is steep if the cosine between its normal and the way out of the face is below
+/// kSteepCosine. A view leaves it out if a seen face has its point with a normal that is not steep
+/// to that face. Every normal has a cosine of .577 and more to one of the faces.
 ReliefBox draw_relief_box(ReliefMaker& maker, const BoxForm& form, ThreadPool& pool);
 inline constexpr double kSteepCosine = 0.5;
 
@@ -58,8 +58,7 @@ std::size_t bytes_of(const ReliefBox& box);
 /// be stretched without bounds (warped_extent()). Bit i: face i.
 unsigned faces_seen(const ReliefBox& box, glm::dvec3 eye);
 
-/// What is kept from one view of a box to the next: of the faces that are seen, what is left of
-/// them.
+/// Kept from one view of a box to the next: the seen faces, without the texels that are left out.
 struct BoxMemory {
   unsigned seen = 0;
   std::array<std::optional<BoxFace>, kBoxFaces> left;
@@ -67,18 +66,19 @@ struct BoxMemory {
 };
 std::size_t bytes_of(const BoxMemory& memory);
 
-/// Lays all faces that are seen over an RGBA16F picture with depth in alpha, the one that the eye
-/// sees from farthest away before its plane first. A pixel of a later one is written if it is
-/// nearer by more than kHasTexels of its texels: of one surface on two faces the first shows.
-/// `shown`, if any, gets for each pixel the last face that was written there, and keeps what else
-/// it has. `memory` serves one box.
+/// Lays all faces that are seen over an RGBA16F picture with depth in alpha, first the one whose
+/// plane is farthest from the eye. A pixel of a later face is written if it is nearer by more than
+/// kHasTexels of its texels: of a surface on two faces the first shows. `shown`, if any, gets for
+/// each pixel the last face that was written there; other pixels keep their value. `memory` serves
+/// one box.
 void draw_box(const ReliefBox& box, const CameraMatrices& camera, const WarpRule& rule,
               BoxMemory& memory, Image& picture, ThreadPool& pool,
               std::vector<std::uint8_t>* shown = nullptr);
 
-/// Of each pixel of a drawn picture: which faces have its point; by_seen if it is not nearer than
-/// `far_m`. A face has a point if one of the four texels about it shows a point within kHasTexels
-/// texels, and what a half rounds off the depth. by_unseen: only faces that the eye does not see.
+/// For each pixel of a drawn picture, which faces have its point: by_unseen if only faces that the
+/// eye does not see; by_seen if the pixel is not nearer than `far_m`. A face has a point if one of
+/// the four texels about it shows a point within kHasTexels texels, and the rounding of the depth
+/// to a half.
 enum class FacePoint : std::uint8_t { by_seen, by_unseen, by_none };
 std::vector<FacePoint> unseen_pixels(const ReliefBox& box, const CameraMatrices& camera,
                                      const Image& drawn, float far_m, ThreadPool& pool);

@@ -5,10 +5,11 @@
 //   orthographic   X = C + u a + v b + d f        u, v: whole numbers at the texels' centres
 //   perspective    X = S + (C + u a + v b - S) / (1 - d / n)
 //
-// S is the eye that a perspective camera has, n its distance from the plane. A point that lies z
-// behind the plane has d = z there, and d = n z / (n + z) here: n times its generalised disparity
-// (McMillan 1997). With this d the pre-warp of both is one equation (pre_warp.h), d is even along
-// what a depth buffer keeps, and what is a plane in space is one over the texture.
+// S is a perspective camera's eye, n its distance from the plane. A point that lies z behind the
+// plane has d = z under an orthographic camera, and d = n z / (n + z) under a perspective one: n
+// times its generalised disparity (McMillan 1997). With this d the pre-warp of both is one equation
+// (pre_warp.h), codes are even in a depth buffer's numbers, and a plane in space is a plane over
+// the texture.
 //
 // Depths are codes, evenly spaced from 0, the plane of C, to the last one but one; the last code,
 // 255 of 8 bits and 65535 of 16, is a texel that shows nothing.
@@ -48,10 +49,10 @@ struct ReliefTexture {
   int depth_bits = 8;         ///< or 16
   ReliefCamera camera;
   std::vector<std::uint16_t> depths;  ///< codes, row by row
-  /// Red + 256 green + 65536 blue in the sRGB curve + 255 2^24; 0 where nothing is.
+  /// Red + 256 green + 65536 blue in the sRGB curve + 255 2^24; 0 of an empty texel.
   std::vector<std::uint32_t> colours;
-  /// Of the world: x + 256 y + 65536 z, each 127 n + 128 rounded. Empty if there are none.
-  /// Of an unlit relief + the material's number 2^24.
+  /// Of the world: x + 256 y + 65536 z, each 127 n + 128 rounded, and of an unlit relief + 2^24
+  /// times the material's number. Empty if there are none.
   std::vector<std::uint32_t> normals;
   /// If light can be laid on it anew: as `colours`, the diffuse colour times the texture. Else
   /// empty, and so are the materials.

@@ -1,15 +1,15 @@
 #pragma once
-// The pre-warped picture: texels moved to their new places in the plane, and what came apart
-// between two neighbours filled by a straight line between them. Four ways (Oliveira 2000; 8.2 of
-// Clua 2004). All take texels in the order that is compatible with occlusion,
-// so none compares depths:
+// The pre-warped picture: texels moved to their new places in the plane, and gaps between
+// neighbours filled by a straight line between them. There are four ways (Oliveira 2000; 8.2 of
+// Clua 2004). All take texels in the order compatible with occlusion (pre_warp.h), so none compares
+// depths:
 //
 //   two-pass      rows, then columns. A texel between two others has a depth on the straight line
 //                 between theirs, and moves within its column as that depth says.
-//   asymmetric    the same, but what lies on the straight line is the place within the column.
-//   compensated   the same, but the depth is the one that moves the texel to that place (8-1).
-//   intertwined   one pass: each texel of a row is filled into its column at once, so that no texel
-//                 is lost that a later one of its row covers.
+//   asymmetric    as two-pass, but the place within the column lies on the straight line.
+//   compensated   as asymmetric, with the depth that moves the texel to that place (8-1).
+//   intertwined   one pass: each texel of a row goes into its column at once, so none is lost that
+//                 a later one of its row covers.
 //
 // A texel is as wide as its share of the plane: a run of neighbours ends half a texel past its last
 // centre. If a texel moves behind the one before it, the surface turned away between them, and a
@@ -46,8 +46,8 @@ enum class PlaceNumbers : std::uint8_t { floats, fixed };
 struct WarpRule {
   Resampling resampling = Resampling::intertwined;
   PlaceNumbers numbers = PlaceNumbers::floats;
-  /// Neighbours that come farther apart are not joined: what was behind them stays a hole. Clua
-  /// (2004) joins all. 2 or more.
+  /// Neighbours that come farther apart are not joined: a hole stays between them. Clua (2004)
+  /// joins all. 2 or more.
   double join_texels = kJoinAll;
 
   static constexpr double kJoinAll = 1e6;
@@ -58,8 +58,8 @@ struct PlaneRectangle {
   int x_begin, y_begin, width, height;
 };
 
-/// Texels that a relief's can move to, and one more on each side. None if the eye does not see the
-/// front, or if they would be more than kMostStretch times as wide or high as the relief, or
+/// The texels to which a relief's can move, and one more on each side. None if the eye does not see
+/// the front, or if they would be more than kMostStretch times as wide or high as the relief, or
 /// farther than kFarthestPlace from its first texel: the eye looks along the plane.
 std::optional<PlaneRectangle> warped_extent(const ReliefTexture& relief, const ReliefExtent& extent,
                                             glm::dvec3 eye);
@@ -70,15 +70,15 @@ inline constexpr double kFarthestPlace = 0x1p20;
 struct WarpedRelief {
   PlaneRectangle place{0, 0, 0, 0};
   std::vector<std::uint32_t> colours;  ///< as ReliefTexture has them
-  /// d in metres; means nothing where nothing is.
+  /// d in metres; means nothing of an empty texel.
   std::vector<float> depths_m;
-  // What is kept from one warp to the next.
+  // Memory that is kept from one warp to the next.
   std::vector<std::uint32_t> row_colours;
   std::vector<float> row_depths_m, row_places;
   std::vector<std::int32_t> row_codes, row_fixed;
 };
 
-/// What a pre-warp did to texels. `pieces` are written texels, of both passes if there are two.
+/// Counts of a pre-warp. `pieces` are written texels, of both passes if there are two.
 struct WarpCounts {
   std::int64_t pieces = 0;
   std::int64_t overlaps = 0;   ///< pieces that covered an earlier one
@@ -92,11 +92,12 @@ void warp_relief(const ReliefTexture& relief, const ReliefExtent& extent, glm::d
                  const PlaneRectangle& place, const WarpRule& rule, WarpedRelief& warped,
                  ThreadPool& pool, WarpCounts* counts = nullptr);
 
-/// Equation 8-1: the depth, in metres, that moves a texel of row `v` to the place (1 - t) place_a +
-/// t place_b within its column, between a texel A there and B of depth `depth_b`. Their places are
-/// v' of both. Solved for the depth, the pre-warp says the same as 8-1's coefficients:
-///   (p - v) / (k2 - p k3)    p: the place
-/// On the epipole's row no depth moves anything; `otherwise` is returned.
+/// Equation 8-1: the depth, in metres, that moves a texel of row `v` to `place` within its column.
+/// The pre-warp, solved for the depth, is the same as 8-1's coefficients:
+///
+///   (place - v) / (k2 - place k3)
+///
+/// On the epipole's row no depth moves anything, and `otherwise` is returned.
 float compensated_depth(const PreWarp& warp, float v, float place, float otherwise);
 
 }  // namespace softfocus

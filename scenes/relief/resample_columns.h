@@ -1,5 +1,5 @@
 #pragma once
-// Texels that a row put into columns, moved within the columns, from row to row.
+// Texels that rows put into columns, moved within the columns, from row to row.
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace softfocus {
 
-// Columns that a task takes.
+/// Columns that a task takes.
 inline constexpr int kBandColumns = 64;
 
-/// What a row put into some columns, from the first on. A colour of 0 is nothing.
+/// The texels that a row put into some columns, from the first on. A colour of 0 is none.
 template <class Numbers>
 struct ColumnTexels {
   const typename Numbers::Place* place;
@@ -39,8 +39,8 @@ struct ColumnPut {
   }
 };
 
-/// One step of the columns from `x_begin` on, `count` of them, kBandColumns at the most: from what
-/// a row put into them to what the next did. `is_other(i)` leaves a column to `other(i)`.
+/// One step of `count` columns from `x_begin` on, kBandColumns at the most, from a row's texels to
+/// the next row's. `is_other(i)` leaves a column to `other(i)`.
 template <class Numbers, int sign, class IsOther, class Other>
 void step_columns(const Numbers& numbers, const WarpWork& work, int x_begin, int count,
                   const ColumnTexels<Numbers>& from, const ColumnTexels<Numbers>& to, Isa isa,
@@ -87,7 +87,8 @@ void step_columns(const Numbers& numbers, const WarpWork& work, int x_begin, int
   }
 }
 
-/// What a row put into a band's columns: the first texel of each, and the last if there were more.
+/// The texels that a row put into a band's columns: the first of each, and the last if there were
+/// more.
 template <class Numbers>
 struct BandRow {
   explicit BandRow(std::size_t columns)
@@ -117,8 +118,8 @@ struct BandRow {
   }
 };
 
-/// The step of a column into which a row put two surfaces. Each texel is a neighbour of the one
-/// before whose depth is nearer, if it does not lie behind it.
+/// The step of a column into which a row put two surfaces. Each texel is joined to the one of the
+/// row before whose depth is nearer, unless it moved behind it or too far away.
 template <class Numbers, int sign>
 void step_two_layers(const Numbers& numbers, const WarpWork& work, const BandRow<Numbers>& from,
                      const BandRow<Numbers>& to, std::size_t column,

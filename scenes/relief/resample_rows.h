@@ -1,5 +1,5 @@
 #pragma once
-// Rows of a relief, moved within the rows: what each puts into the columns.
+// Rows of a relief, moved within the rows: the texels that each puts into the columns.
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ struct CountedPieces {
   }
 };
 
-/// What all tasks of a warp read.
+/// Read by all tasks of a warp.
 struct WarpWork {
   const ReliefTexture& relief;
   ReliefExtent extent;
@@ -43,7 +43,7 @@ struct WarpWork {
 
 // --- a row's places, in either arithmetic ---
 
-/// A row's places, and what step_texels() reads beside them and gives.
+/// A row's places, and the other numbers that step_texels() reads and gives.
 struct FloatRow {
   explicit FloatRow(int width)
       : along(static_cast<std::size_t>(width)),
@@ -63,8 +63,8 @@ struct FixedRow {
   std::vector<std::int32_t> along, across;
 };
 
-/// The texels of a row, `limits`, that can reach columns `band`: those before the first step into
-/// it, and behind the last, are left out. A texel that is kept has its neighbour beside it.
+/// The texels of a row, within `limits`, that can reach the columns `band`: texels before the first
+/// step into the band and behind the last are left out. A texel that is kept keeps its neighbour.
 template <class Numbers, class Row>
 WalkLimits reaching(const Row& row, WalkLimits limits, const WalkLimits& band) {
   const auto low = Numbers::place_of(band.begin - 1), high = Numbers::place_of(band.end + 1);
@@ -96,7 +96,7 @@ inline bool take(const FloatPlaces& numbers, const FloatRow& row, int u, int v, 
   return true;
 }
 
-/// Empty texels have the last depth's place, which means nothing.
+/// Empty texels have the place of the last depth, which means nothing.
 inline void place_row(const FixedPlaces& numbers, const WarpWork& work, int v, Isa, FixedRow& row) {
   const std::uint16_t* codes =
       work.relief.depths.data() + static_cast<std::ptrdiff_t>(v) * work.relief.width;

@@ -1,7 +1,7 @@
 #pragma once
-// A walk along a row or a column in the order that is compatible with occlusion, which fills what
-// lies between neighbours. Places are floats, or integers of 256ths of a texel; so are depths,
-// metres or codes.
+// A walk along a row or a column, in the order compatible with occlusion, that fills the gaps
+// between neighbours. Places are floats, or integers of 256ths of a texel; depths are metres in
+// floats, or codes.
 
 #include <algorithm>
 #include <cmath>
@@ -101,13 +101,13 @@ struct WalkTexel {
   std::uint32_t colour;
 };
 
-/// What a walk may write: texels begin <= x < end.
+/// The texels that a walk may write: begin <= x < end.
 struct WalkLimits {
   int begin, end;
 };
 
 /// The last texel that a step to `place` reaches; `sign` -1 walks towards smaller numbers. A step
-/// fills the texels past the last one of where it began.
+/// fills the texels past the last one that the place where it began reaches.
 template <class Numbers, int sign, class Place>
 [[gnu::always_inline]] inline int last_reached(Place place) {
   return sign > 0 ? Numbers::floor(place) : Numbers::ceil(place);
@@ -147,9 +147,9 @@ template <class Numbers, int sign, class Put>
   }
 }
 
-/// A step from one neighbour to the next. Either may be missing: `is_from`, `is_there`.
-/// Where the walk runs on, it fills the way; where not, a run ends half a texel past `from`, and
-/// another begins half a texel before `texel`.
+/// A step from one neighbour to the next. Either may be missing: `is_from`, `is_there`. If the run
+/// goes on, the step fills the way; else a run ends half a texel past `from`, and another begins
+/// half a texel before `texel`.
 template <class Numbers, int sign, class Put>
 inline void step(const Numbers& numbers, bool is_from, const WalkTexel<Numbers>& from,
                  bool is_there, const WalkTexel<Numbers>& texel, const WalkLimits& limits,
@@ -185,15 +185,15 @@ inline void walk(const Numbers& numbers, int begin, int end, const WalkLimits& l
   step<Numbers, sign>(numbers, is_from, from, false, texel, limits, put);
 }
 
-/// Where a row's or a column's walks meet: the first texel that is walked from the end.
+/// The first texel of a row or a column that is walked from the end: the walks meet before it.
 inline int walk_split(int begin, int end, double epipole) {
   const double last = epipole < begin ? begin - 1.0 : (epipole >= end ? end - 1.0 : epipole);
   return static_cast<int>(std::floor(last)) + 1;
 }
 
-/// Both walks of a row or a column: from its borders to the epipole, or, where texels move away
-/// from it, from the epipole outwards. Each from its first texel to before its end; the backward
-/// one goes down.
+/// Both walks of a row or a column: from its borders to the epipole, or, if texels move away from
+/// it, from the epipole outwards. Each goes from its first texel to before its end, the backward
+/// one downwards.
 struct HalfWalks {
   WalkLimits forward, backward;
 };

@@ -10,8 +10,7 @@
 
 namespace softfocus {
 
-/// Neighbours, number by number: where each step comes from, and where it goes. A colour of 0 is no
-/// texel.
+/// The two neighbours of each step, number by number. A colour of 0 is no texel.
 struct WalkSteps {
   const float *from_along, *along;
   const float *from_across, *across;  ///< of rows; of columns anything
@@ -28,8 +27,8 @@ struct StepRule {
   bool compensated;
 };
 
-/// What a step puts. A step that is more than that, because it passes several centres, or a run
-/// ends or begins there, is left to walk()'s own rule.
+/// The texel that a step puts. A step that passes several centres, or ends or begins a run, is left
+/// to walk()'s own rule.
 struct SteppedTexels {
   /// The texel that is filled, kNoTexel if none, or kOtherStep.
   std::int32_t* reached;

@@ -1,10 +1,10 @@
 #pragma once
-// How far a pre-warp pulls neighbours apart: what lies between them was never seen, and is made up.
+// How far a pre-warp pulls neighbours apart: the surface between them is made up.
 //
-// The critical point (5.5 of Clua 2004) is the pair of neighbours whose depths
-// differ most. Where they come to lie is known before any other texel is warped: equations 5-5 to
-// 5-7, with the true distance in place of a squared one, in texels. Neighbours of one depth are at
-// most one texel apart.
+// The critical point (5.5 of Clua 2004) is the pair of neighbours whose depths differ most. Their
+// new places are known before any other texel is warped: equations 5-5 to 5-7, with the true
+// distance in place of a squared one, in texels. If k3 >= 0, neighbours of one depth are at most
+// one texel apart.
 
 #include <optional>
 #include <vector>
@@ -36,7 +36,7 @@ struct CriticalRegion {
 struct CriticalRegions {
   ReliefExtent extent;
   int columns, rows;
-  /// Row by row; none where no two neighbours show something.
+  /// Row by row; none if no two neighbours show something.
   std::vector<std::optional<CriticalRegion>> regions;
 };
 
@@ -50,15 +50,19 @@ inline constexpr int kMostRegions = 64;
 double mean_critical_error(const ReliefTexture& relief, const CriticalRegions& regions,
                            glm::dvec3 eye);
 
-/// What no pair of neighbours can exceed. Two neighbours at u and u + 1 of depths d1 and d2 move by
-/// scales s = 1 / (1 + k3 d), and come to lie s2 + (k1 - k3 u) (d2 - d1) s1 s2 apart. |k1 - k3 u|
-/// is |k3| times the distance from the epipole; in a region it is at most that of the farthest
-/// corner. s is at most that of the least depth, or, if k3 < 0, of the greatest; |d2 - d1| at most
-/// the largest step D, and s1 s2 at most the product of the largest scale and that of a depth D
-/// beside. The largest of all regions: the more regions, the nearer it is.
+/// The distance that no pair of neighbours exceeds. Two neighbours at u and u + 1 of depths d1 and
+/// d2 move by scales s = 1 / (1 + k3 d), and come to lie s2 + (k1 - k3 u) (d2 - d1) s1 s2 apart. In
+/// a region
+///
+///   |k1 - k3 u|   is |k3| times the distance from the epipole, at most the farthest corner's
+///   |d2 - d1|     is at most the largest step D
+///   s             is at most that of the least depth, or, if k3 < 0, of the greatest
+///   s1 s2         is at most the largest scale times the scale of a depth D beside
+///
+/// The bound is the largest of all regions: the more regions, the nearer it is.
 double error_bound(const ReliefTexture& relief, const CriticalRegions& regions, glm::dvec3 eye);
 
-/// The largest distance of all pairs of neighbours: what the two above are measured against.
+/// The largest distance of all pairs of neighbours, against which the errors above are measured.
 double largest_error(const ReliefTexture& relief, glm::dvec3 eye);
 
 }  // namespace softfocus

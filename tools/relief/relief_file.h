@@ -8,13 +8,13 @@
 //   3 x f64   of version 2: the eye
 //   depths    width x height codes of one or two bytes
 //   colours   width x height x 3 bytes: red, green, blue in the sRGB curve; 0 where nothing is
-//   normals   the same: x, y, z, each 127 n + 128; if there are any
-//   of an unlit one
-//     unlit     the same as the colours
+//   normals   if there are any: width x height x 3 bytes: x, y, z, each 127 n + 128
+//   if the relief is unlit
+//     unlit     as the colours
 //     numbers   width x height x 1 byte: each texel's material
-//     u32       materials, 1 to 256; of each
-//     6 x f32     its share of ambient light and its highlight, red, green and blue each
-//     2 x u32     shininess, 1 to 1024; 1 if it is lit, else 0
+//     u32       number of materials, 1 to 256; for each
+//       6 x f32   its share of ambient light and its highlight, red, green and blue each
+//       2 x u32   shininess, 1 to 1024; 1 if it is lit, else 0
 //   u64       FNV-1a of all bytes before
 
 #include <filesystem>
@@ -27,9 +27,9 @@ namespace softfocus {
 
 std::vector<std::byte> encode_relief(const ReliefTexture& relief);
 
-/// The way back. Throws FileError, which names `file`, for what is not such a file, is cut short or
-/// too long, was changed, has a camera whose axes are not at right angles or whose eye is not
-/// before its plane, or shows nothing.
+/// The inverse. Throws FileError, which names `file`, if the bytes are no such file, are cut short
+/// or too long, or were changed, if the camera's axes are not at right angles or its eye is not
+/// before its plane, or if the relief shows nothing.
 ReliefTexture decode_relief(std::string_view bytes, const std::filesystem::path& file);
 
 ReliefTexture read_relief_file(const std::filesystem::path& file);

@@ -1,5 +1,5 @@
 #pragma once
-// What `softfocus relief` reads, whatever it does.
+// The options of `softfocus relief`, and functions that its actions share.
 
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -14,7 +14,7 @@
 
 namespace softfocus {
 
-/// What of a relief is shown, and of six.
+/// The part of a relief, or of six faces, that is shown.
 enum class ReliefPart : std::uint8_t { image, depth, normals, faces, unseen };
 
 /// When a turn's work is done (scenes/relief/impostor_schedule.h): in the frame by one thread or
@@ -45,7 +45,7 @@ struct ReliefOptions {
   Resampling resampling = Resampling::intertwined;
   bool fixed = false;
   int frames = 360;  ///< of a turn
-  int every = 10;    ///< so many frames, errors are measured
+  int every = 10;    ///< errors are measured once in so many frames
   double tolerance = 8.0, texels_per_pixel = 1.0, zoom = 1.0;
   int regions = 1;
   double join_texels = WarpRule::kJoinAll;
@@ -62,7 +62,7 @@ struct ReliefOptions {
   bool hemisphere = false;
   int parallax = 1;  ///< steps of the atlas
   bool moving_light = false;
-  double approach = 0.0;  ///< so many times as far away the eye begins; 0: it turns
+  double approach = 0.0;  ///< the eye begins so many times as far away; 0: it turns
   int levels = 1;
   bool box = false;  ///< a turn of six faces
   int runs = 20;
@@ -80,6 +80,7 @@ Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options);
 
 /// `v` turned about a unit axis (Rodrigues).
 glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees);
+
 /// A relief of the picture of heights that is the input.
 ReliefTexture relief_of_height_file(const ReliefOptions& options);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What `relief turn` draws, measures and writes, whichever contender it turns.
+// Frames that `relief turn` draws, measures and writes, whichever contender it turns.
 
 #include <chrono>
 #include <cstdint>
@@ -53,7 +53,7 @@ void measure_frame(const Image& redrawn, const Image& shown, std::uint16_t backg
                    ThreadPool& pool, TurnErrors& errors);
 void print_errors(const TurnErrors& errors);
 
-/// Where frames go; nowhere without -o.
+/// The files of frames; none without -o.
 struct TurnPictures {
   std::optional<NumberedName> name;
   FileFormat format = FileFormat::png;

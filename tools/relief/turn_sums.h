@@ -1,5 +1,5 @@
 #pragma once
-// What `softfocus relief turn` measures: times, errors and lateness.
+// The sums of `softfocus relief turn`: times, errors and lateness.
 
 #include <cstddef>
 #include <vector>
@@ -12,7 +12,7 @@ namespace softfocus {
 struct TurnSums {
   std::vector<double> redrawn_ms, impostor_ms, renew_ms, recall_ms, warp_ms, sprite_ms;
   TurnErrors errors;
-  std::vector<double> predicted, bound;  ///< times the measured error
+  std::vector<double> predicted, bound;  ///< divided by the largest error
   std::size_t most_bytes = 0;
   int renewals = 0, updates = 0, stalls = 0, stale = 0;
   std::vector<double> late_frames;
