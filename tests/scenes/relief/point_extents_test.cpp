@@ -17,7 +17,7 @@ TEST_CASE("points reach as far along a direction as the farthest of them all") {
     return glm::dvec3{random.between(-size, size), random.between(-size, size),
                       random.between(-size, size)};
   };
-  for (const std::size_t count : {0, 1, 63, 64, 65, 1000}) {
+  for (const std::size_t count : std::initializer_list<std::size_t>{0, 1, 63, 64, 65, 1000}) {
     std::vector<glm::dvec3> points;
     points.reserve(count);
     glm::dvec3 walker{0.0};
