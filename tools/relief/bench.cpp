@@ -31,7 +31,7 @@ int bench_relief(const ReliefOptions& options) {
   if (!place) {
     throw UsageError(
         "--yaw, --pitch and --distance: from there the relief is not seen from its "
-        "front; smaller angles would be right");
+        "front, or stretched without bounds; smaller angles or a larger distance would be right");
   }
   ThreadPool pool{options.pool.threads, options.pool.isa}, one{1, options.pool.isa};
   WarpedRelief warped;

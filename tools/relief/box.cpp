@@ -58,15 +58,14 @@ Image painted(const BoxPictures& pictures, ReliefPart part) {
   return picture;
 }
 
-void print_box(const ReliefBox& box, const BoxPictures& pictures, glm::dvec3 eye) {
+void print_box(const ReliefBox& box, const BoxPictures& pictures, glm::dvec3 eye, std::FILE* to) {
   const unsigned seen_faces = faces_seen(box, eye);
-  std::string names;
   for (std::size_t i = 0; i < kBoxFaces; ++i) {
     if (!box.faces[i]) continue;
-    std::printf("face %s: %dx%d texels, %lld of them filled%s\n",
-                std::string{kBoxFaceNames[i]}.c_str(), box.faces[i]->texture.width,
-                box.faces[i]->texture.height, static_cast<long long>(box.faces[i]->extent.filled),
-                (seen_faces >> i & 1u) != 0 ? "; seen" : "");
+    std::fprintf(to, "face %s: %dx%d texels, %lld of them filled%s\n",
+                 std::string{kBoxFaceNames[i]}.c_str(), box.faces[i]->texture.width,
+                 box.faces[i]->texture.height, static_cast<long long>(box.faces[i]->extent.filled),
+                 (seen_faces >> i & 1u) != 0 ? "; seen" : "");
   }
   std::size_t seen = 0, lost = 0, gained = 0, unseen = 0, unhad = 0;
   for (std::size_t at = 0; at < pictures.unseen.size(); ++at) {
@@ -80,14 +79,18 @@ void print_box(const ReliefBox& box, const BoxPictures& pictures, glm::dvec3 eye
     unseen += pictures.unseen[at] != FacePoint::by_seen ? 1 : 0;
     unhad += pictures.unseen[at] == FacePoint::by_none ? 1 : 0;
   }
-  std::printf(
+  std::fprintf(
+      to,
       "%.2f MB; of %zu pixels %zu lost, %zu gained; %zu show what no seen face has, %zu what no "
       "face has\n",
       static_cast<double>(bytes_of(box)) / 1e6, seen, lost, gained, unseen, unhad);
 }
 
 /// Six files, numbered from 0 in the faces' order.
-void write_faces(const ReliefBox& box, const NumberedName& name) {
+void write_faces(const ReliefBox& box, const std::string& of, const NumberedName& name) {
+  for (const std::optional<BoxFace>& face : box.faces) {
+    if (face) check_relief_size(face->texture, of);
+  }
   for (std::size_t i = 0; i < kBoxFaces; ++i) {
     if (!box.faces[i]) continue;
     write_relief_output(name_at(name, static_cast<int>(i)), encode_relief(box.faces[i]->texture));
@@ -106,7 +109,7 @@ int show_box(const ReliefOptions& options) {
       {std::max(options.texels.width, options.texels.height), options.depth_bits, options.normals},
       pool);
   if (name) {
-    write_faces(box, *name);
+    write_faces(box, scene.name, *name);
     return kDone;
   }
   const Camera camera = camera_about(maker, scene, options);
@@ -130,10 +133,8 @@ int show_box(const ReliefOptions& options) {
   BoxMemory memory;
   draw_box(box, matrices, warp_rule(options), memory, pictures.shown, pool, &pictures.faces);
   pictures.unseen = unseen_pixels(box, matrices, pictures.drawn, clear.w, pool);
-  print_box(box, pictures, matrices.eye);
-  if (!options.output.empty()) {
-    write_relief_output(options.output, encode(painted(pictures, options.part), options.format));
-  }
+  print_box(box, pictures, matrices.eye, options.output == "-" ? stderr : stdout);
+  write_relief_output(options.output, encode(painted(pictures, options.part), options.format));
   return kDone;
 }
 

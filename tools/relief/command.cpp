@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "raster/images/texel.h"
 #include "scenes/draw/surface_draws.h"
@@ -71,7 +73,12 @@ int box(const ReliefOptions& options) {
   if (options.part == ReliefPart::depth || options.part == ReliefPart::normals) {
     throw UsageError("--show: box shows image, faces or unseen");
   }
-  if (!numbered_name("-o", options.output)) check_output(options);
+  const std::optional<NumberedName> name = numbered_name("-o", options.output);
+  if (name) {
+    check_writable(name_at(*name, 0));
+  } else {
+    check_output(options);
+  }
   return show_box(options);
 }
 
@@ -196,7 +203,7 @@ constexpr std::array<std::string_view, 46> kReliefOptions{"-o",
                                                           "--box",
                                                           "--traced"};
 
-/// X,Y,Z that are not all 0.
+/// X,Y,Z that are not all next to 0: squares of these are no subnormals.
 glm::vec3 parse_towards(const std::string& text) {
   glm::vec3 towards{0.0f};
   std::size_t begin = 0;
@@ -206,9 +213,12 @@ glm::vec3 parse_towards(const std::string& text) {
     towards[i] = static_cast<float>(parse_number("--light", text.substr(begin, end - begin), -1e6,
                                                  1e6, "three numbers such as 1,2,3"));
     begin = end + 1;
-    if (i == 2 && towards != glm::vec3{0.0f}) return towards;
+    const float largest =
+        std::max({std::fabs(towards.x), std::fabs(towards.y), std::fabs(towards.z)});
+    if (i == 2 && largest >= 1e-6f) return towards;
   }
-  throw UsageError("--light '" + text + "': give three numbers such as 1,2,3, not all 0");
+  throw UsageError("--light '" + text +
+                   "': give three numbers such as 1,2,3, one of them 0.000001 or more from 0");
 }
 
 /// Options of work aside need a schedule that has some.
@@ -230,8 +240,9 @@ void check_schedule(const CLI::App& parser, const ReliefOptions& options) {
 }
 
 /// Of options of make: those that read a scene, and those that read heights.
-constexpr std::array<std::string_view, 7> kOfScene{
-    "--scene-path", "--frame", "--texels", "--yaw", "--pitch", "--projection", "--traced"};
+constexpr std::array<std::string_view, 8> kOfScene{"--scene-path", "--frame", "--texels",
+                                                   "--yaw",        "--pitch", "--projection",
+                                                   "--traced",     "--unlit"};
 constexpr std::array<std::string_view, 3> kOfHeights{"--colour", "--height", "--empty"};
 
 void check_pairs(const CLI::App& parser, const ReliefOptions& options) {
@@ -271,6 +282,9 @@ void check_turn(const CLI::App& parser, const ReliefOptions& options) {
     if (options.rival && is_given(parser, std::string{name})) {
       throw UsageError(std::string{name} + ": an octahedral atlas does not read it");
     }
+  }
+  if (options.box && is_given(parser, "--texels-per-pixel")) {
+    throw UsageError("--texels-per-pixel: six faces do not read it; --texels would be right");
   }
   if (!options.rival && !options.box) return;
   for (const std::string_view name : kImpostorOptions) {
@@ -322,6 +336,12 @@ WarpRule warp_rule(const ReliefOptions& options) {
 
 Scene relief_scene(const ReliefOptions& options) {
   Scene scene = load_scene(options.input, scene_search_path(options.scene_path));
+  std::vector<ReadFile> inputs;
+  inputs.reserve(scene.files.size());
+  for (const auto& file : scene.files) inputs.push_back({file, "a file of the scene"});
+  if (!options.output.empty() && options.output != "-") {
+    check_not_read("-o", options.output, inputs);
+  }
   print_scene_warnings(scene.warnings, false);
   if (triangle_count(scene) == 0) {
     throw UsageError("'" + options.input + "' has no triangles; a relief needs some");

@@ -40,7 +40,9 @@ int make_relief_file(const ReliefOptions& options) {
     throw UsageError("--traced: " + std::string{traced_relief_missing()});
   }
   if (options.height_field) {
-    write_relief_output(options.output, encode_relief(relief_of_height_file(options)));
+    const ReliefTexture relief = relief_of_height_file(options);
+    check_relief_size(relief, options.input);
+    write_relief_output(options.output, encode_relief(relief));
     return kDone;
   }
   const Scene scene = relief_scene(options);
@@ -65,6 +67,7 @@ int make_relief_file(const ReliefOptions& options) {
   if (!relief_extent(relief)) {
     throw UsageError("'" + scene.name + "': nothing opaque is seen from there");
   }
+  check_relief_size(relief, scene.name);
   if (options.unlit) {
     light_relief(relief, relief_lights(scene.ambient_light, scene.lights), view.eye, pool);
   }

@@ -1,13 +1,24 @@
 // Where softfocus relief looks from.
 
 #include <cmath>
+#include <string>
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
+#include "tools/cli/errors.h"
 #include "tools/relief/relief_options.h"
 
 namespace softfocus {
 namespace {
+
+/// Below this sine of an angle, a direction is along another.
+constexpr double kLeastSine = 1e-6;
+
+double length(glm::dvec3 v) { return std::sqrt(dot(v, v)); }
+
+bool is_along(glm::dvec3 unit, glm::dvec3 v) {
+  return length(cross(unit, v)) < kLeastSine * length(v);
+}
 
 /// To the right by yaw, then up by pitch: where the eye goes.
 glm::dvec3 turned_view(glm::dvec3 towards_eye, glm::dvec3 right, glm::dvec3 up,
@@ -26,7 +37,22 @@ glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees) {
 glm::dvec3 turned_arm(const ReliefMaker& maker, const Scene& scene, const ReliefOptions& options) {
   const CameraMatrices camera = camera_matrices(scene.camera, options.frame, 1, 1);
   const glm::dvec3 back = camera.eye - maker.middle, up = normalize(scene.camera.up);
-  return turned_view(back, normalize(cross(up, back)), up, options);
+  if (length(back) < kLeastSine * maker.radius_m) {
+    throw UsageError("'" + scene.name +
+                     "': its eye is in the object's middle; another place of its camera would be "
+                     "right");
+  }
+  // Straight above or below the middle it looks elsewhere, so its own right is one.
+  const glm::dvec3 right = is_along(up, back)
+                               ? glm::dvec3{camera.world_to_eye[0][0], camera.world_to_eye[1][0],
+                                            camera.world_to_eye[2][0]}
+                               : normalize(cross(up, back));
+  const glm::dvec3 arm = turned_view(back, right, up, options);
+  if (is_along(up, arm)) {
+    throw UsageError("--pitch: the eye is straight above or below the middle of '" + scene.name +
+                     "', where no side is up; a few degrees more or less would be right");
+  }
+  return arm;
 }
 
 glm::dvec3 relief_middle(const ReliefTexture& relief) {

@@ -154,6 +154,14 @@ bool is_eye_before(const ReliefCamera& camera) {
 
 }  // namespace
 
+void check_relief_size(const ReliefTexture& relief, const std::string& of) {
+  if (is_camera(relief.camera) && (!relief.camera.eye || is_eye_before(relief.camera))) return;
+  throw UsageError(
+      "'" + of +
+      "': its relief has texels or a depth below 1e-9 m or above 1e9 m, or lies farther "
+      "away; what is larger or smaller would be right");
+}
+
 std::vector<std::byte> encode_relief(const ReliefTexture& relief) {
   std::vector<std::byte> bytes;
   for (const char letter : kReliefMagic) bytes.push_back(static_cast<std::byte>(letter));

@@ -18,12 +18,17 @@
 //   u64       FNV-1a of all bytes before
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
+
+/// Throws UsageError, which names `of`, if a relief's texels, depth or place are so small or so
+/// large that decode_relief() would refuse them.
+void check_relief_size(const ReliefTexture& relief, const std::string& of);
 
 std::vector<std::byte> encode_relief(const ReliefTexture& relief);
 

@@ -78,7 +78,7 @@ int warp_view(const ReliefOptions& options) {
   if (!place) {
     throw UsageError(
         "--yaw, --pitch and --distance: from there the relief is not seen from its "
-        "front; smaller angles would be right");
+        "front, or stretched without bounds; smaller angles or a larger distance would be right");
   }
   ThreadPool pool{options.pool.threads, options.pool.isa};
   if (options.light) {

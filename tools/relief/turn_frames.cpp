@@ -107,6 +107,7 @@ TurnPictures turn_pictures(const ReliefOptions& options) {
     throw UsageError("-o '" + options.output +
                      "': a turn has many frames; a name such as turn_%04d.png would be right");
   }
+  check_writable(name_at(*pictures.name, 0));
   pictures.format = *by_name;
   return pictures;
 }

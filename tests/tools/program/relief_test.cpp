@@ -103,6 +103,51 @@ TEST_CASE("relief: a picture of heights becomes a relief, with holes where it sa
                 {"red.png", "no height"});
   check_refused(folder, {"relief", "make", "--height-field", grey, "-o", grey}, 2,
                 {"-o", "the heights"});
+  check_refused(folder, {"relief", "make", "--height-field", grey, "--unlit", "-o", to}, 2,
+                {"--unlit", "--height-field"});
+  // Such a file would be refused when it is read.
+  for (int i = 0; i < 200; ++i)
+    heights[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(i % 2);
+  const std::string even = put("even.png", encode_grey_png_16(heights, 20, 10));
+  check_refused(folder, {"relief", "make", "--height-field", even, "--height", "1e-6", "-o", to}, 2,
+                {"even.png", "1e-9 m"});
+}
+
+TEST_CASE("relief: no scene is written over, and no picture has text in it") {
+  const TemporaryDirectory folder;
+  const std::string model = folder.file("a.obj");
+  write_file(model, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  check_refused(folder, {"relief", "make", model, "-o", model}, 2, {"-o", "a file of the scene"});
+  const ProgramRun run =
+      run_program({"relief", "box", "figures", "--texels", "8x8", "--size", "8x8", "-o", "-"});
+  REQUIRE(run.status == 0);
+  CHECK(!contains(run.out, "face +x"));
+  CHECK(contains(run.err, "face +x"));
+  const std::string nowhere = folder.file("none/t_%d.png");
+  check_refused(folder, {"relief", "turn", "figures", "-o", nowhere}, 1, {"t_0.png"});
+  check_refused(folder, {"relief", "box", "figures", "-o", nowhere}, 1, {"t_0.png"});
+  check_refused(folder, {"relief", "turn", "figures", "--box", "--texels-per-pixel", "2"}, 2,
+                {"--texels-per-pixel", "--texels "});
+}
+
+TEST_CASE("relief: an eye straight above the object's middle has no side that is up") {
+  const TemporaryDirectory folder;
+  const auto scene_seen_from = [&](const char* name, const char* place) {
+    std::string file = folder.file(name);
+    write_file(file, std::string{"[camera]\nposition = "} + place +
+                         "\ntarget = [3, 0, 0]\n[lens]\nfocal_length_mm = 50\nf_number = 2\n"
+                         "focus_m = 3\n[material.m]\ndiffuse = [0.8, 0.2, 0.2]\n[[object]]\n"
+                         "shape = \"cube\"\nmaterial = \"m\"\n");
+    return file;
+  };
+  const std::string above = scene_seen_from("above.toml", "[0, 5, 0]");
+  const std::string to = folder.file("a.relief");
+  check_refused(folder, {"relief", "make", above, "-o", to}, 2, {"--pitch", "above"});
+  CHECK(
+      run_program({"relief", "make", above, "--pitch", "20", "--texels", "8x8", "-o", to}).status ==
+      0);
+  check_refused(folder, {"relief", "make", scene_seen_from("in.toml", "[0, 0, 0]"), "-o", to}, 2,
+                {"'in'", "middle"});
 }
 
 TEST_CASE("relief: a box of six faces is shown, measured and written") {
