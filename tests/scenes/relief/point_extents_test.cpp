@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <initializer_list>
 #include <limits>
 
 #include "raster/numbers/vector_math.h"
