@@ -131,6 +131,13 @@ bool is_fresh(const DrawnRelief& relief, const ImpostorSettings& settings, glm::
          impostor_error(relief, eye) <= settings.tolerance_texels;
 }
 
+bool can_be_recalled(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+                     double pixel_tangent) {
+  return is_fresh(relief, settings, eye, pixel_tangent) &&
+         error_bound(relief.texture, relief.critical, eye) <=
+             kMostRecalledBound * settings.tolerance_texels;
+}
+
 void keep_stale(Impostor& impostor, const ImpostorSettings& settings, glm::dvec3 eye) {
   if (!impostor.drawn) return;
   std::vector<DrawnRelief>& cache = impostor.cache;
@@ -171,11 +178,12 @@ std::optional<DrawnRelief> known_relief(ReliefTexture texture, const ImpostorSet
 std::optional<DrawnRelief> recalled(Impostor& impostor, const ImpostorSettings& settings,
                                     glm::dvec3 eye, double pixel_tangent) {
   std::optional<std::size_t> best;
-  double least = settings.tolerance_texels;
+  double least = HUGE_VAL;
   for (std::size_t i = 0; i < impostor.cache.size(); ++i) {
-    if (!can_serve(impostor.cache[i], settings, eye, pixel_tangent)) continue;
-    const double error = impostor_error(impostor.cache[i], eye);
-    if (error > least || (best && error == least)) continue;
+    const DrawnRelief& kept = impostor.cache[i];
+    if (!can_be_recalled(kept, settings, eye, pixel_tangent)) continue;
+    const double error = impostor_error(kept, eye);
+    if (best && error >= least) continue;
     best = i;
     least = error;
   }

@@ -98,6 +98,13 @@ double impostor_error(const DrawnRelief& relief, glm::dvec3 eye);
 bool is_fresh(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
               double pixel_tangent);
 
+/// Whether a relief that was kept serves a view: as is_fresh(), and the bound on its error is at
+/// most kMostRecalledBound tolerances. An eye that goes on meets an error as it grows. But from far
+/// aside the few critical points may happen to stay, and all other texels move.
+bool can_be_recalled(const DrawnRelief& relief, const ImpostorSettings& settings, glm::dvec3 eye,
+                     double pixel_tangent);
+inline constexpr double kMostRecalledBound = 8.0;
+
 /// A pixel's width, a metre before the camera.
 double pixel_tangent_of(const CameraMatrices& camera, int height_px);
 

@@ -194,7 +194,7 @@ void take_update(ScheduledImpostor& impostor, const ScheduledWork& work, Schedul
 /// Whether a relief in the cache serves an eye.
 bool is_kept_for(const Impostor& shown, const ScheduledWork& work, glm::dvec3 eye) {
   for (const DrawnRelief& kept : shown.cache) {
-    if (is_fresh(kept, work.settings, eye, work.pixel_tangent)) return true;
+    if (can_be_recalled(kept, work.settings, eye, work.pixel_tangent)) return true;
   }
   return false;
 }

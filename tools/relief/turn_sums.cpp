@@ -19,9 +19,9 @@ void add_frame(const ScheduledFrame& frame, double ms, TurnSums& sums) {
 }
 
 void print_sums(const Scene& scene, const ReliefOptions& options, const TurnSums& sums) {
-  std::printf("%s: %zu triangles, %d frames of %dx%d, tolerance %g texels\n", scene.name.c_str(),
-              triangle_count(scene), options.frames, options.size.width, options.size.height,
-              options.tolerance);
+  std::printf("%s: %zu triangles, %zu frames of %dx%d, tolerance %g texels\n", scene.name.c_str(),
+              triangle_count(scene), sums.impostor_ms.size(), options.size.width,
+              options.size.height, options.tolerance);
   std::printf(
       "renewals %d, recalls %zu, warps %zu, sprites %zu; reliefs and warp at most %.2f MB\n",
       sums.renewals, sums.recall_ms.size(), sums.warp_ms.size(), sums.sprite_ms.size(),

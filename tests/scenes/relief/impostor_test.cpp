@@ -239,3 +239,33 @@ TEST_CASE("an eye that comes nearer sees finer levels of one relief, and no rene
   CHECK(before == 0);
   CHECK(renewals == 3);
 }
+
+TEST_CASE("impostor: no relief is recalled whose critical point alone stays where it was") {
+  constexpr int kWidth = 64, kHeight = 4;
+  ReliefTexture relief;
+  relief.width = kWidth;
+  relief.height = kHeight;
+  relief.camera = {{0, 0, 0}, {0.1, 0, 0}, {0, -0.1, 0}, {0, 0, -1}, 3.0};
+  relief.depths.assign(std::size_t{kWidth} * kHeight, 0);
+  relief.colours.assign(relief.depths.size(), 0xFFFFFFFFu);
+  // Two columns lie deep; the first is the critical point.
+  for (std::size_t v = 0; v < kHeight; ++v) {
+    for (const std::size_t u : {1, 62}) {
+      relief.depths[v * kWidth + u] = static_cast<std::uint16_t>(last_depth(8));
+    }
+  }
+  ThreadPool pool{1};
+  ImpostorSettings settings;
+  settings.tolerance_texels = 2.0;
+  Impostor impostor;
+  const std::optional<DrawnRelief> drawn = known_relief(relief, settings, {3.1, -0.1, 100}, pool);
+  REQUIRE(drawn);
+  impostor.cache.push_back(*drawn);
+  const glm::dvec3 before{3.1, -0.1, 100}, beside{0.1, 0, 1};
+  CHECK(can_be_recalled(*drawn, settings, before, 1e-3));
+  REQUIRE(is_fresh(*drawn, settings, beside, 0.03));
+  CHECK(largest_error(relief, beside) > 40.0);
+  CHECK(!can_be_recalled(*drawn, settings, beside, 0.03));
+  CHECK(!recalled(impostor, settings, beside, 0.03));
+  CHECK(recalled(impostor, settings, before, 1e-3));
+}
