@@ -6,8 +6,9 @@
 namespace softfocus {
 namespace {
 
-/// The mean of up to four colours, each channel to nearest, ties up.
+/// The mean of one to four colours, each channel to nearest, ties up.
 std::uint32_t mean_colour(const std::array<std::uint32_t, 4>& colours, std::uint32_t count) {
+  assert(count > 0);
   std::uint32_t mean = 0xFF000000u;
   for (int shift = 0; shift < 24; shift += 8) {
     std::uint32_t sum = count / 2;

@@ -250,7 +250,7 @@ TEST_CASE("impostor: no relief is recalled whose critical point alone stays wher
   relief.colours.assign(relief.depths.size(), 0xFFFFFFFFu);
   // Two columns lie deep; the first is the critical point.
   for (std::size_t v = 0; v < kHeight; ++v) {
-    for (const std::size_t u : {1, 62}) {
+    for (const std::size_t u : {std::size_t{1}, std::size_t{62}}) {
       relief.depths[v * kWidth + u] = static_cast<std::uint16_t>(last_depth(8));
     }
   }
