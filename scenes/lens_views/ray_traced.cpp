@@ -1,23 +1,14 @@
 #include "scenes/lens_views/ray_traced.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <type_traits>
+#include <string_view>
 
 #include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/transparent_layers.h"
+#include "scenes/lens_views/embree_mesh.h"
 #include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/ray_geometry.h"
 #include "scenes/lens_views/take_samples.h"
@@ -25,29 +16,7 @@
 namespace softfocus {
 namespace {
 
-template <auto release>
-struct Release {
-  template <class Handle>
-  void operator()(Handle* handle) const {
-    release(handle);
-  }
-};
-using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release<rtcReleaseDevice>>;
-using Tree = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>>;
-using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release<rtcReleaseGeometry>>;
-
-void check(const Device& device) {
-  const RTCError error = rtcGetDeviceError(device.get());
-  if (error == RTC_ERROR_NONE) return;
-  throw std::runtime_error("ray-traced: Embree failed with error " + std::to_string(error) +
-                           (error == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
-}
-
-#if RTC_VERSION_MAJOR >= 4
-using QueryContext = RTCRayQueryContext;
-#else
-using QueryContext = RTCIntersectContext;
-#endif
+constexpr std::string_view kWho = "ray-traced";
 
 /// Where a ray goes through a transparent surface.
 struct PassedHit {
@@ -88,7 +57,7 @@ void insert(const PassedHit& hit, PassedHits& passed) {
 
 /// A ray on its way. The context comes first: filters get a pointer to it.
 struct Query {
-  QueryContext context;
+  EmbreeContext context;
   const BlockRays& block;
   const Profile& profile;
   PassedHits& passed;
@@ -104,9 +73,7 @@ void skip_unseen(const RTCFilterFunctionNArguments* arguments) {
   const RayHit place{RTCHitN_primID(hit, 1, 0), RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)};
   RTCRayN* const ray = arguments->ray;
   if (mesh.draw.state.cull == Cull::back) {
-    const LensRay lens_ray{
-        {RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0)},
-        {RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0)}};
+    const LensRay lens_ray{origin_of(arguments), direction_of(arguments)};
     if (!meets_front(mesh, place.triangle, lens_ray)) {
       arguments->valid[0] = 0;
       return;
@@ -121,68 +88,33 @@ void skip_unseen(const RTCFilterFunctionNArguments* arguments) {
 
 struct TracedScene {
   std::vector<RayMesh> meshes;  // which the tree refers to
-  Device device;
-  Tree tree;
+  EmbreeDevice device;
+  EmbreeTree tree;
 };
 
-void add_mesh(TracedScene& traced, RayMesh& mesh) {
-  const auto& indices = mesh.draw.input.mesh->indices;
-  const Geometry geometry{rtcNewGeometry(traced.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE)};
-  // Embree reads 16 bytes of the last vertex.
-  const std::size_t vertices = mesh.positions.size();
-  mesh.positions.emplace_back(0.0f);
-  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                             mesh.positions.data(), 0, sizeof(glm::vec3), vertices);
-  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                             indices.data(), 0, 3 * sizeof(std::uint32_t), indices.size() / 3);
-  rtcSetGeometryUserData(geometry.get(), &mesh);
-  if (mesh.draw.state.cull == Cull::back || mesh.draw.variant.holed || mesh.draw.opacity.blends) {
-    rtcSetGeometryIntersectFilterFunction(geometry.get(), skip_unseen);
-  }
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometry(traced.tree.get(), geometry.get());
-}
-
 TracedScene traced_scene(const LensViewInput& input) {
-  TracedScene traced;
-  traced.meshes = ray_meshes(input.scene, input.camera, input.frame);
-  // No threads of its own: rays are traced on the pool's.
-  traced.device.reset(rtcNewDevice("threads=1"));
-  check(traced.device);
-  traced.tree.reset(rtcNewScene(traced.device.get()));
-  rtcSetSceneFlags(traced.tree.get(), RTC_SCENE_FLAG_ROBUST);  // no ray between two triangles
+  TracedScene traced{ray_meshes(input.scene, input.camera, input.frame), embree_device(kWho), {}};
+  traced.tree = embree_tree(traced.device);
   rtcSetSceneBuildQuality(traced.tree.get(), RTC_BUILD_QUALITY_HIGH);
-  for (RayMesh& mesh : traced.meshes) add_mesh(traced, mesh);
+  for (RayMesh& mesh : traced.meshes) {
+    const EmbreeGeometry geometry = embree_mesh(traced.device, mesh);
+    if (mesh.draw.state.cull == Cull::back || mesh.draw.variant.holed || mesh.draw.opacity.blends) {
+      rtcSetGeometryIntersectFilterFunction(geometry.get(), skip_unseen);
+    }
+    attach(traced.tree, geometry);
+  }
   rtcCommitScene(traced.tree.get());
-  check(traced.device);
+  throw_if_failed(traced.device, kWho);
   return traced;
 }
 
 RTCRayHit intersect(const TracedScene& traced, const LensRay& lens_ray, const BlockRays& block,
                     const Camera& camera, const Profile& profile, PassedHits& passed) {
-  RTCRayHit hit{};
-  hit.ray.org_x = static_cast<float>(lens_ray.origin.x);
-  hit.ray.org_y = static_cast<float>(lens_ray.origin.y);
-  hit.ray.org_z = static_cast<float>(lens_ray.origin.z);
-  hit.ray.dir_x = static_cast<float>(lens_ray.direction.x);
-  hit.ray.dir_y = static_cast<float>(lens_ray.direction.y);
-  hit.ray.dir_z = static_cast<float>(lens_ray.direction.z);
-  hit.ray.tnear = static_cast<float>(camera.near_m);
-  hit.ray.tfar = static_cast<float>(camera.far_m);
-  hit.ray.mask = std::numeric_limits<unsigned>::max();
-  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCRay ray = embree_ray(lens_ray.origin, lens_ray.direction);
+  ray.tnear = static_cast<float>(camera.near_m);
+  ray.tfar = static_cast<float>(camera.far_m);
   Query query{{}, block, profile, passed};
-#if RTC_VERSION_MAJOR >= 4
-  rtcInitRayQueryContext(&query.context);
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &query.context;
-  rtcIntersect1(traced.tree.get(), &hit, &arguments);
-#else
-  rtcInitIntersectContext(&query.context);
-  rtcIntersect1(traced.tree.get(), &query.context, &hit);
-#endif
-  return hit;
+  return first_hit(traced.tree, ray, query.context);
 }
 
 /// The pixel's block of the sequence. An exclusive or with it maps every aligned block of 2^k

@@ -131,17 +131,9 @@ void light_relief(ReliefTexture& relief, const ReliefLights& lights, glm::dvec3 
 #else  // the kernels, once a vector unit
 
 #include "raster/lanes/vector_math_lanes.inl"
+#include "scenes/surfaces/lighting_lanes.inl"
 
 namespace {
-
-SOFTFOCUS_INLINE Floats whole_power(Floats x, int n) {
-  Floats power = splat(1.0f);
-  for (Floats square = x;; square *= square) {
-    if ((n & 1) != 0) power *= square;
-    n >>= 1;
-    if (n == 0) return power;
-  }
-}
 
 SOFTFOCUS_INLINE Floats signed_byte(Bits packed, int shift) {
   return to_floats(as_ints(packed >> shift & 255u) - 128);
@@ -164,29 +156,16 @@ SOFTFOCUS_INLINE Bits lit_texels(const LitRow& row, const Material& material, Bi
                                  const Vec3Lanes& point, const Vec3Lanes& normal, Mask wanted) {
   const ReliefLights& lights = *row.lights;
   const Vec3Lanes towards_eye = normalize(splat(row.eye) - point);
-  const float least = least_highlight(material.shininess);
-  const bool shines = material.specular != glm::vec3{0.0f};
-  Vec3Lanes base = splat(lights.ambient_light * material.ambient);
-  Vec3Lanes specular = splat(glm::vec3{0.0f});
-  for (const Light& light : lights.lights) {
-    const Vec3Lanes towards_light =
-        light.kind == LightKind::point ? normalize(splat(light.position_or_direction) - point)
-                                       : splat(::softfocus::normalize(light.position_or_direction));
-    const Floats facing = dot(normal, towards_light);
-    const Mask is_lit = facing > 0.0f;
-    base = select(is_lit, base + light.colour * (material.diffuse * facing), base);
-    if (!shines) continue;
-    const Floats highlight = dot(normal, normalize(towards_light + towards_eye));
-    const Mask is_highlight = is_lit & (highlight >= least);
-    const Floats power =
-        whole_power(select(is_highlight, highlight, splat(1.0f)), material.shininess);
-    specular =
-        select(is_highlight, specular + light.colour * (material.specular * power), specular);
-  }
-  return lit_codes(base.x * linear_codes(unlit, 0, lights, wanted) + specular.x, lights, wanted) |
-         lit_codes(base.y * linear_codes(unlit, 8, lights, wanted) + specular.y, lights, wanted)
+  const LitLanes lit =
+      light_points(material, lights.ambient_light, lights.lights,
+                   material.specular != glm::vec3{0.0f}, point, normal, towards_eye);
+  return lit_codes(lit.base.x * linear_codes(unlit, 0, lights, wanted) + lit.specular.x, lights,
+                   wanted) |
+         lit_codes(lit.base.y * linear_codes(unlit, 8, lights, wanted) + lit.specular.y, lights,
+                   wanted)
              << 8 |
-         lit_codes(base.z * linear_codes(unlit, 16, lights, wanted) + specular.z, lights, wanted)
+         lit_codes(lit.base.z * linear_codes(unlit, 16, lights, wanted) + lit.specular.z, lights,
+                   wanted)
              << 16 |
          0xFF000000u;
 }

@@ -1,16 +1,9 @@
 #include "scenes/shadows/embree_shadows.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
-#include <limits>
-#include <stdexcept>
-#include <string>
+#include <string_view>
 #include <vector>
 
+#include "scenes/embree/embree.h"
 #include "scenes/shadows/projected_shadows.h"
 
 namespace softfocus {
@@ -20,33 +13,17 @@ struct EmbreeShadows::Tree {
   const Facets& facets;
   std::vector<float> corners;
   std::vector<unsigned> indices;
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-
-  ~Tree() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
+  EmbreeDevice device;
+  EmbreeTree tree;
 };
 
 namespace {
 
-#if RTC_VERSION_MAJOR >= 4
-using ShadowContext = RTCRayQueryContext;
-#else
-using ShadowContext = RTCIntersectContext;
-#endif
-
-void throw_if_failed(RTCDevice device) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_NONE) return;
-  throw std::runtime_error("shadows by Embree: it failed with error " + std::to_string(error) +
-                           (error == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
-}
+constexpr std::string_view kShadows = "shadows by Embree";
 
 // A ray on its way. The context comes first: filters get a pointer to it.
 struct ShadowQuery {
-  ShadowContext context;
+  EmbreeContext context;
   const Facets& facets;
   std::uint32_t receiver;
   double side;  // 1, or -1 on a receiver's back
@@ -78,7 +55,7 @@ void pass_light(const RTCFilterFunctionNArguments* arguments) {
 
 std::string_view embree_shadows_missing() { return {}; }
 
-EmbreeShadows::EmbreeShadows(const Facets& facets) : tree_(new Tree{facets, {}, {}}) {
+EmbreeShadows::EmbreeShadows(const Facets& facets) : tree_(new Tree{facets, {}, {}, {}, {}}) {
   for (const Facet& facet : facets.facets) {
     for (const glm::dvec3& corner : facet.corners) {
       for (int i = 0; i < 3; ++i) tree_->corners.push_back(static_cast<float>(corner[i]));
@@ -87,22 +64,14 @@ EmbreeShadows::EmbreeShadows(const Facets& facets) : tree_(new Tree{facets, {}, 
   }
   const std::size_t corners = tree_->indices.size();
   tree_->corners.push_back(0.0f);  // Embree reads 16 bytes of the last corner
-  // No threads of its own: rays are traced on the pool's.
-  tree_->device = rtcNewDevice("threads=1");
-  throw_if_failed(tree_->device);
-  tree_->scene = rtcNewScene(tree_->device);
-  rtcSetSceneFlags(tree_->scene, RTC_SCENE_FLAG_ROBUST);  // no ray between two triangles
-  const RTCGeometry geometry = rtcNewGeometry(tree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                             tree_->corners.data(), 0, 3 * sizeof(float), corners);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                             tree_->indices.data(), 0, 3 * sizeof(unsigned), corners / 3);
-  rtcSetGeometryOccludedFilterFunction(geometry, pass_light);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(tree_->scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(tree_->scene);
-  throw_if_failed(tree_->device);
+  tree_->device = embree_device(kShadows);
+  tree_->tree = embree_tree(tree_->device);
+  const EmbreeGeometry geometry =
+      embree_triangles(tree_->device, tree_->corners.data(), corners, tree_->indices);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), pass_light);
+  attach(tree_->tree, geometry);
+  rtcCommitScene(tree_->tree.get());
+  throw_if_failed(tree_->device, kShadows);
 }
 
 EmbreeShadows::~EmbreeShadows() = default;
@@ -116,26 +85,9 @@ bool EmbreeShadows::is_dark(std::uint32_t facet, bool seen_from_back, glm::dvec3
   if (lit != (seen_from_back ? LitSide::back : LitSide::front)) return true;
   ShadowQuery query{
       {}, facets, number, lit == LitSide::front ? 1.0 : -1.0, point, light.place - point * light.w};
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(point.x);
-  ray.org_y = static_cast<float>(point.y);
-  ray.org_z = static_cast<float>(point.z);
-  ray.dir_x = static_cast<float>(query.direction.x);
-  ray.dir_y = static_cast<float>(query.direction.y);
-  ray.dir_z = static_cast<float>(query.direction.z);
-  ray.tfar = light.w != 0.0 ? 1.0f : std::numeric_limits<float>::infinity();
-  ray.mask = std::numeric_limits<unsigned>::max();
-#if RTC_VERSION_MAJOR >= 4
-  rtcInitRayQueryContext(&query.context);
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.context = &query.context;
-  rtcOccluded1(tree_->scene, &ray, &arguments);
-#else
-  rtcInitIntersectContext(&query.context);
-  rtcOccluded1(tree_->scene, &query.context, &ray);
-#endif
-  return ray.tfar < 0.0f;  // as Embree says that something is hit
+  RTCRay ray = embree_ray(point, query.direction);
+  if (light.w != 0.0) ray.tfar = 1.0f;
+  return is_stopped(tree_->tree, ray, query.context);
 }
 
 }  // namespace softfocus

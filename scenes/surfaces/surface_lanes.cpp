@@ -61,6 +61,7 @@ SOFTFOCUS_SURFACE_VARIANT(true, true, true, true)
 #include "raster/pipeline/lanes/interpolate_lanes.inl"
 #include "raster/pipeline/lanes/shade_lanes.inl"
 #include "raster/pipeline/lanes/vertex_lanes.inl"
+#include "scenes/surfaces/lighting_lanes.inl"
 #include "scenes/surfaces/opacity_lanes.inl"
 
 namespace {
@@ -69,45 +70,6 @@ namespace {
 inline constexpr std::size_t kMostVaryings = surface_layout({true, true, true, true}).count;
 
 // --- vertices ---
-
-SOFTFOCUS_INLINE Floats whole_power(Floats x, int n) {
-  Floats power = splat(1.0f);
-  for (Floats square = x;; square *= square) {
-    if ((n & 1) != 0) power *= square;
-    n >>= 1;
-    if (n == 0) return power;
-  }
-}
-
-struct LitLanes {
-  Vec3Lanes base, specular;
-};
-
-// As light_point(); without `shines`, no highlights.
-SOFTFOCUS_INLINE LitLanes light_points(const SurfaceVertexInput& input, bool shines,
-                                       const Vec3Lanes& point, const Vec3Lanes& normal,
-                                       const Vec3Lanes& towards_eye) {
-  const Material& material = *input.material;
-  const float least = least_highlight(material.shininess);
-  LitLanes lit{splat(input.ambient_light * material.ambient), splat(glm::vec3{0.0f})};
-  for (const Light& light : input.lights) {
-    const Vec3Lanes towards_light =
-        light.kind == LightKind::point ? normalize(splat(light.position_or_direction) - point)
-                                       : splat(::softfocus::normalize(light.position_or_direction));
-    const Floats facing = dot(normal, towards_light);
-    const Mask is_lit = facing > 0.0f;
-    lit.base = select(is_lit, lit.base + light.colour * (material.diffuse * facing), lit.base);
-    if (!shines) continue;
-    const Floats highlight = dot(normal, normalize(towards_light + towards_eye));
-    const Mask is_highlight = is_lit & (highlight >= least);
-    // Other lanes take no time either: see least_highlight().
-    const Floats power =
-        whole_power(select(is_highlight, highlight, splat(1.0f)), material.shininess);
-    lit.specular = select(is_highlight, lit.specular + light.colour * (material.specular * power),
-                          lit.specular);
-  }
-  return lit;
-}
 
 struct SurfaceVertexLanes {
   static constexpr std::size_t kVaryings = kMostVaryings;
@@ -145,7 +107,8 @@ struct SurfaceVertexLanes {
     // The front, and then perhaps the back.
     for (std::size_t at = SurfaceLayout::kFront; at < layout.texture; at += layout.side_size) {
       const LitLanes lit = input.material->lit
-                               ? light_points(input, variant.specular, world, normal, towards_eye)
+                               ? light_points(*input.material, input.ambient_light, input.lights,
+                                              variant.specular, world, normal, towards_eye)
                                : LitLanes{splat(input.material->diffuse), splat(glm::vec3{0.0f})};
       varyings[at] = lit.base.x;
       varyings[at + 1] = lit.base.y;

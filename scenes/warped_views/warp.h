@@ -5,8 +5,7 @@
 // of signed radius r lies r p from where the pinhole sees it. So from q it lies r (q - p) from
 // where it is in the picture from p. It is put there to the next whole pixel, where the nearest of
 // all that come is seen: the radius grows with the depth, so it tells what is nearer, too. And it
-// tells the way back, so a pixel keeps nothing else. The colour is then read, bilinearly, from
-// where in the source exactly the pixel's centre comes from.
+// tells the way back, so a pixel keeps nothing else: warped_colours.h reads its colour.
 //
 // Where neighbours move apart by one pixel the farther of the two is put once more, beside itself:
 // else a surface that is stretched would have cracks.
@@ -23,9 +22,6 @@
 #include "scenes/warped_views/warp_source.h"
 
 namespace softfocus {
-
-/// Parts of a pixel that are not worth reading the next texel for.
-inline constexpr float kWholePx = 1.0f / 64.0f;
 
 /// Notes of a pixel between neighbours that moved apart: from where its radius leads, the pixel
 /// that it is of lies one to the left, to the right, above or below.
@@ -70,21 +66,9 @@ struct SourcePixel {
 };
 SourcePixel shown_pixel(glm::vec2 shift, int x, int y, float radius);
 
-/// Fills the tile's radii; its holes are listed by add_colours(). The bits are the same for any
+/// Fills the tile's radii; add_colours() lists its holes. The bits are the same for any
 /// vector unit and any tile.
 void warp_to(const WarpSource& source, glm::vec2 shift, const Rectangle& area, WarpTile& tile,
              Isa isa);
-
-/// Sums of colours, with the rows of a tile.
-struct WarpedColours {
-  std::vector<float> red, green, blue;
-};
-
-/// Adds the tile's colours, and lists its holes.
-void add_colours(const WarpSource& source, glm::vec2 shift, WarpTile& tile, WarpedColours& sums,
-                 Isa isa);
-
-/// Adds sums to totals of that size, and forgets them.
-void settle_sums(std::span<float> sums, std::span<double> totals, Isa isa);
 
 }  // namespace softfocus

@@ -11,6 +11,7 @@
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/lens_camera.h"
+#include "scenes/warped_views/warped_colours.h"
 
 namespace softfocus {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "raster/numbers/hash.h"
-#include "scenes/relief/resample.h"
+#include "scenes/relief/warp/resample.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/cli/errors.h"
 #include "tools/relief/relief_file.h"

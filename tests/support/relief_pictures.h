@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scenes/relief/resample.h"
+#include "scenes/relief/warp/resample.h"
 #include "tests/support/random.h"
 
 namespace softfocus::test {

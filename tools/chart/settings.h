@@ -11,7 +11,7 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "raster/effects/effect.h"
 #include "scenes/lens_views/lens_view_method.h"
-#include "scenes/relief/resample.h"
+#include "scenes/relief/warp/resample.h"
 #include "scenes/scene.h"
 #include "scenes/shadows/volumes/volume_mask.h"
 #include "tools/files/json.h"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "tools/chart/bloom_truth.h"
+#include "tools/chart/contenders/bloom_truth.h"
+#include "tools/chart/contenders/shadow_contenders.h"
+#include "tools/chart/contenders/turn_contenders.h"
 #include "tools/chart/scene.h"
-#include "tools/chart/shadow_contenders.h"
-#include "tools/chart/turn_contenders.h"
 
 namespace softfocus {
 namespace {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "tools/chart/contenders/runner.h"
 #include "tools/chart/front.h"
 #include "tools/chart/key.h"
 #include "tools/chart/measure.h"
 #include "tools/chart/pictures.h"
 #include "tools/chart/record.h"
-#include "tools/chart/runner.h"
 #include "tools/chart/scene_names.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/progress.h"

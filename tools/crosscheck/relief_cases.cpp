@@ -9,9 +9,9 @@
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/relief/map_relief.h"
-#include "scenes/relief/march_relief.h"
-#include "scenes/relief/octahedral_atlas.h"
+#include "scenes/relief/impostors/octahedral_atlas.h"
+#include "scenes/relief/warp/map_relief.h"
+#include "scenes/relief/warp/march_relief.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/objects.h"
 
@@ -41,18 +41,6 @@ Image background_of(const ReliefCase& what, double distance_m) {
     }
   }
   return picture;
-}
-
-/// A camera 12 degrees beside the eye of the relief, as far from the middle.
-Camera camera_beside(const ReliefMaker& maker, glm::dvec3& drawn_from) {
-  Camera camera;
-  const double away = 3.2 * maker.radius_m;
-  drawn_from = maker.middle + normalize(glm::dvec3{0.1, 0.35, 1.0}) * away;
-  camera.target = maker.middle;
-  camera.position = maker.middle + normalize(glm::dvec3{0.32, 0.4, 1.0}) * away;
-  camera.near_m = 0.1 * away;
-  camera.far_m = 10.0 * away;
-  return camera;
 }
 
 /// Floats of a driver as the halves that the emulation stores.
@@ -119,25 +107,46 @@ Image drawn_on_gl(const GlProgram& program, const ReliefCase& what) {
   return stored(read_colour(target, 0));
 }
 
-ReliefTexture relief_of(ReliefMaker& maker, const ReliefCase& what, glm::dvec3 drawn_from,
-                        ThreadPool& pool) {
-  return make_relief(maker, {drawn_from, {0.0, 1.0, 0.0}}, {what.texels, what.texels, 8, false},
-                     pool);
-}
+/// A scene's relief, a camera 12 degrees beside its eye and as far from the middle, and the picture
+/// that it will lie over.
+struct SeenCase {
+  SeenCase(const Bench& bench, const ReliefCase& what)
+      : scene(load_scene(what.scene, scene_search_path({}))),
+        maker(prepare_relief(scene, 0.0, bench.pool)) {
+    const double away = 3.2 * maker.radius_m;
+    Camera camera;
+    camera.target = maker.middle;
+    camera.position = maker.middle + normalize(glm::dvec3{0.32, 0.4, 1.0}) * away;
+    camera.near_m = 0.1 * away;
+    camera.far_m = 10.0 * away;
+    view = camera_matrices(camera, 0.0, what.width, what.height);
+    emulated = background_of(what, away);
+  }
+  SeenCase(const SeenCase&) = delete;
+  SeenCase& operator=(const SeenCase&) = delete;
+
+  ReliefTexture relief(const ReliefCase& what, ThreadPool& pool) {
+    const glm::dvec3 eye =
+        maker.middle + normalize(glm::dvec3{0.1, 0.35, 1.0}) * (3.2 * maker.radius_m);
+    return make_relief(maker, {eye, {0.0, 1.0, 0.0}}, {what.texels, what.texels, 8, false}, pool);
+  }
+
+  Scene scene;
+  ReliefMaker maker;  // refers to the scene
+  CameraMatrices view;
+  Image emulated;
+};
 
 void map_plane_both(const Bench& bench, Tally& tally, const ReliefCase& what) {
-  const Scene scene = load_scene(what.scene, scene_search_path({}));
-  ReliefMaker maker = prepare_relief(scene, 0.0, bench.pool);
-  glm::dvec3 drawn_from{0.0};
-  const Camera camera = camera_beside(maker, drawn_from);
-  const CameraMatrices view = camera_matrices(camera, 0.0, what.width, what.height);
-  const ReliefTexture relief = relief_of(maker, what, drawn_from, bench.pool);
+  SeenCase seen{bench, what};
+  const CameraMatrices& view = seen.view;
+  Image& emulated = seen.emulated;
+  const ReliefTexture relief = seen.relief(what, bench.pool);
   const ReliefExtent extent = *relief_extent(relief);
   const PlaneRectangle place = *warped_extent(relief, extent, view.eye);
   WarpedRelief warped;
   warp_relief(relief, extent, view.eye, place, {}, warped, bench.pool);
   const PlaneMapping mapping = plane_mapping(relief, view, place, what.width, what.height);
-  Image emulated = background_of(what, 3.2 * maker.radius_m);
 
   Image codes = make_image(Format::rgba32f, place.width, place.height);
   Image depths = make_image(Format::r32f, place.width, place.height);
@@ -174,16 +183,13 @@ void map_plane_both(const Bench& bench, Tally& tally, const ReliefCase& what) {
 }
 
 void march_both(const Bench& bench, Tally& tally, const ReliefCase& what) {
-  const Scene scene = load_scene(what.scene, scene_search_path({}));
-  ReliefMaker maker = prepare_relief(scene, 0.0, bench.pool);
-  glm::dvec3 drawn_from{0.0};
-  const Camera camera = camera_beside(maker, drawn_from);
-  const CameraMatrices view = camera_matrices(camera, 0.0, what.width, what.height);
-  const ReliefTexture relief = relief_of(maker, what, drawn_from, bench.pool);
+  SeenCase seen{bench, what};
+  const CameraMatrices& view = seen.view;
+  Image& emulated = seen.emulated;
+  const ReliefTexture relief = seen.relief(what, bench.pool);
   const MarchMapping march =
       march_mapping(relief, *relief_extent(relief), view, what.width, what.height);
   const MarchSettings settings{what.slices, what.bisections};
-  Image emulated = background_of(what, 3.2 * maker.radius_m);
 
   const float most_m = static_cast<float>(last_depth(relief.depth_bits)) * march.warp.step_m;
   const GlTexture texels = upload(light_and_depth(relief)), before = upload(emulated);
@@ -223,13 +229,11 @@ Image octahedral_lines(const std::array<OctahedralView, 3>& views, int height) {
 }
 
 void octahedral_both(const Bench& bench, Tally& tally, const ReliefCase& what) {
-  const Scene scene = load_scene(what.scene, scene_search_path({}));
-  ReliefMaker maker = prepare_relief(scene, 0.0, bench.pool);
-  glm::dvec3 drawn_from{0.0};
-  const Camera camera = camera_beside(maker, drawn_from);
-  const CameraMatrices view = camera_matrices(camera, 0.0, what.width, what.height);
+  SeenCase seen{bench, what};
+  const CameraMatrices& view = seen.view;
+  Image& emulated = seen.emulated;
   const OctahedralAtlas atlas =
-      make_octahedral_atlas(maker, {.views = what.views, .texels = what.texels}, bench.pool);
+      make_octahedral_atlas(seen.maker, {.views = what.views, .texels = what.texels}, bench.pool);
   const OctahedralBlend blend = octahedral_blend(atlas, view.eye - atlas.middle);
   std::array<OctahedralView, 3> views{};
   std::array<GlTexture, 3> texels{};
@@ -241,7 +245,6 @@ void octahedral_both(const Bench& bench, Tally& tally, const ReliefCase& what) {
     heights[static_cast<int>(i)] = single_of(views[i].height_m);
     shares[static_cast<int>(i)] = single_of(blend.shares[i]);
   }
-  Image emulated = background_of(what, 3.2 * maker.radius_m);
   const GlTexture before = upload(emulated), lines = upload(octahedral_lines(views, what.height));
   const GlProgram program =
       link_program(bench.gl, bench.shaders, "fullscreen.vert", "octahedral.frag");

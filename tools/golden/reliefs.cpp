@@ -3,13 +3,13 @@
 #include "raster/images/image_hash.h"
 #include "raster/numbers/hash.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/relief/impostors/octahedral_atlas.h"
+#include "scenes/relief/impostors/relief_box.h"
 #include "scenes/relief/light_relief.h"
 #include "scenes/relief/make_relief.h"
-#include "scenes/relief/map_relief.h"
-#include "scenes/relief/march_relief.h"
-#include "scenes/relief/octahedral_atlas.h"
-#include "scenes/relief/relief_box.h"
-#include "scenes/relief/resample.h"
+#include "scenes/relief/warp/map_relief.h"
+#include "scenes/relief/warp/march_relief.h"
+#include "scenes/relief/warp/resample.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {

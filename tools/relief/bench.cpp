@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "raster/images/texel.h"
-#include "scenes/relief/march_relief.h"
+#include "scenes/relief/warp/march_relief.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/info/time_in_turn.h"

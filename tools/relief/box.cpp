@@ -7,7 +7,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
-#include "scenes/relief/relief_box.h"
+#include "scenes/relief/impostors/relief_box.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/relief/relief_file.h"

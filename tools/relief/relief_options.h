@@ -3,12 +3,13 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "scenes/relief/impostor_schedule.h"
+#include "scenes/relief/impostors/impostor_schedule.h"
 #include "tools/cli/option_values.h"
 #include "tools/options/run_options.h"
 
@@ -17,8 +18,8 @@ namespace softfocus {
 /// The part of a relief, or of six faces, that is shown.
 enum class ReliefPart : std::uint8_t { image, depth, normals, faces, unseen };
 
-/// When a turn's work is done (scenes/relief/impostor_schedule.h): in the frame by one thread or
-/// by all, in slices, or beside the frames.
+/// When a turn's work is done (scenes/relief/impostors/impostor_schedule.h): in the frame by one
+/// thread or by all, in slices, or beside the frames.
 enum class TurnSchedule : std::uint8_t { serial, split, slices, own_thread };
 
 struct ReliefOptions {
@@ -68,6 +69,9 @@ struct ReliefOptions {
   int runs = 20;
   PoolOptions pool;
 };
+
+/// Adds all options; they must live as long as the parser.
+void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& options);
 
 WarpRule warp_rule(const ReliefOptions& options);
 

@@ -7,7 +7,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/srgb.h"
 #include "scenes/relief/light_relief.h"
-#include "scenes/relief/map_relief.h"
+#include "scenes/relief/warp/map_relief.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/relief/relief_file.h"

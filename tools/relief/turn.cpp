@@ -21,12 +21,13 @@ namespace {
 /// Of the bound on the error, each way.
 constexpr int kBoundRegions = 16;
 
-CameraMatrices matrices_at(Camera camera, const ReliefOptions& options, int frame) {
-  if (options.approach > 0.0) {
-    const double share = static_cast<double>(frame % options.frames) / (options.frames - 1);
-    const double farther = options.approach + (1.0 - options.approach) * share;
-    camera.position = camera.target + (camera.position - camera.target) * farther;
-  }
+CameraMatrices matrices_at(const TurnStage& stage, int frame) {
+  const ReliefOptions& options = stage.options;
+  if (options.approach == 0.0) return turned_camera(stage, frame);
+  const double share = static_cast<double>(frame % options.frames) / (options.frames - 1);
+  const double farther = options.approach + (1.0 - options.approach) * share;
+  Camera camera = stage.camera;
+  camera.position = camera.target + (camera.position - camera.target) * farther;
   return camera_matrices(camera, frame, options.size.width, options.size.height);
 }
 
@@ -120,74 +121,58 @@ std::size_t bytes_of_impostor(const ScheduledImpostor& impostor) {
 int turn_impostor(const ReliefOptions& options) {
   if (options.rival) return turn_octahedral(options);
   if (options.box) return turn_box(options);
-  const TurnPictures pictures = turn_pictures(options);
-  const Scene scene = relief_scene(options);
+  TurnStage stage{options};
+  const Scene& scene = stage.scene;
   if (options.moving_light && scene.materials.size() > kMostReliefMaterials) {
     throw UsageError("--moving-light: '" + scene.name + "' has " +
                      std::to_string(scene.materials.size()) + " materials; at most " +
                      std::to_string(kMostReliefMaterials) + " are lit anew");
   }
-  ThreadPool pool{options.pool.threads, options.pool.isa};
   // Of the frames: the own thread is one of all.
   const bool has_own_thread = options.schedule == TurnSchedule::own_thread;
   ThreadPool frame_pool{options.schedule == TurnSchedule::serial ? 1
                         : has_own_thread ? std::max(options.pool.threads - 1, 1)
                                          : options.pool.threads,
                         options.pool.isa};
-  const int width = options.size.width, height = options.size.height;
-  ReliefMaker maker = prepare_relief(scene, options.frame, pool);
-  PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
-  const Camera camera = turn_camera(scene, maker, options);
   std::vector<Light> lights = scene.lights;
   const ReliefLights laid = relief_lights(scene.ambient_light, lights);
   ImpostorSettings settings = turn_settings(options);
   if (options.moving_light) settings.lights = &laid;
   const auto move_lights = [&](int frame) {
     if (!options.moving_light) return;
-    turn_lights(scene, maker.middle, -360.0 * frame / options.frames, lights);
+    turn_lights(scene, stage.maker.middle, -360.0 * frame / options.frames, lights);
   };
-  const glm::vec4 clear = turn_background(scene, camera);
-  const std::uint16_t background_depth = float_to_half(clear.w, HalfRounding::nearest_even);
-  Image redrawn = make_image(Format::rgba16f, width, height);
-  Image shown = make_image(Format::rgba16f, width, height);
-  clear_image(shown, clear, Profile{});
-  const Image blank = shown;
-  prepared.depth = make_image(Format::r32f, width, height);
   ScheduledImpostor impostor = scheduled_impostor({.kind = schedule_kind(options.schedule),
                                                    .warps_aside = options.warps_aside,
                                                    .update_frames = options.update_frames,
                                                    .predicts = options.predicts},
                                                   options.pool.isa);
   TurnSums sums;
-  const auto redraw = [&](int frame) {
-    redraw_turned(prepared, matrices_at(camera, options, frame), options, lights, clear, redrawn,
-                  pool);
-  };
-  const auto measure = [&](int frame, const Image& picture) {
-    measure_frame(redrawn, picture, background_depth, pool, sums.errors);
-    write_pair(pictures, frame, redrawn, picture);
+  const auto redrawn_ms = [&](int frame) {
+    return milliseconds_of([&] { redraw(stage, matrices_at(stage, frame), lights); });
   };
   const auto is_measured = [&](int frame) { return frame % options.every == 0; };
-  redraw(0);  // warms up
+  redrawn_ms(0);  // warms up
   Rectangle changed{0, 0, 0, 0};
   ErrorShares shares;
   std::vector<KeptFrame> kept;
   const int frames = options.turns * options.frames;
   for (int frame = 0; frame < frames; ++frame) {
-    const CameraMatrices matrices = matrices_at(camera, options, frame);
+    const CameraMatrices matrices = matrices_at(stage, frame);
     move_lights(frame);
     // An own thread must not get the time that redrawing takes: that comes after the turn.
-    if (!has_own_thread) sums.redrawn_ms.push_back(milliseconds_of([&] { redraw(frame); }));
+    if (!has_own_thread) sums.redrawn_ms.push_back(redrawn_ms(frame));
     ScheduledFrame done{};
     const double ms = milliseconds_of([&] {
       // What the frame before has drawn is cleared. The update's slice comes last, after the frame
       // could be shown.
-      clear_area(blank, changed, shown, frame_pool);
+      clear_area(stage.blank, changed, stage.shown, frame_pool);
       const auto end = std::chrono::steady_clock::now() +
                        std::chrono::duration<double, std::milli>(options.slice_ms);
-      done = update_scheduled(impostor, maker, settings, matrices, camera.up, height, frame_pool,
+      done = update_scheduled(impostor, stage.maker, settings, matrices, stage.camera.up,
+                              options.size.height, frame_pool,
                               [&] { return std::chrono::steady_clock::now() < end; });
-      changed = draw_impostor(impostor.shown, matrices, shown, frame_pool);
+      changed = draw_impostor(impostor.shown, matrices, stage.shown, frame_pool);
     });
     add_frame(done, ms, sums);
     if (done.takes || done.renewals > 0 || done.step == ImpostorStep::recall) shares = {};
@@ -197,18 +182,18 @@ int turn_impostor(const ReliefOptions& options) {
     }
     if (!is_measured(frame)) continue;
     if (has_own_thread) {
-      kept.push_back({frame, changed, part_of(shown, changed)});
+      kept.push_back({frame, changed, part_of(stage.shown, changed)});
     } else {
-      measure(frame, shown);
+      measure_frame(stage, frame, stage.shown, sums.errors);
     }
   }
   finish_update(impostor);
   for (int frame = 0; has_own_thread && frame < frames; ++frame) {
     move_lights(frame);
-    sums.redrawn_ms.push_back(milliseconds_of([&] { redraw(frame); }));
+    sums.redrawn_ms.push_back(redrawn_ms(frame));
     if (!is_measured(frame)) continue;
     const KeptFrame& part = kept[static_cast<std::size_t>(frame / options.every)];
-    measure(frame, whole_of(part, blank));
+    measure_frame(stage, frame, whole_of(part, stage.blank), sums.errors);
   }
   print_sums(scene, options, sums);
   return kDone;

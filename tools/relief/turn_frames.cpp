@@ -7,6 +7,8 @@
 
 #include "dof/measure/measures.h"
 #include "dof/measure/outline.h"
+#include "raster/images/texel.h"
+#include "raster/numbers/half.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/errors.h"
@@ -25,6 +27,8 @@ double sorted_at(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
+
+namespace {
 
 Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOptions& options) {
   Camera camera = scene.camera;
@@ -47,15 +51,64 @@ glm::vec4 turn_background(const Scene& scene, const Camera& camera) {
   return {glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
 }
 
-void redraw_turned(PreparedScene& prepared, const CameraMatrices& camera,
-                   const ReliefOptions& options, std::span<const Light> lights, glm::vec4 clear,
-                   Image& picture, ThreadPool& pool) {
-  RenderPass& pass = prepared.pass;
-  pass.targets.colour[0] = &picture;
-  pass.targets.depth = &prepared.depth;
-  record_scene(prepared, camera, options.frame, pass, lights);
-  pass.clear_colour = clear;
-  finish(pass, pool);
+/// Of -o, which must have a number.
+std::optional<NumberedName> frame_names(const ReliefOptions& options, FileFormat& format) {
+  if (options.output.empty()) return std::nullopt;
+  const std::optional<NumberedName> name = numbered_name("-o", options.output);
+  const auto by_name = format_by_extension(options.output);
+  if (!name || !by_name) {
+    throw UsageError("-o '" + options.output +
+                     "': a turn has many frames; a name such as turn_%04d.png would be right");
+  }
+  check_writable(name_at(*name, 0));
+  format = *by_name;
+  return name;
+}
+
+void write_pair(const TurnStage& stage, int frame, const Image& shown) {
+  const Image& redrawn = stage.redrawn;
+  Image pair = make_image(Format::rgba16f, 2 * redrawn.width, redrawn.height);
+  for (int y = 0; y < pair.height; ++y) {
+    std::uint16_t* to = row<std::uint16_t>(pair, y).data();
+    const auto left = row<std::uint16_t>(redrawn, y), right = row<std::uint16_t>(shown, y);
+    std::copy(left.begin(), left.end(), to);
+    std::copy(right.begin(), right.end(), to + left.size());
+  }
+  WholeFile file{name_at(*stage.name, frame)};
+  file.write(encode(pair, stage.format));
+  file.commit();
+}
+
+}  // namespace
+
+TurnStage::TurnStage(const ReliefOptions& told)
+    : options(told),
+      name(frame_names(told, format)),
+      scene(relief_scene(told)),
+      pool(told.pool.threads, told.pool.isa),
+      maker(prepare_relief(scene, told.frame, pool)),
+      prepared(prepare_scene(scene, Profile{}, pool)),
+      camera(turn_camera(scene, maker, told)),
+      clear(turn_background(scene, camera)),
+      background_depth(float_to_half(clear.w, HalfRounding::nearest_even)),
+      redrawn(make_image(Format::rgba16f, told.size.width, told.size.height)),
+      shown(redrawn) {
+  clear_image(shown, clear, Profile{});
+  blank = shown;
+  prepared.depth = make_image(Format::r32f, told.size.width, told.size.height);
+}
+
+CameraMatrices turned_camera(const TurnStage& stage, double frame) {
+  return camera_matrices(stage.camera, frame, stage.shown.width, stage.shown.height);
+}
+
+void redraw(TurnStage& stage, const CameraMatrices& camera, std::span<const Light> lights) {
+  RenderPass& pass = stage.prepared.pass;
+  pass.targets.colour[0] = &stage.redrawn;
+  pass.targets.depth = &stage.prepared.depth;
+  record_scene(stage.prepared, camera, stage.options.frame, pass, lights);
+  pass.clear_colour = stage.clear;
+  finish(pass, stage.pool);
 }
 
 void clear_area(const Image& blank, const Rectangle& area, Image& to, ThreadPool& pool) {
@@ -71,22 +124,23 @@ void clear_area(const Image& blank, const Rectangle& area, Image& to, ThreadPool
   });
 }
 
-void measure_frame(const Image& redrawn, const Image& shown, std::uint16_t background_depth,
-                   ThreadPool& pool, TurnErrors& errors) {
-  const std::vector<std::uint8_t> drawn = coverage_of(redrawn, background_depth);
-  const OutlineError outline =
-      outline_error(drawn, coverage_of(shown, background_depth), redrawn.width, redrawn.height);
+void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& errors) {
+  const Image& redrawn = stage.redrawn;
+  const std::vector<std::uint8_t> drawn = coverage_of(redrawn, stage.background_depth);
+  const OutlineError outline = outline_error(drawn, coverage_of(shown, stage.background_depth),
+                                             redrawn.width, redrawn.height);
   errors.outline_px.push_back(outline.mean_px);
   errors.most_outline_px = std::fmax(errors.most_outline_px, outline.most_px);
   errors.lost += outline.lost;
   errors.gained += outline.gained;
   errors.seen += outline.seen;
-  const MeasuredPictures measured = measure_pictures(redrawn, shown, nullptr, {}, pool);
+  const MeasuredPictures measured = measure_pictures(redrawn, shown, nullptr, {}, stage.pool);
   errors.flip.push_back(measured.whole.flip);
   // All of FLIP lies on the object and around it.
   const auto pixels = static_cast<double>(drawn.size());
   errors.object_flip.push_back(
       outline.seen == 0 ? 0.0 : measured.whole.flip * pixels / static_cast<double>(outline.seen));
+  if (stage.name) write_pair(stage, frame, shown);
 }
 
 void print_errors(const TurnErrors& errors) {
@@ -98,32 +152,28 @@ void print_errors(const TurnErrors& errors) {
   std::printf("of %zu pixels %zu lost, %zu gained\n", errors.seen, errors.lost, errors.gained);
 }
 
-TurnPictures turn_pictures(const ReliefOptions& options) {
-  TurnPictures pictures;
-  if (options.output.empty()) return pictures;
-  pictures.name = numbered_name("-o", options.output);
-  const auto by_name = format_by_extension(options.output);
-  if (!pictures.name || !by_name) {
-    throw UsageError("-o '" + options.output +
-                     "': a turn has many frames; a name such as turn_%04d.png would be right");
+void turn_drawn_once(TurnStage& stage, const char* what, const DrawTurned& draw,
+                     const std::function<void(const CameraMatrices&)>& measured) {
+  TurnErrors errors;
+  std::vector<double> redrawn_ms, shown_ms;
+  Rectangle changed{0, 0, 0, 0};
+  redraw(stage, turned_camera(stage, 0.0), stage.scene.lights);  // warms up
+  for (int frame = 0; frame < stage.options.frames; ++frame) {
+    const CameraMatrices camera = turned_camera(stage, frame);
+    redrawn_ms.push_back(milliseconds_of([&] { redraw(stage, camera, stage.scene.lights); }));
+    shown_ms.push_back(milliseconds_of([&] {
+      clear_area(stage.blank, changed, stage.shown, stage.pool);
+      changed = draw(camera);
+    }));
+    if (frame % stage.options.every != 0) continue;
+    measure_frame(stage, frame, stage.shown, errors);
+    if (measured) measured(camera);
   }
-  check_writable(name_at(*pictures.name, 0));
-  pictures.format = *by_name;
-  return pictures;
-}
-
-void write_pair(const TurnPictures& pictures, int frame, const Image& redrawn, const Image& shown) {
-  if (!pictures.name) return;
-  Image pair = make_image(Format::rgba16f, 2 * redrawn.width, redrawn.height);
-  for (int y = 0; y < pair.height; ++y) {
-    std::uint16_t* to = row<std::uint16_t>(pair, y).data();
-    const auto left = row<std::uint16_t>(redrawn, y), right = row<std::uint16_t>(shown, y);
-    std::copy(left.begin(), left.end(), to);
-    std::copy(right.begin(), right.end(), to + left.size());
-  }
-  WholeFile file{name_at(*pictures.name, frame)};
-  file.write(encode(pair, pictures.format));
-  file.commit();
+  const double redrawn_mean = mean_of(redrawn_ms), shown_mean = mean_of(shown_ms);
+  std::printf("ms a frame: redrawn %.3f, %s %.3f, ratio %.2f; medians: redrawn %.3f, %s %.3f\n",
+              redrawn_mean, what, shown_mean, redrawn_mean / shown_mean, sorted_at(redrawn_ms, 0.5),
+              what, sorted_at(shown_ms, 0.5));
+  print_errors(errors);
 }
 
 }  // namespace softfocus

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,17 +27,32 @@ double mean_of(const std::vector<double>& values);
 /// The value at a share of 0..1 of the sorted ones; 0 of none.
 double sorted_at(std::vector<double> values, double share);
 
-/// About the object's middle, from the scene's camera on: a full turn in --frames, or none with
-/// --approach. Throws UsageError if --zoom would take the eye into the object.
-Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOptions& options);
+/// What a turn is made of: the scene, about the object's middle from the scene's camera on, a full
+/// turn in --frames, or none with --approach.
+struct TurnStage {
+  /// Throws UsageError if -o has no number or no known ending, or if --zoom would take the eye into
+  /// the object.
+  explicit TurnStage(const ReliefOptions& told);
+  TurnStage(const TurnStage&) = delete;
+  TurnStage& operator=(const TurnStage&) = delete;
 
-/// The scene's background at the camera's far distance.
-glm::vec4 turn_background(const Scene& scene, const Camera& camera);
+  const ReliefOptions& options;
+  FileFormat format = FileFormat::png;  ///< by the name, which is set after it
+  std::optional<NumberedName> name;     ///< of the files of frames; none without -o
+  Scene scene;
+  ThreadPool pool;
+  ReliefMaker maker;       ///< refers to the scene, as does `prepared`
+  PreparedScene prepared;  ///< with a depth buffer of the pictures' size
+  Camera camera;
+  glm::vec4 clear;                 ///< the scene's background at the camera's far distance
+  std::uint16_t background_depth;  ///< its alpha, a half
+  Image redrawn, shown, blank;     ///< RGBA16F; `shown` is blank at first
+};
 
-/// A frame of the turn, by the pipeline; `prepared` has a depth buffer of the picture's size.
-void redraw_turned(PreparedScene& prepared, const CameraMatrices& camera,
-                   const ReliefOptions& options, std::span<const Light> lights, glm::vec4 clear,
-                   Image& picture, ThreadPool& pool);
+CameraMatrices turned_camera(const TurnStage& stage, double frame);
+
+/// Draws a frame by the pipeline.
+void redraw(TurnStage& stage, const CameraMatrices& camera, std::span<const Light> lights);
 
 /// Copies a part from a blank RGBA16F picture of the same size. It reads the first row alone, which
 /// stays in the cache: reading all takes longer than a warp.
@@ -49,20 +65,16 @@ struct TurnErrors {
   std::size_t lost = 0, gained = 0, seen = 0;  ///< pixels, of all measured frames
 };
 
-void measure_frame(const Image& redrawn, const Image& shown, std::uint16_t background_depth,
-                   ThreadPool& pool, TurnErrors& errors);
+/// Compares a frame with the redrawn one, and writes both, side by side, if there is -o.
+void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& errors);
 void print_errors(const TurnErrors& errors);
 
-/// The files of frames; none without -o.
-struct TurnPictures {
-  std::optional<NumberedName> name;
-  FileFormat format = FileFormat::png;
-};
+/// Lays something over the stage's blank picture, and returns the part that it may have changed.
+using DrawTurned = std::function<Rectangle(const CameraMatrices&)>;
 
-/// Throws UsageError if -o has no number or no known ending.
-TurnPictures turn_pictures(const ReliefOptions& options);
-
-/// The redrawn frame, and what is shown to its right.
-void write_pair(const TurnPictures& pictures, int frame, const Image& redrawn, const Image& shown);
+/// A turn of something that was drawn once, beside redrawing; prints times, named by `what`, and
+/// errors. `measured` is called at each measured frame.
+void turn_drawn_once(TurnStage& stage, const char* what, const DrawTurned& draw,
+                     const std::function<void(const CameraMatrices&)>& measured = {});
 
 }  // namespace softfocus

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "scenes/relief/impostor_schedule.h"
+#include "scenes/relief/impostors/impostor_schedule.h"
 #include "tools/relief/turn_frames.h"
 
 namespace softfocus {

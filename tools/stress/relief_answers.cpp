@@ -7,9 +7,9 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/draw_scene.h"
-#include "scenes/relief/impostor.h"
-#include "scenes/relief/march_relief.h"
-#include "scenes/relief/octahedral_atlas.h"
+#include "scenes/relief/impostors/impostor.h"
+#include "scenes/relief/impostors/octahedral_atlas.h"
+#include "scenes/relief/warp/march_relief.h"
 
 namespace softfocus {
 namespace {

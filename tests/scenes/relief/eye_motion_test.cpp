@@ -1,4 +1,4 @@
-#include "scenes/relief/eye_motion.h"
+#include "scenes/relief/impostors/eye_motion.h"
 
 #include <doctest/doctest.h>
 

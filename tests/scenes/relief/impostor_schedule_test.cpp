@@ -1,4 +1,4 @@
-#include "scenes/relief/impostor_schedule.h"
+#include "scenes/relief/impostors/impostor_schedule.h"
 
 #include <doctest/doctest.h>
 
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "raster/images/texel.h"
-#include "scenes/make/shapes.h"
 #include "scenes/surfaces/surface_stages.h"
+#include "tests/support/relief_scenes.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -16,16 +16,7 @@ namespace {
 
 constexpr int kSide = 64;
 
-Scene ring_scene() {
-  Scene scene;
-  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
-  scene.materials.emplace_back();
-  scene.meshes.push_back(make_torus(0.7, 0.3, 48, 24));
-  scene.objects.push_back({});
-  scene.camera.position = {1.5, 2.0, 3.5};
-  scene.camera.orbit_degrees_per_frame = 3.0;
-  return scene;
-}
+Scene ring_scene() { return test::orbited_torus(48, 3.0); }
 
 struct TurnRecord {
   std::vector<ScheduledFrame> frames;

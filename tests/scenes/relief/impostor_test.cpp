@@ -1,4 +1,4 @@
-#include "scenes/relief/impostor.h"
+#include "scenes/relief/impostors/impostor.h"
 
 #include <doctest/doctest.h>
 
@@ -7,6 +7,7 @@
 #include "raster/images/texel.h"
 #include "scenes/make/shapes.h"
 #include "scenes/surfaces/surface_stages.h"
+#include "tests/support/relief_scenes.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -15,16 +16,7 @@ namespace {
 
 constexpr int kSize = 96;
 
-Scene torus_scene() {
-  Scene scene;
-  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
-  scene.materials.emplace_back();
-  scene.meshes.push_back(make_torus(0.7, 0.3, 96, 48));
-  scene.objects.push_back({});
-  scene.camera.position = {1.5, 2.0, 3.5};
-  scene.camera.orbit_degrees_per_frame = 1.0;
-  return scene;
-}
+Scene torus_scene() { return test::orbited_torus(96, 1.0); }
 
 CameraMatrices seen_at(const Scene& scene, double frame) {
   return camera_matrices(scene.camera, frame, kSize, kSize);

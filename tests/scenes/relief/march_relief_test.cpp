@@ -1,4 +1,4 @@
-#include "scenes/relief/march_relief.h"
+#include "scenes/relief/warp/march_relief.h"
 
 #include <doctest/doctest.h>
 

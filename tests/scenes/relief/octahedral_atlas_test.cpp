@@ -1,4 +1,4 @@
-#include "scenes/relief/octahedral_atlas.h"
+#include "scenes/relief/impostors/octahedral_atlas.h"
 
 #include <doctest/doctest.h>
 
@@ -8,6 +8,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/make/shapes.h"
+#include "tests/support/relief_scenes.h"
 
 using namespace softfocus;
 
@@ -15,15 +16,6 @@ namespace {
 
 constexpr int kSize = 48;
 constexpr float kFar = 100.0f;
-
-Scene one_mesh(Mesh mesh) {
-  Scene scene;
-  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
-  scene.materials.emplace_back();
-  scene.meshes.push_back(std::move(mesh));
-  scene.objects.push_back({});
-  return scene;
-}
 
 CameraMatrices seen_from(glm::dvec3 eye) {
   Camera camera;
@@ -125,7 +117,7 @@ TEST_CASE("shares of a view sum to one, and all weight is the view's own where o
 }
 
 TEST_CASE("an atlas shows a sphere as it is drawn, but for pixels at its outline") {
-  const Scene scene = one_mesh(make_sphere(0.8, 64, 32));
+  const Scene scene = test::lit_mesh(make_sphere(0.8, 64, 32));
   const OctahedralAtlas atlas = atlas_of(scene, {.views = 16, .texels = 48});
   for (const glm::dvec3 eye :
        {glm::dvec3{0.4, 1.0, 2.6}, glm::dvec3{0.0, 3.0, 0.1}, glm::dvec3{-2.0, -2.0, 0.3}}) {
@@ -139,7 +131,7 @@ TEST_CASE("an atlas shows a sphere as it is drawn, but for pixels at its outline
 }
 
 TEST_CASE("each step of parallax brings a ring's depths nearer to where they are") {
-  const Scene scene = one_mesh(make_torus(0.7, 0.25, 48, 24));
+  const Scene scene = test::lit_mesh(make_torus(0.7, 0.25, 48, 24));
   const OctahedralAtlas atlas = atlas_of(scene, {.views = 8, .texels = 64, .depth_bits = 16});
   const CameraMatrices camera = seen_from({0.7, 1.1, 2.6});
   const double flat = depth_error(shown_by(atlas, camera, 0), scene, camera);
@@ -151,7 +143,7 @@ TEST_CASE("each step of parallax brings a ring's depths nearer to where they are
 }
 
 TEST_CASE("what is nearer in the picture stays, and a hemisphere is seen from below from its rim") {
-  const Scene scene = one_mesh(make_sphere(0.8, 48, 24));
+  const Scene scene = test::lit_mesh(make_sphere(0.8, 48, 24));
   const OctahedralAtlas atlas = atlas_of(scene, {.views = 4, .hemisphere = true, .texels = 48});
   const CameraMatrices camera = seen_from({0.0, -0.4, 3.0});
   CHECK(load_texel(shown_by(atlas, camera, 1), kSize / 2, kSize / 2).w < 3.0f);
@@ -163,7 +155,7 @@ TEST_CASE("what is nearer in the picture stays, and a hemisphere is seen from be
 }
 
 TEST_CASE("an atlas gives the same bits with one thread and with three") {
-  const Scene scene = one_mesh(make_torus(0.7, 0.3, 24, 12));
+  const Scene scene = test::lit_mesh(make_torus(0.7, 0.3, 24, 12));
   const OctahedralAtlas atlas = atlas_of(scene, {.views = 3, .texels = 40});
   const CameraMatrices camera = seen_from({1.0, 1.3, 2.0});
   CHECK(shown_by(atlas, camera, 2, 1).bytes == shown_by(atlas, camera, 2, 3).bytes);
@@ -171,7 +163,7 @@ TEST_CASE("an atlas gives the same bits with one thread and with three") {
 
 TEST_CASE("a texel lies where its point is projected") {
   // The ray through a pixel meets the plane of a texel's own depth at that texel.
-  const Scene scene = one_mesh(make_sphere(0.8, 32, 16));
+  const Scene scene = test::lit_mesh(make_sphere(0.8, 32, 16));
   const OctahedralAtlas atlas = atlas_of(scene, {.views = 4, .texels = 40});
   const CameraMatrices camera = seen_from({0.5, 0.9, 2.4});
   const ReliefTexture& picture = atlas.pictures[6];

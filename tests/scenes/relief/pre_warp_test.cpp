@@ -1,4 +1,4 @@
-#include "scenes/relief/pre_warp.h"
+#include "scenes/relief/warp/pre_warp.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "scenes/relief/relief_box.h"
+#include "scenes/relief/impostors/relief_box.h"
 
 #include <doctest/doctest.h>
 
@@ -7,6 +7,7 @@
 
 #include "raster/images/texel.h"
 #include "scenes/make/shapes.h"
+#include "tests/support/relief_scenes.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -16,18 +17,9 @@ namespace {
 constexpr int kBoxSize = 72;
 constexpr float kBoxFar = 1000.0f;
 
-Scene lit_scene(Mesh mesh) {
-  Scene scene;
-  scene.lights = {{LightKind::directional, {0.3f, 0.8f, 1.0f}, glm::vec3{1.0f}}};
-  scene.materials.emplace_back();
-  scene.meshes.push_back(std::move(mesh));
-  scene.objects.push_back({});
-  return scene;
-}
-
 /// Two walls side by side, turned by 45 degrees: a slit that no face sees into.
 Scene slit_scene() {
-  Scene scene = lit_scene(make_cube(1.0, 1));
+  Scene scene = test::lit_mesh(make_cube(1.0, 1));
   for (const double side : {-1.0, 1.0}) {
     Object wall;
     wall.scale = {2.0, 0.05, 2.0};
@@ -71,7 +63,7 @@ int count_of(const std::vector<FacePoint>& points, FacePoint which) {
 }  // namespace
 
 TEST_CASE("from outside of a box one to three faces are seen: those that the eye lies before") {
-  const Scene scene = lit_scene(make_cube(2.0, 1));
+  const Scene scene = test::lit_mesh(make_cube(2.0, 1));
   ThreadPool pool(1);
   ReliefMaker maker = prepare_relief(scene, 0.0, pool);
   const ReliefBox box = draw_relief_box(maker, {.texels = 16}, pool);
@@ -83,7 +75,7 @@ TEST_CASE("from outside of a box one to three faces are seen: those that the eye
 }
 
 TEST_CASE("the faces of a box have texels of one size, the longest side as many as asked for") {
-  Scene scene = lit_scene(make_cube(1.0, 1));
+  Scene scene = test::lit_mesh(make_cube(1.0, 1));
   scene.objects[0].scale = {4.0, 2.0, 1.0};
   ThreadPool pool(1);
   ReliefMaker maker = prepare_relief(scene, 0.0, pool);
@@ -97,7 +89,7 @@ TEST_CASE("the faces of a box have texels of one size, the longest side as many 
 }
 
 TEST_CASE("a ring is whole from everywhere, its faces laid over each other by depth") {
-  const Scene scene = lit_scene(make_torus(0.7, 0.3, 48, 24));
+  const Scene scene = test::lit_mesh(make_torus(0.7, 0.3, 48, 24));
   ThreadPool pool(2);
   ReliefMaker maker = prepare_relief(scene, 0.0, pool);
   const ReliefBox box = draw_relief_box(maker, {.texels = 96, .depth_bits = 16}, pool);
@@ -130,7 +122,7 @@ TEST_CASE("a ring is whole from everywhere, its faces laid over each other by de
 }
 
 TEST_CASE("of a ball there is nothing that no face has") {
-  const Scene scene = lit_scene(make_sphere(1.0, 48, 24));
+  const Scene scene = test::lit_mesh(make_sphere(1.0, 48, 24));
   ThreadPool pool(2);
   ReliefMaker maker = prepare_relief(scene, 0.0, pool);
   const ReliefBox box = draw_relief_box(maker, {.texels = 64, .depth_bits = 16}, pool);
@@ -142,7 +134,7 @@ TEST_CASE("of a ball there is nothing that no face has") {
 }
 
 TEST_CASE("a texel that is steep to a face is left to a seen face that has its point") {
-  const Scene scene = lit_scene(make_sphere(1.0, 48, 24));
+  const Scene scene = test::lit_mesh(make_sphere(1.0, 48, 24));
   ThreadPool pool(1);
   ReliefMaker maker = prepare_relief(scene, 0.0, pool);
   const ReliefBox box = draw_relief_box(maker, {.texels = 48, .depth_bits = 16}, pool);
@@ -175,7 +167,7 @@ TEST_CASE("a slit across all axes is seen by no face, and counted") {
 }
 
 TEST_CASE("a face has the points that its texels show, and none behind them") {
-  const Scene scene = lit_scene(make_cube(2.0, 1));
+  const Scene scene = test::lit_mesh(make_cube(2.0, 1));
   ThreadPool pool(1);
   ReliefMaker maker = prepare_relief(scene, 0.0, pool);
   const ReliefBox box = draw_relief_box(maker, {.texels = 40, .depth_bits = 16}, pool);
@@ -187,7 +179,7 @@ TEST_CASE("a face has the points that its texels show, and none behind them") {
 }
 
 TEST_CASE("a view of a box has the same bits for any number of threads and vector unit") {
-  const Scene scene = lit_scene(make_torus(0.7, 0.3, 24, 12));
+  const Scene scene = test::lit_mesh(make_torus(0.7, 0.3, 24, 12));
   const CameraMatrices camera = box_seen_from({1.5, 2.0, 3.0});
   const auto picture_by = [&](ThreadPool& pool) {
     ReliefMaker maker = prepare_relief(scene, 0.0, pool);

@@ -1,4 +1,4 @@
-#include "scenes/relief/resample.h"
+#include "scenes/relief/warp/resample.h"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "raster/numbers/vector_math.h"
-#include "scenes/relief/resample_walk.h"
+#include "scenes/relief/warp/resample_walk.h"
 #include "tests/support/relief_pictures.h"
 
 using namespace softfocus;

@@ -1,4 +1,4 @@
-#include "scenes/relief/warp_error.h"
+#include "scenes/relief/warp/warp_error.h"
 
 #include <doctest/doctest.h>
 

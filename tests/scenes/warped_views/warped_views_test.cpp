@@ -7,6 +7,7 @@
 #include "dof/measure/flip.h"
 #include "raster/images/texel.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/warped_views/warped_colours.h"
 #include "tests/support/lens_view_scenes.h"
 #include "tests/support/random.h"
 

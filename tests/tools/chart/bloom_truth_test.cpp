@@ -1,4 +1,4 @@
-#include "tools/chart/bloom_truth.h"
+#include "tools/chart/contenders/bloom_truth.h"
 
 #include <doctest/doctest.h>
 

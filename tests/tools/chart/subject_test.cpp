@@ -8,12 +8,12 @@
 
 #include "dof/halve.h"
 #include "dof/measure/measures.h"
+#include "tools/chart/contenders/runner.h"
+#include "tools/chart/contenders/turn_contenders.h"
 #include "tools/chart/front.h"
 #include "tools/chart/options.h"
-#include "tools/chart/runner.h"
 #include "tools/chart/scene.h"
 #include "tools/chart/truth.h"
-#include "tools/chart/turn_contenders.h"
 #include "tools/cli/errors.h"
 
 using namespace softfocus;

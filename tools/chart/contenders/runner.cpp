@@ -1,0 +1,312 @@
+#include "tools/chart/contenders/runner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "dof/halve.h"
+#include "raster/numbers/profile.h"
+#include "scenes/auto/auto_picture.h"
+#include "scenes/draw/object_numbers.h"
+#include "scenes/draw/velocity.h"
+#include "scenes/temporal/frame_history.h"
+
+namespace softfocus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double, std::milli>(end - start).count();
+}
+
+}  // namespace
+
+bool can_run(const ChartScene& scene, const ChartEntry& entry) {
+  if (entry.arithmetic == Arithmetic::floats) return true;
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
+  return fixed_settings_error({.coc = scene.coc, .max_coc_px = max_coc_px}) == nullptr;
+}
+
+ChartRunner::ChartRunner(const ChartScene& scene, ThreadPool& pool)
+    : scene_(scene), views_(accumulation_input(scene, kSampleCounts.back())), pool_(pool) {
+  const int width = scene.pinhole.width, height = scene.pinhole.height;
+  drawn_ = make_image(Format::rgba16f, width, height);
+  result_ = make_image(Format::rgba16f, width, height);
+}
+
+RunTime ChartRunner::run(const ChartEntry& entry) {
+  if (entry.max_error) return choose(*entry.max_error);
+  if (entry.of_scene != nullptr) return draw_otherwise(*entry.of_scene);
+  if (is_of_effects(entry)) return draw_with_effects(entry);
+  if (entry.shadows) return draw_with_shadows(entry);
+  if (entry.turn) return {turn_contenders().run(*entry.turn, result_), std::nullopt};
+  if (entry.method == kOfFilteredViews) return filter_views(entry.samples);
+  if (entry.drawn_views > 0) return warp_views(entry.samples, entry.drawn_views);
+  return entry.filter != nullptr ? filter(entry) : accumulate(entry.samples);
+}
+
+RunTime ChartRunner::run_warm(const ChartEntry& entry) {
+  // A turn is long: its own first frames warm it up.
+  if (!entry.turn) warm_up(entry);
+  return run(entry);
+}
+
+PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
+  const auto found = prepared_.find(profile);
+  if (found != prepared_.end()) return found->second;
+  return prepared_.emplace(profile, prepare_scene(scene_.scene, *find_profile(profile), pool_))
+      .first->second;
+}
+
+void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
+  const std::vector<ConstImageView> behind{behind_.begin(), behind_.end()};
+  const std::vector<TransparentLayer> transparent = views_of(transparent_);
+  apply(filter,
+        {drawn_,
+         {.coc = scene_.coc, .max_coc_px = max_coc_px},
+         profile,
+         objects_,
+         behind,
+         transparent},
+        result_, pool_);
+}
+
+// What belongs to a lens is made once, as it would be for many frames.
+const FixedTable& ChartRunner::table_for(float max_coc_px) {
+  const auto found = tables_.find(max_coc_px);
+  if (found != tables_.end()) return found->second;
+  const fixed::Lens lens = fixed_lens({.coc = scene_.coc, .max_coc_px = max_coc_px});
+  return tables_.emplace(max_coc_px, fixed_table(half_table(lens))).first->second;
+}
+
+void ChartRunner::filter_drawn(const ChartEntry& entry, const Profile& profile) {
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
+  if (entry.arithmetic == Arithmetic::fixed_8) {
+    two_pass_bytes(drawn_, table_for(max_coc_px), result_, pool_);
+  } else {
+    filter_drawn(*entry.filter, max_coc_px, profile);
+  }
+}
+
+RunTime ChartRunner::filter(const ChartEntry& entry) {
+  const Profile profile = *find_profile(entry.profile);
+  PreparedScene& prepared = prepared_for(entry.profile);
+  behind_.resize(entry.filter->layers - 1);
+  for (Image& layer : behind_) {
+    if (layer.bytes.empty()) layer = make_image(Format::rgba16f, drawn_.width, drawn_.height);
+  }
+  const Clock::time_point start = Clock::now();
+  if (entry.arithmetic == Arithmetic::floats) {
+    draw_layers(prepared, scene_.view, scene_.frame, drawn_, behind_, pool_);
+    transparent_ = draw_transparent(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  } else {
+    draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  }
+  objects_ = object_numbers_for(*entry.filter, scene_.scene, scene_.view, scene_.frame,
+                                drawn_.width, drawn_.height, profile, pool_);
+  const Clock::time_point drawn = Clock::now();
+  filter_drawn(entry, profile);
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
+/// Its picture: a scene's velocity is over the shutter of the chart.
+Image ChartRunner::with_effect(ChosenEffect chosen, const Image& before) {
+  Image velocity;
+  if (chosen.effect->velocity != VelocityOf::nothing) {
+    chosen.parameters[0] = views_.sampling.shutter_frames;
+    velocity = velocity_for(chosen, scene_.scene, scene_.frame, before, Profile{}, pool_);
+  }
+  return apply(*chosen.effect, {before, chosen.parameters, Profile{}, velocity}, pool_);
+}
+
+/// The last of so many frames of the moment: what came before is no part of its time.
+RunTime ChartRunner::draw_after_frames(const ChosenEffect& chosen, int frames) {
+  PreparedScene& prepared = prepared_for("ieee");
+  const FrameEffect effect = frame_effect(chosen);
+  FrameHistory history;
+  const auto draw = [&] {
+    draw_next(prepared, effect, scene_.frame, drawn_.width, drawn_.height, history, pool_);
+  };
+  for (int i = 1; i < frames; ++i) draw();
+  const Clock::time_point start = Clock::now();
+  draw();
+  const Clock::time_point end = Clock::now();
+  result_ = std::move(history.picture);
+  return {ms_between(start, end), std::nullopt};
+}
+
+RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
+  if (!entry.effects.empty() && entry.effects.front().effect->filter == nullptr) {
+    return draw_after_frames(entry.effects.front(), static_cast<int>(entry.setting.value));
+  }
+  const bool is_large = entry.supersample > 1;
+  if (is_large && !prepared_large_) {
+    prepared_large_ = prepare_scene(scene_.scene, Profile{}, pool_);
+    large_ = make_image(Format::rgba16f, entry.supersample * drawn_.width,
+                        entry.supersample * drawn_.height);
+  }
+  PreparedScene& prepared = is_large ? *prepared_large_ : prepared_for("ieee");
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared, scene_.view, scene_.frame, is_large ? large_ : drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  if (is_large) result_ = halve(large_, Profile{}, pool_);
+  for (const ChosenEffect& chosen : entry.effects) {
+    const Image& before = &chosen == &entry.effects.front() && !is_large ? drawn_ : result_;
+    result_ = with_effect(chosen, before);
+  }
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
+ShadowContenders& ChartRunner::shadow_contenders() {
+  if (!shadows_) shadows_.emplace(scene_, pool_);
+  return *shadows_;
+}
+
+RunTime ChartRunner::draw_with_shadows(const ChartEntry& entry) {
+  ShadowContenders& contenders = shadow_contenders();
+  contenders.prepare(entry);
+  const Clock::time_point start = Clock::now();
+  contenders.draw(result_);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+TurnContenders& ChartRunner::turn_contenders() {
+  if (!turns_) turns_.emplace(scene_, pool_);
+  return *turns_;
+}
+
+void ChartRunner::add_turn_errors(const Image& truth, ChartErrors& errors) {
+  if (turns_) turns_->add_errors(truth, result_, errors);
+}
+
+double ChartRunner::wrong_pixels(const ChartEntry& entry) {
+  if (scene_.subject->ranked[0].value != kShadowErrors[0].value) return kNotTimed;
+  return static_cast<double>(entry.shadows ? shadow_contenders().wrong_pixels()
+                                           : shadow_contenders().wrong_without_shadows());
+}
+
+// The memory is made once, as it would be for many frames.
+AccumulationBuffer& ChartRunner::buffer() {
+  if (!buffer_) {
+    buffer_ = make_accumulation_buffer(views_, pool_);
+    if (sums_.totals.empty()) sums_ = make_sample_sums(drawn_.width, drawn_.height);
+  }
+  return *buffer_;
+}
+
+void ChartRunner::add_views(int first, int last) {
+  AccumulationBuffer& views = buffer();
+  if (first == 0) clear_sums(sums_);
+  add_lens_views(views, views_, first, last, sums_, pool_);
+}
+
+// As accumulation() has them.
+void ChartRunner::place_views_of(int samples) {
+  Sampling sampling = views_.sampling;
+  sampling.samples = samples;
+  place_views(buffer(), sampling);
+}
+
+void ChartRunner::add_all_views(int samples) {
+  place_views_of(samples);
+  for (int first = 0; first < samples; first += kLensViewGroup) {
+    add_views(first, std::min(first + kLensViewGroup, samples));
+  }
+  store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
+}
+
+RunTime ChartRunner::accumulate(int samples) {
+  const Clock::time_point start = Clock::now();
+  add_all_views(samples);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+RunTime ChartRunner::filter_views(int samples) {
+  if (!filtered_) filtered_ = make_filtered_views_buffer(views_, pool_);
+  if (sums_.totals.empty()) sums_ = make_sample_sums(drawn_.width, drawn_.height);
+  const Clock::time_point start = Clock::now();
+  clear_sums(sums_);
+  set_views(*filtered_, views_, samples);
+  add_filtered_views(*filtered_, views_, sums_, pool_);
+  store_mean(sums_, scene_.pinhole, views_.profile, result_, pool_);
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+RunTime ChartRunner::warp_views(int samples, int drawn_views) {
+  LensViewInput views = views_;
+  views.sampling.samples = samples;
+  views.sampling.drawn_views = drawn_views;
+  if (!warped_) warped_ = make_warped_views_buffer(views, pool_);
+  const Clock::time_point start = Clock::now();
+  result_ = warped_accumulation(*warped_, views, pool_).picture;
+  return {ms_between(start, Clock::now()), std::nullopt};
+}
+
+// The sharp picture tells such a method what is seen, so its drawing counts.
+RunTime ChartRunner::draw_otherwise(const LensViewMethod& method) {
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  result_ = method.render(views_, pool_).picture;
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
+AutoMethod ChartRunner::predicted_for(double max_error) {
+  return auto_method(scene_traits(drawn_, scene_.coc, pool_), {max_error},
+                     {{}, triangle_count(scene_.scene)});
+}
+
+// As `render` has it: a doubtful choice is checked, which takes its time.
+RunTime ChartRunner::choose(double max_error) {
+  PreparedScene& prepared = prepared_for("ieee");
+  const Clock::time_point start = Clock::now();
+  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  LensViewInput views = views_;
+  views.prepared = &prepared;
+  AutoPicture found = auto_picture({.views = views,
+                                    .settings = {.coc = scene_.coc},
+                                    .goal = {max_error},
+                                    .limits = {{}, triangle_count(scene_.scene)}},
+                                   pool_);
+  const Clock::time_point end = Clock::now();
+  prepared_.erase("ieee");  // moved from, perhaps
+  result_ = std::move(found.picture);
+  chosen_ = setting_text(found.choice);
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
+// Of an accumulation the first group of pictures is enough.
+void ChartRunner::warm_up(const ChartEntry& entry) {
+  int samples = entry.samples;
+  if (entry.max_error) {
+    draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
+    transparent_.clear();
+    const AutoMethod choice = predicted_for(*entry.max_error);
+    samples = choice.samples;
+    if (samples == 0) {
+      filter_drawn(*find_method(choice.method), choice.radius_px, views_.profile);
+    }
+  } else if (entry.filter != nullptr) {
+    filter(entry);
+  } else if (entry.of_scene != nullptr) {
+    draw_otherwise(*entry.of_scene);
+  } else if (is_of_pinhole(entry)) {
+    run(entry);
+  } else if (entry.method == kOfFilteredViews) {
+    filter_views(std::min(samples, kFilteredViews));
+    return;
+  } else if (entry.drawn_views > 0) {
+    warp_views(kSampleGroup, entry.drawn_views);
+    return;
+  }
+  if (samples == 0) return;
+  place_views_of(samples);
+  add_views(0, std::min(samples, kLensViewGroup));
+}
+
+}  // namespace softfocus

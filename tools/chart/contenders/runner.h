@@ -1,0 +1,94 @@
+#pragma once
+// The drawing of each contender's picture, again and again in the same memory.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dof/auto/auto_method.h"
+#include "scenes/filtered_views/filtered_views.h"
+#include "scenes/warped_views/warped_views.h"
+#include "tools/chart/contenders/shadow_contenders.h"
+#include "tools/chart/contenders/turn_contenders.h"
+#include "tools/chart/scene.h"
+#include "tools/chart/settings.h"
+
+namespace softfocus {
+
+/// Milliseconds of one run. auto's choosing counts as filtering.
+struct RunTime {
+  double frame_ms = 0.0;
+  std::optional<double> filter_ms;  ///< none if nothing was filtered
+};
+
+/// Whether the contender's arithmetic can hold the scene's lens.
+bool can_run(const ChartScene& scene, const ChartEntry& entry);
+
+/// Makes contenders' pictures again and again in the same memory.
+class ChartRunner {
+ public:
+  /// The scene must outlive it.
+  ChartRunner(const ChartScene& scene, ThreadPool& pool);
+
+  /// Draws a whole frame, by a filter, from the lens's points or by what auto chooses.
+  RunTime run(const ChartEntry& entry);
+  /// The same, after a run without a clock: the contender before has filled the caches with its
+  /// own.
+  RunTime run_warm(const ChartEntry& entry);
+
+  /// Of the last run.
+  const Image& result() const { return result_; }
+  /// Of a chart of shadows: ChartErrors::wrong_pixels of the last run, which was of that entry.
+  double wrong_pixels(const ChartEntry& entry);
+  /// Of a chart of impostors: outline, renewals and memory of the last run.
+  void add_turn_errors(const Image& truth, ChartErrors& errors);
+  /// What auto chose last, in words.
+  const std::string& chosen() const { return chosen_; }
+
+ private:
+  RunTime filter(const ChartEntry& entry);
+  RunTime draw_with_effects(const ChartEntry& entry);
+  RunTime draw_with_shadows(const ChartEntry& entry);
+  ShadowContenders& shadow_contenders();
+  TurnContenders& turn_contenders();
+  Image with_effect(ChosenEffect chosen, const Image& before);
+  RunTime draw_after_frames(const ChosenEffect& chosen, int frames);
+  RunTime accumulate(int samples);
+  RunTime filter_views(int samples);
+  RunTime warp_views(int samples, int drawn_views);
+  RunTime draw_otherwise(const LensViewMethod& method);
+  RunTime choose(double max_error);
+  AutoMethod predicted_for(double max_error);
+  PreparedScene& prepared_for(const std::string& profile);
+  void filter_drawn(const Method& filter, float max_coc_px, const Profile& profile);
+  void filter_drawn(const ChartEntry& entry, const Profile& profile);
+  const FixedTable& table_for(float max_coc_px);
+  AccumulationBuffer& buffer();
+  void add_views(int first, int last);
+  void warm_up(const ChartEntry& entry);
+  void place_views_of(int samples);
+  void add_all_views(int samples);
+
+  const ChartScene& scene_;
+  LensViewInput views_;  // with as many points of the lens as anything here takes
+  ThreadPool& pool_;
+  std::map<std::string, PreparedScene> prepared_;  // by profile
+  std::map<float, FixedTable> tables_;             // by radius
+  std::optional<AccumulationBuffer> buffer_;
+  std::optional<FilteredViewsBuffer> filtered_;
+  std::optional<WarpedViewsBuffer> warped_;
+  SampleSums sums_;
+  std::optional<PreparedScene> prepared_large_;  // of what is drawn larger
+  std::optional<ShadowContenders> shadows_;
+  std::optional<TurnContenders> turns_;
+  Image drawn_, large_;
+  std::vector<Image> behind_;                    ///< as many layers as the method reads
+  std::vector<TransparentPicture> transparent_;  ///< layers before drawn_
+  std::vector<std::uint16_t> objects_;           // of the filter drawn last, if it reads them
+  Image result_;
+  std::string chosen_;
+};
+
+}  // namespace softfocus
