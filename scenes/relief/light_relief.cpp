@@ -25,6 +25,8 @@ struct LitRow {
   const ReliefLights* lights;
   glm::vec3 eye, first, a, f;
   float step_m;
+  glm::vec3 source;    ///< the eye of a perspective camera
+  float source_per_m;  ///< 1 / its distance from the plane; 0 of an orthographic one
   std::int32_t empty;
 };
 
@@ -43,14 +45,21 @@ std::uint32_t lit_code(float linear, const ReliefLights& lights) {
       lights.code_of_half[float_to_half(cut, HalfRounding::nearest_even)]);
 }
 
+/// point_at_depth().
+glm::vec3 lit_point(const LitRow& row, int x) {
+  const glm::vec3 in_plane = row.first + row.a * static_cast<float>(x);
+  const float depth_m = static_cast<float>(row.codes[x]) * row.step_m;
+  if (row.source_per_m == 0.0f) return in_plane + row.f * depth_m;
+  return row.source + (in_plane - row.source) * (1.0f / (1.0f - depth_m * row.source_per_m));
+}
+
 std::uint32_t light_texel(const LitRow& row, int x) {
   if (row.codes[x] == row.empty) return 0;
   const std::uint32_t packed = row.normals[x], unlit = row.unlit[x];
   const std::uint32_t number = packed >> 24;
   if (!row.kinds[number].lit) return unlit;
   const auto byte = [&](int shift) { return static_cast<int>(packed >> shift & 255u); };
-  const glm::vec3 point = (row.first + row.a * static_cast<float>(x)) +
-                          row.f * (static_cast<float>(row.codes[x]) * row.step_m);
+  const glm::vec3 point = lit_point(row, x);
   const glm::vec3 normal =
       normalize(glm::vec3{static_cast<float>(byte(0) - 128), static_cast<float>(byte(8) - 128),
                           static_cast<float>(byte(16) - 128)});
@@ -115,6 +124,8 @@ void light_relief(ReliefTexture& relief, const ReliefLights& lights, glm::dvec3 
                        glm::vec3{camera.a},
                        glm::vec3{camera.f},
                        static_cast<float>(depth_step(relief)),
+                       glm::vec3{camera.eye.value_or(glm::dvec3{0.0})},
+                       static_cast<float>(1.0 / source_distance(camera)),
                        empty_depth(relief.depth_bits)};
       std::uint32_t* colours = relief.colours.data() + first;
       int x = 0;
@@ -151,6 +162,14 @@ SOFTFOCUS_INLINE Floats linear_codes(Bits unlit, int shift, const ReliefLights& 
   return gather(lights.linear_of_code.data(), as_ints(unlit >> shift & 255u), wanted);
 }
 
+SOFTFOCUS_INLINE Vec3Lanes lit_points(const LitRow& row, Floats at, Floats depths_m) {
+  const Vec3Lanes in_plane = splat(row.first) + row.a * at;
+  if (row.source_per_m == 0.0f) return in_plane + row.f * depths_m;
+  const Floats way = 1.0f / (1.0f - depths_m * row.source_per_m);
+  const Vec3Lanes source = splat(row.source), ray = in_plane - source;
+  return source + Vec3Lanes{ray.x * way, ray.y * way, ray.z * way};
+}
+
 /// Texels of one material: light_point(), and what light_texel() makes of it.
 SOFTFOCUS_INLINE Bits lit_texels(const LitRow& row, const Material& material, Bits unlit,
                                  const Vec3Lanes& point, const Vec3Lanes& normal, Mask wanted) {
@@ -183,8 +202,7 @@ int light_texels(const LitRow& row, int width, std::uint32_t* colours) {
       const Bits packed = load(row.normals + x), unlit = load(row.unlit + x);
       const Ints numbers = as_ints(packed >> 24);
       const Floats at = to_floats(x + lane_numbers());
-      const Vec3Lanes point =
-          (splat(row.first) + row.a * at) + row.f * (to_floats(codes) * row.step_m);
+      const Vec3Lanes point = lit_points(row, at, to_floats(codes) * row.step_m);
       const Vec3Lanes normal = normalize(
           Vec3Lanes{signed_byte(packed, 0), signed_byte(packed, 8), signed_byte(packed, 16)});
       // Mostly all are of one material.
