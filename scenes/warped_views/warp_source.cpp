@@ -109,7 +109,7 @@ SourceRow row_of(WarpSource& source, int y) {
            source.radii.data() + first}};
 }
 
-// Takes in a row's radii, of which ranges[0] is that of the pixel left of the first.
+// Widens the range of each column by a row. ranges[0] is the column left of the first pixel.
 void widen_ranges(std::vector<RadiusRange>& ranges, const float* radii) {
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const float radius = radii[static_cast<std::ptrdiff_t>(i) - 1];

@@ -205,8 +205,8 @@ SOFTFOCUS_INLINE Ints shown_places(const ColouredTile& tile, int first, Floats n
   return lane_numbers() + first - x - y * tile.source_stride;
 }
 
-// Pixels of which some come from elsewhere than the others, or from beside another surface.
-// `first` is the place of the first one in the planes, `to` in the sums.
+// A vector whose pixels come from several places, or that has an edge of a surface. `first` is the
+// place of its first pixel in the planes, `to` in the sums.
 SOFTFOCUS_INLINE void add_rough(const ColouredTile& tile, int first, int to, Mask there,
                                 Floats noted, const WaysBack& x, const WaysBack& y) {
   const Floats radii = without_notes(noted);

@@ -142,7 +142,7 @@ double error_bound(const ReliefTexture& relief, const CriticalRegions& regions, 
   const DepthShares metre = shares_of(scales.warp, 1.0);
   const auto scale_of = [&](double depth_m) { return 1.0 / (1.0 + metre.scale * depth_m); };
   const ReliefExtent& extent = regions.extent;
-  // |k1 - k3 u|, or the same of v.
+  // The largest |k1 - k3 u| of a part's columns; along rows, |k2 - k3 v|.
   const auto farthest = [&](int begin, int size, int i, int parts, double shift) {
     // The texels of a part begin at the first whose share of the size reaches it.
     const double first = begin + (static_cast<double>(i) * size) / parts;
