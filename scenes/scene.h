@@ -25,7 +25,7 @@ struct Camera {
   double far_m = 100.0;
   /// The camera's way around the target, about `up`, by frame.
   double orbit_degrees_per_frame = 0.0;
-  /// How long the shutter is open, in frames, that the scene suggests: 0 to kLongestShutter.
+  /// How long the shutter is open, in frames, that the scene suggests (parameter::kShutter).
   double shutter_frames = 0.0;
 };
 

@@ -12,12 +12,13 @@
 
 #include "dof/auto/candidates.h"
 #include "dof/auto/scene_traits.h"
+#include "dof/parameters.h"
 
 namespace softfocus {
 
 struct AutoGoal {
-  double max_error = 0.02;              ///< mean FLIP; ignored if there is a time
-  std::optional<double> max_time_ms{};  ///< for the method, beside drawing
+  double max_error = parameter::kMaxError.preset;  ///< mean FLIP; ignored if there is a time
+  std::optional<double> max_time_ms{};             ///< for the method, beside drawing
 };
 
 /// What auto has to keep to, beside the goal.

@@ -1,11 +1,11 @@
 #include "dof/c/settings.h"
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 
 #include "dof/c/arguments.h"
+#include "dof/parameters.h"
 #include "dof/sensor.h"
 
 namespace softfocus {
@@ -13,44 +13,37 @@ namespace {
 
 constexpr std::string_view kAuto = "auto";
 
-/// Throws for what is no number from `least` to `most`.
-double checked(const char* name, double value, double least, double most, const char* wanted) {
-  if (!(value >= least && value <= most)) {
-    refuse("settings." + std::string{name}, std::to_string(value) + " is not " + wanted);
+double checked(const Parameter& parameter, std::string_view name, double value) {
+  if (!is_allowed(parameter, value)) {
+    refuse("settings." + std::string{name},
+           std::to_string(value) + " is not " + wanted_text(parameter));
   }
   return value;
 }
 
-constexpr double kMost = std::numeric_limits<float>::max();
-
-double from_zero(const char* name, double value) {
-  return checked(name, value, 0.0, kMost, "a number from 0");
-}
-
-double above_zero(const char* name, double value) {
-  return checked(name, value, 1e-30, kMost, "a number above 0");
+double checked(const Parameter& parameter, double value) {
+  return checked(parameter, key_of(parameter), value);
 }
 
 PixelCoc coc_of(const softfocus_settings& settings, int width_px, int height_px) {
   if (settings.blur_at_infinity_px != 0.0) {
-    return {static_cast<float>(from_zero("blur_at_infinity_px", settings.blur_at_infinity_px)),
-            static_cast<float>(above_zero("focus_m", settings.focus_m))};
+    return {static_cast<float>(checked(parameter::kBlurAtInfinity, settings.blur_at_infinity_px)),
+            static_cast<float>(checked(parameter::kFocus, settings.focus_m))};
   }
-  const ThinLens lens{above_zero("focal_length_mm", settings.focal_length_mm),
-                      above_zero("f_number", settings.f_number),
-                      above_zero("focus_m", settings.focus_m)};
+  const ThinLens lens{checked(parameter::kFocalLength, settings.focal_length_mm),
+                      checked(parameter::kFNumber, settings.f_number),
+                      checked(parameter::kFocus, settings.focus_m)};
   if (const char* error = lens_error(lens)) refuse("settings", error);
-  const double scale = from_zero("coc_scale", settings.coc_scale);
+  const double scale = checked(parameter::kCocScale, settings.coc_scale);
   PixelCoc coc;
   if (settings.fov_y_degrees != 0.0) {
-    coc = pixel_coc(lens,
-                    checked("fov_y_degrees", settings.fov_y_degrees, 0.001, 179.999,
-                            "from 0.001 to 179.999, or 0 for a sensor"),
+    coc = pixel_coc(lens, checked(parameter::kFov, "fov_y_degrees", settings.fov_y_degrees),
                     height_px, scale);
   } else {
     const double pixels_per_mm = pixels_per_sensor_mm(
-        above_zero("sensor_width_mm", settings.sensor_width_mm),
-        above_zero("sensor_height_mm", settings.sensor_height_mm), width_px, height_px);
+        checked(parameter::kSensorSide, "sensor_width_mm", settings.sensor_width_mm),
+        checked(parameter::kSensorSide, "sensor_height_mm", settings.sensor_height_mm), width_px,
+        height_px);
     coc = sensor_coc(lens, image_distance_mm(lens, lens.focus_m) * pixels_per_mm, scale);
   }
   if (!std::isfinite(coc.radius_at_infinity_px)) {
@@ -90,23 +83,21 @@ Profile profile_of(const char* name) {
 }  // namespace
 
 softfocus_settings default_settings() {
-  const ThinLens lens;
-  const DofSettings dof;
   return {.struct_size = sizeof(softfocus_settings),
           .method = "two-pass",
           .profile = "ieee",
-          .focal_length_mm = lens.focal_length_mm,
-          .f_number = lens.f_number,
-          .focus_m = lens.focus_m,
+          .focal_length_mm = parameter::kFocalLength.preset,
+          .f_number = parameter::kFNumber.preset,
+          .focus_m = parameter::kFocus.preset,
           .sensor_width_mm = 36.0,
           .sensor_height_mm = 24.0,
           .fov_y_degrees = 0.0,
-          .coc_scale = 1.0,
+          .coc_scale = parameter::kCocScale.preset,
           .blur_at_infinity_px = 0.0,
           .max_radius_px = 0.0,
-          .leak = static_cast<double>(dof.leak),
-          .budget = static_cast<double>(dof.budget),
-          .max_error = 0.02};
+          .leak = parameter::kLeak.preset,
+          .budget = parameter::kBudget.preset,
+          .max_error = parameter::kMaxError.preset};
 }
 
 ReadSettings read_settings(const softfocus_settings* given, int width_px, int height_px) {
@@ -115,12 +106,12 @@ ReadSettings read_settings(const softfocus_settings* given, int width_px, int he
   read.method = method_of(settings.method);
   read.profile = profile_of(settings.profile);
   read.dof.coc = coc_of(settings, width_px, height_px);
-  read.dof.leak = static_cast<float>(from_zero("leak", settings.leak));
-  read.dof.budget = static_cast<float>(checked("budget", settings.budget, 0.0, 1.0, "from 0 to 1"));
-  read.max_error = from_zero("max_error", settings.max_error);
+  read.dof.leak = static_cast<float>(checked(parameter::kLeak, settings.leak));
+  read.dof.budget = static_cast<float>(checked(parameter::kBudget, settings.budget));
+  read.max_error = checked(parameter::kMaxError, settings.max_error);
   if (settings.max_radius_px != 0.0) {
-    read.max_radius_px = static_cast<float>(checked("max_radius_px", settings.max_radius_px, 0.0,
-                                                    SOFTFOCUS_LARGEST_RADIUS, "from 0 to 1024"));
+    read.max_radius_px =
+        static_cast<float>(checked(parameter::kMaxCoc, "max_radius_px", settings.max_radius_px));
   }
   return read;
 }

@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "raster/images/image.h"
+#include "raster/numbers/parameter.h"
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
 
-/// A number that an effect takes.
-struct EffectParameter {
-  std::string_view name;
-  std::string_view summary;  ///< with its unit
-  double least, most;
-  double preset;
-};
+using EffectParameter = Parameter;
 
 struct Effect;
 

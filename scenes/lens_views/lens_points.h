@@ -6,6 +6,8 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "dof/aperture.h"
+
 namespace softfocus {
 
 /// The most points that a picture is sampled from.
@@ -30,10 +32,9 @@ double shutter_point(std::uint32_t index);
 
 /// A disc of radius 1, or a regular polygon whose corners lie on its edge, one of them up.
 struct ApertureShape {
-  int blades = 0;  ///< corners, 3 to kMostBlades; 0: the disc
+  int blades = 0;  ///< corners, 3 to kMostApertureBlades; 0: the disc
   bool operator==(const ApertureShape&) const = default;
 };
-inline constexpr int kMostBlades = 64;
 
 /// A point of the square brought to the aperture, equal areas to equal areas, the centre
 /// to the centre: the concentric map of Shirley and Chiu (1997), which turns squares about

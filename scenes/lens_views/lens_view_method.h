@@ -29,9 +29,9 @@ struct Sampling {
   /// Each tile takes as few samples as it needs, `samples` at most (samples_by_tile.h). Not with
   /// `until`.
   bool by_tile = false;
-  /// How long the shutter is open, in frames, with the picture's frame in the middle: 0 to
-  /// kLongestShutter (shutter_times.h). The camera and the objects move on, focus and f-number do
-  /// not. Of methods with LensViewMethod::has_shutter.
+  /// How long the shutter is open, in frames, with the picture's frame in the middle
+  /// (parameter::kShutter). The camera and the objects move on, focus and f-number do not. Of
+  /// methods with LensViewMethod::has_shutter.
   double shutter_frames = 0.0;
   /// Of warped-accumulation: the views that are drawn, 1 to kMostDrawnViews; the others are warped.
   int drawn_views = 7;

@@ -7,9 +7,6 @@
 
 namespace softfocus {
 
-/// The longest that a shutter is open, in frames.
-inline constexpr double kLongestShutter = 64.0;
-
 /// A time for each view, from -0.5 to 0.5 of the time that the shutter is open: the middles of n
 /// equal parts, whose sum is exactly 0, in the order of shutter_point(). So a thing that moves
 /// evenly is as smooth as n views can make it, with the lens as small as it may be.

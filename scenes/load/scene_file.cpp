@@ -1,15 +1,15 @@
 #include "scenes/load/scene_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "dof/dof.h"
+#include "dof/parameters.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/load/scene_sections.h"
 #include "scenes/load/toml_reading.h"
+#include "scenes/parameters.h"
 
 namespace softfocus {
 namespace {
@@ -32,12 +32,12 @@ Camera read_camera(Section section) {
   camera.position = read_vector(section, "position", camera.position, kAnyPlace);
   camera.target = read_vector(section, "target", camera.target, kAnyPlace);
   camera.up = read_vector(section, "up", camera.up, kAnyPlace);
-  camera.fov_y_degrees = read_number(section, "fov_degrees", camera.fov_y_degrees, {1.0, 170.0});
+  camera.fov_y_degrees = read_number(section, parameter::kFov, camera.fov_y_degrees);
   camera.near_m = read_number(section, "near_m", camera.near_m, kAnySize);
   camera.far_m = read_number(section, "far_m", camera.far_m, kAnySize);
   camera.orbit_degrees_per_frame = read_number(section, "orbit_degrees_per_frame",
                                                camera.orbit_degrees_per_frame, {-360.0, 360.0});
-  camera.shutter_frames = read_number(section, "shutter", camera.shutter_frames, {0.0, 64.0});
+  camera.shutter_frames = read_number(section, parameter::kShutter, camera.shutter_frames);
   if (camera.near_m >= camera.far_m) {
     fail_at(section, "far_m", "must be larger than near_m");
   }
@@ -56,18 +56,20 @@ Camera read_camera(Section section) {
 }
 
 /// A number, or an array of [frame, number]: then the first number, and all of them in `keys`.
-double read_keyed_number(Section& section, std::string_view key, double fallback, Range range,
+double read_keyed_number(Section& section, const Parameter& parameter, double fallback,
                          std::vector<Keyframe>& keys) {
+  const std::string_view key = key_of(parameter);
   const toml::node* node = find_key(section, key);
-  if (node == nullptr || !node->is_array()) return read_number(section, key, fallback, range);
-  constexpr Range kFramesAndValues{0.0, 1e9};
+  if (node == nullptr || !node->is_array()) return read_number(section, parameter, fallback);
+  constexpr Range kFramesAndValues{parameter::kFrame.least, parameter::kFrame.most};
   for (const auto& row : read_rows(section, key, 2, kFramesAndValues)) {
     const Keyframe next{row[0], row[1]};
     if (!keys.empty() && next.frame <= keys.back().frame) {
       fail_at(section, key, "has frames that do not increase; [[0, 2], [48, 6]] would be right");
     }
-    if (next.value < range.low || next.value > range.high) {
-      fail_at(section, key, "has a value out of range; docs/scene-format.md has the range");
+    if (!is_allowed(parameter, next.value)) {
+      fail_at(section, key,
+              "has a value out of range; " + wanted_text(parameter) + " would be right");
     }
     keys.push_back(next);
   }
@@ -78,19 +80,15 @@ double read_keyed_number(Section& section, std::string_view key, double fallback
 }
 
 SceneLens read_lens(Section section) {
-  static constexpr std::array<std::string_view, 2> kWays = {"linear", "smooth"};
   SceneLens lens;
-  constexpr Range kPositive{1e-6, 1e9};
-  lens.lens.focal_length_mm =
-      read_number(section, "focal_length_mm", lens.lens.focal_length_mm, kPositive);
-  lens.lens.f_number =
-      read_keyed_number(section, "f_number", lens.lens.f_number, kPositive, lens.f_number_by_frame);
-  lens.lens.focus_m =
-      read_keyed_number(section, "focus_m", lens.lens.focus_m, kAnySize, lens.focus_m_by_frame);
-  lens.easing = static_cast<Easing>(read_choice(section, "keyframes", 0, kWays));
-  lens.coc_scale = read_number(section, "coc_scale", lens.coc_scale, {0.0, 1000.0});
-  lens.max_coc_px_at_1024 =
-      read_number(section, "max_coc_px", lens.max_coc_px_at_1024, {0.0, kLargestMaxCoc});
+  ThinLens& thin = lens.lens;
+  thin.focal_length_mm = read_number(section, parameter::kFocalLength, thin.focal_length_mm);
+  thin.f_number =
+      read_keyed_number(section, parameter::kFNumber, thin.f_number, lens.f_number_by_frame);
+  thin.focus_m = read_keyed_number(section, parameter::kFocus, thin.focus_m, lens.focus_m_by_frame);
+  lens.easing = read_choice(section, "keyframes", lens.easing, parameter::kEasings);
+  lens.coc_scale = read_number(section, parameter::kCocScale, lens.coc_scale);
+  lens.max_coc_px_at_1024 = read_number(section, parameter::kMaxCoc, lens.max_coc_px_at_1024);
   ThinLens nearest = lens.lens;
   for (const Keyframe& key : lens.focus_m_by_frame) {
     nearest.focus_m = std::min(nearest.focus_m, key.value);
@@ -101,15 +99,11 @@ SceneLens read_lens(Section section) {
 }
 
 ShadowMapSettings read_map(Section section) {
-  static constexpr std::array<std::string_view, 2> kFits = {"camera", "scene"};
   ShadowMapSettings map;
-  map.size = read_whole_number(section, "size", map.size, kLeastMapSize, kMostMapSize);
-  map.bias = read_number(section, "bias", map.bias, {0.0, kMostMapBias});
-  map.slope_bias = read_number(section, "slope_bias", map.slope_bias, {0.0, kMostMapBias});
-  map.kernel = read_whole_number(section, "kernel", map.kernel, 1, kMostMapKernel);
-  if (map.kernel % 2 == 0) fail_at(section, "kernel", "is even; 1, 3, 5, 7 or 9 would be right");
-  map.cascades = read_whole_number(section, "cascades", map.cascades, 1, kMostCascades);
-  map.fits_camera = read_choice(section, "fit", 0, kFits) == 0;
+  for (const auto& [number, set] : parameter::kMapParameters) {
+    set(map, read_number(section, number, number.preset));
+  }
+  map.fits_camera = read_choice(section, "fit", map.fits_camera, parameter::kMapFits);
   if (map.cascades > 1 && !map.fits_camera) {
     fail_at(section, "cascades", "are of the camera's picture; fit = \"camera\" would be right");
   }
@@ -118,15 +112,11 @@ ShadowMapSettings read_map(Section section) {
 }
 
 Light read_light(Section& section) {
-  static constexpr std::array<std::string_view, 2> kKinds = {"directional", "point"};
-  static constexpr std::array<std::string_view, 4> kShadows = {"none", "projected", "volumes",
-                                                               "map"};
-  static constexpr std::array<std::string_view, 3> kTerminators = {"facets", "normals", "fade"};
   Light light;
   if (!has_key(section, "kind")) {
     fail_at(section, "kind", "is missing; \"directional\" or \"point\" would be right");
   }
-  light.kind = static_cast<LightKind>(read_choice(section, "kind", 0, kKinds));
+  light.kind = read_choice(section, "kind", light.kind, parameter::kLightKinds);
   const std::string_view place = light.kind == LightKind::point ? "position" : "direction";
   if (!has_key(section, place)) {
     fail_at(section, place, "is missing; an array of three numbers would be right");
@@ -138,16 +128,15 @@ Light read_light(Section& section) {
     fail_at(section, place, "points nowhere; a vector towards the light would be right");
   }
   light.colour = read_colour(section, "colour", light.colour, kBrightest);
-  light.shadows = static_cast<ShadowKind>(read_choice(section, "shadows", 0, kShadows));
+  light.shadows = read_choice(section, "shadows", light.shadows, parameter::kShadowKinds);
   light.map = read_map(read_section(section, "map"));
-  light.shadow_darkness =
-      static_cast<float>(read_number(section, "shadow_darkness", 1.0, {0.0, 1.0}));
-  light.terminator = static_cast<Terminator>(read_choice(section, "terminators", 0, kTerminators));
+  light.shadow_darkness = static_cast<float>(read_number(section, parameter::kShadowDarkness, 1.0));
+  light.terminator = read_choice(section, "terminators", light.terminator, parameter::kTerminators);
   if (light.kind == LightKind::point) {
-    light.radius_m = read_number(section, "radius_m", 0.0, {0.0, kAnySize.high});
+    light.radius_m = read_number(section, parameter::kLightRadius, light.radius_m);
   } else {
     light.angular_radius_degrees =
-        read_number(section, "angular_radius_degrees", 0.0, {0.0, kMostAngularRadius});
+        read_number(section, parameter::kLightAngle, light.angular_radius_degrees);
   }
   finish_section(section);
   return light;
@@ -165,8 +154,7 @@ ChosenEffect read_effect(Section& section) {
   }
   ChosenEffect chosen{effect, {}};
   for (const EffectParameter& parameter : effect->parameters) {
-    chosen.parameters.push_back(
-        read_number(section, parameter.name, parameter.preset, {parameter.least, parameter.most}));
+    chosen.parameters.push_back(read_number(section, parameter, parameter.preset));
   }
   finish_section(section);
   return chosen;
@@ -186,7 +174,7 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file) 
   scene.lens = read_lens(read_section(top, "lens"));
 
   scene.light_points =
-      read_whole_number(top, "light_points", scene.light_points, 1, kMostLightPoints);
+      static_cast<int>(read_number(top, parameter::kLightPoints, scene.light_points));
   constexpr std::size_t kMaxLights = 64;
   std::vector<Section> lights = read_sections(top, "light");
   if (lights.size() > kMaxLights) {

@@ -54,7 +54,9 @@ std::string kind_of(const toml::node& node) {
 double number_of(const Section& section, std::string_view key, const toml::node& node, Range range,
                  const std::string& wanted) {
   if (!node.is_number()) fail_type(section, key, node, wanted);
-  const double value = *node.value<double>();
+  // value<double>() has none for whole numbers past 2^53.
+  const double value = node.is_integer() ? static_cast<double>(node.as_integer()->get())
+                                         : node.as_floating_point()->get();
   if (!(value >= range.low && value <= range.high)) {  // NaN is outside
     fail_at_line(section, node.source().begin.line, key,
                  in_words(value) + " is out of range; " + wanted + " would be right");
@@ -125,6 +127,18 @@ bool has_key(Section& section, std::string_view key) { return find_key(section, 
 double read_number(Section& section, std::string_view key, double fallback, Range range) {
   const toml::node* node = find_key(section, key);
   return node != nullptr ? number_of(section, key, *node, range, number_in(range)) : fallback;
+}
+
+double read_number(Section& section, const Parameter& parameter, double fallback) {
+  const std::string_view key = key_of(parameter);
+  const toml::node* node = find_key(section, key);
+  if (node == nullptr) return fallback;
+  const std::string wanted = wanted_text(parameter);
+  const double value = number_of(section, key, *node, {parameter.least, parameter.most}, wanted);
+  if (parameter.step != 0 && !is_allowed(parameter, value)) {
+    fail_at(section, key, in_words(value) + " is out of range; " + wanted + " would be right");
+  }
+  return value;
 }
 
 int read_whole_number(Section& section, std::string_view key, int fallback, int low, int high) {

@@ -23,11 +23,14 @@
 #define TOML_UNREACHABLE __builtin_unreachable()
 #include <toml++/toml.h>
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "scenes/parameters.h"
 
 namespace softfocus {
 
@@ -47,7 +50,7 @@ struct Range {
 };
 
 /// What a length, a place or a size in metres may be.
-inline constexpr Range kAnyPlace{-1e6, 1e6};
+inline constexpr Range kAnyPlace{parameter::kPlace.least, parameter::kPlace.most};
 inline constexpr Range kAnySize{1e-6, 1e6};
 
 /// Throws SceneError `file:line: name.key: what is wrong; what would be right`, with
@@ -61,6 +64,7 @@ bool has_key(Section& section, std::string_view key);
 /// Each returns `fallback` where the key is missing, and throws SceneError where the
 /// value has another type, is NaN or infinite or lies outside the range.
 double read_number(Section& section, std::string_view key, double fallback, Range range);
+double read_number(Section& section, const Parameter& parameter, double fallback);
 int read_whole_number(Section& section, std::string_view key, int fallback, int low, int high);
 bool read_flag(Section& section, std::string_view key, bool fallback);
 std::string read_text(Section& section, std::string_view key, std::string_view fallback);
@@ -78,6 +82,14 @@ std::vector<std::string> read_texts(Section& section, std::string_view key);
 /// The place in `choices` of the key's text.
 std::size_t read_choice(Section& section, std::string_view key, std::size_t fallback,
                         std::span<const std::string_view> choices);
+template <class Value, std::size_t kCount>
+Value read_choice(Section& section, std::string_view key, Value fallback,
+                  const std::array<Choice<Value>, kCount>& choices) {
+  std::array<std::string_view, kCount> names;
+  for (std::size_t i = 0; i < kCount; ++i) names[i] = choices[i].name;
+  const std::size_t number = read_choice(section, key, kCount, names);
+  return number == kCount ? fallback : choices[number].value;
+}
 
 /// The table of a key such as [lens]; an empty section where there is none.
 Section read_section(Section& parent, std::string_view key);

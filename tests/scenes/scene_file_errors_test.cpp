@@ -41,8 +41,10 @@ TEST_CASE("a value of the wrong type is an error") {
         "a.toml:1: camera: is a number; a table [camera] would be right");
   CHECK(complaint("light = 3\n") ==
         "a.toml:1: light: is a number; tables [[light]] would be right");
-  CHECK(complaint("[camera]\n\nfov_degrees = \"wide\"\n") ==
-        "a.toml:3: camera.fov_degrees: is a text; a number from 1 to 170 would be right");
+  CHECK(
+      complaint("[camera]\n\nfov_degrees = \"wide\"\n") ==
+      "a.toml:3: camera.fov_degrees: is a text; a number from 0.001 to 179.999 (degrees) would be "
+      "right");
   CHECK(complaint("[material.m]\nlit = 1\n") ==
         "a.toml:2: material.m.lit: is a number; true or false would be right");
   CHECK(complaint("[material.m]\nshininess = 2.5\n") ==
@@ -58,8 +60,10 @@ TEST_CASE("a value of the wrong type is an error") {
 }
 
 TEST_CASE("a value out of its range is an error, NaN and infinity too") {
-  CHECK(complaint("[camera]\nfov_degrees = 180\n") ==
-        "a.toml:2: camera.fov_degrees: 180 is out of range; a number from 1 to 170 would be right");
+  CHECK(
+      complaint("[camera]\nfov_degrees = 180\n") ==
+      "a.toml:2: camera.fov_degrees: 180 is out of range; a number from 0.001 to 179.999 (degrees) "
+      "would be right");
   for (const char* value : {"nan", "-nan", "inf", "-inf", "1e300", "-1", "0"}) {
     CHECK(contains(complaint(std::string("[camera]\nnear_m = ") + value + "\n"),
                    "a.toml:2: camera.near_m: "));

@@ -10,6 +10,7 @@
 #include "raster/images/image.h"
 #include "scenes/files/nearest_name.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 
 namespace softfocus {
@@ -65,9 +66,11 @@ void add_size(CLI::App& parser, PictureSize& size) {
 }
 
 void add_frame(CLI::App& parser, double& frame) {
-  add_value(parser, "--frame", "N", "Frame of the animation, from 0 (default: 0)",
-            [&frame](const std::string& text) {
-              frame = parse_number("--frame", text, 0.0, 1e9, "a frame from 0 to 1000000000");
+  const Parameter& of = parameter::kFrame;
+  add_value(parser, "--frame", std::string{of.type},
+            std::string{of.summary} + " (" + range_text(of) + "; default: 0)",
+            [&frame, &of](const std::string& text) {
+              frame = parse_number("--frame", text, of.least, of.most, wanted_text(of));
             });
 }
 

@@ -24,6 +24,13 @@ struct Pixel {
   int y = 0;
 };
 
+/// Adds an option whose value is taken as it is: a name, a file.
+template <class Text>
+void add_text(CLI::App& parser, const std::string& name, const std::string& type,
+              const std::string& help, Text& place) {
+  add_value(parser, name, type, help, [&place](const std::string& text) { place = text; });
+}
+
 /// The names of the scenes that come along.
 std::vector<std::string> known_scenes();
 

@@ -1,13 +1,29 @@
 #include "tools/compare/options.h"
 
 #include "tools/cli/errors.h"
-#include "tools/cli/option_values.h"
 #include "tools/files/same_file.h"
+#include "tools/options/parameter_options.h"
 #include "tools/pictures/image_file.h"
 #include "tools/pictures/picture_notes.h"
 
 namespace softfocus {
 namespace {
+
+// clang-format off
+constexpr Parameter
+    kPixelsPerDegree{"pixels-per-degree", "Of the viewer's sight, for FLIP",
+        1.0, 500.0, 67.0206, "", "N"},
+    kMaxUlps{"max-ulps", "Tolerance: status 0 up to so many half-ULPs between any two values",
+        0, 65535, 0, "half-ULPs", "N", "", 1},
+    kMaxFlip{"max-flip", "Tolerance: status 0 up to this mean FLIP", 0.0, 1.0, 0.0, "", "E"},
+    kMaxDifference{"max-error",
+        "Tolerance: status 0 up to this difference of any red, green or blue, in linear light",
+        0.0, 1e6, 0.0, "", "E"},
+    kPoint{"point",
+        "The pictures are of one bright point on black: compare light and shape with the disc of "
+        "this radius",
+        0.1, 16384.0, 1.0, "px", "PIXELS"};
+// clang-format on
 
 void add_map(CLI::App& parser, const std::string& name, const std::string& help,
              std::optional<std::string>& file) {
@@ -91,53 +107,29 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   begin_group(parser, "Measures");
   add_flag(parser, "--hdr", "HDR-FLIP too: the largest over all exposures of B",
            options.measures.hdr_flip);
-  add_value(parser, "--pixels-per-degree", "N",
-            "Of the viewer's sight, for FLIP (default: 67.0206, a 4K screen as wide as it is far)",
-            [&options](const std::string& text) {
-              options.measures.pixels_per_degree = parse_number(
-                  "--pixels-per-degree", text, 1.0, 500.0, "pixels per degree from 1 to 500");
-            });
+  add_parameter(parser, kPixelsPerDegree, "67.0206, a 4K screen as wide as it is far",
+                options.measures.pixels_per_degree);
   begin_group(parser, "Regions");
   add_flag(parser, "--regions",
            "Measure by region too: silhouette band, near field, focus, far field, by the "
            "depth in B's alpha and the lens",
            options.regions);
-  add_value(parser, "--depth", "FILE",
-            "Picture whose alpha is the depth for --regions (default: B, or A if B has none)",
-            [&options](const std::string& text) { options.depth_file = text; });
-  add_value(parser, "--scene", "NAME",
-            "Scene whose lens and field of view make the regions (default: what B or A carries)",
-            [&options](const std::string& text) { options.scene = text; });
+  add_text(parser, "--depth", "FILE",
+           "Picture whose alpha is the depth for --regions (default: B, or A if B has none)",
+           options.depth_file);
+  add_text(parser, "--scene", "NAME",
+           "Scene whose lens and field of view make the regions (default: what B or A carries)",
+           options.scene);
   offer(parser, "--scene", known_scenes);
   add_scene_path(parser, options.scene_path);
   add_compared_lens_options(parser, options.lens,
                             [&options](double degrees) { options.fov_y_degrees = degrees; });
   begin_group(parser, "Tolerance");
-  add_value(parser, "--max-ulps", "N",
-            "Tolerance: status 0 up to so many half-ULPs between any two values, 0 to 65535",
-            [&tolerance = options.tolerance](const std::string& text) {
-              tolerance.max_half_ulps =
-                  parse_whole("--max-ulps", text, 0, 65535, "a whole number from 0 to 65535");
-            });
-  add_value(parser, "--max-flip", "E", "Tolerance: status 0 up to this mean FLIP, 0 to 1",
-            [&tolerance = options.tolerance](const std::string& text) {
-              tolerance.max_flip = parse_number("--max-flip", text, 0.0, 1.0,
-                                                "a mean FLIP from 0 to 1, such as 0.01");
-            });
-  add_value(parser, "--max-error", "E",
-            "Tolerance: status 0 up to this difference of any red, green or blue, in linear light",
-            [&tolerance = options.tolerance](const std::string& text) {
-              tolerance.max_error = parse_number("--max-error", text, 0.0, 1e6,
-                                                 "a difference from 0 to 1000000, such as 0.01");
-            });
+  add_parameter(parser, kMaxUlps, "", options.tolerance.max_half_ulps);
+  add_parameter(parser, kMaxFlip, "", options.tolerance.max_flip);
+  add_parameter(parser, kMaxDifference, "", options.tolerance.max_error);
   begin_group(parser, "Measures");
-  add_value(parser, "--point", "PIXELS",
-            "The pictures are of one bright point on black: compare light and shape with the disc "
-            "of this radius",
-            [&options](const std::string& text) {
-              options.point_radius_px = parse_number("--point", text, 0.1, 16384.0,
-                                                     "a radius in pixels from 0.1 to 16384");
-            });
+  add_parameter(parser, kPoint, "", options.point_radius_px);
   add_frames(parser, "--flicker", "Frames of a sequence, in order, instead of A and B",
              options.frames);
   add_frames(parser, "--against", "The same frames of the ground truth, for --flicker",

@@ -240,8 +240,8 @@ Command add_crosscheck_command(CLI::App& program) {
                     });
   add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
                      [options](const ChosenProfile& chosen) { options->profile = chosen; });
-  add_value(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
-            [options](const std::string& text) { options->cases = text; });
+  add_text(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
+           options->cases);
   add_shaders_option(*parser, options->shaders);
   add_value(*parser, "--diff", "DIR",
             "Write there a picture and both sides' values of each case that differs",

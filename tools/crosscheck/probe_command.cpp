@@ -48,8 +48,8 @@ Command add_probe_command(CLI::App& program) {
     if (options->driver != nullptr) throw UsageError("--driver is given twice; give it once");
     options->driver = &driver;
   });
-  add_value(*parser, "-o,--output", "FILE", "Write the profile there (default: print it)",
-            [options](const std::string& text) { options->output = text; });
+  add_text(*parser, "-o,--output", "FILE", "Write the profile there (default: print it)",
+           options->output);
   return {parser, [options] { return probe(*options); }};
 }
 

@@ -180,16 +180,15 @@ Command add_apply_command(CLI::App& program) {
                options->picture);
   begin_group(*parser, "Effects");
   add_effect_options(*parser, options->effects);
-  add_value(*parser, "--layer", "NAME", "The colour's layer of an EXR",
-            [options](const std::string& text) { options->layer = text; });
-  add_value(*parser, "--velocity", "FILE",
-            std::string{"How each pixel moves, for motion blur: "} + kVelocityFiles +
-                "; pixels a frame, to the right and down",
-            [options](const std::string& text) { options->velocity = text; });
+  add_text(*parser, "--layer", "NAME", "The colour's layer of an EXR", options->layer);
+  add_text(*parser, "--velocity", "FILE",
+           std::string{"How each pixel moves, for motion blur: "} + kVelocityFiles +
+               "; pixels a frame, to the right and down",
+           options->velocity);
   begin_group(*parser, "Output");
-  add_value(*parser, "-o,--output", "FILE",
-            "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
-            [options](const std::string& text) { options->output = text; });
+  add_text(*parser, "-o,--output", "FILE",
+           "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
+           options->output);
   add_format_option(*parser, options->format);
   begin_group(*parser, "Run");
   add_profile_option(*parser, options->profile, options->profile_name);

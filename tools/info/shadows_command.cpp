@@ -27,7 +27,6 @@
 #include "tools/info/time_in_turn.h"
 #include "tools/options/light_options.h"
 #include "tools/options/run_options.h"
-#include "tools/options/shadow_options.h"
 
 namespace softfocus {
 namespace {

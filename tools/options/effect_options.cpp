@@ -1,40 +1,10 @@
 #include "tools/options/effect_options.h"
 
-#include <algorithm>
-
 #include "raster/effects/tone_map.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/option_values.h"
+#include "tools/options/parameter_options.h"
 
 namespace softfocus {
-namespace {
-
-std::string keys_of(const Effect& effect) {
-  return effect.parameters.empty() ? "it takes none" : "there are " + names_of(effect.parameters);
-}
-
-void take_parameter(const std::string& text, const std::string& where, ChosenEffect& chosen,
-                    std::vector<bool>& given) {
-  const Effect& effect = *chosen.effect;
-  const std::size_t equals = text.find('=');
-  const std::string key = text.substr(0, equals);
-  const auto found =
-      std::find_if(effect.parameters.begin(), effect.parameters.end(),
-                   [&](const EffectParameter& parameter) { return parameter.name == key; });
-  if (found == effect.parameters.end() || equals == std::string::npos) {
-    throw UsageError(where + ": '" + text + "' is no key=value of " + std::string{effect.name} +
-                     "; " + keys_of(effect));
-  }
-  const auto index = static_cast<std::size_t>(found - effect.parameters.begin());
-  if (given[index]) throw UsageError(where + ": " + key + " is there twice; give it once");
-  given[index] = true;
-  chosen.parameters[index] =
-      parse_number(where + ": " + key, text.substr(equals + 1), found->least, found->most,
-                   std::string{found->summary} + ", " + short_number(found->least) + " to " +
-                       short_number(found->most));
-}
-
-}  // namespace
 
 ChosenEffect parse_effect(std::string_view option, const std::string& text) {
   const std::size_t colon = text.find(':');
@@ -44,13 +14,16 @@ ChosenEffect parse_effect(std::string_view option, const std::string& text) {
   for (const EffectParameter& parameter : chosen.effect->parameters) {
     chosen.parameters.push_back(parameter.preset);
   }
-  std::vector<bool> given(chosen.parameters.size());
-  for (std::size_t begin = colon; begin != std::string::npos;) {
-    const std::size_t end = text.find(',', begin + 1);
-    take_parameter(text.substr(begin + 1, end - begin - 1), std::string{option} + " '" + text + "'",
-                   chosen, given);
-    begin = end;
-  }
+  if (colon == std::string::npos) return chosen;
+  const std::string where = std::string{option} + " '" + text + "'";
+  const std::span<const EffectParameter> parameters = chosen.effect->parameters;
+  read_pairs(where, std::string_view{text}.substr(colon + 1), names_in(parameters),
+             [&](std::size_t key, const std::string& value) {
+               const EffectParameter& of = parameters[key];
+               chosen.parameters[key] =
+                   parse_number(where + ": " + std::string{of.name}, value, of.least, of.most,
+                                std::string{of.summary} + ", " + range_text(of));
+             });
   return chosen;
 }
 
@@ -74,19 +47,15 @@ void add_effect_options(CLI::App& parser, EffectOptions& options) {
         options.effects.push_back(parse_effect("--effect", text));
       });
   offer(parser, "--effect", [] { return names_in(effects()); });
-  add_value(parser, "--tone-map", "none|reinhard|aces|hable",
-            "Last of all: light of any strength becomes 0 to 1 by a curve (default: none, which "
-            "cuts it)",
-            [&options](const std::string& text) {
-              options.tone_map.reset();
-              if (text == "none") return;
-              if (find_tone_curve(text) == nullptr) {
-                std::vector<std::string> names = names_in(kToneCurves);
-                names.insert(names.begin(), "none");
-                refuse_name("--tone-map", text, names);
-              }
-              options.tone_map = parse_effect("--tone-map", text);
-            });
+  std::vector<std::string> curves = names_in(kToneCurves);
+  curves.insert(curves.begin(), "none");
+  add_choice(parser, "--tone-map",
+             "Last of all: light of any strength becomes 0 to 1 by a curve (default: none, which "
+             "cuts it)",
+             curves, [curves, &options](std::size_t number) {
+               options.tone_map.reset();
+               if (number != 0) options.tone_map = parse_effect("--tone-map", curves[number]);
+             });
 }
 
 std::vector<ChosenEffect> all_effects(const EffectOptions& options,

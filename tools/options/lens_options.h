@@ -34,8 +34,7 @@ std::string lens_text(const LensOptions& options);
 /// Throws UsageError if there are keys: of a picture that is no frame.
 void check_no_keys(const LensOptions& options);
 
-/// Adds --focus, --focal-length, --f-number and --coc-scale, whose defaults are the scene's. A
-/// value that no lens can have is refused as it is read.
+/// Adds --focus, --focal-length, --f-number and --coc-scale, whose defaults are the scene's.
 void add_lens_options(CLI::App& parser, LensOptions& options);
 
 /// Likewise of a command that animates: --focus and --f-number may have keys, such as

@@ -1,25 +1,16 @@
 #include "tools/options/light_options.h"
 
-#include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
 
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
+#include "scenes/parameters.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/option_values.h"
+#include "tools/options/parameter_options.h"
 
 namespace softfocus {
 namespace {
-
-struct TerminatorChoice {
-  std::string_view name;
-  Terminator rule;
-};
-constexpr std::array kTerminatorChoices{TerminatorChoice{"facets", Terminator::facets},
-                                        TerminatorChoice{"normals", Terminator::normals},
-                                        TerminatorChoice{"fade", Terminator::fade}};
 
 // Calls set(light) for each light of a kind that has shadows; there must be one.
 template <class Set>
@@ -44,43 +35,16 @@ bool is_empty(const LightOptions& options) {
 }  // namespace
 
 void add_light_options(CLI::App& parser, LightOptions& options) {
-  add_value(parser, "--shadow-darkness", "X",
-            "The part of a light's share that its shadow takes away, 0 to 1 (default: 1)",
-            [&options](const std::string& text) {
-              options.darkness =
-                  parse_number("--shadow-darkness", text, 0.0, 1.0, "a number from 0 to 1");
-            });
-  add_value(parser, "--soft", "N",
-            "Draw lights that have a size from N points, 1 to 4096 (default: the scene's)",
-            [&options](const std::string& text) {
-              options.points = parse_whole("--soft", text, 1, kMostLightPoints,
-                                           "a number of points from 1 to 4096");
-            });
-  add_value(parser, "--light-radius", "METRES", "Point lights with shadows are balls of this size",
-            [&options](const std::string& text) {
-              options.radius_m =
-                  parse_number("--light-radius", text, 0.0, 1e6, "metres from 0 to 1000000");
-            });
-  add_value(parser, "--light-angle", "DEGREES",
-            "Directional lights with shadows are discs of this angular radius; the sun has .27",
-            [&options](const std::string& text) {
-              options.angle_degrees = parse_number("--light-angle", text, 0.0, kMostAngularRadius,
-                                                   "degrees from 0 to 90");
-            });
+  add_parameter(parser, parameter::kShadowDarkness, options.darkness);
+  add_parameter(parser, parameter::kLightPoints, "the scene's", options.points);
+  add_parameter(parser, parameter::kLightRadius, "", options.radius_m);
+  add_parameter(parser, parameter::kLightAngle, "", options.angle_degrees);
 }
 
 void add_terminator_option(CLI::App& parser, LightOptions& options) {
-  add_value(parser, "--soften-terminators", "facets|normals|fade",
-            "Where lights with shadows end on curves of few facets (default: facets)",
-            [&options](const std::string& text) {
-              for (const TerminatorChoice& choice : kTerminatorChoices) {
-                if (choice.name == text) {
-                  options.terminator = choice.rule;
-                  return;
-                }
-              }
-              refuse_name("--soften-terminators", text, names_in(kTerminatorChoices));
-            });
+  add_choice(parser, "--soften-terminators",
+             "Where lights with shadows end on curves of few facets (default: facets)",
+             parameter::kTerminators, options.terminator);
 }
 
 void set_lights(const LightOptions& options, Scene& scene) {
@@ -107,6 +71,54 @@ void set_lights(const LightOptions& options, Scene& scene) {
     throw UsageError("--soft: no light has a size; give --light-radius or --light-angle too");
   }
   scene.light_points = *options.points;
+}
+
+MapOptions parse_map_options(std::string_view option, const std::string& text) {
+  std::vector<std::string> keys;
+  for (const parameter::OfMap& of : parameter::kMapParameters) keys.emplace_back(of.number.name);
+  keys.emplace_back("fit");
+  MapOptions options;
+  const std::string where = std::string{option} + " '" + text + "'";
+  read_pairs(where, text, keys, [&](std::size_t key, const std::string& value) {
+    const std::string which = where + ": " + keys[key];
+    if (key == parameter::kMapParameters.size()) {
+      for (const Choice<bool>& fit : parameter::kMapFits) {
+        if (fit.name != value) continue;
+        options.values.push_back({key, fit.value ? 1.0 : 0.0});
+        return;
+      }
+      refuse_name(which, value, names_in(parameter::kMapFits));
+    }
+    options.values.push_back(
+        {key, parse_parameter(which, value, parameter::kMapParameters[key].number)});
+  });
+  return options;
+}
+
+void add_map_option(CLI::App& parser, MapOptions& options) {
+  add_value(parser, "--map", "KEY=VALUE,...",
+            "Of shadow maps: size, bias, slope-bias, kernel, cascades, fit=camera|scene",
+            [&options](const std::string& text) { options = parse_map_options("--map", text); });
+}
+
+void set_maps(const MapOptions& options, Scene& scene) {
+  if (options.values.empty()) return;
+  bool has_map = false;
+  for (Light& light : scene.lights) {
+    if (light.shadows != ShadowKind::map) continue;
+    has_map = true;
+    for (const auto& [key, value] : options.values) {
+      if (key == parameter::kMapParameters.size()) {
+        light.map.fits_camera = value != 0.0;
+      } else {
+        parameter::kMapParameters[key].set(light.map, value);
+      }
+    }
+    if (light.map.cascades > 1 && !light.map.fits_camera) {
+      throw UsageError("--map: cascades are of the camera's picture; give fit=camera");
+    }
+  }
+  if (!has_map) throw UsageError("--map: no light has a shadow map; give --shadows map too");
 }
 
 }  // namespace softfocus

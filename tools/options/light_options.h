@@ -1,7 +1,11 @@
 #pragma once
-// What the command line says of lights with shadows, in place of what the scene says.
+// What the command line says of lights with shadows and of their shadow maps, in place of what the
+// scene says.
 
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "scenes/scene.h"
 #include "tools/cli/parser.h"
@@ -25,5 +29,24 @@ void add_terminator_option(CLI::App& parser, LightOptions& options);
 /// Puts the values into lights with shadows; throws UsageError where no light has what an option
 /// is of.
 void set_lights(const LightOptions& options, Scene& scene);
+
+/// What --map says: keys and values, of all lights in place of what the scene says.
+struct MapOptions {
+  struct Value {
+    std::size_t key;
+    double value;
+  };
+  std::vector<Value> values;
+};
+
+/// "size=N,bias=..."; throws UsageError, listing the keys there are.
+MapOptions parse_map_options(std::string_view option, const std::string& text);
+
+/// Adds --map.
+void add_map_option(CLI::App& parser, MapOptions& options);
+
+/// Puts the values into lights that have a map; throws UsageError if none has, or if they do not
+/// fit together.
+void set_maps(const MapOptions& options, Scene& scene);
 
 }  // namespace softfocus

@@ -1,15 +1,15 @@
 #include "tools/options/method_options.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
+#include "dof/parameters.h"
 #include "scenes/filtered_views/filtered_views.h"
-#include "scenes/lens_views/shutter_times.h"
+#include "scenes/parameters.h"
 #include "scenes/warped_views/warped_views.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/option_values.h"
+#include "tools/options/parameter_options.h"
 
 namespace softfocus {
 namespace {
@@ -24,8 +24,8 @@ constexpr int kMostUsual = 0;
 // Of Sampling::shutter_frames, until the scene is there.
 constexpr double kShutterOfScene = -1.0;
 
-constexpr std::array kSamplingOptions{"--samples",         "--jitter",  "--until",
-                                      "--aperture-blades", "--shutter", "--views"};
+constexpr std::initializer_list<const char*> kSamplingOptions{
+    "--samples", "--jitter", "--until", "--aperture-blades", "--shutter", "--views"};
 
 std::string names_of_methods_with_shutter() {
   std::string names;
@@ -36,23 +36,21 @@ std::string names_of_methods_with_shutter() {
 }
 
 void refuse_shutter(const CLI::App& parser, std::string_view method) {
-  if (!is_given(parser, "--shutter")) return;
-  throw UsageError("--shutter: the method " + std::string{method} +
-                   " shows one instant; give --method " + names_of_methods_with_shutter());
+  refuse_given(parser, {"--shutter"},
+               "the method " + std::string{method} + " shows one instant; give --method " +
+                   names_of_methods_with_shutter());
 }
 
 // Warped views are drawn from their points alone, and their number is known beforehand.
 void check_warped_views(const CLI::App& parser, const LensViewMethod& method) {
   if (!method.warps_views) {
-    if (!is_given(parser, "--views")) return;
-    throw UsageError("--views: the method " + std::string{method.name} +
-                     " draws all of its views; give --method warped-accumulation");
+    return refuse_given(parser, {"--views"},
+                        "the method " + std::string{method.name} +
+                            " draws all of its views; give --method warped-accumulation");
   }
-  for (const char* option : {"--jitter", "--until"}) {
-    if (!is_given(parser, option)) continue;
-    throw UsageError(std::string{option} + ": the method " + std::string{method.name} +
-                     " does without; give --method accumulation");
-  }
+  refuse_given(
+      parser, {"--jitter", "--until"},
+      "the method " + std::string{method.name} + " does without; give --method accumulation");
 }
 
 }  // namespace
@@ -91,34 +89,18 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
 
 void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px,
                         const std::string& standard) {
-  add_value(parser, "--max-coc", "PIXELS",
-            "Filter size: largest radius, 0 to 1024 (default: " + standard + ")",
-            [&max_coc_px](const std::string& text) {
-              max_coc_px = static_cast<float>(parse_number("--max-coc", text, 0.0, kLargestMaxCoc,
-                                                           "a radius in pixels from 0 to 1024"));
-            });
+  add_parameter(parser, parameter::kMaxCoc, standard, max_coc_px);
 }
 
 void add_weight_options(CLI::App& parser, float& leak, float& budget) {
-  add_value(parser, "--leak", "A",
-            "How readily a background gives its colour to what is before it (default: " +
-                short_number(static_cast<double>(leak)) + ")",
-            [&leak](const std::string& text) {
-              leak = static_cast<float>(
-                  parse_number("--leak", text, 0.0, 1e6, "a factor from 0 to 1000000"));
-            });
-  add_value(parser, "--budget", "SHARE",
-            "Of importance-ordered: the share of one-pass's work to do, 0 to 1 (default: " +
-                short_number(static_cast<double>(budget)) + ")",
-            [&budget](const std::string& text) {
-              budget = static_cast<float>(
-                  parse_number("--budget", text, 0.0, 1.0, "a share from 0 to 1"));
-            });
+  add_parameter(parser, parameter::kLeak, leak);
+  add_parameter(parser, parameter::kBudget, budget);
 }
 
 void check_budget(const CLI::App& parser, std::string_view method) {
-  if (!is_given(parser, "--budget") || method == kBudgetMethod) return;
-  throw UsageError("--budget: the method " + std::string{method} + " has none; give --method " +
+  if (method == kBudgetMethod) return;
+  refuse_given(parser, {"--budget"},
+               "the method " + std::string{method} + " has none; give --method " +
                    std::string{kBudgetMethod});
 }
 
@@ -128,18 +110,12 @@ float used_max_coc_px(std::optional<float> given, const SceneLens& of_scene, int
 }
 
 void add_arithmetic_option(CLI::App& parser, Arithmetic& arithmetic) {
-  add_value(parser, "--arithmetic", "float|fixed|fixed-8",
-            "Numbers that two-pass computes with: binary32, integers, integers on 8-bit colours "
-            "(default: float)",
-            [&arithmetic](const std::string& text) {
-              for (const Arithmetic choice : arithmetics()) {
-                if (arithmetic_name(choice) == text) {
-                  arithmetic = choice;
-                  return;
-                }
-              }
-              refuse_name("--arithmetic", text, {"float", "fixed", "fixed-8"});
-            });
+  std::vector<std::string> names;
+  for (const Arithmetic known : arithmetics()) names.emplace_back(arithmetic_name(known));
+  add_choice(parser, "--arithmetic",
+             "Numbers that two-pass computes with: binary32, integers, integers on 8-bit colours "
+             "(default: float)",
+             names, [&arithmetic](std::size_t number) { arithmetic = arithmetics()[number]; });
 }
 
 void check_arithmetic(Arithmetic arithmetic, std::string_view method, bool on_driver) {
@@ -161,41 +137,30 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings) {
   }
 }
 
-int parse_blades(const char* option, const std::string& text) {
-  constexpr const char* kWanted = "0 for a disc or a whole number from 3 to 64";
-  const int blades = parse_whole(option, text, 0, kMostBlades, kWanted);
-  if (blades == 1 || blades == 2) {
-    throw UsageError(std::string{option} + " '" + text + "': give " + kWanted);
-  }
-  return blades;
+void add_blades_option(CLI::App& parser, const std::string& help, int& blades) {
+  add_value(parser, "--aperture-blades", "N",
+            help + " of 3 to 64 straight blades (default: 0, round)",
+            [&blades](const std::string& text) {
+              constexpr const char* kOption = "--aperture-blades";
+              constexpr const char* kWanted = "0 for a disc or a whole number from 3 to 64";
+              blades = parse_whole(kOption, text, 0, kMostApertureBlades, kWanted);
+              if (blades == 1 || blades == 2)
+                parse_whole(kOption, text, 3, kMostApertureBlades, kWanted);
+            });
 }
 
 void add_aperture_options(CLI::App& parser, Aperture& aperture) {
-  add_value(parser, "--aperture-turn", "DEGREES",
-            "Turns it counter-clockwise (default: 0, a corner up)",
-            [&aperture](const std::string& text) {
-              aperture.turn_degrees = static_cast<float>(parse_number(
-                  "--aperture-turn", text, -360.0, 360.0, "an angle from -360 to 360 degrees"));
-            });
-  add_value(parser, "--anamorphic", "RATIO",
-            "Height over width of what is out of focus, 1/16 to 16 (default: 1)",
-            [&aperture](const std::string& text) {
-              constexpr double kMost = static_cast<double>(kMostApertureStretch);
-              aperture.stretch = static_cast<float>(
-                  parse_number("--anamorphic", text, 1.0 / kMost, kMost,
-                               "height over width from 0.0625 to 16, such as 2"));
-            });
+  add_parameter(parser, parameter::kApertureTurn, aperture.turn_degrees);
+  add_parameter(parser, parameter::kAnamorphic, aperture.stretch);
 }
 
 void check_aperture(const CLI::App& parser, std::string_view method, const std::string& others) {
   if (method == kApertureMethod) return;
-  for (const char* option : {"--aperture-blades", "--aperture-turn", "--anamorphic"}) {
-    if (!is_given(parser, option)) continue;
-    const bool is_blades = option == std::string_view{"--aperture-blades"};
-    throw UsageError(std::string{option} + ": the method " + std::string{method} +
-                     " has a round aperture alone; give --method " + std::string{kApertureMethod} +
-                     (is_blades && !others.empty() ? ", " + others : ""));
-  }
+  const std::string why = "the method " + std::string{method} +
+                          " has a round aperture alone; give --method " +
+                          std::string{kApertureMethod};
+  refuse_given(parser, {"--aperture-blades"}, why + (others.empty() ? "" : ", " + others));
+  refuse_given(parser, {"--aperture-turn", "--anamorphic"}, why);
 }
 
 Json aperture_json(const Aperture& aperture) {
@@ -230,43 +195,18 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
         sampling.by_tile = text == kAutoWord || text.starts_with(kAutoLimit);
         sampling.samples = kMostUsual;
         if (text == kAutoWord) return;
-        sampling.samples =
-            parse_whole("--samples", sampling.by_tile ? text.substr(kAutoLimit.size()) : text, 1,
-                        kMostSamples, "a whole number from 1 to 65536, auto or auto:64");
+        const std::string number = sampling.by_tile ? text.substr(kAutoLimit.size()) : text;
+        sampling.samples = parse_whole("--samples", number, 1, kMostSamples,
+                                       wanted_text(parameter::kSamples) + ", auto or auto:64");
       });
-  add_value(
-      parser, "--views", "V",
-      "Of warped-accumulation: views that are drawn, 1 to 64; the others are warped from them "
-      "(default: " +
-          std::to_string(sampling.drawn_views) + ")",
-      [&sampling](const std::string& text) {
-        sampling.drawn_views =
-            parse_whole("--views", text, 1, kMostDrawnViews, "a whole number from 1 to 64");
-      });
+  add_parameter(parser, parameter::kViews, sampling.drawn_views);
   add_flag(parser, "--jitter",
            "Of the same: look from all over each pixel, not from its centre alone",
            sampling.jitter);
-  add_value(parser, "--until", "ERROR",
-            "Of the same: stop when two half-sets of samples differ by this RMS of linear values",
-            [&sampling](const std::string& text) {
-              sampling.until =
-                  parse_number("--until", text, 1e-9, 1e9, "an error above 0, such as 0.001");
-            });
-  add_value(parser, "--shutter", "FRAMES",
-            "Of accumulation: how long the shutter is open, 0 to 64 frames, with --frame in the "
-            "middle (default: the scene's, mostly 0)",
-            [&sampling](const std::string& text) {
-              sampling.shutter_frames =
-                  parse_number("--shutter", text, 0.0, kLongestShutter,
-                               "a part of a frame's time from 0 to 64, such as 0.5");
-            });
-  add_value(
-      parser, "--aperture-blades", "N",
-      "Of the same and of scatter-aperture: an aperture of 3 to 64 straight blades, 0 = round "
-      "(default: 0)",
-      [&blades = sampling.aperture.blades](const std::string& text) {
-        blades = parse_blades("--aperture-blades", text);
-      });
+  add_parameter(parser, parameter::kUntil, "", sampling.until);
+  add_parameter(parser, parameter::kShutter, "the scene's, mostly 0", sampling.shutter_frames);
+  add_blades_option(parser, "Of the same and of scatter-aperture: an aperture",
+                    sampling.aperture.blades);
 }
 
 void complete_sampling(Sampling& sampling, const LensViewMethod& method, const CLI::App& parser) {
@@ -313,28 +253,16 @@ std::string shutter_warning(const Scene& scene, const MethodChoice& method,
 void refuse_sampling_options(const CLI::App& parser, std::string_view method) {
   refuse_shutter(parser, method);
   for (const char* option : kSamplingOptions) {
-    if (!is_given(parser, option)) continue;
     if (method == kApertureMethod && option == std::string_view{"--aperture-blades"}) continue;
-    throw UsageError(std::string{option} + ": the method " + std::string{method} +
-                     " does not sample the lens; give --method " + names_of_sampling_methods());
+    refuse_given(parser, {option},
+                 "the method " + std::string{method} + " does not sample the lens; give --method " +
+                     names_of_sampling_methods());
   }
 }
 
 void add_goal_options(CLI::App& parser, AutoGoal& goal) {
-  add_value(parser, "--max-error", "E",
-            "Of auto: the cheapest method whose mean FLIP should be at most this (default: " +
-                short_number(goal.max_error) + ")",
-            [&goal](const std::string& text) {
-              goal.max_error = parse_number("--max-error", text, 0.0, 1.0,
-                                            "a mean FLIP from 0 to 1, such as 0.02");
-            });
-  add_value(parser, "--max-time", "MS",
-            "Of auto: the most accurate method that two cores of the reference machine should "
-            "do in this time, beside drawing",
-            [&goal](const std::string& text) {
-              goal.max_time_ms = parse_number("--max-time", text, 0.0, 1e9,
-                                              "a time in milliseconds of 0 or more, such as 8");
-            });
+  add_parameter(parser, parameter::kMaxError, goal.max_error);
+  add_parameter(parser, parameter::kMaxTime, "", goal.max_time_ms);
 }
 
 void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify) {
@@ -347,20 +275,19 @@ void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify) {
   add_flag(parser, "--no-verify", "Of auto: hold none", [&verify] { verify = Verify::never; });
 }
 
+void check_goal(const CLI::App& parser, const MethodChoice& method) {
+  check_one_of(parser, {"--max-error", "--max-time"});
+  if (method.is_auto()) return;
+  refuse_given(
+      parser, {"--max-error", "--max-time", "--verify", "--no-verify"},
+      "the method " + std::string{method.name()} + " keeps to no bound; give --method auto");
+}
+
 void check_auto_options(const CLI::App& parser, const MethodChoice& method) {
-  if (is_given(parser, "--max-error") && is_given(parser, "--max-time")) {
-    throw UsageError("--max-error and --max-time exclude each other; give one");
-  }
-  if (is_given(parser, "--verify") && is_given(parser, "--no-verify")) {
-    throw UsageError("--verify and --no-verify exclude each other; give one");
-  }
+  check_goal(parser, method);
+  check_one_of(parser, {"--verify", "--no-verify"});
   if (is_given(parser, "--verify") && is_given(parser, "--max-time")) {
     throw UsageError("--verify holds the picture to --max-error; with --max-time leave it out");
-  }
-  for (const char* option : {"--max-error", "--max-time", "--verify", "--no-verify"}) {
-    if (!is_given(parser, option) || method.is_auto()) continue;
-    throw UsageError(std::string{option} + ": the method " + std::string{method.name()} +
-                     " keeps to no bound; give --method auto");
   }
   if (!method.is_auto()) return;
   if (is_given(parser, "--gl")) {
@@ -368,12 +295,9 @@ void check_auto_options(const CLI::App& parser, const MethodChoice& method) {
         "--gl and --method auto exclude each other: what auto may choose no driver can do; "
         "give a method");
   }
-  for (const char* option : kSamplingOptions) {
-    if (!is_given(parser, option)) continue;
-    throw UsageError(std::string{option} +
-                     ": the method auto settles by itself how the lens is sampled; "
-                     "give --method accumulation");
-  }
+  refuse_given(parser, kSamplingOptions,
+               "the method auto settles by itself how the lens is sampled; "
+               "give --method accumulation");
 }
 
 }  // namespace softfocus

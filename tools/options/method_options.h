@@ -10,14 +10,30 @@
 #include "dof/auto/auto_method.h"
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "dof/parameters.h"
 #include "raster/effects/effect.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
+#include "scenes/warped_views/warped_views.h"
 #include "tools/cli/parser.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
+
+namespace parameter {
+// clang-format off
+inline constexpr Parameter kSamples{"samples",
+    "Points of the lens from which the scene is drawn: more are more exact and slower",
+    1, kMostSamples, Sampling{}.samples, "", "N|auto[:N]", "", 1};
+inline constexpr Parameter kViews{"views",
+    "Of warped-accumulation: views that are drawn; the others are warped from them",
+    1, kMostDrawnViews, Sampling{}.drawn_views, "", "V", "", 1};
+inline constexpr Parameter kUntil{"until",
+    "Of the same: stop when two half-sets of samples differ by this RMS of linear values",
+    kNearlyNothing, kLargest, 0.0, "", "ERROR"};
+// clang-format on
+}  // namespace parameter
 
 /// What chooses a method by the scene (dof/auto/auto_method.h).
 inline constexpr std::string_view kAutoMethod = "auto";
@@ -68,8 +84,8 @@ void check_arithmetic(Arithmetic arithmetic, std::string_view method, bool on_dr
 /// Throws UsageError for settings that integers cannot have.
 void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings);
 
-/// 0, or 3 to kMostBlades. Throws UsageError.
-int parse_blades(const char* option, const std::string& text);
+/// Adds --aperture-blades: 0, or 3 to kMostApertureBlades.
+void add_blades_option(CLI::App& parser, const std::string& help, int& blades);
 
 /// Adds --aperture-turn and --anamorphic. The blades are an option of the sampling methods, too.
 void add_aperture_options(CLI::App& parser, Aperture& aperture);
@@ -104,6 +120,9 @@ void refuse_sampling_options(const CLI::App& parser, std::string_view method);
 
 /// Adds --max-error and --max-time.
 void add_goal_options(CLI::App& parser, AutoGoal& goal);
+
+/// Throws UsageError if both were given, or either of a method that keeps to no bound.
+void check_goal(const CLI::App& parser, const MethodChoice& method);
 
 /// Adds them, --verify and --no-verify.
 void add_auto_options(CLI::App& parser, AutoGoal& goal, Verify& verify);

@@ -5,6 +5,7 @@
 #include "scenes/load/load_scene.h"
 #include "tools/page/requests.h"
 #include "tools/refocus/depth/depth_encodings.h"
+#include "tools/refocus/photo_lens.h"
 
 namespace softfocus {
 namespace {
@@ -33,14 +34,46 @@ Json cases_json() {
   return cases;
 }
 
+Json parameter_json(const Parameter& parameter) {
+  return {{"name", parameter.name},    {"key", key_of(parameter)}, {"text", parameter.summary},
+          {"unit", parameter.unit},    {"least", parameter.least}, {"most", parameter.most},
+          {"preset", parameter.preset}};
+}
+
+/// By the keys of requests.
+Json parameters_json() {
+  Json all = Json::object();
+  for (const Parameter& parameter : page_parameters()) {
+    all[std::string{key_of(parameter)}] = parameter_json(parameter);
+  }
+  for (const OfDepth& of : kDepthNumbers)
+    all[std::string{of.number.name}] = parameter_json(of.number);
+  return all;
+}
+
+Json sensors_json() {
+  Json list = Json::array();
+  for (const NamedSensor& known : kSensors) {
+    list.push_back(
+        {{"name", known.name}, {"width_mm", known.width_mm}, {"height_mm", known.height_mm}});
+  }
+  return list;
+}
+
 Json methods_json() {
   Json list = Json::array();
   for (const Method& method : methods()) {
-    list.push_back({{"name", method.name}, {"summary", method.summary}, {"kind", "filter"}});
+    list.push_back({{"name", method.name},
+                    {"summary", method.summary},
+                    {"kind", "filter"},
+                    {"samples", false}});
   }
   for (const LensViewMethod& method : lens_view_methods()) {
     if (!method.missing.empty()) continue;
-    list.push_back({{"name", method.name}, {"summary", method.summary}, {"kind", "views"}});
+    list.push_back({{"name", method.name},
+                    {"summary", method.summary},
+                    {"kind", "views"},
+                    {"samples", method.samples_lens}});
   }
   return list;
 }
@@ -74,11 +107,10 @@ Json answer_start(Page& page, const Json& request) {
 }
 
 Json answer_about(Page& page, const Json& /*request*/) {
-  return {{"version", SOFTFOCUS_VERSION},
-          {"isa", isa_name(page.pool->isa())},
-          {"threads", page.pool->threads()},
-          {"simd", kSimd},
-          {"hashes", expected_hashes().size()}};
+  return {{"version", SOFTFOCUS_VERSION},       {"isa", isa_name(page.pool->isa())},
+          {"threads", page.pool->threads()},    {"simd", kSimd},
+          {"hashes", expected_hashes().size()}, {"parameters", parameters_json()},
+          {"sensors", sensors_json()}};
 }
 
 Json answer_scenes(Page& /*page*/, const Json& /*request*/) {

@@ -18,20 +18,11 @@ DepthOptions read_reading(const Json& request) {
       throw UsageError("encoding '" + name->text() + "': there are " + names_of(depth_encodings()));
     }
   }
-  // As on the command line.
-  constexpr double kLargest = 1e12, kFarthest = 1e9, kNearest = 1e-9;
-  DepthNumbers& numbers = reading.numbers;
-  const auto take = [&](const char* name, double least, double most, std::optional<double>& place) {
-    if (const Json* value = given(request, name)) {
-      place = checked_number(*value, name, least, most);
+  for (const OfDepth& of : kDepthNumbers) {
+    if (const Json* value = given(request, key_of(of.number))) {
+      reading.numbers.*of.place = checked_number(*value, of.number);
     }
-  };
-  take("near_m", kNearest, kFarthest, numbers.near_m);
-  take("far_m", kNearest, kFarthest, numbers.far_m);
-  take("scale", -kLargest, kLargest, numbers.scale);
-  take("offset", -kLargest, kLargest, numbers.offset);
-  take("baseline_m", kNearest, kFarthest, numbers.baseline_m);
-  take("focal_px", 1e-3, kLargest, numbers.focal_px);
+  }
   return reading;
 }
 

@@ -2,32 +2,33 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <type_traits>
 
+#include "dof/parameters.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 
 namespace softfocus {
 namespace {
 
-struct ShowChoice {
-  std::string_view name;
-  Show show;
-};
-constexpr std::array kShowChoices{ShowChoice{"picture", Show::image},
-                                  ShowChoice{"pinhole", Show::pinhole},
-                                  ShowChoice{"coc", Show::coc}, ShowChoice{"depth", Show::depth}};
-
-// As in scene files.
-constexpr double kFarthest = 1e9;
-constexpr double kLargestLens = 1e9;
-constexpr int kMostPageSamples = 4096;
-
-int checked_whole(const Json& value, std::string_view name, int least, int most) {
-  const double number = checked_number(value, name, least, most);
-  if (number != std::floor(number)) throw UsageError(std::string{name} + ": not a whole number");
-  return static_cast<int>(number);
+// Scene files and the command line call these otherwise.
+constexpr Parameter with_key(Parameter parameter, std::string_view key) {
+  parameter.key = key;
+  return parameter;
 }
+constexpr Parameter kPageFov = with_key(parameter::kFov, "fov_y_degrees");
+constexpr Parameter kPageTime = with_key(parameter::kFrame, "time");
+constexpr Parameter kPreview{"preview", "What sizes and radii are divided by", 1, 16, 1, "", "", "",
+                             1};
+constexpr std::array kPageParameters{parameter::kFocus,
+                                     parameter::kFocalLength,
+                                     parameter::kFNumber,
+                                     parameter::kCocScale,
+                                     parameter::kMaxCoc,
+                                     kPageSamples,
+                                     kPageFov,
+                                     kPageTime};
 
 std::vector<double> checked_numbers(const Json& value, std::string_view name, std::size_t count,
                                     double least, double most) {
@@ -42,13 +43,14 @@ std::vector<double> checked_numbers(const Json& value, std::string_view name, st
 }
 
 glm::dvec3 read_place(const Json& camera, const char* name) {
-  const auto numbers = checked_numbers(camera.at(name), name, 3, -kFarthest, kFarthest);
+  const auto numbers =
+      checked_numbers(camera.at(name), name, 3, parameter::kPlace.least, parameter::kPlace.most);
   return {numbers[0], numbers[1], numbers[2]};
 }
 
 CameraChoice read_camera(const Json& camera) {
   return {read_place(camera, "position_m"), read_place(camera, "target_m"),
-          checked_number(camera.at("fov_y_degrees"), "fov_y_degrees", 1.0, 170.0)};
+          checked_number(camera.at("fov_y_degrees"), kPageFov)};
 }
 
 MethodChoice read_method(const std::string& name) {
@@ -64,13 +66,10 @@ MethodChoice read_method(const std::string& name) {
 }
 
 Show read_show(const std::string& name) {
-  const auto* const found =
-      std::find_if(kShowChoices.begin(), kShowChoices.end(),
-                   [&](const ShowChoice& choice) { return choice.name == name; });
-  if (found == kShowChoices.end()) {
-    throw UsageError("show '" + name + "': there are " + names_of(kShowChoices));
+  for (const Choice<Show>& choice : kShows) {
+    if (choice.name == name) return choice.value;
   }
-  return found->show;
+  throw UsageError("show '" + name + "': there are " + names_of(kShows));
 }
 
 void read_focus(const Json& focus, FrameSettings& settings) {
@@ -79,7 +78,7 @@ void read_focus(const Json& focus, FrameSettings& settings) {
     settings.focus_at = glm::dvec2{numbers[0], numbers[1]};
     return;
   }
-  settings.lens.focus_m = checked_number(focus.at("m"), "focus.m", 1e-9, kLargestLens);
+  settings.lens.focus_m = checked_number(focus.at("m"), parameter::kFocus);
 }
 
 }  // namespace
@@ -90,11 +89,17 @@ const Json* given(const Json& request, std::string_view name) {
 }
 
 double checked_number(const Json& value, std::string_view name, double least, double most) {
-  const double number = value.number();
-  if (number >= least && number <= most) return number;
-  throw UsageError(std::string{name} + " " + short_number(number) + ": give a number from " +
-                   short_number(least) + " to " + short_number(most));
+  return checked_number(value, Parameter{name, "", least, most, least});
 }
+
+double checked_number(const Json& value, const Parameter& parameter) {
+  const double number = value.number();
+  if (is_allowed(parameter, number)) return number;
+  throw UsageError(std::string{key_of(parameter)} + " " + short_number(number) + ": give " +
+                   wanted_text(parameter));
+}
+
+std::span<const Parameter> page_parameters() { return kPageParameters; }
 
 FrameSettings read_frame_settings(const Json& request) {
   FrameSettings settings;
@@ -103,7 +108,7 @@ FrameSettings read_frame_settings(const Json& request) {
     settings.size = {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
   }
   if (const Json* time = given(request, "time")) {
-    settings.frame = checked_number(*time, "time", -1e6, 1e6);
+    settings.frame = checked_number(*time, kPageTime);
   }
   if (const Json* camera = given(request, "camera")) settings.camera = read_camera(*camera);
   if (const Json* show = given(request, "show")) settings.show = read_show(show->text());
@@ -112,28 +117,22 @@ FrameSettings read_frame_settings(const Json& request) {
   }
   if (const Json* method = given(request, "method")) settings.method = read_method(method->text());
   if (const Json* focus = given(request, "focus")) read_focus(*focus, settings);
-  const auto take = [&](const char* name, double least, double most, std::optional<double>& place) {
-    if (const Json* value = given(request, name)) {
-      place = checked_number(*value, name, least, most);
+  const auto take = [&](const Parameter& parameter, auto& place) {
+    if (const Json* value = given(request, key_of(parameter))) {
+      place =
+          static_cast<std::remove_reference_t<decltype(place)>>(checked_number(*value, parameter));
     }
   };
-  take("focal_length_mm", 1e-9, kLargestLens, settings.lens.focal_length_mm);
-  take("f_number", 1e-9, kLargestLens, settings.lens.f_number);
-  take("coc_scale", 0.0, 1e6, settings.lens.coc_scale);
-  if (const Json* radius = given(request, "max_coc_px")) {
-    settings.max_coc_px = static_cast<float>(
-        checked_number(*radius, "max_coc_px", 0.0, static_cast<double>(kLargestMaxCoc)));
-  }
-  if (const Json* samples = given(request, "samples")) {
-    settings.sampling.samples = checked_whole(*samples, "samples", 1, kMostPageSamples);
-  }
+  take(parameter::kFocalLength, settings.lens.focal_length_mm);
+  take(parameter::kFNumber, settings.lens.f_number);
+  take(parameter::kCocScale, settings.lens.coc_scale);
+  take(parameter::kMaxCoc, settings.max_coc_px);
+  take(kPageSamples, settings.sampling.samples);
   if (const Json* hash = given(request, "hash")) settings.hash = hash->boolean();
-  if (const Json* preview = given(request, "preview")) {
-    settings.preview = checked_whole(*preview, "preview", 1, 16);
-    settings.size.width = std::max(1, settings.size.width / settings.preview);
-    settings.size.height = std::max(1, settings.size.height / settings.preview);
-    if (settings.max_coc_px) *settings.max_coc_px /= static_cast<float>(settings.preview);
-  }
+  take(kPreview, settings.preview);
+  settings.size.width = std::max(1, settings.size.width / settings.preview);
+  settings.size.height = std::max(1, settings.size.height / settings.preview);
+  if (settings.max_coc_px) *settings.max_coc_px /= static_cast<float>(settings.preview);
   return settings;
 }
 

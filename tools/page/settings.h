@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/scene.h"
@@ -14,6 +15,13 @@
 #include "tools/render/options.h"
 
 namespace softfocus {
+
+/// Fewer than `render` takes by itself: the page shall answer at once.
+inline constexpr Parameter kPageSamples = [] {
+  Parameter fewer = parameter::kSamples;
+  fewer.preset = 64;
+  return fewer;
+}();
 
 /// A camera in place of the scene's.
 struct CameraChoice {
@@ -33,7 +41,7 @@ struct FrameSettings {
   LensOptions lens;
   std::optional<glm::dvec2> focus_at;  ///< 0 to 1 from the left and from the top
   std::optional<float> max_coc_px;
-  Sampling sampling{.samples = 64};
+  Sampling sampling{.samples = static_cast<int>(kPageSamples.preset)};
   bool hash = true;  ///< whether the picture's hash is wanted: it takes longer than to show it
 };
 
@@ -48,7 +56,11 @@ Camera chosen_camera(const Camera& of_scene, const std::optional<CameraChoice>& 
 /// A member that is there and not null, or nullptr.
 const Json* given(const Json& request, std::string_view name);
 
-/// A number from `least` to `most`: UsageError.
+/// A number that is allowed: UsageError.
+double checked_number(const Json& value, const Parameter& parameter);
 double checked_number(const Json& value, std::string_view name, double least, double most);
+
+/// What requests set, and the controls show.
+std::span<const Parameter> page_parameters();
 
 }  // namespace softfocus

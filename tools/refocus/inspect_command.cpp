@@ -311,9 +311,9 @@ Command add_inspect_command(CLI::App& program) {
   add_value_list(*parser, "FILES", "", "Pictures, depths, or both",
                  [options](const std::vector<std::string>& names) { options->files = names; });
   begin_group(*parser, "Output");
-  add_value(*parser, "-o,--output", "FILE",
-            "A grey picture of the circles of confusion, of one file or of a colour and its depth",
-            [options](const std::string& text) { options->preview.output = text; });
+  add_text(*parser, "-o,--output", "FILE",
+           "A grey picture of the circles of confusion, of one file or of a colour and its depth",
+           options->preview.output);
   add_flag(*parser, "--json", "Print JSON", options->json);
   add_depth_options(*parser, options->preview.reading);
   add_photo_lens_options(*parser, options->preview.photo);

@@ -6,22 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "dof/parameters.h"
 #include "dof/sensor.h"
 #include "raster/numbers/exact_math.h"
 #include "tools/cli/errors.h"
-#include "tools/options/lengths.h"
+#include "tools/options/parameter_options.h"
 
 namespace softfocus {
 namespace {
-
-struct NamedSensor {
-  std::string_view name;
-  double width_mm, height_mm;
-};
-constexpr std::array kSensors{
-    NamedSensor{"full-frame", 36.0, 24.0},  NamedSensor{"aps-c", 23.6, 15.6},
-    NamedSensor{"aps-c-canon", 22.3, 14.9}, NamedSensor{"micro-four-thirds", 17.3, 13.0},
-    NamedSensor{"1-inch", 13.2, 8.8},       NamedSensor{"phone", 9.8, 7.3}};
 
 Sensor parse_sensor(const std::string& text) {
   for (const NamedSensor& known : kSensors) {
@@ -32,8 +24,8 @@ Sensor parse_sensor(const std::string& text) {
   const auto refuse = [&] { refuse_name("--sensor", text, names_in(kSensors), wanted); };
   if (cross == text.npos) refuse();
   try {
-    return {text, parse_millimetres("", text.substr(0, cross), 0.1, 1e4, wanted),
-            parse_millimetres("", text.substr(cross + 1), 0.1, 1e4, wanted)};
+    return {text, parse_parameter("", text.substr(0, cross), parameter::kSensorSide),
+            parse_parameter("", text.substr(cross + 1), parameter::kSensorSide)};
   } catch (const UsageError&) {  // which knows one side alone
     refuse();
     throw;
@@ -47,8 +39,8 @@ SharpDepthRange parse_focus_range(const std::string& text) {
   if (dots == text.npos) refuse();
   SharpDepthRange range;
   try {
-    range = {parse_metres("", text.substr(0, dots), 1e-9, 1e9, kWanted),
-             parse_metres("", text.substr(dots + 2), 1e-9, 1e9, kWanted)};
+    range = {parse_parameter("", text.substr(0, dots), parameter::kFocus),
+             parse_parameter("", text.substr(dots + 2), parameter::kFocus)};
   } catch (const UsageError&) {  // which knows one end alone
     refuse();
   }
@@ -187,29 +179,14 @@ void add_photo_lens_options(CLI::App& parser, PhotoLens& photo) {
                 names_of(kSensors) + " (default: the picture's field of view, or full-frame)",
             [&photo](const std::string& text) { photo.sensor = parse_sensor(text); });
   offer(parser, "--sensor", [] { return names_in(kSensors); });
-  add_value(parser, "--blur-at-infinity", "PIXELS",
-            "In place of a lens: the radius of the circle of what is infinitely far",
-            [&photo](const std::string& text) {
-              photo.blur_at_infinity_px =
-                  parse_number("--blur-at-infinity", text, 0.0, 1e6, "a radius in pixels from 0");
-            });
+  add_parameter(parser, parameter::kBlurAtInfinity, "", photo.blur_at_infinity_px);
 }
 
 void check_photo_lens(const CLI::App& parser) {
-  const auto only_one_of = [&](std::initializer_list<const char*> options) {
-    const char* first = nullptr;
-    for (const char* option : options) {
-      if (!is_given(parser, option)) continue;
-      if (first != nullptr) {
-        throw UsageError(std::string{first} + " and " + option + " exclude each other; give one");
-      }
-      first = option;
-    }
-  };
-  only_one_of({"--focus", "--focus-at", "--focus-nearest", "--focus-range"});
-  only_one_of({"--fov", "--sensor"});
+  check_one_of(parser, {"--focus", "--focus-at", "--focus-nearest", "--focus-range"});
+  check_one_of(parser, {"--fov", "--sensor"});
   for (const char* option : {"--f-number", "--focal-length", "--sensor", "--coc-scale"}) {
-    only_one_of({"--blur-at-infinity", option});
+    check_one_of(parser, {"--blur-at-infinity", option});
   }
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 // The lens as photographers say it: what is in focus, the sensor, the blur at infinity.
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dof/lens.h"
@@ -21,6 +23,17 @@ struct Sensor {
   double width_mm = 36.0;
   double height_mm = 24.0;
 };
+
+struct NamedSensor {
+  std::string_view name;
+  double width_mm, height_mm;
+};
+inline constexpr std::array kSensors{
+    NamedSensor{"full-frame", 36.0, 24.0},  NamedSensor{"aps-c", 23.6, 15.6},
+    NamedSensor{"aps-c-canon", 22.3, 14.9}, NamedSensor{"micro-four-thirds", 17.3, 13.0},
+    NamedSensor{"1-inch", 13.2, 8.8},       NamedSensor{"phone", 9.8, 7.3},
+    NamedSensor{"1/2.3-inch", 6.17, 4.55},  NamedSensor{"6x6cm", 56.0, 56.0},
+    NamedSensor{"4x5-inch", 127.0, 102.0}};
 
 /// What was given.
 struct PhotoLens {

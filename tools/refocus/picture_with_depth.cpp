@@ -1,51 +1,27 @@
 #include "tools/refocus/picture_with_depth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "tools/cli/errors.h"
-#include "tools/cli/option_values.h"
-#include "tools/options/lengths.h"
+#include "tools/options/parameter_options.h"
 
 namespace softfocus {
 namespace {
 
-void add_number_options(CLI::App& parser, DepthNumbers& numbers) {
-  const auto add_metres = [&](const char* name, const char* help, std::optional<double>& place) {
-    add_value(parser, name, "METRES", help, [name, &place](const std::string& text) {
-      place = parse_metres(name, text, 1e-9, 1e9, "a distance above 0, such as 0.1 or 12cm");
-    });
-  };
-  const auto add_number = [&](const char* name, const char* type, const char* help, double least,
-                              std::optional<double>& place) {
-    add_value(parser, name, type, help, [name, least, &place](const std::string& text) {
-      place = parse_number(name, text, least, 1e12, "a decimal number");
-    });
-  };
-  add_metres("--near", "Of the encodings that need it: the near plane, or the nearest depth",
-             numbers.near_m);
-  add_metres("--far", "Likewise the far plane, or the farthest depth", numbers.far_m);
-  add_number("--scale", "S", "Of metres, inverse, disparity: what a code is multiplied by", -1e12,
-             numbers.scale);
-  add_number("--offset", "O", "Likewise what is added then; of middlebury its doffs", -1e12,
-             numbers.offset);
-  add_metres("--baseline", "Of disparities: between the two cameras", numbers.baseline_m);
-  add_number("--focal-px", "PIXELS",
-             "Of disparities: focal length in pixels of the colour picture; also its field of view",
-             1e-3, numbers.focal_px);
-}
+constexpr std::array kUpsamplings{Choice<bool>{"colour", true}, Choice<bool>{"nearest", false}};
+constexpr std::array kAlongs{Choice<DepthAlong>{"axis", DepthAlong::axis},
+                             Choice<DepthAlong>{"ray", DepthAlong::ray}};
+constexpr std::array kHoles{Choice<Holes>{"far", Holes::from_far_side},
+                            Choice<Holes>{"refuse", Holes::refused}};
 
 void add_mending_options(CLI::App& parser, Mending& mending) {
-  add_value(parser, "--upsample", "colour|nearest",
-            "A map smaller than the picture grows along the colours' edges, or by its nearest "
-            "pixel (default: colour)",
-            [&mending](const std::string& text) {
-              if (text != "colour" && text != "nearest") {
-                refuse_name("--upsample", text, {"colour", "nearest"});
-              }
-              mending.by_colour = text == "colour";
-            });
+  add_choice(parser, "--upsample",
+             "A map smaller than the picture grows along the colours' edges, or by its nearest "
+             "pixel (default: colour)",
+             kUpsamplings, mending.by_colour);
   add_flag(parser, "--mend-edges",
            "Depth between two surfaces, as anti-aliasing leaves it, becomes that of one of them",
            mending.edges);
@@ -80,11 +56,11 @@ void check_shape(const PictureFile& colour, const PictureFile& depth) {
 
 void add_depth_options(CLI::App& parser, DepthOptions& options) {
   begin_group(parser, "Depth");
-  add_value(parser, "--layer", "NAME", "Layer of COLOUR (default: R G B, Combined or the first)",
-            [&options](const std::string& text) { options.layer = text; });
-  add_value(parser, "--depth-layer", "NAME",
-            "Layer or channel of the depth (default: Z, Depth, or a NumPy file's alpha)",
-            [&options](const std::string& text) { options.depth_layer = text; });
+  add_text(parser, "--layer", "NAME", "Layer of COLOUR (default: R G B, Combined or the first)",
+           options.layer);
+  add_text(parser, "--depth-layer", "NAME",
+           "Layer or channel of the depth (default: Z, Depth, or a NumPy file's alpha)",
+           options.depth_layer);
   add_value(parser, "--depth-encoding", "NAME",
             "What the depth's numbers mean: " + names_of(depth_encodings()) +
                 " (default: by the numbers, where they tell; softfocus inspect says)",
@@ -95,16 +71,13 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
               }
             });
   offer(parser, "--depth-encoding", [] { return names_in(depth_encodings()); });
-  add_number_options(parser, options.numbers);
-  add_value(parser, "--depth-along", "axis|ray",
-            "Whether depth is measured along the camera's axis or the pixel's ray (default: the "
-            "encoding's, axis but for blender-mist)",
-            [&options](const std::string& text) {
-              if (text != "axis" && text != "ray") {
-                refuse_name("--depth-along", text, {"axis", "ray"});
-              }
-              options.along = text == "axis" ? DepthAlong::axis : DepthAlong::ray;
-            });
+  for (const OfDepth& of : kDepthNumbers) {
+    add_parameter(parser, of.number, "", options.numbers.*of.place);
+  }
+  add_choice(parser, "--depth-along",
+             "Whether depth is measured along the camera's axis or the pixel's ray (default: the "
+             "encoding's, axis but for blender-mist)",
+             kAlongs, options.along);
   add_repeatable_value(parser, "--missing", "NUMBER",
                        "This number in the depth file means that nothing is known; may be repeated "
                        "(NaN and what the encoding says always do)",
@@ -112,16 +85,11 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
                          options.missing_codes.push_back(
                              parse_number("--missing", text, -1e30, 1e30, "a decimal number"));
                        });
-  add_value(parser, "--mask", "FILE", "A picture of the depth's size, 0 where nothing is known",
-            [&options](const std::string& text) { options.mask = text; });
-  add_value(parser, "--holes", "far|refuse",
-            "What is not known is filled from the far side, or refused (default: far)",
-            [&options](const std::string& text) {
-              if (text != "far" && text != "refuse") {
-                refuse_name("--holes", text, {"far", "refuse"});
-              }
-              options.holes = text == "far" ? Holes::from_far_side : Holes::refused;
-            });
+  add_text(parser, "--mask", "FILE", "A picture of the depth's size, 0 where nothing is known",
+           options.mask);
+  add_choice(parser, "--holes",
+             "What is not known is filled from the far side, or refused (default: far)", kHoles,
+             options.holes);
   add_mending_options(parser, options.mending);
 }
 

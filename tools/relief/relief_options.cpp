@@ -4,33 +4,26 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <string_view>
+#include <type_traits>
 
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/parser.h"
+#include "tools/options/parameter_options.h"
 #include "tools/relief/relief_options.h"
 
 namespace softfocus {
 namespace {
 
-struct NamedPart {
-  std::string_view name;
-  ReliefPart part;
-};
-constexpr std::array kReliefParts{
-    NamedPart{"image", ReliefPart::image}, NamedPart{"depth", ReliefPart::depth},
-    NamedPart{"normals", ReliefPart::normals}, NamedPart{"faces", ReliefPart::faces},
-    NamedPart{"unseen", ReliefPart::unseen}};
+constexpr std::array kReliefParts{Choice<ReliefPart>{"image", ReliefPart::image},
+                                  Choice<ReliefPart>{"depth", ReliefPart::depth},
+                                  Choice<ReliefPart>{"normals", ReliefPart::normals},
+                                  Choice<ReliefPart>{"faces", ReliefPart::faces},
+                                  Choice<ReliefPart>{"unseen", ReliefPart::unseen}};
 
-struct NamedTurnSchedule {
-  std::string_view name;
-  TurnSchedule schedule;
-};
-constexpr std::array kTurnSchedules{NamedTurnSchedule{"serial", TurnSchedule::serial},
-                                    NamedTurnSchedule{"split", TurnSchedule::split},
-                                    NamedTurnSchedule{"slices", TurnSchedule::slices},
-                                    NamedTurnSchedule{"own-thread", TurnSchedule::own_thread}};
+constexpr std::array kTurnSchedules{Choice<TurnSchedule>{"serial", TurnSchedule::serial},
+                                    Choice<TurnSchedule>{"split", TurnSchedule::split},
+                                    Choice<TurnSchedule>{"slices", TurnSchedule::slices},
+                                    Choice<TurnSchedule>{"own-thread", TurnSchedule::own_thread}};
 
 /// X,Y,Z that are not all next to 0: squares of these are no subnormals.
 glm::vec3 parse_towards(const std::string& text) {
@@ -53,17 +46,13 @@ glm::vec3 parse_towards(const std::string& text) {
 }  // namespace
 
 void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& options) {
-  const auto number = [&](const char* name, const char* type, const char* help, double least,
-                          double most, const char* wanted, double ReliefOptions::*value) {
-    add_value(parser, name, type, help, [=](const std::string& text) {
-      (*options).*value = parse_number(name, text, least, most, wanted);
-    });
-  };
-  const auto whole = [&](const char* name, const char* help, int least, int most,
-                         const char* wanted, int ReliefOptions::*value) {
-    add_value(parser, name, "N", help, [=](const std::string& text) {
-      (*options).*value = parse_whole(name, text, least, most, wanted);
-    });
+  // The help ends in the range and, if it is within, the struct's own value.
+  const auto number = [&](const char* name, const char* type, const char* text, double least,
+                          double most, auto& value) {
+    constexpr bool kIsWhole = std::is_integral_v<std::remove_reference_t<decltype(value)>>;
+    const auto preset = static_cast<double>(value);
+    const Parameter of{name, text, least, most, preset, "", type, "", kIsWhole ? 1 : 0};
+    add_parameter(parser, of, is_allowed(of, preset) ? plain_number(preset) : "", value);
   };
   const auto choice = [&](const char* name, const char* type, const std::string& help,
                           const auto& table, auto named, auto value) {
@@ -87,13 +76,8 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
                 }
               }
             });
-  add_value(parser, "--depth-bits", "8|16", "Bits of a depth (default: 8)",
-            [options](const std::string& text) {
-              if (text != "8" && text != "16") {
-                throw UsageError("--depth-bits '" + text + "': give 8 or 16");
-              }
-              options->depth_bits = text == "8" ? 8 : 16;
-            });
+  add_choice(parser, "--depth-bits", "Bits of a depth (default: 8)", {"8", "16"},
+             [options](std::size_t place) { options->depth_bits = place == 0 ? 8 : 16; });
   choice("--projection", "NAME",
          "Of the relief's camera: " + names_of(kReliefProjections) + " (default: orthographic)",
          kReliefProjections, &NamedProjection::projection, &ReliefOptions::projection);
@@ -106,12 +90,12 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
   begin_group(parser, "Height field");
   add_flag(parser, "--height-field", "make: INPUT is a grey picture of heights, of any kind",
            options->height_field);
-  add_value(parser, "--colour", "FILE", "Its colours, a picture of its size (default: lit white)",
-            [options](const std::string& text) { options->colour = text; });
-  number("--height", "M",
+  add_text(parser, "--colour", "FILE", "Its colours, a picture of its size (default: lit white)",
+           options->colour);
+  number("height", "M",
          "Metres of a height of 1, or of the largest whole number, if the longer side of the field "
-         "has one (default: 0.25)",
-         1e-6, 1e6, "a number from 0.000001 to 1000000", &ReliefOptions::height_m);
+         "has one",
+         1e-6, 1e6, options->height_m);
   add_value(parser, "--empty", "VALUE",
             "Texels of this height are empty, as those are that are transparent or no number",
             [options](const std::string& text) {
@@ -119,12 +103,11 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
                   parse_number("--empty", text, -3e38, 3e38, "a number as the file has it"));
             });
   begin_group(parser, "View");
-  number("--yaw", "DEGREES", "The eye goes to the right about the middle (default: 0)", -180.0,
-         180.0, "a number from -180 to 180", &ReliefOptions::yaw_degrees);
-  number("--pitch", "DEGREES", "And up (default: 0)", -89.0, 89.0, "a number from -89 to 89",
-         &ReliefOptions::pitch_degrees);
-  number("--distance", "D", "From the middle, in diagonals of the relief's box (default: 2.5)", 0.6,
-         1e4, "a number from 0.6 to 10000", &ReliefOptions::distance);
+  number("yaw", "DEGREES", "The eye goes to the right about the middle", -180.0, 180.0,
+         options->yaw_degrees);
+  number("pitch", "DEGREES", "And up", -89.0, 89.0, options->pitch_degrees);
+  number("distance", "D", "From the middle, in diagonals of the relief's box", 0.6, 1e4,
+         options->distance);
   add_value(parser, "--light", "X,Y,Z",
             "An unlit relief is lit from there, in white (default: as it was made)",
             [options](const std::string& text) { options->light = parse_towards(text); });
@@ -132,73 +115,64 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
   add_size(parser, options->size);
   add_frame(parser, options->frame);
   begin_group(parser, "Output");
-  add_value(
+  add_text(
       parser, "-o,--output", "FILE",
       "The relief of make; the picture of show, warp and box; of box, with %d in the name, six "
       "reliefs; of turn, with %d, every measured frame beside the redrawn one",
-      [options](const std::string& text) { options->output = text; });
+      options->output);
   add_format_option(parser, options->format);
   choice("--show", "PART",
          "What of a relief is shown: image, depth or normals; of a box: image, faces or unseen",
-         kReliefParts, &NamedPart::part, &ReliefOptions::part);
+         kReliefParts, &Choice<ReliefPart>::value, &ReliefOptions::part);
   begin_group(parser, "Warp");
   choice("--resampling", "NAME",
          "How texels are moved: " + names_of(kResamplings) + " (default: intertwined)",
          kResamplings, &NamedResampling::resampling, &ReliefOptions::resampling);
   add_flag(parser, "--fixed", "Places in integers of 1/256 texel", options->fixed);
-  number("--join", "TEXELS",
-         "Neighbours that come farther apart are not joined: a hole stays (default: all are)", 2.0,
-         WarpRule::kJoinAll, "a number from 2 to 1000000", &ReliefOptions::join_texels);
+  number("join", "TEXELS",
+         "Neighbours that come farther apart are not joined, a hole stays; by default all are", 2.0,
+         WarpRule::kJoinAll, options->join_texels);
   begin_group(parser, "Turn");
-  whole("--turns", "Full turns, 1 to 100 (default: 1)", 1, 100, "a number from 1 to 100",
-        &ReliefOptions::turns);
-  number("--cache", "MB", "Of stale reliefs that are kept, in millions of bytes (default: 0)", 0.0,
-         1e5, "a number from 0 to 100000", &ReliefOptions::cache_mb);
-  whole("--frames", "Frames of a full turn, 4 to 10000 (default: 360)", 4, 10000,
-        "a number from 4 to 10000", &ReliefOptions::frames);
-  whole("--every", "Errors are measured every N frames (default: 10)", 1, 10000,
-        "a number from 1 to 10000", &ReliefOptions::every);
-  number("--tolerance", "TEXELS", "The critical point's error that renews a relief (default: 8)",
-         1.0, 1e4, "a number from 1 to 10000", &ReliefOptions::tolerance);
-  whole("--regions", "By the mean of N x N critical points, 1 to 64 (default: 1, the largest step)",
-        1, kMostRegions, "a number from 1 to 64", &ReliefOptions::regions);
-  number("--texels-per-pixel", "K", "Of a relief when it is drawn (default: 1)", 0.1, 4.0,
-         "a number from 0.1 to 4", &ReliefOptions::texels_per_pixel);
-  number("--zoom", "Z", "The object so many times as large in the picture (default: 1)", 0.01, 10.0,
-         "a number from 0.01 to 10", &ReliefOptions::zoom);
+  number("turns", "N", "Full turns", 1, 100, options->turns);
+  number("cache", "MB", "Of stale reliefs that are kept, in millions of bytes", 0.0, 1e5,
+         options->cache_mb);
+  number("frames", "N", "Frames of a full turn", 4, 10000, options->frames);
+  number("every", "N", "Errors are measured every N frames", 1, 10000, options->every);
+  number("tolerance", "TEXELS", "The critical point's error that renews a relief", 1.0, 1e4,
+         options->tolerance);
+  number("regions", "N", "By the mean of N x N critical points; of 1, the largest step", 1,
+         kMostRegions, options->regions);
+  number("texels-per-pixel", "K", "Of a relief when it is drawn", 0.1, 4.0,
+         options->texels_per_pixel);
+  number("zoom", "Z", "The object so many times as large in the picture", 0.01, 10.0,
+         options->zoom);
   add_flag(parser, "--box", "Six faces, drawn once, in place of an impostor", options->box);
   add_flag(parser, "--moving-light",
            "The scene's lights turn against the eye; reliefs are unlit, and lit each frame",
            options->moving_light);
-  number("--approach", "F",
+  number("approach", "F",
          "In place of a turn the eye comes straight nearer, from F times the distance", 1.0, 100.0,
-         "a number from 1 to 100", &ReliefOptions::approach);
-  whole("--levels",
-        "Reliefs have N resolutions, each half the one before, 1 to 6 (default: 1); the first has "
-        "--texels-per-pixel",
-        1, kMostReliefLevels, "a number from 1 to 6", &ReliefOptions::levels);
+         options->approach);
+  number("levels", "N",
+         "Reliefs have N resolutions, each half the one before; the first has --texels-per-pixel",
+         1, kMostReliefLevels, options->levels);
   add_flag(parser, "--no-sprites", "Warp every frame, whatever Schaufler's test says",
            options->no_sprites);
   begin_group(parser, "Schedule of a turn");
   choice("--schedule", "NAME",
          "Who works when: " + names_of(kTurnSchedules) +
              " (default: split, in the frame by all threads)",
-         kTurnSchedules, &NamedTurnSchedule::schedule, &ReliefOptions::schedule);
-  add_value(parser, "--aside", "renewals|warps",
-            "What slices or the own thread do: draw reliefs, or warp them, too (default: renewals)",
-            [options](const std::string& text) {
-              if (text != "renewals" && text != "warps") {
-                throw UsageError("--aside '" + text + "': give renewals or warps");
-              }
-              options->warps_aside = text == "warps";
-            });
-  whole("--update-frames",
-        "What begins in a frame is shown N frames later, 1 to 64 (default: when it is done)", 1,
-        kMostUpdateFrames, "a number from 1 to 64", &ReliefOptions::update_frames);
-  number("--slice-ms", "X",
-         "Of slices without --update-frames: pieces are done until a frame took so long (default: "
-         "2)",
-         0.01, 1e4, "a number from 0.01 to 10000", &ReliefOptions::slice_ms);
+         kTurnSchedules, &Choice<TurnSchedule>::value, &ReliefOptions::schedule);
+  add_choice(
+      parser, "--aside",
+      "What slices or the own thread do: draw reliefs, or warp them, too (default: renewals)",
+      {"renewals", "warps"}, [options](std::size_t place) { options->warps_aside = place == 1; });
+  number("update-frames", "N",
+         "What begins in a frame is shown N frames later; without, when it is done", 1,
+         kMostUpdateFrames, options->update_frames);
+  number("slice-ms", "X",
+         "Of slices without --update-frames: pieces are done until a frame took so long", 0.01, 1e4,
+         options->slice_ms);
   add_flag(parser, "--predict", "Work for the eye that will be, if it goes on as it goes",
            options->predicts);
   begin_group(parser, "Rival");
@@ -208,14 +182,12 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
               if (text != "octahedral") refuse_name("--rival", text, {"octahedral"});
               options->rival = true;
             });
-  whole("--views", "Of the atlas, N x N, 2 to 64 (default: 6)", 2, kMostOctahedralViews,
-        "a number from 2 to 64", &ReliefOptions::views);
+  number("views", "N", "Of the atlas, N x N", 2, kMostOctahedralViews, options->views);
   add_flag(parser, "--hemisphere", "All views of the atlas are from above", options->hemisphere);
-  whole("--parallax", "Steps from the texel that a ray meets to its depth, 0 to 8 (default: 1)", 0,
-        kMostParallaxSteps, "a number from 0 to 8", &ReliefOptions::parallax);
+  number("parallax", "N", "Steps from the texel that a ray meets to its depth", 0,
+         kMostParallaxSteps, options->parallax);
   begin_group(parser, "Run");
-  whole("--runs", "bench times each N times, 1 to 1000 (default: 20)", 1, 1000,
-        "a number from 1 to 1000", &ReliefOptions::runs);
+  number("runs", "N", "bench times each N times", 1, 1000, options->runs);
   add_pool_options(parser, options->pool, "the pictures are the same");
 }
 

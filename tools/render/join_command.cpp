@@ -164,9 +164,9 @@ Command add_join_command(CLI::App& program) {
   const auto options = std::make_shared<JoinOptions>();
   add_value_list(*parser, "PARTS", "", "The .sum files of all shards",
                  [options](const std::vector<std::string>& names) { options->parts = names; });
-  add_value(*parser, "-o,--output", "FILE",
-            "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output",
-            [options](const std::string& text) { options->picture.output = text; });
+  add_text(*parser, "-o,--output", "FILE",
+           "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output",
+           options->picture.output);
   add_format_option(*parser, options->picture.format);
   add_flag(*parser, "--check", "Only look whether the files are whole and of one picture",
            options->check);

@@ -1,43 +1,28 @@
 #include "tools/render/options.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "raster/images/image.h"
 #include "raster/pipeline/merge.h"
 #include "scenes/draw/shadowed_layers.h"
+#include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/files/same_file.h"
 #include "tools/options/method_options.h"
+#include "tools/options/parameter_options.h"
 #include "tools/options/run_options.h"
 #include "tools/render/shard_file.h"
 
 namespace softfocus {
 namespace {
 
-struct ShowChoice {
-  std::string_view name;
-  Show show;
-};
-constexpr std::array kShowChoices{ShowChoice{"image", Show::image},
-                                  ShowChoice{"pinhole", Show::pinhole},
-                                  ShowChoice{"coc", Show::coc}, ShowChoice{"depth", Show::depth}};
-
-struct ShadowChoice {
-  std::string_view name;
-  ShadowKind kind;
-};
-constexpr std::array kShadowChoices{
-    ShadowChoice{"none", ShadowKind::none}, ShadowChoice{"projected", ShadowKind::projected},
-    ShadowChoice{"volumes", ShadowKind::volumes}, ShadowChoice{"map", ShadowKind::map}};
-
 void add_picture_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Output");
-  add_value(parser, "-o,--output", "FILE",
-            "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
-            [&options](const std::string& text) { options.output = text; });
+  add_text(parser, "-o,--output", "FILE",
+           "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
+           options.output);
   add_format_option(parser, options.format);
   add_value(parser, "--depth-output", "FILE",
             "The depth too, in metres along the axis: .pfm, .npy, .exr (channel Z), or .png (16 "
@@ -54,8 +39,8 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
               }
               options.depth_output = text;
             });
-  add_value(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
-            [&options](const std::string& text) { options.report = text; });
+  add_text(parser, "--report", "FILE", "Write a performance report, times in milliseconds",
+           options.report);
   add_flag(parser, "--json", "Print the report as JSON on standard output", options.json);
   begin_group(parser, "Picture");
   add_size(parser, options.size);
@@ -65,17 +50,9 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
       [&options](const std::string& text) {
         options.supersample = parse_whole("--supersample", text, 1, 2, "1 or 2");
       });
-  add_value(parser, "--show", "image|pinhole|coc|depth",
-            "The picture with depth of field, without, or a grey map (default: image)",
-            [&options](const std::string& text) {
-              for (const ShowChoice& choice : kShowChoices) {
-                if (choice.name == text) {
-                  options.show = choice.show;
-                  return;
-                }
-              }
-              refuse_name("--show", text, names_in(kShowChoices));
-            });
+  add_choice(parser, "--show",
+             "The picture with depth of field, without, or a grey map (default: image)", kShows,
+             options.show);
   add_effect_options(parser, options.effects);
   add_value(parser, "--layers", "K",
             "The K nearest surfaces of each pixel, 1 to 4: what layered works from (default: 2); "
@@ -90,17 +67,8 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Scene");
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
-  add_value(parser, "--shadows", "none|projected|volumes|map",
-            "Shadows of all lights, in place of what the scene says of each",
-            [&options](const std::string& text) {
-              for (const ShadowChoice& choice : kShadowChoices) {
-                if (choice.name == text) {
-                  options.shadows = choice.kind;
-                  return;
-                }
-              }
-              refuse_name("--shadows", text, names_in(kShadowChoices));
-            });
+  add_choice(parser, "--shadows", "Shadows of all lights, in place of what the scene says of each",
+             parameter::kShadowKinds, options.shadows);
   add_map_option(parser, options.map);
   add_light_options(parser, options.lights);
   add_terminator_option(parser, options.lights);
@@ -178,8 +146,7 @@ void check_depth_output(const RenderOptions& options) {
 
 void check_gl_options(const RenderOptions& options, const CLI::App& parser) {
   if (options.gl == nullptr) {
-    if (!is_given(parser, "--shaders")) return;
-    throw UsageError("--shaders: a driver runs them; give --gl DRIVER too");
+    return refuse_given(parser, {"--shaders"}, "a driver runs them; give --gl DRIVER too");
   }
   if (is_given(parser, "--profile")) {
     throw UsageError("--gl and --profile exclude each other: a driver is what it is");
@@ -248,11 +215,9 @@ void check_blades(RenderOptions& options, const CLI::App& parser) {
     check_aperture(parser, options.method.name(), names_of_sampling_methods());
     return;
   }
-  for (const char* option : {"--aperture-turn", "--anamorphic"}) {
-    if (!is_given(parser, option)) continue;
-    throw UsageError(std::string{option} + ": the method " + std::string{of_scene->name} +
-                     " has blades alone; give --method " + std::string{kApertureMethod});
-  }
+  refuse_given(parser, {"--aperture-turn", "--anamorphic"},
+               "the method " + std::string{of_scene->name} + " has blades alone; give --method " +
+                   std::string{kApertureMethod});
 }
 
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
@@ -377,12 +342,8 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     throw UsageError("--report and -o name the same file; give two");
   }
   check_depth_output(options);
-  if (options.sequence.frames && is_given(parser, "--frame")) {
-    throw UsageError("--frame and --frames exclude each other; give one");
-  }
-  if (options.autofocus && is_given(parser, "--focus")) {
-    throw UsageError("--focus and --autofocus exclude each other; give one");
-  }
+  check_one_of(parser, {"--frame", "--frames"});
+  check_one_of(parser, {"--focus", "--autofocus"});
   if (options.autofocus_pixel) {
     const auto [x, y] = *options.autofocus_pixel;
     const auto [width, height] = options.size;

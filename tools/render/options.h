@@ -1,6 +1,7 @@
 #pragma once
 // Everything that `render` is told.
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "dof/auto/auto_method.h"
 #include "dof/dof.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "raster/numbers/parameter.h"
 #include "raster/numbers/profile.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/scene.h"
@@ -21,7 +23,6 @@
 #include "tools/options/light_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
-#include "tools/options/shadow_options.h"
 #include "tools/pictures/image_file.h"
 #include "tools/render/sharp_depths_option.h"
 #include "tools/sequence/sequence_options.h"
@@ -30,6 +31,9 @@ namespace softfocus {
 
 /// Which picture is wanted: with depth of field, without, or a map of what it works from.
 enum class Show { image, pinhole, coc, depth };
+inline constexpr std::array kShows{
+    Choice<Show>{"image", Show::image}, Choice<Show>{"pinhole", Show::pinhole},
+    Choice<Show>{"coc", Show::coc}, Choice<Show>{"depth", Show::depth}};
 
 struct RenderOptions {
   std::string scene;

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
+#include "dof/parameters.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/option_values.h"
 #include "tools/options/lens_options.h"
+#include "tools/options/parameter_options.h"
 
 namespace softfocus {
 namespace {
@@ -23,7 +24,7 @@ SharpDepthRange parse_range(const std::string& range, const std::string& text) {
   if (colon == range.npos) refuse(text);
   const auto metres = [&](const std::string& number) {
     try {
-      return parse_number(kOption, number, 1e-9, 1e9, kWanted);
+      return parse_parameter(kOption, number, parameter::kFocus);
     } catch (const UsageError&) {  // which knows a part of the value alone
       refuse(text);
     }
@@ -59,11 +60,7 @@ void check_sharp_depths(const CLI::App& parser, const MethodChoice& method, bool
     throw UsageError(std::string{kOption} + ": the method " + std::string{method.name()} +
                      " blurs as the lens does; give --method " + takers);
   }
-  for (const char* other : {"--focus", "--autofocus"}) {
-    if (!is_given(parser, other)) continue;
-    throw UsageError(std::string{kOption} + " and " + other +
-                     " exclude each other: either says what is sharp; give one");
-  }
+  check_one_of(parser, {kOption, "--focus", "--autofocus"});
   if (!shows_image) {
     throw UsageError(std::string{kOption} + ": --show has maps of the lens alone; leave one out");
   }

@@ -146,13 +146,17 @@ TEST_CASE("the C interface: a lens that cannot be is refused by the field") {
   refused(&Settings::focal_length_mm, {kNan, 0.0, -50.0, kInfinity}, "settings.focal_length_mm: ");
   refused(&Settings::focal_length_mm, {2000.0}, "shorter than the focus distance");
   refused(&Settings::f_number, {kNan, 0.0, -1.0, kInfinity}, "settings.f_number: ");
-  check_refused([](Call& c) { c.settings.f_number = 0.01, c.settings.coc_scale = 3e38; },
-                "too large");
+  check_refused(
+      [](Call& c) {
+        c.settings.f_number = 1e-9, c.settings.coc_scale = 1e9, c.settings.sensor_height_mm = 1e-9;
+        c.settings.focal_length_mm = std::nextafter(1e3 * c.settings.focus_m, 0.0);
+      },
+      "too large");
   refused(&Settings::focus_m, {kNan, 0.0, -1.0, kInfinity, 1e300}, "settings.focus_m: ");
   refused(&Settings::sensor_width_mm, {kNan, 0.0, -36.0, kInfinity}, "settings.sensor_width_mm: ");
   refused(&Settings::sensor_height_mm, {kNan, 0.0}, "settings.sensor_height_mm: ");
   refused(&Settings::fov_y_degrees, {kNan, -1.0, 180.0, 1e9}, "settings.fov_y_degrees: ");
-  refused(&Settings::coc_scale, {kNan, -1.0, kInfinity}, "settings.coc_scale: ");
+  refused(&Settings::coc_scale, {kNan, -1.0, 3e38, kInfinity}, "settings.coc_scale: ");
   refused(&Settings::blur_at_infinity_px, {kNan, -1.0, kInfinity}, "settings.blur_at_infinity_px");
   refused(&Settings::max_radius_px, {kNan, -1.0, 1025.0}, "settings.max_radius_px: ");
   refused(&Settings::leak, {kNan, -1.0, 1e300}, "settings.leak: ");

@@ -93,7 +93,7 @@ test("every control changes the picture to the program's for the same settings",
   await changed("method");
   await page.locator("#coc-map").check({ force: true });
   await changed("map of the circles");
-  await page.locator("input[name=show][value=picture]").check({ force: true });
+  await page.locator("input[name=show][value=image]").check({ force: true });
   await page.locator("#dof").uncheck();
   await changed("depth of field off");
   await page.locator("#dof").check();

@@ -18,6 +18,22 @@ const tests = [];
 const test = (claim, run) => tests.push({ claim, run });
 const near = (a, b, part = 1e-5) => assert.ok(Math.abs(a - b) <= part * Math.abs(b), `${a}, not ${b}`);
 
+/** What the module tells of what can be set, as far as it is needed here. */
+const kParameters = {
+  focus_m: { preset: 2 }, focal_length_mm: { preset: 50 }, f_number: { preset: 2 }, coc_scale: { preset: 1 },
+  samples: { preset: 64 }, max_coc_px: { most: 1024 }, near: { key: "near_m" }, far: { key: "far_m" },
+  scale: { key: "scale" }, offset: { key: "offset" },
+};
+
+const kSensors = [{ name: "full-frame", width_mm: 36, height_mm: 24 }];
+
+test("a side begins with what the module has for presets", async () => {
+  const { first_side, set_parameters } = await module_of("state.js");
+  assert.deepStrictEqual([first_side().f_number, first_side().focus.m], [null, null]);
+  set_parameters(kParameters, kSensors);
+  assert.deepStrictEqual([first_side().f_number, first_side().focus.m], [2, 2]);
+});
+
 test("a link gives the state back", async () => {
   const { first_side, first_state } = await module_of("state.js");
   const { link_of, read_link, state_to_open, with_link } = await module_of("link.js");
@@ -115,7 +131,7 @@ test("the error of a picture without depth of field is that of the pinhole", asy
   const off = { ...first_side(), dof: false };
   assert.strictEqual(frame_request(first_state(), off, 1).dof, false);
   const measured = frame_request({ ...first_state(), show: "error" }, off, 1);
-  assert.deepStrictEqual([measured.dof, measured.method, measured.show], [true, "pinhole", "picture"]);
+  assert.deepStrictEqual([measured.dof, measured.method, measured.show], [true, "pinhole", "image"]);
 });
 
 test("of dropped files the scene is opened, else the model", async () => {
@@ -152,7 +168,7 @@ test("a picture's request and its command have the numbers that its encoding tak
   const side = { ...first_side(), method: "accumulation", focus: { at: [0.5, 1] } };
   const state = with_picture({ ...first_state(), scene: "/own/a.png", picture, show: "truth", sides: [side] },
                              { width: 300, height: 200 }, [{ name: "two-pass", kind: "filter" }]);
-  assert.deepStrictEqual([state.show, state.sides[0].method], ["picture", "two-pass"]);
+  assert.deepStrictEqual([state.show, state.sides[0].method], ["image", "two-pass"]);
   assert.strictEqual(
       command_of(state, state.sides[0], encodings),
       "softfocus refocus a.png 'my d.png' -o picture.png --json --depth-encoding device --near 1 --far 9 " +

@@ -153,3 +153,45 @@ TEST_CASE("documentation: completions are programs that their shells can read") 
   check_syntax("zsh", "zsh/vendor-completions/_softfocus");
   check_syntax("fish", "fish/vendor_completions.d/softfocus.fish");
 }
+
+TEST_CASE("docs/command-line.md: its ranges and defaults are those of the help") {
+  const std::string document = read_file(SOFTFOCUS_TEST_DATA "/../../docs/command-line.md");
+  std::string help;  // a blank between two words
+  for (const char c : run_program({"render", "--help"}).out) {
+    if (c == '\n' || c == ' ') {
+      if (!help.ends_with(' ')) help += ' ';
+    } else {
+      help += c;
+    }
+  }
+  int rows = 0;
+  for (std::size_t at = 0; (at = document.find("\n| `--", at)) != document.npos; ++at) {
+    std::vector<std::string> cells;
+    std::size_t bar = at + 1;
+    for (std::size_t next; cells.size() < 3; bar = next) {
+      next = document.find(" |", bar + 1) + 1;
+      cells.push_back(document.substr(bar + 2, std::max(next, bar + 3) - bar - 3));
+    }
+    if (std::count(cells[0].begin(), cells[0].end(), '`') != 2 || !contains(cells[1], " to ")) {
+      continue;  // of another table
+    }
+    CAPTURE(cells[0]);
+    const std::string option = " " + cells[0].substr(1, cells[0].size() - 2) + " ";
+    const std::size_t begin = help.find(option);
+    REQUIRE(begin != help.npos);
+    const std::string meaning = help.substr(begin, help.find(" --", begin + 4) - begin);
+    CHECK(contains(meaning,
+                   "(" + cells[1] + (cells[2].empty() ? "" : "; default: " + cells[2]) + ")"));
+    ++rows;
+  }
+  CHECK(rows == 19);
+  // And none is missing.
+  int in_help = 0;
+  for (std::size_t at = 0; (at = help.find(" to ", at + 1)) != help.npos;) {
+    const std::size_t open = help.rfind('(', at), close = help.find(')', at);
+    const std::string inside = help.substr(open + 1, close - open - 1);
+    const bool is_range = inside.find_first_of("-0123456789") == 0 || inside.starts_with("above 0");
+    if (is_range && close < help.find('(', at)) ++in_help;
+  }
+  CHECK(in_help == rows);
+}

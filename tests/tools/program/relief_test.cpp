@@ -217,7 +217,7 @@ TEST_CASE("relief: wrong words and bad files get one line") {
   check_refused(folder, {"relief", "make", "figures", "--texels", "2x9", "-o", picture}, 2,
                 {"--texels", "4 to 4096"});
   check_refused(folder, {"relief", "make", "figures", "--depth-bits", "12", "-o", picture}, 2,
-                {"--depth-bits", "8 or 16"});
+                {"--depth-bits", "there are 8, 16"});
   check_refused(folder, {"relief", "make", "figures", "--projection", "fisheye", "-o", picture}, 2,
                 {"--projection", "perspective"});
   check_refused(folder,

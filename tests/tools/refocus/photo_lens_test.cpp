@@ -7,14 +7,15 @@
 #include <cmath>
 #include <limits>
 
+#include "dof/parameters.h"
 #include "tools/cli/errors.h"
-#include "tools/options/lengths.h"
+#include "tools/options/parameter_options.h"
 
 using namespace softfocus;
 
 namespace {
 
-double metres(const std::string& text) { return parse_metres("--x", text, 1e-9, 1e9, "a length"); }
+double metres(const std::string& text) { return parse_parameter("--x", text, parameter::kFocus); }
 
 /// 20 x 10 of depth 4, with a 6 x 6 square of depth 2 in it and one pixel of depth 1 in that.
 DepthMap square_depths() {
@@ -37,9 +38,9 @@ TEST_CASE("lengths are read with their units") {
   CHECK(metres("2500mm") == 2.5);
   CHECK(metres("10ft") == doctest::Approx(3.048));
   CHECK(metres("10in") == doctest::Approx(0.254));
-  CHECK(parse_millimetres("--x", "50mm", 1, 1000, "") == 50.0);
-  CHECK(parse_millimetres("--x", "5cm", 1, 1000, "") == 50.0);
-  CHECK(parse_millimetres("--x", "0.05m", 1, 1000, "") == 50.0);
+  for (const char* text : {"50", "50mm", "5cm", "0.05m"}) {
+    CHECK(parse_parameter("--x", text, parameter::kFocalLength) == 50.0);
+  }
   for (const char* text : {"2.5km", "m", "", "2,5m", "-1m", "2.5 m", "infm", "1e10m"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(metres(text), UsageError);
@@ -48,10 +49,10 @@ TEST_CASE("lengths are read with their units") {
 
 TEST_CASE("f-numbers are read as they are written") {
   for (const char* text : {"1.8", "f/1.8", "f1.8"}) {
-    CHECK(parse_f_number("--x", text, 0, 100, "") == 1.8);
+    CHECK(parse_parameter("--x", text, parameter::kFNumber) == 1.8);
   }
-  CHECK_THROWS_AS(parse_f_number("--x", "f/", 0, 100, ""), UsageError);
-  CHECK_THROWS_AS(parse_f_number("--x", "g/2", 0, 100, ""), UsageError);
+  CHECK_THROWS_AS(parse_parameter("--x", "f/", parameter::kFNumber), UsageError);
+  CHECK_THROWS_AS(parse_parameter("--x", "g/2", parameter::kFNumber), UsageError);
 }
 
 TEST_CASE("the circle on a full-frame sensor is the one on film, in pixels") {

@@ -2,10 +2,8 @@
 
 import { by_id, element } from "./dom.js";
 import { make_number } from "./numbers.js";
-import { kSensors, kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
-import { kSizes } from "./state.js";
-
-const kSampled = ["accumulation", "filtered-views", "warped-accumulation", "ray-traced"];
+import { kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
+import { kSizes, parameters, sensors } from "./state.js";
 
 function checked_of(name) {
   return document.querySelector(`input[name="${name}"]:checked`)?.value;
@@ -25,54 +23,49 @@ function check(name, value) {
 export function make_controls({ store, camera, move, focus_m, max_coc, object_m }) {
   let methods = [];
   const side = (patch) => store.change_side(patch);
-  const number = (name, control) => make_number(by_id(`${name}-part`), { id: name, ...control });
+  const numbers = {};
 
-  const numbers = {
-    "focal-length": number("focal-length", {
-      label: "Focal length", unit: "mm", key: "L", tip: "focal_length", curve: "log",
-      from: 8, to: 600, min: 0.1, max: 1e5, get: () => store.side().focal_length_mm,
-      set: (value) => side({ focal_length_mm: value }),
-    }),
-    "f-number": number("f-number", {
-      label: "f-number", key: "N", tip: "aperture", curve: "log", from: 0.7, to: 64, min: 0.01,
-      max: 1e5, digits: 2, get: () => store.side().f_number,
-      set: (value) => side({ f_number: value }),
-    }),
-    focus: number("focus", {
-      label: "Focus distance", unit: "m", key: "F", tip: "focus", curve: "log", from: 0.1, to: 100,
-      min: 0.001, max: 1e6, get: focus_m, set: (value) => side({ focus: { m: value } }),
+  /** A control of what the module has a parameter for: `key`. */
+  function add(name, key, control) {
+    const { least, most, unit } = parameters[key];
+    numbers[name] = make_number(by_id(`${name}-part`), {
+      id: name, tip: key, min: least, max: most, unit: unit === "degrees" ? "°" : unit,
+      get: () => store.side()[key], set: (value) => side({ [key]: value }), ...control });
+  }
+
+  /** Once the parameters are known. The sliders' ends are the usual range, for a hand. */
+  function start() {
+    by_id("sensor").append(...sensors.map(({ name, width_mm, height_mm }) => (
+        element("option", { value: name }, `${name}, ${width_mm} × ${height_mm} mm`))));
+    add("focal-length", "focal_length_mm",
+        { label: "Focal length", key: "L", curve: "log", from: 8, to: 600 });
+    add("f-number", "f_number",
+        { label: "f-number", key: "N", curve: "log", from: 0.7, to: 64, digits: 2 });
+    add("focus", "focus_m", {
+      label: "Focus distance", key: "F", curve: "log", from: 0.1, to: 100, get: focus_m,
+      set: (value) => side({ focus: { m: value } }),
       shown_digits: () => (store.side().focus.at ? 4 : 5),
-    }),
-    "max-coc": number("max-coc", {
-      label: "Filter size", unit: "px", key: "X", tip: "max_coc", curve: "root", from: 0, to: 128,
-      min: 0, max: 1024, digits: 2, get: max_coc, shown_digits: () => 4,
-      set: (value) => side({ max_coc_px: value }),
-    }),
-    "coc-scale": number("coc-scale", {
-      label: "Scale of the circles", unit: "×", key: "K", tip: "coc_scale", curve: "root", from: 0,
-      to: 10, min: 0, max: 1000, digits: 2, get: () => store.side().coc_scale,
-      set: (value) => side({ coc_scale: value }),
-    }),
-    samples: number("samples", {
-      label: "Points of the lens", tip: "samples", values: [1, 4, 16, 64, 256, 1024, 4096], min: 1,
-      max: 4096, get: () => store.side().samples,
+    });
+    add("max-coc", "max_coc_px", { label: "Filter size", key: "X", curve: "root", from: 0, to: 128,
+                                   digits: 2, get: max_coc, shown_digits: () => 4 });
+    add("coc-scale", "coc_scale", { label: "Scale of the circles", unit: "×", key: "K",
+                                    curve: "root", from: 0, to: 10, digits: 2 });
+    add("samples", "samples", {
+      label: "Points of the lens", values: [1, 4, 16, 64, 256, 1024, 4096],
       set: (value) => side({ samples: Math.round(value) }),
-    }),
-    fov: number("fov", {
-      label: "Field of view", unit: "°", tip: "field_of_view", from: 5, to: 120, min: 1, max: 170,
-      get: () => camera()?.fov_y_degrees, shown_digits: () => 4,
+    });
+    add("fov", "fov_y_degrees", {
+      label: "Field of view", from: 5, to: 120, get: () => camera()?.fov_y_degrees,
+      shown_digits: () => 4,
       set: (value) => {
         const now = camera();
         if (now) move({ ...now, fov_y_degrees: value });
       },
-    }),
-    object: number("object", {
-      label: "Object", unit: "m", tip: "object", curve: "log", from: 0.1, to: 1000, min: 0.001,
-      max: 1e6, get: object_m, set: (value) => store.change({ object_m: value }),
-    }),
-  };
+    });
+    add("object", "focus_m", { label: "Object", tip: "object", curve: "log", from: 0.1, to: 1000,
+                               get: object_m, set: (value) => store.change({ object_m: value }) });
+  }
 
-  by_id("sensor").append(...kSensors.map(([name, words]) => element("option", { value: name }, words)));
   by_id("stop").append(...kStops.map((stop) => element("option", { value: stop }, `f/${stop}`)));
 
   const on_change = (id, take) => by_id(id).addEventListener("change", (event) => take(event.target));
@@ -117,7 +110,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
     by_id("method-summary").textContent = method?.summary ?? "";
     const of_scene = by_id("method").querySelector("optgroup:last-child");
     if (of_scene) of_scene.disabled = Boolean(state.picture);
-    by_id("samples-part").hidden = !kSampled.includes(now.method);
+    by_id("samples-part").hidden = !method?.samples;
     by_id("compare").checked = state.sides.length > 1;
     by_id("side-part").hidden = state.sides.length < 2;
     check("editing", String(state.editing));
@@ -139,11 +132,12 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
   }
 
   return {
+    start,
     update,
     compare,
     nudge(name, steps) {
       if (name !== "f-number" || !store.get().photo.on) {
-        numbers[name].nudge(steps);
+        numbers[name]?.nudge(steps);
         return;
       }
       const at = kStops.indexOf(nearest_stop(store.side().f_number));

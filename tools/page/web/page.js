@@ -18,7 +18,7 @@ import { kNoScene, make_picture, picture_request } from "./panels/picture.js";
 import { locked_fov_degrees } from "./lens/photographer.js";
 import { start_pointer } from "./pointer.js";
 import { save_report } from "./panels/report.js";
-import { first_state, make_store, with_picture, with_scene } from "./state.js";
+import { first_state, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
 import { start_tabs } from "./tabs.js";
 import { start_theme } from "./theme.js";
 import { start_tips } from "./tips.js";
@@ -75,7 +75,7 @@ const truth = make_truth({
   settled: () => {
     const { show } = store.get();
     const measured = show === "truth" || show === "error";
-    return frames.settled() && (measured || (show === "picture" && store.side().dof));
+    return frames.settled() && (measured || (show === "image" && store.side().dof));
   },
   shown: () => {
     const { show } = store.get();
@@ -112,8 +112,10 @@ function show_cross() {
 // A locked field of view follows the focal length, the focus, the sensor and the shape.
 function keep_locked_fov() {
   const now = camera();
-  const degrees = locked_fov_degrees(store.get(), { ...store.side(), focus_m: focus_m() });
-  if (!now || degrees === null) return;
+  const wanted = locked_fov_degrees(store.get(), { ...store.side(), focus_m: focus_m() });
+  if (!now || wanted === null) return;
+  const { least, most } = parameters.fov_y_degrees;
+  const degrees = Math.min(most, Math.max(least, wanted));
   if (Math.abs(now.fov_y_degrees - degrees) > 1e-4 * degrees) move({ ...now, fov_y_degrees: degrees });
 }
 
@@ -174,7 +176,7 @@ function on_frame(reply, coarse, state, wall_ms) {
                          `${coarse ? ", coarse" : ""}`;
   document.title = `${fps} fps · ${ms_text(mean_ms)} ms · softfocus`;
   if (reply.focus_m && !coarse) keep_known(reply, state.editing);
-  show_hash(reply, state, state.sides[state.editing], listing.encodings);
+  show_hash(reply, state, state.sides[state.editing], listing.encodings, parameters);
   if (playing) {
     setTimeout(() => { if (playing) step(); }, Math.max(0, kFrameMs - wall_ms));
   } else if (!coarse && reply.hash === null) {
@@ -247,7 +249,7 @@ async function open(what, { words = null, read = null } = {}) {
   if (!same || words) next = with_scene(next, reply);
   if (next.picture) next = with_picture(next, reply.picture, listing.methods);
   if (words) next = with_link(next, words);
-  next.sides.forEach((_, index) => { known_focus_m[index] = reply.lens?.focus_m ?? 1; });
+  next.sides.forEach((_, index) => { known_focus_m[index] = reply.lens.focus_m; });
   for (const id of ["play", "step", "time"]) by_id(id).disabled = is_still();
   by_id("camera-home").disabled = Boolean(what.failure || what.picture);
   set_playing(false);
@@ -337,7 +339,7 @@ function toggle_show(kind) {
     show_error(kNoScene);
     return;
   }
-  store.change({ show: store.get().show === kind ? "picture" : kind });
+  store.change({ show: store.get().show === kind ? "image" : kind });
 }
 
 async function report() {
@@ -488,6 +490,10 @@ async function start(ready) {
     show_error(about.error ?? listing.error);
     return;
   }
+  set_parameters(about.parameters, about.sensors);
+  controls.start();
+  by_id("time").min = parameters.time.least;
+  by_id("time").max = parameters.time.most;
   const lacks = ready.missing?.length ? ` Not here: ${ready.missing.join(", ")}.` : "";
   by_id("version").textContent = `softfocus ${about.version}, ${about.isa}, ` +
                                  `${about.threads === 1 ? "one thread" : `${about.threads} threads`}.`;

@@ -1,7 +1,18 @@
 // All that a link carries: plain data, and the request of a frame that follows from it.
 
 export const kSizes = [[512, 512], [1024, 512], [1024, 1024]];
-export const kShows = ["picture", "coc", "depth", "truth", "error"];
+export const kShows = ["image", "coc", "depth", "truth", "error"];
+
+/** Of what can be set, by the keys of requests: text, unit, least, most, preset. The module tells. */
+export let parameters = {};
+/** name, width_mm, height_mm. */
+export let sensors = [];
+export function set_parameters(of_module, known_sensors) {
+  sensors = known_sensors;
+  parameters = of_module;
+}
+
+const preset = (key) => parameters[key]?.preset ?? null;
 
 /** One of the two settings that can be compared: a method and its lens. */
 export function first_side() {
@@ -9,12 +20,12 @@ export function first_side() {
     dof: true,
     method: "two-pass",
     /** Metres, or a place in the picture, 0..1 from the top left. */
-    focus: { m: 1 },
-    focal_length_mm: 50,
-    f_number: 2,
+    focus: { m: preset("focus_m") },
+    focal_length_mm: preset("focal_length_mm"),
+    f_number: preset("f_number"),
     max_coc_px: null,  // null: the scene's, or what the method does best with
-    coc_scale: 1,
-    samples: 64,
+    coc_scale: preset("coc_scale"),
+    samples: preset("samples"),
   };
 }
 
@@ -28,7 +39,7 @@ export function first_state() {
     size: [512, 512],
     time: 0,
     camera: null,  // null: the scene's own, {position_m, target_m, fov_y_degrees}
-    show: "picture",
+    show: "image",
     sides: [first_side()],
     editing: 0,
     divider: 0.5,
@@ -39,14 +50,10 @@ export function first_state() {
 
 /** The state with the camera and lens that a scene or a picture asks for. */
 export function with_scene(state, opened) {
-  const lens = opened.lens ?? {};
+  const { focus_m, focal_length_mm, f_number, coc_scale } = opened.lens;
   const side = {
-    ...first_side(),
-    method: state.sides[0].method,
-    focus: opened.autofocus ? { at: [0.5, 0.5] } : { m: lens.focus_m ?? 1 },
-    focal_length_mm: lens.focal_length_mm ?? 50,
-    f_number: lens.f_number ?? 2,
-    coc_scale: lens.coc_scale ?? 1,
+    ...first_side(), focal_length_mm, f_number, coc_scale,
+    focus: opened.autofocus ? { at: [0.5, 0.5] } : { m: focus_m },
   };
   const sides = state.sides.map((old) => ({ ...side, dof: old.dof, method: old.method,
                                             samples: old.samples }));
@@ -58,7 +65,7 @@ export function with_picture(state, { width, height }, methods) {
   const filters = methods.filter(({ kind }) => kind === "filter").map(({ name }) => name);
   return {
     ...state, camera: null, picture: { ...state.picture, size: [width, height] },
-    show: ["truth", "error"].includes(state.show) ? "picture" : state.show,
+    show: ["truth", "error"].includes(state.show) ? "image" : state.show,
     sides: state.sides.map((side) => (
         filters.includes(side.method) ? side : { ...side, method: "two-pass" })),
   };
@@ -77,7 +84,7 @@ export function frame_request(state, side, preview, hash = true) {
     time: state.time,
     dof: side.dof || measured,
     method: side.dof || !measured ? side.method : "pinhole",
-    show: state.show === "coc" || state.show === "depth" ? state.show : "picture",
+    show: state.show === "coc" || state.show === "depth" ? state.show : "image",
     focus: side.focus,
     focal_length_mm: side.focal_length_mm,
     f_number: side.f_number,

@@ -1,22 +1,20 @@
 // What stands behind a control: a sentence, the equation, and where it is in the source.
 
 import { by_id } from "./dom.js";
+import { parameters } from "./state.js";
 
+/** Of a parameter the sentence is the module's, by its key. */
 const kTips = {
-  focal_length: ["The distance behind the lens at which light from infinity meets. A longer lens blurs more.",
-                 "Eq. 1: 1/f = 1/z + 1/v", "dof/lens.h, image_distance_mm"],
-  aperture: ["The focal length over the diameter of the opening. A full stop, a factor of √2, halves the light and blurs less.",
-             "Eq. 3: A = f / N", "dof/lens.h, aperture_mm"],
-  focus: ["The distance of the plane that is sharp, along the lens's axis.",
-          "Eq. 2: c = A f |z − z_f| / (z (z_f − f))", "dof/lens.h, coc_on_film_mm"],
-  max_coc: ["The largest circle that the filter draws, a radius in pixels. Larger circles are cut to it. A larger filter takes longer.",
-            "Eq. 10: overlap of the circles", "dof/dof.h, DofSettings::max_coc_px; dof/weights.h"],
-  coc_scale: ["Makes all circles larger or smaller. 1 is the lens; no lens has other values.",
-              "r = scale · (A/2) (z − z_f) / (z z_f) · height / (2 tan(fov/2))", "dof/lens.h, pixel_coc"],
-  field_of_view: ["The vertical angle that is seen. The film lies where the focus plane's image is, so focusing does not zoom.",
-                  "film height = 2 v0 tan(fov/2)", "dof/lens.h, film_height_mm"],
-  samples: ["Points of the lens from which the scene is drawn. More are more exact and slower.",
-            "mean of the views (Haeberli and Akeley 1990)", "scenes/lens_views/take_samples.h"],
+  focal_length_mm: [null, "Eq. 1: 1/f = 1/z + 1/v", "dof/lens.h, image_distance_mm"],
+  f_number: [null, "Eq. 3: A = f / N", "dof/lens.h, aperture_mm"],
+  focus_m: [null, "Eq. 2: c = A f |z − z_f| / (z (z_f − f))", "dof/lens.h, coc_on_film_mm"],
+  max_coc_px: [null, "Eq. 10: overlap of the circles",
+               "dof/dof.h, DofSettings::max_coc_px; dof/weights.h"],
+  coc_scale: [null, "r = scale · (A/2) (z − z_f) / (z z_f) · height / (2 tan(fov/2))",
+              "dof/lens.h, pixel_coc"],
+  fov_y_degrees: [null, "film height = 2 v0 tan(fov/2)", "dof/lens.h, film_height_mm"],
+  samples: [null, "mean of the views (Haeberli and Akeley 1990)",
+            "scenes/lens_views/take_samples.h"],
   object: ["A point on the axis. Drag it in the drawing, or move it here.",
            "Eq. 2: c = A f |z − z_f| / (z (z_f − f))", "dof/lens.h, coc_on_film_mm"],
   flip: ["How different two pictures look to somebody who flips between them: 0 equal, 1 most. The truth stops growing when its own noise is small against the errors.",
@@ -41,7 +39,7 @@ export function start_tips() {
     const [words, equation, source] = kTips[button.dataset.tip];
     hide();
     owner = button;
-    tip.replaceChildren(words, document.createElement("br"),
+    tip.replaceChildren(words ?? parameters[button.dataset.tip].text, document.createElement("br"),
                         Object.assign(document.createElement("b"), { textContent: equation }),
                         document.createElement("br"),
                         Object.assign(document.createElement("code"), { textContent: source }));

@@ -5,11 +5,14 @@
 //   code        the number in the file; of the encodings `by_full_scale`, 255 or 65535 counts as 1
 //   distance_m  metres, along the axis or along the ray (DepthAlong)
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "dof/parameters.h"
 
 namespace softfocus {
 
@@ -25,6 +28,31 @@ struct DepthNumbers {
   double least_code = 0.0;
   double largest_code = 1.0;
 };
+
+struct OfDepth {
+  Parameter number;
+  std::optional<double> DepthNumbers::*place;
+};
+// clang-format off
+inline constexpr double kMostDepthNumber = 1e12;
+inline constexpr std::array kDepthNumbers{
+    OfDepth{{"near", "Of the encodings that need it: the near plane, or the nearest depth",
+        parameter::kNearlyNothing, parameter::kLargest, 0.0, "m", "METRES", "near_m"},
+        &DepthNumbers::near_m},
+    OfDepth{{"far", "Likewise the far plane, or the farthest depth",
+        parameter::kNearlyNothing, parameter::kLargest, 0.0, "m", "METRES", "far_m"},
+        &DepthNumbers::far_m},
+    OfDepth{{"scale", "Of metres, inverse, disparity: what a code is multiplied by",
+        -kMostDepthNumber, kMostDepthNumber, 1.0, "", "S"}, &DepthNumbers::scale},
+    OfDepth{{"offset", "Likewise what is added then; of middlebury its doffs",
+        -kMostDepthNumber, kMostDepthNumber, 0.0, "", "O"}, &DepthNumbers::offset},
+    OfDepth{{"baseline", "Of disparities: between the two cameras",
+        parameter::kNearlyNothing, parameter::kLargest, 0.0, "m", "METRES", "baseline_m"},
+        &DepthNumbers::baseline_m},
+    OfDepth{{"focal-px",
+        "Of disparities: focal length in pixels of the colour picture; also its field of view",
+        1e-3, kMostDepthNumber, 0.0, "px", "PIXELS", "focal_px"}, &DepthNumbers::focal_px}};
+// clang-format on
 
 /// Whether a distance is measured along the camera's axis, as a depth buffer has it, or along the
 /// pixel's ray, as a laser scanner has it.

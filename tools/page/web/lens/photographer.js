@@ -1,18 +1,7 @@
 // Photographer's mode: a sensor, stops in thirds, and the field of view that follows from them.
 
+import { sensors } from "../state.js";
 import { field_of_view_degrees, usable_lens } from "./lens.js";
-
-/** Name, words, width and height in millimetres. */
-export const kSensors = [
-  ["full-frame", "Full frame, 36 × 24 mm", 36, 24],
-  ["aps-c", "APS-C, 23.5 × 15.6 mm", 23.5, 15.6],
-  ["four-thirds", "Four Thirds, 17.3 × 13 mm", 17.3, 13],
-  ["one-inch", "1 inch, 13.2 × 8.8 mm", 13.2, 8.8],
-  ["phone", "Phone, 9.8 × 7.3 mm", 9.8, 7.3],
-  ["small", "1/2.3 inch, 6.2 × 4.6 mm", 6.17, 4.55],
-  ["6x6", "Medium format, 56 × 56 mm", 56, 56],
-  ["4x5", "Large format, 127 × 102 mm", 127, 102],
-];
 
 /** Stops in thirds as lenses are marked. */
 export const kStops = [
@@ -27,13 +16,13 @@ export function nearest_stop(f_number) {
 
 /** The height of film that a picture of that shape uses: the sensor is cropped to the shape. */
 export function used_film_height_mm(sensor, [width, height]) {
-  const [, , across, up] = kSensors.find(([name]) => name === sensor) ?? kSensors[0];
-  return Math.min(up, across * height / width);
+  const { width_mm, height_mm } = sensors.find(({ name }) => name === sensor) ?? sensors[0];
+  return Math.min(height_mm, width_mm * height / width);
 }
 
 /** The vertical field of view of the locked lens, or null if the lens is not locked or usable. */
 export function locked_fov_degrees(state, lens) {
   if (!state.photo.on || !state.photo.lock || !usable_lens(lens)) return null;
   const degrees = field_of_view_degrees(lens, used_film_height_mm(state.photo.sensor, state.size));
-  return Math.min(170, Math.max(1, Number(degrees.toPrecision(6))));
+  return Number(degrees.toPrecision(6));
 }

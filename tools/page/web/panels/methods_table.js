@@ -2,11 +2,12 @@
 
 import { announce, by_id, element } from "../dom.js";
 import { kBackground } from "../engine.js";
+import { parameters } from "../state.js";
 import { ms_text } from "../units.js";
 
 /** Radii from a line of text, at most six; empty if it says none. */
 export function read_radii(text) {
-  const radii = text.split(/[\s,;]+/).map(Number).filter((x) => x > 0 && x <= 1024);
+  const radii = text.split(/[\s,;]+/).map(Number).filter((x) => x > 0 && x <= parameters.max_coc_px.most);
   return [...new Set(radii)].sort((a, b) => a - b).slice(0, 6);
 }
 
@@ -59,7 +60,7 @@ export function make_methods_table({ engine, methods, truth, choose, settled }) 
   async function measure() {
     const mine = ++run;
     radii = read_radii(by_id("radii").value);
-    if (radii.length === 0) return stop("give radii from 1 to 1024, such as 8 16 32");
+    if (radii.length === 0) return stop(`give radii above 0, up to ${parameters.max_coc_px.most}, such as 8 16 32`);
     by_id("radii").value = radii.join(" ");
     results.clear();
     draw();

@@ -2,14 +2,9 @@
 
 import { by_id, element, save_file, show_error } from "../dom.js";
 import { kAsked } from "../engine.js";
+import { parameters } from "../state.js";
 
 export const kNoScene = "a picture has no scene to draw: choose a scene for this";
-
-/** The numbers of encodings by their option: what they are called in a request, and their unit. */
-const kNumbers = {
-  near: ["near_m", "m"], far: ["far_m", "m"], scale: ["scale", ""], offset: ["offset", ""],
-  baseline: ["baseline_m", "m"], "focal-px": ["focal_px", "px"],
-};
 
 const words_of = ({ needs, takes }) => `${needs} ${takes}`.split(" ").filter(Boolean);
 
@@ -18,7 +13,7 @@ export function picture_request(path, { depth, encoding, numbers }, encodings, b
   const request = { do: "open", picture: path, depth, encoding };
   const known = encodings.find(({ name }) => name === (encoding ?? believed));
   for (const word of known ? words_of(known) : []) {
-    const [key] = kNumbers[word];
+    const { key } = parameters[word];
     if (Number.isFinite(numbers[key])) request[key] = numbers[key];
   }
   return request;
@@ -29,8 +24,8 @@ export function depth_words({ encoding, numbers }, encodings) {
   const known = encodings.find(({ name }) => name === encoding);
   if (!known) return [];
   return [`--depth-encoding ${encoding}`,
-          ...words_of(known).filter((word) => Number.isFinite(numbers[kNumbers[word][0]]))
-              .map((word) => `--${word} ${numbers[kNumbers[word][0]]}`)];
+          ...words_of(known).filter((word) => Number.isFinite(numbers[parameters[word].key]))
+              .map((word) => `--${word} ${numbers[parameters[word].key]}`)];
 }
 
 /**
@@ -58,8 +53,9 @@ export function make_picture({ engine, encodings, change, stem }) {
   choice.addEventListener("change", () => read({ encoding: choice.value || null }));
 
   function number_field(word) {
-    const [key, unit] = kNumbers[word];
-    const field = element("input", { type: "number", step: "any", id: `encoding-${word}` });
+    const { key, unit, text, least, most } = parameters[word];
+    const field = element("input", { type: "number", step: "any", id: `encoding-${word}`, title: text,
+                                     min: least, max: most });
     field.value = reading.numbers[key] ?? "";
     field.addEventListener("change", () => {
       const value = field.value === "" ? undefined : field.valueAsNumber;
