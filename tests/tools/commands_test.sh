@@ -21,12 +21,12 @@ fail() {
   failed=1
 }
 
-# script NAME: from standard input, where commands are looked for first.
-script() { cat >"$work/bin/$1" && chmod +x "$work/bin/$1"; }
+# stub NAME: a script from standard input, where commands are looked for first.
+stub() { cat >"$work/bin/$1" && chmod +x "$work/bin/$1"; }
 
-make_scripts() {
+make_stubs() {
   mkdir "$work/bin"
-  script program <<'END'
+  stub program <<'END'
 #!/bin/sh
 case ${PROGRAM##*/}-${1-} in
   softfocus-documentation)
@@ -46,17 +46,18 @@ __attribute__((weak)) int main(int, char** argv) {
 END
   c++ -fPIC -c "$work/program.cpp" -o "$work/program.o" || exit 1
   # CMake's own tries are compiled.
-  script compile <<END
+  stub compile <<END
 #!/bin/sh
 case \$PWD in */CMakeFiles/CMake*) exec "\$@" ;; esac
 while [ "\$1" != -o ]; do shift; done
+sleep \${SLOW:-0}
 exec cp "$work/program.o" "\$2"
 END
   export CMAKE_CXX_COMPILER_LAUNCHER=$work/bin/compile CMAKE_C_COMPILER_LAUNCHER=$work/bin/compile
-  echo 'echo installed' | script dpkg-query
-  echo "echo \"\$*\" >>$work/asked" | script apt-get
+  echo 'echo installed' | stub dpkg-query
+  echo "echo \"\$*\" >>$work/asked" | stub apt-get
   # shellcheck disable=SC2016
-  echo 'exec "$@"' | script sudo
+  echo 'exec "$@"' | stub sudo
   export PATH=$work/bin:$PATH
 }
 
@@ -161,7 +162,7 @@ refused() {
 }
 
 # ctest_is LINE...: of a script.
-ctest_is() { printf '%s\n' "$@" | script ctest; }
+ctest_is() { printf '%s\n' "$@" | stub ctest; }
 
 counting() {
   local ctest
@@ -182,7 +183,7 @@ counting() {
 # What tools/demo installs, and a build without the rest.
 bare_machine() {
   before=' bare_machine'
-  echo 'exit 1' | script dpkg-query
+  echo 'exit 1' | stub dpkg-query
   rm -f "$work/asked"
   run tools/demo
   cp "$work/asked" "$work/said"
@@ -199,10 +200,18 @@ bare_machine() {
   says half_test
 }
 
-make_scripts
+progress() {
+  before=' progress'
+  rm -rf build out
+  SLOW=.05 run script -qec tools/demo /dev/null
+  says 'building build/softfocus ... \[[0-9]*/[0-9]*\]'
+}
+
+make_stubs
 copy_tree
 in_order demo installed libraries_alone demo installed all_tests libraries_alone by_hand installed demo
 in_order libraries_alone all_tests installed by_hand libraries all_tests packages
 counting
 bare_machine
+progress
 exit $failed
