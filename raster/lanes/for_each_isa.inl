@@ -24,15 +24,16 @@
 
 #define SOFTFOCUS_JOINED(a, b) a##b
 #define SOFTFOCUS_NUMBERED(name, number) SOFTFOCUS_JOINED(name, number)
+#define SOFTFOCUS_FILE SOFTFOCUS_NUMBERED(file, __COUNTER__)
 
 #if SOFTFOCUS_HAS_LANES(4)
 #define SOFTFOCUS_ISA baseline
 #define SOFTFOCUS_LANES 4
 namespace softfocus::baseline {
-inline namespace SOFTFOCUS_NUMBERED(file, __COUNTER__) {
+inline namespace SOFTFOCUS_FILE {
 #include "raster/lanes/lanes.inl"
 #include SOFTFOCUS_KERNELS
-}  // namespace )
+}  // namespace SOFTFOCUS_FILE
 }  // namespace softfocus::baseline
 #undef SOFTFOCUS_ISA
 #undef SOFTFOCUS_LANES
@@ -48,10 +49,10 @@ inline namespace SOFTFOCUS_NUMBERED(file, __COUNTER__) {
 #define SOFTFOCUS_ISA avx2
 #define SOFTFOCUS_LANES 8
 namespace softfocus::avx2 {
-inline namespace SOFTFOCUS_NUMBERED(file, __COUNTER__) {
+inline namespace SOFTFOCUS_FILE {
 #include "raster/lanes/lanes.inl"
 #include SOFTFOCUS_KERNELS
-}  // namespace )
+}  // namespace SOFTFOCUS_FILE
 }  // namespace softfocus::avx2
 #undef SOFTFOCUS_ISA
 #undef SOFTFOCUS_LANES
@@ -74,10 +75,10 @@ inline namespace SOFTFOCUS_NUMBERED(file, __COUNTER__) {
 #define SOFTFOCUS_ISA avx512
 #define SOFTFOCUS_LANES 16
 namespace softfocus::avx512 {
-inline namespace SOFTFOCUS_NUMBERED(file, __COUNTER__) {
+inline namespace SOFTFOCUS_FILE {
 #include "raster/lanes/lanes.inl"
 #include SOFTFOCUS_KERNELS
-}  // namespace )
+}  // namespace SOFTFOCUS_FILE
 }  // namespace softfocus::avx512
 #undef SOFTFOCUS_ISA
 #undef SOFTFOCUS_LANES
@@ -90,12 +91,12 @@ inline namespace SOFTFOCUS_NUMBERED(file, __COUNTER__) {
 #undef SOFTFOCUS_KERNELS
 
 /// The form of a kernel that was compiled for a unit. A choice in every build, so that a template
-/// is chosen by what is asked for.
+/// is chosen by what is asked for. Variadic for a template's commas.
 #ifndef SOFTFOCUS_ONLY_LANES
-#define SOFTFOCUS_KERNEL(isa, kernel)                              \
-  ((isa) == ::softfocus::Isa::avx512 ? ::softfocus::avx512::kernel \
-   : (isa) == ::softfocus::Isa::avx2 ? ::softfocus::avx2::kernel   \
-                                     : ::softfocus::baseline::kernel)
+#define SOFTFOCUS_KERNEL(isa, ...)                                      \
+  ((isa) == ::softfocus::Isa::avx512 ? ::softfocus::avx512::__VA_ARGS__ \
+   : (isa) == ::softfocus::Isa::avx2 ? ::softfocus::avx2::__VA_ARGS__   \
+                                     : ::softfocus::baseline::__VA_ARGS__)
 #else
 #if SOFTFOCUS_ONLY_LANES == 16
 #define SOFTFOCUS_ONLY_UNIT avx512
@@ -104,7 +105,7 @@ inline namespace SOFTFOCUS_NUMBERED(file, __COUNTER__) {
 #else
 #define SOFTFOCUS_ONLY_UNIT baseline
 #endif
-#define SOFTFOCUS_KERNEL(isa, kernel)                                           \
-  ((isa) == ::softfocus::Isa::scalar ? ::softfocus::SOFTFOCUS_ONLY_UNIT::kernel \
-                                     : ::softfocus::SOFTFOCUS_ONLY_UNIT::kernel)
+#define SOFTFOCUS_KERNEL(isa, ...)                                                   \
+  ((isa) == ::softfocus::Isa::scalar ? ::softfocus::SOFTFOCUS_ONLY_UNIT::__VA_ARGS__ \
+                                     : ::softfocus::SOFTFOCUS_ONLY_UNIT::__VA_ARGS__)
 #endif

@@ -1,6 +1,6 @@
 // The stages of surface_stages.h for kLanes vertices or pixels at once: the same operations in
-// the same order. A draw's variant is a choice at run time, but for textures: kernels compiled for
-// each variant take minutes to compile and run no faster.
+// the same order. A draw's variant is a choice at run time, but for highlights, u and v: kernels
+// compiled for each variant take minutes to compile and run no faster.
 
 #ifndef SOFTFOCUS_ISA
 
@@ -21,10 +21,15 @@ namespace softfocus {
 
 SurfaceLaneStages surface_lane_stages(const SurfaceVariant& variant, Isa isa) {
   SurfaceLaneStages stages{SOFTFOCUS_KERNEL(isa, place_surface_vertices),
-                           SOFTFOCUS_KERNEL(isa, shade_surface_vertices),
-                           SOFTFOCUS_KERNEL(isa, shade_surface_fragments<false>)};
-  if (variant.textured) {
-    stages.shade_fragments = SOFTFOCUS_KERNEL(isa, shade_surface_fragments<true>);
+                           SOFTFOCUS_KERNEL(isa, shade_surface_vertices), nullptr};
+  if (has_uvs(variant)) {
+    stages.shade_fragments = variant.specular
+                                 ? SOFTFOCUS_KERNEL(isa, shade_surface_fragments<true, true>)
+                                 : SOFTFOCUS_KERNEL(isa, shade_surface_fragments<true, false>);
+  } else {
+    stages.shade_fragments = variant.specular
+                                 ? SOFTFOCUS_KERNEL(isa, shade_surface_fragments<false, true>)
+                                 : SOFTFOCUS_KERNEL(isa, shade_surface_fragments<false, false>);
   }
   if (variant.holed) stages.keep_fragments = SOFTFOCUS_KERNEL(isa, keep_surface_fragments);
   return stages;
@@ -54,8 +59,8 @@ using FragmentStage = SurfaceFragmentStage<kMostSurfaceVaryings>;
 struct SurfaceVertexLanes {
   static constexpr std::size_t kVaryings = kMostSurfaceVaryings;
   const SurfaceVertexInput& input;
-  const SurfaceVariant& variant;
-  const SurfaceLayout& layout;
+  SurfaceVariant variant;
+  SurfaceLayout layout;
 
   SOFTFOCUS_INLINE std::size_t varying_count() const { return layout.count; }
 
@@ -84,60 +89,63 @@ struct SurfaceVertexLanes {
                                   (r[0][1] * n.x + r[1][1] * n.y) + r[2][1] * n.z,
                                   (r[0][2] * n.x + r[1][2] * n.y) + r[2][2] * n.z});
     const Vec3Lanes towards_eye = normalize(splat(input.eye) - world);
-    // The front, and then perhaps the back.
-    for (std::size_t at = SurfaceLayout::kFront; at < layout.texture; at += layout.side_size) {
+    for (int side = 0; side < (variant.two_sided ? 2 : 1); ++side) {
       const LitLanes lit = input.material->lit
                                ? light_points(*input.material, input.ambient_light, input.lights,
                                               variant.specular, world, normal, towards_eye)
                                : LitLanes{splat(input.material->diffuse), splat(glm::vec3{0.0f})};
+      const std::size_t at = side == 0 ? SurfaceLayout::kFront : layout.back;
       varyings[at] = lit.base.x;
       varyings[at + 1] = lit.base.y;
       varyings[at + 2] = lit.base.z;
       if (variant.specular) {
-        varyings[at + 3] = lit.specular.x;
-        varyings[at + 4] = lit.specular.y;
-        varyings[at + 5] = lit.specular.z;
+        const std::size_t highlight = side == 0 ? layout.highlight : layout.back_highlight;
+        varyings[highlight] = lit.specular.x;
+        varyings[highlight + 1] = lit.specular.y;
+        varyings[highlight + 2] = lit.specular.z;
       }
       normal = {-normal.x, -normal.y, -normal.z};
     }
     if (has_uvs(variant)) {
       const float* first = &input.mesh->uvs[0].x;
-      varyings[layout.texture] = gather(first, index * 2, ~Mask{});
-      varyings[layout.texture + 1] = gather(first + 1, index * 2, ~Mask{});
+      varyings[SurfaceLayout::kTexture] = gather(first, index * 2, ~Mask{});
+      varyings[SurfaceLayout::kTexture + 1] = gather(first + 1, index * 2, ~Mask{});
     }
   }
 };
 
 // --- fragments ---
 
-template <bool textured>
+// Numbers of varyings are known when compiling, so that the compiler can keep these in registers.
+template <bool uvs, bool specular>
 struct SurfaceFragmentLanes {
   static constexpr auto& kInterpolation = FragmentStage::kInterpolation;
+  // As surface_layout() has them.
+  static constexpr std::size_t kTextureU = SurfaceLayout::kTexture;
+  static constexpr std::size_t kAfterBase = kTextureU + (uvs ? 2 : 0);
   // The colour that a texture is multiplied with, depth; and with a texture the place where it
   // is sampled, and the highlights, which are else in the colour.
   static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,
                                kLod = 6, kHighlight = 7;
-  static constexpr std::size_t kInputs = textured ? 10 : 4;
+  static constexpr std::size_t kInputs = !uvs ? 4 : specular ? 10 : 7;
   const FragmentStage& stage;
   const SurfaceVariant variant = stage.variant;
-  const SurfaceLayout layout = stage.layout;
 
-  SOFTFOCUS_INLINE std::size_t varying_count() const { return layout.count; }
+  SOFTFOCUS_INLINE std::size_t varying_count() const { return stage.layout.count; }
 
   template <class Quads, class Put>
   SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
-    Vec3Lanes colour = side(in, 0);
-    if constexpr (textured) {
-      const std::size_t u = layout.texture;
-      const std::size_t v = layout.texture + 1;
+    Vec3Lanes colour = base(in);
+    if (uvs && variant.textured) {
+      constexpr std::size_t u = kTextureU, v = u + 1;
       put(kU, in.varying(u));
       put(kV, in.varying(v));
       put(kLod, level_of_detail_lanes(*stage.decoded, stage.profile, in.ddx(u), in.ddx(v),
                                       in.ddy(u), in.ddy(v)));
     }
-    if (variant.specular) {
-      const Vec3Lanes highlight = side(in, 3);
-      if constexpr (textured) {
+    if constexpr (specular) {
+      const Vec3Lanes highlight = highlights(in);
+      if (uvs && variant.textured) {
         put(kHighlight, highlight.x);
         put(kHighlight + 1, highlight.y);
         put(kHighlight + 2, highlight.z);
@@ -162,7 +170,9 @@ struct SurfaceFragmentLanes {
       colours[i] = {batch.input(kRed, i), batch.input(kGreen, i), batch.input(kBlue, i),
                     batch.input(kDepth, i)};
     }
-    if constexpr (textured) multiply_by_texture(batch, colours);
+    if constexpr (uvs) {
+      if (variant.textured) multiply_by_texture(batch, colours);
+    }
     if (!stage.opacity.blends) return;
     for (int i = 0; i < count; ++i) {
       for (std::size_t c = 0; c < 3; ++c) colours[i][c] *= colours[i][3];
@@ -181,7 +191,7 @@ struct SurfaceFragmentLanes {
       colours[i][0] *= texel.r;
       colours[i][1] *= texel.g;
       colours[i][2] *= texel.b;
-      if (!variant.specular) continue;
+      if constexpr (!specular) continue;
       for (std::size_t c = 0; c < 3; ++c) colours[i][c] += batch.input(kHighlight + c, i);
     }
   }
@@ -191,22 +201,34 @@ struct SurfaceFragmentLanes {
   SOFTFOCUS_INLINE Floats hides(const Quads& in) const {
     const SurfaceOpacity& opacity = stage.opacity;
     const Floats value = splat(opacity.value);
-    if (!variant.holed || opacity.cuts_out) return value;
-    return value * opacity_texels(in, layout.texture, *stage.decoded_opacity, opacity.sampler,
-                                  stage.profile);
+    if constexpr (uvs) {
+      if (variant.holed && !opacity.cuts_out) {
+        return value * opacity_texels(in, kTextureU, *stage.decoded_opacity, opacity.sampler,
+                                      stage.profile);
+      }
+    }
+    return value;
   }
 
-  // Three varyings of the side that is seen.
+  // Of the side that is seen.
   template <class Quads>
-  SOFTFOCUS_INLINE Vec3Lanes side(const Quads& in, std::size_t at) const {
-    const std::size_t front = SurfaceLayout::kFront + at;
-    const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
-    if (!variant.two_sided) return seen;
-    const std::size_t back = layout.back + at;
+  SOFTFOCUS_INLINE Vec3Lanes base(const Quads& in) const {
+    const Vec3Lanes front = three<SurfaceLayout::kFront>(in);
+    if (!variant.two_sided) return front;
     const Mask front_facing = in.front_facing();
-    if (all(front_facing)) return seen;
-    return select(front_facing, seen,
-                  Vec3Lanes{in.varying(back), in.varying(back + 1), in.varying(back + 2)});
+    if (all(front_facing)) return front;
+    return select(front_facing, front, three<kAfterBase + (specular ? 3 : 0)>(in));
+  }
+  template <class Quads>
+  SOFTFOCUS_INLINE Vec3Lanes highlights(const Quads& in) const {
+    const Vec3Lanes front = three<kAfterBase>(in);
+    if (!variant.two_sided) return front;
+    return select(in.front_facing(), front, three<kAfterBase + 6>(in));
+  }
+
+  template <std::size_t at, class Quads>
+  SOFTFOCUS_INLINE Vec3Lanes three(const Quads& in) const {
+    return {in.varying(at), in.varying(at + 1), in.varying(at + 2)};
   }
 };
 
@@ -218,8 +240,8 @@ struct SurfaceHoles {
 
   template <class Quads>
   SOFTFOCUS_INLINE Mask keeps(const Quads& in) const {
-    return ~(opacity_texels(in, stage.layout.texture, *stage.decoded_opacity, stage.opacity.sampler,
-                            stage.profile) < least_texel(stage.opacity));
+    return ~(opacity_texels(in, SurfaceLayout::kTexture, *stage.decoded_opacity,
+                            stage.opacity.sampler, stage.profile) < least_texel(stage.opacity));
   }
 };
 
@@ -233,10 +255,10 @@ void shade_surface_vertices(const VertexStage& stage, const VertexJob& job) {
   shade_vertices(SurfaceVertexLanes{stage.input, stage.variant, stage.layout}, job);
 }
 
-template <bool textured>
+template <bool uvs, bool specular>
 void shade_surface_fragments(const FragmentStage& stage, const FragmentJob& job,
                              const VisibilityTile& tile, const VisibleRun& run) {
-  shade_fragments(SurfaceFragmentLanes<textured>{stage}, job, tile, run);
+  shade_fragments(SurfaceFragmentLanes<uvs, specular>{stage}, job, tile, run);
 }
 
 unsigned keep_surface_fragments(const FragmentStage& stage, const FragmentJob& job,

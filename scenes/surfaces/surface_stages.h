@@ -53,21 +53,24 @@ constexpr float least_texel(const SurfaceOpacity& opacity) {
   return opacity.cuts_out ? kLeastOpacity : kLeastBlended;
 }
 
-/// Where each varying lies: depth, base colour, then what the variant has.
+/// Where each varying lies: depth, base colour, u and v, highlight, and the back's colours if it is
+/// lit by itself. What a variant lacks takes no place.
 struct SurfaceLayout {
   static constexpr std::size_t kDepth = 0;
   static constexpr std::size_t kFront = 1;
-  std::size_t side_size;  ///< base colour, and highlight if there is one
-  std::size_t back;       ///< the back's base colour, if it is lit by itself
-  std::size_t texture;    ///< u and v, if there are such: last, whatever reads them
+  static constexpr std::size_t kTexture = 4;
+  std::size_t highlight;
+  std::size_t back;
+  std::size_t back_highlight;
   std::size_t count;
 };
 
 constexpr SurfaceLayout surface_layout(SurfaceVariant variant) {
+  const std::size_t highlight = SurfaceLayout::kTexture + (has_uvs(variant) ? 2 : 0);
+  const std::size_t back = highlight + (variant.specular ? 3 : 0);
+  const std::size_t back_highlight = back + 3;
   const std::size_t side_size = variant.specular ? 6 : 3;
-  const std::size_t back = SurfaceLayout::kFront + side_size;
-  const std::size_t texture = back + (variant.two_sided ? side_size : 0);
-  return {side_size, back, texture, texture + (has_uvs(variant) ? 2 : 0)};
+  return {highlight, back, back_highlight, back + (variant.two_sided ? side_size : 0)};
 }
 
 /// What the vertex stage reads; matrices are rounded to binary32 once a draw.
@@ -109,21 +112,23 @@ struct SurfaceVertexStage {
     const glm::vec3 normal =
         normalize(transform_direction(input.normal_to_world, input.mesh->normals[index]));
     const glm::vec3 towards_eye = normalize(input.eye - world);
-    const auto light_side = [&](glm::vec3 side_normal, std::size_t at) {
+    const auto light_side = [&](glm::vec3 side_normal, std::size_t at, std::size_t highlight_at) {
       const LitColour lit = material.lit ? light_point(material, input.ambient_light, input.lights,
                                                        world, side_normal, towards_eye)
                                          : LitColour{material.diffuse, glm::vec3{0.0f}};
       for (std::size_t i = 0; i < 3; ++i) {
         output.varyings[at + i] = lit.base[static_cast<int>(i)];
         if constexpr (!may_be_specular(N)) continue;
-        if (variant.specular) output.varyings[at + 3 + i] = lit.specular[static_cast<int>(i)];
+        if (variant.specular) {
+          output.varyings[highlight_at + i] = lit.specular[static_cast<int>(i)];
+        }
       }
     };
-    light_side(normal, SurfaceLayout::kFront);
-    if (variant.two_sided) light_side(-normal, layout.back);
+    light_side(normal, SurfaceLayout::kFront, layout.highlight);
+    if (variant.two_sided) light_side(-normal, layout.back, layout.back_highlight);
     if (may_have_uvs(N) && has_uvs(variant)) {
-      output.varyings[layout.texture] = input.mesh->uvs[index].x;
-      output.varyings[layout.texture + 1] = input.mesh->uvs[index].y;
+      output.varyings[SurfaceLayout::kTexture] = input.mesh->uvs[index].x;
+      output.varyings[SurfaceLayout::kTexture + 1] = input.mesh->uvs[index].y;
     }
     return output;
   }
@@ -156,11 +161,13 @@ struct SurfaceFragmentStage {
       if (red < least_texel(opacity)) return {{}, true};
       if (!opacity.cuts_out) hides *= red;
     }
-    const std::size_t side = variant.two_sided && !in.front_facing ? layout.back : layout.kFront;
+    const bool back = variant.two_sided && !in.front_facing;
+    const std::size_t side = back ? layout.back : layout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
     if (may_have_uvs(N) && variant.textured) colour *= glm::vec3{texel(*texture, sampler, in)};
     if (may_be_specular(N) && variant.specular) {
-      colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
+      const std::size_t at = back ? layout.back_highlight : layout.highlight;
+      colour += glm::vec3{in.varyings[at], in.varyings[at + 1], in.varyings[at + 2]};
     }
     if (opacity.blends) return {{glm::vec4{colour * hides, hides}}, false};
     return {{glm::vec4{colour, alpha_depth(in.varyings[SurfaceLayout::kDepth])}}, false};
@@ -168,8 +175,7 @@ struct SurfaceFragmentStage {
 
  private:
   glm::vec4 texel(const Texture& of, const Sampler& by, const Fragment<N>& in) const {
-    const std::size_t u = layout.texture;
-    const std::size_t v = layout.texture + 1;
+    constexpr std::size_t u = SurfaceLayout::kTexture, v = u + 1;
     const float lod = level_of_detail(of, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
     return sample(of, by, {in.varyings[u], in.varyings[v]}, lod, profile);
   }

@@ -45,12 +45,12 @@ struct BarycentricLanes {
   static constexpr std::size_t N = kinds.size();
   /// At vertex 0, the differences of the others to it, and at the provoking vertex.
   VaryingLanes<N> first, to_second, to_third, flat;
-  std::array<Floats, 3> inverse_w;
-  std::array<Ints, 3> edge, per_x, per_y;
-  Ints x_origin, y_origin;
-  Floats inverse_area;
-  const QuadTriangles* of_quads;
-  bool any_large;
+  std::array<Floats, 3> inverse_w{};
+  std::array<Ints, 3> edge{}, per_x{}, per_y{};
+  Ints x_origin{}, y_origin{};
+  Floats inverse_area{};
+  const QuadTriangles* of_quads = nullptr;
+  bool any_large = false;
 
   /// Keeps a pointer to the triangles.
   SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, const LoadJob& job) {
@@ -120,7 +120,7 @@ struct BarycentricLanes {
     WideLanes at_origin, per_x, per_y;
   };
   std::array<WideEdge, 3> wide;
-  bool any_huge;
+  bool any_huge = false;
 
   SOFTFOCUS_INLINE void load_wide() {
     any_huge = false;
@@ -192,8 +192,8 @@ template <const auto& kinds>
 struct PlaneLanes {
   using Point = PlanePoint;
   static constexpr std::size_t N = kinds.size();
-  bool fused;
-  PlaneOfLanes inverse_w;
+  bool fused = false;
+  PlaneOfLanes inverse_w{};
   std::array<PlaneOfLanes, N> planes;  // a flat varying's value is at_origin
 
   SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, const LoadJob& job) {
