@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "tools/golden/hashes.h"
-#include "tools/report/report_files.h"
+#include "tools/report/report.h"
 
 namespace softfocus {
 namespace {

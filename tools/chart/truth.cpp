@@ -10,7 +10,7 @@
 #include "tools/files/whole_file.h"
 #include "tools/golden/hashes.h"
 #include "tools/pictures/image_file.h"
-#include "tools/report/report_files.h"
+#include "tools/report/report.h"
 
 namespace softfocus {
 namespace {

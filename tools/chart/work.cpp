@@ -13,7 +13,7 @@
 #include "tools/cli/progress.h"
 #include "tools/cli/time_left.h"
 #include "tools/golden/hashes.h"
-#include "tools/report/report_files.h"
+#include "tools/report/report.h"
 
 namespace softfocus {
 namespace {

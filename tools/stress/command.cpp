@@ -5,7 +5,7 @@
 
 #include "tools/cli/commands.h"
 #include "tools/files/whole_file.h"
-#include "tools/report/report_files.h"
+#include "tools/report/report.h"
 #include "tools/stress/findings.h"
 #include "tools/stress/stress_page.h"
 #include "tools/stress/stress_report.h"
@@ -24,7 +24,7 @@ int stress(const StressOptions& options) {
   const Json json = stress_json(findings);
   write_json(options.directory / "stress.json", json);
   write_text(options.directory / "stress.csv", stress_csv(findings));
-  write_text(options.directory / "index.html", stress_page(findings, options));
+  write_text(options.directory / "index.html", report_page(stress_report(findings, options)));
   if (options.json) {
     std::cout << json_text(json, 1) << '\n';
     return kDone;

@@ -1,184 +1,179 @@
 #include "tools/stress/stress_page.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 #include "tools/cli/option_values.h"
-#include "tools/report/html.h"
-#include "tools/stress/curve_svg.h"
+#include "tools/report/report.h"
+#include "tools/stress/answers.h"
 #include "tools/stress/stress_report.h"
 
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kAtlasStyle = R"(
-:root { color-scheme: light dark; --back: #ffffff; --text: #1c1c1e; --faint: #5c5c63;
-  --line: #d4d4d8; --band: #f3f3f5; --link: #0b57a8; --limit: #b3261e; --own: #0b57a8; }
-@media (prefers-color-scheme: dark) { :root { --back: #17171a; --text: #ececf0; --faint: #a9a9b2;
-  --line: #3c3c43; --band: #222227; --link: #8ec1ff; --limit: #ff8a80; --own: #8ec1ff; } }
-body { margin: 0 auto; max-width: 1640px; padding: 1.5rem; background: var(--back);
-  color: var(--text); font: 16px/1.5 system-ui, sans-serif; }
-h1, h2, h3 { line-height: 1.2; }
-h2 { margin-top: 2.5rem; border-top: 1px solid var(--line); padding-top: 1.5rem; }
-h3 { margin: 0 0 .3rem; font-size: 1rem; }
-p { max-width: 50rem; }
-a { color: var(--link); }
-.scroll { overflow-x: auto; }
-table { border-collapse: separate; border-spacing: 2px; font-size: .8rem; }
-th { text-align: left; font-weight: 600; white-space: nowrap; padding: .2rem .4rem; }
-thead th { vertical-align: bottom; }
-thead span { writing-mode: vertical-rl; transform: rotate(180deg); }
-td { text-align: center; white-space: nowrap; padding: .15rem .4rem; }
-td a { color: inherit; text-decoration: none; }
-td a:hover, td a:focus-visible { text-decoration: underline; }
-.g0 { background: #1a7f4b; color: #ffffff; } .g1 { background: #8fd3a8; color: #10301c; }
-.g2 { background: #d3ecb9; color: #1f2d10; } .w1 { background: #ffe08a; color: #3a2c00; }
-.w2 { background: #f6a45c; color: #3b1c00; } .w3 { background: #d6493a; color: #ffffff; }
-.w4 { background: #7d1420; color: #ffffff; } .none { color: var(--faint); }
-.key span { padding: .1rem .5rem; margin-right: .3rem; }
-.methods { display: grid; grid-template-columns: repeat(auto-fill, minmax(430px, 1fr)); gap: 1rem; }
-.method { border: 1px solid var(--line); padding: .7rem; }
-.method:target { outline: 3px solid var(--link); }
-.method p { margin: 0 0 .4rem; color: var(--faint); font-size: .85rem; }
-.row { display: flex; flex-wrap: wrap; gap: .5rem; margin-bottom: .5rem; }
-figure { margin: 0; width: min-content; }
-figcaption { color: var(--faint); font-size: .8rem; }
-img, .truth { display: block; width: 128px; height: 128px; outline: 1px solid var(--line);
-  image-rendering: pixelated; }
-.curve { display: block; width: 100%; max-width: 430px; }
-text { fill: var(--faint); font: 11px system-ui, sans-serif; }
-.axis { stroke: var(--faint); fill: none; } .grid { stroke: var(--line); }
-.limit { stroke: var(--limit); stroke-width: 1.5; stroke-dasharray: 5 3; }
-.other { stroke: var(--line); fill: none; }
-.noise { stroke: var(--faint); fill: none; stroke-dasharray: 1 3; }
-.own { stroke: var(--own); stroke-width: 2; fill: none; }
-.right { fill: var(--own); } .wrong { fill: var(--limit); }
-)";
-
-/// Colours of the table, by how far from the limit.
-struct Grade {
-  double up_to;  ///< the worst value over the limit
-  const char* colour;
-  const char* meaning;
-};
-constexpr std::array kGrades{Grade{0.1, "g0", "a tenth of the limit at most"},
-                             Grade{0.5, "g1", "half the limit at most"},
-                             Grade{1.0, "g2", "within the limit"},
-                             Grade{2.0, "w1", "up to twice the limit"},
-                             Grade{5.0, "w2", "up to five times"},
-                             Grade{20.0, "w3", "up to twenty times"},
-                             Grade{std::numeric_limits<double>::infinity(), "w4", "more"}};
-
-const Grade& grade_of(double ratio) {
-  return *std::find_if(kGrades.begin(), kGrades.end(),
-                       [&](const Grade& grade) { return ratio <= grade.up_to; });
-}
-
-std::string text_of(std::string_view view) { return html_text(view); }
-
-std::string cell_id(const StressResult& result, const StressCurve& curve) {
+std::string card_id(const StressResult& result, const StressCurve& curve) {
   return std::string{result.of.name} + "-" + curve.method;
 }
 
-std::string table_cell(const StressResult& result, const StressCurve& curve) {
-  if (!curve.can_run) {
-    return "<td class=\"none\" title=\"the case is a picture; this method needs a scene\">"
-           "\u2013</td>";
-  }
+/// "radius, px".
+std::string parameter_text(const StressCase& of) {
+  const std::string name{of.parameter.name}, unit{of.parameter.unit};
+  return unit.empty() ? name : name + ", " + unit;
+}
+
+/// Colours of the table, by how far the worst value is from the limit.
+Json grades_json() {
+  Json grades = Json::array();
+  const auto add = [&](Json up_to, const char* text) {
+    grades.push_back({{"up_to", std::move(up_to)}, {"text", text}});
+  };
+  add(0.1, "a tenth of the limit at most");
+  add(0.5, "half the limit at most");
+  add(1.0, "within the limit");
+  add(2.0, "up to twice the limit");
+  add(5.0, "up to five times");
+  add(20.0, "up to twenty times");
+  add(nullptr, "more");
+  return grades;
+}
+
+Json atlas_cell(const StressResult& result, const StressCurve& curve) {
+  if (!curve.can_run) return nullptr;
   const double ratio = worst_ratio(result, curve);
-  const std::string worst = std::isfinite(ratio)
-                                ? "worst: " + short_number(ratio) + " times the limit"
-                                : "no limit holds";
-  return std::string{"<td class=\""} + grade_of(ratio).colour + "\" title=\"" + worst +
-         "\"><a href=\"#" + cell_id(result, curve) + "\">" + failing_text(result, curve) +
-         "</a></td>";
+  return {{"value", number_or_null(ratio)},
+          {"text", failing_text(result, curve)},
+          {"to", card_id(result, curve)},
+          {"about", std::isfinite(ratio) ? "worst: " + short_number(ratio) + " times the limit"
+                                         : "no limit holds"}};
 }
 
-std::string atlas_table(const StressFindings& findings) {
-  std::string html = "<div class=\"scroll\"><table><thead><tr><th>case</th><th>fails by</th>";
+Json atlas_table(const StressFindings& findings) {
+  std::vector<Json> columns{{{"name", "case"}, {"word", true}},
+                            {{"name", "fails by"}, {"word", true}}};
   for (const StressCurve& curve : findings.results.front().curves) {
-    html += "<th scope=\"col\"><span>" + html_text(curve.method) + "</span></th>";
+    Json column = Json::object();
+    column["name"] = curve.method;
+    columns.push_back(std::move(column));
   }
-  html += "</tr></thead><tbody>\n";
+  Json rows = Json::array();
   for (const StressResult& result : findings.results) {
-    const StressCase& of = result.of;
-    html += "<tr><th scope=\"row\"><a href=\"#" + text_of(of.name) + "\">" + text_of(of.name) +
-            "</a></th><td>" + text_of(of.parameter.name) + ", " + text_of(of.parameter.unit) +
-            "</td>";
-    for (const StressCurve& curve : result.curves) html += table_cell(result, curve);
-    html += "</tr>\n";
+    const std::string name{result.of.name};
+    std::vector<Json> cells{{{"value", name}, {"to", name}}, parameter_text(result.of)};
+    for (const StressCurve& curve : result.curves) cells.push_back(atlas_cell(result, curve));
+    Json row = Json::object();
+    row["cells"] = json_list(cells);
+    rows.push_back(std::move(row));
   }
-  return html + "</tbody></table></div>\n";
+  return {{"key", "The worst value of the sweep: "},
+          {"grades", grades_json()},
+          {"columns", json_list(columns)},
+          {"rows", std::move(rows)}};
 }
 
-std::string colour_key() {
-  std::string html = "<p class=\"key\">The worst value of the sweep: ";
-  for (const Grade& grade : kGrades) {
-    html += std::string{"<span class=\""} + grade.colour + "\">" + grade.meaning + "</span>";
+Json severity_axis(const StressResult& result) {
+  const double first = result.severities.front(), last = result.severities.back();
+  const double smaller = std::min(first, last), larger = std::max(first, last);
+  return {{"title", parameter_text(result.of)},
+          {"short", result.of.parameter.name},
+          {"log", smaller > 0.0 && larger / smaller > 6.0},
+          {"ticks", result.severities}};
+}
+
+/// It ends at 30 times the limit and at a 30th of it.
+Json value_axis(const StressCase& of) {
+  constexpr double kSpan = 30.0;
+  Json axis{{"title", of.unit}, {"short", of.unit}};
+  axis["log"] = of.limit > 0.0;
+  if (of.limit > 0.0) {
+    axis["least"] = of.limit / kSpan;
+    axis["most"] = of.limit * kSpan;
+    axis["ticks"] = {of.limit / 10.0, of.limit, of.limit * 10.0};
+  } else {
+    axis["least"] = 0.0;
   }
-  return html + "</p>\n";
+  return axis;
 }
 
-std::string atlas_figure(const std::string& png, const std::string& alt,
-                         const std::string& caption) {
-  return "<figure><img loading=\"lazy\" alt=\"" + html_text(alt) +
-         "\" src=\"data:image/png;base64," + png + "\"><figcaption>" + html_text(caption) +
-         "</figcaption></figure>";
+Json curve_series(const StressResult& result, const std::string& name, const char* kind,
+                  const std::vector<double>& values) {
+  Json points = Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Json point{{"x", result.severities[i]}, {"y", number_or_null(values[i])}};
+    if (!holds(result.of, values[i])) point["bad"] = true;
+    points.push_back(std::move(point));
+  }
+  return {{"name", name}, {"kind", kind}, {"points", std::move(points)}};
 }
 
-/// The truth once in the page, for all methods of the case to show.
-std::string shared_truth(const StressResult& result) {
-  return "<svg width=\"0\" height=\"0\" aria-hidden=\"true\"><defs><image id=\"truth-" +
-         std::string{result.of.name} +
-         "\" width=\"128\" height=\"128\" href=\"data:image/png;base64," + result.truth +
-         "\"/></defs></svg>\n";
+Json case_plot(const StressResult& result) {
+  Json limit = Json::object();
+  limit["y"] = result.of.limit;
+  std::vector<Json> series{{{"name", "limit"}, {"kind", "limit"}, {"points", json_list({limit})}}};
+  if (!result.noise_floor.empty()) {
+    series.push_back(curve_series(result, "noise of the truth", "thin", result.noise_floor));
+  }
+  for (const StressCurve& curve : result.curves) {
+    if (curve.can_run) series.push_back(curve_series(result, curve.method, "line", curve.values));
+  }
+  return {
+      {"about", std::string{result.of.measured} + " by " + std::string{result.of.parameter.name}},
+      {"x", severity_axis(result)},
+      {"y", value_axis(result.of)},
+      {"series", json_list(series)}};
 }
 
-std::string truth_again(const StressResult& result) {
-  return "<figure><svg class=\"truth\" viewBox=\"0 0 128 128\" role=\"img\" aria-label=\"The "
-         "truth\"><use "
-         "href=\"#truth-" +
-         std::string{result.of.name} + "\"/></svg><figcaption>the truth</figcaption></figure>";
+/// What the report has under the name of a picture, and a figure of it.
+Json atlas_figure(Json& pictures, const std::string& name, const std::string& png,
+                  const std::string& about, const std::string& caption) {
+  pictures[name] = png;
+  return {{"picture", name}, {"about", about}, {"caption", caption}};
 }
 
-std::string method_section(const StressResult& result, const StressCurve& curve) {
+Json method_card(const StressResult& result, const StressCurve& curve, Json& pictures) {
   const std::string on = curve.method + " on " + std::string{result.of.name};
-  return "<section class=\"method\" id=\"" + cell_id(result, curve) + "\"><h3>" +
-         html_text(curve.method) + (first_failure(result, curve) ? " fails: " : " ") +
-         failing_text(result, curve) + "</h3>\n" + curve_svg(result, curve) +
-         "<div class=\"row\">" +
-         atlas_figure(curve.pictures.picture, "Picture by " + on, "the picture") +
-         truth_again(result) +
-         atlas_figure(curve.pictures.error, "Map of the FLIP error of " + on, "its error") +
-         "</div></section>\n";
+  const std::string id = card_id(result, curve), truth = std::string{result.of.name} + ".truth.png";
+  return {
+      {"id", id},
+      {"title", curve.method + (first_failure(result, curve) ? " fails: " : " ") +
+                    failing_text(result, curve)},
+      {"own", curve.method},
+      {"figures",
+       json_list({json_list({atlas_figure(pictures, id + ".picture.png", curve.pictures.picture,
+                                          "Picture by " + on, "the picture"),
+                             atlas_figure(pictures, truth, result.truth, "The truth", "the truth"),
+                             atlas_figure(pictures, id + ".error.png", curve.pictures.error,
+                                          "Map of the FLIP error of " + on, "its error")})})}};
 }
 
-std::string case_section(const StressResult& result) {
+Json case_part(const StressResult& result, Json& pictures) {
   const StressCase& of = result.of;
   const std::string name{of.name};
-  std::string html = "<h2 id=\"" + name + "\">" + name + ": " + text_of(of.title) + "</h2>\n<p>" +
-                     text_of(of.must_hold) + " Measured: " + text_of(of.measured) + ", " +
-                     text_of(of.unit) + ". Limit " + short_number(of.limit) + ": " +
-                     text_of(of.why_limit) + ".";
-  if (result.views > 0) {
-    html += " The truth is the mean of " + std::to_string(result.views) +
-            " views of the lens; the dotted line is one half of them against the other.";
-  } else {
-    html += " The truth is calculated.";
-  }
-  html += "</p>\n<div class=\"row\">" +
-          atlas_figure(result.sharp, "The sharp picture of " + name, "the sharp picture") +
-          atlas_figure(
-              result.truth, "The truth of " + name,
-              "the truth at " + std::string{of.parameter.name} + " " + short_number(result.shown)) +
-          "</div>\n" + shared_truth(result) + curve_backdrop(result) + "<div class=\"methods\">\n";
+  std::string text = std::string{of.must_hold} + " Measured: " + std::string{of.measured} + ", " +
+                     std::string{of.unit} + ". Limit " + short_number(of.limit) + ": " +
+                     std::string{of.why_limit} + ".";
+  text += result.views > 0
+              ? " The truth is the mean of " + std::to_string(result.views) +
+                    " views of the lens; the dotted line is one half of them against the other."
+              : " The truth is calculated.";
+  Json plots{{"name", name}, {"panels", json_list({case_plot(result)})}, {"height", 400}};
+  Json cards = Json::array();
   for (const StressCurve& curve : result.curves) {
-    if (curve.can_run) html += method_section(result, curve);
+    if (curve.can_run) cards.push_back(method_card(result, curve, pictures));
   }
-  return html + "</div>\n";
+  return {{"id", name},
+          {"title", name + ": " + std::string{of.title}},
+          {"below", true},
+          {"text", json_list({text})},
+          {"plots", std::move(plots)},
+          {"figures",
+           json_list({json_list(
+               {atlas_figure(pictures, name + ".sharp.png", result.sharp,
+                             "The sharp picture of " + name, "the sharp picture"),
+                atlas_figure(pictures, name + ".truth.png", result.truth, "The truth of " + name,
+                             "the truth at " + std::string{of.parameter.name} + " " +
+                                 short_number(result.shown))})})},
+          {"cards", std::move(cards)}};
 }
 
 }  // namespace
@@ -195,27 +190,38 @@ double worst_ratio(const StressResult& result, const StressCurve& curve) {
   return worst;
 }
 
-std::string stress_page(const StressFindings& findings, const StressOptions& options) {
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Where depth-of-field methods fail</title>\n<style>";
-  html += kAtlasStyle;
-  html +=
-      "</style>\n</head>\n<body>\n<h1>Where depth-of-field methods fail</h1>\n<p>Each method on "
-      "each case at " +
-      size_text({options.size_px, options.size_px}) +
-      ", all at equal settings, with no circle cut but in the case of largest circles. "
-      "accumulation has 64 views of the lens; auto chooses for itself. A cell tells from which "
-      "severity on the method fails: the parameter stands beside the case. \u2013: the method "
-      "needs a scene, and the case is a picture.</p>\n";
-  html += colour_key() + atlas_table(findings);
-  html +=
-      "<p>In the curves the broken line is the limit; red points do not hold; the other methods "
-      "are grey. In the maps of errors black is right and pale yellow is wrong (FLIP). Dark "
-      "pictures are brightened, with their truth.</p>\n";
-  for (const StressResult& result : findings.results) html += case_section(result);
-  return html + "</body>\n</html>\n";
+Json stress_report(const StressFindings& findings, const StressOptions& options) {
+  Json pictures = Json::object(), parts = Json::array();
+  parts.push_back({{"id", "atlas"}, {"title", "All cases"}, {"table", atlas_table(findings)}});
+  parts.push_back(
+      {{"id", "cases"},
+       {"title", "Case by case"},
+       {"text",
+        json_list({"In the curves the broken line is the limit; red points do not hold; a method's "
+                   "own curve is before the grey ones of the others. In the maps of errors black "
+                   "is right and pale yellow is wrong (FLIP). Dark pictures are brightened, with "
+                   "their truth."})}});
+  for (const StressResult& result : findings.results) parts.push_back(case_part(result, pictures));
+  std::vector<std::string> command{"softfocus", "stress", "--size",
+                                   std::to_string(options.size_px)};
+  if (options.cases.size() < stress_cases().size()) {
+    command.insert(command.end(), {"--cases", joined_names(options.cases)});
+  }
+  if (options.methods != stress_methods()) {
+    command.insert(command.end(), {"--methods", joined_names(options.methods)});
+  }
+  if (options.quick) command.emplace_back("--quick");
+  return {
+      {"title", "Where depth-of-field methods fail"},
+      {"text",
+       json_list({"Each method on each case at " + size_text({options.size_px, options.size_px}) +
+                  ", all at equal settings, with no circle cut but in the case of largest "
+                  "circles. accumulation has 64 views of the lens; auto chooses for itself. A "
+                  "cell tells from which severity on the method fails: the parameter stands "
+                  "beside the case. –: the method needs a scene, and the case is a picture."})},
+      {"command", command_text(command)},
+      {"parts", std::move(parts)},
+      {"pictures", std::move(pictures)}};
 }
 
 }  // namespace softfocus

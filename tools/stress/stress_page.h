@@ -1,15 +1,14 @@
 #pragma once
-// The atlas as one page of HTML that needs no other file.
+// The atlas as a report (tools/report/report.h).
 
-#include <string>
-
+#include "tools/files/json.h"
 #include "tools/stress/findings.h"
 
 namespace softfocus {
 
 /// The table, case by method, coloured by the worst value over the limit; and for each case its
-/// truth, and for each method its curve, picture and error.
-std::string stress_page(const StressFindings& findings, const StressOptions& options);
+/// curves, its truth, and each method's picture and error.
+Json stress_report(const StressFindings& findings, const StressOptions& options);
 
 /// The worst value of a curve over the limit; infinity where a value is not finite, or where a
 /// limit of 0 does not hold.

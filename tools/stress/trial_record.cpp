@@ -4,7 +4,7 @@
 
 #include "tools/cli/option_values.h"
 #include "tools/golden/hashes.h"
-#include "tools/report/report_files.h"
+#include "tools/report/report.h"
 #include "tools/report/specimen.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/stress_pictures.h"

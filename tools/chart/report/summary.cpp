@@ -132,4 +132,9 @@ std::vector<SummaryRow> summary_of(const std::vector<ChartPanel>& panels) {
   return rows;
 }
 
+bool has_times(const std::vector<SummaryRow>& summary) {
+  return std::none_of(summary.begin(), summary.end(),
+                      [](const SummaryRow& row) { return std::isnan(row.pinhole_frames.median); });
+}
+
 }  // namespace softfocus

@@ -36,6 +36,9 @@ inline constexpr std::string_view kBestSetting = "best setting";
 /// its best setting if it has several. Needs settled panels.
 std::vector<SummaryRow> summary_of(const std::vector<ChartPanel>& panels);
 
+/// Whether the rows have times.
+bool has_times(const std::vector<SummaryRow>& summary);
+
 /// One of a scene's numbers.
 struct SceneNumber {
   double number;
