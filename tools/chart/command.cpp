@@ -4,9 +4,9 @@
 #include <iostream>
 #include <memory>
 
-#include "tools/chart/key.h"
 #include "tools/chart/options.h"
 #include "tools/chart/pictures.h"
+#include "tools/chart/record.h"
 #include "tools/chart/report/numbers.h"
 #include "tools/chart/report/page.h"
 #include "tools/chart/scene.h"

@@ -41,6 +41,40 @@ ChartErrors chart_errors(const MeasuredPictures& measured) {
   return errors;
 }
 
+const std::vector<ChartMeasure>& chart_measures() {
+  static const std::vector<ChartMeasure> all = [] {
+    std::vector<ChartMeasure> made;
+    const auto add = [&](const char* key, const char* title, int places, double ChartErrors::*value,
+                         bool is_own = false) {
+      made.push_back({key, title, "", places,
+                      [value](ChartErrors& errors) -> double& { return errors.*value; }, is_own});
+    };
+    using ByRegion = std::array<double, kRegions>;
+    const auto add_flip = [&](const RankedError& flip, ByRegion ChartErrors::*by_region) {
+      const std::string key{flip.key}, title{flip.title};
+      add(key.c_str(), "whole", flip.places, flip.value);
+      made.back().group = title;
+      for (const Region region : kAllRegions) {
+        const auto i = static_cast<std::size_t>(region);
+        const std::string name{region_name(region)};
+        made.push_back(
+            {key + "_" + name, name, title, flip.places,
+             [by_region, i](ChartErrors& errors) -> double& { return (errors.*by_region)[i]; }});
+      }
+    };
+    add("psnr_db", "PSNR, dB", 2, &ChartErrors::psnr_db);
+    add("ssim", "SSIM", 4, &ChartErrors::ssim);
+    add_flip(kPictureErrors[0], &ChartErrors::flip_by_region);
+    add_flip(kPictureErrors[1], &ChartErrors::hdr_flip_by_region);
+    add("wrong_pixels", "wrong pixels", 0, &ChartErrors::wrong_pixels, true);
+    add("outline_px", "outline, px", 3, &ChartErrors::outline_px, true);
+    add("renewals", "renewals", 0, &ChartErrors::renewals, true);
+    add("megabytes", "MB", 2, &ChartErrors::megabytes, true);
+    return made;
+  }();
+  return all;
+}
+
 std::string page_picture(const Image& picture) {
   return png_text(reduced(picture, page_factor(picture.width, picture.height)));
 }
@@ -69,13 +103,7 @@ std::uint64_t measures_hash(ThreadPool& pool) {
   ChartPoint point;
   add_point_pictures(point, pair.picture, pair.truth, pool);
   Hash hash;
-  for (const double number : {errors.psnr_db, errors.ssim, errors.flip, errors.hdr_flip}) {
-    add_number(hash, number);
-  }
-  for (std::size_t i = 0; i < kRegions; ++i) {
-    add_number(hash, errors.flip_by_region[i]);
-    add_number(hash, errors.hdr_flip_by_region[i]);
-  }
+  for (const ChartMeasure& measure : chart_measures()) add_number(hash, measure.value(errors));
   for (const int number : {point.worst.x, point.worst.y, point.worst.side}) {
     add_number(hash, number);
   }

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/support/cli_render.h"
-#include "tools/chart/key.h"
+#include "tools/chart/record.h"
 #include "tools/chart/measure.h"
 
 using namespace softfocus;

@@ -262,46 +262,22 @@ Json method_cell(const ChartPanel& panel, const ChartPoint& point) {
   return {{"value", point.entry.method}, {"to", place_of(panel, point)}};
 }
 
-bool is_of_shadows(const ChartPanel& panel) {
-  return panel.ranked[0].value == kShadowErrors[0].value;
-}
-
-bool is_of_turns(const ChartPanel& panel) { return panel.ranked[1].value == kTurnErrors[1].value; }
-
-/// One of the numbers of a picture, as a column.
-struct ErrorColumn {
-  Column column;
-  double value;
-};
-
-std::vector<ErrorColumn> error_columns(const ChartPanel& panel, const ChartErrors& errors) {
-  std::vector<ErrorColumn> all;
-  if (is_of_shadows(panel)) all.push_back({{"wrong pixels", 0}, errors.wrong_pixels});
-  if (is_of_turns(panel)) {
-    all.push_back({{"outline, px", kTurnErrors[1].places}, errors.outline_px});
-    all.push_back({{"renewals", 0}, errors.renewals});
-    all.push_back({{"MB", 2}, errors.megabytes});
+/// Those of the subject.
+std::vector<ChartMeasure> columns_of(const ChartPanel& panel) {
+  std::vector<ChartMeasure> all;
+  for (const ChartMeasure& measure : chart_measures()) {
+    const bool is_there = !std::isnan(measure.value(panel.points.front().errors));
+    if (!measure.is_own || is_there) all.push_back(measure);
   }
-  all.push_back({{"PSNR, dB", 2}, errors.psnr_db});
-  all.push_back({{"SSIM", 4}, errors.ssim});
-  const auto add_flips = [&](const std::string& group, double whole, const auto& by_region) {
-    all.push_back({{"whole", kFlipPlaces, group}, whole});
-    for (const Region region : kAllRegions) {
-      all.push_back({{std::string{region_name(region)}, kFlipPlaces, group},
-                     by_region[static_cast<std::size_t>(region)]});
-    }
-  };
-  add_flips("FLIP", errors.flip, errors.flip_by_region);
-  add_flips("HDR-FLIP", errors.hdr_flip, errors.hdr_flip_by_region);
   return all;
 }
 
 Json points_table(const std::vector<ChartPanel>& panels) {
   std::vector<Json> rows;
-  const auto add_row = [&](const ChartPanel& panel, Cells cells, const ChartErrors& errors,
-                           Json rounds, bool is_best) {
-    for (const ErrorColumn& of : error_columns(panel, errors)) {
-      cells.push_back(number_or_null(of.value));
+  const std::vector<ChartMeasure> measures = columns_of(panels.front());
+  const auto add_row = [&](Cells cells, const ChartErrors& errors, Json rounds, bool is_best) {
+    for (const ChartMeasure& measure : measures) {
+      cells.push_back(number_or_null(measure.value(errors)));
     }
     cells.push_back(std::move(rounds));
     rows.push_back(row_json(cells, is_best));
@@ -309,14 +285,12 @@ Json points_table(const std::vector<ChartPanel>& panels) {
   for (const ChartPanel& panel : panels) {
     for (const ChartPoint& point : panel.points) {
       const std::vector<double>& filter_ms = point.times.filter_ms;
-      add_row(panel,
-              {panel.scene, method_cell(panel, point), settings_text(point.entry),
+      add_row({panel.scene, method_cell(panel, point), settings_text(point.entry),
                number_or_null(point.median_ms), number_or_null(point.pinhole_frames),
                filter_ms.empty() ? Json{} : Json{spread_of(filter_ms).median}},
               point.errors, point.times.frame_ms.size(), point.on_front);
     }
-    add_row(panel,
-            {panel.scene,
+    add_row({panel.scene,
              "noise of the truth",
              "half its " + std::to_string(panel.truth_samples) + " samples against half",
              {},
@@ -330,7 +304,7 @@ Json points_table(const std::vector<ChartPanel>& panels) {
                               {"frame, ms", "ms"},
                               {"pinhole frames", kRatioPlaces},
                               {"filter, ms", "ms"}};
-  for (const ErrorColumn& of : error_columns(panels.front(), {})) columns.push_back(of.column);
+  for (const ChartMeasure& of : measures) columns.push_back({of.title, of.places, of.group});
   columns.push_back({"rounds", 0});
   return table_json(columns, rows);
 }
