@@ -4,8 +4,8 @@
 #include <iostream>
 #include <memory>
 
+#include "tools/chart/measure.h"
 #include "tools/chart/options.h"
-#include "tools/chart/pictures.h"
 #include "tools/chart/record.h"
 #include "tools/chart/report/numbers.h"
 #include "tools/chart/report/page.h"

@@ -1,4 +1,4 @@
-#include "tools/info/map_measures.h"
+#include "tools/info/shadow_measures.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,8 +12,8 @@
 #include "scenes/draw/scene_maps.h"
 #include "scenes/shadows/maps/draw_map_side.h"
 #include "scenes/shadows/maps/map_errors.h"
+#include "tools/cli/timing.h"
 #include "tools/gl/maps_repeated_on_gl.h"
-#include "tools/info/time_in_turn.h"
 
 namespace softfocus {
 namespace {
@@ -110,8 +110,6 @@ struct TableRow {
   ShadowMapSettings settings;
 };
 
-std::string number_text(double value) { return short_number(value); }
-
 std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
   std::vector<TableRow> rows;
   const auto add = [&](std::string name, const std::function<void(ShadowMapSettings&)>& change) {
@@ -123,10 +121,10 @@ std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
     add("size=" + std::to_string(size), [&](ShadowMapSettings& map) { map.size = size; });
   }
   for (const double bias : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0}) {
-    add("bias=" + number_text(bias), [&](ShadowMapSettings& map) { map.bias = bias; });
+    add("bias=" + short_number(bias), [&](ShadowMapSettings& map) { map.bias = bias; });
   }
   for (const double bias : {0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0}) {
-    add("slope-bias=" + number_text(bias), [&](ShadowMapSettings& map) { map.slope_bias = bias; });
+    add("slope-bias=" + short_number(bias), [&](ShadowMapSettings& map) { map.slope_bias = bias; });
   }
   add("no-bias", [](ShadowMapSettings& map) { map.bias = map.slope_bias = 0.0; });
   for (int kernel = 1; kernel <= kMostMapKernel; kernel += 2) {
@@ -147,11 +145,6 @@ std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
     });
   }
   return rows;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 // The sides of all maps, from casters that are cut already.
@@ -206,15 +199,9 @@ void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int run
       }
     }
   }
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < times[0].ms.size(); ++i) {
-    ratios.push_back(times[1].ms[i] / times[0].ms[i]);
-  }
-  std::sort(ratios.begin(), ratios.end());
   print_times(times);
-  std::printf("%-26s %9.2f     (%.2f to %.2f); %zu of %zu texels differ; %s\n", "ratio",
-              ratios[ratios.size() / 2], ratios.front(), ratios.back(), differ, texels,
-              on_gl.renderer().c_str());
+  print_ratio(times, std::to_string(differ) + " of " + std::to_string(texels) + " texels differ; " +
+                         on_gl.renderer());
 }
 
 }  // namespace
@@ -270,8 +257,9 @@ void print_map_table(const MapMeasure& measure, ThreadPool& pool) {
         times, measure.runs, [&] { mapped.draw_anew(); }, [&] { projected.draw_anew(); });
     const MapErrors errors = truths.errors(mapped, pool);
     std::printf("%-22s %9.1f %9zu %9zu %9zu %9zu %9zu %9.0f   projected %.1f ms\n",
-                row.name.c_str(), median(times[0].ms), errors.wrong(), errors.aliasing, errors.acne,
-                errors.peter_panning, errors.near_edge, errors.missed_share, median(times[1].ms));
+                row.name.c_str(), spread_of(times[0].ms).median, errors.wrong(), errors.aliasing,
+                errors.acne, errors.peter_panning, errors.near_edge, errors.missed_share,
+                spread_of(times[1].ms).median);
     std::fflush(stdout);
   }
 }

@@ -20,11 +20,9 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/timing.h"
 #include "tools/gl/shadows_repeated_on_gl.h"
-#include "tools/info/map_measures.h"
-#include "tools/info/soft_measures.h"
-#include "tools/info/terminator_measures.h"
-#include "tools/info/time_in_turn.h"
+#include "tools/info/shadow_measures.h"
 #include "tools/options/light_options.h"
 #include "tools/options/run_options.h"
 #include "tools/options/shadow_options.h"
@@ -140,15 +138,9 @@ void time_beside(const Driver& driver, const SceneShadows& shadows, const Shadow
   const std::vector<std::uint8_t> theirs = on_gl.mask(draws.dark);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) differ += mask[i] != theirs[i];
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < times[0].ms.size(); ++i) {
-    ratios.push_back(times[1].ms[i] / times[0].ms[i]);
-  }
-  std::sort(ratios.begin(), ratios.end());
   print_times(times);
-  std::printf("%-26s %9.2f     (%.2f to %.2f); %zu of %zu pixels differ; %s\n", "ratio",
-              ratios[ratios.size() / 2], ratios.front(), ratios.back(), differ, mask.size(),
-              on_gl.renderer().c_str());
+  print_ratio(times, std::to_string(differ) + " of " + std::to_string(mask.size()) +
+                         " pixels differ; " + on_gl.renderer());
 }
 
 void time_projection(const Facets& facets, const std::vector<ShadowLight>& lights, int runs,

@@ -1,8 +1,7 @@
-#include "tools/info/soft_measures.h"
+#include "tools/info/shadow_measures.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -12,7 +11,7 @@
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/shadows/maps/map_errors.h"
 #include "scenes/shadows/shadow_errors.h"
-#include "tools/info/time_in_turn.h"
+#include "tools/cli/timing.h"
 
 namespace softfocus {
 namespace {
@@ -120,10 +119,6 @@ ShareErrors share_errors(const DarkCounts& counts, int points, const DarkCounts&
   return errors;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 }  // namespace
 
 void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
@@ -163,21 +158,19 @@ void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
 void print_soft_table(const SoftMeasure& measure, ThreadPool& pool) {
   PointFrames frames{measure, pool};
   const std::vector<std::size_t> soft = soft_numbers(frames);
-  const auto truth_start = std::chrono::steady_clock::now();
-  const DarkCounts truth = counts_by_rays(frames, soft);
+  DarkCounts truth;
+  const double truth_ms = milliseconds_of([&] { truth = counts_by_rays(frames, soft); });
   std::printf("%s: %d points by rays in %.0f s\n", measure.scene.name.c_str(), kPointsOfTruth,
-              seconds_since(truth_start));
+              truth_ms / 1e3);
   std::printf("%8s %12s %14s %12s %10s %12s\n", "points", "rms", "penumbra rms", "largest", "ms",
               "penumbra");
   const std::size_t pixels = frames.shadows().seen[0].size();
   DarkCounts counts(soft.size(), std::vector<std::uint16_t>(pixels));
-  double seconds = 0.0;
+  double all_ms = 0.0;
   int drawn = 0;
   for (const int points : {1, 4, 16, 64, 256, 1024}) {
     for (; drawn < points; ++drawn) {
-      const auto start = std::chrono::steady_clock::now();
-      frames.draw(drawn);
-      seconds += seconds_since(start);
+      all_ms += milliseconds_of([&] { frames.draw(drawn); });
       const std::vector<std::uint8_t>& mask = frames.shadows().masks[0];
       for (std::size_t i = 0; i < soft.size(); ++i) {
         for (std::size_t p = 0; p < pixels; ++p) {
@@ -187,7 +180,7 @@ void print_soft_table(const SoftMeasure& measure, ThreadPool& pool) {
     }
     const ShareErrors errors = share_errors(counts, points, truth, frames.shadows().seen[0]);
     std::printf("%8d %12.5f %14.5f %12.3f %10.0f %12zu\n", points, errors.rms, errors.penumbra_rms,
-                errors.largest, 1e3 * seconds, errors.penumbra);
+                errors.largest, all_ms, errors.penumbra);
     std::fflush(stdout);
   }
 }

@@ -7,7 +7,6 @@
 #include "tools/files/whole_file.h"
 #include "tools/report/report.h"
 #include "tools/stress/findings.h"
-#include "tools/stress/stress_page.h"
 #include "tools/stress/stress_report.h"
 
 namespace softfocus {

@@ -11,7 +11,6 @@
 #include "tools/cli/time_left.h"
 #include "tools/report/kept_results.h"
 #include "tools/stress/answers.h"
-#include "tools/stress/stress_pictures.h"
 #include "tools/stress/trial_record.h"
 
 namespace softfocus {

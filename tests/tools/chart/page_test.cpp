@@ -9,7 +9,7 @@
 
 #include "tests/support/chart_points.h"
 #include "tests/support/run_program.h"
-#include "tools/chart/pictures.h"
+#include "tools/chart/measure.h"
 #include "tools/report/report.h"
 
 using namespace softfocus;

@@ -1,7 +1,6 @@
 #include "tools/chart/contenders/turn_contenders.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "dof/measure/outline.h"
@@ -11,6 +10,7 @@
 #include "scenes/relief/warp/march_relief.h"
 #include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/timing.h"
 
 namespace softfocus {
 namespace {
@@ -249,7 +249,6 @@ void TurnContenders::show(const ChartTurn& turn, const CameraMatrices& view) {
 }
 
 double TurnContenders::run(const ChartTurn& turn, Image& sheet) {
-  using std::chrono::steady_clock;
   impostor_ = {};
   renewals_ = 0;
   most_bytes_ = turn.by == TurnBy::octahedral ? bytes_of(atlas_of(turn.views)) : 0;
@@ -257,9 +256,7 @@ double TurnContenders::run(const ChartTurn& turn, Image& sheet) {
   double sum_ms = 0.0;
   for (int i = 0; i < turn.frames; ++i) {
     const CameraMatrices view = camera_matrices(camera_, 360.0 * i / turn.frames, width_, height_);
-    const steady_clock::time_point start = steady_clock::now();
-    show(turn, view);
-    sum_ms += std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
+    sum_ms += milliseconds_of([&] { show(turn, view); });
     if (i % every == 0) copy_view(shown_, sheet, i / every);
   }
   return sum_ms / turn.frames;

@@ -1,7 +1,7 @@
 #include "tools/chart/report/numbers.h"
 
-#include "tools/bench/timing.h"
 #include "tools/chart/record.h"
+#include "tools/cli/timing.h"
 #include "tools/files/json.h"
 #include "tools/golden/hashes.h"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <map>
 
-#include "tools/bench/timing.h"
 #include "tools/chart/front.h"
-#include "tools/chart/pictures.h"
+#include "tools/chart/measure.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/timing.h"
 #include "tools/report/report.h"
 
 namespace softfocus {

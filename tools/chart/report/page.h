@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "tools/chart/point.h"
-#include "tools/chart/report/best.h"
 #include "tools/chart/report/summary.h"
 #include "tools/chart/subject.h"
 #include "tools/files/json.h"
