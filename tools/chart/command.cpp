@@ -109,9 +109,7 @@ int chart(const ChartOptions& options) {
   const std::vector<std::filesystem::path> outputs = output_files(options.directory);
   const std::vector<ReadFile> inputs = check_scenes(options);
   for (const auto& file : outputs) check_not_read("-o", file, inputs);
-  make_directory(options.directory / "cache");
-  // So that nothing is measured in vain.
-  for (const auto& file : outputs) check_writable(file);
+  prepare_results(options.directory, outputs);
   ThreadPool pool{options.pool.threads, options.pool.isa};
   const ChartFindings findings = measure_chart(options, pool);
   write_chart(findings.panels, options);

@@ -55,7 +55,8 @@ void save_truth(const ChartTruth& truth, const std::string& key,
   picture.write(encode_npy(truth.picture));
   picture.commit();
   KeptResults kept{with_ending(file, ".json"), key};
-  kept.keep(kTruthEntry, hashes_of({&truth.picture, 1}), "noise_floor", errors_json(truth.noise_floor));
+  kept.keep(kTruthEntry, hashes_of({&truth.picture, 1}), "noise_floor",
+            errors_json(truth.noise_floor));
   kept.save();
 }
 

@@ -18,35 +18,6 @@
 namespace softfocus {
 namespace {
 
-// A scene drawn by itself: its shadows, and time after time the same frame.
-struct Drawing {
-  Drawing(const Scene& of, const MapMeasure& measure, ThreadPool& with)
-      : scene(of),
-        camera(camera_matrices(of.camera, measure.frame, measure.size.width, measure.size.height)),
-        frame(measure.frame),
-        picture(make_image(Format::rgba16f, measure.size.width, measure.size.height)),
-        pool(with),
-        prepared(prepare_scene(scene, Profile{}, with)) {
-    draw();
-  }
-
-  void draw() { draw_scene(prepared, camera, frame, picture, pool); }
-
-  void draw_anew() {
-    prepared.shadows->frame.reset();
-    draw();
-  }
-
-  const SceneShadows& shadows() const { return *prepared.shadows; }
-
-  Scene scene;
-  CameraMatrices camera;
-  double frame;
-  Image picture;
-  ThreadPool& pool;
-  PreparedScene prepared;
-};
-
 Scene with_shadows(Scene scene, ShadowKind kind) {
   set_shadows(scene, kind);
   return scene;
@@ -60,12 +31,8 @@ Scene with_settings(Scene scene, const ShadowMapSettings& settings) {
 // Of all lights of a drawing, which has maps or projected shadows.
 class LightTruths {
  public:
-  LightTruths(const Drawing& drawing, ThreadPool& pool)
-      : facets_(drawing.shadows().facets),
-        view_{multiply(drawing.camera.eye_to_clip, drawing.camera.world_to_eye),
-              drawing.picture.width,
-              drawing.picture.height,
-              {}} {
+  LightTruths(const ShadowedFrame& drawing, ThreadPool& pool)
+      : facets_(drawing.shadows().facets), view_(drawing.view()) {
     const SceneShadows& shadows = drawing.shadows();
     lights_.reserve(shadows.lights.size());
     for (const std::size_t number : shadows.lights) {
@@ -78,7 +45,7 @@ class LightTruths {
   LightTruths(const LightTruths&) = delete;
   LightTruths& operator=(const LightTruths&) = delete;
 
-  MapErrors errors(const Drawing& drawing, ThreadPool& pool) const {
+  MapErrors errors(const ShadowedFrame& drawing, ThreadPool& pool) const {
     const SceneShadows& shadows = drawing.shadows();
     MapErrors sum;
     for (std::size_t i = 0; i < truths_.size(); ++i) {
@@ -206,12 +173,13 @@ void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int run
 
 }  // namespace
 
-void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
+void measure_maps(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
   ThreadPool one{1, pool.isa()};
-  Drawing mapped{measure.scene, measure, pool};
-  Drawing projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
-  Drawing plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
-  SceneShadows& shadows = *mapped.prepared.shadows;
+  ShadowedFrame mapped{measure.scene, measure, pool};
+  ShadowedFrame projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  ShadowedFrame plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
+  for (ShadowedFrame* of : {&mapped, &projected, &plain}) of->draw();
+  SceneShadows& shadows = mapped.shadows();
   std::printf("%s: %zu triangles, %zu lights with shadow maps (%.1f MB)\n",
               measure.scene.name.c_str(), shadows.facets.facets.size(), shadows.lights.size(),
               static_cast<double>(bytes_of(shadows)) / 1e6);
@@ -244,14 +212,16 @@ void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
       errors.peter_panning, errors.missed_share);
 }
 
-void print_map_table(const MapMeasure& measure, ThreadPool& pool) {
-  Drawing projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+void print_map_table(const ShadowMeasure& measure, ThreadPool& pool) {
+  ShadowedFrame projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  projected.draw();
   const LightTruths truths{projected, pool};
   std::printf("%-22s %9s %9s %9s %9s %9s %9s %9s\n", measure.scene.name.c_str(), "ms", "wrong",
               "aliasing", "acne", "peter-pan", "near-edge", "missed");
   const ShadowMapSettings usual = measure.scene.lights[0].map;
   for (const TableRow& row : table_rows(usual)) {
-    Drawing mapped{with_settings(measure.scene, row.settings), measure, pool};
+    ShadowedFrame mapped{with_settings(measure.scene, row.settings), measure, pool};
+    mapped.draw();
     std::vector<Milliseconds> times{{"mapped"}, {"projected"}};
     time_in_turn(
         times, measure.runs, [&] { mapped.draw_anew(); }, [&] { projected.draw_anew(); });

@@ -17,40 +17,19 @@ namespace softfocus {
 namespace {
 
 // The frames of a light's points, one after the other, with hard shadows.
-struct PointFrames {
-  PointFrames(const SoftMeasure& measure, ThreadPool& with)
-      : whole(measure.scene.lights),
-        scene(measure.scene),
-        camera(
-            camera_matrices(scene.camera, measure.frame, measure.size.width, measure.size.height)),
-        frame(measure.frame),
-        picture(make_image(Format::rgba16f, measure.size.width, measure.size.height)),
-        pool(with),
-        prepared(prepare_scene(scene, Profile{}, with)) {
+struct PointFrames : ShadowedFrame {
+  PointFrames(const ShadowMeasure& measure, ThreadPool& with)
+      : ShadowedFrame(measure.scene, measure, with), whole(measure.scene.lights) {
     scene.light_points = 1;
-    draw(0);
+    draw_point(0);
   }
-  PointFrames(const PointFrames&) = delete;
-  PointFrames& operator=(const PointFrames&) = delete;
 
-  void draw(int point) {
+  void draw_point(int point) {
     scene.lights = lights_at_point(whole, static_cast<std::uint32_t>(point));
-    draw_scene(prepared, camera, frame, picture, pool);
-  }
-
-  const SceneShadows& shadows() const { return *prepared.shadows; }
-
-  ShadowView view() const {
-    return {multiply(camera.eye_to_clip, camera.world_to_eye), picture.width, picture.height, {}};
+    draw();
   }
 
   std::vector<Light> whole;
-  Scene scene;
-  CameraMatrices camera;
-  double frame;
-  Image picture;
-  ThreadPool& pool;
-  PreparedScene prepared;
 };
 
 // Of each soft light, and one after the other of each pixel, points that do not reach it.
@@ -121,7 +100,7 @@ ShareErrors share_errors(const DarkCounts& counts, int points, const DarkCounts&
 
 }  // namespace
 
-void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
+void measure_soft(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
   const int points = measure.scene.light_points;
   PreparedScene soft = prepare_scene(measure.scene, Profile{}, pool);
   PointFrames frames{measure, pool};
@@ -130,13 +109,13 @@ void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
                                   {"frame, hard shadows kept"}};
   time_in_turn(
       times, measure.runs, [&] { draw_scene(soft, frames.camera, measure.frame, picture, pool); },
-      [&] { frames.draw(0); });
+      [&] { frames.draw_point(0); });
   print_times(times);
   if (!check) return;
   const SceneShadows& shadows = frames.shadows();
   ShadowErrors sum;
   for (int point = 0; point < points; ++point) {
-    frames.draw(point);
+    frames.draw_point(point);
     std::vector<ShadowLight> lights;
     for (const std::size_t number : shadows.lights) {
       lights.push_back(shadow_light(frames.scene.lights[number]));
@@ -149,13 +128,10 @@ void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
     sum.near_edge += errors.near_edge;
     sum.wrong += errors.wrong;
   }
-  std::printf(
-      "pixels times lights times points: %zu seen, %zu in shadow, %zu within 1/256 pixel of an "
-      "edge, %zu wrong\n",
-      sum.seen, sum.in_shadow, sum.near_edge, sum.wrong);
+  print_shadow_errors("pixels times lights times points", sum);
 }
 
-void print_soft_table(const SoftMeasure& measure, ThreadPool& pool) {
+void print_soft_table(const ShadowMeasure& measure, ThreadPool& pool) {
   PointFrames frames{measure, pool};
   const std::vector<std::size_t> soft = soft_numbers(frames);
   DarkCounts truth;
@@ -170,7 +146,7 @@ void print_soft_table(const SoftMeasure& measure, ThreadPool& pool) {
   int drawn = 0;
   for (const int points : {1, 4, 16, 64, 256, 1024}) {
     for (; drawn < points; ++drawn) {
-      all_ms += milliseconds_of([&] { frames.draw(drawn); });
+      all_ms += milliseconds_of([&] { frames.draw_point(drawn); });
       const std::vector<std::uint8_t>& mask = frames.shadows().masks[0];
       for (std::size_t i = 0; i < soft.size(); ++i) {
         for (std::size_t p = 0; p < pixels; ++p) {

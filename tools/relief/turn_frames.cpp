@@ -35,11 +35,6 @@ Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOpt
   return camera;
 }
 
-glm::vec4 turn_background(const Scene& scene, const Camera& camera) {
-  const glm::vec4 background = clear_colour(scene);
-  return {glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
-}
-
 /// Of -o, which must have a number.
 std::optional<NumberedName> frame_names(const ReliefOptions& options, FileFormat& format) {
   if (options.output.empty()) return std::nullopt;
@@ -69,6 +64,11 @@ void write_pair(const TurnStage& stage, int frame, const Image& shown) {
 }
 
 }  // namespace
+
+glm::vec4 turn_background(const Scene& scene, const Camera& camera) {
+  const glm::vec4 background = clear_colour(scene);
+  return {glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
+}
 
 TurnStage::TurnStage(const ReliefOptions& told)
     : options(told),

@@ -34,6 +34,9 @@ struct TurnStage {
   Image redrawn, shown, blank;     ///< RGBA16F; `shown` is blank at first
 };
 
+/// The scene's background at the camera's far distance.
+glm::vec4 turn_background(const Scene& scene, const Camera& camera);
+
 CameraMatrices turned_camera(const TurnStage& stage, double frame);
 
 /// Draws a frame by the pipeline.

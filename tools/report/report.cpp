@@ -9,6 +9,30 @@
 
 namespace softfocus {
 
+namespace {
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string{"\"\""} : std::string{c};
+  return result + "\"";
+}
+
+std::string csv_field(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_text()) return csv_text(value.text());
+  if (!value.is_object()) return json_text(value);
+  std::string settings;
+  for (const std::string& name : value.names()) {
+    const Json& setting = value.at(name);
+    settings += (settings.empty() ? "" : ";") + name + "=" +
+                (setting.is_text() ? setting.text() : json_text(setting));
+  }
+  return csv_text(settings);
+}
+
+}  // namespace
+
 /// tools/report/report.html with its style sheet and script; the build makes it.
 extern const std::string_view kReportTemplate;
 
@@ -32,6 +56,30 @@ Json json_list(const std::vector<Json>& values) {
   Json list = Json::array();
   for (const Json& value : values) list.push_back(value);
   return list;
+}
+
+std::string csv_of(const Json& list) {
+  std::string text;
+  for (const Json& point : list.values()) {
+    std::string names, values;
+    for (const std::string& name : point.names()) {
+      names += (names.empty() ? "" : ",") + name;
+      values += (&name == &point.names().front() ? "" : ",") + csv_field(point.at(name));
+    }
+    if (text.empty()) text = names + "\n";
+    text += values + "\n";
+  }
+  return text;
+}
+
+Json report_series(const std::string& name, const char* kind, Json points) {
+  return {{"name", name}, {"kind", kind}, {"points", std::move(points)}};
+}
+
+Json report_figure(Json& pictures, const std::string& name, const std::string& png,
+                   const std::string& about, const std::string& caption) {
+  pictures[name] = png;
+  return {{"picture", name}, {"caption", caption}, {"about", about}};
 }
 
 std::string command_text(const std::vector<std::string>& words) {
@@ -66,6 +114,12 @@ void make_directory(const std::filesystem::path& directory) {
     throw FileError("cannot make the directory '" + directory.string() + "': " + error.message() +
                     "; give -o a place that can be written to");
   }
+}
+
+void prepare_results(const std::filesystem::path& directory,
+                     const std::vector<std::filesystem::path>& files) {
+  make_directory(directory / "cache");
+  for (const auto& file : files) check_writable(file);
 }
 
 void write_text(const std::filesystem::path& file, std::string_view text) {

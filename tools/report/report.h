@@ -38,6 +38,17 @@ std::string report_page(const Json& report);
 /// [text, ...], of one or two texts too.
 Json json_list(const std::vector<Json>& values);
 
+/// A part of a plot.
+Json report_series(const std::string& name, const char* kind, Json points);
+
+/// Adds a picture (PNG in base64) to the report's, and returns a figure of it.
+Json report_figure(Json& pictures, const std::string& name, const std::string& png,
+                   const std::string& about, const std::string& caption);
+
+/// A list of objects with the same members as lines under a line of names (RFC 4180, but lines end
+/// in LF). An object is "max_coc_px=16;profile=ieee"; null is empty.
+std::string csv_of(const Json& list);
+
 /// A command as it is typed: words that a shell would take apart are in quotes.
 std::string command_text(const std::vector<std::string>& words);
 
@@ -46,6 +57,11 @@ std::string joined_names(const std::vector<std::string>& names);
 
 /// Makes a directory and those above it. Throws FileError.
 void make_directory(const std::filesystem::path& directory);
+
+/// Makes DIR and DIR/cache, and sees that the files can be written: nothing is measured in vain.
+/// Throws FileError.
+void prepare_results(const std::filesystem::path& directory,
+                     const std::vector<std::filesystem::path>& files);
 
 /// Throws FileError.
 void write_text(const std::filesystem::path& file, std::string_view text);

@@ -11,17 +11,6 @@
 namespace softfocus {
 namespace {
 
-template <class Take>
-void for_each_value(const StressFindings& findings, const Take& take) {
-  for (const StressResult& result : findings.results) {
-    for (const StressCurve& curve : result.curves) {
-      for (std::size_t i = 0; i < curve.values.size(); ++i) {
-        take(result, curve, result.severities[i], curve.values[i]);
-      }
-    }
-  }
-}
-
 std::string card_id(const StressResult& result, const StressCurve& curve) {
   return std::string{result.of.name} + "-" + curve.method;
 }
@@ -113,7 +102,7 @@ Json curve_series(const StressResult& result, const std::string& name, const cha
     if (!holds(result.of, values[i])) point["bad"] = true;
     points.push_back(std::move(point));
   }
-  return {{"name", name}, {"kind", kind}, {"points", std::move(points)}};
+  return report_series(name, kind, std::move(points));
 }
 
 Json case_plot(const StressResult& result) {
@@ -133,13 +122,6 @@ Json case_plot(const StressResult& result) {
       {"series", json_list(series)}};
 }
 
-/// What the report has under the name of a picture, and a figure of it.
-Json atlas_figure(Json& pictures, const std::string& name, const std::string& png,
-                  const std::string& about, const std::string& caption) {
-  pictures[name] = png;
-  return {{"picture", name}, {"about", about}, {"caption", caption}};
-}
-
 Json method_card(const StressResult& result, const StressCurve& curve, Json& pictures) {
   const std::string on = curve.method + " on " + std::string{result.of.name};
   const std::string id = card_id(result, curve), truth = std::string{result.of.name} + ".truth.png";
@@ -149,11 +131,11 @@ Json method_card(const StressResult& result, const StressCurve& curve, Json& pic
                     failing_text(result, curve)},
       {"own", curve.method},
       {"figures",
-       json_list({json_list({atlas_figure(pictures, id + ".picture.png", curve.pictures.picture,
-                                          "Picture by " + on, "the picture"),
-                             atlas_figure(pictures, truth, result.truth, "The truth", "the truth"),
-                             atlas_figure(pictures, id + ".error.png", curve.pictures.error,
-                                          "Map of the FLIP error of " + on, "its error")})})}};
+       json_list({json_list({report_figure(pictures, id + ".picture.png", curve.pictures.picture,
+                                           "Picture by " + on, "the picture"),
+                             report_figure(pictures, truth, result.truth, "The truth", "the truth"),
+                             report_figure(pictures, id + ".error.png", curve.pictures.error,
+                                           "Map of the FLIP error of " + on, "its error")})})}};
 }
 
 Json case_part(const StressResult& result, Json& pictures) {
@@ -178,11 +160,11 @@ Json case_part(const StressResult& result, Json& pictures) {
           {"plots", std::move(plots)},
           {"figures",
            json_list({json_list(
-               {atlas_figure(pictures, name + ".sharp.png", result.sharp,
-                             "The sharp picture of " + name, "the sharp picture"),
-                atlas_figure(pictures, name + ".truth.png", result.truth, "The truth of " + name,
-                             "the truth at " + std::string{of.parameter.name} + " " +
-                                 short_number(result.shown))})})},
+               {report_figure(pictures, name + ".sharp.png", result.sharp,
+                              "The sharp picture of " + name, "the sharp picture"),
+                report_figure(pictures, name + ".truth.png", result.truth, "The truth of " + name,
+                              "the truth at " + std::string{of.parameter.name} + " " +
+                                  short_number(result.shown))})})},
           {"cards", std::move(cards)}};
 }
 
@@ -190,35 +172,43 @@ Json case_part(const StressResult& result, Json& pictures) {
 
 Json stress_json(const StressFindings& findings) {
   Json list = Json::array();
-  for_each_value(findings, [&](const StressResult& result, const StressCurve& curve,
-                               double severity, double value) {
-    Json parameter{{"name", result.of.parameter.name}};
-    parameter["value"] = severity;
-    parameter["unit"] = result.of.parameter.unit;
-    Json entry{{"method", curve.method}};
-    entry["case"] = result.of.name;
-    entry["parameter"] = std::move(parameter);
-    entry["value"] = number_or_null(value);
-    entry["unit"] = result.of.unit;
-    entry["limit"] = result.of.limit;
-    entry["holds"] = holds(result.of, value);
-    list.push_back(std::move(entry));
-  });
+  for (const StressResult& result : findings.results) {
+    const StressCase& of = result.of;
+    for (const StressCurve& curve : result.curves) {
+      for (std::size_t i = 0; i < curve.values.size(); ++i) {
+        list.push_back({{"method", curve.method},
+                        {"case", of.name},
+                        {"parameter",
+                         {{"name", of.parameter.name},
+                          {"value", result.severities[i]},
+                          {"unit", of.parameter.unit}}},
+                        {"value", number_or_null(curve.values[i])},
+                        {"unit", of.unit},
+                        {"limit", of.limit},
+                        {"holds", holds(of, curve.values[i])}});
+      }
+    }
+  }
   return list;
 }
 
-std::string stress_csv(const StressFindings& findings) {
-  std::string text =
-      "method,case,parameter,parameter_value,parameter_unit,value,unit,limit,holds\n";
-  for_each_value(findings, [&](const StressResult& result, const StressCurve& curve,
-                               double severity, double value) {
-    const StressCase& of = result.of;
-    text += curve.method + "," + std::string{of.name} + "," + std::string{of.parameter.name} + "," +
-            json_text(Json(severity)) + "," + std::string{of.parameter.unit} + "," +
-            (std::isfinite(value) ? json_text(Json(value)) : "") + "," + std::string{of.unit} +
-            "," + json_text(Json(of.limit)) + "," + (holds(of, value) ? "true" : "false") + "\n";
-  });
-  return text;
+std::string stress_csv(const Json& list) {
+  Json lines = Json::array();
+  for (const Json& entry : list.values()) {
+    Json line = Json::object();
+    for (const std::string& name : entry.names()) {
+      const Json& value = entry.at(name);
+      if (!value.is_object()) {
+        line[name] = value;
+        continue;
+      }
+      line[name] = value.at("name");
+      line[name + "_value"] = value.at("value");
+      line[name + "_unit"] = value.at("unit");
+    }
+    lines.push_back(std::move(line));
+  }
+  return csv_of(lines);
 }
 
 std::string failing_text(const StressResult& result, const StressCurve& curve) {

@@ -12,8 +12,8 @@ namespace softfocus {
 /// can run, a case and a severity. A value that is not finite is null.
 Json stress_json(const StressFindings& findings);
 
-/// The same, with the columns parameter, parameter_value and parameter_unit.
-std::string stress_csv(const StressFindings& findings);
+/// That list with the columns parameter, parameter_value and parameter_unit.
+std::string stress_csv(const Json& list);
 
 /// A line a method: how many cases hold throughout, and from where on the others do not.
 std::string stress_summary(const StressFindings& findings);

@@ -32,26 +32,6 @@ Json point_json(const ChartPanel& panel, const ChartPoint& point) {
   return json;
 }
 
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string{"\"\""} : std::string{c};
-  return result + "\"";
-}
-
-std::string csv_field(const Json& value) {
-  if (value.is_null()) return "";
-  if (value.is_text()) return csv_text(value.text());
-  if (!value.is_object()) return json_text(value);
-  std::string settings;
-  for (const std::string& name : value.names()) {
-    const Json& setting = value.at(name);
-    settings += (settings.empty() ? "" : ";") + name + "=" +
-                (setting.is_text() ? setting.text() : json_text(setting));
-  }
-  return csv_text(settings);
-}
-
 }  // namespace
 
 Json chart_json(const std::vector<ChartPanel>& panels) {
@@ -100,20 +80,6 @@ Json summary_json(const std::vector<SummaryRow>& summary) {
     list.push_back(std::move(json));
   }
   return list;
-}
-
-std::string csv_of(const Json& list) {
-  std::string text;
-  for (const Json& point : list.values()) {
-    std::string names, values;
-    for (const std::string& name : point.names()) {
-      names += (names.empty() ? "" : ",") + name;
-      values += (&name == &point.names().front() ? "" : ",") + csv_field(point.at(name));
-    }
-    if (text.empty()) text = names + "\n";
-    text += values + "\n";
-  }
-  return text;
 }
 
 }  // namespace softfocus

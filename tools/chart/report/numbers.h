@@ -28,8 +28,4 @@ Json best_json(const std::vector<BestForBudget>& best);
 /// was timed.
 Json summary_json(const std::vector<SummaryRow>& summary);
 
-/// A list of objects with the same members as lines under a line of names (RFC 4180, but lines end
-/// in LF). Settings are "max_coc_px=16;profile=ieee"; null is empty.
-std::string csv_of(const Json& list);
-
 }  // namespace softfocus

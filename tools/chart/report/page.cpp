@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <cstdio>
+#include <utility>
 
 #include "tools/chart/front.h"
 #include "tools/chart/measure.h"
@@ -44,10 +45,6 @@ double shown_error(const ChartErrors& errors, const RankedError& error) {
   return std::max(errors.*error.value, error.least_shown);
 }
 
-Json series_json(const std::string& name, const char* kind, Json points) {
-  return {{"name", name}, {"kind", kind}, {"points", std::move(points)}};
-}
-
 /// The corners of the stair: until a point is reached, the one before it is the nearest to the
 /// truth. auto makes no front.
 Json front_series(const ChartPanel& panel, const RankedError& error,
@@ -69,23 +66,39 @@ Json front_series(const ChartPanel& panel, const RankedError& error,
   if (!on_front.empty()) {
     corners.push_back({{"x", slowest_ms}, {"y", corners.values().back().at("y")}});
   }
-  return series_json("best for its time", "stair", std::move(corners));
+  return report_series("best for its time", "stair", std::move(corners));
 }
 
-/// Each method is a line along its settings; auto's points are rings around those of what it chose.
+/// Points by their series, in the order of its first: each method is a line along its settings;
+/// auto's points are rings around those of what it chose.
+class SeriesOfMethods {
+ public:
+  void add(const std::string& series, Json point) {
+    const auto found =
+        std::find_if(all_.begin(), all_.end(), [&](const auto& of) { return of.first == series; });
+    Json& points = found != all_.end() ? found->second : all_.emplace_back(series, Json{}).second;
+    points.push_back(std::move(point));
+  }
+  void append_to(std::vector<Json>& list) {
+    for (auto& [series, points] : all_) {
+      list.push_back(report_series(series, series == "auto" ? "ring" : "line", std::move(points)));
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::string, Json>> all_;
+};
+
 Json panel_plot(const ChartPanel& panel, const RankedError& error) {
   std::vector<const ChartPoint*> on_front;
   std::vector<Json> all{front_series(panel, error, on_front)};
   if (!std::isnan(panel.noise_floor.*error.value)) {
     Json level = Json::object();
     level["y"] = shown_error(panel.noise_floor, error);
-    all.push_back(series_json("noise of the truth", "level", json_list({level})));
+    all.push_back(report_series("noise of the truth", "level", json_list({level})));
   }
-  std::vector<std::string> names;
-  std::map<std::string, Json> points;
+  SeriesOfMethods methods;
   for (const ChartPoint& point : panel.points) {
-    const std::string name = series_name(point.entry);
-    if (!points.contains(name)) names.push_back(name);
     Json json{{"x", point.median_ms},
               {"y", shown_error(point.errors, error)},
               {"text", full_name(point)}};
@@ -93,11 +106,9 @@ Json panel_plot(const ChartPanel& panel, const RankedError& error) {
       json["label"] = full_name(point);
     }
     if (!point.pictures.empty()) json["to"] = place_of(panel, point);
-    points[name].push_back(std::move(json));
+    methods.add(series_name(point.entry), std::move(json));
   }
-  for (const std::string& name : names) {
-    all.push_back(series_json(name, name == "auto" ? "ring" : "line", std::move(points[name])));
-  }
+  methods.append_to(all);
   const std::string title{error.title};
   return {{"title", panel.scene},
           {"about", "Time of a frame against " + title + " on " + panel.scene +
@@ -144,20 +155,16 @@ struct RatioPanel {
 };
 
 Json ratio_plot(const RatioPanel& panel, const std::vector<SummaryRow>& summary) {
-  std::vector<std::string> names;
-  std::map<std::string, Json> points;
+  SeriesOfMethods methods;
   for (const SummaryRow& row : summary) {
     if (row.settings == kBestSetting) continue;
-    if (!points.contains(row.method)) names.push_back(row.method);
-    points[row.method].push_back(
-        {{"x", row.pinhole_frames.median},
-         {"y", row.ratios[panel.ranked].*panel.number},
-         {"text", row.method + (row.settings.empty() ? "" : ", " + row.settings)}});
+    methods.add(row.method,
+                {{"x", row.pinhole_frames.median},
+                 {"y", row.ratios[panel.ranked].*panel.number},
+                 {"text", row.method + (row.settings.empty() ? "" : ", " + row.settings)}});
   }
   std::vector<Json> all;
-  for (const std::string& name : names) {
-    all.push_back(series_json(name, name == "auto" ? "ring" : "line", std::move(points[name])));
-  }
+  methods.append_to(all);
   return {{"title", std::string{panel.name} + " over the scenes: " +
                         std::string{summary.front().ranked[panel.ranked].title}},
           {"x",
@@ -210,10 +217,10 @@ Json error_plot(std::size_t ranked, const std::vector<SummaryRow>& rows) {
             {"short", title},
             {"log", true}}},
           {"y", {{"short", "method"}, {"names", std::move(names)}}},
-          {"series", json_list({series_json("", "span", std::move(spans)),
-                                series_json("median", "dots", std::move(medians)),
-                                series_json("90th percentile", "dots", std::move(nine_tenths)),
-                                series_json("worst scene", "dots", std::move(worst))})}};
+          {"series", json_list({report_series("", "span", std::move(spans)),
+                                report_series("median", "dots", std::move(medians)),
+                                report_series("90th percentile", "dots", std::move(nine_tenths)),
+                                report_series("worst scene", "dots", std::move(worst))})}};
 }
 
 Json summary_plots(const std::vector<SummaryRow>& summary) {
@@ -364,15 +371,6 @@ Json summary_table(const std::vector<SummaryRow>& summary) {
 
 // --- pictures ---
 
-/// What the report has under the name of a picture, and a figure of it.
-Json figure_json(Json& pictures, const std::string& name, const std::string& png,
-                 const std::string& about, const std::string& caption, bool is_crop = false) {
-  pictures[name] = png;
-  Json figure{{"picture", name}, {"caption", caption}, {"about", about}};
-  if (is_crop) figure["crop"] = true;
-  return figure;
-}
-
 Json point_card(const ChartPanel& panel, const ChartPoint& point, Json& pictures) {
   const std::string name = full_name(point) + " on " + panel.scene, place = place_of(panel, point);
   const ChartPictures& of = point.pictures;
@@ -380,7 +378,9 @@ Json point_card(const ChartPanel& panel, const ChartPoint& point, Json& pictures
                             std::to_string(point.worst.x) + ", " + std::to_string(point.worst.y);
   const auto figure = [&](const char* kind, const std::string& png, const std::string& about,
                           const std::string& caption, bool is_crop) {
-    return figure_json(pictures, place + "." + kind + ".png", png, about, caption, is_crop);
+    Json made = report_figure(pictures, place + "." + kind + ".png", png, about, caption);
+    if (is_crop) made["crop"] = true;
+    return made;
   };
   std::string text;
   if (!std::isnan(point.median_ms)) text = short_number(point.median_ms) + " ms, ";
@@ -416,15 +416,14 @@ Json scene_part(const ChartPage& page, const ChartPanel& panel, Json& pictures) 
   for (const ChartPoint& point : panel.points) {
     if (!point.pictures.empty()) cards.push_back(point_card(panel, point, pictures));
   }
-  return {
-      {"id", "scene-" + panel.scene},
-      {"title", panel.scene},
-      {"below", true},
-      {"text", json_list({panel.title})},
-      {"figures",
-       json_list({json_list({figure_json(pictures, panel.scene + ".truth.png", panel.truth_picture,
+  return {{"id", "scene-" + panel.scene},
+          {"title", panel.scene},
+          {"below", true},
+          {"text", json_list({panel.title})},
+          {"figures", json_list({json_list(
+                          {report_figure(pictures, panel.scene + ".truth.png", panel.truth_picture,
                                          "Ground truth of " + panel.scene, caption)})})},
-      {"cards", std::move(cards)}};
+          {"cards", std::move(cards)}};
 }
 
 // --- the whole ---
