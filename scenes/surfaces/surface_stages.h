@@ -1,6 +1,6 @@
 #pragma once
-// The vertex and the fragment stage of a lit, perhaps textured surface. They are compiled for
-// each variant of material: a feature that it lacks is neither computed nor interpolated.
+// The vertex and the fragment stage of a lit, perhaps textured surface. A feature that a material
+// lacks is neither computed nor interpolated.
 
 #include <array>
 #include <cstddef>
@@ -82,15 +82,26 @@ struct SurfaceVertexInput {
   glm::vec3 eye;
 };
 
-template <SurfaceVariant variant>
-struct SurfaceVertexStage {
-  static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  SurfaceVertexInput input;
+/// What all variants have room for.
+inline constexpr std::size_t kMostSurfaceVaryings = surface_layout({true, true, true, true}).count;
 
-  VertexOutput<kLayout.count> operator()(std::uint32_t index) const {
+/// Depth and colours are 4, 7 or 13 varyings.
+constexpr bool may_have_uvs(std::size_t varyings) {
+  return varyings != 4 && varyings != 7 && varyings != 13;
+}
+constexpr bool may_be_specular(std::size_t varyings) { return varyings >= 7; }
+
+/// For variants of N varyings or fewer.
+template <std::size_t N>
+struct SurfaceVertexStage {
+  SurfaceVertexInput input;
+  SurfaceVariant variant;
+  SurfaceLayout layout = surface_layout(variant);
+
+  VertexOutput<N> operator()(std::uint32_t index) const {
     const glm::vec3 position = input.mesh->positions[index];
-    VertexOutput<kLayout.count> output{transform_point(input.to_clip, position), {}};
-    output.varyings[kLayout.kDepth] = output.position.w;
+    VertexOutput<N> output{transform_point(input.to_clip, position), {}};
+    output.varyings[SurfaceLayout::kDepth] = output.position.w;
 
     const Material& material = *input.material;
     const glm::vec4 world4 = transform_point(input.to_world, position);
@@ -104,59 +115,61 @@ struct SurfaceVertexStage {
                                          : LitColour{material.diffuse, glm::vec3{0.0f}};
       for (std::size_t i = 0; i < 3; ++i) {
         output.varyings[at + i] = lit.base[static_cast<int>(i)];
-        if constexpr (variant.specular) {
-          output.varyings[at + 3 + i] = lit.specular[static_cast<int>(i)];
-        }
+        if constexpr (!may_be_specular(N)) continue;
+        if (variant.specular) output.varyings[at + 3 + i] = lit.specular[static_cast<int>(i)];
       }
     };
-    light_side(normal, kLayout.kFront);
-    if constexpr (variant.two_sided) light_side(-normal, kLayout.back);
-    if constexpr (has_uvs(variant)) {
-      output.varyings[kLayout.texture] = input.mesh->uvs[index].x;
-      output.varyings[kLayout.texture + 1] = input.mesh->uvs[index].y;
+    light_side(normal, SurfaceLayout::kFront);
+    if (variant.two_sided) light_side(-normal, layout.back);
+    if (may_have_uvs(N) && has_uvs(variant)) {
+      output.varyings[layout.texture] = input.mesh->uvs[index].x;
+      output.varyings[layout.texture + 1] = input.mesh->uvs[index].y;
     }
     return output;
   }
 };
 
-template <SurfaceVariant variant>
+/// For variants of N varyings or fewer.
+template <std::size_t N>
 struct SurfaceFragmentStage {
-  static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  static constexpr bool kDiscards = variant.holed;
-  static constexpr bool kNeedsDerivatives = has_uvs(variant);
-  static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
+  static constexpr bool kNeedsDerivatives = may_have_uvs(N);
+  static constexpr bool kDiscards = kNeedsDerivatives;
+  static constexpr std::array<Interpolation, N> kInterpolation{};  // perspective
 
   const Texture* texture;
   Sampler sampler;
   Profile profile;
-  SurfaceOpacity opacity = {};
+  SurfaceOpacity opacity;
+  SurfaceVariant variant;
   // For the form in lanes.
   const DecodedTexture* decoded = nullptr;
   const DecodedTexture* decoded_opacity = nullptr;
+  SurfaceLayout layout = surface_layout(variant);
 
-  FragmentOutput<1> operator()(const Fragment<kLayout.count>& in) const {
+  bool discards() const { return variant.holed; }
+  std::size_t varying_count() const { return layout.count; }
+
+  FragmentOutput<1> operator()(const Fragment<N>& in) const {
     float hides = opacity.value;
-    if constexpr (variant.holed) {
+    if (may_have_uvs(N) && variant.holed) {
       const float red = texel(*opacity.texture, opacity.sampler, in).x;
       if (red < least_texel(opacity)) return {{}, true};
       if (!opacity.cuts_out) hides *= red;
     }
-    const std::size_t side = variant.two_sided && !in.front_facing ? kLayout.back : kLayout.kFront;
+    const std::size_t side = variant.two_sided && !in.front_facing ? layout.back : layout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
-    if constexpr (variant.textured) {
-      colour *= glm::vec3{texel(*texture, sampler, in)};
-    }
-    if constexpr (variant.specular) {
+    if (may_have_uvs(N) && variant.textured) colour *= glm::vec3{texel(*texture, sampler, in)};
+    if (may_be_specular(N) && variant.specular) {
       colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
     }
     if (opacity.blends) return {{glm::vec4{colour * hides, hides}}, false};
-    return {{glm::vec4{colour, alpha_depth(in.varyings[kLayout.kDepth])}}, false};
+    return {{glm::vec4{colour, alpha_depth(in.varyings[SurfaceLayout::kDepth])}}, false};
   }
 
  private:
-  glm::vec4 texel(const Texture& of, const Sampler& by, const Fragment<kLayout.count>& in) const {
-    const std::size_t u = kLayout.texture;
-    const std::size_t v = kLayout.texture + 1;
+  glm::vec4 texel(const Texture& of, const Sampler& by, const Fragment<N>& in) const {
+    const std::size_t u = layout.texture;
+    const std::size_t v = layout.texture + 1;
     const float lod = level_of_detail(of, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
     return sample(of, by, {in.varyings[u], in.varyings[v]}, lod, profile);
   }
