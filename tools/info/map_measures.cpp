@@ -31,7 +31,7 @@ Scene with_settings(Scene scene, const ShadowMapSettings& settings) {
 // Of all lights of a drawing, which has maps or projected shadows.
 class LightTruths {
  public:
-  LightTruths(const ShadowedFrame& drawing, ThreadPool& pool)
+  LightTruths(const RepeatedShadows& drawing, ThreadPool& pool)
       : facets_(drawing.shadows().facets), view_(drawing.view()) {
     const SceneShadows& shadows = drawing.shadows();
     lights_.reserve(shadows.lights.size());
@@ -45,7 +45,7 @@ class LightTruths {
   LightTruths(const LightTruths&) = delete;
   LightTruths& operator=(const LightTruths&) = delete;
 
-  MapErrors errors(const ShadowedFrame& drawing, ThreadPool& pool) const {
+  MapErrors errors(const RepeatedShadows& drawing, ThreadPool& pool) const {
     const SceneShadows& shadows = drawing.shadows();
     MapErrors sum;
     for (std::size_t i = 0; i < truths_.size(); ++i) {
@@ -175,10 +175,10 @@ void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int run
 
 void measure_maps(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
   ThreadPool one{1, pool.isa()};
-  ShadowedFrame mapped{measure.scene, measure, pool};
-  ShadowedFrame projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
-  ShadowedFrame plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
-  for (ShadowedFrame* of : {&mapped, &projected, &plain}) of->draw();
+  RepeatedShadows mapped{measure.scene, measure, pool};
+  RepeatedShadows projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  RepeatedShadows plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
+  for (RepeatedShadows* of : {&mapped, &projected, &plain}) of->draw();
   SceneShadows& shadows = mapped.shadows();
   std::printf("%s: %zu triangles, %zu lights with shadow maps (%.1f MB)\n",
               measure.scene.name.c_str(), shadows.facets.facets.size(), shadows.lights.size(),
@@ -213,14 +213,14 @@ void measure_maps(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
 }
 
 void print_map_table(const ShadowMeasure& measure, ThreadPool& pool) {
-  ShadowedFrame projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  RepeatedShadows projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
   projected.draw();
   const LightTruths truths{projected, pool};
   std::printf("%-22s %9s %9s %9s %9s %9s %9s %9s\n", measure.scene.name.c_str(), "ms", "wrong",
               "aliasing", "acne", "peter-pan", "near-edge", "missed");
   const ShadowMapSettings usual = measure.scene.lights[0].map;
   for (const TableRow& row : table_rows(usual)) {
-    ShadowedFrame mapped{with_settings(measure.scene, row.settings), measure, pool};
+    RepeatedShadows mapped{with_settings(measure.scene, row.settings), measure, pool};
     mapped.draw();
     std::vector<Milliseconds> times{{"mapped"}, {"projected"}};
     time_in_turn(

@@ -22,9 +22,9 @@ struct ShadowMeasure {
 };
 
 /// A scene drawn by itself: its shadows, and time after time the same frame.
-struct ShadowedFrame {
-  ShadowedFrame(Scene of, const ShadowMeasure& measure, ThreadPool& with,
-                const Profile& profile = {})
+struct RepeatedShadows {
+  RepeatedShadows(Scene of, const ShadowMeasure& measure, ThreadPool& with,
+                  const Profile& profile = {})
       : scene(std::move(of)),
         camera(
             camera_matrices(scene.camera, measure.frame, measure.size.width, measure.size.height)),
@@ -32,8 +32,8 @@ struct ShadowedFrame {
         picture(make_image(Format::rgba16f, measure.size.width, measure.size.height)),
         pool(with),
         prepared(prepare_scene(scene, profile, with)) {}
-  ShadowedFrame(const ShadowedFrame&) = delete;
-  ShadowedFrame& operator=(const ShadowedFrame&) = delete;
+  RepeatedShadows(const RepeatedShadows&) = delete;
+  RepeatedShadows& operator=(const RepeatedShadows&) = delete;
 
   void draw() { draw_scene(prepared, camera, frame, picture, pool); }
   void draw_anew() {

@@ -234,8 +234,8 @@ int measure_shadows(const ShadowsOptions& options) {
   const Profile profile = options.versus == nullptr
                               ? Profile{}
                               : find_profile(options.versus->profile).value_or(Profile{});
-  ShadowedFrame shadowed{scene, measure, pool, profile};
-  ShadowedFrame plain{unshadowed, measure, pool, profile};
+  RepeatedShadows shadowed{scene, measure, pool, profile};
+  RepeatedShadows plain{unshadowed, measure, pool, profile};
   SceneShadows& shadows = shadowed.shadows();
   shadows.volume_count = options.volume_count;
   shadowed.draw();

@@ -17,9 +17,9 @@ namespace softfocus {
 namespace {
 
 // The frames of a light's points, one after the other, with hard shadows.
-struct PointFrames : ShadowedFrame {
+struct PointFrames : RepeatedShadows {
   PointFrames(const ShadowMeasure& measure, ThreadPool& with)
-      : ShadowedFrame(measure.scene, measure, with), whole(measure.scene.lights) {
+      : RepeatedShadows(measure.scene, measure, with), whole(measure.scene.lights) {
     scene.light_points = 1;
     draw_point(0);
   }

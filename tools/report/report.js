@@ -234,21 +234,22 @@ function plot_of(plot, { styles, width = 560, height = 430, own }) {
   const down = (value) => (plot.y.names ? upwards.place(value) : 1 - upwards.place(value));
   const y_of = (value) => box.top + down(value) * (box.bottom - box.top);
 
-  const below = [], above = [], marked = [];  // what has no colour of its own lies below
+  // What has no colour of its own lies below, then the other methods.
+  const below = [], others = [], above = [], marked = [];
   for (const series of plot.series) {
     const style = styles.get(series.name);
     const is_other = own !== undefined && is_inked(series) && series.name !== own;
     const at = series.points.map((point) => ({ ...point, px: x_of(point.x), py: y_of(point.y) }));
     const group = drawn("g", { style: style && `--ink: ${style.ink}` }, line_of(series, at, x_of, box, is_other));
     group.series = series.name;
-    (is_inked(series) ? above : below).push(group);
+    (is_other ? others : is_inked(series) ? above : below).push(group);
     if (!style || is_other) continue;
     group.append(...at.map((point) => mark_of(series, point, style, plot)));
     marked.push(...at.map(({ px, py, label }) => ({ x: px, y: py, text: label })));
   }
   return drawn("svg", { class: "plot", viewBox: `0 0 ${width} ${height}`, role: "img",
                         "aria-label": plot.about ?? plot.title },
-               grid_of(plot, across, upwards, x_of, y_of, box), below, above,
+               grid_of(plot, across, upwards, x_of, y_of, box), below, others, above,
                labels_of(marked.filter(({ text }) => text), marked, box));
 }
 
