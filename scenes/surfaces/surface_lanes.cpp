@@ -137,7 +137,7 @@ struct SurfaceFragmentLanes {
   SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
     Vec3Lanes colour = base(in);
     if (uvs && variant.textured) {
-      constexpr std::size_t u = kTextureU, v = u + 1;
+      const std::size_t u = kTextureU, v = u + 1;
       put(kU, in.varying(u));
       put(kV, in.varying(v));
       put(kLod, level_of_detail_lanes(*stage.decoded, stage.profile, in.ddx(u), in.ddx(v),

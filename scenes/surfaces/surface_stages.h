@@ -175,7 +175,7 @@ struct SurfaceFragmentStage {
 
  private:
   glm::vec4 texel(const Texture& of, const Sampler& by, const Fragment<N>& in) const {
-    constexpr std::size_t u = SurfaceLayout::kTexture, v = u + 1;
+    const std::size_t u = SurfaceLayout::kTexture, v = u + 1;
     const float lod = level_of_detail(of, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
     return sample(of, by, {in.varyings[u], in.varyings[v]}, lod, profile);
   }
