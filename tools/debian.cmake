@@ -48,7 +48,7 @@ debian_package(softfocus softfocus graphics "depth of field for pictures and sce
   "Gives a picture with depth the depth of field of a lens, by any of the"
   "published methods, and draws scenes through the same lens by a software GPU."
   "The same input gives the same bits on every machine.")
-set(CPACK_DEBIAN_SOFTFOCUS_PACKAGE_SUGGESTS "gnuplot-nox, ffmpeg")
+set(CPACK_DEBIAN_SOFTFOCUS_PACKAGE_SUGGESTS "ffmpeg")
 debian_package(libsoftfocus libsoftfocus${PROJECT_VERSION_MAJOR} libs
   "depth of field for pictures - shared library"
   "Gives a picture with depth the depth of field of a lens, from C or what calls"

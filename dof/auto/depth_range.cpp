@@ -17,8 +17,7 @@ constexpr int kBandHeight = 32;
 DepthRange range_of_band(const ConstImageView& picture, Isa isa, int begin, int end) {
   DepthRange range;
   std::array<std::uint32_t, 2 * kMostLanes> lanes{};
-  const auto used =
-      isa == Isa::scalar ? std::size_t{0} : static_cast<std::size_t>(SOFTFOCUS_KERNEL(isa, kLanes));
+  const auto used = isa == Isa::scalar ? std::size_t{0} : static_cast<std::size_t>(lanes_of(isa));
   std::fill_n(lanes.begin(), used, 0xFFFFu);
   for (int y = begin; y < end; ++y) {
     const auto texels = row<std::uint16_t>(picture, y);

@@ -6,10 +6,10 @@
 namespace softfocus {
 namespace {
 
-constexpr double kUnitsOfLight = 0x1p34;
+constexpr double kUnitsOfHighlights = 0x1p34;
 
 std::int64_t units(double light) {
-  return static_cast<std::int64_t>(std::nearbyint(light * kUnitsOfLight));
+  return static_cast<std::int64_t>(std::nearbyint(light * kUnitsOfHighlights));
 }
 
 // Adds the ends of a span to a row of differences, three numbers a pixel.
@@ -85,7 +85,7 @@ std::uint32_t highlight_row(const Highlights& highlights, int y, int width,
         sum[c] += change[c];
         if (x >= 0) {
           sums[(3 * layer + c) * stride + x] =
-              static_cast<float>(static_cast<double>(sum[c]) * (1.0 / kUnitsOfLight));
+              static_cast<float>(static_cast<double>(sum[c]) * (1.0 / kUnitsOfHighlights));
         }
       }
     }

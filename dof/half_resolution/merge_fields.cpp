@@ -50,7 +50,7 @@ struct SoftenRow {
 namespace softfocus {
 namespace {
 
-constexpr int kTaskRows = 8;
+constexpr int kMergeRows = 8;
 
 struct Scratch {
   std::vector<float> sharp;  // rows of pixels from one above the task's first on
@@ -111,13 +111,13 @@ void merge_fields(const DofInput& input, const HalfFields& fields, const ImageVi
   const std::ptrdiff_t padded = plane_stride(width) + 2 * kMostLanes;
   const std::ptrdiff_t half_padded = plane_stride(blurred.width) + 3 * kMostLanes;
   ScratchShelf<Scratch> shelf;
-  pool.for_each((height + kTaskRows - 1) / kTaskRows, [&](int task) {
+  pool.for_each((height + kMergeRows - 1) / kMergeRows, [&](int task) {
     Scratch scratch = shelf.take();
     scratch.pixels.resize(static_cast<std::size_t>(5 * padded));
     scratch.blurred.resize(static_cast<std::size_t>(kAllMerged * half_padded));
-    const int first = task * kTaskRows, end = std::min(first + kTaskRows, height);
+    const int first = task * kMergeRows, end = std::min(first + kMergeRows, height);
     const std::ptrdiff_t sharp_plane = padded + 2 * kMostLanes;
-    scratch.sharp.resize(static_cast<std::size_t>((kTaskRows + 2) * 4 * sharp_plane));
+    scratch.sharp.resize(static_cast<std::size_t>((kMergeRows + 2) * 4 * sharp_plane));
     const auto sharp = [&](int y) {
       return scratch.sharp.data() + (y - first + 1) * 4 * sharp_plane + kMostLanes;
     };

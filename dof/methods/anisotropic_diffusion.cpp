@@ -45,7 +45,7 @@ float stage_factor(int stages) {
 
 float momentum(int stage) { return static_cast<float>((stage - 1.0) / (stage + 2.0)); }
 
-float heat_flow(float radius_px, float factor) {
+float heat_flow_scaled(float radius_px, float factor) {
   return std::fabs(radius_px) > 0.5f ? radius_px * radius_px * factor : 0.0f;
 }
 
@@ -179,8 +179,9 @@ void anisotropic_diffusion_oracle(const DofInput& input, const ImageView& result
   const auto flow = [&](int x, int y, int dx, int dy, int c, const Planes& from) {
     const int to_x = x + dx, to_y = y + dy;
     if (to_x < 0 || to_x >= scene.width || to_y < 0 || to_y >= scene.height) return 0.0f;
-    const float per_difference = std::min(heat_flow(plane_row(scene, 3, y)[x], factor),
-                                          heat_flow(plane_row(scene, 3, to_y)[to_x], factor));
+    const float per_difference =
+        std::min(heat_flow_scaled(plane_row(scene, 3, y)[x], factor),
+                 heat_flow_scaled(plane_row(scene, 3, to_y)[to_x], factor));
     return per_difference * (plane_row(from, c, to_y)[to_x] - plane_row(from, c, y)[x]);
   };
   for (int stage = 1; stage <= stages; ++stage) {
@@ -250,7 +251,7 @@ void anisotropic_diffusion(const DofInput& input, const ImageView& result, Threa
 
 namespace {
 
-SOFTFOCUS_INLINE Floats heat_flow(Floats radius_px, float factor) {
+SOFTFOCUS_INLINE Floats heat_flow_scaled(Floats radius_px, float factor) {
   return select(absolute(radius_px) > 0.5f, radius_px * radius_px * factor, splat(0.0f));
 }
 
@@ -259,9 +260,9 @@ SOFTFOCUS_INLINE Floats heat_flow(Floats radius_px, float factor) {
 /// What flows from each pixel of a row to the next, and to the row below.
 void make_flows(const float* radius, const float* below, float factor, float* across, float* down) {
   for (int x = 0; x < kDiffusionRow; x += kLanes) {
-    const Floats own = heat_flow(load(radius + x), factor);
-    store(across + x, smaller(own, heat_flow(load(radius + x + 1), factor)));
-    store(down + x, smaller(own, heat_flow(load(below + x), factor)));
+    const Floats own = heat_flow_scaled(load(radius + x), factor);
+    store(across + x, smaller(own, heat_flow_scaled(load(radius + x + 1), factor)));
+    store(down + x, smaller(own, heat_flow_scaled(load(below + x), factor)));
   }
 }
 

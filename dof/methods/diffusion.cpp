@@ -61,10 +61,6 @@ struct LayerColumns {
 namespace softfocus {
 namespace {
 
-float heat_flow(float radius_px) {
-  return std::fabs(radius_px) > 0.5f ? radius_px * radius_px * 0.125f : 0.0f;
-}
-
 // Outside the layer a node takes the largest radius that reaches it along the line.
 void continue_radius(float& radius_px, float& reaching_px) {
   reaching_px = std::max(std::fabs(radius_px), reaching_px - kRadiusFall);

@@ -38,9 +38,16 @@
 // something less blurred blocks the blur of what is behind it on the same side of the focus;
 // the background behind a near thing is a blur of what surrounds it.
 
+#include <cmath>
+
 #include "dof/dof.h"
 
 namespace softfocus {
+
+/// b_i of a pixel's own radius.
+inline float heat_flow(float radius_px) {
+  return std::fabs(radius_px) > 0.5f ? radius_px * radius_px * 0.125f : 0.0f;
+}
 
 /// A Method's apply (dof.h).
 void diffusion(const DofInput& input, const ImageView& result, ThreadPool& pool);

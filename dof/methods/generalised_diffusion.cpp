@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dof/methods/diffusion.h"
 #include "dof/picture_planes.h"
 #include "raster/threads/scratch_shelf.h"
 
@@ -17,10 +18,6 @@
 
 namespace softfocus {
 namespace {
-
-float heat_flow(float radius_px) {
-  return std::fabs(radius_px) > 0.5f ? radius_px * radius_px * 0.125f : 0.0f;
-}
 
 // Solves the system of a line of pixels, `step` apart, from its first in the red plane on.
 void diffuse_line(float* first, std::ptrdiff_t step, std::ptrdiff_t plane, int count) {

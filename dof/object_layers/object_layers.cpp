@@ -252,9 +252,9 @@ void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
   for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
     // Leaves out tiles that the level before does not read: its tiles read half their size and
     // two pixels more, if there is anything in them.
-    constexpr int kAcross = kDiscTileWidth / 2 + 2, kDown = kDiscTileHeight / 2 + 2;
-    const Rectangle around{at.x - kAcross, at.y - kDown, at.width + 2 * kAcross,
-                           at.height + 2 * kDown};
+    constexpr int kBeside = kDiscTileWidth / 2 + 2, kBelow = kDiscTileHeight / 2 + 2;
+    const Rectangle around{at.x - kBeside, at.y - kBelow, at.width + 2 * kBeside,
+                           at.height + 2 * kBelow};
     if (any_seen(frame, number, 0, around)) {
       add_near(frame, number, at, work);
       keep_tile(level, 0, at, work.tile);

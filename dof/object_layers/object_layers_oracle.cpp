@@ -20,7 +20,7 @@ using Channels = std::array<float, 5>;  // light, own, seen
 using Shown = std::array<float, 4>;     // colour, transmittance
 
 // A level, and what is seen of it and of larger ones before the focus and behind it.
-struct Level {
+struct SlowLevel {
   int width, height;
   std::array<std::vector<Shown>, 2> shown;
 
@@ -36,7 +36,7 @@ float signed_square(float radius) { return radius * std::fabs(radius); }
 struct Layers {
   Surfaces surfaces;
   ObjectLadder ladder;
-  std::vector<Level> levels;
+  std::vector<SlowLevel> levels;
 
   Channels of_pixel(const ObjectRung& layer, int x, int y) const {
     const int inside_x = std::clamp(x, 0, surfaces.visible.width - 1);
@@ -127,7 +127,7 @@ struct Layers {
 
   // What is seen of one side of a level at a pixel of the level before.
   Shown enlarged(std::size_t number, std::size_t side, int x, int y) const {
-    const Level& level = levels[number];
+    const SlowLevel& level = levels[number];
     const std::vector<Shown>& shown = level.shown[side];
     const int other_y = y / 2 + (y % 2 == 0 ? -1 : 1);
     const auto row = [&](int at, std::size_t i) {
@@ -168,7 +168,7 @@ void object_layers_oracle(const DofInput& input, const ImageView& result, Thread
     height = (height + 1) / 2;
   }
   for (std::size_t i = layers.levels.size(); i-- > 1;) {
-    Level& level = layers.levels[i];
+    SlowLevel& level = layers.levels[i];
     const std::size_t pixels =
         static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
     std::array<std::vector<Shown>, 2> shown{std::vector<Shown>(pixels), std::vector<Shown>(pixels)};

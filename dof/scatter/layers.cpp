@@ -24,10 +24,7 @@
 namespace softfocus {
 namespace {
 
-// As in scatter.cpp.
-constexpr float kUnitsOfLight = 0x1p34f;
-
-constexpr int kTaskRows = 8;
+constexpr int kLayerRows = 8;
 
 // Red, green, blue and weight.
 using Light = std::array<std::uint64_t, 4>;
@@ -160,10 +157,6 @@ Colour composite(const Meeting& meeting) {
   return {channel(0), channel(1), channel(2)};
 }
 
-std::uint64_t units(double value) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(value)));
-}
-
 constexpr std::size_t kSheets = 5;
 
 // In the order of Meeting.
@@ -187,7 +180,8 @@ void stamp(const Sheet& sheet, const ScatterDiscs& discs, int width, int y,
       for (int x = std::max(from_x - reach, 0); x <= std::min(from_x + reach, width - 1); ++x) {
         for (std::size_t i = 0; i < 4; ++i) {
           const double light = sheet.light[4 * at + i];
-          const std::uint64_t all = units(light), end = units(light * (0.125 * span.eighths));
+          const std::uint64_t all = whole_units(light),
+                              end = whole_units(light * (0.125 * span.eighths));
           const bool inside = std::abs(x - from_x) < reach;
           sums[static_cast<std::size_t>(x)][i] += inside ? all : reach == 0 ? end + end - all : end;
         }
@@ -223,7 +217,7 @@ namespace {
 
 using Differences = std::vector<std::uint64_t, RowAllocator<std::uint64_t>>;
 
-struct RowBuffers {
+struct SheetRows {
   // Of each sheet, with a margin on either side; no four numbers across two cache lines.
   std::array<Differences, kSheets> differences;
   std::vector<float> colour;
@@ -255,14 +249,14 @@ void layers_lanes(const DofInput& input, const ImageView& result, ThreadPool& po
   const int margin = layers.discs.reach + 3;
   const auto length = static_cast<std::size_t>(4 * (width + 2 * margin));
   const std::ptrdiff_t padded = plane_stride(width);
-  ScratchShelf<RowBuffers> shelf;
-  pool.for_each((height + kTaskRows - 1) / kTaskRows, [&](int task) {
-    RowBuffers buffers = shelf.take();
+  ScratchShelf<SheetRows> shelf;
+  pool.for_each((height + kLayerRows - 1) / kLayerRows, [&](int task) {
+    SheetRows buffers = shelf.take();
     for (Differences& differences : buffers.differences) differences.resize(length);
     buffers.colour.resize(static_cast<std::size_t>(3 * padded));
     float* colour = buffers.colour.data();
-    const int end = std::min((task + 1) * kTaskRows, height);
-    for (int y = task * kTaskRows; y < end; ++y) {
+    const int end = std::min((task + 1) * kLayerRows, height);
+    for (int y = task * kLayerRows; y < end; ++y) {
       std::array<bool, kSheets> any;
       for (std::size_t i = 0; i < kSheets; ++i) {
         any[i] = add_spans(sheet(layers, i), layers.discs, y, pool.isa(),

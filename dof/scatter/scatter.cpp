@@ -23,11 +23,7 @@
 namespace softfocus {
 namespace {
 
-// Light is counted in units of 2^-34. One pixel then gives another at most 65504 * 2^34,
-// below 2^51, and the sum of all light that can meet in a pixel is below 2^55.
-constexpr float kUnitsOfLight = 0x1p34f;
-
-constexpr int kTaskRows = 8;
+constexpr int kScatterRows = 8;
 
 int slab_of(SlabRule rule, float radius_px) {
   return rule == SlabRule::one ? 0 : softfocus::slab_of(radius_px);
@@ -106,10 +102,6 @@ void add_slab(Over& over, const Light& light) {
   add_slab(over, numbers, 0x1p-34);
 }
 
-std::uint64_t units(double value) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(value)));
-}
-
 }  // namespace
 
 void scatter_in_slabs_oracle(const DofInput& input, const ImageView& result, SlabRule rule,
@@ -132,7 +124,8 @@ void scatter_in_slabs_oracle(const DofInput& input, const ImageView& result, Sla
           Light& sum = sums[static_cast<std::size_t>(sources.slab[at] * width + x)];
           for (std::size_t i = 0; i < 4; ++i) {
             const double light = sources.light[4 * at + i];
-            const std::uint64_t all = units(light), end = units(light * (0.125 * span.eighths));
+            const std::uint64_t all = whole_units(light),
+                                end = whole_units(light * (0.125 * span.eighths));
             const bool inside = std::abs(x - from_x) < reach;
             sum[i] += inside ? all : reach == 0 ? end + end - all : end;
           }
@@ -158,7 +151,7 @@ void scatter_in_slabs_oracle(const DofInput& input, const ImageView& result, Sla
 
 namespace {
 
-struct RowBuffers {
+struct SlabRows {
   // Slab by slab, with a margin on either side; no four numbers across two cache lines.
   std::vector<std::uint64_t, RowAllocator<std::uint64_t>> differences;
   std::vector<float> colour;
@@ -172,16 +165,16 @@ void scatter_lanes(const DofInput& input, const ImageView& result, SlabRule rule
   const std::ptrdiff_t slab_stride = 4 * (static_cast<std::ptrdiff_t>(width) + 2 * margin);
   const std::ptrdiff_t padded = plane_stride(width);
   const auto discs = static_cast<std::size_t>(sources.discs.count);
-  ScratchShelf<RowBuffers> shelf;
-  pool.for_each((height + kTaskRows - 1) / kTaskRows, [&](int task) {
-    RowBuffers buffers = shelf.take();
+  ScratchShelf<SlabRows> shelf;
+  pool.for_each((height + kScatterRows - 1) / kScatterRows, [&](int task) {
+    SlabRows buffers = shelf.take();
     buffers.differences.resize(static_cast<std::size_t>(slab_stride) *
                                static_cast<std::size_t>(slab_count(rule)));
     buffers.colour.resize(static_cast<std::size_t>(3 * padded));
     std::uint64_t* differences = buffers.differences.data();
     float* colour = buffers.colour.data();
-    const int end = std::min((task + 1) * kTaskRows, height);
-    for (int y = task * kTaskRows; y < end; ++y) {
+    const int end = std::min((task + 1) * kScatterRows, height);
+    for (int y = task * kScatterRows; y < end; ++y) {
       std::uint32_t in_slab = 0;
       for (int from = std::max(y - sources.discs.reach, 0);
            from <= std::min(y + sources.discs.reach, height - 1); ++from) {

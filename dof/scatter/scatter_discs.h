@@ -1,6 +1,7 @@
 #pragma once
 // The discs of scatter.h, as spans.
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,6 +31,13 @@ ScatterDiscs make_discs(float largest_px, std::span<const std::uint8_t> used = {
 /// The number of the disc for a radius, which may be negative.
 inline int disc_of(float radius_px) {
   return static_cast<int>((radius_px < 0.0f ? -radius_px : radius_px) * 4.0f + 0.5f);
+}
+
+/// Light is counted in units of 2^-34. One pixel then gives another at most 65504 * 2^34, below
+/// 2^51, and the sum of all light that can meet in a pixel is below 2^55.
+inline constexpr float kUnitsOfLight = 0x1p34f;
+inline std::uint64_t whole_units(double units) {
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::nearbyint(units)));
 }
 
 }  // namespace softfocus

@@ -8,6 +8,7 @@
 
 #include "raster/images/sampler.h"
 #include "raster/images/texture.h"
+#include "raster/lanes/isa.h"
 #include "raster/numbers/profile.h"
 
 namespace softfocus {
@@ -55,5 +56,16 @@ enum class LaneArithmetic : std::uint8_t {
 /// The arithmetic for a texture that was decoded for `profile`. It stays the same in a draw.
 LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sampler,
                                const Profile& profile);
+
+/// Where a texture is sampled, pixel after pixel.
+struct SamplePoints {
+  const float* u;
+  const float* v;
+  const float* lod;
+};
+
+/// sample_lanes() of a unit with vectors; `colours`: RgbLanes of that unit.
+void sample_vectors(Isa isa, const DecodedTexture& texture, const Sampler& sampler,
+                    const Profile& profile, const SamplePoints& points, int count, void* colours);
 
 }  // namespace softfocus

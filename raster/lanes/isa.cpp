@@ -1,18 +1,19 @@
 #include "raster/lanes/isa.h"
 
 #include <array>
+#include <vector>
 
-#if SOFTFOCUS_HAS_AVX
+#if SOFTFOCUS_HAS_LANES(8) || SOFTFOCUS_HAS_LANES(16)
 #include <cpuid.h>
+#define SOFTFOCUS_HAS_AVX
 #endif
 
 namespace softfocus {
 namespace {
 
-constexpr std::array kIsas{Isa::scalar, Isa::baseline, Isa::avx2, Isa::avx512};
 constexpr std::array<std::string_view, 4> kNames{"scalar", "baseline", "avx2", "avx512"};
 
-#if SOFTFOCUS_HAS_AVX
+#ifdef SOFTFOCUS_HAS_AVX
 // clang 14 cannot be asked for F16C by name.
 bool has_f16c() {
   unsigned a = 0, b = 0, c = 0, d = 0;
@@ -20,23 +21,26 @@ bool has_f16c() {
 }
 #endif
 
-std::size_t count_available() {
-#if SOFTFOCUS_HAS_AVX
+std::vector<Isa> find_available() {
+  std::vector<Isa> found{Isa::scalar};
+  if (SOFTFOCUS_HAS_LANES(4)) found.push_back(Isa::baseline);
+#ifdef SOFTFOCUS_HAS_AVX
   __builtin_cpu_init();
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !has_f16c()) return 2;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !has_f16c())
+    return found;
+  if (SOFTFOCUS_HAS_LANES(8)) found.push_back(Isa::avx2);
   const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  return avx512 ? 4 : 3;
-#else
-  return 2;
+  if (SOFTFOCUS_HAS_LANES(16) && avx512) found.push_back(Isa::avx512);
 #endif
+  return found;
 }
 
 }  // namespace
 
 std::span<const Isa> available_isas() {
-  static const std::size_t count = count_available();
-  return std::span{kIsas}.first(count);
+  static const std::vector<Isa> available = find_available();
+  return available;
 }
 
 Isa widest_isa() { return available_isas().back(); }

@@ -7,12 +7,17 @@
 #include <span>
 #include <string_view>
 
-// AVX only on 64-bit x86, unless SOFTFOCUS_NO_AVX forbids it, and not with mingw-w64's g++,
+// AVX only on 64-bit x86, and not with mingw-w64's g++,
 // which spills 32-byte vectors to a stack that is aligned to 16 (GCC bug 54412).
-#if defined(__x86_64__) && !defined(_WIN32) && !defined(SOFTFOCUS_NO_AVX)
-#define SOFTFOCUS_HAS_AVX 1
+#if !defined(__x86_64__) || defined(_WIN32)
+#undef SOFTFOCUS_ONLY_LANES
+#define SOFTFOCUS_ONLY_LANES 4
+#endif
+
+#ifdef SOFTFOCUS_ONLY_LANES
+#define SOFTFOCUS_HAS_LANES(count) (SOFTFOCUS_ONLY_LANES == (count))
 #else
-#define SOFTFOCUS_HAS_AVX 0
+#define SOFTFOCUS_HAS_LANES(count) 1
 #endif
 
 namespace softfocus {

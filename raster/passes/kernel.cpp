@@ -18,7 +18,7 @@ namespace softfocus {
 namespace {
 
 /// Rows that a thread takes at a time. It decodes those above and below once more.
-constexpr int kBandRows = 64;
+constexpr int kKernelRows = 64;
 
 /// What a thread keeps: as many rows of the source as the kernel has, as floats, in a ring.
 struct RowRing {
@@ -175,10 +175,10 @@ void convolve(const Kernel& kernel, const ConstImageView& source, const ImageVie
   assert(fit(kernel, source, result));
   if (pool.isa() == Isa::scalar) return convolve_oracle(kernel, source, result, profile, pool);
   ScratchShelf<RowRing> rings;
-  pool.for_each((result.height + kBandRows - 1) / kBandRows, [&](int band) {
+  pool.for_each((result.height + kKernelRows - 1) / kKernelRows, [&](int band) {
     RowRing ring = rings.take();
-    convolve_band(kernel, source, result, profile, band * kBandRows,
-                  std::min((band + 1) * kBandRows, result.height), ring, pool.isa());
+    convolve_band(kernel, source, result, profile, band * kKernelRows,
+                  std::min((band + 1) * kKernelRows, result.height), ring, pool.isa());
     rings.put_back(std::move(ring));
   });
 }

@@ -22,7 +22,7 @@
 namespace softfocus {
 namespace {
 
-constexpr int kBandRows = 32;  ///< rows of the result that a thread takes at a time
+constexpr int kPyramidRows = 32;  ///< rows of the result that a thread takes at a time
 
 bool fit_down(const ConstImageView& source, const ImageView& result) {
   return source.format == Format::rgba16f && result.format == Format::rgba16f &&
@@ -173,9 +173,9 @@ void upsample_band(const UpsampleWork& work, const RowOf& row_of, const Store& s
 template <class Band>
 void for_bands(int height, ThreadPool& pool, const Band& band) {
   ScratchShelf<PyramidRows> shelf;
-  pool.for_each((height + kBandRows - 1) / kBandRows, [&](int i) {
+  pool.for_each((height + kPyramidRows - 1) / kPyramidRows, [&](int i) {
     PyramidRows rows = shelf.take();
-    band(i * kBandRows, std::min((i + 1) * kBandRows, height), rows);
+    band(i * kPyramidRows, std::min((i + 1) * kPyramidRows, height), rows);
     shelf.put_back(std::move(rows));
   });
 }

@@ -123,8 +123,9 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
   const Interpolated<N> values = interpolator.at(x, y);
   const float depth = clamped_depth(values.depth, draw.profile);
   const bool front = triangle.setup.front_facing;
-  // If the stage cannot discard a fragment, the tests come before it.
-  if (!FragmentStage::kDiscards && !passes_tests(draw, x, y, depth, front)) return;
+  // If the stage discards no fragment, the tests come before it.
+  const bool tests_come_last = FragmentStage::kDiscards && discards(draw.fragment_stage);
+  if (!tests_come_last && !passes_tests(draw, x, y, depth, front)) return;
   Fragment<N> fragment{.x = x,
                        .y = y,
                        .depth = depth,
@@ -147,9 +148,7 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
     }
   }
   const auto output = draw.fragment_stage(fragment);
-  if (FragmentStage::kDiscards && (output.discard || !passes_tests(draw, x, y, depth, front))) {
-    return;
-  }
+  if (tests_come_last && (output.discard || !passes_tests(draw, x, y, depth, front))) return;
   if (has_layers(draw.targets)) {
     insert_into_layers(draw.targets, x, y, depth, output.colour[0], draw.profile);
     return;

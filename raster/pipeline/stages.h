@@ -35,8 +35,26 @@ struct VertexOutput {
 //     static constexpr std::array<Interpolation, N> kInterpolation
 //     static constexpr bool kNeedsDerivatives   whether it reads ddx and ddy
 //     static constexpr bool kDiscards           whether it may discard a fragment
+//     bool discards() const                     if some draws of a stage that may do not
 //     FragmentOutput<C> operator()(const Fragment<N>&) const    C colour targets
 // Both are called from several threads at once, and must not write what they share.
+
+// A stage for draws of several numbers of varyings has those of the most, and
+//     std::size_t varying_count() const         of this draw: the rest is not read
+
+/// Whether a draw's fragment stage discards fragments.
+template <class FragmentStage>
+bool discards(const FragmentStage& stage) {
+  if constexpr (requires { stage.discards(); }) return stage.discards();
+  return FragmentStage::kDiscards;
+}
+
+/// How many varyings a draw has.
+template <class FragmentStage>
+std::size_t varying_count(const FragmentStage& stage) {
+  if constexpr (requires { stage.varying_count(); }) return stage.varying_count();
+  return FragmentStage::kInterpolation.size();
+}
 
 /// A pixel of a triangle, as the fragment stage sees it.
 template <std::size_t N>

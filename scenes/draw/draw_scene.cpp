@@ -25,42 +25,44 @@ const DecodedTexture* decoded(const PreparedScene& prepared, const Texture* text
   return &prepared.textures[static_cast<std::size_t>(texture - prepared.scene->textures.data())];
 }
 
-template <SurfaceVariant variant>
+std::uint32_t vertex_count(const SurfaceDraw& surface) {
+  return static_cast<std::uint32_t>(surface.input.mesh->positions.size());
+}
+
+template <std::size_t N>
+SurfaceFragmentStage<N> fragment_stage(const SurfaceDraw& surface, const Profile& profile) {
+  return {surface.texture, surface.input.material->sampler, profile, surface.opacity,
+          surface.variant};
+}
+
+/// For variants of N varyings.
+template <std::size_t N>
+void draw_slowly(const SurfaceDraw& surface, std::span<const std::uint32_t> indices,
+                 RenderPass& pass) {
+  draw(pass, surface.state, indices, vertex_count(surface),
+       SurfaceVertexStage<N>{surface.input, surface.variant},
+       fragment_stage<N>(surface, pass.profile));
+}
+
 void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface,
                   std::span<const std::uint32_t> indices, RenderPass& pass) {
-  const SurfaceVertexInput& input = surface.input;
-  const auto vertices = static_cast<std::uint32_t>(input.mesh->positions.size());
-  const SurfaceVertexStage<variant> vertex_stage{input};
-  SurfaceFragmentStage<variant> fragment_stage{surface.texture, input.material->sampler,
-                                               pass.profile, surface.opacity};
-  if (!can_draw_in_lanes(pass, surface.state)) {
-    draw(pass, surface.state, indices, vertices, vertex_stage, fragment_stage);
-    return;
+  const SurfaceVariant& variant = surface.variant;
+  if (can_draw_in_lanes(pass, surface.state)) {
+    auto in_lanes = fragment_stage<kMostSurfaceVaryings>(surface, pass.profile);
+    in_lanes.decoded = decoded(prepared, surface.texture);
+    in_lanes.decoded_opacity = decoded(prepared, surface.opacity.texture);
+    return draw_in_lanes(pass, surface.state, indices, vertex_count(surface),
+                         SurfaceVertexStage<kMostSurfaceVaryings>{surface.input, variant}, in_lanes,
+                         surface_lane_stages(variant, pass.isa));
   }
-  fragment_stage.decoded = decoded(prepared, surface.texture);
-  fragment_stage.decoded_opacity = decoded(prepared, surface.opacity.texture);
-  draw_in_lanes(pass, surface.state, indices, vertices, vertex_stage, fragment_stage,
-                surface_lane_stages<variant>(pass.isa));
-}
-
-using DrawSurface = void (*)(const PreparedScene&, const SurfaceDraw&,
-                             std::span<const std::uint32_t>, RenderPass&);
-
-constexpr SurfaceVariant variant_of(std::size_t number) {
-  return {(number & 1) != 0, (number & 2) != 0, (number & 4) != 0, (number & 8) != 0};
-}
-
-constexpr auto kVariants = []<std::size_t... number>(std::index_sequence<number...>) {
-  return std::array<DrawSurface, sizeof...(number)>{draw_surface<variant_of(number)>...};
-}
-(std::make_index_sequence<16>{});
-
-void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface,
-                  std::span<const std::uint32_t> indices, RenderPass& pass) {
-  const SurfaceVariant variant = surface.variant;
-  const std::size_t number = (variant.textured ? 1u : 0u) + (variant.specular ? 2u : 0u) +
-                             (variant.two_sided ? 4u : 0u) + (variant.holed ? 8u : 0u);
-  kVariants[number](prepared, surface, indices, pass);
+  switch (surface_layout(variant).count) {
+    case 4: return draw_slowly<4>(surface, indices, pass);
+    case 6: return draw_slowly<6>(surface, indices, pass);
+    case 7: return draw_slowly<7>(surface, indices, pass);
+    case 9: return draw_slowly<9>(surface, indices, pass);
+    case 13: return draw_slowly<13>(surface, indices, pass);
+    default: return draw_slowly<kMostSurfaceVaryings>(surface, indices, pass);
+  }
 }
 
 void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface, RenderPass& pass) {

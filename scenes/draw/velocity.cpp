@@ -21,10 +21,11 @@ namespace softfocus {
 /// Where each varying lies: clip x, y and w at both instants, then u and v.
 inline constexpr std::size_t kMotionTo = 0, kMotionFrom = 3, kMotionUv = 6;
 
-template <bool holed>
+template <bool may_be_holed>
 struct VelocityVertexStage {
-  static constexpr std::size_t kVaryings = holed ? 8 : 6;
+  static constexpr std::size_t kVaryings = may_be_holed ? 8 : 6;
   VelocityInput input;
+  bool holed = may_be_holed;
 
   VertexOutput<kVaryings> operator()(std::uint32_t index) const {
     const glm::vec3 position = input.mesh->positions[index];
@@ -37,7 +38,7 @@ struct VelocityVertexStage {
     output.varyings[kMotionFrom] = from.x;
     output.varyings[kMotionFrom + 1] = from.y;
     output.varyings[kMotionFrom + 2] = from.w;
-    if constexpr (holed) {
+    if (may_be_holed && holed) {
       output.varyings[kMotionUv] = input.mesh->uvs[index].x;
       output.varyings[kMotionUv + 1] = input.mesh->uvs[index].y;
     }
@@ -45,11 +46,11 @@ struct VelocityVertexStage {
   }
 };
 
-template <bool holed>
+template <bool may_be_holed>
 struct VelocityFragmentStage {
-  static constexpr std::size_t kVaryings = VelocityVertexStage<holed>::kVaryings;
-  static constexpr bool kDiscards = holed;
-  static constexpr bool kNeedsDerivatives = holed;
+  static constexpr std::size_t kVaryings = VelocityVertexStage<may_be_holed>::kVaryings;
+  static constexpr bool kDiscards = may_be_holed;
+  static constexpr bool kNeedsDerivatives = may_be_holed;
   static constexpr std::array<Interpolation, kVaryings> kInterpolation{};  // perspective
 
   glm::vec2 half_size_px;
@@ -58,8 +59,11 @@ struct VelocityFragmentStage {
   SurfaceOpacity opacity;
   const DecodedTexture* decoded_opacity = nullptr;  ///< for the form in lanes
 
+  bool discards() const { return opacity.texture != nullptr; }
+  std::size_t varying_count() const { return discards() ? kVaryings : kMotionUv; }
+
   FragmentOutput<1> operator()(const Fragment<kVaryings>& in) const {
-    if constexpr (holed) {
+    if constexpr (may_be_holed) {
       const std::size_t u = kMotionUv, v = kMotionUv + 1;
       const float lod = level_of_detail(*opacity.texture, {in.ddx[u], in.ddx[v]},
                                         {in.ddy[u], in.ddy[v]}, profile);
@@ -150,31 +154,39 @@ VelocityDraw background_draw(const Scene& scene, const Instant& shown, const Mot
   return draw;
 }
 
+using VelocityLaneStages = LaneStages<VelocityVertexStage<true>, VelocityFragmentStage<true>>;
+
+std::uint32_t vertex_count(const VelocityDraw& what) {
+  return static_cast<std::uint32_t>(what.input.mesh->positions.size());
+}
+
 template <bool holed>
 VelocityFragmentStage<holed> fragment_stage_of(const VelocityDraw& what, const Profile& profile) {
   return {what.input.half_size_px, what.input.least_w, profile, what.opacity, nullptr};
 }
 
 template <bool holed>
+void draw_slowly(const VelocityDraw& what, RenderPass& pass) {
+  draw(pass, what.state, what.input.mesh->indices, vertex_count(what),
+       VelocityVertexStage<holed>{what.input}, fragment_stage_of<holed>(what, pass.profile));
+}
+
 void record_velocity(const PreparedScene& prepared, const VelocityDraw& what, RenderPass& pass) {
-  const Mesh& mesh = *what.input.mesh;
-  const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-  const VelocityVertexStage<holed> vertex_stage{what.input};
-  VelocityFragmentStage<holed> fragment_stage = fragment_stage_of<holed>(what, pass.profile);
+  const bool holed = what.opacity.texture != nullptr;
   if (!can_draw_in_lanes(pass, what.state)) {
-    draw(pass, what.state, mesh.indices, vertices, vertex_stage, fragment_stage);
-    return;
+    return holed ? draw_slowly<true>(what, pass) : draw_slowly<false>(what, pass);
   }
-  LaneStages<VelocityVertexStage<holed>, VelocityFragmentStage<holed>> stages{
-      SOFTFOCUS_KERNEL(pass.isa, place_velocity_vertices<holed>),
-      SOFTFOCUS_KERNEL(pass.isa, shade_velocity_vertices<holed>),
-      SOFTFOCUS_KERNEL(pass.isa, shade_velocity_fragments<holed>)};
-  if constexpr (holed) {
+  auto fragment_stage = fragment_stage_of<true>(what, pass.profile);
+  VelocityLaneStages stages{SOFTFOCUS_KERNEL(pass.isa, place_velocity_vertices),
+                            SOFTFOCUS_KERNEL(pass.isa, shade_velocity_vertices),
+                            SOFTFOCUS_KERNEL(pass.isa, shade_velocity_fragments)};
+  if (holed) {
     const auto number = what.opacity.texture - prepared.scene->textures.data();
     fragment_stage.decoded_opacity = &prepared.textures[static_cast<std::size_t>(number)];
     stages.keep_fragments = SOFTFOCUS_KERNEL(pass.isa, keep_velocity_fragments);
   }
-  draw_in_lanes(pass, what.state, mesh.indices, vertices, vertex_stage, fragment_stage, stages);
+  draw_in_lanes(pass, what.state, what.input.mesh->indices, vertex_count(what),
+                VelocityVertexStage<true>{what.input, holed}, fragment_stage, stages);
 }
 
 }  // namespace
@@ -232,8 +244,7 @@ void draw_velocity(PreparedScene& prepared, const Instant& shown, const MotionSp
   const std::vector<VelocityDraw> draws =
       velocity_draws(*prepared.scene, shown, span, width, height);
   for (const VelocityDraw& what : draws) {
-    (what.opacity.texture != nullptr ? record_velocity<true> : record_velocity<false>)(prepared,
-                                                                                       what, pass);
+    record_velocity(prepared, what, pass);
   }
   finish(pass, pool);
   if (!in_lanes) return;
@@ -290,10 +301,12 @@ SOFTFOCUS_INLINE Floats transformed(const glm::mat4& m, int part, const Vec3Lane
   return ((m[0][part] * p.x + m[1][part] * p.y) + m[2][part] * p.z) + m[3][part];
 }
 
-template <bool holed>
 struct VelocityVertexLanes {
-  static constexpr std::size_t kVaryings = VelocityVertexStage<holed>::kVaryings;
+  static constexpr std::size_t kVaryings = VelocityVertexStage<true>::kVaryings;
   const VelocityInput& input;
+  bool holed;
+
+  SOFTFOCUS_INLINE std::size_t varying_count() const { return holed ? kVaryings : kMotionUv; }
 
   SOFTFOCUS_INLINE void position(Ints index, std::array<Floats, 4>& in_clip_space) const {
     const Vec3Lanes p = load_vectors(input.mesh->positions, index);
@@ -312,7 +325,7 @@ struct VelocityVertexLanes {
     varyings[kMotionFrom] = transformed(input.from, 0, p);
     varyings[kMotionFrom + 1] = transformed(input.from, 1, p);
     varyings[kMotionFrom + 2] = transformed(input.from, 3, p);
-    if constexpr (holed) {
+    if (holed) {
       const float* first = &input.mesh->uvs[0].x;
       varyings[kMotionUv] = gather(first, index * 2, ~Mask{});
       varyings[kMotionUv + 1] = gather(first + 1, index * 2, ~Mask{});
@@ -321,11 +334,12 @@ struct VelocityVertexLanes {
 };
 
 /// Holes are cut out before.
-template <bool holed>
 struct VelocityFragmentLanes {
-  static constexpr auto kInterpolation = VelocityFragmentStage<holed>::kInterpolation;
+  static constexpr auto kInterpolation = VelocityFragmentStage<true>::kInterpolation;
   static constexpr std::size_t kInputs = 6;
-  const VelocityFragmentStage<holed>& stage;
+  const VelocityFragmentStage<true>& stage;
+
+  SOFTFOCUS_INLINE std::size_t varying_count() const { return kInputs; }
 
   template <class Quads, class Put>
   SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
@@ -360,20 +374,17 @@ struct VelocityHoles {
 
 }  // namespace
 
-template <bool holed>
-unsigned place_velocity_vertices(const VelocityVertexStage<holed>& stage, const VertexJob& job) {
-  return place_vertices(VelocityVertexLanes<holed>{stage.input}, job);
+unsigned place_velocity_vertices(const VelocityVertexStage<true>& stage, const VertexJob& job) {
+  return place_vertices(VelocityVertexLanes{stage.input, stage.holed}, job);
 }
 
-template <bool holed>
-void shade_velocity_vertices(const VelocityVertexStage<holed>& stage, const VertexJob& job) {
-  shade_vertices(VelocityVertexLanes<holed>{stage.input}, job);
+void shade_velocity_vertices(const VelocityVertexStage<true>& stage, const VertexJob& job) {
+  shade_vertices(VelocityVertexLanes{stage.input, stage.holed}, job);
 }
 
-template <bool holed>
-void shade_velocity_fragments(const VelocityFragmentStage<holed>& stage, const FragmentJob& job,
+void shade_velocity_fragments(const VelocityFragmentStage<true>& stage, const FragmentJob& job,
                               const VisibilityTile& tile, const VisibleRun& run) {
-  shade_fragments(VelocityFragmentLanes<holed>{stage}, job, tile, run);
+  shade_fragments(VelocityFragmentLanes{stage}, job, tile, run);
 }
 
 unsigned keep_velocity_fragments(const VelocityFragmentStage<true>& stage, const FragmentJob& job,

@@ -36,9 +36,9 @@ SampleSums accumulation_sums(const LensViewInput& input, SampleRange range, Thre
 
 bool are_exact(const SampleSums& sums) {
   constexpr double kLargestExact = 0x1p29;
-  constexpr std::size_t kChannels = 4;
+  constexpr std::size_t kSums = 4;
   for (std::size_t i = 0; i < sums.totals.size(); ++i) {
-    const bool is_alpha = i % kChannels == 3;
+    const bool is_alpha = i % kSums == 3;
     const double total = sums.totals[i];
     if (!is_alpha && std::isfinite(total) && total > kLargestExact) return false;
   }

@@ -1,6 +1,6 @@
 // The stages of surface_stages.h for kLanes vertices or pixels at once: the same operations in
-// the same order. For vertices a draw's variant is a choice at run time: compiled for each, their
-// kernels take longer to compile and run no faster.
+// the same order. A draw's variant is a choice at run time, but for highlights, u and v: kernels
+// compiled for each variant take minutes to compile and run no faster.
 
 #ifndef SOFTFOCUS_ISA
 
@@ -19,36 +19,21 @@
 
 namespace softfocus {
 
-template <SurfaceVariant variant>
-SurfaceLaneStages<variant> surface_lane_stages(Isa isa) {
-  SurfaceLaneStages<variant> stages{SOFTFOCUS_KERNEL(isa, place_surface_vertices<variant>),
-                                    SOFTFOCUS_KERNEL(isa, shade_surface_vertices<variant>),
-                                    SOFTFOCUS_KERNEL(isa, shade_surface_fragments<variant>)};
-  if constexpr (variant.holed) {
-    stages.keep_fragments = SOFTFOCUS_KERNEL(isa, keep_surface_fragments<variant>);
+SurfaceLaneStages surface_lane_stages(const SurfaceVariant& variant, Isa isa) {
+  SurfaceLaneStages stages{SOFTFOCUS_KERNEL(isa, place_surface_vertices),
+                           SOFTFOCUS_KERNEL(isa, shade_surface_vertices), nullptr};
+  if (has_uvs(variant)) {
+    stages.shade_fragments = variant.specular
+                                 ? SOFTFOCUS_KERNEL(isa, shade_surface_fragments<true, true>)
+                                 : SOFTFOCUS_KERNEL(isa, shade_surface_fragments<true, false>);
+  } else {
+    stages.shade_fragments = variant.specular
+                                 ? SOFTFOCUS_KERNEL(isa, shade_surface_fragments<false, true>)
+                                 : SOFTFOCUS_KERNEL(isa, shade_surface_fragments<false, false>);
   }
+  if (variant.holed) stages.keep_fragments = SOFTFOCUS_KERNEL(isa, keep_surface_fragments);
   return stages;
 }
-
-#define SOFTFOCUS_SURFACE_VARIANT(...) \
-  template SurfaceLaneStages<SurfaceVariant{__VA_ARGS__}> surface_lane_stages(Isa);
-SOFTFOCUS_SURFACE_VARIANT(false, false, false, false)
-SOFTFOCUS_SURFACE_VARIANT(false, false, true, false)
-SOFTFOCUS_SURFACE_VARIANT(false, true, false, false)
-SOFTFOCUS_SURFACE_VARIANT(false, true, true, false)
-SOFTFOCUS_SURFACE_VARIANT(true, false, false, false)
-SOFTFOCUS_SURFACE_VARIANT(true, false, true, false)
-SOFTFOCUS_SURFACE_VARIANT(true, true, false, false)
-SOFTFOCUS_SURFACE_VARIANT(true, true, true, false)
-SOFTFOCUS_SURFACE_VARIANT(false, false, false, true)
-SOFTFOCUS_SURFACE_VARIANT(false, false, true, true)
-SOFTFOCUS_SURFACE_VARIANT(false, true, false, true)
-SOFTFOCUS_SURFACE_VARIANT(false, true, true, true)
-SOFTFOCUS_SURFACE_VARIANT(true, false, false, true)
-SOFTFOCUS_SURFACE_VARIANT(true, false, true, true)
-SOFTFOCUS_SURFACE_VARIANT(true, true, false, true)
-SOFTFOCUS_SURFACE_VARIANT(true, true, true, true)
-#undef SOFTFOCUS_SURFACE_VARIANT
 
 }  // namespace softfocus
 
@@ -66,16 +51,16 @@ SOFTFOCUS_SURFACE_VARIANT(true, true, true, true)
 
 namespace {
 
-// What all variants have room for.
-inline constexpr std::size_t kMostVaryings = surface_layout({true, true, true, true}).count;
+using VertexStage = SurfaceVertexStage<kMostSurfaceVaryings>;
+using FragmentStage = SurfaceFragmentStage<kMostSurfaceVaryings>;
 
 // --- vertices ---
 
 struct SurfaceVertexLanes {
-  static constexpr std::size_t kVaryings = kMostVaryings;
+  static constexpr std::size_t kVaryings = kMostSurfaceVaryings;
   const SurfaceVertexInput& input;
   SurfaceVariant variant;
-  SurfaceLayout layout = surface_layout(variant);
+  SurfaceLayout layout;
 
   SOFTFOCUS_INLINE std::size_t varying_count() const { return layout.count; }
 
@@ -104,61 +89,63 @@ struct SurfaceVertexLanes {
                                   (r[0][1] * n.x + r[1][1] * n.y) + r[2][1] * n.z,
                                   (r[0][2] * n.x + r[1][2] * n.y) + r[2][2] * n.z});
     const Vec3Lanes towards_eye = normalize(splat(input.eye) - world);
-    // The front, and then perhaps the back.
-    for (std::size_t at = SurfaceLayout::kFront; at < layout.texture; at += layout.side_size) {
+    for (int side = 0; side < (variant.two_sided ? 2 : 1); ++side) {
       const LitLanes lit = input.material->lit
                                ? light_points(*input.material, input.ambient_light, input.lights,
                                               variant.specular, world, normal, towards_eye)
                                : LitLanes{splat(input.material->diffuse), splat(glm::vec3{0.0f})};
+      const std::size_t at = side == 0 ? SurfaceLayout::kFront : layout.back;
       varyings[at] = lit.base.x;
       varyings[at + 1] = lit.base.y;
       varyings[at + 2] = lit.base.z;
       if (variant.specular) {
-        varyings[at + 3] = lit.specular.x;
-        varyings[at + 4] = lit.specular.y;
-        varyings[at + 5] = lit.specular.z;
+        const std::size_t highlight = side == 0 ? layout.highlight : layout.back_highlight;
+        varyings[highlight] = lit.specular.x;
+        varyings[highlight + 1] = lit.specular.y;
+        varyings[highlight + 2] = lit.specular.z;
       }
       normal = {-normal.x, -normal.y, -normal.z};
     }
     if (has_uvs(variant)) {
       const float* first = &input.mesh->uvs[0].x;
-      varyings[layout.texture] = gather(first, index * 2, ~Mask{});
-      varyings[layout.texture + 1] = gather(first + 1, index * 2, ~Mask{});
+      varyings[SurfaceLayout::kTexture] = gather(first, index * 2, ~Mask{});
+      varyings[SurfaceLayout::kTexture + 1] = gather(first + 1, index * 2, ~Mask{});
     }
   }
 };
 
 // --- fragments ---
 
-template <SurfaceVariant variant>
+// Numbers of varyings are known when compiling, so that the compiler can keep these in registers.
+template <bool uvs, bool specular>
 struct SurfaceFragmentLanes {
-  static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
+  static constexpr auto& kInterpolation = FragmentStage::kInterpolation;
+  // As surface_layout() has them.
+  static constexpr std::size_t kTextureU = SurfaceLayout::kTexture;
+  static constexpr std::size_t kAfterBase = kTextureU + (uvs ? 2 : 0);
   // The colour that a texture is multiplied with, depth; and with a texture the place where it
   // is sampled, and the highlights, which are else in the colour.
   static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,
                                kLod = 6, kHighlight = 7;
-  static constexpr std::size_t kInputs = !variant.textured ? 4 : variant.specular ? 10 : 7;
-  const DecodedTexture* texture;
-  const Sampler& sampler;
-  const Profile& profile;
-  const SurfaceOpacity& opacity;
-  const DecodedTexture* decoded_opacity;
+  static constexpr std::size_t kInputs = !uvs ? 4 : specular ? 10 : 7;
+  const FragmentStage& stage;
+  const SurfaceVariant variant = stage.variant;
+
+  SOFTFOCUS_INLINE std::size_t varying_count() const { return stage.layout.count; }
 
   template <class Quads, class Put>
   SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
-    Vec3Lanes colour = side(in, 0);
-    if constexpr (variant.textured) {
-      const std::size_t u = kLayout.texture;
-      const std::size_t v = kLayout.texture + 1;
+    Vec3Lanes colour = base(in);
+    if (uvs && variant.textured) {
+      const std::size_t u = kTextureU, v = u + 1;
       put(kU, in.varying(u));
       put(kV, in.varying(v));
-      put(kLod,
-          level_of_detail_lanes(*texture, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
+      put(kLod, level_of_detail_lanes(*stage.decoded, stage.profile, in.ddx(u), in.ddx(v),
+                                      in.ddy(u), in.ddy(v)));
     }
-    if constexpr (variant.specular) {
-      const Vec3Lanes highlight = side(in, 3);
-      if constexpr (variant.textured) {
+    if constexpr (specular) {
+      const Vec3Lanes highlight = highlights(in);
+      if (uvs && variant.textured) {
         put(kHighlight, highlight.x);
         put(kHighlight + 1, highlight.y);
         put(kHighlight + 2, highlight.z);
@@ -169,7 +156,7 @@ struct SurfaceFragmentLanes {
     put(kRed, colour.x);
     put(kGreen, colour.y);
     put(kBlue, colour.z);
-    if (opacity.blends) {
+    if (stage.opacity.blends) {
       put(kDepth, hides(in));
     } else {
       put(kDepth, smaller(in.varying(SurfaceLayout::kDepth), splat(65504.0f)));
@@ -183,8 +170,10 @@ struct SurfaceFragmentLanes {
       colours[i] = {batch.input(kRed, i), batch.input(kGreen, i), batch.input(kBlue, i),
                     batch.input(kDepth, i)};
     }
-    if constexpr (variant.textured) multiply_by_texture(batch, colours);
-    if (!opacity.blends) return;
+    if constexpr (uvs) {
+      if (variant.textured) multiply_by_texture(batch, colours);
+    }
+    if (!stage.opacity.blends) return;
     for (int i = 0; i < count; ++i) {
       for (std::size_t c = 0; c < 3; ++c) colours[i][c] *= colours[i][3];
     }
@@ -194,7 +183,7 @@ struct SurfaceFragmentLanes {
                                             std::array<Floats, 4>* colours) const {
     const int count = batch.vectors();
     std::array<RgbLanes, kMostSampled> texels;
-    sample_lanes(*texture, sampler, profile,
+    sample_lanes(*stage.decoded, stage.sampler, stage.profile,
                  {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
                  count, texels.data());
     for (int i = 0; i < count; ++i) {
@@ -202,85 +191,79 @@ struct SurfaceFragmentLanes {
       colours[i][0] *= texel.r;
       colours[i][1] *= texel.g;
       colours[i][2] *= texel.b;
-      if constexpr (!variant.specular) continue;
+      if constexpr (!specular) continue;
       for (std::size_t c = 0; c < 3; ++c) colours[i][c] += batch.input(kHighlight + c, i);
     }
   }
 
-  // The opacity.
+  // The opacity. A texture that cuts out has done so before.
   template <class Quads>
   SOFTFOCUS_INLINE Floats hides(const Quads& in) const {
+    const SurfaceOpacity& opacity = stage.opacity;
     const Floats value = splat(opacity.value);
-    if constexpr (!variant.holed) return value;
-    return value * opacity_texels(in, kLayout.texture, *decoded_opacity, opacity.sampler, profile);
+    if constexpr (uvs) {
+      if (variant.holed && !opacity.cuts_out) {
+        return value * opacity_texels(in, kTextureU, *stage.decoded_opacity, opacity.sampler,
+                                      stage.profile);
+      }
+    }
+    return value;
   }
 
-  // Three varyings of the side that is seen.
+  // Of the side that is seen.
   template <class Quads>
-  SOFTFOCUS_INLINE Vec3Lanes side(const Quads& in, std::size_t at) const {
-    const std::size_t front = SurfaceLayout::kFront + at;
-    const Vec3Lanes seen{in.varying(front), in.varying(front + 1), in.varying(front + 2)};
-    if constexpr (!variant.two_sided) return seen;
-    const std::size_t back = kLayout.back + at;
+  SOFTFOCUS_INLINE Vec3Lanes base(const Quads& in) const {
+    const Vec3Lanes front = three<SurfaceLayout::kFront>(in);
+    if (!variant.two_sided) return front;
     const Mask front_facing = in.front_facing();
-    if (all(front_facing)) return seen;
-    return select(front_facing, seen,
-                  Vec3Lanes{in.varying(back), in.varying(back + 1), in.varying(back + 2)});
+    if (all(front_facing)) return front;
+    return select(front_facing, front, three<kAfterBase + (specular ? 3 : 0)>(in));
+  }
+  template <class Quads>
+  SOFTFOCUS_INLINE Vec3Lanes highlights(const Quads& in) const {
+    const Vec3Lanes front = three<kAfterBase>(in);
+    if (!variant.two_sided) return front;
+    return select(in.front_facing(), front, three<kAfterBase + 6>(in));
+  }
+
+  template <std::size_t at, class Quads>
+  SOFTFOCUS_INLINE Vec3Lanes three(const Quads& in) const {
+    return {in.varying(at), in.varying(at + 1), in.varying(at + 2)};
   }
 };
 
-template <SurfaceVariant variant>
 struct SurfaceHoles {
-  static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
-  const SurfaceOpacity& opacity;
-  const DecodedTexture& decoded_opacity;
-  const Profile& profile;
+  static constexpr auto& kInterpolation = FragmentStage::kInterpolation;
+  const FragmentStage& stage;
+
+  SOFTFOCUS_INLINE std::size_t varying_count() const { return stage.layout.count; }
 
   template <class Quads>
   SOFTFOCUS_INLINE Mask keeps(const Quads& in) const {
-    return ~(opacity_texels(in, kLayout.texture, decoded_opacity, opacity.sampler, profile) <
-             least_texel(opacity));
+    return ~(opacity_texels(in, SurfaceLayout::kTexture, *stage.decoded_opacity,
+                            stage.opacity.sampler, stage.profile) < least_texel(stage.opacity));
   }
 };
 
 }  // namespace
 
-template <SurfaceVariant variant>
-unsigned place_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {
-  return place_vertices(SurfaceVertexLanes{stage.input, variant}, job);
+unsigned place_surface_vertices(const VertexStage& stage, const VertexJob& job) {
+  return place_vertices(SurfaceVertexLanes{stage.input, stage.variant, stage.layout}, job);
 }
 
-template <SurfaceVariant variant>
-void shade_surface_vertices(const SurfaceVertexStage<variant>& stage, const VertexJob& job) {
-  shade_vertices(SurfaceVertexLanes{stage.input, variant}, job);
+void shade_surface_vertices(const VertexStage& stage, const VertexJob& job) {
+  shade_vertices(SurfaceVertexLanes{stage.input, stage.variant, stage.layout}, job);
 }
 
-template <SurfaceVariant variant, SurfaceVariant of>
-void shade_surface(const SurfaceFragmentStage<of>& stage, const FragmentJob& job,
-                   const VisibilityTile& tile, const VisibleRun& run) {
-  shade_fragments(SurfaceFragmentLanes<variant>{stage.decoded, stage.sampler, stage.profile,
-                                                stage.opacity, stage.decoded_opacity},
-                  job, tile, run);
-}
-
-// A cut-out has the varyings and colours of the surface without holes, and perhaps u and v after
-// them: both share their code.
-template <SurfaceVariant variant>
-void shade_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
+template <bool uvs, bool specular>
+void shade_surface_fragments(const FragmentStage& stage, const FragmentJob& job,
                              const VisibilityTile& tile, const VisibleRun& run) {
-  constexpr SurfaceVariant kWhole{variant.textured, variant.specular, variant.two_sided};
-  if constexpr (variant.holed) {
-    if (!stage.opacity.cuts_out) return shade_surface<variant>(stage, job, tile, run);
-  }
-  shade_surface<kWhole>(stage, job, tile, run);
+  shade_fragments(SurfaceFragmentLanes<uvs, specular>{stage}, job, tile, run);
 }
 
-template <SurfaceVariant variant>
-unsigned keep_surface_fragments(const SurfaceFragmentStage<variant>& stage, const FragmentJob& job,
+unsigned keep_surface_fragments(const FragmentStage& stage, const FragmentJob& job,
                                 const LaneTriangle& triangle, int x, int y, unsigned pixels) {
-  return keep_fragments(SurfaceHoles<variant>{stage.opacity, *stage.decoded_opacity, stage.profile},
-                        job, triangle, x, y, pixels);
+  return keep_fragments(SurfaceHoles{stage}, job, triangle, x, y, pixels);
 }
 
 #endif

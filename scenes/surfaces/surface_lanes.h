@@ -7,12 +7,11 @@
 
 namespace softfocus {
 
-template <SurfaceVariant variant>
-using SurfaceLaneStages = LaneStages<SurfaceVertexStage<variant>, SurfaceFragmentStage<variant>>;
+using SurfaceLaneStages = LaneStages<SurfaceVertexStage<kMostSurfaceVaryings>,
+                                     SurfaceFragmentStage<kMostSurfaceVaryings>>;
 
 /// The kernels of a variant for an isa other than scalar. The fragment stage's `decoded`
 /// texture is read in place of its `texture`.
-template <SurfaceVariant variant>
-SurfaceLaneStages<variant> surface_lane_stages(Isa isa);
+SurfaceLaneStages surface_lane_stages(const SurfaceVariant& variant, Isa isa);
 
 }  // namespace softfocus

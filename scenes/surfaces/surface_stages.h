@@ -1,6 +1,6 @@
 #pragma once
-// The vertex and the fragment stage of a lit, perhaps textured surface. They are compiled for
-// each variant of material: a feature that it lacks is neither computed nor interpolated.
+// The vertex and the fragment stage of a lit, perhaps textured surface. A feature that a material
+// lacks is neither computed nor interpolated.
 
 #include <array>
 #include <cstddef>
@@ -53,21 +53,24 @@ constexpr float least_texel(const SurfaceOpacity& opacity) {
   return opacity.cuts_out ? kLeastOpacity : kLeastBlended;
 }
 
-/// Where each varying lies: depth, base colour, then what the variant has.
+/// Where each varying lies: depth, base colour, u and v, highlight, and the back's colours if it is
+/// lit by itself. What a variant lacks takes no place.
 struct SurfaceLayout {
   static constexpr std::size_t kDepth = 0;
   static constexpr std::size_t kFront = 1;
-  std::size_t side_size;  ///< base colour, and highlight if there is one
-  std::size_t back;       ///< the back's base colour, if it is lit by itself
-  std::size_t texture;    ///< u and v, if there are such: last, whatever reads them
+  static constexpr std::size_t kTexture = 4;
+  std::size_t highlight;
+  std::size_t back;
+  std::size_t back_highlight;
   std::size_t count;
 };
 
 constexpr SurfaceLayout surface_layout(SurfaceVariant variant) {
+  const std::size_t highlight = SurfaceLayout::kTexture + (has_uvs(variant) ? 2 : 0);
+  const std::size_t back = highlight + (variant.specular ? 3 : 0);
+  const std::size_t back_highlight = back + 3;
   const std::size_t side_size = variant.specular ? 6 : 3;
-  const std::size_t back = SurfaceLayout::kFront + side_size;
-  const std::size_t texture = back + (variant.two_sided ? side_size : 0);
-  return {side_size, back, texture, texture + (has_uvs(variant) ? 2 : 0)};
+  return {highlight, back, back_highlight, back + (variant.two_sided ? side_size : 0)};
 }
 
 /// What the vertex stage reads; matrices are rounded to binary32 once a draw.
@@ -82,15 +85,26 @@ struct SurfaceVertexInput {
   glm::vec3 eye;
 };
 
-template <SurfaceVariant variant>
-struct SurfaceVertexStage {
-  static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  SurfaceVertexInput input;
+/// What all variants have room for.
+inline constexpr std::size_t kMostSurfaceVaryings = surface_layout({true, true, true, true}).count;
 
-  VertexOutput<kLayout.count> operator()(std::uint32_t index) const {
+/// Depth and colours are 4, 7 or 13 varyings.
+constexpr bool may_have_uvs(std::size_t varyings) {
+  return varyings != 4 && varyings != 7 && varyings != 13;
+}
+constexpr bool may_be_specular(std::size_t varyings) { return varyings >= 7; }
+
+/// For variants of N varyings or fewer.
+template <std::size_t N>
+struct SurfaceVertexStage {
+  SurfaceVertexInput input;
+  SurfaceVariant variant;
+  SurfaceLayout layout = surface_layout(variant);
+
+  VertexOutput<N> operator()(std::uint32_t index) const {
     const glm::vec3 position = input.mesh->positions[index];
-    VertexOutput<kLayout.count> output{transform_point(input.to_clip, position), {}};
-    output.varyings[kLayout.kDepth] = output.position.w;
+    VertexOutput<N> output{transform_point(input.to_clip, position), {}};
+    output.varyings[SurfaceLayout::kDepth] = output.position.w;
 
     const Material& material = *input.material;
     const glm::vec4 world4 = transform_point(input.to_world, position);
@@ -98,65 +112,70 @@ struct SurfaceVertexStage {
     const glm::vec3 normal =
         normalize(transform_direction(input.normal_to_world, input.mesh->normals[index]));
     const glm::vec3 towards_eye = normalize(input.eye - world);
-    const auto light_side = [&](glm::vec3 side_normal, std::size_t at) {
+    const auto light_side = [&](glm::vec3 side_normal, std::size_t at, std::size_t highlight_at) {
       const LitColour lit = material.lit ? light_point(material, input.ambient_light, input.lights,
                                                        world, side_normal, towards_eye)
                                          : LitColour{material.diffuse, glm::vec3{0.0f}};
       for (std::size_t i = 0; i < 3; ++i) {
         output.varyings[at + i] = lit.base[static_cast<int>(i)];
-        if constexpr (variant.specular) {
-          output.varyings[at + 3 + i] = lit.specular[static_cast<int>(i)];
+        if constexpr (!may_be_specular(N)) continue;
+        if (variant.specular) {
+          output.varyings[highlight_at + i] = lit.specular[static_cast<int>(i)];
         }
       }
     };
-    light_side(normal, kLayout.kFront);
-    if constexpr (variant.two_sided) light_side(-normal, kLayout.back);
-    if constexpr (has_uvs(variant)) {
-      output.varyings[kLayout.texture] = input.mesh->uvs[index].x;
-      output.varyings[kLayout.texture + 1] = input.mesh->uvs[index].y;
+    light_side(normal, SurfaceLayout::kFront, layout.highlight);
+    if (variant.two_sided) light_side(-normal, layout.back, layout.back_highlight);
+    if (may_have_uvs(N) && has_uvs(variant)) {
+      output.varyings[SurfaceLayout::kTexture] = input.mesh->uvs[index].x;
+      output.varyings[SurfaceLayout::kTexture + 1] = input.mesh->uvs[index].y;
     }
     return output;
   }
 };
 
-template <SurfaceVariant variant>
+/// For variants of N varyings or fewer.
+template <std::size_t N>
 struct SurfaceFragmentStage {
-  static constexpr SurfaceLayout kLayout = surface_layout(variant);
-  static constexpr bool kDiscards = variant.holed;
-  static constexpr bool kNeedsDerivatives = has_uvs(variant);
-  static constexpr std::array<Interpolation, kLayout.count> kInterpolation{};  // perspective
+  static constexpr bool kNeedsDerivatives = may_have_uvs(N);
+  static constexpr bool kDiscards = kNeedsDerivatives;
+  static constexpr std::array<Interpolation, N> kInterpolation{};  // perspective
 
   const Texture* texture;
   Sampler sampler;
   Profile profile;
-  SurfaceOpacity opacity = {};
+  SurfaceOpacity opacity;
+  SurfaceVariant variant;
   // For the form in lanes.
   const DecodedTexture* decoded = nullptr;
   const DecodedTexture* decoded_opacity = nullptr;
+  SurfaceLayout layout = surface_layout(variant);
 
-  FragmentOutput<1> operator()(const Fragment<kLayout.count>& in) const {
+  bool discards() const { return variant.holed; }
+  std::size_t varying_count() const { return layout.count; }
+
+  FragmentOutput<1> operator()(const Fragment<N>& in) const {
     float hides = opacity.value;
-    if constexpr (variant.holed) {
+    if (may_have_uvs(N) && variant.holed) {
       const float red = texel(*opacity.texture, opacity.sampler, in).x;
       if (red < least_texel(opacity)) return {{}, true};
       if (!opacity.cuts_out) hides *= red;
     }
-    const std::size_t side = variant.two_sided && !in.front_facing ? kLayout.back : kLayout.kFront;
+    const bool back = variant.two_sided && !in.front_facing;
+    const std::size_t side = back ? layout.back : layout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
-    if constexpr (variant.textured) {
-      colour *= glm::vec3{texel(*texture, sampler, in)};
-    }
-    if constexpr (variant.specular) {
-      colour += glm::vec3{in.varyings[side + 3], in.varyings[side + 4], in.varyings[side + 5]};
+    if (may_have_uvs(N) && variant.textured) colour *= glm::vec3{texel(*texture, sampler, in)};
+    if (may_be_specular(N) && variant.specular) {
+      const std::size_t at = back ? layout.back_highlight : layout.highlight;
+      colour += glm::vec3{in.varyings[at], in.varyings[at + 1], in.varyings[at + 2]};
     }
     if (opacity.blends) return {{glm::vec4{colour * hides, hides}}, false};
-    return {{glm::vec4{colour, alpha_depth(in.varyings[kLayout.kDepth])}}, false};
+    return {{glm::vec4{colour, alpha_depth(in.varyings[SurfaceLayout::kDepth])}}, false};
   }
 
  private:
-  glm::vec4 texel(const Texture& of, const Sampler& by, const Fragment<kLayout.count>& in) const {
-    const std::size_t u = kLayout.texture;
-    const std::size_t v = kLayout.texture + 1;
+  glm::vec4 texel(const Texture& of, const Sampler& by, const Fragment<N>& in) const {
+    const std::size_t u = SurfaceLayout::kTexture, v = u + 1;
     const float lod = level_of_detail(of, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
     return sample(of, by, {in.varyings[u], in.varyings[v]}, lod, profile);
   }

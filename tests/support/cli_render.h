@@ -57,4 +57,11 @@ inline nlohmann::json rendered_json(const std::string& scene, Words more) {
   return nlohmann::json::parse(run.out);
 }
 
+/// What a report's page has to draw.
+inline nlohmann::json report_of_page(const std::string& page) {
+  const std::string start = "id=\"results\">";
+  const std::size_t place = page.find(start) + start.size();
+  return nlohmann::json::parse(page.substr(place, page.find("</script>", place) - place));
+}
+
 }  // namespace softfocus

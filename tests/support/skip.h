@@ -13,8 +13,9 @@
 
 namespace softfocus {
 
-/// `needed` is one of driver, gnuplot, embree, numpy, terminal, full-device, other-user; empty if
-/// it cannot be asked for, as what another build tests. `why` is for a person.
+/// `needed` is one of driver, embree, numpy, groff, bash, zsh, fish, terminal,
+/// full-device, other-user; empty if it cannot be asked for, as what another build tests. `why` is
+/// for a person.
 inline void skip(const std::string& needed, std::string_view why) {
   const char* const set = std::getenv("SOFTFOCUS_REQUIRE");
   const std::string required = set != nullptr ? set : "";

@@ -6,7 +6,7 @@
 #
 # Needs slurmctld, slurmd, slurm-client and munge; any user can run it.
 
-set -u
+set -uo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 program=$(realpath "${1:-build/softfocus}")
 farm=$PWD/tools/farm

@@ -13,10 +13,10 @@
 #include "tools/bench/paired_runs.h"
 #include "tools/bench/repeated_on_gl.h"
 #include "tools/bench/report.h"
-#include "tools/bench/timing.h"
 #include "tools/bench/work.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/timing.h"
 
 namespace softfocus {
 namespace {

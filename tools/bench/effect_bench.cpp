@@ -11,9 +11,9 @@
 #include "scenes/draw/velocity.h"
 #include "tools/bench/effects_repeated_on_gl.h"
 #include "tools/bench/repeated_frame.h"
-#include "tools/bench/timing.h"
 #include "tools/cli/machine.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/timing.h"
 #include "tools/files/json.h"
 #include "tools/options/effect_options.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/bench/timing.h"
 #include "tools/cli/machine.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/timing.h"
 #include "tools/files/json.h"
 
 namespace softfocus {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "tools/bench/timing.h"
+#include "tools/cli/timing.h"
 
 namespace softfocus {
 namespace {

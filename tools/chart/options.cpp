@@ -1,10 +1,11 @@
 #include "tools/chart/options.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 
 #include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
-#include "tools/chart/scene_names.h"
 #include "tools/chart/settings.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/errors.h"
@@ -42,7 +43,62 @@ std::vector<std::string> methods_of_all_subjects() {
   return names;
 }
 
+constexpr std::string_view kRandom = "random:", kTo = "..";
+
+/// More scenes than days have minutes are a slip of the finger.
+constexpr std::uint64_t kMostSeeds = 1000;
+
+struct SeedRange {
+  std::uint64_t first;
+  std::uint64_t last;
+};
+
+std::optional<std::uint64_t> seed_of(std::string_view text) {
+  std::uint64_t seed = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, seed);
+  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
+  return seed;
+}
+
+/// The range of "random:8..11"; nullopt for a name that has no "..".
+std::optional<SeedRange> seed_range(std::string_view name) {
+  if (!name.starts_with(kRandom)) return std::nullopt;
+  const std::string_view seeds = name.substr(kRandom.size());
+  const std::size_t to = seeds.find(kTo);
+  if (to == seeds.npos) return std::nullopt;
+  const auto first = seed_of(seeds.substr(0, to)), last = seed_of(seeds.substr(to + kTo.size()));
+  if (!first || !last || *last < *first || *last - *first >= kMostSeeds) {
+    throw UsageError("--scenes '" + std::string{name} +
+                     "': give a range of at most 1000 seeds, such as random:64..127");
+  }
+  return SeedRange{*first, *last};
+}
+
 }  // namespace
+
+std::vector<std::string> scene_names(const std::string& text) {
+  std::vector<std::string> names;
+  for (const std::string& name : listed_names("--scenes", text)) {
+    const auto range = seed_range(name);
+    if (!range) {
+      add_once("--scenes", text, name, names);
+      continue;
+    }
+    for (std::uint64_t i = 0; i <= range->last - range->first; ++i) {
+      std::string seed{kRandom};
+      seed += std::to_string(range->first + i);
+      add_once("--scenes", text, seed, names);
+    }
+  }
+  return names;
+}
+
+std::string name_for_files(std::string_view scene) {
+  std::string name{scene};
+  std::replace(name.begin(), name.end(), ':', '-');
+  return name;
+}
 
 void add_chart_options(CLI::App& parser, ChartOptions& options) {
   begin_group(parser, "Output");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/chart/subject.h"
@@ -39,5 +40,12 @@ void add_chart_options(CLI::App& parser, ChartOptions& options);
 /// Settles what was not given. Throws UsageError if memory is too small for the size, or if no
 /// scene is found.
 void complete(ChartOptions& options);
+
+/// The names of "a,b,c". "random:8..11" stands for random:8, random:9, random:10 and random:11.
+/// Throws UsageError for an empty name, a name given twice, or a malformed range.
+std::vector<std::string> scene_names(const std::string& text);
+
+/// A scene's name as the name of a file: "random-8", for not every system has ':' in names.
+std::string name_for_files(std::string_view scene);
 
 }  // namespace softfocus

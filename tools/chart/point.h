@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -35,6 +36,21 @@ struct ChartErrors {
 
 /// Needs pictures measured with HDR-FLIP.
 ChartErrors chart_errors(const MeasuredPictures& measured);
+
+/// One of the errors, as a member of JSON and as a column.
+struct ChartMeasure {
+  std::string key;    ///< "flip_near"
+  std::string title;  ///< "near"
+  std::string group;  ///< "FLIP"; empty: of no group
+  int places;         ///< decimal ones
+  std::function<double&(ChartErrors&)> of;
+  bool is_own = false;  ///< of some subjects alone: NaN of others
+
+  double value(ChartErrors errors) const { return of(errors); }
+};
+
+/// All, in the order of members and columns.
+const std::vector<ChartMeasure>& chart_measures();
 
 /// One of the errors by which contenders are ranked.
 struct RankedError {

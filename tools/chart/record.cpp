@@ -1,175 +1,171 @@
 #include "tools/chart/record.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "scenes/files/file_bytes.h"
+#include "scenes/load/load_scene.h"
+#include "tools/chart/measure.h"
+#include "tools/cli/machine.h"
+#include "tools/cli/option_values.h"
 #include "tools/golden/hashes.h"
-#include "tools/report/report_files.h"
+#include "tools/report/kept_results.h"
+#include "tools/report/specimen.h"
 
 namespace softfocus {
 namespace {
 
-double number_or(const Json& json, double otherwise) {
-  return json.is_null() ? otherwise : json.number();
+/// Enough to show every edge from several sides, and done at once.
+constexpr int kProbeSamples = 8;
+
+constexpr std::size_t kLargestSceneFile = std::size_t{1} << 30;
+
+std::uint64_t hash_bytes(std::string_view bytes) {
+  Hash hash;
+  add_text(hash, bytes);
+  return hash.value;
 }
 
-/// One FLIP of the whole and by region, in JSON under `name`.
-struct FlipMembers {
-  std::string name;
-  double ChartErrors::*whole;
-  std::array<double, kRegions> ChartErrors::*by_region;
-};
-const std::array<FlipMembers, 2>& flips() {
-  static const std::array<FlipMembers, 2> members{
-      FlipMembers{"flip", &ChartErrors::flip, &ChartErrors::flip_by_region},
-      FlipMembers{"hdr_flip", &ChartErrors::hdr_flip, &ChartErrors::hdr_flip_by_region}};
-  return members;
+/// Of a point in its file.
+constexpr const char* kPoint = "point";
+
+/// What is kept of an entry under a hash, if `read` can make something of it.
+template <class Read>
+bool read_kept(const KeptResults& kept, const char* entry, const ChartPoint& point,
+               const char* name, const Read& read) {
+  const Json* const json = kept.find(entry, hash_text(point.picture_hash), name);
+  try {
+    if (json != nullptr) read(*json);
+    return json != nullptr;
+  } catch (const JsonError&) {
+    return false;  // damaged: it is measured again
+  }
 }
 
-/// Errors that only some subjects have.
-struct OwnError {
-  const char* key;
-  double ChartErrors::*value;
-};
-constexpr std::array kOwnErrors{OwnError{"wrong_pixels", &ChartErrors::wrong_pixels},
-                                OwnError{"outline_px", &ChartErrors::outline_px},
-                                OwnError{"renewals", &ChartErrors::renewals},
-                                OwnError{"megabytes", &ChartErrors::megabytes}};
-
-std::string region_key(const FlipMembers& of, Region region) {
-  return of.name + "_" + std::string{region_name(region)};
-}
-
-/// What a file keeps under that key for the picture of that point; nullopt for another.
-std::optional<Json> kept_for(const ChartPoint& point, const std::string& key,
-                             const std::filesystem::path& file) {
-  auto json = read_json(file);
-  if (!json || json->at("key").text() != key) return std::nullopt;
-  if (json->at("picture_hash").text() != hash_text(point.picture_hash)) return std::nullopt;
-  return json;
+void keep_one(const ChartPoint& point, const char* name, Json value, const std::string& key,
+              const std::filesystem::path& file) {
+  KeptResults kept{file, key};
+  kept.keep(kPoint, hash_text(point.picture_hash), name, std::move(value));
+  kept.save();
 }
 
 }  // namespace
 
+std::string truth_key(const ChartScene& scene, const std::string& file_bytes, int samples,
+                      std::uint64_t measures, ThreadPool& pool) {
+  const Image probe = accumulation(accumulation_input(scene, kProbeSamples), pool).picture;
+  const ThinLens& lens = scene.lens;
+  return "softfocus " SOFTFOCUS_VERSION "; of " + std::string{scene.subject->name} + "; scene " +
+         scene.scene.name + "; file " + hash_text(hash_bytes(file_bytes)) + "; size " +
+         size_text({scene.pinhole.width, scene.pinhole.height}) + "; frame " +
+         exact_number(scene.frame) + "; focus " + exact_number(lens.focus_m) + " m; focal length " +
+         exact_number(lens.focal_length_mm) + " mm; f/" + exact_number(lens.f_number) +
+         "; aperture " + exact_number(scene.aperture_m) + " m; jitter " +
+         std::to_string(scene.sampling.jitter) + "; shutter " +
+         exact_number(scene.sampling.shutter_frames) + "; samples " + std::to_string(samples) +
+         "; pinhole " + hash_text(hash_image(scene.pinhole)) + "; first samples " +
+         hash_text(hash_image(probe)) + "; measures " + hash_text(measures);
+}
+
+std::string point_key(const std::string& truth_key, const Image& truth) {
+  return truth_key + "; truth " + hash_text(hash_image(truth)) + "; pictures of " +
+         std::to_string(kPagePicturePx);
+}
+
+std::string machine_key(const PoolOptions& pool) {
+  return cpu_name().value_or("a CPU without a name") + "; " + compiler_name() + "; threads " +
+         std::to_string(pool.threads) + "; " + std::string{isa_name(pool.isa)};
+}
+
+std::string scene_file_bytes(const std::string& scene,
+                             const std::vector<std::filesystem::path>& from_user) {
+  if (is_random_scene(scene)) return scene;
+  const auto listings = list_scenes(scene_search_path(from_user));
+  const auto found = std::find_if(listings.begin(), listings.end(),
+                                  [&](const SceneListing& of) { return of.name == scene; });
+  const std::filesystem::path file =
+      found == listings.end() ? std::filesystem::path{scene} : found->file;
+  return read_file_bytes(file, kLargestSceneFile);
+}
+
 Json errors_json(const ChartErrors& errors) {
-  Json json{{"psnr_db", number_or_null(errors.psnr_db)}, {"ssim", errors.ssim}};
-  for (const FlipMembers& of : flips()) {
-    json[of.name] = errors.*of.whole;
-    for (const Region region : kAllRegions) {
-      json[region_key(of, region)] =
-          number_or_null((errors.*of.by_region)[static_cast<std::size_t>(region)]);
-    }
-  }
-  for (const OwnError& of : kOwnErrors) {
-    if (!std::isnan(errors.*of.value)) json[of.key] = errors.*of.value;
+  Json json = Json::object();
+  for (const ChartMeasure& measure : chart_measures()) {
+    const double value = measure.value(errors);
+    if (!measure.is_own || !std::isnan(value)) json[measure.key] = number_or_null(value);
   }
   return json;
 }
 
 ChartErrors errors_of(const Json& json) {
   ChartErrors errors;
-  errors.psnr_db = number_or(json.at("psnr_db"), std::numeric_limits<double>::infinity());
-  errors.ssim = json.at("ssim").number();
-  for (const FlipMembers& of : flips()) {
-    errors.*of.whole = json.at(of.name).number();
-    for (const Region region : kAllRegions) {
-      (errors.*of.by_region)[static_cast<std::size_t>(region)] =
-          number_or(json.at(region_key(of, region)), std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-  for (const OwnError& of : kOwnErrors) {
-    if (const Json* own = json.find(of.key)) errors.*of.value = own->number();
+  for (const ChartMeasure& measure : chart_measures()) {
+    const Json* const value = measure.is_own ? json.find(measure.key) : &json.at(measure.key);
+    if (value == nullptr) continue;
+    double& error = measure.of(errors);
+    const bool is_psnr = &error == &errors.psnr_db;  // infinite of equal pictures
+    error = !value->is_null() ? value->number()
+            : is_psnr         ? std::numeric_limits<double>::infinity()
+                              : std::numeric_limits<double>::quiet_NaN();
   }
   return errors;
 }
 
 void save_errors(const ChartPoint& point, const std::string& key,
                  const std::filesystem::path& file) {
-  write_json(file, {{"key", key},
-                    {"picture_hash", hash_text(point.picture_hash)},
-                    {"errors", errors_json(point.errors)}});
+  keep_one(point, "errors", errors_json(point.errors), key, file);
 }
 
 bool load_errors(ChartPoint& point, const std::string& key, const std::filesystem::path& file) {
-  try {
-    const auto json = kept_for(point, key, file);
-    if (json) point.errors = errors_of(json->at("errors"));
-    return json.has_value();
-  } catch (const JsonError&) {
-    return false;  // damaged: it is measured again
-  }
+  return read_kept(KeptResults{file, key}, kPoint, point, "errors",
+                   [&](const Json& json) { point.errors = errors_of(json); });
 }
 
 void save_pictures(const ChartPoint& point, const std::string& key,
                    const std::filesystem::path& file) {
-  Json json{{"key", key},
-            {"picture_hash", hash_text(point.picture_hash)},
-            {"worst", {point.worst.x, point.worst.y, point.worst.side}}};
-  for (const KeptPicture& of : kKeptPictures) json["png"][of.name] = point.pictures.*of.picture;
-  write_json(file, json);
+  Json json = Json::object();
+  json["place"] = {point.worst.x, point.worst.y, point.worst.side};
+  for (const KeptPicture& of : kKeptPictures) json[of.name] = point.pictures.*of.picture;
+  keep_one(point, "pictures", std::move(json), key, file);
 }
 
 bool load_pictures(ChartPoint& point, const std::string& key, const std::filesystem::path& file) {
-  try {
-    const auto json = kept_for(point, key, file);
-    if (!json) return false;
-    const Json& worst = json->at("worst");
-    const auto whole = [&](std::size_t i) { return static_cast<int>(worst.at(i).integer()); };
+  return read_kept(KeptResults{file, key}, kPoint, point, "pictures", [&](const Json& json) {
+    const Json& place = json.at("place");
+    const auto whole = [&](std::size_t i) { return static_cast<int>(place.at(i).integer()); };
+    const Crop crop{whole(0), whole(1), whole(2)};
     ChartPictures pictures;
-    for (const KeptPicture& of : kKeptPictures) {
-      pictures.*of.picture = json->at("png").at(of.name).text();
-    }
-    point.worst = {whole(0), whole(1), whole(2)};
+    for (const KeptPicture& of : kKeptPictures) pictures.*of.picture = json.at(of.name).text();
+    point.worst = crop;
     point.pictures = std::move(pictures);
-    return true;
-  } catch (const JsonError&) {
-    return false;  // damaged: they are made again
-  }
-}
-
-void save_truth_picture(const std::string& picture, const std::string& key,
-                        const std::filesystem::path& file) {
-  write_json(file, {{"key", key}, {"picture", picture}});
-}
-
-std::string load_truth_picture(const std::string& key, const std::filesystem::path& file) {
-  const auto json = read_json(file);
-  try {
-    return json && json->at("key").text() == key ? json->at("picture").text() : "";
-  } catch (const JsonError&) {
-    return "";  // damaged: it is made again
-  }
+  });
 }
 
 void save_times(const std::vector<ChartPoint>& points, const std::string& key,
                 const std::filesystem::path& file) {
-  Json json{{"key", key}, {"times", Json::object()}};
+  KeptResults kept{file, key};
   for (const ChartPoint& point : points) {
     if (point.times.frame_ms.empty()) continue;
-    json["times"][entry_id(point.entry)] = {{"picture_hash", hash_text(point.picture_hash)},
-                                            {"frame_ms", point.times.frame_ms},
-                                            {"filter_ms", point.times.filter_ms}};
+    const std::string id = entry_id(point.entry), hash = hash_text(point.picture_hash);
+    kept.keep(id, hash, "frame_ms", point.times.frame_ms);
+    kept.keep(id, hash, "filter_ms", point.times.filter_ms);
   }
-  write_json(file, json);
+  kept.save();
 }
 
 void load_times(std::vector<ChartPoint>& points, const std::string& key,
                 const std::filesystem::path& file) {
-  const auto json = read_json(file);
-  if (!json) return;
-  try {
-    if (json->at("key").text() != key) return;
-    const Json& kept = json->at("times");
-    for (ChartPoint& point : points) {
-      const Json* found = kept.find(entry_id(point.entry));
-      if (found == nullptr) continue;
-      if (found->at("picture_hash").text() != hash_text(point.picture_hash)) continue;
-      ChartTimes times{found->at("frame_ms").numbers(), found->at("filter_ms").numbers()};
+  const KeptResults kept{file, key};
+  for (ChartPoint& point : points) {
+    const std::string id = entry_id(point.entry);
+    ChartTimes times;
+    const auto read = [&](const char* name, std::vector<double>& ms) {
+      return read_kept(kept, id.c_str(), point, name,
+                       [&](const Json& json) { ms = json.numbers(); });
+    };
+    if (read("frame_ms", times.frame_ms) && read("filter_ms", times.filter_ms)) {
       point.times = std::move(times);
     }
-  } catch (const JsonError&) {
-    return;  // damaged: what is missing is timed again
   }
 }
 

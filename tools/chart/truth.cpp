@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cassert>
 
-#include "tools/chart/key.h"
 #include "tools/chart/record.h"
 #include "tools/cli/errors.h"
-#include "tools/files/json.h"
 #include "tools/files/whole_file.h"
-#include "tools/golden/hashes.h"
 #include "tools/pictures/image_file.h"
-#include "tools/report/report_files.h"
+#include "tools/report/kept_results.h"
 
 namespace softfocus {
 namespace {
+
+constexpr const char* kTruthEntry = "truth";
 
 std::filesystem::path with_ending(const std::filesystem::path& file, const char* ending) {
   return file.string() + ending;
@@ -55,26 +54,35 @@ void save_truth(const ChartTruth& truth, const std::string& key,
   WholeFile picture{with_ending(file, ".npy")};
   picture.write(encode_npy(truth.picture));
   picture.commit();
-  write_json(with_ending(file, ".json"), {{"key", key},
-                                          {"picture_hash", hash_text(hash_image(truth.picture))},
-                                          {"noise_floor", errors_json(truth.noise_floor)}});
+  KeptResults kept{with_ending(file, ".json"), key};
+  kept.keep(kTruthEntry, hashes_of({&truth.picture, 1}), "noise_floor",
+            errors_json(truth.noise_floor));
+  kept.save();
 }
 
 std::optional<ChartTruth> load_truth(const std::string& key, const std::filesystem::path& file) {
-  const auto json = read_json(with_ending(file, ".json"));
-  if (!json) return std::nullopt;
   try {
-    if (json->at("key").text() != key) return std::nullopt;
-    ChartTruth truth{read_image_file(with_ending(file, ".npy")).image,
-                     errors_of(json->at("noise_floor"))};
-    if (hash_text(hash_image(truth.picture)) != json->at("picture_hash").text()) {
-      return std::nullopt;
-    }
+    ChartTruth truth{read_image_file(with_ending(file, ".npy")).image, {}};
+    const KeptResults kept{with_ending(file, ".json"), key};
+    const Json* const noise = kept.find(kTruthEntry, hashes_of({&truth.picture, 1}), "noise_floor");
+    if (noise == nullptr) return std::nullopt;
+    truth.noise_floor = errors_of(*noise);
     return truth;
   } catch (const FileError&) {
   } catch (const JsonError&) {
   }
   return std::nullopt;  // damaged: it is made again
+}
+
+void save_truth_picture(const std::string& picture, const std::string& key,
+                        const std::filesystem::path& file) {
+  KeptResults kept{file, key};
+  kept.keep(kTruthEntry, "", "picture", picture);
+  kept.save();
+}
+
+std::string load_truth_picture(const std::string& key, const std::filesystem::path& file) {
+  return KeptResults{file, key}.text(kTruthEntry, "", "picture").value_or("");
 }
 
 }  // namespace softfocus

@@ -31,4 +31,9 @@ void save_truth(const ChartTruth& truth, const std::string& key, const std::file
 /// What was kept, if it was under that key and is whole.
 std::optional<ChartTruth> load_truth(const std::string& key, const std::filesystem::path& file);
 
+/// The truth reduced for the page, under the key of its scene's points; empty if none is kept.
+void save_truth_picture(const std::string& picture, const std::string& key,
+                        const std::filesystem::path& file);
+std::string load_truth_picture(const std::string& key, const std::filesystem::path& file);
+
 }  // namespace softfocus

@@ -4,16 +4,13 @@
 
 #include "tools/chart/contenders/runner.h"
 #include "tools/chart/front.h"
-#include "tools/chart/key.h"
 #include "tools/chart/measure.h"
-#include "tools/chart/pictures.h"
 #include "tools/chart/record.h"
-#include "tools/chart/scene_names.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/time_left.h"
 #include "tools/golden/hashes.h"
-#include "tools/report/report_files.h"
+#include "tools/report/report.h"
 
 namespace softfocus {
 namespace {
@@ -249,7 +246,7 @@ std::vector<ChartPoint*> without_pictures(Work& work, ChartPanel& panel,
   std::vector<ChartPoint*> missing;
   const std::filesystem::path folder = work.folder_of(panel.scene);
   for (ChartPoint* point : wanted) {
-    const std::filesystem::path file = folder / (entry_id(point->entry) + ".pictures.json");
+    const std::filesystem::path file = folder / (entry_id(point->entry) + ".json");
     if (work.options.again || !load_pictures(*point, panel.key, file)) {
       missing.push_back(point);
     } else {
@@ -277,7 +274,7 @@ void add_pictures(Work& work, ChartPanel& panel, const std::vector<ChartPoint*>&
     work.show(panel.scene + ": pictures of " + point->entry.method);
     runner.run(point->entry);
     add_point_pictures(*point, runner.result(), truth.picture, work.pool);
-    save_pictures(*point, panel.key, folder / (entry_id(point->entry) + ".pictures.json"));
+    save_pictures(*point, panel.key, folder / (entry_id(point->entry) + ".json"));
     work.left.done(kPictures, 1);
   }
 }

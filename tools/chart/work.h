@@ -2,8 +2,7 @@
 // All that `chart` measures, kept in DIR/cache as it goes.
 //
 //   cache/SCENE.truth.npy, .json      the ground truth, and its noise
-//   cache/SCENE/ENTRY.json            errors of a contender
-//   cache/SCENE/ENTRY.pictures.json   its pictures, if the page shows them
+//   cache/SCENE/ENTRY.json            errors of a contender; its pictures, if the page shows them
 //   cache/SCENE/truth.picture.json    the truth for the page
 //   cache/SCENE/times.json            the times of all, written after each round
 

@@ -39,6 +39,33 @@ void refuse_name(std::string_view option, const std::string& text,
                    did_you_mean(text, there));
 }
 
+void add_once(const std::string& option, const std::string& text, const std::string& name,
+              std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) {
+    throw UsageError(option + " '" + text + "': '" + name + "' stands there twice");
+  }
+  names.push_back(name);
+}
+
+std::vector<std::string> listed_names(const std::string& option, const std::string& text,
+                                      const std::vector<std::string>& known) {
+  std::vector<std::string> names;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    const std::string name = text.substr(start, end - start);
+    start = end + 1;
+    if (name.empty()) {
+      throw UsageError(std::string{option}.append(" '").append(text).append(
+          "': give names with a comma between two"));
+    }
+    add_once(option, text, name, names);
+    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end()) {
+      refuse_name(option, name, known);
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> known_scenes() { return names_in(list_scenes(scene_search_path({}))); }
 
 void add_scene_argument(CLI::App& parser, std::string& scene) {

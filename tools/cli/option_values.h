@@ -77,6 +77,15 @@ std::string exact_number(double value);
 [[noreturn]] void refuse_name(std::string_view option, const std::string& text,
                               const std::vector<std::string>& there, const std::string& also = "");
 
+/// Adds a name. Throws UsageError if it is there already.
+void add_once(const std::string& option, const std::string& text, const std::string& name,
+              std::vector<std::string>& names);
+
+/// The parts of "a,b,c". Throws UsageError for an empty or a repeated one, and for one that is not
+/// among those `known`, if there are any.
+std::vector<std::string> listed_names(const std::string& option, const std::string& text,
+                                      const std::vector<std::string>& known = {});
+
 /// The names of things that have one.
 template <class Range>
 std::vector<std::string> names_in(const Range& things) {

@@ -34,20 +34,12 @@ namespace softfocus {
 namespace {
 
 #ifdef _WIN32
-constexpr const char* kDropped = " >NUL 2>NUL";
-std::FILE* open_pipe(const char* command) { return ::_popen(command, "wb"); }
-int close_pipe(std::FILE* pipe) { return ::_pclose(pipe); }
-
 int terminal_columns(int descriptor) {
   CONSOLE_SCREEN_BUFFER_INFO info{};
   const auto handle = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
   return ::GetConsoleScreenBufferInfo(handle, &info) ? info.dwSize.X : 0;
 }
 #else
-constexpr const char* kDropped = " >/dev/null 2>&1";
-std::FILE* open_pipe(const char* command) { return ::popen(command, "w"); }
-int close_pipe(std::FILE* pipe) { return ::pclose(pipe); }
-
 /// 0 if it is no terminal.
 int terminal_columns(int descriptor) {
   winsize size{};
@@ -66,14 +58,6 @@ int columns_of(int descriptor) {
   const long said = given != nullptr ? std::strtol(given, nullptr, 10) : 0;
   const long columns = said > 0 ? said : terminal_columns(descriptor);
   return static_cast<int>(std::min<long>(columns > 0 ? columns : kUsualColumns, kMostColumns));
-}
-
-bool run_with_input(const std::string& program, std::string_view input, Said said) {
-  const std::string command = program + (said == Said::dropped ? kDropped : "");
-  std::FILE* const pipe = open_pipe(command.c_str());
-  if (pipe == nullptr) return false;
-  const bool all = std::fwrite(input.data(), 1, input.size(), pipe) == input.size();
-  return close_pipe(pipe) == 0 && all;
 }
 
 #ifdef _WIN32

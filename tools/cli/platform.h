@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
 namespace softfocus {
 
@@ -76,12 +75,5 @@ bool sync_file(int descriptor);
 
 /// Closes a descriptor; false with errno set if what was written is lost.
 bool close_file(int descriptor);
-
-/// Whether a program's output and errors are shown.
-enum class Said { shown, dropped };
-
-/// Runs a program of the system with that text as standard input and waits for its end. False if
-/// it cannot be run, or ends with another status than 0. `program` is one word without blanks.
-bool run_with_input(const std::string& program, std::string_view input, Said said);
 
 }  // namespace softfocus

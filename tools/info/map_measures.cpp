@@ -1,4 +1,4 @@
-#include "tools/info/map_measures.h"
+#include "tools/info/shadow_measures.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,40 +12,11 @@
 #include "scenes/draw/scene_maps.h"
 #include "scenes/shadows/maps/draw_map_side.h"
 #include "scenes/shadows/maps/map_errors.h"
+#include "tools/cli/timing.h"
 #include "tools/gl/maps_repeated_on_gl.h"
-#include "tools/info/time_in_turn.h"
 
 namespace softfocus {
 namespace {
-
-// A scene drawn by itself: its shadows, and time after time the same frame.
-struct Drawing {
-  Drawing(const Scene& of, const MapMeasure& measure, ThreadPool& with)
-      : scene(of),
-        camera(camera_matrices(of.camera, measure.frame, measure.size.width, measure.size.height)),
-        frame(measure.frame),
-        picture(make_image(Format::rgba16f, measure.size.width, measure.size.height)),
-        pool(with),
-        prepared(prepare_scene(scene, Profile{}, with)) {
-    draw();
-  }
-
-  void draw() { draw_scene(prepared, camera, frame, picture, pool); }
-
-  void draw_anew() {
-    prepared.shadows->frame.reset();
-    draw();
-  }
-
-  const SceneShadows& shadows() const { return *prepared.shadows; }
-
-  Scene scene;
-  CameraMatrices camera;
-  double frame;
-  Image picture;
-  ThreadPool& pool;
-  PreparedScene prepared;
-};
 
 Scene with_shadows(Scene scene, ShadowKind kind) {
   set_shadows(scene, kind);
@@ -60,12 +31,8 @@ Scene with_settings(Scene scene, const ShadowMapSettings& settings) {
 // Of all lights of a drawing, which has maps or projected shadows.
 class LightTruths {
  public:
-  LightTruths(const Drawing& drawing, ThreadPool& pool)
-      : facets_(drawing.shadows().facets),
-        view_{multiply(drawing.camera.eye_to_clip, drawing.camera.world_to_eye),
-              drawing.picture.width,
-              drawing.picture.height,
-              {}} {
+  LightTruths(const RepeatedShadows& drawing, ThreadPool& pool)
+      : facets_(drawing.shadows().facets), view_(drawing.view()) {
     const SceneShadows& shadows = drawing.shadows();
     lights_.reserve(shadows.lights.size());
     for (const std::size_t number : shadows.lights) {
@@ -78,7 +45,7 @@ class LightTruths {
   LightTruths(const LightTruths&) = delete;
   LightTruths& operator=(const LightTruths&) = delete;
 
-  MapErrors errors(const Drawing& drawing, ThreadPool& pool) const {
+  MapErrors errors(const RepeatedShadows& drawing, ThreadPool& pool) const {
     const SceneShadows& shadows = drawing.shadows();
     MapErrors sum;
     for (std::size_t i = 0; i < truths_.size(); ++i) {
@@ -110,8 +77,6 @@ struct TableRow {
   ShadowMapSettings settings;
 };
 
-std::string number_text(double value) { return short_number(value); }
-
 std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
   std::vector<TableRow> rows;
   const auto add = [&](std::string name, const std::function<void(ShadowMapSettings&)>& change) {
@@ -123,10 +88,10 @@ std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
     add("size=" + std::to_string(size), [&](ShadowMapSettings& map) { map.size = size; });
   }
   for (const double bias : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0}) {
-    add("bias=" + number_text(bias), [&](ShadowMapSettings& map) { map.bias = bias; });
+    add("bias=" + short_number(bias), [&](ShadowMapSettings& map) { map.bias = bias; });
   }
   for (const double bias : {0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0}) {
-    add("slope-bias=" + number_text(bias), [&](ShadowMapSettings& map) { map.slope_bias = bias; });
+    add("slope-bias=" + short_number(bias), [&](ShadowMapSettings& map) { map.slope_bias = bias; });
   }
   add("no-bias", [](ShadowMapSettings& map) { map.bias = map.slope_bias = 0.0; });
   for (int kernel = 1; kernel <= kMostMapKernel; kernel += 2) {
@@ -147,11 +112,6 @@ std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
     });
   }
   return rows;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 // The sides of all maps, from casters that are cut already.
@@ -206,25 +166,20 @@ void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int run
       }
     }
   }
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < times[0].ms.size(); ++i) {
-    ratios.push_back(times[1].ms[i] / times[0].ms[i]);
-  }
-  std::sort(ratios.begin(), ratios.end());
   print_times(times);
-  std::printf("%-26s %9.2f     (%.2f to %.2f); %zu of %zu texels differ; %s\n", "ratio",
-              ratios[ratios.size() / 2], ratios.front(), ratios.back(), differ, texels,
-              on_gl.renderer().c_str());
+  print_ratio(times, std::to_string(differ) + " of " + std::to_string(texels) + " texels differ; " +
+                         on_gl.renderer());
 }
 
 }  // namespace
 
-void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
+void measure_maps(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
   ThreadPool one{1, pool.isa()};
-  Drawing mapped{measure.scene, measure, pool};
-  Drawing projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
-  Drawing plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
-  SceneShadows& shadows = *mapped.prepared.shadows;
+  RepeatedShadows mapped{measure.scene, measure, pool};
+  RepeatedShadows projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  RepeatedShadows plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
+  for (RepeatedShadows* of : {&mapped, &projected, &plain}) of->draw();
+  SceneShadows& shadows = mapped.shadows();
   std::printf("%s: %zu triangles, %zu lights with shadow maps (%.1f MB)\n",
               measure.scene.name.c_str(), shadows.facets.facets.size(), shadows.lights.size(),
               static_cast<double>(bytes_of(shadows)) / 1e6);
@@ -257,21 +212,24 @@ void measure_maps(const MapMeasure& measure, bool check, ThreadPool& pool) {
       errors.peter_panning, errors.missed_share);
 }
 
-void print_map_table(const MapMeasure& measure, ThreadPool& pool) {
-  Drawing projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+void print_map_table(const ShadowMeasure& measure, ThreadPool& pool) {
+  RepeatedShadows projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
+  projected.draw();
   const LightTruths truths{projected, pool};
   std::printf("%-22s %9s %9s %9s %9s %9s %9s %9s\n", measure.scene.name.c_str(), "ms", "wrong",
               "aliasing", "acne", "peter-pan", "near-edge", "missed");
   const ShadowMapSettings usual = measure.scene.lights[0].map;
   for (const TableRow& row : table_rows(usual)) {
-    Drawing mapped{with_settings(measure.scene, row.settings), measure, pool};
+    RepeatedShadows mapped{with_settings(measure.scene, row.settings), measure, pool};
+    mapped.draw();
     std::vector<Milliseconds> times{{"mapped"}, {"projected"}};
     time_in_turn(
         times, measure.runs, [&] { mapped.draw_anew(); }, [&] { projected.draw_anew(); });
     const MapErrors errors = truths.errors(mapped, pool);
     std::printf("%-22s %9.1f %9zu %9zu %9zu %9zu %9zu %9.0f   projected %.1f ms\n",
-                row.name.c_str(), median(times[0].ms), errors.wrong(), errors.aliasing, errors.acne,
-                errors.peter_panning, errors.near_edge, errors.missed_share, median(times[1].ms));
+                row.name.c_str(), spread_of(times[0].ms).median, errors.wrong(), errors.aliasing,
+                errors.acne, errors.peter_panning, errors.near_edge, errors.missed_share,
+                spread_of(times[1].ms).median);
     std::fflush(stdout);
   }
 }

@@ -20,11 +20,9 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/timing.h"
 #include "tools/gl/shadows_repeated_on_gl.h"
-#include "tools/info/map_measures.h"
-#include "tools/info/soft_measures.h"
-#include "tools/info/terminator_measures.h"
-#include "tools/info/time_in_turn.h"
+#include "tools/info/shadow_measures.h"
 #include "tools/options/light_options.h"
 #include "tools/options/run_options.h"
 
@@ -91,24 +89,10 @@ void print_volumes(const SceneShadows& shadows) {
               shadows.volume_rays);
 }
 
-void check(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
-           const CameraMatrices& camera, const PictureSize& size, ThreadPool& pool) {
-  const ShadowErrors errors = shadow_errors(
-      shadows.facets, lights, shadows.seen[0], shadows.masks[0],
-      {multiply(camera.eye_to_clip, camera.world_to_eye), size.width, size.height, Profile{}},
-      camera.eye, true, pool);
-  std::printf(
-      "pixels times lights: %zu seen, %zu in shadow, %zu within 1/256 pixel of an edge, "
-      "%zu wrong\n",
-      errors.seen, errors.in_shadow, errors.near_edge, errors.wrong);
-}
-
 void check_embree(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
-                  const CameraMatrices& camera, const PictureSize& size, ThreadPool& pool) {
-  const EmbreeDifferences found = embree_differences(
-      shadows.facets, lights, shadows.seen[0],
-      {multiply(camera.eye_to_clip, camera.world_to_eye), size.width, size.height, Profile{}},
-      camera.eye, pool);
+                  const ShadowView& view, glm::dvec3 eye, ThreadPool& pool) {
+  const EmbreeDifferences found =
+      embree_differences(shadows.facets, lights, shadows.seen[0], view, eye, pool);
   std::size_t all = 0;
   for (const std::size_t of : found.differ) all += of;
   std::printf("Embree's rays, in binary32: %zu of %zu differ from ours, in binary64:", all,
@@ -139,15 +123,9 @@ void time_beside(const Driver& driver, const SceneShadows& shadows, const Shadow
   const std::vector<std::uint8_t> theirs = on_gl.mask(draws.dark);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) differ += mask[i] != theirs[i];
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < times[0].ms.size(); ++i) {
-    ratios.push_back(times[1].ms[i] / times[0].ms[i]);
-  }
-  std::sort(ratios.begin(), ratios.end());
   print_times(times);
-  std::printf("%-26s %9.2f     (%.2f to %.2f); %zu of %zu pixels differ; %s\n", "ratio",
-              ratios[ratios.size() / 2], ratios.front(), ratios.back(), differ, mask.size(),
-              on_gl.renderer().c_str());
+  print_ratio(times, std::to_string(differ) + " of " + std::to_string(mask.size()) +
+                         " pixels differ; " + on_gl.renderer());
 }
 
 void time_projection(const Facets& facets, const std::vector<ShadowLight>& lights, int runs,
@@ -233,8 +211,8 @@ int measure_shadows(const ShadowsOptions& options) {
         "--vs, --map-table: time the shadows of lights without a size; "
         "--light-radius 0 or --light-angle 0 would be right");
   }
+  const ShadowMeasure measure{scene, options.size, options.frame, options.runs, options.versus};
   if (has_soft_shadows(scene)) {
-    const SoftMeasure measure{scene, options.size, options.frame, options.runs};
     if (options.soft_table) {
       print_soft_table(measure, pool);
     } else {
@@ -244,7 +222,6 @@ int measure_shadows(const ShadowsOptions& options) {
   }
   if (options.map_table && !has_map) throw UsageError("--map-table: give --shadows map too");
   if (has_map) {
-    const MapMeasure measure{scene, options.size, options.frame, options.runs, options.versus};
     if (options.map_table) {
       print_map_table(measure, pool);
     } else {
@@ -252,19 +229,16 @@ int measure_shadows(const ShadowsOptions& options) {
     }
     return kDone;
   }
-  const auto [width, height] = options.size;
-  const CameraMatrices camera = camera_matrices(scene.camera, options.frame, width, height);
-  Image picture = make_image(Format::rgba16f, width, height);
   // A GPU's has to be probed first; its bits are not expected to be ours.
   const Profile profile = options.versus == nullptr
                               ? Profile{}
                               : find_profile(options.versus->profile).value_or(Profile{});
-  PreparedScene prepared = prepare_scene(scene, profile, pool);
-  prepared.shadows->volume_count = options.volume_count;
-  PreparedScene plain = prepare_scene(unshadowed, profile, pool);
-  draw_scene(prepared, camera, options.frame, picture, pool);
-  draw_scene(plain, camera, options.frame, picture, pool);
-  SceneShadows& shadows = *prepared.shadows;
+  RepeatedShadows shadowed{scene, measure, pool, profile};
+  RepeatedShadows plain{unshadowed, measure, pool, profile};
+  SceneShadows& shadows = shadowed.shadows();
+  shadows.volume_count = options.volume_count;
+  shadowed.draw();
+  plain.draw();
   std::size_t projected = 0;
   std::vector<ShadowLight> lights;
   for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
@@ -278,9 +252,6 @@ int measure_shadows(const ShadowsOptions& options) {
       lights.size(), projected, static_cast<double>(bytes_kept(shadows)) / 1e6);
   print_volumes(shadows);
 
-  const auto draw = [&](PreparedScene& of) {
-    draw_scene(of, camera, options.frame, picture, pool);
-  };
   if (projected > 0) time_projection(shadows.facets, lights, options.runs, pool);
   if (!shadows.joined.facets.empty()) {
     std::vector<Milliseconds> times{{"join facets"}, {"make volumes"}};
@@ -299,19 +270,27 @@ int measure_shadows(const ShadowsOptions& options) {
                                   {"frame without shadows"}};
   time_in_turn(
       times, options.runs, [&] { scene_facets(scene, options.frame); },
-      [&] {
-        shadows.frame.reset();
-        draw(prepared);
-      },
-      [&] { draw(prepared); }, [&] { draw(plain); });
+      [&] { shadowed.draw_anew(); }, [&] { shadowed.draw(); }, [&] { plain.draw(); });
   print_times(times);
-  if (options.versus != nullptr) time_beside(*options.versus, shadows, options, camera, pool);
-  if (options.check) check(shadows, lights, camera, options.size, pool);
-  if (options.check_embree) check_embree(shadows, lights, camera, options.size, pool);
+  const glm::dvec3 eye = shadowed.camera.eye;
+  if (options.versus != nullptr) {
+    time_beside(*options.versus, shadows, options, shadowed.camera, pool);
+  }
+  if (options.check) {
+    print_shadow_errors("pixels times lights",
+                        shadow_errors(shadows.facets, lights, shadows.seen[0], shadows.masks[0],
+                                      shadowed.view(), eye, true, pool));
+  }
+  if (options.check_embree) check_embree(shadows, lights, shadowed.view(), eye, pool);
   return kDone;
 }
 
 }  // namespace
+
+void print_shadow_errors(const char* pixels, const ShadowErrors& errors) {
+  std::printf("%s: %zu seen, %zu in shadow, %zu within 1/256 pixel of an edge, %zu wrong\n", pixels,
+              errors.seen, errors.in_shadow, errors.near_edge, errors.wrong);
+}
 
 Command add_shadows_command(CLI::App& program) {
   CLI::App* parser =

@@ -1,8 +1,7 @@
-#include "tools/info/soft_measures.h"
+#include "tools/info/shadow_measures.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -12,46 +11,25 @@
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/shadows/maps/map_errors.h"
 #include "scenes/shadows/shadow_errors.h"
-#include "tools/info/time_in_turn.h"
+#include "tools/cli/timing.h"
 
 namespace softfocus {
 namespace {
 
 // The frames of a light's points, one after the other, with hard shadows.
-struct PointFrames {
-  PointFrames(const SoftMeasure& measure, ThreadPool& with)
-      : whole(measure.scene.lights),
-        scene(measure.scene),
-        camera(
-            camera_matrices(scene.camera, measure.frame, measure.size.width, measure.size.height)),
-        frame(measure.frame),
-        picture(make_image(Format::rgba16f, measure.size.width, measure.size.height)),
-        pool(with),
-        prepared(prepare_scene(scene, Profile{}, with)) {
+struct PointFrames : RepeatedShadows {
+  PointFrames(const ShadowMeasure& measure, ThreadPool& with)
+      : RepeatedShadows(measure.scene, measure, with), whole(measure.scene.lights) {
     scene.light_points = 1;
-    draw(0);
+    draw_point(0);
   }
-  PointFrames(const PointFrames&) = delete;
-  PointFrames& operator=(const PointFrames&) = delete;
 
-  void draw(int point) {
+  void draw_point(int point) {
     scene.lights = lights_at_point(whole, static_cast<std::uint32_t>(point));
-    draw_scene(prepared, camera, frame, picture, pool);
-  }
-
-  const SceneShadows& shadows() const { return *prepared.shadows; }
-
-  ShadowView view() const {
-    return {multiply(camera.eye_to_clip, camera.world_to_eye), picture.width, picture.height, {}};
+    draw();
   }
 
   std::vector<Light> whole;
-  Scene scene;
-  CameraMatrices camera;
-  double frame;
-  Image picture;
-  ThreadPool& pool;
-  PreparedScene prepared;
 };
 
 // Of each soft light, and one after the other of each pixel, points that do not reach it.
@@ -120,13 +98,9 @@ ShareErrors share_errors(const DarkCounts& counts, int points, const DarkCounts&
   return errors;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 }  // namespace
 
-void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
+void measure_soft(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
   const int points = measure.scene.light_points;
   PreparedScene soft = prepare_scene(measure.scene, Profile{}, pool);
   PointFrames frames{measure, pool};
@@ -135,13 +109,13 @@ void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
                                   {"frame, hard shadows kept"}};
   time_in_turn(
       times, measure.runs, [&] { draw_scene(soft, frames.camera, measure.frame, picture, pool); },
-      [&] { frames.draw(0); });
+      [&] { frames.draw_point(0); });
   print_times(times);
   if (!check) return;
   const SceneShadows& shadows = frames.shadows();
   ShadowErrors sum;
   for (int point = 0; point < points; ++point) {
-    frames.draw(point);
+    frames.draw_point(point);
     std::vector<ShadowLight> lights;
     for (const std::size_t number : shadows.lights) {
       lights.push_back(shadow_light(frames.scene.lights[number]));
@@ -154,30 +128,25 @@ void measure_soft(const SoftMeasure& measure, bool check, ThreadPool& pool) {
     sum.near_edge += errors.near_edge;
     sum.wrong += errors.wrong;
   }
-  std::printf(
-      "pixels times lights times points: %zu seen, %zu in shadow, %zu within 1/256 pixel of an "
-      "edge, %zu wrong\n",
-      sum.seen, sum.in_shadow, sum.near_edge, sum.wrong);
+  print_shadow_errors("pixels times lights times points", sum);
 }
 
-void print_soft_table(const SoftMeasure& measure, ThreadPool& pool) {
+void print_soft_table(const ShadowMeasure& measure, ThreadPool& pool) {
   PointFrames frames{measure, pool};
   const std::vector<std::size_t> soft = soft_numbers(frames);
-  const auto truth_start = std::chrono::steady_clock::now();
-  const DarkCounts truth = counts_by_rays(frames, soft);
+  DarkCounts truth;
+  const double truth_ms = milliseconds_of([&] { truth = counts_by_rays(frames, soft); });
   std::printf("%s: %d points by rays in %.0f s\n", measure.scene.name.c_str(), kPointsOfTruth,
-              seconds_since(truth_start));
+              truth_ms / 1e3);
   std::printf("%8s %12s %14s %12s %10s %12s\n", "points", "rms", "penumbra rms", "largest", "ms",
               "penumbra");
   const std::size_t pixels = frames.shadows().seen[0].size();
   DarkCounts counts(soft.size(), std::vector<std::uint16_t>(pixels));
-  double seconds = 0.0;
+  double all_ms = 0.0;
   int drawn = 0;
   for (const int points : {1, 4, 16, 64, 256, 1024}) {
     for (; drawn < points; ++drawn) {
-      const auto start = std::chrono::steady_clock::now();
-      frames.draw(drawn);
-      seconds += seconds_since(start);
+      all_ms += milliseconds_of([&] { frames.draw_point(drawn); });
       const std::vector<std::uint8_t>& mask = frames.shadows().masks[0];
       for (std::size_t i = 0; i < soft.size(); ++i) {
         for (std::size_t p = 0; p < pixels; ++p) {
@@ -187,7 +156,7 @@ void print_soft_table(const SoftMeasure& measure, ThreadPool& pool) {
     }
     const ShareErrors errors = share_errors(counts, points, truth, frames.shadows().seen[0]);
     std::printf("%8d %12.5f %14.5f %12.3f %10.0f %12zu\n", points, errors.rms, errors.penumbra_rms,
-                errors.largest, 1e3 * seconds, errors.penumbra);
+                errors.largest, all_ms, errors.penumbra);
     std::fflush(stdout);
   }
 }

@@ -1,4 +1,4 @@
-#include "tools/info/terminator_measures.h"
+#include "tools/info/shadow_measures.h"
 
 #include <algorithm>
 #include <array>

@@ -10,10 +10,10 @@
 namespace softfocus {
 namespace {
 
-#ifdef __wasm_simd128__
-constexpr bool kSimd = true;
+#if defined(__EMSCRIPTEN__) && !defined(__wasm_simd128__)
+constexpr bool kSimd = false;
 #else
-constexpr bool kSimd = SOFTFOCUS_HAS_AVX != 0;
+constexpr bool kSimd = true;
 #endif
 
 constexpr int kMostThreads = 64;

@@ -11,17 +11,11 @@
 #include "scenes/relief/warp/march_relief.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/info/time_in_turn.h"
+#include "tools/cli/timing.h"
 #include "tools/relief/relief_file.h"
 #include "tools/relief/relief_options.h"
 
 namespace softfocus {
-namespace {
-
-double median_of(const Milliseconds& times) { return times.ms[times.ms.size() / 2]; }
-
-}  // namespace
-
 int bench_relief(const ReliefOptions& options) {
   const ReliefTexture relief = read_relief_file(options.input);
   const ReliefExtent extent = *relief_extent(relief);
@@ -54,13 +48,13 @@ int bench_relief(const ReliefOptions& options) {
     std::vector<Milliseconds> times{{"1 thread"}, {"all"}, {"fixed"}};
     time_in_turn(times, options.runs, by(one, PlaceNumbers::floats), by(pool, PlaceNumbers::floats),
                  by(pool, PlaceNumbers::fixed));
-    for (Milliseconds& of : times) std::sort(of.ms.begin(), of.ms.end());
-    const double all_ms = median_of(times[1]);
+    const Spread by_one = spread_of(times[0].ms), by_all = spread_of(times[1].ms),
+                 fixed = spread_of(times[2].ms);
     std::printf("%-16s %9.3f %8.3f %9.3f %8.3f %9.3f %8.3f %10.0f %8.1f %6.0f %9lld %9lld\n",
-                std::string{choice.name}.c_str(), median_of(times[0]), times[0].ms.front(), all_ms,
-                times[1].ms.front(), median_of(times[2]), times[2].ms.front(),
-                texels / all_ms / 1e3, choice.source_ms, choice.source_ms / all_ms,
-                static_cast<long long>(counts.overlaps), static_cast<long long>(counts.stretched));
+                std::string{choice.name}.c_str(), by_one.median, by_one.min, by_all.median,
+                by_all.min, fixed.median, fixed.min, texels / by_all.median / 1e3, choice.source_ms,
+                choice.source_ms / by_all.median, static_cast<long long>(counts.overlaps),
+                static_cast<long long>(counts.stretched));
   }
   Image picture = make_image(Format::rgba16f, width, height);
   clear_image(picture, {0.0f, 0.0f, 0.0f, 65504.0f}, Profile{});
@@ -94,9 +88,9 @@ int bench_relief(const ReliefOptions& options) {
       };
     };
     time_in_turn(marched, std::min(options.runs, 10), by(0), by(6));
-    for (Milliseconds& times_of : marched) std::sort(times_of.ms.begin(), times_of.ms.end());
     std::printf("%3d slices %9.2f ms, with 6 bisections %9.2f ms; in 2004 %.1f frames a second\n",
-                of.first, median_of(marched[0]), median_of(marched[1]), of.second);
+                of.first, spread_of(marched[0].ms).median, spread_of(marched[1].ms).median,
+                of.second);
   }
   return kDone;
 }

@@ -12,21 +12,10 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/timing.h"
 #include "tools/files/whole_file.h"
 
 namespace softfocus {
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-double sorted_at(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
 
 namespace {
 
@@ -44,11 +33,6 @@ Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOpt
   camera.far_m = distance * 10.0 * std::fmax(options.approach, 1.0);
   camera.orbit_degrees_per_frame = options.approach > 0.0 ? 0.0 : 360.0 / options.frames;
   return camera;
-}
-
-glm::vec4 turn_background(const Scene& scene, const Camera& camera) {
-  const glm::vec4 background = clear_colour(scene);
-  return {glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
 }
 
 /// Of -o, which must have a number.
@@ -80,6 +64,11 @@ void write_pair(const TurnStage& stage, int frame, const Image& shown) {
 }
 
 }  // namespace
+
+glm::vec4 turn_background(const Scene& scene, const Camera& camera) {
+  const glm::vec4 background = clear_colour(scene);
+  return {glm::vec3{background}, alpha_depth(static_cast<float>(camera.far_m))};
+}
 
 TurnStage::TurnStage(const ReliefOptions& told)
     : options(told),
@@ -150,30 +139,6 @@ void print_errors(const TurnErrors& errors) {
       mean_of(errors.flip), sorted_at(errors.flip, 1.0), mean_of(errors.object_flip),
       mean_of(errors.outline_px), sorted_at(errors.outline_px, 1.0), errors.most_outline_px);
   std::printf("of %zu pixels %zu lost, %zu gained\n", errors.seen, errors.lost, errors.gained);
-}
-
-void turn_drawn_once(TurnStage& stage, const char* what, const DrawTurned& draw,
-                     const std::function<void(const CameraMatrices&)>& measured) {
-  TurnErrors errors;
-  std::vector<double> redrawn_ms, shown_ms;
-  Rectangle changed{0, 0, 0, 0};
-  redraw(stage, turned_camera(stage, 0.0), stage.scene.lights);  // warms up
-  for (int frame = 0; frame < stage.options.frames; ++frame) {
-    const CameraMatrices camera = turned_camera(stage, frame);
-    redrawn_ms.push_back(milliseconds_of([&] { redraw(stage, camera, stage.scene.lights); }));
-    shown_ms.push_back(milliseconds_of([&] {
-      clear_area(stage.blank, changed, stage.shown, stage.pool);
-      changed = draw(camera);
-    }));
-    if (frame % stage.options.every != 0) continue;
-    measure_frame(stage, frame, stage.shown, errors);
-    if (measured) measured(camera);
-  }
-  const double redrawn_mean = mean_of(redrawn_ms), shown_mean = mean_of(shown_ms);
-  std::printf("ms a frame: redrawn %.3f, %s %.3f, ratio %.2f; medians: redrawn %.3f, %s %.3f\n",
-              redrawn_mean, what, shown_mean, redrawn_mean / shown_mean, sorted_at(redrawn_ms, 0.5),
-              what, sorted_at(shown_ms, 0.5));
-  print_errors(errors);
 }
 
 }  // namespace softfocus

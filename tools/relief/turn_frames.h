@@ -1,9 +1,7 @@
 #pragma once
 // Frames that `relief turn` draws, measures and writes, whichever contender it turns.
 
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,19 +11,6 @@
 #include "tools/sequence/frame_names.h"
 
 namespace softfocus {
-
-template <class Work>
-double milliseconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
-
-/// 0 of none.
-double mean_of(const std::vector<double>& values);
-/// The value at a share of 0..1 of the sorted ones; 0 of none.
-double sorted_at(std::vector<double> values, double share);
 
 /// What a turn is made of: the scene, about the object's middle from the scene's camera on, a full
 /// turn in --frames, or none with --approach.
@@ -49,6 +34,9 @@ struct TurnStage {
   Image redrawn, shown, blank;     ///< RGBA16F; `shown` is blank at first
 };
 
+/// The scene's background at the camera's far distance.
+glm::vec4 turn_background(const Scene& scene, const Camera& camera);
+
 CameraMatrices turned_camera(const TurnStage& stage, double frame);
 
 /// Draws a frame by the pipeline.
@@ -68,13 +56,5 @@ struct TurnErrors {
 /// Compares a frame with the redrawn one, and writes both, side by side, if there is -o.
 void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& errors);
 void print_errors(const TurnErrors& errors);
-
-/// Lays something over the stage's blank picture, and returns the part that it may have changed.
-using DrawTurned = std::function<Rectangle(const CameraMatrices&)>;
-
-/// A turn of something that was drawn once, beside redrawing; prints times, named by `what`, and
-/// errors. `measured` is called at each measured frame.
-void turn_drawn_once(TurnStage& stage, const char* what, const DrawTurned& draw,
-                     const std::function<void(const CameraMatrices&)>& measured = {});
 
 }  // namespace softfocus

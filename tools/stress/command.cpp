@@ -4,27 +4,24 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
-#include "tools/files/whole_file.h"
-#include "tools/report/report_files.h"
+#include "tools/report/report.h"
 #include "tools/stress/findings.h"
-#include "tools/stress/stress_page.h"
 #include "tools/stress/stress_report.h"
 
 namespace softfocus {
 namespace {
 
 int stress(const StressOptions& options) {
-  make_directory(options.directory / "cache");
-  // So that nothing is measured in vain.
-  for (const char* name : {"stress.csv", "stress.json", "index.html"}) {
-    check_writable(options.directory / name);
-  }
+  const std::filesystem::path& directory = options.directory;
+  const auto csv = directory / "stress.csv", list = directory / "stress.json",
+             page = directory / "index.html";
+  prepare_results(directory, {csv, list, page});
   ThreadPool pool{options.pool.threads, options.pool.isa};
   const StressFindings findings = measure_stress(options, pool);
   const Json json = stress_json(findings);
-  write_json(options.directory / "stress.json", json);
-  write_text(options.directory / "stress.csv", stress_csv(findings));
-  write_text(options.directory / "index.html", stress_page(findings, options));
+  write_json(list, json);
+  write_text(csv, stress_csv(json));
+  write_text(page, report_page(stress_report(findings, options)));
   if (options.json) {
     std::cout << json_text(json, 1) << '\n';
     return kDone;
@@ -33,8 +30,7 @@ int stress(const StressOptions& options) {
     std::cout << "went on: " << findings.kept << " of " << findings.all
               << " values were there already\n";
   }
-  std::cout << stress_summary(findings) << "written to "
-            << (options.directory / "index.html").string() << '\n';
+  std::cout << stress_summary(findings) << "written to " << page.string() << '\n';
   return kDone;
 }
 

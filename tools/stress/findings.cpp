@@ -9,8 +9,8 @@
 #include "tools/cli/option_values.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/time_left.h"
+#include "tools/report/kept_results.h"
 #include "tools/stress/answers.h"
-#include "tools/stress/stress_pictures.h"
 #include "tools/stress/trial_record.h"
 
 namespace softfocus {
@@ -154,7 +154,7 @@ class TrialWork {
   const CaseGroup& group_;
   double severity_;
   StressTrial trial_;
-  TrialRecord record_;
+  KeptResults record_;
   std::optional<StressTruth> truth_;
 };
 

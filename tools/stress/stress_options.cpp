@@ -1,7 +1,5 @@
 #include "tools/stress/stress_options.h"
 
-#include <algorithm>
-
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/stress/answers.h"
@@ -18,34 +16,6 @@ std::vector<std::string> case_names() {
   return names;
 }
 
-/// Throws UsageError if a part of `text` is empty, there already, or unknown.
-void check_name(const std::string& option, const std::string& text, const std::string& name,
-                const std::vector<std::string>& before, const std::vector<std::string>& known) {
-  if (name.empty()) {
-    throw UsageError(option + " '" + text + "': give names with a comma between two");
-  }
-  if (std::find(before.begin(), before.end(), name) != before.end()) {
-    throw UsageError(option + " '" + text + "': '" + name + "' stands there twice");
-  }
-  if (std::find(known.begin(), known.end(), name) == known.end()) {
-    refuse_name(option, name, known);
-  }
-}
-
-/// The parts of "a,b,c", each known and there once.
-std::vector<std::string> known_names(const std::string& option, const std::string& text,
-                                     const std::vector<std::string>& known) {
-  std::vector<std::string> names;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find(',', start), text.size());
-    std::string name = text.substr(start, end - start);
-    start = end + 1;
-    check_name(option, text, name, names, known);
-    names.push_back(std::move(name));
-  }
-  return names;
-}
-
 }  // namespace
 
 void add_stress_options(CLI::App& parser, StressOptions& options) {
@@ -57,12 +27,12 @@ void add_stress_options(CLI::App& parser, StressOptions& options) {
   add_value(parser, "--methods", "A,B,...",
             "Methods (default: all; each case takes those that it is for)",
             [&options](const std::string& text) {
-              options.methods = known_names("--methods", text, stress_methods());
+              options.methods = listed_names("--methods", text, stress_methods());
             });
   offer(parser, "--methods", stress_methods);
   add_value(parser, "--cases", "A,B,...", "Cases (default: all)",
             [&options](const std::string& text) {
-              options.cases = known_names("--cases", text, case_names());
+              options.cases = listed_names("--cases", text, case_names());
             });
   offer(parser, "--cases", case_names);
   add_value(parser, "--size", "N",

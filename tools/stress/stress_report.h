@@ -1,5 +1,5 @@
 #pragma once
-// The findings as JSON, as a table, and in words.
+// The findings as JSON, as a table, in words, and as a report (tools/report/report.h).
 
 #include <string>
 
@@ -12,8 +12,8 @@ namespace softfocus {
 /// can run, a case and a severity. A value that is not finite is null.
 Json stress_json(const StressFindings& findings);
 
-/// The same, with the columns parameter, parameter_value and parameter_unit.
-std::string stress_csv(const StressFindings& findings);
+/// That list with the columns parameter, parameter_value and parameter_unit.
+std::string stress_csv(const Json& list);
 
 /// A line a method: how many cases hold throughout, and from where on the others do not.
 std::string stress_summary(const StressFindings& findings);
@@ -21,5 +21,13 @@ std::string stress_summary(const StressFindings& findings);
 /// "holds", "all", or from the mildest failure to the most severe one, between which some may hold:
 /// "from 8", "up to 8", "8 to 16", "at 8".
 std::string failing_text(const StressResult& result, const StressCurve& curve);
+
+/// The table, case by method, coloured by the worst value over the limit; and for each case its
+/// curves, its truth, and each method's picture and error.
+Json stress_report(const StressFindings& findings, const StressOptions& options);
+
+/// The worst value of a curve over the limit; infinity where a value is not finite, or where a
+/// limit of 0 does not hold.
+double worst_ratio(const StressResult& result, const StressCurve& curve);
 
 }  // namespace softfocus

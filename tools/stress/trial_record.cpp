@@ -1,21 +1,40 @@
 #include "tools/stress/trial_record.h"
 
-#include <limits>
+#include <algorithm>
 
+#include "dof/measure/flip.h"
+#include "dof/measure/heat_map.h"
+#include "raster/images/texel.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/base64.h"
 #include "tools/golden/hashes.h"
-#include "tools/report/report_files.h"
+#include "tools/pictures/image_file.h"
+#include "tools/report/kept_results.h"
 #include "tools/report/specimen.h"
+#include "tools/report/worst_crop.h"
 #include "tools/stress/answers.h"
-#include "tools/stress/stress_pictures.h"
+#include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {
 namespace {
 
-bool has_hash(const Json* entry, const std::string& hash) {
-  if (entry == nullptr || !entry->is_object()) return false;
-  const Json* const of = entry->find("hash");
-  return of != nullptr && of->is_text() && of->text() == hash;
+/// The side of the pictures in the page, at most.
+constexpr int kStressPagePx = 128;
+
+Image brightened(const Image& picture, double gain) {
+  Image bright = make_image(Format::rgba16f, picture.width, picture.height);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      glm::vec4 texel = load_texel<Format::rgba16f>(picture, x, y);
+      for (int c = 0; c < 3; ++c) texel[c] *= static_cast<float>(gain);
+      store_texel<Format::rgba16f>(bright, x, y, texel, {});
+    }
+  }
+  return bright;
+}
+
+int stress_factor(const Image& picture) {
+  return reduction_factor(picture.width, picture.height, kStressPagePx);
 }
 
 /// What the measures of all cases on these pictures, and the page's pictures, give for a wrong
@@ -39,10 +58,24 @@ std::uint64_t case_measures_hash(const StressCase& of, const StressAnswer& right
 
 }  // namespace
 
-std::string hashes_of(std::span<const Image> pictures) {
-  std::string text;
-  for (const Image& picture : pictures) text += hash_text(hash_image(picture));
-  return text;
+double display_gain(const Image& truth) {
+  constexpr double kEnough = 0.4, kWanted = 0.8;
+  double brightest = 0.0;
+  for (int y = 0; y < truth.height; ++y) {
+    for (int x = 0; x < truth.width; ++x) brightest = std::max(brightest, light_at(truth, x, y));
+  }
+  return brightest > 0.0 && brightest < kEnough ? kWanted / brightest : 1.0;
+}
+
+std::string stress_picture(const Image& picture, double gain) {
+  return base64(encode_png(reduced(brightened(picture, gain), stress_factor(picture))));
+}
+
+std::string stress_error_picture(const Image& truth, const Image& result, double gain,
+                                 ThreadPool& pool) {
+  const PixelMap flip =
+      flip_map(brightened(truth, gain), brightened(result, gain), clamped_tone(), pool);
+  return base64(encode_png(heat_picture(reduced(flip, stress_factor(truth)))));
 }
 
 std::string trial_key(const StressCase& of, double severity, const StressTrial& trial, int views,
@@ -65,58 +98,6 @@ std::string trial_key(const StressCase& of, double severity, const StressTrial& 
   if (views > 0) key += "; first views " + hashes_of(truth);
   return key + "; measures " +
          hash_text(case_measures_hash(of, {trial, severity, truth, {}, pool}));
-}
-
-TrialRecord::TrialRecord(std::filesystem::path file, const std::string& key)
-    : file_(std::move(file)), json_{{"key", key}} {
-  auto kept = read_json(file_);
-  if (!kept) return;
-  const Json* const kept_key = kept->find("key");
-  if (kept_key != nullptr && kept_key->is_text() && kept_key->text() == key) {
-    json_ = std::move(*kept);
-  }
-}
-
-const Json* TrialRecord::find(const std::string& entry, const std::string& hash,
-                              const std::string& name) const {
-  const Json* const found = json_.find(entry);
-  return has_hash(found, hash) ? found->find(name) : nullptr;
-}
-
-std::optional<double> TrialRecord::number(const std::string& entry, const std::string& hash,
-                                          const std::string& name) const {
-  const Json* const found = find(entry, hash, name);
-  if (found == nullptr) return std::nullopt;
-  if (found->is_null()) return std::numeric_limits<double>::infinity();
-  try {
-    return found->number();
-  } catch (const JsonError&) {
-    return std::nullopt;  // damaged: it is measured again
-  }
-}
-
-std::optional<std::string> TrialRecord::text(const std::string& entry, const std::string& hash,
-                                             const std::string& name) const {
-  const Json* const found = find(entry, hash, name);
-  if (found == nullptr || !found->is_text()) return std::nullopt;
-  return found->text();
-}
-
-void TrialRecord::keep(const std::string& entry, const std::string& hash, const std::string& name,
-                       Json value) {
-  Json& of = json_[entry];
-  if (!has_hash(&of, hash)) {
-    of = Json::object();
-    of["hash"] = hash;
-  }
-  of[name] = std::move(value);
-  changed_ = true;
-}
-
-void TrialRecord::save() {
-  if (!changed_) return;
-  write_json(file_, json_);
-  changed_ = false;
 }
 
 }  // namespace softfocus

@@ -89,6 +89,7 @@ struct RecordedInLanes {
   static void add_slowly(const AssembleJob& job, LaneChunk& chunk, std::size_t triangle) {
     const auto& recorded = *static_cast<const RecordedInLanes*>(job.context);
     const LaneDraw& draw = recorded.draw;
+    const std::size_t count = varying_count(recorded.fragment_stage);
     std::array<VertexOutput<N>, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
       corners[i] = recorded.vertex_stage(draw.indices[3 * triangle + i]);
@@ -97,8 +98,8 @@ struct RecordedInLanes {
         corners, kInterpolation, draw.state.provoking_vertex, draw.target.x_end, draw.target.y_end,
         draw.profile,
         [&](const std::array<WindowVertex, 3>& window, const std::array<Varyings<N>, 3>& varyings) {
-          add_triangle(draw, chunk, window, {varyings[0], varyings[1], varyings[2]},
-                       job.cull_unsnapped);
+          const auto used = [&](std::size_t i) { return std::span{varyings[i]}.first(count); };
+          add_triangle(draw, chunk, window, {used(0), used(1), used(2)}, job.cull_unsnapped);
         });
   }
 
@@ -117,11 +118,7 @@ unsigned keep(const void* recorded, const LaneTriangle& triangle, int x, int y, 
   return r.stages.keep_fragments(r.fragment_stage, r.fragment_job(0), triangle, x, y, pixels);
 }
 
-template <class Recorded>
-inline constexpr auto kKeep =
-    decltype(Recorded::fragment_stage)::kDiscards ? keep<Recorded> : nullptr;
-
-template <class Recorded>
+template <class Recorded, bool kDiscards>
 inline constexpr LaneSteps kLaneSteps{
     [](void* recorded, const VertexStore& store) {
       static_cast<Recorded*>(recorded)->draw.store = store;
@@ -142,7 +139,7 @@ inline constexpr LaneSteps kLaneSteps{
       const auto& r = *static_cast<const Recorded*>(recorded);
       r.stages.shade_fragments(r.fragment_stage, r.fragment_job(layer), tile, run);
     },
-    kKeep<Recorded>};
+    kDiscards ? keep<Recorded> : nullptr};
 
 }  // namespace draw_detail
 
@@ -155,14 +152,18 @@ void draw_in_lanes(RenderPass& pass, const DrawState& state, std::span<const std
   assert(can_draw_in_lanes(pass, state));
   assert(indices.size() % 3 == 0);
   assert(!has_layers(pass.targets) || can_peel(pass.targets, state));
-  assert(FragmentStage::kDiscards == (stages.keep_fragments != nullptr));
+  const bool keeps = stages.keep_fragments != nullptr;
+  assert(discards(fragment_stage) == keeps);
   using Recorded = draw_detail::RecordedInLanes<VertexStage, FragmentStage>;
   const draw_detail::LaneDraw draw{
       state, pass.profile, pass.isa, target_area(pass.targets), indices, {}};
-  draw_detail::record(pass,
-                      std::make_shared<Recorded>(Recorded{draw, std::move(vertex_stage),
-                                                          std::move(fragment_stage), stages}),
-                      draw_detail::kLaneSteps<Recorded>, draw, vertex_count, Recorded::N);
+  const std::size_t varyings = varying_count(fragment_stage);
+  draw_detail::record(
+      pass,
+      std::make_shared<Recorded>(
+          Recorded{draw, std::move(vertex_stage), std::move(fragment_stage), stages}),
+      keeps ? draw_detail::kLaneSteps<Recorded, true> : draw_detail::kLaneSteps<Recorded, false>,
+      draw, vertex_count, varyings);
 }
 
 }  // namespace softfocus

@@ -13,20 +13,25 @@ inline constexpr bool kAllPerspective = std::count(kinds.begin(), kinds.end(),
 /// The rows of one vertex of each quad's triangle.
 using VertexRows = std::array<const float*, kQuads>;
 
-/// The first N varyings of a vertex. They lie in its row four to four lanes.
+/// Room for N varyings, which are loaded four by four.
 template <std::size_t N>
-SOFTFOCUS_INLINE std::array<Floats, N> load_varyings(const VertexRows& rows) {
-  std::array<Floats, N> varyings;
-#pragma GCC unroll 4
-  for (std::size_t i = 0; i < N; i += 4) {
-    const Floats four = load_fours(rows.data(), kVertexVaryings + i);
-    varyings[i] = spread<0>(four);
-    if (i + 1 < N) varyings[i + 1] = spread<1>(four);
-    if (i + 2 < N) varyings[i + 2] = spread<2>(four);
-    if (i + 3 < N) varyings[i + 3] = spread<3>(four);
-  }
-  return varyings;
+using VaryingLanes = std::array<Floats, (N + 3) / 4 * 4>;
+
+/// The varyings from `i` on that lie in the same four lanes of a vertex's row.
+SOFTFOCUS_INLINE void load_four_varyings(const VertexRows& rows, std::size_t i, Floats* varyings) {
+  const Floats four = load_fours(rows.data(), kVertexVaryings + i);
+  varyings[0] = spread<0>(four);
+  varyings[1] = spread<1>(four);
+  varyings[2] = spread<2>(four);
+  varyings[3] = spread<3>(four);
 }
+
+/// What a triangle's varyings are loaded with. `varyings`: how many the draw has.
+struct LoadJob {
+  std::size_t provoking;
+  std::size_t varyings;
+  Contraction contraction;  ///< of planes
+};
 
 /// The weights of vertices 1 and 2 at a pixel.
 struct Weights {
@@ -39,16 +44,16 @@ struct BarycentricLanes {
   using Point = Weights;
   static constexpr std::size_t N = kinds.size();
   /// At vertex 0, the differences of the others to it, and at the provoking vertex.
-  std::array<Floats, N> first, to_second, to_third, flat;
-  std::array<Floats, 3> inverse_w;
-  std::array<Ints, 3> edge, per_x, per_y;
-  Ints x_origin, y_origin;
-  Floats inverse_area;
-  const QuadTriangles* of_quads;
-  bool any_large;
+  VaryingLanes<N> first, to_second, to_third, flat;
+  std::array<Floats, 3> inverse_w{};
+  std::array<Ints, 3> edge{}, per_x{}, per_y{};
+  Ints x_origin{}, y_origin{};
+  Floats inverse_area{};
+  const QuadTriangles* of_quads = nullptr;
+  bool any_large = false;
 
   /// Keeps a pointer to the triangles.
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, const LoadJob& job) {
     any_large = false;
     std::array<VertexRows, 3> rows_of;
 #pragma GCC unroll 3
@@ -59,14 +64,19 @@ struct BarycentricLanes {
       }
       inverse_w[vertex] = spread<kVertexInverseW>(load_fours(rows_of[vertex].data(), 0));
     }
-    first = load_varyings<N>(rows_of[0]);
-    to_second = load_varyings<N>(rows_of[1]);
-    to_third = load_varyings<N>(rows_of[2]);
-    if constexpr (!kAllPerspective<kinds>) flat = provoking == 0 ? first : to_third;
-#pragma GCC unroll 16
-    for (std::size_t i = 0; i < N; ++i) {
-      to_second[i] -= first[i];
-      to_third[i] -= first[i];
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < N; i += 4) {
+      if (i >= job.varyings) break;
+      load_four_varyings(rows_of[0], i, &first[i]);
+      load_four_varyings(rows_of[1], i, &to_second[i]);
+      load_four_varyings(rows_of[2], i, &to_third[i]);
+#pragma GCC unroll 4
+      for (std::size_t k = i; k < i + 4; ++k) {
+        if constexpr (!kAllPerspective<kinds>)
+          flat[k] = job.provoking == 0 ? first[k] : to_third[k];
+        to_second[k] -= first[k];
+        to_third[k] -= first[k];
+      }
     }
     std::array<const float*, kQuads> numbers;
 #pragma GCC unroll 4
@@ -110,7 +120,7 @@ struct BarycentricLanes {
     WideLanes at_origin, per_x, per_y;
   };
   std::array<WideEdge, 3> wide;
-  bool any_huge;
+  bool any_huge = false;
 
   SOFTFOCUS_INLINE void load_wide() {
     any_huge = false;
@@ -178,14 +188,17 @@ struct PlaneOfLanes {
 };
 
 /// PlaneInterpolator with PlanesFromOrigin in lanes, for varyings of these kinds.
-template <const auto& kinds, Contraction contraction>
+template <const auto& kinds>
 struct PlaneLanes {
   using Point = PlanePoint;
   static constexpr std::size_t N = kinds.size();
-  PlaneOfLanes inverse_w;
+  bool fused = false;
+  PlaneOfLanes inverse_w{};
   std::array<PlaneOfLanes, N> planes;  // a flat varying's value is at_origin
 
-  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, std::size_t provoking) {
+  SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, const LoadJob& job) {
+    fused = job.contraction == Contraction::fused;
+    const std::size_t provoking = job.provoking;
     std::array<VertexRows, 3> rows_of;
     std::array<Floats, 3> window;
 #pragma GCC unroll 3
@@ -217,11 +230,15 @@ struct PlaneLanes {
     const Floats w1 = spread<kVertexInverseW>(window[1]);
     const Floats w2 = spread<kVertexInverseW>(window[2]);
     inverse_w = slopes.plane(w0, w1, w2);
-    const auto at_first = load_varyings<N>(rows_of[0]);
-    const auto at_second = load_varyings<N>(rows_of[1]);
-    const auto at_third = load_varyings<N>(rows_of[2]);
-#pragma GCC unroll 16
-    for (std::size_t i = 0; i < N; ++i) {
+    VaryingLanes<N> at_first, at_second, at_third;
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < N; i += 4) {
+      if (i >= job.varyings) break;
+      load_four_varyings(rows_of[0], i, &at_first[i]);
+      load_four_varyings(rows_of[1], i, &at_second[i]);
+      load_four_varyings(rows_of[2], i, &at_third[i]);
+    }
+    for (std::size_t i = 0; i < std::min(N, job.varyings); ++i) {
       const Floats a0 = at_first[i], a1 = at_second[i], a2 = at_third[i];
       switch (kinds[i]) {
         case Interpolation::perspective: planes[i] = slopes.plane(a0 * w0, a1 * w1, a2 * w2); break;
@@ -260,12 +277,12 @@ struct PlaneLanes {
     }
   };
 
-  SOFTFOCUS_INLINE static Floats at(const PlaneOfLanes& plane, Floats x, Floats y) {
-    return multiply_add(plane.per_y, y, multiply_add(plane.per_x, x, plane.at_origin));
-  }
-  SOFTFOCUS_INLINE static Floats multiply_add(Floats a, Floats b, Floats c) {
-    if constexpr (contraction == Contraction::fused) return fused_multiply_add(a, b, c);
-    return a * b + c;
+  SOFTFOCUS_INLINE Floats at(const PlaneOfLanes& plane, Floats x, Floats y) const {
+    if (fused) {
+      return fused_multiply_add(plane.per_y, y,
+                                fused_multiply_add(plane.per_x, x, plane.at_origin));
+    }
+    return plane.per_y * y + (plane.per_x * x + plane.at_origin);
   }
 };
 

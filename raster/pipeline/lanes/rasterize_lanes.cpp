@@ -55,21 +55,26 @@ SOFTFOCUS_INLINE Floats clamped_depth(Floats depth) {
   return select(depth <= 1.0f, select(depth < 0.0f, splat(0.0f), depth), splat(1.0f));
 }
 
+/// How a triangle's depths are found.
+enum class DepthForm { barycentric, planes, by_profile };
+
 /// A triangle's depths.
-template <bool kPlanes>
+template <DepthForm form>
 struct TriangleDepths {
-  Contraction contraction;
+  const Profile& profile;
   Floats z0, z1, z2;
   Floats inverse_area;
 
   // Of a part of a block. Lane 0 is pixel (x, y).
   SOFTFOCUS_INLINE Floats at(int x, int y, Floats e1, Floats e2) const {
-    if constexpr (!kPlanes) {
+    if (form == DepthForm::barycentric ||
+        (form == DepthForm::by_profile &&
+         profile.attributes == AttributeSetup::exact_barycentric)) {
       return clamped_depth((z0 + (e1 * inverse_area) * z1) + (e2 * inverse_area) * z2);
     }
     const Floats column = to_floats(x + lane_x());
     const Floats line = to_floats(y + lane_y());
-    if (contraction == Contraction::fused) {
+    if (profile.interpolation == Contraction::fused) {
       return clamped_depth(fused_multiply_add(z2, line, fused_multiply_add(z1, column, z0)));
     }
     return clamped_depth(z2 * line + (z1 * column + z0));
@@ -87,21 +92,21 @@ SOFTFOCUS_INLINE Mask kept(const DrawCall& draw, const LaneTriangle& triangle, i
 // A writer tests the covered lanes of a part of a block, and keeps the triangle's id where it is
 // seen.
 
-/// For a tile of one layer.
-template <Compare test, bool kPlanes, bool kDiscards>
+/// For a tile of one layer. Scenes are drawn with Compare::less, which has code of its own.
+template <bool kLess, bool kDiscards, DepthForm form>
 struct DepthWriter {
   const DrawCall& draw;
   const LaneTriangle& triangle;
   VisibilityTile& tile;
   std::int32_t id;
-  TriangleDepths<kPlanes> depths;
+  TriangleDepths<form> depths;
 
   SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
     const Floats depth = depths.at(x, y, e1, e2);
     TileLayer& front = tile.front;
     const Floats stored = load(&front.depth[at]);
-    Mask seen = covered & passes(test, depth, stored);
-    if constexpr (kDiscards) {
+    Mask seen = covered & passes(kLess ? Compare::less : draw.depth.test, depth, stored);
+    if (kDiscards && draw.lane_steps->keep != nullptr) {
       // The test first: it costs less, and a fragment is discarded whatever the test says.
       if (!any(seen)) return;
       seen = kept(draw, triangle, x, y, seen);
@@ -112,13 +117,13 @@ struct DepthWriter {
 };
 
 /// For a tile of kLayers: as insert_into_layers(), from the farthest layer to the nearest.
-template <std::size_t kLayers, bool kPlanes>
+template <std::size_t kLayers>
 struct LayerWriter {
   const DrawCall& draw;
   const LaneTriangle& triangle;
   VisibilityTile& tile;
   std::int32_t id;
-  TriangleDepths<kPlanes> depths;
+  TriangleDepths<DepthForm::by_profile> depths;
 
   SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
     const Floats depth = depths.at(x, y, e1, e2);
@@ -278,12 +283,12 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
     __builtin_prefetch(ahead + 64);
     const LaneTriangle& t = chunk.triangles[bins[i].triangle];
     tile.triangles.push_back(&t);
-    Writer writer{draw,
-                  t,
-                  tile,
-                  static_cast<std::int32_t>(tile.triangles.size()),
-                  {profile.interpolation, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]),
-                   splat(t.inverse_area)}};
+    Writer writer{
+        draw,
+        t,
+        tile,
+        static_cast<std::int32_t>(tile.triangles.size()),
+        {profile, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]), splat(t.inverse_area)}};
     if (t.large == nullptr) {
       rasterize_small(t, tile, writer);
     } else if (t.large->fits_doubles) {
@@ -294,61 +299,25 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
   }
 }
 
-template <Compare test, bool kDiscards>
-void rasterize_test(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
-                    const Profile& profile, VisibilityTile& tile) {
-  if (profile.attributes == AttributeSetup::planes_from_origin) {
-    rasterize_all<DepthWriter<test, true, kDiscards> >(chunk, bins, draw, profile, tile);
-  } else {
-    rasterize_all<DepthWriter<test, false, kDiscards> >(chunk, bins, draw, profile, tile);
-  }
-}
-
-template <Compare test>
-void rasterize_test(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
-                    const Profile& profile, VisibilityTile& tile) {
-  if (draw.lane_steps->keep != nullptr) {
-    rasterize_test<test, true>(chunk, bins, draw, profile, tile);
-  } else {
-    rasterize_test<test, false>(chunk, bins, draw, profile, tile);
-  }
-}
-
-template <std::size_t kLayers>
-void rasterize_layers(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
-                      const Profile& profile, VisibilityTile& tile) {
-  if (profile.attributes == AttributeSetup::planes_from_origin) {
-    rasterize_all<LayerWriter<kLayers, true> >(chunk, bins, draw, profile, tile);
-  } else {
-    rasterize_all<LayerWriter<kLayers, false> >(chunk, bins, draw, profile, tile);
-  }
-}
-
 }  // namespace
 
 void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
                const Profile& profile, VisibilityTile& tile) {
+  using enum DepthForm;
   static_assert(kMaxLayers == 4);
   switch (tile.layers) {
-    case 2: return rasterize_layers<2>(chunk, bins, draw, profile, tile);
-    case 3: return rasterize_layers<3>(chunk, bins, draw, profile, tile);
-    case 4: return rasterize_layers<4>(chunk, bins, draw, profile, tile);
+    case 2: return rasterize_all<LayerWriter<2> >(chunk, bins, draw, profile, tile);
+    case 3: return rasterize_all<LayerWriter<3> >(chunk, bins, draw, profile, tile);
+    case 4: return rasterize_all<LayerWriter<4> >(chunk, bins, draw, profile, tile);
     default: break;
   }
-  switch (draw.depth.test) {
-    case Compare::never: return rasterize_test<Compare::never>(chunk, bins, draw, profile, tile);
-    case Compare::less: return rasterize_test<Compare::less>(chunk, bins, draw, profile, tile);
-    case Compare::equal: return rasterize_test<Compare::equal>(chunk, bins, draw, profile, tile);
-    case Compare::less_equal:
-      return rasterize_test<Compare::less_equal>(chunk, bins, draw, profile, tile);
-    case Compare::greater:
-      return rasterize_test<Compare::greater>(chunk, bins, draw, profile, tile);
-    case Compare::not_equal:
-      return rasterize_test<Compare::not_equal>(chunk, bins, draw, profile, tile);
-    case Compare::greater_equal:
-      return rasterize_test<Compare::greater_equal>(chunk, bins, draw, profile, tile);
-    case Compare::always: return rasterize_test<Compare::always>(chunk, bins, draw, profile, tile);
+  if (draw.depth.test != Compare::less || draw.lane_steps->keep != nullptr) {
+    return rasterize_all<DepthWriter<false, true, by_profile> >(chunk, bins, draw, profile, tile);
   }
+  if (profile.attributes == AttributeSetup::planes_from_origin) {
+    return rasterize_all<DepthWriter<true, false, planes> >(chunk, bins, draw, profile, tile);
+  }
+  rasterize_all<DepthWriter<true, false, barycentric> >(chunk, bins, draw, profile, tile);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 // A fragment stage in lanes has two steps, the first on quads, the second on the pixels that are
 // seen:
 //     static constexpr auto kInterpolation   // as the scalar stage's
+//     std::size_t varying_count() const      // as there
 //     static constexpr std::size_t kInputs   // numbers that go from step to step
 //     template <class Quads, class Put> void inputs(const Quads&, const Put& put) const
 //     void shade(const FragmentBatch<kInputs>&, std::array<Floats, 4>* colours) const
@@ -240,6 +241,13 @@ template <class Stage>
   batch.count = 0;
 }
 
+template <class Stage>
+SOFTFOCUS_INLINE LoadJob load_job_of(const Stage& stage, const FragmentJob& job) {
+  std::size_t varyings = Stage::kInterpolation.size();
+  if constexpr (requires { stage.varying_count(); }) varyings = stage.varying_count();
+  return {job.provoking, varyings, job.profile->interpolation};
+}
+
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
@@ -255,6 +263,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
 
   FragmentBatch<Stage::kInputs> batch;
   Interpolator interpolator{};
+  const LoadJob load_job = load_job_of(stage, job);
   QuadTriangles of_quads{};
   Ints loaded = splat(-1);
   for (int i = 0; i < seen.count; i += kQuads) {
@@ -268,7 +277,7 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         of_quads[quad] = triangles[triangle_of(entries[quad])];
       }
-      interpolator.load(of_quads, job.provoking);
+      interpolator.load(of_quads, load_job);
       loaded = triangle;
     }
     const Ints quad = entry >> kQuadPixels;
@@ -300,7 +309,7 @@ unsigned keep_of_part(const Stage& stage, const FragmentJob& job, const LaneTria
   QuadTriangles of_quads;
   of_quads.fill(&triangle);
   Interpolator interpolator{};
-  interpolator.load(of_quads, job.provoking);
+  interpolator.load(of_quads, load_job_of(stage, job));
   const QuadFragments<Interpolator> fragments{
       interpolator, interpolator.weights(x + lane_x(), y + lane_y()), of_quads};
   return lane_bits(stage.keeps(fragments)) & pixels;
@@ -313,12 +322,7 @@ unsigned keep_fragments(const Stage& stage, const FragmentJob& job, const LaneTr
     return keep_of_part<BarycentricLanes<Stage::kInterpolation>>(stage, job, triangle, x, y,
                                                                  pixels);
   }
-  if (job.profile->interpolation == Contraction::fused) {
-    return keep_of_part<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, triangle,
-                                                                               x, y, pixels);
-  }
-  return keep_of_part<PlaneLanes<Stage::kInterpolation, Contraction::unfused>>(stage, job, triangle,
-                                                                               x, y, pixels);
+  return keep_of_part<PlaneLanes<Stage::kInterpolation>>(stage, job, triangle, x, y, pixels);
 }
 
 template <class Stage>
@@ -326,10 +330,8 @@ void shade_fragments(const Stage& stage, const FragmentJob& job, const Visibilit
                      const VisibleRun& run) {
   if (job.profile->attributes == AttributeSetup::exact_barycentric) {
     shade_seen<BarycentricLanes<Stage::kInterpolation>>(stage, job, tile, run);
-  } else if (job.profile->interpolation == Contraction::fused) {
-    shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::fused>>(stage, job, tile, run);
   } else {
-    shade_seen<PlaneLanes<Stage::kInterpolation, Contraction::unfused>>(stage, job, tile, run);
+    shade_seen<PlaneLanes<Stage::kInterpolation>>(stage, job, tile, run);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "tools/bench/timing.h"
+#include "tools/cli/timing.h"
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "tests/support/chart_points.h"
-#include "tools/files/json.h"
+#include "tools/report/report.h"
 
 using namespace softfocus;
 

@@ -1,6 +1,6 @@
 // Whose pictures the page shows.
 
-#include "tools/chart/pictures.h"
+#include "tools/chart/measure.h"
 
 #include <doctest/doctest.h>
 

@@ -6,6 +6,7 @@
 
 #include "tests/support/chart_points.h"
 #include "tests/support/run_program.h"
+#include "tools/chart/truth.h"
 
 using namespace softfocus;
 
@@ -24,11 +25,13 @@ TEST_CASE("chart record: a point comes back as it was, with what is no number") 
   ChartPoint point = test::chart_point("two-pass", 2, {1.5}, 0.0625);
   point.errors.psnr_db = std::numeric_limits<double>::infinity();
   save_errors(point, "key", directory.file("a.json"));
-  save_pictures(point, "key", directory.file("a.pictures.json"));
+  ChartPoint without = bare(point);
+  CHECK_FALSE(load_pictures(without, "key", directory.file("a.json")));
+  save_pictures(point, "key", directory.file("a.json"));
   ChartPoint kept = bare(point);
   REQUIRE(load_errors(kept, "key", directory.file("a.json")));
   CHECK(kept.pictures.empty());
-  REQUIRE(load_pictures(kept, "key", directory.file("a.pictures.json")));
+  REQUIRE(load_pictures(kept, "key", directory.file("a.json")));
   CHECK(std::isinf(kept.errors.psnr_db));
   CHECK(kept.errors.ssim == 0.875);
   CHECK(kept.errors.flip == 0.0625);
@@ -59,7 +62,8 @@ TEST_CASE("chart record: another key, another picture or a damaged file is not t
     const std::string bytes = read_file(file);
     for (const std::string& damaged :
          {bytes.substr(0, bytes.size() / 2), std::string{"[]"}, std::string{}, std::string{"{}"},
-          R"({"key":"key","picture_hash":"0x0000000000000123","errors":{}})" + std::string{}}) {
+          R"({"key":"key","point":{"hash":"0x0000000000000123","errors":{},"pictures":{}}})" +
+              std::string{}}) {
       write_file(file, damaged);
       CHECK_FALSE(load(kept, "key", file));
       CHECK(kept.pictures.empty());

@@ -1,4 +1,4 @@
-#include "tools/chart/scene_names.h"
+#include "tools/chart/options.h"
 
 #include <doctest/doctest.h>
 

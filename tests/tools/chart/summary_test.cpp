@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "tests/support/chart_points.h"
-#include "tools/chart/report/best.h"
 
 using namespace softfocus;
 

@@ -5,8 +5,8 @@
 #include <doctest/doctest.h>
 
 #include "tests/support/cli_render.h"
-#include "tools/chart/key.h"
 #include "tools/chart/measure.h"
+#include "tools/chart/record.h"
 
 using namespace softfocus;
 

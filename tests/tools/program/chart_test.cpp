@@ -2,8 +2,6 @@
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
-#include "tests/support/skip.h"
-#include "tools/chart/report/gnuplot.h"
 #include "tools/chart/subject.h"
 
 using namespace softfocus;
@@ -12,19 +10,11 @@ namespace {
 
 using nlohmann::json;
 
-const Words kFiles{"best.csv",           "best.json",  "cache",       "chart-hdr-flip.png",
-                   "chart-hdr-flip.svg", "chart.csv",  "chart.json",  "chart.png",
-                   "chart.svg",          "index.html", "summary.csv", "summary.json",
-                   "summary.png",        "summary.svg"};
+const Words kFiles{"best.csv",   "best.json",  "cache",       "chart.csv",
+                   "chart.json", "index.html", "summary.csv", "summary.json"};
 
-bool has_gnuplot() {
-  try {
-    check_gnuplot();
-    return true;
-  } catch (const std::runtime_error& error) {
-    skip("gnuplot", error.what());
-    return false;
-  }
+json report_in(const std::string& directory) {
+  return report_of_page(read_file(directory + "/index.html"));
 }
 
 Words small_chart(const std::string& output, const Words& more = {}) {
@@ -54,7 +44,6 @@ void check_refused_chart(const Words& options, const Words& named, int status = 
 }  // namespace
 
 TEST_CASE("chart: writes its files, and goes on from what is there to the same results") {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("new/chart");
   const ProgramRun first = run_program(small_chart(out));
@@ -95,9 +84,13 @@ TEST_CASE("chart: writes its files, and goes on from what is there to the same r
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 8);
   CHECK(json::parse(read_file(out + "/best.json")).back()["budget"].is_null());
   CHECK(json::parse(read_file(out + "/summary.json")).size() == 10);
-  CHECK(read_file(out + "/chart.png").starts_with("\x89PNG"));
-  CHECK(contains(read_file(out + "/chart.svg"), "</svg>"));
   CHECK(contains(read_file(out + "/index.html"), "</html>"));
+  const json report = report_in(out);
+  CHECK(report["parts"][0]["id"] == "chart");
+  CHECK(report["pictures"].size() == 1 + 7 * 5);
+  CHECK(report["command"] ==
+        "softfocus chart --of depth-of-field --scenes figures --size 64x64 --rounds 3 --frame 0 "
+        "--methods pinhole,two-pass --samples 128 --quick");
 
   const std::string truth = read_file(out + "/cache/figures.truth.npy");
   const ProgramRun second = run_program(small_chart(out));
@@ -110,7 +103,6 @@ TEST_CASE("chart: writes its files, and goes on from what is there to the same r
 
 TEST_CASE("chart: what is missing or damaged is measured again, the rest is kept" *
           doctest::test_suite("long")) {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("chart");
   REQUIRE(run_program(small_chart(out)).status == 0);
@@ -129,7 +121,6 @@ TEST_CASE("chart: what is missing or damaged is measured again, the rest is kept
 }
 
 TEST_CASE("chart: where circles are large, blurred is nearer to the truth than sharp, to the eye") {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("chart"), scene = directory.file("mine.toml");
   write_file(scene, kCube + "[lens]\nf_number = 0.2\nfocus_m = 1.0\n");
@@ -142,7 +133,6 @@ TEST_CASE("chart: where circles are large, blurred is nearer to the truth than s
 }
 
 TEST_CASE("chart: a scene that changed is measured anew") {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("chart"), scene = directory.file("mine.toml");
   const Words words{"chart",  "--scenes", scene,       "--methods", "pinhole", "--quick",
@@ -160,7 +150,6 @@ TEST_CASE("chart: a scene that changed is measured anew") {
 }
 
 TEST_CASE("chart: a changed measure is noticed: what another measured is not taken") {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("chart");
   const Words words = small_chart(out, {"--rounds", "0"});
@@ -185,7 +174,6 @@ TEST_CASE("chart: a changed measure is noticed: what another measured is not tak
 }
 
 TEST_CASE("chart: two at once into one folder both succeed, and leave whole files") {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("new/chart");
   const Words words{"chart",  "--scenes", "figures",   "--methods", "pinhole", "--quick",
@@ -198,12 +186,11 @@ TEST_CASE("chart: two at once into one folder both succeed, and leave whole file
   }
   CHECK(listing_of(out) == kFiles);
   CHECK(listing_of(out + "/cache") == Words{"figures", "figures.truth.json", "figures.truth.npy"});
-  CHECK(contains(read_file(out + "/chart.svg"), "</svg>"));
+  CHECK(report_in(out)["parts"][0]["id"] == "chart");
   CHECK(run_program(words).out.starts_with("went on: 3 of 3"));
 }
 
 TEST_CASE("chart: without rounds there are errors and no times, for random scenes too") {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   const std::string out = directory.file("chart");
   const Words words{"chart",     "--scenes", "random:3..4", "--methods", "two-pass", "--quick",
@@ -213,9 +200,8 @@ TEST_CASE("chart: without rounds there are errors and no times, for random scene
   CHECK(run.status == 0);
   CHECK(run.err == "");
   CHECK(contains(run.out, "FLIP over 2 scenes"));
-  CHECK(listing_of(out) == Words{"best.csv", "best.json", "cache", "chart.csv", "chart.json",
-                                 "index.html", "summary.csv", "summary.json", "summary.png",
-                                 "summary.svg"});
+  CHECK(listing_of(out) == kFiles);
+  CHECK(report_in(out)["parts"][0]["id"] == "summary");  // no plot of times before it
   const json list = json::parse(read_file(out + "/chart.json"));
   REQUIRE(list.size() == 14);  // the pinhole is always there
   CHECK(list[0]["scene"] == "random:3");
@@ -265,41 +251,33 @@ TEST_CASE("chart: two scenes of one name are refused") {
 
 TEST_CASE("chart: writes over no file of its scenes, not by a link either") {
   const TemporaryDirectory directory;
-  REQUIRE(run_program(render("figures", directory.file("chart.png"))).status == 0);
-  write_file(directory.file("m.mtl"), "newmtl red\nKd 1 0 0\nmap_Kd chart.png\n");
+  REQUIRE(run_program(render("figures", directory.file("m.png"))).status == 0);
+  const std::string material = "newmtl red\nKd 1 0 0\nmap_Kd m.png\n";
+  write_file(directory.file("chart.csv"), material);
   write_file(directory.file("m.obj"),
-             "mtllib m.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+             "mtllib chart.csv\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const Words words{"chart", "--scenes", "figures," + directory.file("m.obj"), "--quick", "-o"};
   const auto refused_into = [&](const std::string& output, const Words& named) {
     Words all = words;
     all.push_back(output);
     check_refused(directory, all, 2, named);
   };
-  const std::string texture = read_file(directory.file("chart.png"));
-  refused_into(directory.path(), {"-o '" + directory.file("chart.png") + "'",
+  refused_into(directory.path(), {"-o '" + directory.file("chart.csv") + "'",
                                   "would write over a file of the scene m"});
   const TemporaryDirectory elsewhere;
-  std::filesystem::create_hard_link(directory.file("m.mtl"), elsewhere.file("best.csv"));
-  refused_into(elsewhere.path(), {"-o '" + elsewhere.file("best.csv") + "'", "m.mtl"});
+  const std::string texture = read_file(directory.file("m.png"));
+  std::filesystem::create_hard_link(directory.file("m.png"), elsewhere.file("best.csv"));
+  refused_into(elsewhere.path(), {"-o '" + elsewhere.file("best.csv") + "'", "m.png"});
   CHECK(elsewhere.listing() == Words{"best.csv"});
-  CHECK(read_file(directory.file("chart.png")) == texture);
+  CHECK(read_file(directory.file("m.png")) == texture);
+  CHECK(read_file(directory.file("chart.csv")) == material);
 }
 
 TEST_CASE("chart: a place that cannot be written to is told before anything is measured") {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   write_file(directory.file("file"), "");
   check_refused(directory, small_chart(directory.file("file")), 1, {directory.file("file"), "-o"});
   check_refused(directory, small_chart("/dev/null/chart"), 1, {"/dev/null/chart", "-o"});
-}
-
-TEST_CASE("chart: without gnuplot the package is named") {
-  const TemporaryDirectory directory;
-  const char* const found = std::getenv("PATH");
-  const std::string path = found != nullptr ? found : "";
-  ::setenv("PATH", directory.path().c_str(), 1);
-  check_refused(directory, small_chart(directory.file("out")), 1, {"gnuplot-nox"});
-  ::setenv("PATH", path.c_str(), 1);
 }
 
 TEST_CASE("chart: the help names every option") {
@@ -315,7 +293,6 @@ TEST_CASE("chart: the help names every option") {
 
 TEST_CASE("chart --of: another subject has its own truth, methods and page" *
           doctest::test_suite("long")) {
-  if (!has_gnuplot()) return;
   const TemporaryDirectory directory;
   for (const ChartSubject& subject : chart_subjects().subspan(1)) {
     const std::string name{subject.name};
@@ -324,18 +301,11 @@ TEST_CASE("chart --of: another subject has its own truth, methods and page" *
     const Words words{"chart",  "--of",  name, "--scenes", "crossing", "--quick",
                       "--size", "64x64", "-o", out,        "--rounds", "1"};
     REQUIRE(run_program(words).status == 0);
-    auto files = kFiles;
-    if (name == "impostors") {
-      for (auto& file : files) {
-        if (file.starts_with("chart-hdr-flip")) file.replace(6, 8, "outline-px");
-      }
-    }
-    if (name == "shadows") {
-      for (auto& file : files) {
-        if (file.starts_with("chart-hdr-flip")) file.erase(6, 4);
-      }
-    }
-    CHECK(listing_of(out) == files);
+    CHECK(listing_of(out) == kFiles);
+    const json report = report_in(out);
+    CHECK(report["parts"][1]["id"] == (name == "impostors" ? "chart-outline-px"
+                                       : name == "shadows" ? "chart-flip"
+                                                           : "chart-hdr-flip"));
     const json list = json::parse(read_file(out + "/chart.json"));
     CHECK(list[0]["method"] == "pinhole");
     CHECK(list[0].contains("wrong_pixels") == (name == "shadows"));
@@ -350,9 +320,8 @@ TEST_CASE("chart --of: another subject has its own truth, methods and page" *
                                      : name == "shadows"   ? json{{"size", 1024.0}}
                                      : name == "impostors" ? json{{"views", 6.0}}
                                                            : json{{"samples", 16}}));
-    const std::string page = read_file(out + "/index.html");
-    CHECK(contains(page, std::string{subject.title} + ": speed against accuracy"));
-    CHECK_FALSE(contains(page, "of the lens"));
+    CHECK(report["title"] == std::string{subject.title} + ": speed against accuracy");
+    CHECK_FALSE(contains(report.dump(), "of the lens"));
     CHECK(run_program(words).out.starts_with("went on: "));
   }
 }

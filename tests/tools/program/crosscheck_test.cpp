@@ -276,7 +276,7 @@ std::string lavapipe_file() {
 TEST_CASE("crosscheck: lavapipe is found in the loader's folders or by the user's variable") {
   if (!has_driver("lavapipe")) return;
   const std::string there = lavapipe_file();
-  if (there.empty()) return skip("", "lavapipe is not where Debian has it");
+  if (there.empty()) return skip("driver", "lavapipe is not where Debian has it");
   const TemporaryDirectory data;
   const EnvironmentVariable folders{"XDG_DATA_DIRS", data.path().c_str()};
   const EnvironmentVariable home{"XDG_DATA_HOME", "/nonexistent"};

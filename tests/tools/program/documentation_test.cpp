@@ -108,7 +108,7 @@ TEST_CASE("documentation: every command has a man page, with every option of its
 }
 
 TEST_CASE("documentation: man pages have no fault that troff knows") {
-  if (!is_there("groff")) return skip("", "no groff");
+  if (!is_there("groff")) return skip("groff", "no groff");
   const Share share;
   int status = 0;
   CHECK(said_by("groff -man -Tutf8 -ww -z '" + share.file("man/man1") + "'/*.1", status) == "");
@@ -117,7 +117,7 @@ TEST_CASE("documentation: man pages have no fault that troff knows") {
 
 TEST_CASE(
     "documentation: bash completes commands, options and values, and leaves files to itself") {
-  if (!is_there("bash")) return skip("", "no bash");
+  if (!is_there("bash")) return skip("bash", "no bash");
   const Share share;
   CHECK(completed(share, {"ren"}) == Words{"render"});
   CHECK(has(completed(share, {""}), "refocus"));
@@ -143,7 +143,7 @@ TEST_CASE(
 TEST_CASE("documentation: completions are programs that their shells can read") {
   const Share share;
   const auto check_syntax = [&](const std::string& shell, const std::string& script) {
-    if (!is_there(shell)) return skip("", "no " + shell);
+    if (!is_there(shell)) return skip(shell, "no " + shell);
     int status = 0;
     CHECK(said_by(shell + " -n '" + share.file(script) + "'", status) == "");
     CHECK(status == 0);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/support/run_program.h"
+#include "tools/report/kept_results.h"
 #include "tools/stress/trial_record.h"
 
 using namespace softfocus;
@@ -13,13 +14,13 @@ using namespace softfocus;
 TEST_CASE("stress record: kept under a key and a hash, it is found under no other") {
   const TemporaryDirectory directory;
   const std::filesystem::path file = directory.file("trial.json");
-  TrialRecord record{file, "key"};
+  KeptResults record{file, "key"};
   record.keep("two-pass", "0x1", "value", 0.25);
   record.keep("two-pass", "0x1", "picture", "PNG");
   record.keep("layers", "0x2", "value", number_or_null(std::nan("")));
   record.save();
 
-  const TrialRecord again{file, "key"};
+  const KeptResults again{file, "key"};
   CHECK(again.number("two-pass", "0x1", "value") == 0.25);
   CHECK(again.text("two-pass", "0x1", "picture") == "PNG");
   CHECK(again.number("layers", "0x2", "value") == std::numeric_limits<double>::infinity());
@@ -27,12 +28,12 @@ TEST_CASE("stress record: kept under a key and a hash, it is found under no othe
   CHECK_FALSE(again.number("two-pass", "0x1", "other"));
   CHECK_FALSE(again.number("scatter", "0x1", "value"));
   CHECK_FALSE(again.number("two-pass", "0x1", "picture"));  // damaged: no number
-  CHECK_FALSE(TrialRecord{file, "another key"}.number("two-pass", "0x1", "value"));
+  CHECK_FALSE(KeptResults{file, "another key"}.number("two-pass", "0x1", "value"));
 }
 
 TEST_CASE("stress record: another picture of a method takes the place of all that was kept") {
   const TemporaryDirectory directory;
-  TrialRecord record{directory.file("trial.json"), "key"};
+  KeptResults record{directory.file("trial.json"), "key"};
   record.keep("two-pass", "0x1", "value", 0.25);
   record.keep("two-pass", "0x2", "other value", 0.5);
   CHECK_FALSE(record.number("two-pass", "0x1", "value"));
@@ -44,7 +45,7 @@ TEST_CASE("stress record: a damaged file counts as none") {
   const TemporaryDirectory directory;
   for (const char* text : {"", "{", "[1]", "{\"key\": 3}", "{\"key\": \"key\", \"two-pass\": 3}"}) {
     write_file(directory.file("trial.json"), text);
-    TrialRecord record{directory.file("trial.json"), "key"};
+    KeptResults record{directory.file("trial.json"), "key"};
     CHECK_FALSE(record.number("two-pass", "0x1", "value"));
     record.keep("two-pass", "0x1", "value", 1.0);
     CHECK(record.number("two-pass", "0x1", "value") == 1.0);

@@ -1,7 +1,6 @@
 #include "tools/chart/contenders/turn_contenders.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "dof/measure/outline.h"
@@ -11,6 +10,8 @@
 #include "scenes/relief/warp/march_relief.h"
 #include "scenes/surfaces/surface_stages.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/timing.h"
+#include "tools/relief/turn_frames.h"
 
 namespace softfocus {
 namespace {
@@ -80,10 +81,6 @@ Camera camera_of_turn(const Scene& scene, const ReliefMaker& maker) {
 double distance_of(const Camera& camera) {
   const glm::dvec3 arm = camera.position - camera.target;
   return std::sqrt(dot(arm, arm));
-}
-
-glm::vec4 turn_clear(const Scene& scene, const Camera& camera) {
-  return {glm::vec3{clear_colour(scene)}, alpha_depth(static_cast<float>(camera.far_m))};
 }
 
 void copy_view(const Image& view, Image& sheet, int number) {
@@ -169,7 +166,7 @@ TurnContenders::TurnContenders(const ChartScene& chart, ThreadPool& pool)
       camera_(camera_of_turn(chart.scene, maker_)),
       distance_m_(distance_of(camera_)),
       blank_(make_image(Format::rgba16f, width_, height_)) {
-  clear_image(blank_, turn_clear(chart.scene, camera_), Profile{});
+  clear_image(blank_, turn_background(chart.scene, camera_), Profile{});
   shown_ = blank_;
   prepared_.depth = make_image(Format::r32f, width_, height_);
 }
@@ -228,17 +225,11 @@ void TurnContenders::show(const ChartTurn& turn, const CameraMatrices& view) {
     pass.targets.colour[0] = &shown_;
     pass.targets.depth = &prepared_.depth;
     record_scene(prepared_, view, chart_.frame, pass);
-    pass.clear_colour = turn_clear(chart_.scene, camera_);
+    pass.clear_colour = turn_background(chart_.scene, camera_);
     finish(pass, pool_);
     return;
   }
-  constexpr int kRows = 16;
-  pool_.for_each((height_ + kRows - 1) / kRows, [&](int band) {
-    for (int y = kRows * band; y < std::min(kRows * band + kRows, height_); ++y) {
-      const auto texels = row<std::uint16_t>(blank_, y);
-      std::copy(texels.begin(), texels.end(), row<std::uint16_t>(shown_, y).begin());
-    }
-  });
+  clear_area(blank_, {0, 0, width_, height_}, shown_, pool_);
   if (turn.by == TurnBy::impostor) {
     show_impostor(turn, view);
   } else if (turn.by == TurnBy::octahedral) {
@@ -249,7 +240,6 @@ void TurnContenders::show(const ChartTurn& turn, const CameraMatrices& view) {
 }
 
 double TurnContenders::run(const ChartTurn& turn, Image& sheet) {
-  using std::chrono::steady_clock;
   impostor_ = {};
   renewals_ = 0;
   most_bytes_ = turn.by == TurnBy::octahedral ? bytes_of(atlas_of(turn.views)) : 0;
@@ -257,9 +247,7 @@ double TurnContenders::run(const ChartTurn& turn, Image& sheet) {
   double sum_ms = 0.0;
   for (int i = 0; i < turn.frames; ++i) {
     const CameraMatrices view = camera_matrices(camera_, 360.0 * i / turn.frames, width_, height_);
-    const steady_clock::time_point start = steady_clock::now();
-    show(turn, view);
-    sum_ms += std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
+    sum_ms += milliseconds_of([&] { show(turn, view); });
     if (i % every == 0) copy_view(shown_, sheet, i / every);
   }
   return sum_ms / turn.frames;

@@ -1,7 +1,7 @@
 #include "tools/chart/report/numbers.h"
 
-#include "tools/bench/timing.h"
 #include "tools/chart/record.h"
+#include "tools/cli/timing.h"
 #include "tools/files/json.h"
 #include "tools/golden/hashes.h"
 
@@ -30,26 +30,6 @@ Json point_json(const ChartPanel& panel, const ChartPoint& point) {
   json["noise_floor_psnr_db"] = floor.at("psnr_db");
   json["picture_hash"] = hash_text(point.picture_hash);
   return json;
-}
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string{"\"\""} : std::string{c};
-  return result + "\"";
-}
-
-std::string csv_field(const Json& value) {
-  if (value.is_null()) return "";
-  if (value.is_text()) return csv_text(value.text());
-  if (!value.is_object()) return json_text(value);
-  std::string settings;
-  for (const std::string& name : value.names()) {
-    const Json& setting = value.at(name);
-    settings += (settings.empty() ? "" : ";") + name + "=" +
-                (setting.is_text() ? setting.text() : json_text(setting));
-  }
-  return csv_text(settings);
 }
 
 }  // namespace
@@ -100,20 +80,6 @@ Json summary_json(const std::vector<SummaryRow>& summary) {
     list.push_back(std::move(json));
   }
   return list;
-}
-
-std::string csv_of(const Json& list) {
-  std::string text;
-  for (const Json& point : list.values()) {
-    std::string names, values;
-    for (const std::string& name : point.names()) {
-      names += (names.empty() ? "" : ",") + name;
-      values += (&name == &point.names().front() ? "" : ",") + csv_field(point.at(name));
-    }
-    if (text.empty()) text = names + "\n";
-    text += values + "\n";
-  }
-  return text;
 }
 
 }  // namespace softfocus

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "tools/chart/point.h"
-#include "tools/chart/report/best.h"
 #include "tools/chart/report/summary.h"
 #include "tools/files/json.h"
 
@@ -28,9 +27,5 @@ Json best_json(const std::vector<BestForBudget>& best);
 /// flip_median, flip_p90, flip_worst, flip_worst_scene}. Ratios and times are null where nothing
 /// was timed.
 Json summary_json(const std::vector<SummaryRow>& summary);
-
-/// A list of objects with the same members as lines under a line of names (RFC 4180, but lines end
-/// in LF). Settings are "max_coc_px=16;profile=ieee"; null is empty.
-std::string csv_of(const Json& list);
 
 }  // namespace softfocus

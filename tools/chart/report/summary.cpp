@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/bench/timing.h"
+#include "tools/chart/front.h"
+#include "tools/cli/timing.h"
 
 namespace softfocus {
 namespace {
@@ -85,6 +86,20 @@ std::vector<Contender> contenders_of(const std::vector<ChartPanel>& panels, cons
   return contenders;
 }
 
+/// Null if none is within the budget.
+const ChartPoint* best_within(const ChartPanel& panel, double budget, double ChartErrors::*error) {
+  const ChartPoint* best = nullptr;
+  for (const ChartPoint& point : panel.points) {
+    if (point.pinhole_frames > budget) continue;
+    const double own = point.errors.*error;
+    if (best == nullptr || own < best->errors.*error ||
+        (own == best->errors.*error && point.median_ms < best->median_ms)) {
+      best = &point;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 OverScenes over_scenes(std::span<const SceneNumber> numbers) {
@@ -130,6 +145,28 @@ std::vector<SummaryRow> summary_of(const std::vector<ChartPanel>& panels) {
                           })));
   }
   return rows;
+}
+
+bool has_times(const std::vector<SummaryRow>& summary) {
+  return std::none_of(summary.begin(), summary.end(),
+                      [](const SummaryRow& row) { return std::isnan(row.pinhole_frames.median); });
+}
+
+std::vector<BestForBudget> best_for_budgets(const std::vector<ChartPanel>& panels) {
+  std::vector<BestForBudget> list;
+  for (const ChartPanel& panel : panels) {
+    const auto add = [&](double budget) {
+      for (std::size_t i = 0; i < panel.ranked.size(); ++i) {
+        const ChartPoint* point = best_within(panel, budget, panel.ranked[i].value);
+        if (point != nullptr) list.push_back({panel.scene, budget, i, panel.ranked[i], point});
+      }
+    };
+    if (has_times(panel)) {
+      for (const double budget : kBudgets) add(budget);
+    }
+    add(kAnyTime);
+  }
+  return list;
 }
 
 }  // namespace softfocus
