@@ -27,8 +27,7 @@ void gaussian(const Effect&, const EffectInput& input, const ImageView& result, 
   convolve(column_kernel(weights), across, result, input.profile, pool);
 }
 
-constexpr std::array kGaussian{
-    EffectParameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 2.0}};
+constexpr std::array kGaussian{Parameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 2.0}};
 
 void gaussian_at_once(const Effect&, const EffectInput& input, const ImageView& result,
                       ThreadPool& pool) {
@@ -37,7 +36,7 @@ void gaussian_at_once(const Effect&, const EffectInput& input, const ImageView& 
 }
 
 constexpr std::array kGaussianAtOnce{
-    EffectParameter{"sigma", "standard deviation in pixels", 0.0, 20.0, 2.0}};
+    Parameter{"sigma", "standard deviation in pixels", 0.0, 20.0, 2.0}};
 
 void bilateral_effect(const Effect&, const EffectInput& input, const ImageView& result,
                       ThreadPool& pool) {
@@ -45,11 +44,10 @@ void bilateral_effect(const Effect&, const EffectInput& input, const ImageView& 
 }
 
 constexpr std::array kBilateral{
-    EffectParameter{"sigma", "standard deviation of the distance in pixels", 0.0, 20.0, 2.0},
-    EffectParameter{"colour", "distance of unlike colours in linear light, 0 = none", 0.0, 1000.0,
-                    0.1},
-    EffectParameter{"depth", "distance of unlike depths over the pixel's depth, 0 = none", 0.0,
-                    1000.0, 0.0}};
+    Parameter{"sigma", "standard deviation of the distance in pixels", 0.0, 20.0, 2.0},
+    Parameter{"colour", "distance of unlike colours in linear light, 0 = none", 0.0, 1000.0, 0.1},
+    Parameter{"depth", "distance of unlike depths over the pixel's depth, 0 = none", 0.0, 1000.0,
+              0.0}};
 
 void dual_filter_effect(const Effect&, const EffectInput& input, const ImageView& result,
                         ThreadPool& pool) {
@@ -58,9 +56,9 @@ void dual_filter_effect(const Effect&, const EffectInput& input, const ImageView
 }
 
 constexpr std::array kDualFilter{
-    EffectParameter{"levels", "halvings: each makes the blur twice as wide", 1.0, 12.0, 2.0},
-    EffectParameter{"bilinear", "1: wider again by bilinear samples, 0: by tents of them", 0.0, 1.0,
-                    0.0}};
+    Parameter{"levels", "halvings: each makes the blur twice as wide", 1.0, 12.0, 2.0},
+    Parameter{"bilinear", "1: wider again by bilinear samples, 0: by tents of them", 0.0, 1.0,
+              0.0}};
 
 void bloom_effect(const Effect&, const EffectInput& input, const ImageView& result,
                   ThreadPool& pool) {
@@ -68,13 +66,13 @@ void bloom_effect(const Effect&, const EffectInput& input, const ImageView& resu
 }
 
 constexpr std::array kBloom{
-    EffectParameter{"threshold", "what is darker does not bloom, white is 1", 0.0, 65504.0, 1.0},
-    EffectParameter{"knee", "half the way from nothing to all that blooms", 0.0, 65504.0, 0.5},
-    EffectParameter{"strength", "share of the bright light that is scattered", 0.0, 1.0, 0.1},
-    EffectParameter{"levels", "halvings: the widest reaches some 2^levels pixels", 1.0, 12.0, 6.0},
-    EffectParameter{"spread", "how much of each level comes from wider ones", 0.0, 1.0, 0.6},
-    EffectParameter{"steady", "1: bright pixels do not flicker as they move, and lose light", 0.0,
-                    1.0, 0.0}};
+    Parameter{"threshold", "what is darker does not bloom, white is 1", 0.0, 65504.0, 1.0},
+    Parameter{"knee", "half the way from nothing to all that blooms", 0.0, 65504.0, 0.5},
+    Parameter{"strength", "share of the bright light that is scattered", 0.0, 1.0, 0.1},
+    Parameter{"levels", "halvings: the widest reaches some 2^levels pixels", 1.0, 12.0, 6.0},
+    Parameter{"spread", "how much of each level comes from wider ones", 0.0, 1.0, 0.6},
+    Parameter{"steady", "1: bright pixels do not flicker as they move, and lose light", 0.0, 1.0,
+              0.0}};
 
 void bloom_gaussian_effect(const Effect&, const EffectInput& input, const ImageView& result,
                            ThreadPool& pool) {
@@ -84,7 +82,7 @@ void bloom_gaussian_effect(const Effect&, const EffectInput& input, const ImageV
 
 constexpr std::array kBloomGaussian{
     kBloom[0], kBloom[1], kBloom[2],
-    EffectParameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 8.0}};
+    Parameter{"sigma", "standard deviation in pixels", 0.0, 341.0, 8.0}};
 
 void lens_flare_effect(const Effect&, const EffectInput& input, const ImageView& result,
                        ThreadPool& pool) {
@@ -92,23 +90,20 @@ void lens_flare_effect(const Effect&, const EffectInput& input, const ImageView&
 }
 
 constexpr std::array kLensFlare{
-    EffectParameter{"threshold", "what is darker has no flare, white is 1", 0.0, 65504.0, 1.0},
-    EffectParameter{"knee", "half the way from nothing to all that has one", 0.0, 65504.0, 0.5},
-    EffectParameter{"beyond", "light nearer than this, in metres of depth, has none; 0: all has",
-                    0.0, 65504.0, 0.0},
-    EffectParameter{"strength", "factor of all that is added", 0.0, 10.0, 0.05},
-    EffectParameter{"ghosts", "mirrored and scaled pictures of the light", 0.0, 8.0, 5.0},
-    EffectParameter{"fringe", "how much larger ghosts are in blue than in green", 0.0, 0.3, 0.03},
-    EffectParameter{"halo", "radius of a ring, over half the picture's height; 0: none", 0.0, 1.0,
-                    0.5},
-    EffectParameter{"streak", "length of streaks to either side in pixels; 0: none", 0.0, 4096.0,
-                    200.0},
-    EffectParameter{"rays", "length of rays from the light, over the way to it; 0: none", 0.0, 1.0,
-                    0.3},
-    EffectParameter{"aperture",
-                    "radius of a ghost's six blades, over half the picture's height; 0: the "
-                    "light's own shape",
-                    0.0, 0.5, 0.08}};
+    Parameter{"threshold", "what is darker has no flare, white is 1", 0.0, 65504.0, 1.0},
+    Parameter{"knee", "half the way from nothing to all that has one", 0.0, 65504.0, 0.5},
+    Parameter{"beyond", "light nearer than this, in metres of depth, has none; 0: all has", 0.0,
+              65504.0, 0.0},
+    Parameter{"strength", "factor of all that is added", 0.0, 10.0, 0.05},
+    Parameter{"ghosts", "mirrored and scaled pictures of the light", 0.0, 8.0, 5.0},
+    Parameter{"fringe", "how much larger ghosts are in blue than in green", 0.0, 0.3, 0.03},
+    Parameter{"halo", "radius of a ring, over half the picture's height; 0: none", 0.0, 1.0, 0.5},
+    Parameter{"streak", "length of streaks to either side in pixels; 0: none", 0.0, 4096.0, 200.0},
+    Parameter{"rays", "length of rays from the light, over the way to it; 0: none", 0.0, 1.0, 0.3},
+    Parameter{"aperture",
+              "radius of a ghost's six blades, over half the picture's height; 0: the "
+              "light's own shape",
+              0.0, 0.5, 0.08}};
 
 void motion_blur_along_own_effect(const Effect&, const EffectInput& input, const ImageView& result,
                                   ThreadPool& pool) {
@@ -125,13 +120,12 @@ void motion_blur_effect(const Effect&, const EffectInput& input, const ImageView
 }
 
 constexpr std::array kMotionBlur{
-    EffectParameter{"shutter", "part of a frame that it is open, centred on the frame", 0.0, 8.0,
-                    0.5},
-    EffectParameter{"samples", "pixels that are read for each", 1.0, 64.0, 16.0},
-    EffectParameter{"radius", "longest way to either side in pixels, and the size of the tiles",
-                    1.0, 256.0, 32.0},
-    EffectParameter{"depth", "part of its depth by which something lies wholly before another",
-                    0.001, 1000.0, 0.1}};
+    Parameter{"shutter", "part of a frame that it is open, centred on the frame", 0.0, 8.0, 0.5},
+    Parameter{"samples", "pixels that are read for each", 1.0, 64.0, 16.0},
+    Parameter{"radius", "longest way to either side in pixels, and the size of the tiles", 1.0,
+              256.0, 32.0},
+    Parameter{"depth", "part of its depth by which something lies wholly before another", 0.001,
+              1000.0, 0.1}};
 
 void tone_map_effect(const Effect& effect, const EffectInput& input, const ImageView& result,
                      ThreadPool& pool) {
@@ -139,40 +133,38 @@ void tone_map_effect(const Effect& effect, const EffectInput& input, const Image
            result, input.profile, pool);
 }
 
-constexpr std::array kExposure{
-    EffectParameter{"exposure", "factor of the light", 0.0, 65504.0, 1.0}};
+constexpr std::array kExposure{Parameter{"exposure", "factor of the light", 0.0, 65504.0, 1.0}};
 
 /// The effect that a tone curve is.
 constexpr Effect of_curve(const NamedToneCurve& named) {
   return {named.name, named.summary, kExposure, tone_map_effect};
 }
 
-constexpr EffectParameter kFrameDepth{
+constexpr Parameter kFrameDepth{
     "depth", "how much nearer or farther a surface may have been, over its depth; 0: any", 0.0,
     1000.0, 0.1};
-constexpr EffectParameter kWarmUp{
-    "warm-up", "frames that are drawn before the first, for a history", 0.0, 1000.0, 0.0};
+constexpr Parameter kWarmUp{"warm-up", "frames that are drawn before the first, for a history", 0.0,
+                            1000.0, 0.0};
 
 constexpr std::array kTemporalAa{
-    EffectParameter{"new", "least share of the new frame in the average", 0.001, 1.0, 0.1},
-    EffectParameter{"places", "in the pixel that frames look from in turn, 1: its centre", 1.0,
-                    64.0, 8.0},
-    EffectParameter{"box", "old colours are cut to 3x3 new ones: 0 not, 1 to all, 2 by deviations",
-                    0.0, 2.0, 2.0},
-    EffectParameter{"deviations", "standard ones from the mean that are kept, of box=2", 0.0,
-                    1000.0, 1.0},
-    EffectParameter{"cubic", "1: the frame before is read by a cubic curve; 0: bilinear", 0.0, 1.0,
-                    1.0},
+    Parameter{"new", "least share of the new frame in the average", 0.001, 1.0, 0.1},
+    Parameter{"places", "in the pixel that frames look from in turn, 1: its centre", 1.0, 64.0,
+              8.0},
+    Parameter{"box", "old colours are cut to 3x3 new ones: 0 not, 1 to all, 2 by deviations", 0.0,
+              2.0, 2.0},
+    Parameter{"deviations", "standard ones from the mean that are kept, of box=2", 0.0, 1000.0,
+              1.0},
+    Parameter{"cubic", "1: the frame before is read by a cubic curve; 0: bilinear", 0.0, 1.0, 1.0},
     kFrameDepth,
     kWarmUp};
-constexpr std::array kRefresh{
-    EffectParameter{"groups", "a frame draws one of them", 1.0, 64.0, 4.0}, kFrameDepth, kWarmUp};
+constexpr std::array kRefresh{Parameter{"groups", "a frame draws one of them", 1.0, 64.0, 4.0},
+                              kFrameDepth, kWarmUp};
 constexpr std::array kReproject{
-    EffectParameter{"every", "one of so many frames is drawn", 1.0, 1000.0, 2.0},
-    EffectParameter{"forward", "1: pixels go to where they are now; 0: look where they were", 0.0,
-                    1.0, 0.0},
-    EffectParameter{"holes", "what was not seen is 0 drawn, 1 filled from beside it, 2 left black",
-                    0.0, 2.0, 0.0},
+    Parameter{"every", "one of so many frames is drawn", 1.0, 1000.0, 2.0},
+    Parameter{"forward", "1: pixels go to where they are now; 0: look where they were", 0.0, 1.0,
+              0.0},
+    Parameter{"holes", "what was not seen is 0 drawn, 1 filled from beside it, 2 left black", 0.0,
+              2.0, 0.0},
     kFrameDepth, kWarmUp};
 
 constexpr std::array kEffects{

@@ -14,8 +14,6 @@
 
 namespace softfocus {
 
-using EffectParameter = Parameter;
-
 struct Effect;
 
 struct EffectInput {
@@ -38,7 +36,7 @@ enum class VelocityOf : std::uint8_t {
 struct Effect {
   std::string_view name;
   std::string_view summary;
-  std::span<const EffectParameter> parameters;
+  std::span<const Parameter> parameters;
   /// Writes RGBA16F of the picture's size, with its alpha. Null: it makes frames (scenes/temporal).
   void (*filter)(const Effect& effect, const EffectInput& input, const ImageView& result,
                  ThreadPool& pool);

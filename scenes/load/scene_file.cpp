@@ -153,7 +153,7 @@ ChosenEffect read_effect(Section& section) {
     fail_at(section, "name", "is no effect; there are " + there);
   }
   ChosenEffect chosen{effect, {}};
-  for (const EffectParameter& parameter : effect->parameters) {
+  for (const Parameter& parameter : effect->parameters) {
     chosen.parameters.push_back(read_number(section, parameter, parameter.preset));
   }
   finish_section(section);

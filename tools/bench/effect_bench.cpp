@@ -45,7 +45,7 @@ std::string short_text(const ChosenEffect& chosen) {
   std::string text{chosen.effect->name};
   bool first = true;
   for (std::size_t i = 0; i < chosen.parameters.size(); ++i) {
-    const EffectParameter& parameter = chosen.effect->parameters[i];
+    const Parameter& parameter = chosen.effect->parameters[i];
     if (chosen.parameters[i] == parameter.preset) continue;
     text += (first ? ":" : ",") + std::string{parameter.name} + "=" +
             short_number(chosen.parameters[i]);

@@ -16,7 +16,7 @@ constexpr std::string_view kAccumulationName = "accumulation";
 /// An effect's name, and the value of one of its parameters.
 ChosenEffect with_value(std::string_view name, std::string_view parameter, double value) {
   ChosenEffect chosen{find_effect(name), {}};
-  for (const EffectParameter& of : chosen.effect->parameters) {
+  for (const Parameter& of : chosen.effect->parameters) {
     chosen.parameters.push_back(of.name == parameter ? value : of.preset);
   }
   return chosen;

@@ -93,11 +93,11 @@ void add_size(CLI::App& parser, PictureSize& size) {
 }
 
 void add_frame(CLI::App& parser, double& frame) {
-  const Parameter& of = parameter::kFrame;
-  add_value(parser, "--frame", std::string{of.type},
-            std::string{of.summary} + " (" + range_text(of) + "; default: 0)",
-            [&frame, &of](const std::string& text) {
-              frame = parse_number("--frame", text, of.least, of.most, wanted_text(of));
+  using parameter::kFrame;
+  add_value(parser, "--frame", std::string{kFrame.type},
+            std::string{kFrame.summary} + " (" + range_text(kFrame) + "; default: 0)",
+            [&frame](const std::string& text) {
+              frame = parse_number("--frame", text, kFrame.least, kFrame.most, wanted_text(kFrame));
             });
 }
 

@@ -91,7 +91,7 @@ void add_effect_hashes(std::string_view scene, const Image& picture, const Profi
     if (effect.velocity != VelocityOf::nothing) continue;  // add_motion_hashes()
     if (effect.filter == nullptr) continue;                // add_history_hashes()
     std::vector<double> parameters;
-    for (const EffectParameter& parameter : effect.parameters) {
+    for (const Parameter& parameter : effect.parameters) {
       parameters.push_back(parameter.preset);
     }
     hashes.push_back({entry_name(scene, effect.name, where),
@@ -127,7 +127,7 @@ void add_motion_hashes(std::string_view name, Scene scene, const FrameSize& size
   for (const Effect& effect : effects()) {
     if (effect.velocity == VelocityOf::nothing) continue;
     ChosenEffect chosen{&effect, {}};
-    for (const EffectParameter& parameter : effect.parameters) {
+    for (const Parameter& parameter : effect.parameters) {
       chosen.parameters.push_back(parameter.preset);
     }
     const Image velocity = velocity_for(chosen, scene, kFrame, picture, profile, pool);

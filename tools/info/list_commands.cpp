@@ -57,7 +57,7 @@ Json effects_json() {
   Json list = Json::array();
   for (const Effect& effect : effects()) {
     Json parameters = Json::array();
-    for (const EffectParameter& parameter : effect.parameters) {
+    for (const Parameter& parameter : effect.parameters) {
       parameters.push_back({{"name", parameter.name},
                             {"summary", parameter.summary},
                             {"least", parameter.least},
@@ -130,7 +130,7 @@ Command add_effects_command(CLI::App& program) {
             std::vector<Row> rows;
             for (const Effect& effect : effects()) {
               rows.push_back({std::string{effect.name}, std::string{effect.summary}});
-              for (const EffectParameter& parameter : effect.parameters) {
+              for (const Parameter& parameter : effect.parameters) {
                 rows.push_back(
                     {"  " + std::string{parameter.name} + "=" + short_number(parameter.preset),
                      std::string{parameter.summary} + ", " + short_number(parameter.least) +

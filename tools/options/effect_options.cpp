@@ -11,15 +11,15 @@ ChosenEffect parse_effect(std::string_view option, const std::string& text) {
   const std::string name = text.substr(0, colon);
   ChosenEffect chosen{find_effect(name), {}};
   if (chosen.effect == nullptr) refuse_name(option, name, names_in(effects()));
-  for (const EffectParameter& parameter : chosen.effect->parameters) {
+  for (const Parameter& parameter : chosen.effect->parameters) {
     chosen.parameters.push_back(parameter.preset);
   }
   if (colon == std::string::npos) return chosen;
   const std::string where = std::string{option} + " '" + text + "'";
-  const std::span<const EffectParameter> parameters = chosen.effect->parameters;
+  const std::span<const Parameter> parameters = chosen.effect->parameters;
   read_pairs(where, std::string_view{text}.substr(colon + 1), names_in(parameters),
              [&](std::size_t key, const std::string& value) {
-               const EffectParameter& of = parameters[key];
+               const Parameter& of = parameters[key];
                chosen.parameters[key] =
                    parse_number(where + ": " + std::string{of.name}, value, of.least, of.most,
                                 std::string{of.summary} + ", " + range_text(of));

@@ -98,7 +98,7 @@ Image chosen_picture(const StressFrame& frame, ThreadPool& pool) {
 /// Depth of field, then motion blur, as engines have it.
 Image motion_blurred(const std::string& method, const StressFrame& frame, ThreadPool& pool) {
   ChosenEffect chosen{find_effect(method), {}};
-  for (const EffectParameter& parameter : chosen.effect->parameters) {
+  for (const Parameter& parameter : chosen.effect->parameters) {
     chosen.parameters.push_back(parameter.preset);
   }
   chosen.parameters[0] = frame.scene->shutter_frames;

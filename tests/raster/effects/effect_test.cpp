@@ -13,7 +13,7 @@ namespace {
 
 std::vector<double> presets_of(const Effect& effect) {
   std::vector<double> values;
-  for (const EffectParameter& parameter : effect.parameters) values.push_back(parameter.preset);
+  for (const Parameter& parameter : effect.parameters) values.push_back(parameter.preset);
   return values;
 }
 
@@ -36,7 +36,7 @@ TEST_CASE("effects have names of their own and presets within their limits") {
     CAPTURE(effect.name);
     CHECK(names.insert(effect.name).second);
     CHECK(find_effect(effect.name) == &effect);
-    for (const EffectParameter& parameter : effect.parameters) {
+    for (const Parameter& parameter : effect.parameters) {
       CHECK(parameter.least <= parameter.preset);
       CHECK(parameter.preset <= parameter.most);
     }
