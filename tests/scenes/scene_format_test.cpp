@@ -138,8 +138,9 @@ constexpr const char* kTooMuch = "9000000000000000000";
 
 TEST_CASE("docs/scene-format.md: ranges are the program's") {
   int ranges = 0;
-  for (const auto& [heading, section] : sections()) {
-    for (const Words& row : section.rows) {
+  for (const auto& named : sections()) {
+    const std::string& heading = named.first;
+    for (const Words& row : named.second.rows) {
       if (row.size() != 4 || row[2].empty()) continue;
       CAPTURE(heading);
       CAPTURE(row[0]);
@@ -161,8 +162,9 @@ TEST_CASE("docs/scene-format.md: ranges are the program's") {
 
 TEST_CASE("docs/scene-format.md: a default is what counts without the key") {
   int defaults = 0;
-  for (const auto& [heading, section] : sections()) {
-    for (const Words& row : section.rows) {
+  for (const auto& named : sections()) {
+    const std::string& heading = named.first;
+    for (const Words& row : named.second.rows) {
       if (row.size() != 4 || row[1].find_first_of("[\"0123456789tf") != 0) continue;
       if (row[1].starts_with("the ")) continue;
       CAPTURE(heading);
@@ -180,7 +182,8 @@ TEST_CASE("docs/scene-format.md: a default is what counts without the key") {
 
 TEST_CASE("docs/scene-format.md: it has every key, and no other") {
   const auto all = sections();
-  for (const auto& [heading, scene] : kScenes) {
+  for (const auto& named : kScenes) {
+    const std::string& heading = named.first;
     CAPTURE(heading);
     const Section& section = all.at(heading);
     const std::string said = complaint(with_keys(heading, "nothing = 1\n"));
