@@ -31,6 +31,14 @@ const std::map<std::string, std::string> kScenes{
     {"`[[object]]`", object("shape = \"cube\"\n%")},
     {"`[[scatter]]`", scatter_of("%")}};
 
+std::string between(const std::string& begin, const std::string& middle, const std::string& end) {
+  return begin + middle + end;
+}
+
+std::string setting(const std::string& key, const std::string& value) {
+  return key + " = " + value + "\n";
+}
+
 std::string with_keys(const std::string& heading, const std::string& keys) {
   std::string text = kScenes.at(heading);
   if (keys.starts_with("position") || keys.starts_with("radius_m")) {
@@ -149,11 +157,11 @@ TEST_CASE("docs/scene-format.md: ranges are the program's") {
           row[0] == "direction" || row[0] == "position" || row[0] == "diffuse" ||
           row[0] == "ambient" || row[0] == "ambient_light") {
         const auto commas = std::count(row[1].begin(), row[1].end(), ',');
-        value = "[" + value + (commas == 1 ? ", 1]" : ", 1, 1]");
+        value = between("[", value, commas == 1 ? ", 1]" : ", 1, 1]");
       }
-      if (row[0] == "colours") value = "[[" + value + ", 1, 1], [1, 1, 1]]";
-      if (row[0] == "avoid") value = "[[" + value + ", 1, 1, 1]]";
-      check_range(with_keys(heading, row[0] + " = " + value + "\n"), row[2]);
+      if (row[0] == "colours") value = between("[[", value, ", 1, 1], [1, 1, 1]]");
+      if (row[0] == "avoid") value = between("[[", value, ", 1, 1, 1]]");
+      check_range(with_keys(heading, setting(row[0], value)), row[2]);
       ++ranges;
     }
   }
@@ -170,7 +178,7 @@ TEST_CASE("docs/scene-format.md: a default is what counts without the key") {
       CAPTURE(heading);
       CAPTURE(row[0]);
       // Radii and angles are of one kind of light, whose scene has a position or a direction.
-      const std::string with = with_keys(heading, row[0] + " = " + row[1] + "\n");
+      const std::string with = with_keys(heading, setting(row[0], row[1]));
       std::string without = with;
       without.erase(without.find("\n" + row[0] + " = ") + 1, row[0].size() + row[1].size() + 4);
       CHECK(numbers_of(read(with)) == numbers_of(read(without)));
@@ -191,7 +199,7 @@ TEST_CASE("docs/scene-format.md: it has every key, and no other") {
     REQUIRE(said.find(begin) != said.npos);
     std::string known = said.substr(said.find(begin) + begin.size());
     known.replace(known.find(" and "), 5, ", ");
-    known = ", " + known + ", ";
+    known = between(", ", known, ", ");
     for (std::size_t at = 0, next; (next = known.find(", ", at + 2)) != known.npos; at = next) {
       const std::string key = known.substr(at + 2, next - at - 2);
       CAPTURE(key);
@@ -221,9 +229,9 @@ TEST_CASE("docs/scene-format.md: shapes have these keys, defaults and ranges") {
       const std::string rest = row[1].substr(end + 1, next - end - 1);
       CAPTURE(key);
       const std::string preset = rest.substr(1, rest.find_first_of(" ,(", 1) - 1);
-      CHECK(numbers_of(read(object(shape + key + " = " + preset + "\n"))) == plain);
+      CHECK(numbers_of(read(object(shape + setting(key, preset)))) == plain);
       const std::size_t bracket = rest.find('(');
-      check_range(object(shape + key + " = " + kTooMuch + "\n"),
+      check_range(object(shape + setting(key, std::string{kTooMuch})),
                   bracket == rest.npos ? "1e-6..1e6" : rest.substr(bracket + 1));
       at = next;
       ++keys;

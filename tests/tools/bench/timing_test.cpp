@@ -18,6 +18,7 @@ void check_spread(const std::vector<double>& samples, const Spread& expected) {
 // Stages that do nothing but note that they ran.
 std::vector<TimedStage> noting(const std::vector<std::string>& names, std::string& ran) {
   std::vector<TimedStage> stages;
+  stages.reserve(names.size());
   for (const std::string& name : names) {
     stages.push_back({name, [name, &ran] { ran += name + " "; }});
   }

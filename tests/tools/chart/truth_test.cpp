@@ -28,7 +28,7 @@ ChartScene scene_of(const Case& from, ThreadPool& pool) {
   return load_chart_scene(from.name, options, pool);
 }
 
-std::string key_of(const Case& from) {
+std::string key_of_case(const Case& from) {
   ThreadPool pool{2};
   return truth_key(scene_of(from, pool), from.file_bytes, from.samples, from.measures, pool);
 }
@@ -71,14 +71,14 @@ TEST_CASE(
 }
 
 TEST_CASE("chart key: the same for the same, another for anything that the truth depends on") {
-  const std::string plain = key_of({});
-  CHECK(key_of({}) == plain);
-  CHECK(key_of({.name = "cube-room"}) != plain);
-  CHECK(key_of({.file_bytes = "another"}) != plain);
-  CHECK(key_of({.size = {40, 33}}) != plain);
-  CHECK(key_of({.frame = 3.0}) != plain);
-  CHECK(key_of({.samples = 144}) != plain);
-  CHECK(key_of({.measures = 2}) != plain);
+  const std::string plain = key_of_case({});
+  CHECK(key_of_case({}) == plain);
+  CHECK(key_of_case({.name = "cube-room"}) != plain);
+  CHECK(key_of_case({.file_bytes = "another"}) != plain);
+  CHECK(key_of_case({.size = {40, 33}}) != plain);
+  CHECK(key_of_case({.frame = 3.0}) != plain);
+  CHECK(key_of_case({.samples = 144}) != plain);
+  CHECK(key_of_case({.measures = 2}) != plain);
 }
 
 TEST_CASE(
