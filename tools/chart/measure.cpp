@@ -100,8 +100,10 @@ const std::vector<ChartMeasure>& chart_measures() {
       for (const Region region : kAllRegions) {
         const auto i = static_cast<std::size_t>(region);
         const std::string name{region_name(region)};
+        std::string own_key = key;
+        own_key.append("_").append(name);
         made.push_back(
-            {key + "_" + name, name, title, flip.places,
+            {own_key, name, title, flip.places,
              [by_region, i](ChartErrors& errors) -> double& { return (errors.*by_region)[i]; }});
       }
     };
