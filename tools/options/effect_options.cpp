@@ -66,16 +66,31 @@ std::vector<ChosenEffect> all_effects(const EffectOptions& options,
   return all;
 }
 
+namespace {
+
+/// Where an effect that makes frames comes after `first`.
+[[noreturn]] void refuse_of_frames(const std::string& where, const Effect& effect,
+                                   const Effect& first) {
+  const std::string name{effect.name};
+  throw UsageError(
+      where + ": " + name +
+      (is_of_frames(first)
+           ? " and " + std::string{first.name} + " both make frames from those before; give one"
+           : " is part of the drawing; name it before all other effects"));
+}
+
+std::string order_text(const std::string& before, const std::string& after) {
+  return "the effect " + before + " comes before " + after + ": a camera has " + after +
+         " first, then " + before + " (docs/effects/order.md)";
+}
+
+}  // namespace
+
 std::optional<ChosenEffect> effect_of_frames(const std::vector<ChosenEffect>& effects,
                                              const std::string& where) {
   for (std::size_t i = 1; i < effects.size(); ++i) {
     if (!is_of_frames(*effects[i].effect)) continue;
-    const std::string name{effects[i].effect->name};
-    throw UsageError(where + ": " + name +
-                     (is_of_frames(*effects.front().effect)
-                          ? " and " + std::string{effects.front().effect->name} +
-                                " both make frames from those before; give one"
-                          : " is part of the drawing; name it before all other effects"));
+    refuse_of_frames(where, *effects[i].effect, *effects.front().effect);
   }
   if (effects.empty() || !is_of_frames(*effects.front().effect)) return {};
   return effects.front();
@@ -98,9 +113,7 @@ std::string order_warning(const std::vector<ChosenEffect>& effects) {
     const int place = place_in_order(*chosen.effect);
     if (place == 0) continue;
     if (last != nullptr && place < place_in_order(*last)) {
-      const std::string before{last->name}, after{chosen.effect->name};
-      return "the effect " + before + " comes before " + after + ": a camera has " + after +
-             " first, then " + before + " (docs/effects/order.md)";
+      return order_text(std::string{last->name}, std::string{chosen.effect->name});
     }
     last = chosen.effect;
   }

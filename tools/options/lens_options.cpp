@@ -18,23 +18,23 @@ std::vector<Keyframe> parse_keys(const std::string& option, const std::string& t
                                  const Parameter& parameter) {
   constexpr const char* kSeparators = " ,\t\n";
   std::vector<Keyframe> keys;
+  const auto refuse = [&](const std::string& word) {
+    throw UsageError(option + " '" + word + "': give " + wanted_text(parameter) +
+                     "; or FRAME:VALUE for some frames, which increase, such as '1:2 48:6'");
+  };
   for (std::size_t start = text.find_first_not_of(kSeparators); start != text.npos;) {
     const std::size_t end = std::min(text.find_first_of(kSeparators, start), text.size());
     const std::string word = text.substr(start, end - start);
     const std::size_t colon = word.find(':');
-    const auto refuse = [&] {
-      throw UsageError(option + " '" + word + "': give " + wanted_text(parameter) +
-                       "; or FRAME:VALUE for some frames, which increase, such as '1:2 48:6'");
-    };
-    if (colon == word.npos) refuse();
+    if (colon == word.npos) refuse(word);
     Keyframe key;
     try {
       key.frame = parse_parameter(option, word.substr(0, colon), parameter::kFrame);
       key.value = parse_parameter(option, word.substr(colon + 1), parameter);
     } catch (const UsageError&) {  // which knows a part of the word alone
-      refuse();
+      refuse(word);
     }
-    if (!keys.empty() && key.frame <= keys.back().frame) refuse();
+    if (!keys.empty() && key.frame <= keys.back().frame) refuse(word);
     keys.push_back(key);
     start = text.find_first_not_of(kSeparators, end);
   }

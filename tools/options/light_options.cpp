@@ -75,6 +75,7 @@ void set_lights(const LightOptions& options, Scene& scene) {
 
 MapOptions parse_map_options(std::string_view option, const std::string& text) {
   std::vector<std::string> keys;
+  keys.reserve(parameter::kMapParameters.size() + 1);
   for (const parameter::OfMap& of : parameter::kMapParameters) keys.emplace_back(of.number.name);
   keys.emplace_back("fit");
   MapOptions options;

@@ -90,6 +90,24 @@ void add_choice(CLI::App& parser, const std::string& option, const std::string& 
             });
 }
 
+namespace {
+
+[[noreturn]] void refuse_part(const std::string& where, const std::string& part,
+                              const std::vector<std::string>& keys) {
+  std::string list;
+  for (const std::string& known : keys) {
+    list.append(list.empty() ? "there are " : ", ").append(known);
+  }
+  throw UsageError(where + ": '" + part + "' is no key=value; " +
+                   (list.empty() ? "it takes none" : list));
+}
+
+[[noreturn]] void refuse_twice(const std::string& where, const std::string& key) {
+  throw UsageError(where + ": " + key + " is there twice; give it once");
+}
+
+}  // namespace
+
 void read_pairs(const std::string& where, std::string_view text,
                 const std::vector<std::string>& keys,
                 const std::function<void(std::size_t key, const std::string& value)>& take) {
@@ -101,13 +119,10 @@ void read_pairs(const std::string& where, std::string_view text,
     const std::string key = part.substr(0, equals);
     const auto found = std::find(keys.begin(), keys.end(), key);
     if (found == keys.end() || equals == part.size()) {
-      std::string list;
-      for (const std::string& known : keys) list += (list.empty() ? "there are " : ", ") + known;
-      throw UsageError(where + ": '" + part + "' is no key=value; " +
-                       (list.empty() ? "it takes none" : list));
+      refuse_part(where, part, keys);
     }
     const auto number = static_cast<std::size_t>(found - keys.begin());
-    if (given[number]) throw UsageError(where + ": " + key + " is there twice; give it once");
+    if (given[number]) refuse_twice(where, key);
     given[number] = true;
     take(number, part.substr(equals + 1));
     begin = end + 1;

@@ -38,7 +38,7 @@ Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOpt
 /// Of -o, which must have a number.
 std::optional<NumberedName> frame_names(const ReliefOptions& options, FileFormat& format) {
   if (options.output.empty()) return std::nullopt;
-  const std::optional<NumberedName> name = numbered_name("-o", options.output);
+  std::optional<NumberedName> name = numbered_name("-o", options.output);
   const auto by_name = format_by_extension(options.output);
   if (!name || !by_name) {
     throw UsageError("-o '" + options.output +
