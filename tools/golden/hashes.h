@@ -71,8 +71,8 @@ std::vector<NamedHash> number_hashes();
 /// All of the above under every profile.
 std::vector<NamedHash> golden_hashes(ThreadPool& pool, GoldenSet set = GoldenSet::all);
 
-/// The same in parts, for callers that want to stop in between: part 0, 1, ... in the order of
-/// golden_hashes(). A part takes a second at most.
+/// golden_hashes() in parts, for callers that want to stop in between: part 0, 1, ... in its order.
+/// A part takes a second at most.
 std::size_t golden_part_count();
 std::vector<NamedHash> golden_part(std::size_t part, ThreadPool& pool);
 
@@ -88,12 +88,12 @@ struct HashCheck {
 
 inline bool passes(const HashCheck& check) { return check.expected == check.computed; }
 
-/// What was computed against what was expected, in the computed order; what is left of
-/// the expected comes last.
+/// Computed hashes against expected ones, in the computed order; expected ones that are left come
+/// last.
 std::vector<HashCheck> check_hashes(std::span<const NamedHash> expected,
                                     std::span<const NamedHash> computed);
 
-/// What does not pass, in words that name the first; empty where all do.
+/// The failures, in words that name the first; empty if all pass.
 std::string describe_failures(std::span<const HashCheck> checks);
 
 }  // namespace softfocus

@@ -1,5 +1,5 @@
 #pragma once
-// What a command runs on, and what it says before it does: --threads and --isa, --shard, --driver,
+// A command's machine, and its words before it runs: --threads and --isa, --shard, --driver,
 // --shaders, --profile, --format, too little memory, what a scene lacks.
 
 #include <cstdint>
