@@ -57,7 +57,7 @@ void add_format_option(CLI::App& parser, FileFormat& format);
 void settle_format(const CLI::App& parser, const std::string& output, FileFormat& format);
 
 /// Throws UsageError, naming the option that gave the size, if the machine has less memory
-/// than so many bytes a pixel. Where the system does not tell, allocation decides.
+/// than so many bytes a pixel. If the system does not tell, allocation decides.
 void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel);
 
 /// Adds -q, beside --help.
