@@ -16,7 +16,7 @@
 
 namespace softfocus {
 
-/// What was computed, in words, and the FNV-1a hash of its bits.
+/// A computed thing, in words, and the FNV-1a hash of its bits.
 struct NamedHash {
   std::string name;
   std::uint64_t hash = 0;
