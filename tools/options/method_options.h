@@ -35,7 +35,7 @@ inline constexpr Parameter kUntil{"until",
 // clang-format on
 }  // namespace parameter
 
-/// The method that chooses by the scene (dof/auto/auto_method.h).
+/// What chooses a method by the scene (dof/auto/auto_method.h).
 inline constexpr std::string_view kAutoMethod = "auto";
 
 /// The method that DofSettings::budget bounds.
@@ -59,8 +59,7 @@ std::vector<std::string> all_methods();
 /// Adds --method for filters; `method` holds the default.
 void add_method_option(CLI::App& parser, const Method*& method);
 
-/// Adds --method for both tables and for `auto`. A method that a build lacks is refused here, with
-/// how to get it.
+/// The same for both tables and for `auto`. What a build lacks is refused here, with how to get it.
 void add_method_option(CLI::App& parser, MethodChoice& method);
 
 /// Adds --max-coc. `standard` is the help's text for the default.

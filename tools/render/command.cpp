@@ -57,7 +57,7 @@ bool needs_lens(const RenderOptions& options) {
   return options.show == Show::coc || has_depth_of_field(options);
 }
 
-/// Input of a method that draws the scene itself, from many points of the lens.
+/// What a method works from that draws the scene itself, from many points of the lens.
 LensViewInput lens_view_input(const Scene& scene, const CameraMatrices& view, const Image& pinhole,
                               PreparedScene* prepared, const RenderOptions& options,
                               const RenderRecord& record, Progress& progress) {
@@ -184,7 +184,7 @@ void write_layers(std::vector<Image>& behind, const RenderOptions& options,
   }
 }
 
-/// Words and bytes once the files are there.
+/// What is said once the files are there.
 struct Rendered {
   Bytes picture{};  ///< of -o -
   std::vector<std::string> warnings{};
@@ -234,7 +234,7 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
     }
     if (of_frames) {
       draw_up_to(*prepared, *of_frames, options.frame, width, height, sequence, pool);
-      // Transparent surfaces are in the picture, and filtered with it.
+      // What is transparent is in the picture, and filtered with it.
       drawn.picture = sequence.history.picture;
       drawn.opaque = {};
       drawn.transparent.clear();

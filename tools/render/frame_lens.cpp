@@ -16,7 +16,7 @@
 namespace softfocus {
 namespace {
 
-// The largest circle of the picture and of each layer that is blurred by itself.
+// Of the picture and of each layer that is blurred by itself.
 float largest_circle_px(const FrameParts& parts, const PixelCoc& coc, ThreadPool& pool) {
   const auto largest = [&](const Image& picture) {
     return circle_sizes(picture, coc, 0.0f, pool).largest_px;

@@ -1,6 +1,6 @@
 #pragma once
-// A render's report with times, to read or as JSON. The text follows the thesis's report: times
-// without depth of field, with it, and its cost.
+// What a render did and how long it took, to read or as JSON. The text follows the
+// thesis's report: times without depth of field, with it, and its cost.
 
 #include <optional>
 #include <string>
@@ -33,7 +33,7 @@ struct UsedLens {
   std::vector<float> radii_px;  ///< by sharp_depths
 };
 
-/// The method at work: as it was asked for, or as auto chose it.
+/// What was at work: as it was asked for, or as auto chose it.
 struct UsedMethod {
   MethodChoice method;
   Sampling sampling;
@@ -41,7 +41,7 @@ struct UsedMethod {
   std::optional<double> measured_error;  ///< of auto, if it was checked
 };
 
-/// Samples that a method that draws the scene took.
+/// What a method that draws the scene came to.
 struct UsedSamples {
   int samples = 0;
   std::optional<double> half_set_rms;
