@@ -16,7 +16,7 @@
 
 namespace softfocus {
 
-/// A computed thing, in words, and the FNV-1a hash of its bits.
+/// What was computed, in words, and the FNV-1a hash of its bits.
 struct NamedHash {
   std::string name;
   std::uint64_t hash = 0;
@@ -71,8 +71,8 @@ std::vector<NamedHash> number_hashes();
 /// All of the above under every profile.
 std::vector<NamedHash> golden_hashes(ThreadPool& pool, GoldenSet set = GoldenSet::all);
 
-/// golden_hashes() in parts, for callers that want to stop in between: part 0, 1, ... in its order.
-/// A part takes a second at most.
+/// The same in parts, for callers that want to stop in between: part 0, 1, ... in the order of
+/// golden_hashes(). A part takes a second at most.
 std::size_t golden_part_count();
 std::vector<NamedHash> golden_part(std::size_t part, ThreadPool& pool);
 
@@ -88,12 +88,12 @@ struct HashCheck {
 
 inline bool passes(const HashCheck& check) { return check.expected == check.computed; }
 
-/// Computed hashes against expected ones, in the computed order; expected ones that are left come
-/// last.
+/// What was computed against what was expected, in the computed order; what is left of
+/// the expected comes last.
 std::vector<HashCheck> check_hashes(std::span<const NamedHash> expected,
                                     std::span<const NamedHash> computed);
 
-/// The failures, in words that name the first; empty if all pass.
+/// What does not pass, in words that name the first; empty where all do.
 std::string describe_failures(std::span<const HashCheck> checks);
 
 }  // namespace softfocus
