@@ -19,7 +19,7 @@ FrameLens frame_lens(const Opened& opened, const Drawn& drawn, const FrameSettin
 LensViewInput lens_view_input(const Drawn& drawn, double focus_m, double aperture_m,
                               const Sampling& sampling);
 
-/// What a filter makes of it.
+/// The picture after a filter.
 Image filtered_picture(const Drawn& drawn, const Method& method, const DofSettings& settings,
                        ThreadPool& pool);
 

@@ -20,7 +20,7 @@ namespace {
 constexpr int kFirstTruthView = 4096;
 static_assert(kFirstTruthView > kSampleCounts.back());
 
-/// Of a picture filtered by this method before.
+/// Motion blurs take the picture after kBeforeMotionBlur.
 constexpr std::array<std::string_view, 3> kMotionBlurs{"motion-blur-simple", "motion-blur-2012",
                                                        "motion-blur"};
 constexpr std::string_view kBeforeMotionBlur = "disc-layers";
@@ -84,7 +84,7 @@ Image filtered(const Method& method, const StressFrame& frame, float max_coc_px,
                         Profile{}, pool);
 }
 
-/// What auto chooses by itself, with no goal but its own.
+/// auto's own choice, with no goal but its own.
 Image chosen_picture(const StressFrame& frame, ThreadPool& pool) {
   const LensViewInput views = views_input(frame, 1);
   return auto_picture({.views = views,

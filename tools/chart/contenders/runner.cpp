@@ -72,7 +72,7 @@ void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Pro
         result_, pool_);
 }
 
-// What belongs to a lens is made once, as it would be for many frames.
+// A lens's table is made once, as it would be for many frames.
 const FixedTable& ChartRunner::table_for(float max_coc_px) {
   const auto found = tables_.find(max_coc_px);
   if (found != tables_.end()) return found->second;
@@ -280,7 +280,7 @@ RunTime ChartRunner::choose(double max_error) {
   return {ms_between(start, end), ms_between(drawn, end)};
 }
 
-// Of an accumulation the first group of pictures is enough.
+// An accumulation's first group of pictures is enough.
 void ChartRunner::warm_up(const ChartEntry& entry) {
   int samples = entry.samples;
   if (entry.max_error) {
