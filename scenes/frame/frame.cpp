@@ -28,6 +28,14 @@ bool is_filtered(const Shot& shot) {
   return shot.show == Show::image && shot.method.filter != nullptr;
 }
 
+/// The depth of the focus, if it is known: no filter looks behind what is in focus.
+std::optional<double> sharp_depth(const Shot& shot) {
+  if (!is_filtered(shot) || !shot.lens) return {};
+  const ShotLens& lens = *shot.lens;
+  if (lens.focus_at || !lens.sharp_depths.empty()) return {};
+  return static_cast<double>(static_cast<float>(lens.lens.focus_m));  // as PixelCoc has it
+}
+
 void draw_after_others(const Shot& shot, const ChosenEffect& effect, PreparedScene& prepared,
                        int width, int height, DrawnFrame& drawn, ThreadPool& pool) {
   FrameSequence own{.first = shot.frame};
@@ -196,9 +204,8 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   const bool is_after_others = !shot.effects.empty() && is_of_frames(*shot.effects.front().effect);
   if (!is_after_others || drawn.layers > 1) {
     draw_parts(*memory.prepared, drawn.view, shot.frame, width, height, drawn.layers, drawn.parts,
-               pool);
-    // A filter takes the layers. Who focuses on the picture looks at all of them.
-    if (!is_filtered(shot) || shot.lens) blend(drawn.parts, shot.profile, pool);
+               pool, sharp_depth(shot));
+    if (shot.blends) blend(drawn.parts, shot.profile, pool);
   }
   if (is_after_others) {
     draw_after_others(shot, shot.effects.front(), *memory.prepared, width, height, drawn, pool);
@@ -243,9 +250,7 @@ std::optional<UsedLens> focused_lens(const Shot& shot, const DrawnFrame& drawn, 
 
 Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optional<UsedLens>& lens,
                    FrameMemory& memory, ThreadPool& pool, const FrameHooks& hooks) {
-  Frame frame{.picture = {},
-              .behind = {},
-              .view = drawn.view,
+  Frame frame{.view = drawn.view,
               .lens = lens,
               .method = shot.method,
               .sampling = shot.sampling,

@@ -50,7 +50,7 @@ enum class Show : std::uint8_t { image, pinhole, coc, depth };
 
 /// The lens as it is asked for.
 struct ShotLens {
-  ThinLens lens;
+  ThinLens lens{};
   double coc_scale = 1.0;
   /// The pixel of the picture whose depth is the focus, in place of the lens's.
   std::optional<glm::ivec2> focus_at = {};
@@ -71,6 +71,9 @@ struct Shot {
   /// The opaque surfaces of a pixel that are drawn, in place of as many as the method reads. 0: one
   /// picture alone, which what is transparent is blended into.
   std::optional<std::size_t> layers = {};
+  /// Whether what is drawn is wanted as one picture too, with what is transparent: a filter and its
+  /// lens do without.
+  bool blends = true;
   std::optional<ShotLens> lens = {};  ///< none: the picture needs none
   Sampling sampling = {};
   std::optional<Shard> shard = {};  ///< of accumulation's samples
@@ -99,7 +102,7 @@ struct DrawnFrame {
 /// The lens as a frame uses it, in pixels of what is drawn, or, once a frame is made, of the
 /// picture.
 struct UsedLens {
-  ThinLens lens;
+  ThinLens lens{};
   double coc_scale = 1.0;
   double aperture_radius_m = 0.0;  ///< exaggerated by coc_scale
   DofSettings settings{};
@@ -113,8 +116,8 @@ struct LensError : std::runtime_error {
 };
 
 struct Frame {
-  Image picture;              ///< RGBA16F, depth in alpha; of a shard, the pinhole's
-  std::vector<Image> behind;  ///< the layers behind, shown likewise, unless it is an image
+  Image picture{};              ///< RGBA16F, depth in alpha; of a shard, the pinhole's
+  std::vector<Image> behind{};  ///< the layers behind, shown likewise, unless it is an image
   CameraMatrices view{};
   std::optional<UsedLens> lens{};
   MethodChoice method{};  ///< as it was asked for, or as auto chose it; so is `sampling`

@@ -23,15 +23,15 @@ struct StageTimes {
 };
 
 struct RenderRecord {
-  std::string scene_name;
-  std::string scene_title;
+  std::string scene_name{};
+  std::string scene_title{};
   std::size_t triangles = 0;
-  Camera camera;                      ///< at the frame
-  std::uint64_t picture_hash = 0;     ///< hash_image()
-  std::string gl_renderer;            ///< of --gl; else empty
-  std::vector<ChosenEffect> effects;  ///< on the finished picture
-  Frame frame;
-  StageTimes ms;
+  Camera camera{};                      ///< at the frame
+  std::uint64_t picture_hash = 0;       ///< hash_image()
+  std::string gl_renderer{};            ///< of --gl; else empty
+  std::vector<ChosenEffect> effects{};  ///< on the finished picture
+  Frame frame{};
+  StageTimes ms{};
 };
 
 std::string_view name_of(Show show);
