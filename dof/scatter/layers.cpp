@@ -38,7 +38,7 @@ struct Sheet {
   std::vector<int> reach;    // of a row: rows that its largest disc reaches
 };
 
-// What one of a layer's sheets holds: its light, or what it lets through.
+// A layer's sheet holds its light, or what it lets through.
 enum class Part { light, clear };
 
 // A pixel's share in a part of its layer.
@@ -218,7 +218,8 @@ namespace {
 using Differences = std::vector<std::uint64_t, RowAllocator<std::uint64_t>>;
 
 struct SheetRows {
-  // Of each sheet, with a margin on either side; no four numbers across two cache lines.
+  // Differences of each sheet, with a margin on either side; no four numbers across two cache
+  // lines.
   std::array<Differences, kSheets> differences;
   std::vector<float> colour;
 };

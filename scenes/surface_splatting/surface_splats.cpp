@@ -107,7 +107,7 @@ Band make_band(const SplatCamera& camera, int number) {
   return band;
 }
 
-// What a triangle gives to a cell: sums over its points there.
+// A triangle's share of a cell: sums over its points there.
 struct CellSum {
   int points = 0;
   double x = 0.0, y = 0.0, inverse_depth = 0.0;

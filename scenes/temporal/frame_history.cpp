@@ -110,7 +110,7 @@ void draw(const NextFrame& next, const Refresh&) {
 void draw(const NextFrame& next, const Reproject& settings) {
   FrameHistory& history = next.history;
   const bool is_drawn = is_drawn_whole(settings, history);
-  // Where a surface was is only known of what is drawn; a scattered picture does without.
+  // A surface's earlier place is only known of drawn pixels; a scattered picture does without.
   if (is_drawn || !settings.forward || settings.holes == UnseenPixels::drawn) next.draw({0.0, 0.0});
   if (is_drawn) return;
   clear_image(history.frames, glm::vec4{1.0f}, next.profile());

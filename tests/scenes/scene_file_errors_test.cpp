@@ -1,4 +1,4 @@
-// What a scene's file must not say, and how that is told.
+// Faults of a scene's file, and how they are told.
 
 #include <doctest/doctest.h>
 

@@ -55,7 +55,7 @@ std::vector<TimedStage> stages_of(const BenchWork& work, RepeatedOnGl& on_gl) {
   return stages;
 }
 
-// Of the driver's times keeps those of the form whose filter took less, and notes both.
+// Keeps the driver's faster form; records both.
 void keep_faster_form(BenchRecord& record, const std::vector<std::string>& forms) {
   if (forms.empty()) return;
   std::vector<StageSamples>& all = record.samples.peers;

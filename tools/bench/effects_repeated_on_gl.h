@@ -28,7 +28,8 @@ class EffectsRepeatedOnGl {
   void choose(const FrameEffect& effect, const FrameSources& sources);
   /// Returns when it is done: glFinish. Each pass is a triangle, or a quad of two.
   void run(bool as_quad);
-  /// What the last run() made: a picture, and of some frames of how many each pixel is made.
+  /// The last run()'s picture, and for some effects the number of frames that each pixel is made
+  /// of.
   std::vector<Image> pictures() const;
 
  private:

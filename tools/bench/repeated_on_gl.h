@@ -38,8 +38,7 @@ class RepeatedOnGl {
   /// the next one reads it. Needs a scene.
   void copy_and_filter(std::size_t form);
 
-  /// What the last filter() of that form made. Without forms: what was drawn, or the work's
-  /// picture.
+  /// The last filter()'s picture by that form. Without forms: the drawn picture, or the work's.
   Image picture(std::size_t form) const;
 
  private:

@@ -21,7 +21,7 @@ bool moves(const Scene& scene) {
          });
 }
 
-// What the subject makes of a scene.
+// Changes a scene as the subject asks.
 void prepare_for(const ChartSubject& subject, ChartScene& chart) {
   chart.sampling = subject.sampling;
   // Its pinhole is without, and each contender gives all lights its own. Reliefs have none.

@@ -207,7 +207,7 @@ Parsed parse(CLI::App& program, std::vector<std::string> arguments) {
     try {
       program.parse(std::move(arguments));
     } catch (const CLI::RequiredError&) {
-      // What is missing may stand there misspelt.
+      // The missing word may stand there misspelt.
       check_rest(program);
       throw;
     }

@@ -22,7 +22,7 @@ class TimeLeft {
   /// Units that need no doing.
   void drop(const std::string& kind, double units);
   double units_left(const std::string& kind) const;
-  /// What was done up to now was for nothing that is planned.
+  /// Restarts the clock; earlier time counts for no planned work.
   void start() { last_s_ = clock_s_(); }
 
   /// 0 before anything is done.

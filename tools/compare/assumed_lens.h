@@ -10,7 +10,7 @@
 
 namespace softfocus {
 
-/// What a picture's file says of itself.
+/// A picture's file and its notes.
 struct NamedNotes {
   std::string name;  ///< of the picture, as it was given
   FoundNotes found;

@@ -1,5 +1,5 @@
 #pragma once
-// What `compare` found, as text and as JSON.
+// `compare`'s findings, as text and as JSON.
 
 #include <optional>
 #include <string>

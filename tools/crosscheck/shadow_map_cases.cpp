@@ -6,7 +6,7 @@
 namespace softfocus {
 namespace {
 
-// Of each pixel, how many of the kernel's texels shade it.
+// For each pixel, how many of the kernel's texels shade it.
 std::vector<std::uint8_t> blocked_of(const ShadowedFrame& frame, std::size_t light) {
   const SceneShadows& shadows = *frame.shadows;
   const int kernel = shadows.maps[light].settings.kernel;

@@ -14,7 +14,7 @@
 namespace softfocus {
 
 /// Keeps programs, targets and tables: passes that are run again after begin(), in the same order,
-/// make nothing anew. What a pass returned is valid until begin().
+/// make nothing anew. A pass's result is valid until begin().
 class EffectPasses {
  public:
   EffectPasses(const GlContext& context, const Shaders& shaders)

@@ -29,7 +29,7 @@ class MapsRepeatedOnGl {
   std::string renderer() const;
 
   void draw();  ///< returns when all is done: glFinish
-  /// Of a side of a map: R32F.
+  /// Nearness on a side of a map: R32F.
   Image nearness(std::size_t map, std::size_t side) const;
 
  private:

@@ -13,7 +13,7 @@ struct GlShadows {
   int width, height;
   GlProgram program;
   GlTexture receivers;
-  /// Of each light.
+  /// For each light.
   struct OfLight {
     GlBuffer vertices;
     GLsizei count;

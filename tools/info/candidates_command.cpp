@@ -86,7 +86,7 @@ LensViewInput views_of(const Subject& subject, int samples) {
           .progress = {}};
 }
 
-/// What --measure finds: the mean FLIP of each choice, in their order.
+/// --measure's findings: the mean FLIP of each choice, in their order.
 struct Measured {
   double noise_floor = 0.0;  ///< of the truth's halves, one against the other
   std::vector<double> flips;
@@ -167,7 +167,7 @@ void print_table(std::span<const AutoMethod> choices, const std::optional<Measur
   }
 }
 
-/// What auto takes for an error, checks and all.
+/// auto's choice for an error, checks and all.
 struct Taken {
   double error_asked;
   AutoMethod choice;

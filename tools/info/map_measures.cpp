@@ -28,7 +28,7 @@ Scene with_settings(Scene scene, const ShadowMapSettings& settings) {
   return scene;
 }
 
-// Of all lights of a drawing, which has maps or projected shadows.
+// The truths of all lights of a drawing, which has maps or projected shadows.
 class LightTruths {
  public:
   LightTruths(const RepeatedShadows& drawing, ThreadPool& pool)

@@ -1,5 +1,5 @@
 #pragma once
-// What `softfocus shadows` measures beside projected shadows and volumes.
+// Measures of `softfocus shadows` beside those of projected shadows and volumes.
 
 #include <utility>
 

@@ -29,7 +29,7 @@
 namespace softfocus {
 namespace {
 
-// Of triangles squared: beyond, the schedules of O(n^2) are left out.
+// Schedules of O(n^2) are left out beyond so many triangles.
 constexpr std::size_t kMostForAllPairs = 20000;
 
 struct MeasuredShadows {
@@ -176,7 +176,7 @@ int measure_shadows(const ShadowsOptions& options) {
   if (options.shadows) set_shadows(scene, *options.shadows);
   if (!has_shadows(scene)) set_shadows(scene, ShadowKind::projected);
   set_lights(options.lights, scene);
-  // What a terminator's rule changes is apart from shadows and their truth.
+  // Terminators change light apart from shadows and their truth.
   for (Light& light : scene.lights) light.terminator = Terminator::facets;
   if (scene.lights.empty() || scene.lights.size() > kMostShadowLights) {
     throw UsageError("'" + scene.name + "' has " + std::to_string(scene.lights.size()) +

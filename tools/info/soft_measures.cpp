@@ -32,7 +32,7 @@ struct PointFrames : RepeatedShadows {
   std::vector<Light> whole;
 };
 
-// Of each soft light, and one after the other of each pixel, points that do not reach it.
+// Counts of points that do not reach a pixel: of each soft light, pixel after pixel.
 using DarkCounts = std::vector<std::vector<std::uint16_t>>;
 
 // The numbers of SceneShadows::lights that are soft.

@@ -68,7 +68,7 @@ std::vector<ChosenEffect> all_effects(const EffectOptions& options,
 
 namespace {
 
-/// Where an effect that makes frames comes after `first`.
+/// Refuses an effect that makes frames and comes after `first`.
 [[noreturn]] void refuse_of_frames(const std::string& where, const Effect& effect,
                                    const Effect& first) {
   const std::string name{effect.name};

@@ -18,10 +18,10 @@ std::string given(Arithmetic arithmetic) {
   return "--arithmetic " + std::string{arithmetic_name(arithmetic)};
 }
 
-// Of Sampling::by_tile: the method's own.
+// Stands for the method's own number with Sampling::by_tile.
 constexpr int kMostUsual = 0;
 
-// Of Sampling::shutter_frames, until the scene is there.
+// Stands in Sampling::shutter_frames until the scene is there.
 constexpr double kShutterOfScene = -1.0;
 
 constexpr std::initializer_list<const char*> kSamplingOptions{

@@ -42,7 +42,7 @@ std::string lens_text(const UsedLens& used) {
                                  " pixels (largest CoC radius)");
 }
 
-/// Of the camera, or of what there is in its place.
+/// The camera as text, or what stands in its place.
 std::string seen_text(const Opened& opened, const ShownFrame& shown) {
   if (const OpenedPicture* picture = opened.picture.get()) {
     return line("Depth",

@@ -68,7 +68,7 @@ double milliseconds_of(const Work& work) {
   return milliseconds_since(start);
 }
 
-/// What both sides made of one stage.
+/// Both sides' results of one stage.
 struct Stage {
   Image on_gl, emulated;
   double gl_ms = 0.0, emulated_ms = 0.0;

@@ -26,7 +26,7 @@ DepthOptions read_reading(const Json& request) {
   return reading;
 }
 
-/// What has to be said before the depth can be read, as a clause, or nothing.
+/// A clause that says what is missing before the depth can be read, or nothing.
 std::string lacking(const BelievedEncoding& believed, const DepthNumbers& numbers) {
   if (believed.encoding == nullptr) return believed.why + "; choose what its numbers mean";
   try {

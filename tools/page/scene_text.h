@@ -1,5 +1,5 @@
 #pragma once
-// What is open, as a scene's file with the camera and the lens of a frame, and as a command.
+// The open scene as a file with the camera and the lens of a frame, and as a command.
 
 #include <string>
 

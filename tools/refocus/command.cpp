@@ -45,7 +45,8 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
   PhotoLens photo = options.photo;
   photo.of_file = sources.lens;
   const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
-  // What was read is not needed again, but for an EXR's other layers. `= {}` would keep the memory.
+  // The bytes read are not needed again, but for an EXR's other layers. `= {}` would keep the
+  // memory.
   if (sources.depth_file) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
   UsedRefocus used{.why_whole = why};

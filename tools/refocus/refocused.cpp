@@ -56,7 +56,7 @@ PictureOnItsWay both_filtered(PictureOnItsWay source, const RefocusOptions& opti
   return result;
 }
 
-/// The same with pixels beyond the borders, as far as the largest circle reaches.
+/// Filters with pixels beyond the borders, as far as the largest circle reaches.
 PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions& options,
                                    const UsedRefocus& used, ThreadPool& pool) {
   const float reach_px = std::min(used.largest_circle_px, used.settings.max_coc_px);

@@ -8,7 +8,7 @@
 
 namespace softfocus {
 
-/// What was used.
+/// Settings that were used.
 struct UsedRefocus {
   SettledLens lens{};
   DofSettings settings{};

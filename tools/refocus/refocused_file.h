@@ -1,5 +1,5 @@
 #pragma once
-// What is written of a refocused picture.
+// The file of a refocused picture.
 
 #include <vector>
 
@@ -16,7 +16,7 @@ std::vector<std::size_t> other_planes(const PictureSources& sources);
 /// Whether a file of that format has a place for alpha.
 bool keeps_alpha(FileFormat format);
 
-/// Of an EXR that became an EXR, the planes that are kept as they are.
+/// The planes that are kept as they are if an EXR becomes an EXR.
 std::vector<std::size_t> kept_planes(const RefocusOptions& options, const PictureSources& sources);
 
 /// The file's bytes: the picture with its notes and, if the format can, its alpha. An EXR has the

@@ -228,7 +228,7 @@ constexpr std::uint64_t kLayerBytesPerPixel = 12;
 /// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredBytesPerPixel = kSamplingBytesPerPixel + 8 * 8;
-/// Of each view that is drawn to be warped: four planes of binary32.
+/// Each drawn view that is warped takes four planes of binary32.
 constexpr std::uint64_t kWarpedBytesPerPixel = 4 * 4;
 
 /// And for transparent surfaces: four layers with their depths (12 bytes each), two pictures of

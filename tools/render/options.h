@@ -80,8 +80,8 @@ std::uint64_t bytes_of_a_frame(const RenderOptions& options);
 
 void add_render_options(CLI::App& parser, RenderOptions& options);
 
-/// What each option alone cannot know: throws UsageError for options that are missing,
-/// exclude each other or do not fit together, and settles the format.
+/// Checks options against each other: throws UsageError for options that are missing, exclude each
+/// other or do not fit together, and settles the format.
 void complete(RenderOptions& options, const CLI::App& parser);
 
 /// Gives the scene's lights the shadows of --shadows, and what else is said of lights. Throws

@@ -17,7 +17,7 @@ void add_letters(Hash& hash, std::string_view text) {
   for (const char letter : text) add_to_hash(hash, static_cast<unsigned char>(letter));
 }
 
-// Of the files' bytes, not their names: machines may keep them in different places.
+// Hashes the files' bytes, not their names: machines may keep them in different places.
 std::uint64_t hash_of_files(const Scene& scene) {
   Hash hash;
   std::vector<char> part(65536);

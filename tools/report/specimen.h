@@ -22,7 +22,7 @@ SpecimenPair specimen_pair();
 /// RGBA16F: every fifth pixel's light is changed, and a corner is wrong.
 Image with_wrong_pixels(const Image& picture);
 
-/// What a measure gave.
+/// Adds a measure's number.
 void add_number(Hash& hash, double number);
 void add_text(Hash& hash, std::string_view text);
 

@@ -45,7 +45,7 @@ std::uint64_t made_from(const FrameWork& frame) {
   return hash.value;
 }
 
-/// What the threads of a run share.
+/// Shared by the threads of a run.
 class Run {
  public:
   Run(const std::vector<FrameWork>& frames, const FrameRunOptions& options, const MakeFrame& make)

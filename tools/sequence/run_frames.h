@@ -23,7 +23,7 @@ struct FrameWork {
   std::vector<std::filesystem::path> outputs{};  ///< the first is the picture
 };
 
-/// What a frame's work gets and gives.
+/// Input and result of a frame's work.
 struct FrameRun {
   ThreadPool& pool;
   std::vector<std::byte> picture{};  ///< what would go to standard output

@@ -17,7 +17,7 @@ namespace {
 constexpr int kFirstTruthView = 4096;
 static_assert(kFirstTruthView > kSampleCounts.back());
 
-/// Of a picture filtered by this method before.
+/// Motion blurs take the picture after kBeforeMotionBlur.
 constexpr std::array<std::string_view, 3> kMotionBlurs{"motion-blur-simple", "motion-blur-2012",
                                                        "motion-blur"};
 constexpr std::string_view kBeforeMotionBlur = "disc-layers";

@@ -1,4 +1,4 @@
-// Where light ends on curves of few facets.
+// The place at which light ends on curves of few facets.
 
 #include "scenes/shadows/terminators.h"
 

@@ -1,4 +1,4 @@
-// What bench measures where it takes no scene: the sphere field and the picture.
+// bench without a scene: the sphere field and the picture.
 
 #include <doctest/doctest.h>
 

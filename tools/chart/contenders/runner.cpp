@@ -91,7 +91,7 @@ void ChartRunner::make_result(const Shot& shot, float max_coc_px, FrameMemory& m
   if (made.chosen) chosen_ = setting_text(made.chosen->choice);
 }
 
-// What belongs to a lens is made once, as it would be for many frames.
+// A lens's table is made once, as it would be for many frames.
 const FixedTable& ChartRunner::table_for(float max_coc_px) {
   const auto found = tables_.find(max_coc_px);
   if (found != tables_.end()) return found->second;
@@ -263,7 +263,7 @@ RunTime ChartRunner::choose(double max_error) {
   return time;
 }
 
-// Of an accumulation the first group of pictures is enough.
+// An accumulation's first group of pictures is enough.
 void ChartRunner::warm_up(const ChartEntry& entry) {
   int samples = entry.samples;
   if (entry.max_error) {

@@ -34,17 +34,16 @@ class ChartRunner {
 
   /// Draws a whole frame, by a filter, from the lens's points or by what auto chooses.
   RunTime run(const ChartEntry& entry);
-  /// The same, after a run without a clock: the contender before has filled the caches with its
-  /// own.
+  /// run() after a run without a clock: the contender before has filled the caches with its own.
   RunTime run_warm(const ChartEntry& entry);
 
-  /// Of the last run.
+  /// The last run's picture.
   const Image& result() const { return result_; }
-  /// Of a chart of shadows: ChartErrors::wrong_pixels of the last run, which was of that entry.
+  /// ChartErrors::wrong_pixels of the last run, of a chart of shadows. The run was of that entry.
   double wrong_pixels(const ChartEntry& entry);
-  /// Of a chart of impostors: outline, renewals and memory of the last run.
+  /// Adds outline, renewals and memory of the last run, of a chart of impostors.
   void add_turn_errors(const Image& truth, ChartErrors& errors);
-  /// What auto chose last, in words.
+  /// auto's last choice, in words.
   const std::string& chosen() const { return chosen_; }
 
  private:

@@ -22,7 +22,7 @@ struct DepthHistogram {
 inline constexpr std::size_t kDepthBins = 12;
 
 /// Bins of equal steps of 1/z, as circles of confusion grow, or, if `even`, of z, which may then be
-/// below 0. What is missing is not counted.
+/// below 0. Missing depths are not counted.
 DepthHistogram depth_histogram(const DepthMap& map, bool even);
 
 }  // namespace softfocus

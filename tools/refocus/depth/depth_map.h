@@ -34,7 +34,7 @@ struct DepthReading {
 DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
                         const DepthReading& reading, const PlaneValues& mask);
 
-/// The same of a map that comes in bands of rows. First all codes are looked at, for least_code and
+/// Reads a map that comes in bands of rows. First all codes are looked at, for least_code and
 /// largest_code; then each code gives way to its depth.
 class CodeEnds {
  public:
@@ -55,7 +55,7 @@ PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthRead
 
 std::size_t missing_depths(const DepthMap& map);
 
-/// What finite depths lie between, and whether there are infinite ones.
+/// The least and largest finite depth, and whether there are infinite ones.
 struct DepthEnds {
   double near_m = 1e30, far_m = 0.0;
   bool has_infinite = false;

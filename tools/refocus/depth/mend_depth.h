@@ -14,7 +14,7 @@ struct Mending {
   bool bands = false;
 };
 
-/// What was done.
+/// The repairs that were made.
 struct MendedDepth {
   bool upsampled = false;
   bool bands = false;
@@ -32,7 +32,7 @@ PlaneValues without_bands(const PlaneValues& codes, int width, int height, Threa
 /// those alone that are within a twentieth of the weighted median.
 DepthMap upsampled_by_colour(const DepthMap& map, const Image& colour, ThreadPool& pool);
 
-/// Likewise by the nearest pixel.
+/// The map at that size, by the nearest pixel.
 DepthMap upsampled_to_nearest(const DepthMap& map, int width, int height);
 
 /// A depth that lies between two surfaces, two pixels to either side along a row, a column or a
