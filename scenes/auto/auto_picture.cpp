@@ -252,6 +252,7 @@ Image picture_of(const AutoMethod& choice, const LensViewInput& views, DofSettin
     LensViewInput of_choice = views;
     of_choice.sampling.samples = std::max(choice.samples, 1);
     of_choice.prepared = nullptr;  // which the first to draw takes, and others may follow
+    of_choice.memory = nullptr;
     return of_scene->render(of_choice, pool).picture;
   }
   const Method& filter = *find_method(choice.method);

@@ -134,8 +134,13 @@ void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,
 }
 
 SampledPicture filtered_views(const LensViewInput& input, ThreadPool& pool) {
-  FilteredViewsBuffer buffer = make_filtered_views_buffer(input, pool);
-  return filtered_views(buffer, input, pool);
+  LensViewMemory own;
+  std::shared_ptr<FilteredViewsBuffer>& buffer =
+      (input.memory != nullptr ? *input.memory : own).filtered_views;
+  if (!buffer) {
+    buffer = std::make_shared<FilteredViewsBuffer>(make_filtered_views_buffer(input, pool));
+  }
+  return filtered_views(*buffer, input, pool);
 }
 
 SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,

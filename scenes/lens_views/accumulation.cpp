@@ -49,8 +49,13 @@ void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const 
 }  // namespace
 
 SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
-  AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
-  return accumulation(buffer, input, pool);
+  LensViewMemory own;
+  std::shared_ptr<AccumulationBuffer>& buffer =
+      (input.memory != nullptr ? *input.memory : own).accumulation;
+  if (!buffer) {
+    buffer = std::make_shared<AccumulationBuffer>(make_accumulation_buffer(input, pool));
+  }
+  return accumulation(*buffer, input, pool);
 }
 
 SampledPicture accumulation(AccumulationBuffer& buffer, const LensViewInput& input,

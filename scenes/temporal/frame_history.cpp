@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <string_view>
@@ -168,6 +169,20 @@ FrameEffect frame_effect(const ChosenEffect& chosen) {
 
 int warm_up_frames(const ChosenEffect& chosen) {
   return static_cast<int>(number_of(chosen, "warm-up"));
+}
+
+void draw_up_to(PreparedScene& prepared, const ChosenEffect& effect, double frame, int width,
+                int height, FrameSequence& sequence, ThreadPool& pool) {
+  const int warm_up = warm_up_frames(effect);
+  const int wanted =
+      warm_up + static_cast<int>(std::lround((frame - sequence.first) / sequence.step));
+  FrameHistory& history = sequence.history;
+  if (history.count > wanted) history.count = 0;
+  const FrameEffect made = frame_effect(effect);
+  while (history.count <= wanted) {
+    draw_next(prepared, made, sequence.first + (history.count - warm_up) * sequence.step, width,
+              height, history, pool);
+  }
 }
 
 bool is_drawn_whole(const FrameEffect& effect, const FrameHistory& history) {

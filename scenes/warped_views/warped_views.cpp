@@ -332,8 +332,13 @@ SampledPicture warped_accumulation(WarpedViewsBuffer& buffer, const LensViewInpu
 }
 
 SampledPicture warped_accumulation(const LensViewInput& input, ThreadPool& pool) {
-  WarpedViewsBuffer buffer = make_warped_views_buffer(input, pool);
-  return warped_accumulation(buffer, input, pool);
+  LensViewMemory own;
+  std::shared_ptr<WarpedViewsBuffer>& buffer =
+      (input.memory != nullptr ? *input.memory : own).warped_views;
+  if (!buffer) {
+    buffer = std::make_shared<WarpedViewsBuffer>(make_warped_views_buffer(input, pool));
+  }
+  return warped_accumulation(*buffer, input, pool);
 }
 
 }  // namespace softfocus

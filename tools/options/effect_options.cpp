@@ -120,19 +120,4 @@ std::string order_warning(const std::vector<ChosenEffect>& effects) {
   return "";
 }
 
-Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
-                   const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool) {
-  for (const ChosenEffect& chosen : effects) {
-    if (is_of_frames(*chosen.effect)) continue;  // it has been drawn so
-    Image velocity;
-    EffectInput input{picture, chosen.parameters, profile};
-    if (chosen.effect->velocity != VelocityOf::nothing) {
-      velocity = make_velocity(chosen, picture);
-      input.velocity = velocity;
-    }
-    picture = apply(*chosen.effect, input, pool);
-  }
-  return picture;
-}
-
 }  // namespace softfocus

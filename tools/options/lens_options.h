@@ -61,6 +61,9 @@ ThinLens overruled(ThinLens lens, const LensOptions& options);
 /// none was given, `otherwise`.
 void check_lens(const ThinLens& lens, const LensOptions& options, std::string_view otherwise);
 
+/// Throws UsageError for circles that single precision cannot hold.
+void check_pixel_coc(const PixelCoc& coc);
+
 /// pixel_coc(), whose circles single precision must be able to hold: UsageError.
 PixelCoc checked_pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px,
                            double coc_scale);

@@ -32,7 +32,7 @@ std::string source_text(const Opened& opened) {
          short_number(opened.severity) + " " + std::string{of.parameter.unit};
 }
 
-std::string lens_text(const FrameLens& used) {
+std::string lens_text(const UsedLens& used) {
   const ThinLens& lens = used.lens;
   return line("Focus distance", short_number(lens.focus_m) + " m") +
          line("Focal length", short_number(lens.focal_length_mm) + " mm") +

@@ -74,17 +74,15 @@ void check_shard_count(const Shard& shard, int samples) {
                    std::to_string(most));
 }
 
-void write_shard(const LensViewInput& input, const RenderOptions& options,
-                 const RenderRecord& record, ThreadPool& pool) {
-  const int samples = input.sampling.samples;
+void write_shard(const Scene& scene, const RenderOptions& options, const RenderRecord& record) {
+  const Frame& frame = record.frame;
   const SumsOrigin origin{.picture = notes_of(options, record),
-                          .samples = samples,
+                          .samples = frame.sampling.samples,
                           .half_store = options.profile.half_store,
-                          .scene_files_hash = hash_of_files(input.scene),
+                          .scene_files_hash = hash_of_files(scene),
                           .profile_hash = hash_of_profile(options.profile),
-                          .pinhole_hash = hash_image(input.pinhole)};
-  const SampleSums sums = accumulation_sums(input, samples_of(*options.shard, samples), pool);
-  write_sums_file(options.output, *options.shard, origin, sums, input.pinhole);
+                          .pinhole_hash = hash_image(frame.picture)};
+  write_sums_file(options.output, *options.shard, origin, frame.sums, frame.picture);
 }
 
 }  // namespace softfocus
