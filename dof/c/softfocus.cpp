@@ -12,7 +12,7 @@
 #include "dof/c/arguments.h"
 #include "dof/c/pictures.h"
 #include "dof/c/settings.h"
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 #include "raster/threads/float_environment.h"
 
 using namespace softfocus;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "dof/scatter/hidden_sheet.h"
+#include "dof/scatter/layer_planes.h"
 #include "dof/scatter/scatter_discs.h"
 #include "raster/threads/scratch_shelf.h"
 

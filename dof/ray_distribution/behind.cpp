@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "dof/scatter/hidden_sheet.h"
+#include "dof/scatter/layer_planes.h"
 
 namespace softfocus {
 

@@ -14,7 +14,6 @@
 #include "dof/picture_planes.h"
 #include "dof/scatter/layer_planes.h"
 #include "dof/scatter/scatter_discs.h"
-#include "dof/scatter/tile_reach.h"
 #include "raster/images/image.h"
 #include "raster/threads/scratch_shelf.h"
 

@@ -9,7 +9,7 @@
 #include "scenes/auto/tile_sample.h"
 #include "scenes/draw/frame_parts.h"
 #include "scenes/lens_views/accumulation.h"
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 
 namespace softfocus {
 namespace {

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "raster/threads/scratch_shelf.h"
-#include "scenes/draw/light_shares.h"
-#include "scenes/draw/scene_maps.h"
+#include "scenes/draw/light_points.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/shadows/shadow_truth.h"
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "dof/circle_sizes.h"
 #include "dof/halve.h"
+#include "dof/lens.h"
 #include "dof/show.h"
 #include "raster/images/texel.h"
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/object_numbers.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/draw/velocity.h"

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "scenes/files/texture_file.h"
-#include "scenes/make/opacity_texture.h"
 #include "scenes/make/procedural_texture.h"
 
 namespace softfocus {

@@ -7,7 +7,7 @@
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/random/parts.h"
+#include "scenes/random/stage.h"
 
 namespace softfocus {
 namespace {

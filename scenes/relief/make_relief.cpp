@@ -10,7 +10,7 @@
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/relief/light_relief.h"
-#include "scenes/relief/packed_texel.h"
+#include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
 namespace {

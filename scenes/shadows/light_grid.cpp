@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scenes/shadows/place_box.h"
+#include "scenes/shadows/facets.h"
 
 namespace softfocus {
 namespace {

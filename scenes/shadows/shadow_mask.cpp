@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "raster/pipeline/setup.h"
-#include "raster/pipeline/viewport.h"
 
 namespace softfocus {
 namespace {

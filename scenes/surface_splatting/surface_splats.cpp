@@ -9,8 +9,7 @@
 #include "dof/dof.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/lens_views/ray_geometry.h"
-#include "scenes/surface_splatting/hidden_points.h"
-#include "scenes/surface_splatting/seen_triangles.h"
+#include "scenes/surface_splatting/splat_sources.h"
 
 namespace softfocus {
 namespace {

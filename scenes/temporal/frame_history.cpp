@@ -13,7 +13,7 @@
 #include "raster/threads/float_environment.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/velocity.h"
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/accumulation.h"
 
 namespace softfocus {
 namespace {

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 #include "raster/threads/scratch_shelf.h"
 #include "scenes/filtered_views/filtered_views.h"
-#include "scenes/lens_views/few_lens_points.h"
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/accumulation.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/warped_views/warped_colours.h"
 
 namespace softfocus {

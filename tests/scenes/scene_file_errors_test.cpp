@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "scenes/load/scene_file.h"
+#include "scenes/load/load_scene.h"
 #include "tests/support/scene_texts.h"
 
 using namespace softfocus;

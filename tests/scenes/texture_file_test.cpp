@@ -5,7 +5,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
-#include "scenes/files/jpeg_check.h"
+#include "scenes/files/picture_check.h"
 #include "tests/support/scene_test_files.h"
 
 using namespace softfocus;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "scenes/make/sphere_field.h"
+#include "scenes/make/shapes.h"
 #include "scenes/temporal/frame_history.h"
 #include "tools/cli/errors.h"
 #include "tools/gl/shaders.h"

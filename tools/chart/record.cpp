@@ -10,7 +10,7 @@
 #include "tools/cli/option_values.h"
 #include "tools/golden/hashes.h"
 #include "tools/report/kept_results.h"
-#include "tools/report/specimen.h"
+#include "tools/report/worst_crop.h"
 
 namespace softfocus {
 namespace {

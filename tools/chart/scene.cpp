@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "dof/measure/regions.h"
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"

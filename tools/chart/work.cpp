@@ -8,7 +8,6 @@
 #include "tools/chart/record.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/progress.h"
-#include "tools/cli/time_left.h"
 #include "tools/golden/hashes.h"
 #include "tools/report/report.h"
 

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "scenes/files/nearest_name.h"
+#include "scenes/files/scene_error.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 

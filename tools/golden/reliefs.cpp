@@ -1,6 +1,6 @@
 #include <array>
 
-#include "raster/images/image_hash.h"
+#include "raster/images/image.h"
 #include "raster/numbers/hash.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/relief/impostors/octahedral_atlas.h"

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "raster/images/texel.h"
-#include "scenes/draw/scene_maps.h"
+#include "scenes/draw/light_points.h"
 #include "scenes/shadows/maps/draw_map_side.h"
 #include "scenes/shadows/maps/map_errors.h"
 #include "tools/cli/timing.h"
-#include "tools/gl/maps_repeated_on_gl.h"
+#include "tools/gl/frame_on_gl.h"
 
 namespace softfocus {
 namespace {

@@ -10,7 +10,7 @@
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/shadows/maps/map_errors.h"
-#include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "tools/cli/timing.h"
 
 namespace softfocus {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "dof/parameters.h"
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 #include "tools/options/parameter_options.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dof/circle_sizes.h"
-#include "scenes/draw/keyframes.h"
+#include "dof/lens.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/cli/errors.h"
 #include "tools/options/effect_options.h"
 #include "tools/page/picture.h"

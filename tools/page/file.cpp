@@ -7,7 +7,7 @@
 #include "tools/page/picture.h"
 #include "tools/page/requests.h"
 #include "tools/page/scene_text.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 #include "tools/refocus/report.h"
 #include "tools/render/performance_report.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 #include "raster/images/texel.h"
 #include "tools/cli/errors.h"
 #include "tools/page/drawing.h"

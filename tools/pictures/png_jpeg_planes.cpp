@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "scenes/files/jpeg_check.h"
+#include "scenes/files/picture_check.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/pictures/picture_file.h"

@@ -12,7 +12,7 @@
 #include "tools/refocus/opacity.h"
 #include "tools/refocus/refocus_by_rows.h"
 #include "tools/refocus/refocus_frames.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 
 namespace softfocus {
 namespace {

@@ -13,7 +13,7 @@
 #include "tools/cli/errors.h"
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
-#include "tools/refocus/depth/depth_histogram.h"
+#include "tools/refocus/depth/depth_map.h"
 #include "tools/refocus/report.h"
 
 namespace softfocus {

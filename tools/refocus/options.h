@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "dof/aperture.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "dof/lens.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 #include "tools/pictures/image_file.h"

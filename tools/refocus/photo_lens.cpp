@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "dof/lens.h"
 #include "dof/parameters.h"
-#include "dof/sensor.h"
 #include "raster/numbers/exact_math.h"
 #include "tools/cli/errors.h"
 #include "tools/options/parameter_options.h"

@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "dof/two_pass/two_pass_stream.h"
-#include "raster/images/image_hash.h"
+#include "raster/images/image.h"
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/whole_file.h"
 #include "tools/pictures/picture_rows.h"
-#include "tools/refocus/depth/finer_depths.h"
+#include "tools/refocus/depth/mend_depth.h"
 #include "tools/refocus/opacity.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 #include "tools/refocus/source_rows.h"
 
 namespace softfocus {

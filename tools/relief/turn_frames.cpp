@@ -6,7 +6,7 @@
 #include <string>
 
 #include "dof/measure/measures.h"
-#include "dof/measure/outline.h"
+#include "dof/measure/regions.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
 #include "raster/numbers/vector_math.h"

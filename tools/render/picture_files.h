@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 #include "raster/images/image.h"
 #include "scenes/scene.h"
 #include "tools/pictures/picture_notes.h"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/pictures/picture_notes.h"

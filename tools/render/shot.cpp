@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/cli/errors.h"
 #include "tools/render/picture_files.h"
 

@@ -8,7 +8,6 @@
 
 #include "tools/cli/option_values.h"
 #include "tools/cli/progress.h"
-#include "tools/cli/time_left.h"
 #include "tools/report/kept_results.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/trial_record.h"

@@ -10,7 +10,6 @@
 #include "tools/golden/hashes.h"
 #include "tools/pictures/image_file.h"
 #include "tools/report/kept_results.h"
-#include "tools/report/specimen.h"
 #include "tools/report/worst_crop.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/cases/stress_measures.h"

@@ -6,9 +6,9 @@
 #include <span>
 
 #include "raster/numbers/exact_math.h"
+#include "scenes/shadows/facets.h"
 #include "scenes/shadows/light_grid.h"
 #include "scenes/shadows/maps/draw_map_side.h"
-#include "scenes/shadows/place_box.h"
 
 namespace softfocus {
 namespace {

@@ -1,4 +1,4 @@
-#include "dof/measure/hdr_flip.h"
+#include "dof/measure/flip.h"
 
 #include <doctest/doctest.h>
 

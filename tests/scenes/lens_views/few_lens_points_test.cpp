@@ -1,4 +1,4 @@
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 
 using namespace softfocus;
 

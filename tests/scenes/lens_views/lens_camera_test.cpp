@@ -1,4 +1,4 @@
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/accumulation.h"
 
 #include <doctest/doctest.h>
 

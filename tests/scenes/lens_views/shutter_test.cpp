@@ -7,7 +7,6 @@
 
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
-#include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/lens_views/shard.h"
 #include "scenes/lens_views/shutter_times.h"

@@ -12,9 +12,7 @@
 #include <vector>
 
 #include "scenes/draw/frame_matrices.h"
-#include "scenes/shadows/point_in_shadow.h"
-#include "scenes/shadows/shadow_errors.h"
-#include "scenes/shadows/volumes/pixel_space.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "scenes/shadows/volumes/volume_mask.h"
 #include "tests/support/random.h"
 #include "tests/support/shadow_facets.h"

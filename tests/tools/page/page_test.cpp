@@ -7,7 +7,7 @@
 
 #include "dof/measure/flip.h"
 #include "raster/images/texel.h"
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/gl_drivers.h"
 #include "tests/support/run_program.h"
