@@ -340,21 +340,6 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
   return hashes;
 }
 
-std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
-                                    std::span<const FrameSize> sizes,
-                                    std::span<const NamedProfile> profiles, ThreadPool& pool) {
-  std::vector<NamedHash> hashes;
-  for (const GoldenScene& scene : scenes) {
-    for (const FrameSize& size : sizes) {
-      for (const NamedProfile& profile : profiles) {
-        const std::vector<NamedHash> more = frame_hashes(scene, size, profile, pool);
-        hashes.insert(hashes.end(), more.begin(), more.end());
-      }
-    }
-  }
-  return hashes;
-}
-
 std::vector<NamedHash> more_frame_hashes(std::span<const std::string_view> scenes,
                                          ThreadPool& pool) {
   std::vector<std::vector<NamedHash>> by_scene(scenes.size());
