@@ -195,7 +195,7 @@ TEST_CASE("a golden hash that the table lacks, and one that was not computed, do
 
 TEST_CASE("a group that the table lacks, and one that was not computed, do not pass") {
   const std::vector<NamedHash> all = five_hashes();
-  const std::vector<NamedHash> two{all.begin(), all.begin() + 2};
-  CHECK(failures(two, all).starts_with("5 of 5 hashes differ"));
-  CHECK(failures(all, two).starts_with("4 of 4 hashes differ"));
+  const std::vector<NamedHash> room{all[0], all[1], all[3]};
+  CHECK(failures(room, all).starts_with("2 of 5 hashes differ"));
+  CHECK(failures(all, room).starts_with("2 of 5 hashes differ"));
 }
