@@ -6,6 +6,7 @@
 #include <string>
 
 #include "dof/dof.h"
+#include "raster/images/image.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/scene.h"
 #include "tools/bench/options.h"
@@ -34,5 +35,19 @@ struct BenchWork {
 
 /// Loads or makes the work. Throws UsageError for an impossible lens, SceneError for a scene.
 BenchWork make_work(const BenchOptions& options);
+
+// A picture to filter without drawing one: it has every circle of confusion, and silhouettes.
+
+/// The focus distance that the picture is made for.
+inline constexpr double kBenchPictureFocusM = 2.0;
+
+/// The circle at infinity of the lens that it is made for, over the filter's largest.
+inline constexpr double kBenchPictureHorizon = 1.5;
+
+/// RGBA16F, depth in metres in alpha. A floor goes from the horizon above to half its blur in front
+/// of the focus below, and 48 discs of all depths stand before it. With the lens above the signed
+/// radii go from -1.2 to 1.2 times the filter's largest. Colours are smooth waves and noise, from 0
+/// to 1.2. Every machine gives the same bits.
+Image bench_picture(int width, int height);
 
 }  // namespace softfocus

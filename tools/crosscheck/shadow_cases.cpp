@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "scenes/load/load_scene.h"
-#include "tools/gl/maps_on_gl.h"
 #include "tools/gl/shadows_on_gl.h"
 
 namespace softfocus {

@@ -9,6 +9,8 @@
 #include <string>
 #include <system_error>
 
+#include "raster/images/texel.h"
+#include "raster/numbers/exact_math.h"
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -187,6 +189,56 @@ Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::
 
 Picture read_image_file(const std::filesystem::path& file) {
   return decode_picture(read_picture_bytes(file), file);
+}
+
+float srgb16_to_linear(std::uint16_t encoded) {
+  const double v = encoded / 65535.0;
+  return static_cast<float>(v <= 0.04045 ? v / 12.92 : exact_math::pow((v + 0.055) / 1.055, 2.4));
+}
+
+std::vector<std::uint16_t> srgb16_of_halves() {
+  std::vector<std::uint16_t> encoded(65536, 0);
+  for (std::uint32_t bits = 0; bits <= kHalfInfinity; ++bits) {  // negative ones and NaN stay 0
+    if (bits >= kHalfOne) {
+      encoded[bits] = 65535;
+      continue;
+    }
+    const double linear = static_cast<double>(half_to_float(static_cast<std::uint16_t>(bits)));
+    const double v =
+        linear <= 0.0031308 ? 12.92 * linear : 1.055 * exact_math::pow(linear, 1.0 / 2.4) - 0.055;
+    encoded[bits] = static_cast<std::uint16_t>(v * 65535.0 + 0.5);
+  }
+  return encoded;
+}
+
+// A picture's colours in the sRGB curve and nothing else, as programs take them for a video.
+
+Bytes encode_rgb24(const Image& image) {
+  Bytes bytes;
+  bytes.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const glm::vec4 colour = load_texel<Format::rgba16f>(image, x, y);
+      for (int c = 0; c < 3; ++c) bytes.push_back(std::byte{linear_to_srgb8(colour[c])});
+    }
+  }
+  return bytes;
+}
+
+Bytes encode_rgb48le(const Image& image) {
+  const std::vector<std::uint16_t> encoded = srgb16_of_halves();
+  Bytes bytes;
+  bytes.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 6);
+  for (int y = 0; y < image.height; ++y) {
+    const auto halves = row<std::uint16_t>(image, y);
+    for (std::size_t i = 0; i < halves.size(); ++i) {
+      if (i % 4 == 3) continue;
+      const std::uint16_t value = encoded[halves[i]];
+      bytes.push_back(static_cast<std::byte>(value & 0xFF));
+      bytes.push_back(static_cast<std::byte>(value >> 8));
+    }
+  }
+  return bytes;
 }
 
 }  // namespace softfocus

@@ -9,6 +9,7 @@
 //   RGB24, RGB48LE   raw video, as ffmpeg names it: a PNG's colours, row by row, nothing else
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -84,5 +85,14 @@ Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::
 
 /// Both.
 Picture read_image_file(const std::filesystem::path& file);
+
+// The sRGB curve in 16 bits, as PNG has it (IEC 61966-2-1), and from halves.
+
+/// Linear light; 0 to 65535 stand for 0 to 1.
+float srgb16_to_linear(std::uint16_t encoded);
+
+/// For every half's bits the number that encodes it, 0 to 65535: values outside of 0 to 1 are cut,
+/// NaN is 0.
+std::vector<std::uint16_t> srgb16_of_halves();
 
 }  // namespace softfocus

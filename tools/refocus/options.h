@@ -1,5 +1,5 @@
 #pragma once
-// Everything that `refocus` is told.
+// Pixels beyond the borders of a picture that is refocused.
 
 #include <optional>
 #include <string>
@@ -9,12 +9,53 @@
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 #include "tools/pictures/image_file.h"
-#include "tools/refocus/borders.h"
-#include "tools/refocus/highlights.h"
+#include "tools/pictures/picture_file.h"
 #include "tools/refocus/picture_with_depth.h"
 #include "tools/sequence/sequence_options.h"
 
 namespace softfocus {
+
+/// `by_method`: as each filter has it (docs/refocus.md). The others are pixels around the picture,
+/// which the filter then sees: its edge again and again, its mirror image, or black, where nothing
+/// is opaque. Depths of black ones are those of the edge.
+enum class Border : std::uint8_t { by_method, clamp, mirror, black };
+
+/// clamp, mirror, black; by-method.
+std::string_view name_of(Border border);
+
+/// The picture, RGBA16F with depth in alpha, with `margin` pixels more on each side.
+Image with_border(const Image& picture, int margin, Border border);
+
+/// Enlarges a plane of numbers; black ones are 0.
+PlaneValues with_border(const PlaneValues& values, int width, int height, int margin,
+                        Border border);
+
+/// The way back: `width` and `height` are those with the border.
+Image without_border(const Image& picture, int margin);
+PlaneValues without_border(const PlaneValues& values, int width, int height, int margin);
+
+// Light that a camera clipped: white that was a lamp is raised before the filter, so that it shows
+// as a disc, and lowered by the same curve afterwards, so that what is sharp stays as it was.
+
+/// With the luminance L = .2126 R + .7152 G + .0722 B in linear light, of the colour without its
+/// opacity, colours are multiplied by L' / L,
+///
+///   L' = L + (gain - 1) max(L - threshold, 0)
+///
+/// It rises with L, and so has an inverse.
+struct HighlightCurve {
+  double gain = 1.0;       ///< 1 or more
+  double threshold = 1.0;  ///< 0 or more
+};
+
+/// GAIN,THRESHOLD. Throws UsageError.
+HighlightCurve parse_highlights(const std::string& text);
+
+/// `opacity` is empty or has a number a pixel, by which the colours are multiplied.
+void raise_highlights(const HighlightCurve& highlights, const PlaneValues& opacity, Image& picture);
+void lower_highlights(const HighlightCurve& highlights, const PlaneValues& opacity, Image& picture);
+
+// Everything that `refocus` is told.
 
 /// The written picture, or a map of what it is made from.
 enum class RefocusShow : std::uint8_t { image, coc, depth };

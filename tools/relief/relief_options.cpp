@@ -1,15 +1,22 @@
 // The options of softfocus relief, whatever its action reads of them.
 
+#include "tools/relief/relief_options.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <type_traits>
 
+#include "raster/numbers/exact_math.h"
+#include "raster/numbers/half.h"
+#include "raster/numbers/srgb.h"
+#include "raster/numbers/vector_math.h"
+#include "scenes/relief/height_relief.h"
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "tools/cli/errors.h"
 #include "tools/options/parameter_options.h"
-#include "tools/relief/relief_options.h"
+#include "tools/pictures/picture_file.h"
 
 namespace softfocus {
 namespace {
@@ -189,6 +196,178 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
   begin_group(parser, "Run");
   number("runs", "N", "bench times each N times", 1, 1000, options->runs);
   add_pool_options(parser, options->pool, "the pictures are the same");
+}
+
+// Cameras of softfocus relief.
+
+namespace {
+
+/// Below this sine of an angle, a direction is along another.
+constexpr double kLeastSine = 1e-6;
+
+double length(glm::dvec3 v) { return std::sqrt(dot(v, v)); }
+
+bool is_along(glm::dvec3 unit, glm::dvec3 v) {
+  return length(cross(unit, v)) < kLeastSine * length(v);
+}
+
+/// To the right by yaw, then up by pitch: where the eye goes.
+glm::dvec3 turned_view(glm::dvec3 towards_eye, glm::dvec3 right, glm::dvec3 up,
+                       const ReliefOptions& options) {
+  const glm::dvec3 lifted = turned_about(towards_eye, right, -options.pitch_degrees);
+  return turned_about(lifted, up, options.yaw_degrees);
+}
+
+}  // namespace
+
+glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees) {
+  const double cosine = exact_math::cos_degrees(degrees), sine = exact_math::sin_degrees(degrees);
+  return v * cosine + cross(axis, v) * sine + axis * (dot(axis, v) * (1.0 - cosine));
+}
+
+glm::dvec3 turned_arm(const ReliefMaker& maker, const Scene& scene, const ReliefOptions& options) {
+  const CameraMatrices camera = camera_matrices(scene.camera, options.frame, 1, 1);
+  const glm::dvec3 back = camera.eye - maker.middle, up = normalize(scene.camera.up);
+  if (length(back) < kLeastSine * maker.radius_m) {
+    throw UsageError("'" + scene.name +
+                     "': its eye is in the object's middle; another place of its camera would be "
+                     "right");
+  }
+  // Straight above or below the middle it looks elsewhere, so its own right is one.
+  const glm::dvec3 right = is_along(up, back)
+                               ? glm::dvec3{camera.world_to_eye[0][0], camera.world_to_eye[1][0],
+                                            camera.world_to_eye[2][0]}
+                               : normalize(cross(up, back));
+  const glm::dvec3 arm = turned_view(back, right, up, options);
+  if (is_along(up, arm)) {
+    throw UsageError("--pitch: the eye is straight above or below the middle of '" + scene.name +
+                     "', where no side is up; a few degrees more or less would be right");
+  }
+  return arm;
+}
+
+glm::dvec3 relief_middle(const ReliefTexture& relief) {
+  return relief_point(relief, 0.5 * (relief.width - 1), 0.5 * (relief.height - 1),
+                      0.5 * last_depth(relief.depth_bits));
+}
+
+double relief_diagonal(const ReliefTexture& relief) {
+  const glm::dvec3 across =
+      relief_point(relief, relief.width - 1, relief.height - 1, last_depth(relief.depth_bits)) -
+      relief_point(relief, 0, 0, 0);
+  return std::sqrt(dot(across, across));
+}
+
+Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options) {
+  const glm::dvec3 right = normalize(relief.camera.a), up = normalize(relief.camera.b) * -1.0;
+  const double diagonal = relief_diagonal(relief);
+  Camera camera;
+  camera.target = relief_middle(relief);
+  camera.position = camera.target + turned_view(relief.camera.f * -1.0, right, up, options) *
+                                        (options.distance * diagonal);
+  camera.up = up;
+  // The box fills the picture a diagonal and a half away.
+  camera.near_m = 1e-3 * diagonal;
+  camera.far_m = (options.distance + 2.0) * diagonal;
+  return camera;
+}
+
+Camera camera_about(const ReliefMaker& maker, const Scene& scene, const ReliefOptions& options) {
+  const double diagonal = 2.0 * maker.radius_m;
+  Camera camera;
+  camera.target = maker.middle;
+  camera.position =
+      maker.middle + normalize(turned_arm(maker, scene, options)) * (options.distance * diagonal);
+  camera.up = scene.camera.up;
+  camera.near_m = 1e-3 * diagonal;
+  camera.far_m = (options.distance + 2.0) * diagonal;
+  return camera;
+}
+
+// softfocus relief make --height-field: heights out of a picture's file.
+
+namespace {
+
+[[noreturn]] void refuse_field(const std::filesystem::path& file, const std::string& why) {
+  throw FileError("'" + file.string() + "': " + why);
+}
+
+/// The planes of heights and, behind them, of alpha. A grey picture may stand in three colours.
+struct HeightPlanes {
+  std::vector<std::size_t> planes;
+  bool has_alpha;
+};
+
+HeightPlanes height_planes(const PictureFile& file) {
+  const std::vector<ColourLayer> layers = colour_layers(file);
+  if (layers.empty()) return {{0}, false};
+  const ColourLayer& layer = layers[0];
+  HeightPlanes found{{layer.red}, layer.alpha.has_value()};
+  if (layer.green != layer.red) found.planes.insert(found.planes.end(), {layer.green, layer.blue});
+  if (layer.alpha) found.planes.push_back(*layer.alpha);
+  return found;
+}
+
+std::vector<std::uint32_t> read_field_colours(const std::filesystem::path& path, int width,
+                                              int height) {
+  const PictureFile file = open_picture_file(path);
+  const std::vector<ColourLayer> layers = colour_layers(file);
+  if (layers.empty()) refuse_field(path, "has no colour; it has " + plane_names(file));
+  if (file.width != width || file.height != height) {
+    refuse_field(path, "has " + size_text({file.width, file.height}) +
+                           " pixels; the heights have " + size_text({width, height}));
+  }
+  const Image picture = read_colour(file, layers[0], false).image;
+  std::vector<std::uint32_t> colours;
+  colours.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    const std::uint16_t* texels = row<std::uint16_t>(picture, y).data();
+    for (int x = 0; x < width; ++x) {
+      std::uint32_t colour = 0xFF000000u;
+      for (int i = 0; i < 3; ++i) {
+        colour |= std::uint32_t{linear_to_srgb8(half_to_float(texels[4 * x + i]))} << (8 * i);
+      }
+      colours.push_back(colour);
+    }
+  }
+  return colours;
+}
+
+}  // namespace
+
+ReliefTexture relief_of_height_file(const ReliefOptions& options) {
+  const std::filesystem::path path = options.input;
+  const PictureFile file = open_picture_file(path);
+  if (file.width > kMostReliefSize || file.height > kMostReliefSize) {
+    refuse_field(path, "has " + size_text({file.width, file.height}) +
+                           " heights; each side has 1 to " + std::to_string(kMostReliefSize));
+  }
+  const HeightPlanes of = height_planes(file);
+  const std::vector<PlaneValues> values = read_planes(file, of.planes, NAN);
+  const std::size_t heights = of.planes.size() - (of.has_alpha ? 1 : 0);
+  for (std::size_t i = 1; i < heights; ++i) {
+    const bool is_grey =
+        std::equal(values[0].begin(), values[0].end(), values[i].begin(),
+                   [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+    if (!is_grey) refuse_field(path, "is in colour; heights are grey");
+  }
+  HeightField field{file.width, file.height, values[0]};
+  const int longest = std::max(file.width, file.height);
+  const double full = full_scale(file.planes[of.planes[0]].type);
+  const auto texels_of_one = static_cast<float>(options.height_m * longest / full);
+  for (std::size_t i = 0; i < field.heights.size(); ++i) {
+    const float value = field.heights[i];
+    const bool is_empty = (options.empty_height && value == *options.empty_height) ||
+                          (of.has_alpha && !(values.back()[i] > 0.0f));
+    field.heights[i] = is_empty ? NAN : value * texels_of_one;
+  }
+  if (!options.colour.empty()) {
+    field.colours = read_field_colours(options.colour, file.width, file.height);
+  }
+  std::optional<ReliefTexture> relief =
+      relief_of_heights(field, {1.0 / longest, options.depth_bits, options.normals});
+  if (!relief) refuse_field(path, "has no height: all of its texels are empty");
+  return std::move(*relief);
 }
 
 }  // namespace softfocus

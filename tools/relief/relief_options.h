@@ -2,12 +2,13 @@
 // The options of `softfocus relief`, and functions that its actions share.
 
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "scenes/relief/impostors/impostor_schedule.h"
 #include "tools/cli/option_values.h"

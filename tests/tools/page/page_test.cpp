@@ -12,7 +12,7 @@
 #include "tests/support/gl_drivers.h"
 #include "tests/support/run_program.h"
 #include "tools/page/page.h"
-#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_case.h"
 
 using namespace softfocus;
 
