@@ -262,7 +262,7 @@ std::span<const std::string_view> golden_scenes() { return kScenes; }
 std::span<const std::string_view> more_golden_scenes() { return kMoreScenes; }
 
 std::span<const FrameSize> golden_sizes(GoldenSet set) {
-  return std::span{kSizes}.subspan(set == GoldenSet::quick ? 1 : 0);
+  return std::span{kSizes}.subspan(set == GoldenSet::all ? 0 : 1);
 }
 
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
@@ -344,26 +344,11 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
   return hashes;
 }
 
-std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
-                                    std::span<const FrameSize> sizes,
-                                    std::span<const NamedProfile> profiles, ThreadPool& pool) {
-  std::vector<NamedHash> hashes;
-  for (const GoldenScene& scene : scenes) {
-    for (const FrameSize& size : sizes) {
-      for (const NamedProfile& profile : profiles) {
-        const std::vector<NamedHash> more = frame_hashes(scene, size, profile, pool);
-        hashes.insert(hashes.end(), more.begin(), more.end());
-      }
-    }
-  }
-  return hashes;
-}
-
 std::vector<NamedHash> more_frame_hashes(std::span<const std::string_view> scenes,
                                          ThreadPool& pool) {
   std::vector<std::vector<NamedHash>> by_scene(scenes.size());
   pool.for_each(static_cast<int>(by_scene.size()), [&](int i) {
-    ThreadPool one(1);
+    ThreadPool one(1, pool.isa());
     const auto index = static_cast<std::size_t>(i);
     by_scene[index] = few_frame_hashes(scenes[index], one);
   });

@@ -3,6 +3,7 @@
 // `softfocus selftest` and the tests hold them against one table, golden/table.inc.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,8 +33,9 @@ std::span<const std::string_view> golden_scenes();
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool);
 
 /// Which of the golden hashes. `quick` lacks the frames of the larger size, and has profiles other
-/// than ieee on the first scene alone: every operation is left.
-enum class GoldenSet { all, quick };
+/// than ieee on the first scene alone: every operation is left. Of these `few` has what byte order
+/// and words can change: under ieee, and three scenes.
+enum class GoldenSet { all, quick, few };
 
 struct FrameSize {
   int width, height;
@@ -48,11 +50,6 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& scene, const FrameSize& s
 /// "SCENE relief-WHAT ieee WIDTHxHEIGHT": textures of both depths, every resampling with both kinds
 /// of numbers, and the last of them mapped.
 std::vector<NamedHash> relief_hashes(const GoldenScene& scene, ThreadPool& pool);
-
-/// frame_hashes() for all scenes, at all sizes, under all profiles.
-std::vector<NamedHash> frame_hashes(std::span<const GoldenScene> scenes,
-                                    std::span<const FrameSize> sizes,
-                                    std::span<const NamedProfile> profiles, ThreadPool& pool);
 
 /// Other scenes that come along and some random ones, as load_scene() takes them.
 std::span<const std::string_view> more_golden_scenes();
@@ -71,10 +68,10 @@ std::vector<NamedHash> number_hashes();
 /// All of the above under every profile.
 std::vector<NamedHash> golden_hashes(ThreadPool& pool, GoldenSet set = GoldenSet::all);
 
-/// The same in parts, for callers that want to stop in between: part 0, 1, ... in the order of
-/// golden_hashes(). A part takes a second at most.
-std::size_t golden_part_count();
-std::vector<NamedHash> golden_part(std::size_t part, ThreadPool& pool);
+/// The same in parts, in the order of golden_hashes(), for callers that want to stop in between. A
+/// part takes a second at most. Parts of a scene share it once it is loaded.
+using GoldenPart = std::function<std::vector<NamedHash>(ThreadPool&)>;
+std::vector<GoldenPart> golden_parts(GoldenSet set = GoldenSet::all);
 
 /// The table: what golden_hashes() must give.
 std::vector<NamedHash> expected_hashes(GoldenSet set = GoldenSet::all);

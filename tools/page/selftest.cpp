@@ -1,4 +1,4 @@
-// selftest: the golden hashes, part by part.
+// selftest: the golden hashes, part by part; with "quick": true, those of selftest --quick.
 
 #include <algorithm>
 #include <iterator>
@@ -8,18 +8,26 @@
 namespace softfocus {
 
 Json answer_selftest(Page& page, const Json& request) {
-  const std::vector<NamedHash> expected = expected_hashes();
+  const Json* quick = request.find("quick");
+  const GoldenSet set = quick != nullptr && quick->boolean() ? GoldenSet::quick : GoldenSet::all;
+  const std::vector<NamedHash> expected = expected_hashes(set);
   const auto total = static_cast<double>(expected.size());
   const auto first =
       static_cast<std::size_t>(checked_number(request.at("first"), "first", 0.0, total));
   const auto count =
       static_cast<std::size_t>(checked_number(request.at("count"), "count", 0.0, total));
-  while (page.golden.size() < first + count && page.golden_parts < golden_part_count()) {
+  if (page.golden.empty() || page.golden_set != set) {
+    page.golden_set = set;
+    page.golden_parts = golden_parts(set);
+    std::reverse(page.golden_parts.begin(), page.golden_parts.end());
+    page.golden.clear();
+  }
+  while (page.golden.size() < first + count && !page.golden_parts.empty()) {
     stop_if_cancelled(page);
-    std::vector<NamedHash> more = golden_part(page.golden_parts, *page.pool);
+    std::vector<NamedHash> more = page.golden_parts.back()(*page.pool);
     page.golden.insert(page.golden.end(), std::move_iterator(more.begin()),
                        std::move_iterator(more.end()));
-    ++page.golden_parts;
+    page.golden_parts.pop_back();
   }
   Json results = Json::array();
   for (std::size_t i = first; i < std::min(first + count, page.golden.size()); ++i) {

@@ -236,6 +236,8 @@ TEST_CASE("the self-test comes in slices of any size") {
   REQUIRE(next.at("results").values().size() == 2);
   CHECK(next.at("results").at(std::size_t{0}).at("equal").boolean());
   CHECK(some.at("total").integer() == static_cast<int>(expected_hashes().size()));
+  const Json quick = ask_well(page, R"({"do":"selftest","quick":true,"first":0,"count":1})");
+  CHECK(quick.at("total").integer() == static_cast<int>(expected_hashes(GoldenSet::quick).size()));
 }
 
 TEST_CASE("the GPU's frame is the module's under the driver's profile, stage by stage") {
