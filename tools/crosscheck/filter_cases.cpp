@@ -6,7 +6,6 @@
 #include "dof/dof.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
-#include "scenes/load/load_scene.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/filter_on_gl.h"
 
@@ -25,7 +24,7 @@ enum class TestPicture {
 };
 
 Image drawn(const char* name, int width, int height, const Bench& bench) {
-  const Scene scene = load_scene(name, scene_search_path({}));
+  const Scene& scene = loaded_scene(name);
   return draw_scene(scene, camera_matrices(scene.camera, 5, width, height), 5, width, height,
                     bench.profile, bench.pool);
 }

@@ -2,7 +2,6 @@
 // both sides.
 
 #include "scenes/draw/velocity.h"
-#include "scenes/load/load_scene.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/motion_on_gl.h"
 #include "tools/gl/scene_on_gl.h"
@@ -23,7 +22,7 @@ MotionSpan span_of(const Scene& scene, const MotionCase& what) {
 }
 
 void velocity_both(const Bench& bench, Tally& tally, const MotionCase& what) {
-  const Scene scene = load_scene(what.scene, scene_search_path({}));
+  const Scene& scene = loaded_scene(what.scene);
   const Instant shown = instant_at(scene, what.frame, what.width, what.height);
   const MotionSpan span = span_of(scene, what);
   GlScene on_gl{bench.gl, bench.shaders, scene};
@@ -33,7 +32,7 @@ void velocity_both(const Bench& bench, Tally& tally, const MotionCase& what) {
 }
 
 void reproject_both(const Bench& bench, Tally& tally, const MotionCase& what, bool any_bits) {
-  Scene scene = load_scene(what.scene, scene_search_path({}));
+  Scene scene = loaded_scene(what.scene);
   scene.camera.orbit_degrees_per_frame = 1.5;
   const Instant shown = instant_at(scene, what.frame, what.width, what.height);
   Image picture = draw_scene(scene, shown.camera, what.frame, what.width, what.height,
@@ -82,7 +81,7 @@ void blur_both(const Bench& bench, Tally& tally, const BlurCase& what) {
     picture = random_picture(Format::rgba16f, width, height, 4.0f, random);
     velocity = random_picture(Format::rg16f, width, height, 30.0f, random);
   } else {
-    Scene scene = load_scene(scene_name, scene_search_path({}));
+    Scene scene = loaded_scene(scene_name);
     scene.camera.orbit_degrees_per_frame = 3.0;
     const Instant shown = instant_at(scene, 7.0, width, height);
     picture = draw_scene(scene, shown.camera, 7.0, width, height, bench.profile, bench.pool);

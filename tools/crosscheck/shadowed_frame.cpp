@@ -2,13 +2,11 @@
 
 #include <utility>
 
-#include "scenes/load/load_scene.h"
-
 namespace softfocus {
 
 ShadowedFrame draw_shadowed_frame(const Bench& bench, const std::string& scene, ShadowKind kind,
                                   const ShadowMapSettings& map, int width, int height) {
-  Scene loaded = load_scene(scene, scene_search_path({}));
+  Scene loaded = loaded_scene(scene);
   set_shadows(loaded, kind);
   for (Light& light : loaded.lights) light.map = map;
   PreparedScene prepared = prepare_scene(loaded, bench.profile, bench.pool);

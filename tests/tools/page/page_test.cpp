@@ -201,7 +201,7 @@ TEST_CASE("every case opens at its telling severity and makes a frame") {
     const std::string name = known.at("name").text();
     CAPTURE(name);
     ask_well(page, R"({"do":"open","case":")" + name + "\"}");
-    ask_well(page, R"({"do":"frame","size":[64,64]})");
+    ask_well(page, R"({"do":"frame","size":[24,16]})");
   }
 }
 
