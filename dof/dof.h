@@ -10,7 +10,6 @@
 #include <span>
 #include <string_view>
 
-#include "dof/aperture.h"
 #include "dof/lens.h"
 #include "dof/pack.h"
 #include "dof/shaders.h"

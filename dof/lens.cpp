@@ -1,9 +1,14 @@
 #include "dof/lens.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
+#include "dof/dof.h"
 #include "raster/numbers/exact_math.h"
+#include "raster/numbers/half.h"
 
 namespace softfocus {
 namespace {
@@ -69,6 +74,53 @@ PixelCoc pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px, do
 
 double film_height_mm(const ThinLens& lens, double fov_y_degrees) {
   return 2.0 * image_distance_mm(lens, lens.focus_m) * exact_math::tan_degrees(fov_y_degrees / 2.0);
+}
+
+double pixels_per_sensor_mm(double sensor_width_mm, double sensor_height_mm, int width_px,
+                            int height_px) {
+  const bool turned = (width_px < height_px) != (sensor_width_mm < sensor_height_mm);
+  const double across = turned ? sensor_height_mm : sensor_width_mm;
+  const double down = turned ? sensor_width_mm : sensor_height_mm;
+  return std::max(width_px / across, height_px / down);
+}
+
+PixelCoc sensor_coc(const ThinLens& lens, double pixels_per_tangent, double coc_scale) {
+  const double aperture_radius_m = aperture_mm(lens) / 1000.0 / 2.0;
+  return {static_cast<float>(aperture_radius_m / lens.focus_m * pixels_per_tangent * coc_scale),
+          static_cast<float>(lens.focus_m)};
+}
+
+namespace {
+
+struct RowSizes {
+  float largest_px = 0.0f;
+  int beyond_limit = 0;
+};
+
+}  // namespace
+
+CircleSizes circle_sizes(const ConstImageView& scene, const PixelCoc& coc, float limit_px,
+                         ThreadPool& pool) {
+  std::vector<RowSizes> rows(static_cast<std::size_t>(scene.height));
+  pool.for_each(scene.height, [&](int y) {
+    RowSizes& sizes = rows[static_cast<std::size_t>(y)];
+    const auto values = row<std::uint16_t>(scene, y);
+    for (std::size_t i = 3; i < values.size(); i += 4) {
+      const float depth_m = half_to_float(values[i]);
+      const float radius =
+          std::isinf(depth_m) ? coc.radius_at_infinity_px : std::fabs(coc_radius_px(coc, depth_m));
+      if (radius > sizes.largest_px) sizes.largest_px = radius;
+      if (radius > limit_px) ++sizes.beyond_limit;
+    }
+  });
+  CircleSizes all;
+  double beyond = 0.0;
+  for (const RowSizes& sizes : rows) {
+    all.largest_px = std::max(all.largest_px, std::min(sizes.largest_px, kLargestMaxCoc));
+    beyond += sizes.beyond_limit;
+  }
+  all.beyond_limit = beyond / (static_cast<double>(scene.width) * scene.height);
+  return all;
 }
 
 }  // namespace softfocus

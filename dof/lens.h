@@ -1,4 +1,3 @@
-#pragma once
 // The thin lens: the six equations of the thesis, and the circle of confusion in the form
 // that the methods use, a signed radius in pixels.
 //
@@ -14,6 +13,12 @@
 // lens is focused: the film's height is 2 v0 tan(fov/2). Then focusing does not zoom, and the
 // film's circle of confusion, scaled to pixels, is exactly the footprint that rays through
 // the aperture leave on a pinhole image.
+#pragma once
+
+#include <string_view>
+
+#include "raster/images/image_view.h"
+#include "raster/threads/parallel.h"
 
 namespace softfocus {
 
@@ -79,5 +84,54 @@ inline float coc_radius_px(const PixelCoc& coc, float depth_m) {
 
 /// The height in millimetres of the film that sees `fov_y_degrees`: 2 v0 tan(fov/2).
 double film_height_mm(const ThinLens& lens, double fov_y_degrees);
+
+// The shape of the lens's opening, and so of every point that is out of focus.
+
+inline constexpr int kMostApertureBlades = 64;
+inline constexpr float kMostApertureStretch = 16.0f;
+
+/// The method that has other apertures than round ones (scatter/aperture_scatter.h).
+inline constexpr std::string_view kApertureMethod = "scatter-aperture";
+
+/// Within the circle of confusion, which it touches. Things nearer than the focus show it upside
+/// down.
+struct Aperture {
+  int blades = 0;             ///< corners of a regular polygon, 3 to kMostApertureBlades; 0: round
+  float turn_degrees = 0.0f;  ///< counter-clockwise; without it a corner is up
+  /// Height over width, 1/16 to 16: above 1 the width shrinks (an anamorphic lens), below 1 the
+  /// height.
+  float stretch = 1.0f;
+  bool operator==(const Aperture&) const = default;
+};
+
+/// What is wrong with it, as a sentence, or nullptr.
+const char* aperture_error(const Aperture& aperture);
+
+// The lens with a sensor behind it, or any camera whose field of view is not known in degrees.
+
+/// The pixels of a millimetre on a sensor: the picture is the largest part of it that has the
+/// picture's shape, upright if the picture is. Times the distance between lens and sensor in
+/// millimetres it is `pixels_per_tangent` of sensor_coc().
+double pixels_per_sensor_mm(double sensor_width_mm, double sensor_height_mm, int width_px,
+                            int height_px);
+
+/// As pixel_coc(). `pixels_per_tangent` is the picture's height in pixels over the height that it
+/// shows at distance 1: height / (2 tan(fov/2)).
+PixelCoc sensor_coc(const ThinLens& lens, double pixels_per_tangent, double coc_scale);
+
+// How large a picture's circles of confusion are: what a largest radius cuts, and what it would
+// have to be to cut nothing.
+
+struct CircleSizes {
+  /// The largest radius in pixels, at most kLargestMaxCoc; 0 if no depth has a circle.
+  float largest_px = 0.0f;
+  /// The share of pixels, 0 to 1, whose circle is larger than the limit.
+  double beyond_limit = 0.0;
+};
+
+/// `scene` is RGBA16F, depth in alpha. A NaN depth has no circle; an infinite one has the
+/// horizon's.
+CircleSizes circle_sizes(const ConstImageView& scene, const PixelCoc& coc, float limit_px,
+                         ThreadPool& pool);
 
 }  // namespace softfocus

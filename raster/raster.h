@@ -6,7 +6,6 @@
 // CMake target and the pkg-config package ask for both.
 
 #include "raster/images/image.h"
-#include "raster/images/mipmap.h"
 #include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/profile.h"

@@ -4,5 +4,6 @@
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/frame/frame.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/load/load_scene.h"

@@ -10,7 +10,7 @@ set(order
   scenes/scene.h scenes/parameters.h scenes/make scenes/random scenes/files scenes/load scenes/embree scenes/surfaces scenes/lens_views/lens_points.h scenes/lens_views/lens_points.cpp scenes/shadows scenes/shadows/maps scenes/shadows/volumes
   scenes/draw scenes/relief scenes/relief/warp scenes/relief/impostors scenes/lens_views scenes/traced_relief
   scenes/temporal scenes/filtered_views scenes/warped_views
-  scenes/surface_splatting scenes/lens_views/lens_view_method.cpp scenes/auto scenes/scenes.h
+  scenes/surface_splatting scenes/lens_views/lens_view_method.cpp scenes/auto scenes/frame scenes/scenes.h
   tools/cli tools/files tools/pictures tools/gl/driver tools/gl tools/options tools/info tools/sequence tools/render tools/relief tools/refocus/depth tools/refocus tools/effects tools/compare tools/bench
   tools/golden tools/report tools/chart tools/chart/contenders tools/chart/report tools/chart/subject.cpp tools/chart/work.cpp tools/chart/command.cpp tools/stress/cases tools/stress
   tools/crosscheck tools/boards tools/page tools)

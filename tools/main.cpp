@@ -32,7 +32,7 @@ int finish(int status, int failed) {
 }
 
 int run_command(const Command& command) {
-  // Where things are compared, 1 means "different": any error there is a 2.
+  // Commands that compare say "different" with 1: any error there is a 2.
   const std::string name = name_of(*command.parser);
   const int failed = name == "compare" || name == "crosscheck" ? kWrongUsage : kFailed;
   try {

@@ -76,7 +76,7 @@ float felt(float difference) {
   return root * std::sqrt(root);
 }
 
-// What of a ring lies within a reach, 0 to 1.
+// The part of a ring within a reach, 0 to 1.
 float within(float reach_px, float distance_px) {
   const float part = reach_px - 0.75f * distance_px + 0.5f;
   return part > 0.0f && reach_px >= kHalfAPixel ? (part < 1.0f ? part : 1.0f) : 0.0f;
@@ -163,12 +163,11 @@ void add_tap(const Point& p, const Point& q, std::size_t ring, Taps& taps) {
   tap.far_edge = near ? 0.0f : step;
 }
 
-/// Where a point and its taps lie: texels, and cells for the wide rings. Fetched one point ahead:
+/// Places of a point and its taps: texels, and cells for the wide rings. Fetched one point ahead:
 /// they lie far apart, and most of the time goes into waiting for them.
 struct Places {
   const std::uint16_t* centre;
-  /// Of the taps near by: where the squares of pixels begin that are their means, and the texel
-  /// there.
+  /// Corners of the squares of pixels whose means are the taps near by, and the texel there.
   std::array<std::array<int, 2>, 4 * kFirstRingOfCells> corners;
   std::array<const std::uint16_t*, 4 * kFirstRingOfCells> texels;
   std::array<const CellMean*, 4 * (kRingsPx.size() - kFirstRingOfCells)> cells;
@@ -213,7 +212,7 @@ Point tap_at(const Sight& sight, const Places& places, std::size_t tap) {
   return {cell.colour, cell.radius_px};
 }
 
-/// What a lens makes of a point, for each cut.
+/// A point through a lens, for each cut.
 struct LensSums {
   ByCut red{}, green{}, blue{}, weights{}, near_edges{}, far_edges{};
 };
@@ -308,8 +307,8 @@ void add_point(const Sight& sight, const Places& places, Sums& sums) {
   add_ghosts(p, taps, mean, sums);
 }
 
-// Of the point that stands for a cell of the grid: where in the cell, the hash's upper bytes
-// tell in 256ths, and how its taps lie, the lowest bits.
+// Places of the point that stands for a cell of the grid. The hash's upper bytes tell where in the
+// cell, in 256ths, its lowest bits how the taps lie.
 Places places_of_point(const Sight& sight, int column, int row, int columns, int rows) {
   const std::uint32_t hash = hash_of_place(column, row);
   const int right = static_cast<int>(hash >> 24), down = static_cast<int>(hash >> 16 & 0xFFu);

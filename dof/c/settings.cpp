@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "dof/c/arguments.h"
+#include "dof/lens.h"
 #include "dof/parameters.h"
-#include "dof/sensor.h"
 
 namespace softfocus {
 namespace {

@@ -12,7 +12,7 @@
 #include "dof/c/arguments.h"
 #include "dof/c/pictures.h"
 #include "dof/c/settings.h"
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 #include "raster/threads/float_environment.h"
 
 using namespace softfocus;
@@ -91,7 +91,7 @@ Work prepared(const softfocus_picture* picture, const softfocus_settings* settin
   return work;
 }
 
-/// Of a caller of any version: fields that are unknown here become 0.
+/// Fills a struct for a caller of any version: fields that are unknown here become 0.
 void give_struct(const void* ours, std::size_t our_bytes, void* to, std::size_t bytes) {
   std::memset(to, 0, bytes);
   std::memcpy(to, ours, std::min(bytes, our_bytes));
@@ -101,7 +101,7 @@ void give_struct(const void* ours, std::size_t our_bytes, void* to, std::size_t 
 /// The bytes of the caller's report, 0 if there is none.
 std::size_t report_bytes(const softfocus_report* report) {
   if (report == nullptr) return 0;
-  // What is in it does not matter: it is written.
+  // The struct's contents do not matter: it is written.
   return struct_bytes("report", report, sizeof *report, SIZE_MAX);
 }
 

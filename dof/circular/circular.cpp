@@ -81,7 +81,7 @@ Table make_table(const ComplexGaussian& gaussian, double edge, float largest_px)
   return table;
 }
 
-// Of a field: where its colour, size and weight or opacity lie in HalfFields.
+// A field's places in HalfFields: colour, size and weight or opacity.
 struct Field {
   bool near;
   int colour, size, share;
@@ -192,7 +192,7 @@ void blur_down(const Circular& all, Field field, int y, RowScratch& scratch, Isa
     row.result_plane = cells.plane;
     SOFTFOCUS_KERNEL(isa, circular_down)(row, all.components, field.near);
   };
-  // What is not reached has no colour and no opacity.
+  // Cells out of reach have no colour and no opacity.
   for_each_run(all, field, y, to, cells.plane, 0, blur);
 }
 

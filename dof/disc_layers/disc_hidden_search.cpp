@@ -69,7 +69,7 @@ SOFTFOCUS_INLINE void split_strip(const HiddenSearch& in, int strip, int y) {
 
 // --- along rows ---
 
-// What a sweep along a row has met: a source, and near pixels alone since.
+// State of a sweep along a row: the source it has met, and near pixels alone since.
 struct Way {
   bool open;
   int source_x;

@@ -31,7 +31,7 @@ namespace {
 
 #include "dof/disc_layers/disc_hidden_lanes.inl"
 
-// Of a vector of a row's pixels: their sources one way, or what they hide.
+// A vector of a row's pixels: their sources one way, or what they hide.
 struct HiddenLanes {
   Ints distance;  // 0: none
   HalfTexels texels;
@@ -137,7 +137,7 @@ SOFTFOCUS_INLINE Ints load_distances(const HiddenSearch& in, std::size_t way, in
   return load_shorts((way == 2 ? in.above : in.below) + at);
 }
 
-// What pixels from x on hide. Returns whether they hide anything.
+// Blends the light that pixels from x on hide. Returns whether they hide anything.
 SOFTFOCUS_INLINE bool blend_sources(const HiddenSearch& in, int x, int y, const std::int32_t* left,
                                     const std::int32_t* right, HiddenLanes& hidden) {
   const unsigned ways = in.known_row(y)[x / kStrip].ways;
@@ -182,7 +182,7 @@ SOFTFOCUS_INLINE Mask hide_vector(const HiddenSearch& in, int x, int y, const Hi
   return found;
 }
 
-// Of the rows of `hidden` marks blocks where lanes from x on are set.
+// Marks blocks of `hidden`'s rows in which lanes from x on are set.
 SOFTFOCUS_INLINE void mark_blocks(HiddenPicture& hidden, int x, int y, Mask found) {
   std::uint8_t* blocks =
       hidden.blocks.data() + std::ptrdiff_t{y / kDiscBlock} * hidden.block_columns;

@@ -17,7 +17,7 @@ namespace softfocus {
 constexpr int kLightBlock = 16;     // pixels across
 constexpr float kStandsOut = 8.0f;  // l over m, from which on a pixel is a highlight
 
-// What a row of a block needs to tell which pixels may be highlights.
+// A row of a block, to tell which pixels may be highlights.
 struct LightRow {
   float least;           // no pixel's m is lower
   float means[2][3];     // of the blocks whose means lie around the row

@@ -17,13 +17,13 @@ namespace softfocus {
 constexpr int kChunk = kDiscTileWidth;
 static_assert(kChunk % kHiddenStrip == 0 && kChunk % kDiscBlock == 0);
 
-// Of a row of level 0.
+// Marks of a row of level 0.
 struct RowMarks {
   std::uint32_t *near, *far;  // by x: a bit for each rung; the last bit stands for all larger ones
   std::uint8_t* larger;       // of a chunk: a bit for each side that goes to larger levels
 };
 
-// What is hidden in a row: texels, and of each strip whether it has any.
+// A row's hidden light: texels, and for each strip whether it has any.
 struct HiddenRow {
   const std::uint16_t* texels;
   const std::uint8_t* strips;

@@ -174,7 +174,7 @@ void half_cell(const SplitTexel* four, float* to) {
     }
   }
   row = {{&rows[0][0][0], &rows[1][0][0]}, 2 * kMostLanes, 1, &cells[0][0], kMostLanes, light};
-  baseline::halve_row(row);
+  SOFTFOCUS_KERNEL(Isa::scalar, halve_row)(row);
   for (int c = 0; c < kHalfPlanes; ++c) to[c] = cells[c][0];
 }
 

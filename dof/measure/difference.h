@@ -1,12 +1,46 @@
+// A number for each pixel: a measure before it is averaged over the picture or a region.
 #pragma once
-// How two pictures differ: counted in representable half values, and as PSNR.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
+#include "dof/measure/tone.h"
 #include "raster/images/image.h"
+#include "raster/threads/parallel.h"
 
 namespace softfocus {
+
+struct PixelMap {
+  int width = 0;
+  int height = 0;
+  std::vector<double> values;  ///< row by row, the top one first
+};
+
+inline PixelMap make_pixel_map(int width, int height) {
+  return {width, height,
+          std::vector<double>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
+}
+
+inline std::span<double> row(PixelMap& map, int y) {
+  const auto width = static_cast<std::size_t>(map.width);
+  return std::span{map.values}.subspan(static_cast<std::size_t>(y) * width, width);
+}
+inline std::span<const double> row(const PixelMap& map, int y) {
+  const auto width = static_cast<std::size_t>(map.width);
+  return std::span{map.values}.subspan(static_cast<std::size_t>(y) * width, width);
+}
+
+/// The mean of all values, summed in reading order.
+inline double mean(const PixelMap& map) {
+  double sum = 0.0;
+  for (const double value : map.values) sum += value;
+  return sum / static_cast<double>(map.values.size());
+}
+
+// How two pictures differ: counted in representable half values, and as PSNR.
 
 struct Difference {
   std::uint64_t values = 0;     ///< compared: width * height * 4
@@ -32,5 +66,15 @@ Difference compare_images(const Image& a, const Image& b);
 /// Black where the pictures are equal. Else the pixel's largest difference on a logarithmic
 /// scale: blue for 1 half-ULP, then green and yellow, to red for 2^15.
 Image difference_picture(const Image& a, const Image& b);
+
+// Mean squared error and the peak signal-to-noise ratio that follows from it.
+
+/// For each pixel the mean over red, green and blue of the squared difference of toned
+/// values; its mean over pixels is the MSE. Both RGBA16F and of one size.
+PixelMap squared_error_map(const Image& a, const Image& b, const ToneTable& tone, ThreadPool& pool);
+
+/// Peak signal-to-noise ratio in decibels for a peak of 1: -10 log10(mse). Infinite for 0, NaN
+/// for NaN.
+double psnr_db(double mean_squared_error);
 
 }  // namespace softfocus

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "dof/measure/flip_filters.h"
 #include "dof/measure/opponent.h"
 
 namespace softfocus {
@@ -133,6 +132,133 @@ PixelMap flip_map(const Image& reference, const Image& test, const ToneTable& to
 
 double mean_flip(const Image& reference, const Image& test, ThreadPool& pool) {
   return mean(flip_map(reference, test, clamped_tone(), pool));
+}
+
+namespace {
+
+using std::numbers::pi;
+
+struct Sensitivity {
+  double a;
+  double b;
+};
+constexpr Sensitivity kAchromatic{1.0, 0.0047};
+constexpr Sensitivity kRedGreen{1.0, 0.0053};
+constexpr Sensitivity kBlueYellowWide{34.1, 0.04};
+constexpr Sensitivity kBlueYellowNarrow{13.5, 0.025};
+
+// In degrees: the distance between the peak and the trough of an edge detector, twice its
+// standard deviation.
+constexpr double kDetectorWidth = 0.082;
+
+/// exp(-pi^2 d^2 / b) is a Gaussian of this standard deviation, in degrees.
+double deviation(const Sensitivity& of) { return std::sqrt(of.b / (2.0 * pi * pi)); }
+
+/// Sum over a square of the term before anything is normalised.
+double volume(const Sensitivity& of, int radius, double pixels_per_degree) {
+  double sum = 0.0;
+  for (int x = -radius; x <= radius; ++x) {
+    const double d = x / pixels_per_degree;
+    sum += std::exp(-pi * pi * d * d / of.b);
+  }
+  return of.a * std::sqrt(pi / of.b) * sum * sum;
+}
+
+void normalise_signs(FilterTaps& taps) {
+  double positive = 0.0;
+  double negative = 0.0;
+  for (const double weight : taps.weights) (weight > 0.0 ? positive : negative) += weight;
+  for (double& weight : taps.weights) weight /= weight > 0.0 ? positive : -negative;
+}
+
+}  // namespace
+
+FlipFilters flip_filters(double pixels_per_degree) {
+  assert(pixels_per_degree > 0.0);
+  FlipFilters filters;
+  // The widest filter sets the reach of all four.
+  const int reach =
+      static_cast<int>(std::ceil(3.0 * deviation(kBlueYellowWide) * pixels_per_degree));
+  const auto seen_by = [&](const Sensitivity& of) {
+    return gaussian_taps(deviation(of) * pixels_per_degree, reach);
+  };
+  filters.achromatic = seen_by(kAchromatic);
+  filters.red_green = seen_by(kRedGreen);
+  filters.blue_yellow_wide = seen_by(kBlueYellowWide);
+  filters.blue_yellow_narrow = seen_by(kBlueYellowNarrow);
+  const double wide = volume(kBlueYellowWide, reach, pixels_per_degree);
+  filters.wide_share = wide / (wide + volume(kBlueYellowNarrow, reach, pixels_per_degree));
+
+  const double sigma = 0.5 * kDetectorWidth * pixels_per_degree;
+  const int radius = static_cast<int>(std::ceil(3.0 * sigma));
+  filters.smooth = gaussian_taps(sigma, radius);
+  for (int x = -radius; x <= radius; ++x) {
+    const double g = filters.smooth.weights[static_cast<std::size_t>(x + radius)];
+    filters.edge.weights.push_back(-x * g);
+    filters.point.weights.push_back((x * x / (sigma * sigma) - 1.0) * g);
+  }
+  normalise_signs(filters.edge);
+  normalise_signs(filters.point);
+  filters.margin = std::max(reach, radius);
+  return filters;
+}
+
+namespace {
+
+constexpr double kShownAs = 0.85;
+constexpr double kLeastMedian = 0x1p-14;
+
+std::vector<double> luminances(const Image& image) {
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  for (int y = 0; y < image.height; ++y) {
+    const auto texels = row<std::uint16_t>(image, y);
+    for (std::size_t i = 0; i < texels.size(); i += 4) {
+      values.push_back(
+          luminance(half_light(texels[i]), half_light(texels[i + 1]), half_light(texels[i + 2])));
+    }
+  }
+  return values;
+}
+
+/// The middle value; of an even number the mean of the two.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  const double upper = *middle;
+  return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), middle));
+}
+
+}  // namespace
+
+ExposureRange exposure_range(const Image& reference) {
+  assert(reference.format == Format::rgba16f);
+  std::vector<double> values = luminances(reference);
+  const double largest = *std::max_element(values.begin(), values.end());
+  if (largest == 0.0) return {};
+  const double bright = filmic_inverse(kShownAs);
+  ExposureRange range;
+  range.first_stops = std::log2(bright / largest);
+  range.last_stops = std::log2(bright / std::max(median(values), kLeastMedian));
+  // A picture darker than the least median.
+  range.last_stops = std::max(range.first_stops, range.last_stops);
+  range.count = std::max(2, static_cast<int>(std::ceil(range.last_stops - range.first_stops)));
+  return range;
+}
+
+PixelMap hdr_flip_map(const Image& reference, const Image& test, ThreadPool& pool,
+                      double pixels_per_degree) {
+  const ExposureRange range = exposure_range(reference);
+  const double step = (range.last_stops - range.first_stops) / std::max(range.count - 1, 1);
+  PixelMap largest = make_pixel_map(reference.width, reference.height);
+  for (int i = 0; i < range.count; ++i) {
+    const PixelMap map = flip_map(reference, test, filmic_tone(range.first_stops + i * step), pool,
+                                  pixels_per_degree);
+    for (std::size_t k = 0; k < largest.values.size(); ++k) {
+      largest.values[k] = std::max(largest.values[k], map.values[k]);
+    }
+  }
+  return largest;
 }
 
 }  // namespace softfocus

@@ -1,4 +1,3 @@
-#pragma once
 // FLIP: how different two pictures look to someone who flips between them, 0 (the same)
 // to 1, for each pixel.
 //
@@ -10,8 +9,10 @@
 // the first and second derivative of a Gaussian as wide as the eye's detectors (0.082
 // degrees from peak to trough); the larger difference of magnitudes, over sqrt(2), to the
 // power of 0.5. Together: colour^(1 - feature).
+#pragma once
 
-#include "dof/measure/pixel_map.h"
+#include "dof/measure/difference.h"
+#include "dof/measure/ssim.h"
 #include "dof/measure/tone.h"
 #include "raster/images/image.h"
 #include "raster/threads/parallel.h"
@@ -28,5 +29,53 @@ PixelMap flip_map(const Image& reference, const Image& test, const ToneTable& to
 
 /// The picture's FLIP, of clamped light: that of measure_pictures().
 double mean_flip(const Image& reference, const Image& test, ThreadPool& pool);
+
+// The filters of FLIP, each a pass along rows and a pass along columns.
+
+struct FlipFilters {
+  /// Contrast sensitivity of the opponent channels (table 1 of the paper):
+  /// a sqrt(pi / b) exp(-pi^2 d^2 / b) at d degrees, b = 0.0047 for light and dark, 0.0053
+  /// for red and green, and for blue and yellow two terms, a = 34.1 with b = 0.04 and
+  /// a = 13.5 with b = 0.025. Each sums to 1.
+  FilterTaps achromatic;
+  FilterTaps red_green;
+  FilterTaps blue_yellow_wide;
+  FilterTaps blue_yellow_narrow;
+  double wide_share;  ///< of the two terms' sum in two dimensions; the rest is narrow
+
+  /// Features, along the derivative and across it. Positive weights sum to 1, negative
+  /// ones to -1; `smooth` sums to 1.
+  FilterTaps edge;
+  FilterTaps point;
+  FilterTaps smooth;
+
+  int margin;  ///< the largest radius
+};
+
+/// `pixels_per_degree` > 0.
+FlipFilters flip_filters(double pixels_per_degree);
+
+// HDR-FLIP: the largest FLIP of each pixel over all exposures at which something of the
+// reference shows.
+//
+// Source: Andersson, Nilsson, Shirley, Akenine-Moller, "Visualizing Errors in Rendered
+// High Dynamic Range Images" (2021). The first exposure takes the reference's largest
+// luminance to 0.85 on the film's curve (filmic_tone), the last its median; between them
+// as many as there are stops, at least two, at equal distances.
+
+/// In stops: values are multiplied by 2^stops.
+struct ExposureRange {
+  double first_stops = 0.0;
+  double last_stops = 0.0;
+  int count = 1;
+};
+
+/// For a black picture one exposure of 0 stops. A median below 2^-14, the least normal
+/// half, counts as that: no exposure makes black bright.
+ExposureRange exposure_range(const Image& reference);
+
+/// As flip_map(); not symmetric, for the reference alone decides the exposures.
+PixelMap hdr_flip_map(const Image& reference, const Image& test, ThreadPool& pool,
+                      double pixels_per_degree = kUsualPixelsPerDegree);
 
 }  // namespace softfocus

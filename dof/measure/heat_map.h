@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "dof/measure/pixel_map.h"
+#include "dof/measure/difference.h"
 #include "raster/images/image.h"
 
 namespace softfocus {

@@ -1,7 +1,7 @@
 #include "dof/measure/measures.h"
 
-#include "dof/measure/hdr_flip.h"
-#include "dof/measure/squared_error.h"
+#include "dof/measure/difference.h"
+#include "dof/measure/flip.h"
 #include "dof/measure/ssim.h"
 
 namespace softfocus {

@@ -257,7 +257,7 @@ SOFTFOCUS_INLINE Floats heat_flow_scaled(Floats radius_px, float factor) {
 
 }  // namespace
 
-/// What flows from each pixel of a row to the next, and to the row below.
+/// Flows from each pixel of a row to the next, and to the row below.
 void make_flows(const float* radius, const float* below, float factor, float* across, float* down) {
   for (int x = 0; x < kDiffusionRow; x += kLanes) {
     const Floats own = heat_flow_scaled(load(radius + x), factor);

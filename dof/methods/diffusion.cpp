@@ -22,7 +22,7 @@ namespace softfocus {
 constexpr int kFarChannels = 4, kNearChannels = 7;
 constexpr int kOpacity = 4, kBehind = 5;
 
-// What a continued radius loses a pixel.
+// A continued radius loses this much a pixel.
 constexpr float kRadiusFall = 0.125f;
 
 // In lanes, a layer is cut into tiles of kLanes columns and rows. A block of columns has a node

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "dof/scatter/hidden_sheet.h"
+#include "dof/scatter/layer_planes.h"
 #include "dof/scatter/scatter_discs.h"
 #include "raster/threads/scratch_shelf.h"
 
@@ -135,7 +135,7 @@ void blur_field(const Planes& scene, Field field, float field_px, ThreadPool& po
   });
 }
 
-// What the near field lies before. The fourth plane: 1 where it is known.
+// The picture behind the near field. The fourth plane: 1 where it is known.
 Planes behind_near(const Planes& scene, FieldRadii radii, ThreadPool& pool) {
   Planes behind = make_planes(4, scene.width, scene.height);
   pool.for_each(scene.height, [&](int y) {

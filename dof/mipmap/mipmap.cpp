@@ -30,13 +30,13 @@ struct MipBlur {
   const MipRung* rung;
 };
 
-// What is seen of the rungs so far: colour and transmittance of a tile.
+// A tile's rungs so far: colour and transmittance.
 struct MipTile {
   float channel[kSeenChannels][kMipTileHeight][kMipTileWidth];
 };
 
-// Where a rung is blurred: colours times share, share, and the share of the rung and of all
-// that it hides.
+// Memory to blur a rung in: colours times share, share, and the share of the rung and of all that
+// it hides.
 struct MipScratch {
   float products[kMipChannels][kMipTileRows][kMipTileRow];
 };

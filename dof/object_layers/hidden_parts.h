@@ -1,4 +1,3 @@
-#pragma once
 // What lies behind the borders of nearer things, continued from what is visible beside them.
 //
 // Where neighbours show two surfaces (picture_objects.h), the farther one, of radius r_b, goes on
@@ -13,6 +12,10 @@
 // of radius), count with it, weighed by 1 / d. So what a pole hides is drawn out from both its
 // sides, in a straight line from one border's colour and depth to the other's. Mirror images about
 // the border in place of its colour keep the texture, but are farther from the truth on scenes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
 
 #include "dof/object_layers/picture_objects.h"
 
@@ -31,5 +34,19 @@ inline constexpr int kCount = 6;
 }  // namespace hidden_plane
 
 Surfaces find_surfaces(const DofInput& input, ThreadPool& pool);
+
+// Which rungs the surfaces of a picture have where, so that tiles leave out the others.
+
+struct LayerMarks {
+  static constexpr int kBlock = 16;  ///< pixels across a block
+  int columns, rows;
+  /// Of a block, before the focus and behind it: a bit for each rung, numbered over all levels.
+  std::vector<std::uint64_t> blocks[2];
+
+  /// All rungs in a rectangle of the picture. What lies outside repeats its border.
+  std::uint64_t rungs_in(int side, int x, int y, int width, int height) const;
+};
+
+LayerMarks mark_layers(const Surfaces& surfaces, ThreadPool& pool);
 
 }  // namespace softfocus

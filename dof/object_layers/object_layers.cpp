@@ -12,7 +12,6 @@
 
 #include "dof/disc_layers/disc_levels.h"
 #include "dof/object_layers/hidden_parts.h"
-#include "dof/object_layers/layer_marks.h"
 #include "dof/object_layers/object_rungs.h"
 #include "raster/threads/scratch_shelf.h"
 

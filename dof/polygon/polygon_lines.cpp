@@ -26,7 +26,7 @@ struct PolygonRow {
   std::ptrdiff_t result_plane;
 };
 
-// What a part's picture does to those of its group before it.
+// The use of a part's picture for those of its group before it.
 enum class PartUse { first, add, least, most };
 
 }  // namespace softfocus
@@ -118,8 +118,8 @@ PolygonLines polygon_lines(int corners, float largest, bool upside_down) {
                    make_part(corner(6, 2), corner(6, 4), begin, begin + 1.0, largest)};
     return lines;
   }
-  // Of a pentagon in a circle of radius 1: from a corner to the middle, along both its sides; the
-  // sides of the parallelogram around it, and its own.
+  // Directions in a pentagon in a circle of radius 1: from a corner to the middle, along both its
+  // sides; the sides of the parallelogram around it, and its own.
   const Direction u = side(0, 1), w = side(0, 4);
   const double sine = exact_math::sin_degrees(72.0);
   const double before = 1.0 / length({u.x + w.x, u.y + w.y});

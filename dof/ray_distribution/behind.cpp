@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "dof/scatter/hidden_sheet.h"
+#include "dof/scatter/layer_planes.h"
 
 namespace softfocus {
 
@@ -18,8 +18,8 @@ struct GuessRows {
   const float* rows[2];  // red of columns 0; green, blue, radius follow, `plane` floats apart
   float shares[2];
   std::ptrdiff_t plane;
-  // Of each column of the picture: the two columns of the level that it lies between, and the
-  // first one's share.
+  // For each column of the picture the two columns of the level that it lies between, and the first
+  // one's share.
   const std::int32_t *near, *far;
   const float* near_share;
 };
@@ -251,7 +251,7 @@ Behind guess_behind(const Planes& scene, ThreadPool& pool) {
 
 namespace {
 
-// Of two vectors side by side the numbers at even and at odd places.
+// The numbers at even and at odd places of two vectors side by side.
 struct Pairs {
   Floats first, second;
 };
@@ -313,7 +313,7 @@ void measure_tile(const float* radius, std::ptrdiff_t stride, int rows, bool mor
   tile.torn = any(torn);
 }
 
-/// What is behind the columns first to end - 1 of a row whose radii are `own`.
+/// Guesses what lies behind the columns first to end - 1 of a row whose radii are `own`.
 void guess_row(const GuessRows* levels, int count, const float* own, int first, int end, float* to,
                std::ptrdiff_t plane) {
   const Floats none = splat(0.0f);

@@ -11,7 +11,7 @@
 // before a wall it is the post.
 
 #include "dof/picture_planes.h"
-#include "dof/scatter/tile_reach.h"
+#include "dof/scatter/scatter_discs.h"
 
 namespace softfocus {
 

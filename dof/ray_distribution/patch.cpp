@@ -374,7 +374,7 @@ SOFTFOCUS_INLINE void put_uneven_row(const TilesToDraw& draw, int candidate,
 }  // namespace
 
 /// Puts the pixels of tiles into the cells that they reach.
-// Of two pixels of the same radius in one cell the upper one stays. That takes an order only
+// If two pixels of the same radius are in one cell, the upper one stays. That takes an order only
 // between rows that do not move alike: no pixel of the others can meet its own radius.
 void draw_tiles(const TilesToDraw& draw) {
   for (int first = 0, end = 0; first < draw.count; first = end) {

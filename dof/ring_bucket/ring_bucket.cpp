@@ -16,8 +16,8 @@ namespace softfocus {
 // A far cell of less weight shows only what is sharp: it stays as it is.
 inline constexpr float kLeastBlurredWeight = 0x1p-10f;
 
-// What taps read: planes of colour times share, share (weight, or opacity), size, light
-// 1 / A(size), and for the near field what counts at all.
+// Planes that taps read: colour times share, share (weight, or opacity), size, light 1 / A(size),
+// and for the near field what counts at all.
 inline constexpr int kTapShare = 3, kTapSize = 4, kTapLight = 5, kTapAll = 6;
 inline constexpr int kFarTaps = 6, kNearTaps = 7;
 
@@ -311,7 +311,7 @@ SOFTFOCUS_INLINE void add_ring(const BucketRow& row, int x, const BucketRing& ri
     const float* at = rows[tap.dy] + (row.x + x + tap.dx);
     const Floats size = load(at + kTapSize * row.plane);
     const Floats overlap = overlap_of(size, ring, tap);
-    // What is left out below adds 0: the sums' bits are those of all lanes.
+    // Lanes that are left out below would add 0: the sums' bits are those of all lanes.
     if (!any(overlap > 0.0f)) continue;
     const Floats light = overlap * load(at + kTapLight * row.plane);
     Floats values[5];

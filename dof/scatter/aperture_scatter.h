@@ -3,7 +3,7 @@
 //
 //   w_P(Q) = share of pixel Q that the image of P's aperture covers / sum of these shares
 //
-// The image is a disc, a regular polygon, or either stretched (dof/aperture.h), of any radius:
+// The image is a disc, a regular polygon, or either stretched (dof/lens.h), of any radius:
 // where all depths are equal the result is the convolution with it, within 1e-4 of a colour of 1.
 // Slabs, and what lies over what, are those of scatter-sorted, and so are the failures.
 //

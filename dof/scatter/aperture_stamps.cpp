@@ -41,7 +41,7 @@ struct Shape {
   struct Ends {
     double left, right;
   };
-  // What lies in it at a height, for a circle of radius 1; nothing if left >= right.
+  // The ends of the aperture's row at a height, for a circle of radius 1; none if left >= right.
   Ends ends_at(double height) const {
     const double y = height / down;
     if (corners.empty()) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "dof/aperture.h"
+#include "dof/lens.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {

@@ -14,7 +14,6 @@
 #include "dof/picture_planes.h"
 #include "dof/scatter/layer_planes.h"
 #include "dof/scatter/scatter_discs.h"
-#include "dof/scatter/tile_reach.h"
 #include "raster/images/image.h"
 #include "raster/threads/scratch_shelf.h"
 
@@ -38,7 +37,7 @@ struct Sheet {
   std::vector<int> reach;    // of a row: rows that its largest disc reaches
 };
 
-// What one of a layer's sheets holds: its light, or what it lets through.
+// A layer's sheet holds its light, or what it lets through.
 enum class Part { light, clear };
 
 // A pixel's share in a part of its layer.
@@ -218,7 +217,8 @@ namespace {
 using Differences = std::vector<std::uint64_t, RowAllocator<std::uint64_t>>;
 
 struct SheetRows {
-  // Of each sheet, with a margin on either side; no four numbers across two cache lines.
+  // Differences of each sheet, with a margin on either side; no four numbers across two cache
+  // lines.
   std::array<Differences, kSheets> differences;
   std::vector<float> colour;
 };

@@ -173,8 +173,8 @@ namespace {
 
 #include "dof/two_pass/two_pass_gather.inl"
 
-/// Of kLanes nodes, one a lane: their smallest and largest radius, and whether any pixel lies
-/// beyond the focus (the sign bit).
+/// Extents of kLanes nodes, one a lane: their smallest and largest radius, and whether any pixel
+/// lies beyond the focus (the sign bit).
 struct NodeExtent {
   Floats smallest, largest;
   Bits signs;
@@ -217,7 +217,7 @@ SOFTFOCUS_INLINE void store_part(const GatherNodes& nodes, int node, Floats r, F
 SOFTFOCUS_INLINE void load_block(const Strip& strip, const StripFilter& filter,
                                  const std::uint16_t* const* rows, int x, int at, int column,
                                  int node) {
-  // What the first pass makes of a depth matters to the second if it is stored between them.
+  // A depth stored between the passes is the one that the second pass sees.
   const bool stored_between = filter.between == Between::half;
   Floats r[kLanes], g[kLanes], b[kLanes], radius[kLanes], light[kLanes];
   NodeExtent across = no_extent(), down = no_extent();

@@ -168,7 +168,7 @@ constexpr std::array kReproject{
     kFrameDepth, kWarmUp};
 
 constexpr std::array kEffects{
-    // Of frames of a scene: scenes/temporal.
+    // Effects of frames of a scene: scenes/temporal.
     Effect{"temporal-aa", "frames of a scene averaged, for smooth edges, after Karis 2014",
            kTemporalAa, nullptr},
     Effect{"refresh", "frames of a scene that each draw a part, and take the rest from before",

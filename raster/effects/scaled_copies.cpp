@@ -37,7 +37,7 @@ struct CopyRow {
 namespace softfocus {
 namespace {
 
-/// Where a column or row of pixels of a copy lies in the source, along one axis.
+/// The place in the source of a column or row of a copy's pixels, along one axis.
 struct Place {
   int first;    ///< of two pixels, from -1 to the size less 1
   float share;  ///< of the second

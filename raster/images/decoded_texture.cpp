@@ -7,7 +7,6 @@
 
 #include "raster/images/integer_filter.h"
 #include "raster/images/texel.h"
-#include "raster/images/unorm8_filter.h"
 #include "raster/numbers/lerp.h"
 #include "raster/numbers/srgb.h"
 

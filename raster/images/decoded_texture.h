@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "raster/images/sampler.h"
-#include "raster/images/texture.h"
 #include "raster/lanes/isa.h"
 #include "raster/numbers/profile.h"
 

@@ -3,8 +3,6 @@
 #include <cassert>
 #include <cstring>
 
-#include "raster/images/image_hash.h"
-
 namespace softfocus {
 
 Image make_image(Format format, int width, int height) {

@@ -1,6 +1,6 @@
-#pragma once
 // An image: texels of one format in rows, row 0 on top. Rows begin on 64-byte
 // boundaries, so that vector code can read and write whole lines.
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "raster/images/image_view.h"
+#include "raster/numbers/hash.h"
 
 namespace softfocus {
 
@@ -81,5 +82,13 @@ std::uint64_t hash_image(const ConstImageView& image);
 
 /// Same format, size and bits.
 bool equal(const ConstImageView& a, const ConstImageView& b);
+
+// hash_image() of an image that comes in bands of rows.
+
+/// What the hash of an image of that size begins with.
+Hash begin_image_hash(Format format, int width, int height);
+
+/// Adds the next rows.
+void add_rows_to_hash(Hash& hash, const ConstImageView& rows);
 
 }  // namespace softfocus

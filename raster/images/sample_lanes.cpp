@@ -425,7 +425,7 @@ template <LaneArithmetic arithmetic, bool neighbours, bool two_levels>
 
 // --- a texture ---
 
-// The same for all levels.
+// The part of sampling that is common to all levels.
 struct PlaceLanes {
   const DecodedTexture& texture;
   const Sampler& sampler;
@@ -466,7 +466,7 @@ SOFTFOCUS_INLINE Ints nearest_texel(const AxisLanes& axis, bool of_bytes) {
   }
 }
 
-// Where row y of a level begins, in floats. Below 2^31, as all of DecodedTexture is.
+// The offset, in floats, of row y of a level. Below 2^31, as all of DecodedTexture is.
 SOFTFOCUS_INLINE Ints row_offset(const DecodedTexture& texture, Ints level, Floats width, Ints y) {
   return look_up(texture.starts, level) + y * (truncate(width) << 2);
 }
@@ -501,7 +501,7 @@ SOFTFOCUS_INLINE RgbLanes sample_nearest(const PlaceLanes& place, Ints level) {
                           load_texels(texels, offsets + 2), load_texels(texels, offsets + 3));
 }
 
-/// What one vector reads. Found for many vectors before any is filtered.
+/// A vector's reads. Found for many vectors before any is filtered.
 struct SamplePlan {
   FetchLanes fine, coarse;
   Floats next_weight;

@@ -1,18 +1,113 @@
 #include "raster/images/sampler.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "raster/images/bilinear.h"
+#include "raster/images/driver_samplers.h"
 #include "raster/images/integer_filter.h"
-#include "raster/images/llvmpipe_sampler.h"
-#include "raster/images/softpipe_sampler.h"
-#include "raster/images/swiftshader_sampler.h"
 #include "raster/images/texel.h"
+#include "raster/numbers/exact_math.h"
 #include "raster/numbers/lerp.h"
 
 namespace softfocus {
+namespace {
+
+constexpr int kMantissaBits = 23;
+constexpr std::uint32_t kMantissaMask = 0x7FFFFF;
+
+float larger(float a, float b) { return a > b ? a : b; }
+
+// The larger squared length of two differences, in texels.
+float largest_square(glm::vec2 uv_per_x, glm::vec2 uv_per_y, float width, float height) {
+  const auto squared_length = [&](glm::vec2 uv) {
+    const float s = uv.x * width;
+    const float t = uv.y * height;
+    return s * s + t * t;
+  };
+  return larger(squared_length(uv_per_x), squared_length(uv_per_y));
+}
+
+int exponent_of(std::uint32_t bits) { return static_cast<int>(bits >> kMantissaBits & 0xFF) - 127; }
+
+std::array<float, 257> logarithms() {
+  std::array<float, 257> table{};
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    table[k] = static_cast<float>(exact_math::log2(1.0 + static_cast<double>(k) / 256.0));
+  }
+  return table;
+}
+
+}  // namespace
+
+float log2_linear(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const auto mantissa = std::bit_cast<float>((bits & kMantissaMask) | 0x3F800000u);
+  return static_cast<float>(exponent_of(bits) - 1) + mantissa;
+}
+
+float log2_by_table(float x) {
+  static const std::array<float, 257> table = logarithms();
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  constexpr int kCut = kMantissaBits - 8;
+  const std::uint32_t index = ((bits & kMantissaMask) + (1u << (kCut - 1))) >> kCut;
+  return static_cast<float>(exponent_of(bits)) + table[index];
+}
+
+float log2_of_root_by_bits(float x) {
+  const auto bits = std::bit_cast<std::int32_t>(x * x);
+  return (static_cast<float>(bits) - 0x1.FCp+29f) * 0x1p-25f;
+}
+
+float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y,
+                      const Profile& profile) {
+  const auto width = static_cast<float>(texture.levels.front().width);
+  const auto height = static_cast<float>(texture.levels.front().height);
+  if (profile.texture_unit == TextureUnit::swiftshader) {
+    return log2_of_root_by_bits(largest_square(uv_per_x, uv_per_y, width, height));
+  }
+  if (profile.texture_unit != TextureUnit::softpipe) {
+    return level_of_detail(texture, uv_per_x, uv_per_y);
+  }
+  const float along_u = larger(std::fabs(uv_per_x.x), std::fabs(uv_per_y.x)) * width;
+  const float along_v = larger(std::fabs(uv_per_x.y), std::fabs(uv_per_y.y)) * height;
+  return log2_by_table(larger(along_u, along_v));
+}
+
+float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y) {
+  const auto width = static_cast<float>(texture.levels.front().width);
+  const auto height = static_cast<float>(texture.levels.front().height);
+  return 0.5f * log2_linear(largest_square(uv_per_x, uv_per_y, width, height));
+}
+
+void generate_mipmaps(Texture& texture, const Profile& profile) {
+  assert(!texture.levels.empty());
+  texture.levels.resize(1);
+  for (;;) {
+    const Image& fine = texture.levels.back();
+    if (fine.width == 1 && fine.height == 1) return;
+    Image coarse =
+        make_image(fine.format, std::max(1, fine.width / 2), std::max(1, fine.height / 2));
+    for (int y = 0; y < coarse.height; ++y) {
+      const int y0 = std::min(2 * y, fine.height - 1);
+      const int y1 = std::min(2 * y + 1, fine.height - 1);
+      for (int x = 0; x < coarse.width; ++x) {
+        const int x0 = std::min(2 * x, fine.width - 1);
+        const int x1 = std::min(2 * x + 1, fine.width - 1);
+        const glm::vec4 sum = (load_texel(fine, x0, y0) + load_texel(fine, x1, y0)) +
+                              (load_texel(fine, x0, y1) + load_texel(fine, x1, y1));
+        store_texel(coarse, x, y, sum * 0.25f, profile);
+      }
+    }
+    texture.levels.push_back(std::move(coarse));
+  }
+}
+
 namespace {
 
 // Past this, floats have no fraction left and the texel index would not fit.

@@ -1,17 +1,72 @@
+// An image with its mip levels.
 #pragma once
-// Texture sampling as OpenGL 4.6 section 8.14 and D3D11.3 section 7.18 describe it: nearest,
-// bilinear and trilinear, with three wrap modes. Drivers' own ways have files of their own.
 
 #include <cstdint>
+#include <utility>
+#include <vector>
+
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "raster/images/level_of_detail.h"
-#include "raster/images/mipmap.h"
-#include "raster/images/texture.h"
+#include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 
 namespace softfocus {
+
+/// Each level has half the size of the one before, rounded down, to 1x1. Without mipmaps there
+/// is one level.
+struct Texture {
+  std::vector<Image> levels;
+};
+
+/// A texture of one level.
+inline Texture make_texture(Image image) {
+  Texture texture;
+  texture.levels.push_back(std::move(image));
+  return texture;
+}
+
+// Which mip level a pixel reads: the logarithm of the number of texels it spans.
+
+/// The level of detail of a footprint: differences of (u, v) from one pixel to the next, along
+/// x and along y.
+///
+/// The standard unit and llvmpipe take half of log2_linear of the larger squared length in
+/// texels; length 0 gives the most negative lod. softpipe takes log2_by_table of the largest of
+/// |du| * width and |dv| * height, with the difference along x from the lower row of the 2x2
+/// block of pixels. SwiftShader takes log2_of_root_by_bits of the larger squared length.
+float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y,
+                      const Profile& profile);
+
+/// The standard unit's and llvmpipe's.
+float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_per_y);
+
+/// Binary logarithm, straight between powers of two: (e - 1) + m, rounded once, for
+/// x = 2^e * m with 1 <= m < 2. Exact at powers of two, up to 0.0861 too small between them. GPUs
+/// compute the level so; a shader can do it bit for bit (floatBitsToInt). Subnormals count as
+/// e = -127, and 0 gives -127. Needs x >= 0.
+float log2_linear(float x);
+
+/// Half of the binary logarithm, as SwiftShader computes it: x * x read as an integer is a
+/// logarithm, straight between powers of two, in 2^-23ths. The square makes the line straight
+/// between powers of the root of two of x. Up to 0.0215 too small. Needs x >= 0.
+float log2_of_root_by_bits(float x);
+
+/// Binary logarithm as softpipe computes it: the exponent plus the logarithm of the mantissa,
+/// which is first rounded to a multiple of 1/256, to nearest, ties up. Zero and subnormals have
+/// the exponent -127 and an implicit 1. Needs x >= 0.
+float log2_by_table(float x);
+
+// Mip levels by the box filter. raster/passes/draw_mipmaps.h draws them as drivers do.
+
+/// Makes levels 1 and up. Each texel is the mean ((a + b) + (c + d)) * 0.25 of decoded texels
+/// (2x, 2y) to (2x + 1, 2y + 1) of the level before. Along a side of length 1 the texel counts
+/// twice; of an odd side the last texel is left out (box filter of GL's reference
+/// implementations).
+void generate_mipmaps(Texture& texture, const Profile& profile);
+
+// Texture sampling as OpenGL 4.6 section 8.14 and D3D11.3 section 7.18 describe it: nearest,
+// bilinear and trilinear, with three wrap modes. Drivers' own ways have files of their own.
 
 enum class Wrap : std::uint8_t {
   repeat,

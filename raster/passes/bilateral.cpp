@@ -59,7 +59,7 @@ void split_row(std::span<const std::uint16_t> from, int first, int count, float*
   }
 }
 
-/// What a thread keeps: the rows around one, in a ring.
+/// A thread's memory: the rows around one, in a ring.
 struct SplitRows {
   std::vector<float> values;
   std::vector<const float*> rows;

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <utility>
 
-#include "raster/images/mipmap.h"
 #include "raster/images/sampler.h"
 #include "raster/pipeline/draw.h"
 

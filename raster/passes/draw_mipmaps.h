@@ -1,7 +1,7 @@
 #pragma once
 // Mip levels as drivers make them: each is drawn from the one before.
 
-#include "raster/images/texture.h"
+#include "raster/images/sampler.h"
 #include "raster/numbers/profile.h"
 
 namespace softfocus {

@@ -20,7 +20,7 @@ namespace {
 /// Rows that a thread takes at a time. It decodes those above and below once more.
 constexpr int kKernelRows = 64;
 
-/// What a thread keeps: as many rows of the source as the kernel has, as floats, in a ring.
+/// A thread's memory: as many rows of the source as the kernel has, as floats, in a ring.
 struct RowRing {
   std::vector<float> decoded;
   std::vector<const float*> rows;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "raster/images/image_view.h"
-#include "raster/images/texture.h"
+#include "raster/images/sampler.h"
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
 

@@ -6,9 +6,9 @@
 #include <cstddef>
 
 #include "raster/pipeline/clip.h"
+#include "raster/pipeline/setup.h"
 #include "raster/pipeline/stages.h"
 #include "raster/pipeline/state.h"
-#include "raster/pipeline/viewport.h"
 
 namespace softfocus {
 

@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "raster/numbers/profile.h"
-#include "raster/pipeline/edge_functions.h"
 #include "raster/pipeline/planes.h"
 #include "raster/pipeline/setup.h"
 #include "raster/pipeline/stages.h"

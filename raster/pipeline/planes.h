@@ -8,7 +8,6 @@
 
 #include "raster/numbers/lerp.h"
 #include "raster/numbers/profile.h"
-#include "raster/pipeline/scanlines.h"
 #include "raster/pipeline/setup.h"
 
 namespace softfocus {

@@ -42,7 +42,7 @@ void clear_targets(const RenderPass& pass, const Rectangle& area) {
   }
 }
 
-// What clear_behind() does to a tile, in the targets.
+// clear_behind() for a tile whose pixels are in the targets.
 void clear_behind(const RenderPass& pass, const Rectangle& area) {
   const RenderTargets& targets = pass.targets;
   for (int y = area.y_begin; y < area.y_end; ++y) {

@@ -113,7 +113,7 @@ glm::vec4 cut_to_box(const ColourBox& box, glm::vec4 colour) {
   return is_cut ? together(inside) : colour;
 }
 
-/// What a thread keeps: the frame's rows in a ring, a row of the old, and rows of the result.
+/// A thread's memory: the frame's rows in a ring, a row of the old, and rows of the result.
 struct AccumulateScratch {
   std::vector<float> rows, old, result;
 };

@@ -19,7 +19,7 @@
 
 namespace softfocus {
 
-/// Where the pixels of a row go: to rows and columns, or -1.
+/// The rows and columns that the pixels of a row go to, or -1.
 struct ForwardRow {
   const float* motions_x;
   const float* motions_y;
@@ -63,7 +63,7 @@ void store_moved(const std::uint16_t* from, const Profile& profile, std::uint16_
   for (int c = 0; c < 4; ++c) to[c] = float_to_half(half_to_float(from[c]), profile.half_store);
 }
 
-/// Likewise a row of texels; `planes` is memory to use again.
+/// Stores a row of texels in the same way; `planes` is memory to use again.
 void store_row(const ConstImageView& from, int y, const Profile& profile, Isa isa,
                std::vector<float>& planes, std::uint16_t* to) {
   if (isa == Isa::scalar) {
@@ -79,7 +79,7 @@ void store_row(const ConstImageView& from, int y, const Profile& profile, Isa is
   join_texels(each, from.width, profile.half_store, to, isa);
 }
 
-/// Where all pixels go, in rows of whole vectors, and the rows that each span goes to.
+/// The places that all pixels go to, in rows of whole vectors, and the rows that each span goes to.
 struct Targets {
   std::size_t pitch = 0, spans = 0;
   std::vector<std::int32_t> columns, rows;

@@ -145,7 +145,7 @@ glm::vec4 found_before(const ReprojectSettings& settings, const ReprojectInput& 
   return found;
 }
 
-/// What a thread keeps: the rows around one in a ring, and a row of the result.
+/// A thread's memory: the rows around one in a ring, and a row of the result.
 struct ReprojectScratch {
   std::vector<float> rows;
   std::vector<float> result;
@@ -312,7 +312,7 @@ SOFTFOCUS_INLINE TexelLanes load_before(const ReprojectRow& row, Ints column, In
   return {half_to_float(texel.r), half_to_float(texel.g), half_to_float(texel.b), counts, x, y};
 }
 
-/// Of the pixels (column, line) where `wanted`.
+/// Adds the pixels (column, line) if `wanted`.
 SOFTFOCUS_INLINE void add_tap(const ReprojectRow& row, Ints column, Ints line, Floats weight,
                               Mask wanted, const DepthLimits& limits, TapSums& sums) {
   const TexelLanes texel = load_before(row, column, line, limits);
@@ -335,7 +335,7 @@ SOFTFOCUS_INLINE CubicWeights cubic_weights_lanes(Floats s) {
            s * (s * (2.0f - s * 1.5f) + 0.5f), s * s * (s * 0.5f - 0.5f)}};
 }
 
-/// Where `wanted` and all 4x4 pixels count, the curve's colour in place of the first results.
+/// Puts the curve's colour in place of the first results if `wanted` and all 4x4 pixels count.
 SOFTFOCUS_INLINE void take_curve(const ReprojectRow& row, Ints column, Ints line, Floats s,
                                  Floats t, Mask wanted, const DepthLimits& limits, Floats* colour) {
   const CubicWeights of_columns = cubic_weights_lanes(s), of_rows = cubic_weights_lanes(t);

@@ -195,7 +195,7 @@ Image* of_size(Image& depth, const Image& picture) {
   return &depth;
 }
 
-// What the depth buffer has of a distance along the axis.
+// The depth buffer's value of a distance along the axis.
 float buffer_depth(const Camera& camera, double distance_m) {
   const double near = camera.near_m, far = camera.far_m;
   return static_cast<float>(far * (distance_m - near) / (distance_m * (far - near)));

@@ -6,21 +6,33 @@
 #include "scenes/draw/surface_draws.h"
 
 namespace softfocus {
+namespace {
 
-FrameParts draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                      int width, int height, std::size_t layers, ThreadPool& pool,
-                      std::optional<double> behind_before_m) {
-  FrameParts parts;
-  parts.picture = make_image(Format::rgba16f, width, height);
-  while (parts.behind.size() + 1 < layers) {
-    parts.behind.push_back(make_image(Format::rgba16f, width, height));
+void make_sized(Image& image, int width, int height) {
+  if (image.width == width && image.height == height && !image.bytes.empty()) return;
+  image = make_image(Format::rgba16f, width, height);
+}
+
+}  // namespace
+
+void draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame, int width,
+                int height, std::size_t layers, FrameParts& parts, ThreadPool& pool,
+                std::optional<double> behind_before_m) {
+  make_sized(parts.opaque, width, height);
+  parts.transparent.clear();
+  parts.behind.resize(layers > 1 ? layers - 1 : 0);
+  for (Image& layer : parts.behind) make_sized(layer, width, height);
+  if (layers == 0) {
+    draw_scene(prepared, camera, frame, parts.opaque, pool);
+    return;
   }
-  draw_layers(prepared, camera, frame, parts.picture, parts.behind, pool, behind_before_m);
-  parts.transparent = draw_transparent(prepared, camera, frame, parts.picture, pool);
-  if (parts.transparent.empty()) return parts;
-  parts.opaque = std::move(parts.picture);
-  parts.picture = blended(parts.opaque, parts.transparent, prepared.pass.profile, pool);
-  return parts;
+  draw_layers(prepared, camera, frame, parts.opaque, parts.behind, pool, behind_before_m);
+  parts.transparent = draw_transparent(prepared, camera, frame, parts.opaque, pool);
+}
+
+void blend(FrameParts& parts, const Profile& profile, ThreadPool& pool) {
+  if (parts.transparent.empty()) return;
+  parts.blended = blended(parts.opaque, parts.transparent, profile, pool);
 }
 
 Image filtered_frame(const Method& method, const Scene& scene, const CameraMatrices& camera,
@@ -33,8 +45,9 @@ Image filtered_frame(const Method& method, const Scene& scene, const CameraMatri
     return apply(method, {picture, settings, profile, objects}, pool);
   }
   PreparedScene prepared = prepare_scene(scene, profile, pool);
-  const FrameParts parts = draw_parts(prepared, camera, frame, width, height, method.layers, pool,
-                                      static_cast<double>(settings.coc.focus_m));
+  FrameParts parts;
+  draw_parts(prepared, camera, frame, width, height, method.layers, parts, pool,
+             static_cast<double>(settings.coc.focus_m));
   return with_dof_input(parts, settings, profile, objects, {},
                         [&](const DofInput& input) { return apply(method, input, pool); });
 }

@@ -13,17 +13,22 @@
 namespace softfocus {
 
 struct FrameParts {
-  Image picture;  ///< as draw_scene() has it
-  /// draw_layers()'s first, if anything is transparent. If not, it is empty: the picture is it.
-  Image opaque;
-  std::vector<Image> behind;
-  std::vector<TransparentPicture> transparent;
+  Image opaque;                                 ///< draw_layers()'s first
+  std::vector<Image> behind;                    ///< and its others
+  std::vector<TransparentPicture> transparent;  ///< before `opaque`
+  Image blended;                                ///< these over it; none if nothing is transparent
+
+  /// All of it, as draw_scene() has it. Needs blend().
+  const Image& picture() const { return transparent.empty() ? opaque : blended; }
 };
 
-/// Draws a frame, with `layers` - 1 opaque surfaces behind the first, as draw_layers().
-FrameParts draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                      int width, int height, std::size_t layers, ThreadPool& pool,
-                      std::optional<double> behind_before_m = {});
+/// Draws a frame, with `layers` - 1 opaque surfaces behind the first, as draw_layers(), into the
+/// memory of `parts` as far as it has the size; without blend(). 0 layers: draw_scene() alone.
+void draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame, int width,
+                int height, std::size_t layers, FrameParts& parts, ThreadPool& pool,
+                std::optional<double> behind_before_m = {});
+
+void blend(FrameParts& parts, const Profile& profile, ThreadPool& pool);
 
 /// Calls `use(DofInput)` with a frame's parts as a method reads them. With `radii_px`, which are of
 /// one picture, that is the blended picture alone.
@@ -35,7 +40,7 @@ auto with_dof_input(const FrameParts& parts, const DofSettings& settings, const 
   const bool is_one = parts.transparent.empty() || !radii_px.empty();
   const std::vector<TransparentLayer> transparent =
       is_one ? std::vector<TransparentLayer>{} : views_of(parts.transparent);
-  return use(DofInput{.scene = is_one ? parts.picture : parts.opaque,
+  return use(DofInput{.scene = is_one ? parts.picture() : parts.opaque,
                       .settings = settings,
                       .profile = profile,
                       .objects = objects,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
@@ -97,6 +98,75 @@ void store_means(const LayerSums& sums, std::span<Image* const> layers, const Pr
       }
     }
   });
+}
+
+namespace {
+
+const std::uint8_t* row_of(std::span<const std::uint8_t> shares, int width, int y) {
+  return shares.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+}
+
+}  // namespace
+
+bool has_shares(std::span<const std::uint8_t> shares, int width, const Rectangle& area) {
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    const std::uint8_t* of_row = row_of(shares, width, y);
+    if (std::any_of(of_row + area.x_begin, of_row + area.x_end,
+                    [](std::uint8_t share) { return share != 0; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void take_shares(std::span<const std::uint8_t> shares, int whole, const Rectangle& area,
+                 const Image& with, const Image& without, Image& colour, const Profile& profile) {
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    const std::uint8_t* of_row = row_of(shares, colour.width, y);
+    for (int x = area.x_begin; x < area.x_end; ++x) {
+      if (of_row[x] == 0) continue;
+      const float part = static_cast<float>(of_row[x]) / static_cast<float>(whole);
+      const glm::vec4 lit = load_texel<Format::rgba16f>(with, x, y);
+      const glm::vec4 unlit = load_texel<Format::rgba16f>(without, x, y);
+      glm::vec4 here = load_texel<Format::rgba16f>(colour, x, y);
+      for (int i = 0; i < 3; ++i) {
+        here[i] = std::max(here[i] + part * (unlit[i] - lit[i]), 0.0f);
+      }
+      store_texel<Format::rgba16f>(colour, x, y, here, profile);
+    }
+  }
+}
+
+MapCamera map_camera(const Scene& scene, const CameraMatrices& camera) {
+  return {multiply(camera.eye_to_clip, camera.world_to_eye), camera.eye, scene.camera.near_m,
+          scene.camera.far_m};
+}
+
+void draw_maps(SceneShadows& shadows, std::span<const Light> lights, const MapCamera& camera,
+               const Profile& profile, ThreadPool& pool) {
+  for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
+    const Light& light = lights[shadows.lights[i]];
+    ShadowMap& map = shadows.maps[i];
+    if (light.shadows != ShadowKind::map) continue;
+    if (!map.sides.empty() && (!map.camera || *map.camera == camera)) continue;
+    map = draw_shadow_map(shadows.facets, shadow_light(light), light.map, camera, profile, pool);
+  }
+}
+
+void look_up_maps(SceneShadows& shadows, std::size_t layer, const ShadowView& view, glm::dvec3 eye,
+                  ThreadPool& pool) {
+  std::vector<MapLookup> lookups;
+  shadows.shares.resize(shadows.seen.size());
+  shadows.shares[layer].resize(shadows.maps.size());
+  for (std::size_t i = 0; i < shadows.maps.size(); ++i) {
+    const ShadowMap& map = shadows.maps[i];
+    if (map.sides.empty()) continue;
+    std::vector<std::uint8_t>& shares = shadows.shares[layer][i];
+    shares.resize(map.settings.kernel > 1 ? shadows.seen[layer].size() : 0);
+    lookups.push_back({&map, static_cast<int>(i), shares});
+  }
+  if (lookups.empty()) return;
+  look_up_maps(shadows.facets, lookups, shadows.seen[layer], view, eye, shadows.masks[layer], pool);
 }
 
 }  // namespace softfocus

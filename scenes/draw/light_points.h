@@ -1,4 +1,3 @@
-#pragma once
 // Lights with a size: points of them, each a light with hard shadows, whose mean is the soft shadow
 // (Heckbert and Herf 1997). Each point lights the scene from where it is, so the mean is the scene
 // lit by the whole light. A share of the light at the middle would not do: a facet that turns away
@@ -18,15 +17,20 @@
 // from far away on every side the ball looks like a uniform disc, as a glowing ball does. A disc
 // that faces each pixel would be the same to the first order of radius / distance, but its points
 // would differ from pixel to pixel, and no shadow of theirs could be projected.
+#pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
+#include "raster/pipeline/state.h"
 #include "raster/threads/parallel.h"
+#include "scenes/draw/shadowed_layers.h"
 #include "scenes/scene.h"
+#include "scenes/shadows/maps/map_lookup.h"
 
 namespace softfocus {
 
@@ -49,5 +53,30 @@ void add_layers(std::span<Image* const> layers, LayerSums& sums, ThreadPool& poo
 /// The means, rounded to binary32 and then to halves. Alpha stays as it is in the layers.
 void store_means(const LayerSums& sums, std::span<Image* const> layers, const Profile& profile,
                  ThreadPool& pool);
+
+// Parts of a light's share: what shadow maps take away where the kernel is partly in shadow.
+
+/// Whether a pixel of the area has a share. `shares` are of an image of that width.
+bool has_shares(std::span<const std::uint8_t> shares, int width, const Rectangle& area);
+
+/// Of each pixel of the area with a share of n of `whole`, in binary32 and in this order, a colour
+/// at a time and not below 0: colour = colour + n / whole * (without - with). Alpha stays.
+/// RGBA16F images of one size, one lit with the light and one without.
+void take_shares(std::span<const std::uint8_t> shares, int whole, const Rectangle& area,
+                 const Image& with, const Image& without, Image& colour, const Profile& profile);
+
+// The shadow maps of a scene's lights: drawn when they must be, and looked up.
+
+/// The camera that maps are fitted to.
+MapCamera map_camera(const Scene& scene, const CameraMatrices& camera);
+
+/// Draws the maps of lights that have one, where they stand, except those that hold what they would
+/// hold.
+void draw_maps(SceneShadows& shadows, std::span<const Light> lights, const MapCamera& camera,
+               const Profile& profile, ThreadPool& pool);
+
+/// Sets bits of a layer's mask, and its shares. Needs draw_maps().
+void look_up_maps(SceneShadows& shadows, std::size_t layer, const ShadowView& view, glm::dvec3 eye,
+                  ThreadPool& pool);
 
 }  // namespace softfocus

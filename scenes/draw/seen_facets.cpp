@@ -46,7 +46,7 @@ struct NumberFragmentStage {
   }
 };
 
-// Of a cut-out: where its opacity says that it is.
+// Cut-outs: a fragment is there if its opacity says so.
 struct HoledNumberVertexStage {
   NumberVertexStage of_whole;
 

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "raster/threads/scratch_shelf.h"
-#include "scenes/draw/light_shares.h"
-#include "scenes/draw/scene_maps.h"
+#include "scenes/draw/light_points.h"
 #include "scenes/draw/surface_draws.h"
 #include "scenes/shadows/shadow_truth.h"
 
@@ -27,7 +26,7 @@ bool moves(const Object& object) {
   return object.spin_degrees_per_frame != glm::dvec3{0.0} || object.sway != glm::dvec3{0.0};
 }
 
-// Of another kind of shadows: its dark sides alone.
+// Another kind of shadows' dark sides, alone.
 ProjectedShadows without_triangles(const Facets& facets, const ShadowLight& light) {
   return {lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
 }
@@ -46,7 +45,7 @@ void update_volumes(SceneShadows& shadows, std::span<const Light> lights) {
   }
 }
 
-// Of the lights that have them.
+// Draws the volumes of the lights that have them.
 void draw_volumes(SceneShadows& shadows, const ShadowView& view, glm::dvec3 eye,
                   std::span<const SeenFacet> seen, std::span<std::uint8_t> mask, ThreadPool& pool) {
   for (std::size_t i = 0; i < shadows.volumes.size(); ++i) {
@@ -117,7 +116,7 @@ void draw_masks_by_rays(SceneShadows& shadows, const ShadowView& view, glm::dvec
   }
 }
 
-// Of a light whose terminator has a rule, shares are 255ths, those of its map's kernel too.
+// Shares of a light whose terminator has a rule are 255ths, those of its map's kernel too.
 constexpr int kWholeOfTerminator = 255;
 
 int share_whole(const Light& light) {
@@ -219,7 +218,7 @@ Tiles find_masks(const SceneShadows& shadows, int width, int height, ThreadPool&
   return tiles;
 }
 
-// What the shadows of the mask leave of the lights.
+// The lights less what the mask's shadows take away.
 std::vector<Light> lights_left(std::span<const Light> lights, const SceneShadows& shadows,
                                std::size_t mask) {
   std::vector<Light> left;
@@ -275,7 +274,7 @@ void set_targets(SceneShadows& shadows, std::size_t layers, int width, int heigh
   targets.depth = shadows.depths.data();
 }
 
-// Of each light with shadows.
+// Tiles with shares, for each light with shadows.
 std::vector<std::vector<int>> tiles_with_shares(const SceneShadows& shadows, const Tiles& tiles,
                                                 int width, int height) {
   std::vector<std::vector<int>> found(shadows.maps.size());

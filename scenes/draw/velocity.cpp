@@ -18,7 +18,7 @@
 
 namespace softfocus {
 
-/// Where each varying lies: clip x, y and w at both instants, then u and v.
+/// Places of the varyings: clip x, y and w at both instants, then u and v.
 inline constexpr std::size_t kMotionTo = 0, kMotionFrom = 3, kMotionUv = 6;
 
 template <bool may_be_holed>
@@ -105,7 +105,7 @@ glm::dmat4 eye_to_eye(const CameraMatrices& from, const CameraMatrices& to) {
   return multiply(to.world_to_eye, to_world);
 }
 
-/// What `by` sees of the pixels of `shown`.
+/// The pixels of `shown` as `by` sees them.
 PixelsToClip seen_by(const CameraMatrices& by, const CameraMatrices& shown) {
   if (by.world_to_eye == shown.world_to_eye && by.eye_to_clip == shown.eye_to_clip) return {};
   // The point at (x, y) and a depth of 1, which is clip w.
@@ -124,7 +124,7 @@ PixelsToClip seen_by(const CameraMatrices& by, const CameraMatrices& shown) {
   return seen;
 }
 
-/// Of the pixel's x and y to clip space, of points at infinity.
+/// From a pixel's x and y to clip space, for points at infinity.
 glm::mat4 at_infinity(const PixelsToClip& seen) {
   const auto column = [&](int i) {
     return glm::vec4{seen.turn[i].x, seen.turn[i].y, 0.0f, seen.turn[i].z};

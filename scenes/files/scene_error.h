@@ -1,7 +1,9 @@
 #pragma once
 
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace softfocus {
 
@@ -20,5 +22,15 @@ inline std::string printable(std::string text) {
 struct SceneError : std::runtime_error {
   explicit SceneError(const std::string& message) : std::runtime_error(printable(message)) {}
 };
+
+// Of the names that there are, the one that was probably meant.
+
+/// How many letters to insert, drop or replace, or neighbours to swap, to get from one name to the
+/// other: the optimal string alignment distance (Damerau 1964).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The end of a message about a name that there is not: "; did you mean 'figures'?", or nothing if
+/// no name is near: an edit for three letters, at most three, or the beginning of a longer name.
+std::string did_you_mean(std::string_view mistyped, std::span<const std::string> names);
 
 }  // namespace softfocus

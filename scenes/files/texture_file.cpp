@@ -7,8 +7,7 @@
 #include <string>
 
 #include "scenes/files/file_bytes.h"
-#include "scenes/files/jpeg_check.h"
-#include "scenes/files/png_check.h"
+#include "scenes/files/picture_check.h"
 #include "scenes/files/scene_error.h"
 
 // What a damaged file leaves unset is 0 then, and not what was there before.

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
+#include "scenes/lens_views/lens_points.h"
 
 namespace softfocus {
 namespace {

@@ -113,7 +113,7 @@ int reach_of(const SpreadSteps& steps, ViewTiles::Levels levels) {
   return std::max(steps.reach_px[levels.nearest], steps.reach_px[levels.farthest]);
 }
 
-// Of a tile and those around it: what a ray may reach from the tile, or come from.
+// The farthest that a ray may reach from a tile, or come from, by the tile and those around it.
 int reach_around(const ViewTiles& view, const SpreadSteps& steps, int tile_x, int tile_y) {
   int reach = 0;
   for (int y = std::max(tile_y - 1, 0); y <= std::min(tile_y + 1, view.tiles_y - 1); ++y) {
@@ -125,7 +125,7 @@ int reach_around(const ViewTiles& view, const SpreadSteps& steps, int tile_x, in
   return reach;
 }
 
-// Where the ray comes from, among a cell's pixels.
+// The source of the ray among a cell's pixels.
 std::ptrdiff_t source_scalar(const CellWork& cell, const std::int32_t* offsets, std::ptrdiff_t at) {
   for (int i = 0; i < cell.sought_count; ++i) {
     const std::ptrdiff_t from = at + offsets[cell.sought[i]];
@@ -261,7 +261,7 @@ SOFTFOCUS_INLINE Colours load_colours(const float* from) {
   return {load(from), load(from + kPlane), load(from + 2 * kPlane)};
 }
 
-// What the lanes that are left see, whose levels are nowhere.
+// Colours of the lanes that are left, whose levels are nowhere.
 SOFTFOCUS_INLINE Colours beside(const CellWork& cell, const std::int32_t* offsets, int at,
                                 Mask left, const Colours& others) {
   const Ints own = load(cell.levels + at);
@@ -278,7 +278,8 @@ SOFTFOCUS_INLINE void add(Colours& sum, const Colours& more) {
   sum = {sum.r + more.r, sum.g + more.g, sum.b + more.b};
 }
 
-// What a ray sees from `count` pixels on, where few runs are cheaper without a branch between them.
+// Colours that a ray sees from `count` pixels on. Few runs are cheaper without a branch between
+// them.
 template <int kRuns>
 SOFTFOCUS_INLINE Colours seen_in_runs(const CellWork& cell, const LevelRun* runs,
                                       const std::int32_t* offsets, int at, int count) {
@@ -306,7 +307,7 @@ SOFTFOCUS_INLINE Colours seen_in_runs(const CellWork& cell, const LevelRun* runs
   return beside(cell, offsets, at, left, seen);
 }
 
-// The same for any number of runs.
+// seen_by_ray() for any number of runs.
 SOFTFOCUS_INLINE Colours seen_by_ray(const CellWork& cell, const LevelRun* run, const LevelRun* end,
                                      const std::int32_t* offsets, int at, int count) {
   Mask left = first_lanes(count);

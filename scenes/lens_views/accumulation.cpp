@@ -2,20 +2,67 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cstring>
 #include <utility>
 #include <vector>
 
 #include "raster/threads/scratch_shelf.h"
-#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/lens_views/samples_by_tile.h"
 #include "scenes/lens_views/shutter_times.h"
-#include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
+
+CameraMatrices lens_camera(const CameraMatrices& pinhole, glm::dvec2 lens_point_m, double focus_m,
+                           glm::dvec2 offset_px, int width_px, int height_px) {
+  CameraMatrices moved = pinhole;
+  const double size_px[] = {static_cast<double>(width_px), static_cast<double>(height_px)};
+  for (int axis = 0; axis < 2; ++axis) {
+    moved.world_to_eye[3][axis] -= lens_point_m[axis];
+    const double shear = pinhole.eye_to_clip[axis][axis] * lens_point_m[axis] / focus_m -
+                         2.0 * offset_px[axis] / size_px[axis];
+    moved.eye_to_clip[2][axis] -= shear;  // w = -z_eye
+    // Rows of the matrix are the camera's axes in the world.
+    for (int i = 0; i < 3; ++i) moved.eye[i] += pinhole.world_to_eye[i][axis] * lens_point_m[axis];
+  }
+  return moved;
+}
+
+namespace {
+
+// Two sets of four points can agree by chance.
+constexpr int kFirstComparison = 16;
+
+bool is_power_of_two(int n) { return std::has_single_bit(static_cast<unsigned>(n)); }
+
+}  // namespace
+
+SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_samples, int step,
+                            ThreadPool& pool) {
+  const Sampling& sampling = input.sampling;
+  SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
+  SampleSums first_half;
+  SampledPicture result;
+  while (sums.count < sampling.samples) {
+    // Small steps up to the first comparison, which needs the first half.
+    const int next = sums.count + (sums.count < kFirstComparison ? kSampleGroup : step);
+    add_samples(sums.count, std::min(next, sampling.samples), sums);
+    if (input.progress) input.progress(sums.count);
+    if (!sampling.until || !is_power_of_two(sums.count)) continue;
+    if (sums.count >= kFirstComparison) {
+      result.half_set_rms = half_set_rms(first_half, sums, pool);
+      if (*result.half_set_rms <= *sampling.until) break;
+    }
+    first_half = sums;
+  }
+  result.samples = sums.count;
+  result.picture = mean_picture(sums, input.pinhole, input.profile, pool);
+  return result;
+}
+
 namespace {
 
 constexpr std::size_t kTexelHalves = 4;
@@ -49,8 +96,13 @@ void add_tile(TileSamples& samples, std::size_t first, std::size_t count, const 
 }  // namespace
 
 SampledPicture accumulation(const LensViewInput& input, ThreadPool& pool) {
-  AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
-  return accumulation(buffer, input, pool);
+  LensViewMemory own;
+  std::shared_ptr<AccumulationBuffer>& buffer =
+      (input.memory != nullptr ? *input.memory : own).accumulation;
+  if (!buffer) {
+    buffer = std::make_shared<AccumulationBuffer>(make_accumulation_buffer(input, pool));
+  }
+  return accumulation(*buffer, input, pool);
 }
 
 SampledPicture accumulation(AccumulationBuffer& buffer, const LensViewInput& input,

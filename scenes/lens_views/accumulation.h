@@ -1,18 +1,44 @@
+// The camera at a point of the lens.
 #pragma once
-// The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
-// lens, and the mean of the pictures. With Sampling::shutter_frames also at many times: the motion
-// blur of the same paper.
 
 #include <functional>
-#include <glm/vec2.hpp>
 #include <span>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "scenes/draw/draw_scene.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/lens_views/sample_sums.h"
 
 namespace softfocus {
+
+/// Haeberli and Akeley (1990): the eye moves on the lens, by (e_x, e_y) metres to the right
+/// and up, and the frustum is sheared so that the plane in focus stays where it was:
+///
+///   x_eye' = x_eye - e_x          x_clip' = P_00 x_eye' + (P_00 e_x / focus) w
+///
+/// At w = focus the two cancel. At another depth z the picture moves by
+/// P_00 e_x (1/focus - 1/z) in normalised coordinates: the circle of confusion of
+/// dof/lens.h, point by point. `offset_px` is where in the pixel, to the right and down
+/// from its centre, a pixel looks: the picture moves the other way. Nothing moved is the
+/// pinhole's view, bit for bit.
+CameraMatrices lens_camera(const CameraMatrices& pinhole, glm::dvec2 lens_point_m, double focus_m,
+                           glm::dvec2 offset_px, int width_px, int height_px);
+
+// The loop that sampling methods share: groups of samples until there are enough.
+
+/// Adds the samples `begin` to `end` - 1, a step at most, to the sums, and counts them.
+using AddSamples = std::function<void(int begin, int end, SampleSums& sums)>;
+
+/// In steps of kSampleGroup, and from 16 samples on of `step`: kSampleGroup or twice that.
+SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_samples, int step,
+                            ThreadPool& pool);
+
+// The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
+// lens, and the mean of the pictures. With Sampling::shutter_frames also at many times: the motion
+// blur of the same paper.
 
 /// Each lens view is drawn in RGBA16F, as the pinhole's picture is, by the lens_camera() of one of
 /// the view_points(). One sample without jitter is the pinhole's picture. At few samples

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 
 namespace softfocus {
 namespace {

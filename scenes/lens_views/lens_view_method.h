@@ -4,6 +4,7 @@
 // method is one entry: adding one touches its own file, the table and a test.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -40,6 +41,17 @@ struct Sampling {
 /// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
 double aperture_radius_m(const ThinLens& lens, double coc_scale);
 
+struct AccumulationBuffer;
+struct FilteredViewsBuffer;
+struct WarpedViewsBuffer;
+
+/// What views of a scene leave for the next that differ in the lens alone: each method has its own.
+struct LensViewMemory {
+  std::shared_ptr<AccumulationBuffer> accumulation{};
+  std::shared_ptr<FilteredViewsBuffer> filtered_views{};
+  std::shared_ptr<WarpedViewsBuffer> warped_views{};
+};
+
 struct LensViewInput {
   const Scene& scene;
   const CameraMatrices& camera;  ///< the pinhole
@@ -55,6 +67,7 @@ struct LensViewInput {
   /// The prepared scene of the pinhole's picture, to be moved from. Null: the scene is prepared
   /// anew if the method needs it.
   PreparedScene* prepared = nullptr;
+  LensViewMemory* memory = nullptr;  ///< to use again, if there is one
 };
 
 struct SampledPicture {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "raster/images/level_of_detail.h"
 #include "raster/images/sampler.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/surfaces/lighting.h"

@@ -8,10 +8,9 @@
 #include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/transparent_layers.h"
+#include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/embree_mesh.h"
-#include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/ray_geometry.h"
-#include "scenes/lens_views/take_samples.h"
 
 namespace softfocus {
 namespace {

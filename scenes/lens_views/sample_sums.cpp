@@ -140,8 +140,8 @@ SampleSums later_samples(const SampleSums& first, const SampleSums& all) {
 
 namespace {
 
-// Of what difference(x, y, colour) gives. Rows first, then their sums in order: the same bits for
-// any number of threads.
+// Sums difference(x, y, colour). Rows first, then their sums in order: the same bits for any number
+// of threads.
 template <class Difference>
 double rms_of(int width, int height, const Difference& difference, ThreadPool& pool) {
   std::vector<double> squares(static_cast<std::size_t>(height));

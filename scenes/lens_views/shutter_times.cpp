@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <numeric>
 
-#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/lens_points.h"
 

@@ -2,14 +2,219 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
-#include "scenes/files/nearest_name.h"
+#include "dof/parameters.h"
+#include "raster/numbers/vector_math.h"
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
-#include "scenes/load/scene_file.h"
+#include "scenes/load/scene_sections.h"
+#include "scenes/load/toml_reading.h"
+#include "scenes/parameters.h"
 #include "scenes/random/random_scene.h"
 
 namespace softfocus {
+namespace {
+
+constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 24;
+constexpr double kBrightest = 1000.0;
+
+toml::table parse_toml(std::string_view text, const std::filesystem::path& file) {
+  try {
+    return toml::parse(text, file.string());
+  } catch (const toml::parse_error& error) {
+    throw SceneError(file.string() + ":" + std::to_string(error.source().begin.line) +
+                     ": is no TOML: " + std::string(error.description()) +
+                     "; see https://toml.io and docs/scene-format.md");
+  }
+}
+
+Camera read_camera(Section section) {
+  Camera camera;
+  camera.position = read_vector(section, "position", camera.position, kAnyPlace);
+  camera.target = read_vector(section, "target", camera.target, kAnyPlace);
+  camera.up = read_vector(section, "up", camera.up, kAnyPlace);
+  camera.fov_y_degrees = read_number(section, parameter::kFov, camera.fov_y_degrees);
+  camera.near_m = read_number(section, "near_m", camera.near_m, kAnySize);
+  camera.far_m = read_number(section, "far_m", camera.far_m, kAnySize);
+  camera.orbit_degrees_per_frame = read_number(section, "orbit_degrees_per_frame",
+                                               camera.orbit_degrees_per_frame, {-360.0, 360.0});
+  camera.shutter_frames = read_number(section, parameter::kShutter, camera.shutter_frames);
+  if (camera.near_m >= camera.far_m) {
+    fail_at(section, "far_m", "must be larger than near_m");
+  }
+  const glm::dvec3 forwards = camera.target - camera.position;
+  if (forwards == glm::dvec3{0.0}) {
+    fail_at(section, "target", "is the camera's position; another point would be right");
+  }
+  // Shorter than this, the sideways axis would be rounding noise.
+  const glm::dvec3 sideways = cross(normalize(forwards), normalize(camera.up));
+  if (dot(sideways, sideways) < 1e-12) {
+    fail_at(section, "up",
+            "points along the view (or nowhere); a direction across it would be right");
+  }
+  finish_section(section);
+  return camera;
+}
+
+/// A number, or an array of [frame, number]: then the first number, and all of them in `keys`.
+double read_keyed_number(Section& section, const Parameter& parameter, double fallback,
+                         std::vector<Keyframe>& keys) {
+  const std::string_view key = key_of(parameter);
+  const toml::node* node = find_key(section, key);
+  if (node == nullptr || !node->is_array()) return read_number(section, parameter, fallback);
+  constexpr Range kFramesAndValues{parameter::kFrame.least, parameter::kFrame.most};
+  for (const auto& row : read_rows(section, key, 2, kFramesAndValues)) {
+    const Keyframe next{row[0], row[1]};
+    if (!keys.empty() && next.frame <= keys.back().frame) {
+      fail_at(section, key, "has frames that do not increase; [[0, 2], [48, 6]] would be right");
+    }
+    if (!is_allowed(parameter, next.value)) {
+      fail_at(section, key,
+              "has a value out of range; " + wanted_text(parameter) + " would be right");
+    }
+    keys.push_back(next);
+  }
+  if (keys.empty()) {
+    fail_at(section, key, "is empty; a number, or [frame, number] at some frames, would be right");
+  }
+  return keys.front().value;
+}
+
+SceneLens read_lens(Section section) {
+  SceneLens lens;
+  ThinLens& thin = lens.lens;
+  thin.focal_length_mm = read_number(section, parameter::kFocalLength, thin.focal_length_mm);
+  thin.f_number =
+      read_keyed_number(section, parameter::kFNumber, thin.f_number, lens.f_number_by_frame);
+  thin.focus_m = read_keyed_number(section, parameter::kFocus, thin.focus_m, lens.focus_m_by_frame);
+  lens.easing = read_choice(section, "keyframes", lens.easing, parameter::kEasings);
+  lens.coc_scale = read_number(section, parameter::kCocScale, lens.coc_scale);
+  lens.max_coc_px_at_1024 = read_number(section, parameter::kMaxCoc, lens.max_coc_px_at_1024);
+  ThinLens nearest = lens.lens;
+  for (const Keyframe& key : lens.focus_m_by_frame) {
+    nearest.focus_m = std::min(nearest.focus_m, key.value);
+  }
+  if (const char* error = lens_error(nearest)) fail_at(section, "focus_m", error);
+  finish_section(section);
+  return lens;
+}
+
+ShadowMapSettings read_map(Section section) {
+  ShadowMapSettings map;
+  for (const auto& [number, set] : parameter::kMapParameters) {
+    set(map, read_number(section, number, number.preset));
+  }
+  map.fits_camera = read_choice(section, "fit", map.fits_camera, parameter::kMapFits);
+  if (map.cascades > 1 && !map.fits_camera) {
+    fail_at(section, "cascades", "are of the camera's picture; fit = \"camera\" would be right");
+  }
+  finish_section(section);
+  return map;
+}
+
+Light read_light(Section& section) {
+  Light light;
+  if (!has_key(section, "kind")) {
+    fail_at(section, "kind", "is missing; \"directional\" or \"point\" would be right");
+  }
+  light.kind = read_choice(section, "kind", light.kind, parameter::kLightKinds);
+  const std::string_view place = light.kind == LightKind::point ? "position" : "direction";
+  if (!has_key(section, place)) {
+    fail_at(section, place, "is missing; an array of three numbers would be right");
+  }
+  light.position_or_direction = glm::vec3{read_vector(section, place, glm::dvec3{0.0}, kAnyPlace)};
+  // Its length is squared in binary32, where less would vanish.
+  if (light.kind == LightKind::directional &&
+      dot(light.position_or_direction, light.position_or_direction) < 1e-12f) {
+    fail_at(section, place, "points nowhere; a vector towards the light would be right");
+  }
+  light.colour = read_colour(section, "colour", light.colour, kBrightest);
+  light.shadows = read_choice(section, "shadows", light.shadows, parameter::kShadowKinds);
+  light.map = read_map(read_section(section, "map"));
+  light.shadow_darkness = static_cast<float>(read_number(section, parameter::kShadowDarkness, 1.0));
+  light.terminator = read_choice(section, "terminators", light.terminator, parameter::kTerminators);
+  if (light.kind == LightKind::point) {
+    light.radius_m = read_number(section, parameter::kLightRadius, light.radius_m);
+  } else {
+    light.angular_radius_degrees =
+        read_number(section, parameter::kLightAngle, light.angular_radius_degrees);
+  }
+  finish_section(section);
+  return light;
+}
+
+ChosenEffect read_effect(Section& section) {
+  const std::string name = read_text(section, "name", "");
+  const Effect* const effect = find_effect(name);
+  if (effect == nullptr) {
+    std::string there;
+    for (const Effect& known : effects()) {
+      there += (there.empty() ? "" : ", ") + std::string{known.name};
+    }
+    fail_at(section, "name", "is no effect; there are " + there);
+  }
+  ChosenEffect chosen{effect, {}};
+  for (const Parameter& parameter : effect->parameters) {
+    chosen.parameters.push_back(read_number(section, parameter, parameter.preset));
+  }
+  finish_section(section);
+  return chosen;
+}
+
+}  // namespace
+
+Scene read_scene_text(std::string_view text, const std::filesystem::path& file) {
+  const toml::table table = parse_toml(text, file);
+  Section top{&table, file.string(), "", {}};
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.title = read_text(top, "title", scene.name);
+  scene.background = read_colour(top, "background", scene.background, kBrightest);
+  scene.ambient_light = read_colour(top, "ambient_light", scene.ambient_light, kBrightest);
+  scene.camera = read_camera(read_section(top, "camera"));
+  scene.lens = read_lens(read_section(top, "lens"));
+
+  scene.light_points =
+      static_cast<int>(read_number(top, parameter::kLightPoints, scene.light_points));
+  constexpr std::size_t kMaxLights = 64;
+  std::vector<Section> lights = read_sections(top, "light");
+  if (lights.size() > kMaxLights) {
+    fail_at(top, "light",
+            "has " + std::to_string(lights.size()) + " lights; up to " +
+                std::to_string(kMaxLights) + " would do");
+  }
+  int with_shadows = 0;
+  for (Section& light : lights) {
+    scene.lights.push_back(read_light(light));
+    if (scene.lights.back().shadows == ShadowKind::none) continue;
+    if (++with_shadows > kMostShadowLights) {
+      fail_at(light, "shadows",
+              "is one light's too many; up to " + std::to_string(kMostShadowLights) +
+                  " lights may have shadows");
+    }
+  }
+  for (Section& effect : read_sections(top, "effect")) scene.effects.push_back(read_effect(effect));
+
+  const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene);
+  read_objects(top, file.parent_path(), surfaces, scene);
+  finish_section(top);
+  return scene;
+}
+
+Scene read_scene_file(const std::filesystem::path& file) {
+  Scene scene = read_scene_text(read_file_bytes(file, kMaxSceneBytes), file);
+  scene.files.push_back(file);
+  return scene;
+}
+
+std::string read_scene_title(const std::filesystem::path& file) {
+  const toml::table table = parse_toml(read_file_bytes(file, kMaxSceneBytes), file);
+  return table["title"].value_or(std::string{});
+}
+
 namespace {
 
 // ASCII only: an extension's case, and no locale's.

@@ -7,7 +7,7 @@
 
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/texture_file.h"
-#include "scenes/make/opacity_texture.h"
+#include "scenes/make/procedural_texture.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <tiny_obj_loader.h>

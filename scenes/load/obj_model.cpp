@@ -11,7 +11,7 @@
 #include "scenes/load/mtl_file.h"
 #include "scenes/load/obj_faces.h"
 #include "scenes/load/obj_text.h"
-#include "scenes/make/polygon.h"
+#include "scenes/make/shapes.h"
 
 namespace softfocus {
 namespace {

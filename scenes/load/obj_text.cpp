@@ -133,7 +133,7 @@ void check_index(const Place& place, std::int32_t index, std::size_t count, cons
                   "; the file has " + std::to_string(count));
 }
 
-// What usemtl and s have set for the faces that follow.
+// State that usemtl and s have set for the faces that follow.
 struct FaceState {
   std::int32_t material = -1;
   std::uint32_t smoothing_group = 0;

@@ -5,7 +5,7 @@
 #include "raster/numbers/random_bits.h"
 #include "scenes/load/model_scene.h"
 #include "scenes/load/obj_model.h"
-#include "scenes/make/balls.h"
+#include "scenes/make/shapes.h"
 
 namespace softfocus {
 namespace {

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "scenes/load/load_scene.h"
-#include "scenes/load/scene_file.h"
 
 namespace softfocus {
 namespace {

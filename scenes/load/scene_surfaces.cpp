@@ -7,7 +7,6 @@
 #include <set>
 
 #include "scenes/files/texture_file.h"
-#include "scenes/make/opacity_texture.h"
 #include "scenes/make/procedural_texture.h"
 
 namespace softfocus {
@@ -20,7 +19,7 @@ constexpr int kMaxProceduralSize = 2048;
 constexpr std::array<std::string_view, 3> kFilters = {"nearest", "bilinear", "trilinear"};
 constexpr std::array<std::string_view, 3> kWraps = {"repeat", "mirrored_repeat", "clamp_to_edge"};
 
-// Of a texture that no object shows: it is checked, and not made.
+// Stands for a texture that no object shows: it is checked, and not made.
 constexpr std::uint32_t kNotMade = std::numeric_limits<std::uint32_t>::max();
 
 // Materials that objects name, and the textures that these name, as far as both are texts.

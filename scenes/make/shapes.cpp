@@ -1,14 +1,113 @@
 #include "scenes/make/shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 
+#include <glm/vec2.hpp>
+
 #include "raster/numbers/exact_math.h"
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/make/grid_mesh.h"
+#include "scenes/make/procedural_texture.h"
 
 namespace softfocus {
+namespace {
+
+double turn(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// The polygon in the plane of its two larger extents, counter-clockwise. From the first
+// corner, so that a polygon far from the origin loses nothing.
+std::vector<glm::dvec2> flattened(std::span<const glm::dvec3> corners) {
+  glm::dvec3 normal{0.0};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 next = corners[(i + 1) % corners.size()] - corners[0];
+    normal += cross(corners[i] - corners[0], next);
+  }
+  const glm::dvec3 size{std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)};
+  const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+  const int right = (axis + 1) % 3;
+  const int up = (axis + 2) % 3;
+  const double sign = normal[axis] < 0.0 ? -1.0 : 1.0;
+  std::vector<glm::dvec2> flat;
+  for (const glm::dvec3& corner : corners) {
+    const glm::dvec3 p = corner - corners[0];
+    flat.emplace_back(p[right] * sign, p[up]);
+  }
+  return flat;
+}
+
+bool inside(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
+  return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+}
+
+// Whether the corner at `place` of those left can be cut off.
+bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<std::uint32_t>& left,
+            std::size_t place) {
+  const std::size_t count = left.size();
+  const std::uint32_t before = left[(place + count - 1) % count];
+  const std::uint32_t after = left[(place + 1) % count];
+  const glm::dvec2 a = flat[before];
+  const glm::dvec2 b = flat[left[place]];
+  const glm::dvec2 c = flat[after];
+  if (!(turn(a, b, c) > 0.0)) return false;
+  for (const std::uint32_t other : left) {
+    if (other == before || other == left[place] || other == after) continue;
+    const glm::dvec2 p = flat[other];
+    // A polygon with a hole runs through the cut twice, over equal corners.
+    if (p != a && p != b && p != c && inside(p, a, b, c)) return false;
+  }
+  return true;
+}
+
+double squared_distance(glm::dvec3 a, glm::dvec3 b) { return dot(a - b, a - b); }
+
+// Whether a quadrilateral is cut from corner 1 to 3 rather than from 0 to 2.
+bool cut_from_second(std::span<const glm::dvec3> corners, const std::vector<glm::dvec2>& flat) {
+  // The diagonal 0-2 lies inside where both its triangles turn the right way.
+  const bool first_inside =
+      turn(flat[0], flat[1], flat[2]) > 0.0 && turn(flat[0], flat[2], flat[3]) > 0.0;
+  const bool second_inside =
+      turn(flat[1], flat[2], flat[3]) > 0.0 && turn(flat[1], flat[3], flat[0]) > 0.0;
+  if (first_inside != second_inside) return second_inside;
+  return squared_distance(corners[1], corners[3]) < squared_distance(corners[0], corners[2]);
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(std::span<const glm::dvec3> corners) {
+  assert(corners.size() >= 3);
+  if (corners.size() == 3) return {{0, 1, 2}};
+  const std::vector<glm::dvec2> flat = flattened(corners);
+  if (corners.size() == 4) {
+    if (cut_from_second(corners, flat)) return {{0, 1, 3}, {1, 2, 3}};
+    return {{0, 1, 2}, {0, 2, 3}};
+  }
+
+  std::vector<std::uint32_t> left(corners.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<std::uint32_t>(i);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::size_t place = 1;
+  while (left.size() > 3) {
+    std::size_t tried = 0;
+    while (tried < left.size() && !is_ear(flat, left, place % left.size())) {
+      ++place;
+      ++tried;
+    }
+    place %= left.size();
+    const std::size_t count = left.size();
+    triangles.push_back(
+        {left[(place + count - 1) % count], left[place], left[(place + 1) % count]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(place));
+  }
+  triangles.push_back({left[0], left[1], left[2]});
+  return triangles;
+}
+
 namespace {
 
 using exact_math::cos_degrees;
@@ -123,6 +222,136 @@ Mesh inside_out(Mesh mesh) {
 
 void repeat_uvs(Mesh& mesh, glm::dvec2 times) {
   for (glm::vec2& uv : mesh.uvs) uv = glm::vec2{glm::dvec2{uv} * times};
+}
+
+namespace {
+
+bool too_near(const Ball& a, const Ball& b, double gap) {
+  const glm::dvec3 between = a.centre - b.centre;
+  const double least = a.radius + b.radius + gap;
+  return dot(between, between) < least * least;
+}
+
+}  // namespace
+
+std::optional<std::vector<Ball>> place_balls(const BallRule& rule,
+                                             const std::vector<Ball>& obstacles) {
+  RandomSequence random{rule.seed};
+  std::vector<Ball> balls;
+  for (int i = 0; i < rule.count; ++i) {
+    Ball ball;
+    ball.radius = next_between(random, rule.radius_min, rule.radius_max);
+    const auto is_taken = [&](const Ball& other) { return too_near(ball, other, rule.gap); };
+    int attempt = 0;
+    do {
+      if (attempt++ == kBallAttempts) return std::nullopt;
+      ball.centre.x = next_between(random, rule.region_min.x, rule.region_max.x);
+      ball.centre.y = next_between(random, rule.region_min.y, rule.region_max.y);
+      ball.centre.z = next_between(random, rule.region_min.z, rule.region_max.z);
+      if (rule.on_ground) ball.centre.y = rule.region_min.y + ball.radius;
+    } while (std::any_of(obstacles.begin(), obstacles.end(), is_taken) ||
+             std::any_of(balls.begin(), balls.end(), is_taken));
+    balls.push_back(ball);
+  }
+  return balls;
+}
+
+namespace {
+
+constexpr double kFocus = 2.0;    // metres, as all here
+constexpr double kNearest = 1.0;  // of the spheres' centres
+constexpr double kFarthest = 12.0;
+constexpr double kFovYDegrees = 45.0;
+// Radii on a picture whose height is 2. 250 discs of these cover the picture twice over.
+constexpr double kSmallest = 0.06;
+constexpr double kLargest = 0.14;
+
+Material sphere_material() {
+  Material material;
+  material.name = "spheres";
+  material.diffuse = glm::vec3{1.0f};
+  material.specular = glm::vec3{0.3f};
+  material.shininess = 40;
+  material.texture = 0;
+  return material;
+}
+
+Texture sphere_texture() {
+  return make_procedural_texture(
+      *find_texture_pattern("marble"),
+      {.size = 256, .cells = 4, .colours = {{0.85f, 0.83f, 0.78f}, {0.10f, 0.16f, 0.34f}}});
+}
+
+// The picture's places by the additive sequence of the plastic number (Roberts 2018), which
+// leaves no gaps; the depth by chance, evenly in its reciprocal and so in the signed radius
+// of the circle of confusion.
+Object placed_sphere(int index, double aspect, RandomSequence& random) {
+  const auto place = [&](double step) {
+    const double sum = 0.5 + step * (index + 1);
+    return 2.0 * (sum - std::floor(sum)) - 1.0;
+  };
+  const double depth = 1.0 / next_between(random, 1.0 / kFarthest, 1.0 / kNearest);
+  const double half_height = depth * exact_math::tan_degrees(kFovYDegrees / 2.0);
+  Object object;
+  object.position = {place(0.7548776662466927) * aspect * half_height,
+                     place(0.5698402909980532) * half_height, -depth};
+  object.scale =
+      glm::dvec3{next_between(random, kSmallest, kLargest) * std::sqrt(aspect) * half_height};
+  for (int axis = 0; axis < 3; ++axis) {
+    object.rotation_degrees[axis] = next_between(random, 0.0, 360.0);
+  }
+  return object;
+}
+
+}  // namespace
+
+SphereCut sphere_cut(int triangles) {
+  assert(triangles >= kLeastFieldTriangles && triangles <= kMostFieldTriangles);
+  // A sphere has two triangles for each segment of each ring but one.
+  const double cells = triangles / (2.0 * kFieldSpheres);
+  SphereCut best{3, 2};
+  double best_error = HUGE_VAL;
+  int best_shape = 0;
+  const int most_bands = std::max(static_cast<int>(std::sqrt(cells)), 1);
+  for (int bands = std::max(most_bands / 2, 1); bands <= most_bands; ++bands) {
+    const int segments = std::max(static_cast<int>(std::lround(cells / bands)), 3);
+    const double error = std::fabs(segments * bands - cells);
+    const int shape = std::abs(segments - 2 * bands);  // twice as many around: square cells
+    if (error < best_error || (error == best_error && shape < best_shape)) {
+      best = {segments, bands + 1};
+      best_error = error;
+      best_shape = shape;
+    }
+  }
+  return best;
+}
+
+Scene sphere_field(int triangles, double aspect) {
+  Scene scene;
+  scene.name = "spheres";
+  scene.title = "Sphere field";
+  scene.camera = {.position = {0.0, 0.0, 0.0},
+                  .target = {0.0, 0.0, -1.0},
+                  .fov_y_degrees = kFovYDegrees,
+                  .near_m = 0.1,
+                  .far_m = 50.0};
+  // The horizon has a circle of 26 pixels of 1024, a radius.
+  scene.lens = {.lens = {.focal_length_mm = 85.0, .f_number = 1.0, .focus_m = kFocus},
+                .coc_scale = 1.0,
+                .max_coc_px_at_1024 = 16.0};
+  scene.background = {0.30f, 0.46f, 0.68f};
+  scene.ambient_light = glm::vec3{0.3f};
+  scene.lights = {{LightKind::directional, {-0.5f, 0.9f, 0.6f}, {0.95f, 0.90f, 0.80f}}};
+  scene.textures = {sphere_texture()};
+  scene.materials = {sphere_material()};
+  const SphereCut cut = sphere_cut(triangles);
+  scene.meshes = {make_sphere(1.0, cut.segments, cut.rings)};
+  repeat_uvs(scene.meshes[0], {4.0, 2.0});
+  RandomSequence random{250};
+  for (int i = 0; i < kFieldSpheres; ++i) {
+    scene.objects.push_back(placed_sphere(i, aspect, random));
+  }
+  return scene;
 }
 
 }  // namespace softfocus

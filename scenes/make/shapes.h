@@ -1,13 +1,29 @@
+// Polygons to triangles.
 #pragma once
-// The shapes of geometry books as meshes: closed (but for the plane), with unit normals
-// and uvs, counter-clockwise from outside. Sizes are metres and above 0. Points that
-// two grids share have the same bits, so that welding by position closes each shape.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "scenes/scene.h"
 
 namespace softfocus {
+
+/// Triangles over the corners (indices into them), wound as the polygon is: always
+/// corners - 2 of them. A quadrilateral is cut along the shorter diagonal that lies
+/// inside it; a polygon of more corners loses one ear after the other (Meisters 1975),
+/// seen along the axis in which it is largest. One that crosses itself, or has no
+/// area, is cut anyhow. Needs 3 corners or more.
+std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(std::span<const glm::dvec3> corners);
+
+// The shapes of geometry books as meshes: closed (but for the plane), with unit normals
+// and uvs, counter-clockwise from outside. Sizes are metres and above 0. Points that
+// two grids share have the same bits, so that welding by position closes each shape.
 
 /// About the origin. `segments` >= 3 around the y axis, `rings` >= 2 from pole to pole:
 /// 2 segments (rings - 1) triangles. u runs around eastwards from +z, v from the
@@ -38,5 +54,55 @@ Mesh inside_out(Mesh mesh);
 
 /// Lets the texture repeat: multiplies every uv.
 void repeat_uvs(Mesh& mesh, glm::dvec2 times);
+
+// Balls at random places, none touching another: the same ones on every machine.
+
+struct Ball {
+  glm::dvec3 centre{0.0};
+  double radius = 1.0;
+};
+
+struct BallRule {
+  int count = 1;
+  std::uint64_t seed = 1;
+  glm::dvec3 region_min{-1.0};  ///< of the centres
+  glm::dvec3 region_max{1.0};
+  double radius_min = 0.1;
+  double radius_max = 0.1;
+  double gap = 0.0;        ///< least distance between two surfaces
+  bool on_ground = false;  ///< the balls lie on y = region_min.y
+};
+
+/// Draws radius, x, y and z of each ball, in this order. Draws x, y and z again while the ball
+/// is nearer than `gap` to an obstacle or an earlier ball. Empty if a ball finds no place in
+/// kBallAttempts.
+std::optional<std::vector<Ball>> place_balls(const BallRule& rule,
+                                             const std::vector<Ball>& obstacles);
+
+inline constexpr int kBallAttempts = 1000;
+/// Each place is compared with every ball, so time grows with the square.
+inline constexpr int kMostBalls = 4096;
+
+// A scene of as many triangles as one asks for: 250 equal spheres in front of the camera,
+// from half the focus distance to far beyond it, that cover most of the picture.
+
+inline constexpr int kFieldSpheres = 250;
+inline constexpr int kLeastFieldTriangles = 1500;  ///< 6 a sphere, the coarsest there is
+inline constexpr int kMostFieldTriangles = 8'000'000;
+
+/// How a sphere is cut (make_sphere()).
+struct SphereCut {
+  int segments;
+  int rings;
+};
+
+/// The cut whose 250 spheres have the number of triangles nearest to `triangles`, with cells
+/// between square and four times as high as wide at the equator.
+/// Needs kLeastFieldTriangles <= triangles <= kMostFieldTriangles.
+SphereCut sphere_cut(int triangles);
+
+/// The field for a picture `aspect` times as wide as high. 64000, 256000 and 1024000
+/// triangles are met exactly.
+Scene sphere_field(int triangles, double aspect);
 
 }  // namespace softfocus

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "scenes/make/shapes.h"
-#include "scenes/random/parts.h"
+#include "scenes/random/stage.h"
 
 namespace softfocus {
 namespace {

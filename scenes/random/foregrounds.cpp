@@ -4,7 +4,7 @@
 
 #include "raster/numbers/vector_math.h"
 #include "scenes/make/shapes.h"
-#include "scenes/random/parts.h"
+#include "scenes/random/stage.h"
 
 namespace softfocus {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/random/parts.h"
+#include "scenes/random/stage.h"
 
 namespace softfocus {
 namespace {
@@ -175,7 +175,7 @@ void set_lens(Stage& stage, double foreground_m) {
   constexpr double kNearestRadius = 90.0;
   const double nearest = std::clamp(stage.nearest_m, 0.15 * stage.subject_m, 0.95 * focus);
   const double most = kNearestRadius / (focus / nearest - 1.0);
-  // What is behind the subject has a circle of 6 pixels at least.
+  // Things behind the subject have a circle of 6 pixels at least.
   const double behind = std::max(stage.backdrop_m, 1.25 * focus);
   const double least = 6.0 / (1.0 - focus / behind);
   const double at_infinity = std::min(std::max(log_between(stage, 6.0, 44.0), least), most);

@@ -4,7 +4,7 @@
 
 #include "scenes/make/shapes.h"
 #include "scenes/make/teapot.h"
-#include "scenes/random/parts.h"
+#include "scenes/random/stage.h"
 
 namespace softfocus {
 namespace {

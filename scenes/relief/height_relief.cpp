@@ -6,7 +6,7 @@
 
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/relief/packed_texel.h"
+#include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
 namespace {

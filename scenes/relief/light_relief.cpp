@@ -15,7 +15,7 @@
 
 namespace softfocus {
 
-/// What a row's texels read.
+/// Rows that a row's texels read.
 struct LitRow {
   const std::int32_t* codes;  ///< of depth
   const std::uint32_t* unlit;

@@ -10,7 +10,7 @@
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/relief/light_relief.h"
-#include "scenes/relief/packed_texel.h"
+#include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
 namespace {
@@ -39,7 +39,7 @@ struct ReliefBounds {
       high[i] = std::max(high[i], seen[i]);
     }
   }
-  /// What has no width or depth gets some: texels and codes have a size.
+  /// Gives width or depth to an object without any: texels and codes have a size.
   void give_size(double least_m) {
     for (int i = 0; i < 3; ++i) {
       if (high[i] - low[i] >= least_m) continue;
@@ -85,7 +85,7 @@ ReliefCamera perspective_camera(const ReliefMaker& maker, const ReliefView& view
   camera.origin = ((view.eye + axes.right * (box.low.x - 0.5 * across)) +
                    axes.down * (box.low.y - 0.5 * along)) +
                   axes.forward * n;
-  // Of the last point: n z / (n + z).
+  // The last point's depth: n z / (n + z).
   const double last = farthest + (farthest - nearest) * kDepthMargin;
   camera.depth_m = n * ((last - n) / last);
   camera.eye = view.eye;

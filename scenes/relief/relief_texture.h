@@ -1,4 +1,34 @@
+// A relief's colours and normals as they are stored.
 #pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "raster/numbers/vector_math.h"
+
+namespace softfocus {
+
+/// Three halves of linear light; `codes` has linear_to_srgb8() of each half.
+inline std::uint32_t packed_colour(const std::uint16_t* texel,
+                                   const std::vector<std::uint8_t>& codes) {
+  return std::uint32_t{codes[texel[0]]} | std::uint32_t{codes[texel[1]]} << 8 |
+         std::uint32_t{codes[texel[2]]} << 16 | 0xFF000000u;
+}
+
+/// Of any length above 0.
+inline std::uint32_t packed_normal(glm::vec3 normal) {
+  const glm::vec3 unit = normalize(normal);
+  const auto byte = [](float v) {
+    return static_cast<std::uint32_t>(std::lrint(127.0f * v + 128.0f));
+  };
+  return byte(unit.x) | byte(unit.y) << 8 | byte(unit.z) << 16;
+}
+
 // A relief texture: colour, depth and perhaps normals of an object under an orthographic or a
 // perspective camera (Oliveira, Bishop and McAllister 2000). A texel of depth d shows the point
 //
@@ -13,14 +43,6 @@
 //
 // Depths are codes, evenly spaced from 0, the plane of C, to the last one but one; the last code,
 // 255 of 8 bits and 65535 of 16, is a texel that shows nothing.
-
-#include <cstddef>
-#include <cstdint>
-#include <glm/vec3.hpp>
-#include <optional>
-#include <vector>
-
-namespace softfocus {
 
 struct ReliefCamera {
   glm::dvec3 origin{0.0};        ///< C: the centre of the first texel, where the depth is 0
@@ -86,5 +108,18 @@ struct ReliefExtent {
 
 /// None if all texels are empty.
 std::optional<ReliefExtent> relief_extent(const ReliefTexture& relief);
+
+// A relief at half its resolution, and again: the levels of a relief that was drawn finer than it
+// is seen now (4.1.1 of Clua 2004). A warp takes the coarsest whose texels are no wider than
+// pixels, and so wastes no work.
+
+/// Half as many texels each way, rounded up. If at least two of four texels show something, the new
+/// texel has the depth and the normal of the nearest, as an outline is the nearer surface's, and
+/// the mean of the colours of those whose depths are within kSameSurface of it. Needs more than a
+/// texel each way.
+ReliefTexture coarser_relief(const ReliefTexture& relief);
+
+/// Of all depths.
+inline constexpr double kSameSurface = 1.0 / 16.0;
 
 }  // namespace softfocus

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <glm/vec2.hpp>
 #include <limits>
 #include <utility>
+
+#include <glm/vec2.hpp>
 
 namespace softfocus {
 namespace {

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <limits>
 
-#include "scenes/shadows/place_box.h"
+#include "scenes/shadows/facets.h"
 
 namespace softfocus {
 namespace {
 
 constexpr int kMostCells = 1024;
 
-// Of a caster on average. Casters that each fill the light's view get fewer, larger cells: the
-// memory stays a multiple of the casters'.
+// Most entries of a caster on average. Casters that each fill the light's view get fewer, larger
+// cells: the memory stays a multiple of the casters'.
 constexpr std::size_t kMostEntries = 32;
 
 // A part of a side, in cells: x_begin <= x <= x_end.
@@ -38,8 +38,8 @@ glm::dvec2 along_axes(const LightGrid& grid, glm::dvec3 p) {
   return {dot(p, grid.axes[0]), dot(p, grid.axes[1])};
 }
 
-// What a side of the cube sees of a polygon: cut by its pyramid's four planes, then divided.
-// Points are (across, across, ahead).
+// A polygon as a side of the cube sees it: cut by its pyramid's four planes, then divided. Points
+// are (across, across, ahead).
 struct SidePolygon {
   std::array<glm::dvec3, 12> corners;
   std::size_t count = 0;

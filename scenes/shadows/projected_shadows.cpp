@@ -127,7 +127,7 @@ bool misses(const Facets& facets, std::uint32_t caster, const LitReceiver& recei
          is_elsewhere(receiver.outline, corners, light, margin);
 }
 
-// What is known of a caster beforehand.
+// A caster's fate, as far as it is known beforehand.
 enum class Throws : std::uint8_t { perhaps, a_shadow };
 
 // The caster's shadow on the receiver's plane. With n.p = d the plane, h its heights and L the
@@ -163,7 +163,7 @@ CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitRec
                                     p.z * receiver.light_height - light.place.z * h,
                                     receiver.light_height - light.w * h};
   }
-  // What is higher than a point light would be projected through it, onto the other side.
+  // Points higher than a point light would be projected through it, onto the other side.
   if (light.w != 0.0 && highest > receiver.light_height) {
     shadow = cut_polygon(
         shadow, [](const glm::dvec4& p) { return p.w; },

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "raster/pipeline/setup.h"
-#include "raster/pipeline/viewport.h"
 
 namespace softfocus {
 namespace {
 
-// What a pixel shows becomes its receiver, and the lights whose side it is not on become its mask.
+// The lights that do not face a facet, as bits of a mask: a pixel's facet becomes its receiver and
+// these.
 struct DarkSides {
   std::uint8_t front = 0, back = 0;
 };
@@ -199,7 +199,7 @@ std::vector<Piece> pieces_of(const SeenReceivers& found,
   return pieces;
 }
 
-// Where the pieces of each task end.
+// The ends of each task's pieces.
 std::vector<std::size_t> ends_of_tasks(const std::vector<Piece>& pieces) {
   std::vector<std::size_t> ends;
   std::size_t triangles = 0;

@@ -1,16 +1,40 @@
+// The definition of a shadow, as an oracle: a ray from a point towards the light against every
+// facet, in binary64.
 #pragma once
-// What a pixel shows of one light's shadow, by the definition (point_in_shadow.h).
 
+#include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <span>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include "raster/threads/parallel.h"
+#include "scenes/shadows/facets.h"
 #include "scenes/shadows/light_grid.h"
 #include "scenes/shadows/shadow_mask.h"
 
 namespace softfocus {
+
+/// How many `direction`s away a ray hits a facet, or a negative number (Moeller and Trumbore 1997).
+double ray_hit(const Facet& facet, glm::dvec3 from, glm::dvec3 direction);
+
+/// Whether a point on the front or the back of a facet is in shadow. It is if the light does not
+/// reach that side (projected_shadows.h, lit_side()), or if the ray from the point to the light
+/// meets one of `casters` that stops light, is of another receiver, and is hit more than epsilon_m
+/// over the receiver's plane.
+bool point_in_shadow(const Facets& facets, std::uint32_t facet, bool seen_from_back,
+                     glm::dvec3 point, const ShadowLight& light,
+                     std::span<const std::uint32_t> casters);
+
+/// The point of a facet's plane that is seen at a place in the window, in pixels from its upper
+/// left corner. `eye` is the camera's.
+glm::dvec3 seen_point(const FacetPlane& plane, const glm::dmat4& world_to_clip, glm::dvec3 eye,
+                      glm::dvec2 window, int width, int height);
+
+// What a pixel shows of one light's shadow, by the definition (point_in_shadow.h).
 
 class ShadowTruth {
  public:
@@ -42,5 +66,21 @@ class ShadowTruth {
 /// Whether each pixel is dark, 0 or 1, by rays.
 std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
                                       int width, int height, ThreadPool& pool);
+
+// How right a shadow mask is: every pixel against the definition (point_in_shadow.h).
+
+/// Pixels times lights.
+struct ShadowErrors {
+  std::size_t seen = 0;       ///< that show a facet
+  std::size_t in_shadow = 0;  ///< of these
+  std::size_t near_edge = 0;  ///< answered otherwise than at the centre, but as 1/256 pixel from it
+  std::size_t wrong = 0;      ///< answered otherwise than anywhere within 1/256 pixel
+};
+
+/// `lights` are those of the mask's bits. With `by_grid` the rays ask the casters that a LightGrid
+/// finds; without, all.
+ShadowErrors shadow_errors(const Facets& facets, std::span<const ShadowLight> lights,
+                           std::span<const SeenFacet> seen, std::span<const std::uint8_t> mask,
+                           const ShadowView& view, glm::dvec3 eye, bool by_grid, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "scenes/shadows/light_grid.h"
-#include "scenes/shadows/point_in_shadow.h"
 #include "scenes/shadows/projected_shadows.h"
+#include "scenes/shadows/shadow_truth.h"
 
 namespace softfocus {
 namespace {

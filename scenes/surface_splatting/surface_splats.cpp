@@ -9,8 +9,7 @@
 #include "dof/dof.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/lens_views/ray_geometry.h"
-#include "scenes/surface_splatting/hidden_points.h"
-#include "scenes/surface_splatting/seen_triangles.h"
+#include "scenes/surface_splatting/splat_sources.h"
 
 namespace softfocus {
 namespace {
@@ -107,7 +106,7 @@ Band make_band(const SplatCamera& camera, int number) {
   return band;
 }
 
-// What a triangle gives to a cell: sums over its points there.
+// A triangle's share of a cell: sums over its points there.
 struct CellSum {
   int points = 0;
   double x = 0.0, y = 0.0, inverse_depth = 0.0;

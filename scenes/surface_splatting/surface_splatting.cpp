@@ -174,7 +174,7 @@ std::vector<TileList> lists_of_row(std::span<const Splat> splats,
   return lists;
 }
 
-// What a task keeps: P and colours, and R of the tile's surfaces.
+// A task's memory: P and colours, and R of the tile's surfaces.
 struct SplatTile {
   std::vector<float> planes;
   std::vector<float> rests;

@@ -210,7 +210,7 @@ struct SurfaceFragmentLanes {
     return value;
   }
 
-  // Of the side that is seen.
+  // The base colour of the seen side.
   template <class Quads>
   SOFTFOCUS_INLINE Vec3Lanes base(const Quads& in) const {
     const Vec3Lanes front = three<SurfaceLayout::kFront>(in);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <string_view>
@@ -12,7 +13,7 @@
 #include "raster/threads/float_environment.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/velocity.h"
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/accumulation.h"
 
 namespace softfocus {
 namespace {
@@ -109,7 +110,7 @@ void draw(const NextFrame& next, const Refresh&) {
 void draw(const NextFrame& next, const Reproject& settings) {
   FrameHistory& history = next.history;
   const bool is_drawn = is_drawn_whole(settings, history);
-  // Where a surface was is only known of what is drawn; a scattered picture does without.
+  // A surface's earlier place is only known of drawn pixels; a scattered picture does without.
   if (is_drawn || !settings.forward || settings.holes == UnseenPixels::drawn) next.draw({0.0, 0.0});
   if (is_drawn) return;
   clear_image(history.frames, glm::vec4{1.0f}, next.profile());
@@ -168,6 +169,20 @@ FrameEffect frame_effect(const ChosenEffect& chosen) {
 
 int warm_up_frames(const ChosenEffect& chosen) {
   return static_cast<int>(number_of(chosen, "warm-up"));
+}
+
+void draw_up_to(PreparedScene& prepared, const ChosenEffect& effect, double frame, int width,
+                int height, FrameSequence& sequence, ThreadPool& pool) {
+  const int warm_up = warm_up_frames(effect);
+  const int wanted =
+      warm_up + static_cast<int>(std::lround((frame - sequence.first) / sequence.step));
+  FrameHistory& history = sequence.history;
+  if (history.count > wanted) history.count = 0;
+  const FrameEffect made = frame_effect(effect);
+  while (history.count <= wanted) {
+    draw_next(prepared, made, sequence.first + (history.count - warm_up) * sequence.step, width,
+              height, history, pool);
+  }
 }
 
 bool is_drawn_whole(const FrameEffect& effect, const FrameHistory& history) {

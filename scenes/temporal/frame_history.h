@@ -35,6 +35,20 @@ struct FrameHistory {
 void draw_next(PreparedScene& prepared, const FrameEffect& effect, double frame, int width,
                int height, FrameHistory& history, ThreadPool& pool);
 
+/// Frame i of a sequence is first + i step. It begins `warm-up` frames before the first that is
+/// asked for, so that a frame's bits depend on where the sequence begins, but not on which of its
+/// frames are made anew.
+struct FrameSequence {
+  double first = 0.0;
+  double step = 1.0;
+  FrameHistory history{};
+};
+
+/// Draws what is missing up to this frame, from the beginning if the history is past it. The frame
+/// is then history.picture.
+void draw_up_to(PreparedScene& prepared, const ChosenEffect& effect, double frame, int width,
+                int height, FrameSequence& sequence, ThreadPool& pool);
+
 /// Whether the next frame is drawn and takes nothing from those before.
 bool is_drawn_whole(const FrameEffect& effect, const FrameHistory& history);
 

@@ -7,7 +7,7 @@
 #include "raster/numbers/half.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/lens_views/embree_mesh.h"
-#include "scenes/relief/packed_texel.h"
+#include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
 namespace {

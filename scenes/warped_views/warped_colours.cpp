@@ -23,7 +23,7 @@ struct ColouredTile {
   std::int32_t* holes = nullptr;
 };
 
-// Of the whole part of a place, so that parts of a pixel are at least -kWholePx.
+// Added to a place to find its whole part, so that parts of a pixel are at least -kWholePx.
 constexpr float kFloorPx = 0.5f - kWholePx;
 
 constexpr std::int32_t hole_at(int x, int y) { return y << 16 | x; }

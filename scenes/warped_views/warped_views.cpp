@@ -6,18 +6,17 @@
 #include <optional>
 #include <utility>
 
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 #include "raster/threads/scratch_shelf.h"
 #include "scenes/filtered_views/filtered_views.h"
-#include "scenes/lens_views/few_lens_points.h"
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/accumulation.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/warped_views/warped_colours.h"
 
 namespace softfocus {
 namespace {
 
-// Of the picture that is warped in one go: what it reads and writes, 1 MiB, stays in a core's
-// cache.
+// Size of the picture that is warped in one go: its data, 1 MiB, stay in a core's cache.
 constexpr int kWarpTileWidth = 4 * kSumTile, kWarpTileHeight = kSumTile;
 
 // Views that are added in binary32 before they go to the sum in binary64: an error below 2^-18 of
@@ -115,7 +114,7 @@ class HoleBorders {
   int x_ = kNone, y_ = kNone, left_ = 0, right_ = 0;
 };
 
-// Where a source sees what has that radius at (x, y); none if it sees something else there.
+// The pixel of a source that sees that radius at (x, y); none if it sees something else there.
 std::optional<SourcePixel> pixel_in(const AskedSource& asked, int x, int y, float radius) {
   const WarpSource& source = *asked.source;
   const float most = std::max(std::fabs(asked.shift.x), std::fabs(asked.shift.y));
@@ -213,7 +212,7 @@ int margin_for(const LensViewInput& input, const std::vector<glm::dvec2>& source
   return std::min(static_cast<int>(std::min(reach_px, 1.0 * kMostMarginPx)), room);
 }
 
-// Of the views that are nearest to the i-th of `sources`.
+// Shifts of the views that are nearest to the i-th of `sources`.
 std::vector<glm::vec2> shifts_from(const std::vector<glm::dvec2>& sources, std::size_t i,
                                    const std::vector<glm::dvec2>& views) {
   std::vector<glm::vec2> shifts;
@@ -228,7 +227,7 @@ std::vector<glm::vec2> shifts_from(const std::vector<glm::dvec2>& sources, std::
   return shifts;
 }
 
-// The same camera with so many more pixels on each side.
+// The camera with so many more pixels on each side.
 CameraMatrices with_margin(CameraMatrices camera, int width, int height, int margin_px) {
   const double size_px[] = {1.0 * width, 1.0 * height};
   for (int axis = 0; axis < 2; ++axis) {
@@ -333,8 +332,13 @@ SampledPicture warped_accumulation(WarpedViewsBuffer& buffer, const LensViewInpu
 }
 
 SampledPicture warped_accumulation(const LensViewInput& input, ThreadPool& pool) {
-  WarpedViewsBuffer buffer = make_warped_views_buffer(input, pool);
-  return warped_accumulation(buffer, input, pool);
+  LensViewMemory own;
+  std::shared_ptr<WarpedViewsBuffer>& buffer =
+      (input.memory != nullptr ? *input.memory : own).warped_views;
+  if (!buffer) {
+    buffer = std::make_shared<WarpedViewsBuffer>(make_warped_views_buffer(input, pool));
+  }
+  return warped_accumulation(*buffer, input, pool);
 }
 
 }  // namespace softfocus

@@ -19,8 +19,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kHeightsOfPixel = 2048;
 
-/// Where a row at a height `y`, down, of a circle of `radius` begins and ends, by the aperture's
-/// half-planes.
+/// The ends of a row at a height `y`, down, of a circle of `radius`, by the aperture's half-planes.
 struct Chord {
   double left = -1e9, right = 1e9;
 };

@@ -1,4 +1,4 @@
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 
 #include <doctest/doctest.h>
 

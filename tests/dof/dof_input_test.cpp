@@ -1,4 +1,4 @@
-// What comes with a picture is checked before a method sees it.
+// An input is checked before a method sees it.
 
 #include <doctest/doctest.h>
 

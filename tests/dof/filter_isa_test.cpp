@@ -38,7 +38,7 @@ void check_units(const FilterPair& filter, const Image& scene, const DofSettings
   filter.oracle({scene, settings, profile}, expected, any_pool);
   for (const Isa isa : available_isas()) {
     ThreadPool pool(2, isa);
-    // What was there before must not show.
+    // The result's old contents must not show.
     Image actual = random_scene_image(scene.width, scene.height, 99);
     filter.apply({scene, settings, profile}, actual, pool);
     INFO(filter.name, " on ", std::string{isa_name(isa)}, ", ", scene.width, "x", scene.height,
@@ -188,7 +188,7 @@ TEST_CASE("the filters' kernels give the oracles' bits where part of a picture i
                               y < island.y + island.size;
           return inside ? depths.inside_m : depths.outside_m;
         });
-        // What is in focus passes through the same rules as what is not.
+        // Sharp pixels pass through the same rules as blurred ones.
         set_halves(scene, [](int x, int y, int channel, std::uint16_t half) {
           constexpr std::array<std::uint16_t, 4> kStrange{0x7C00, 0xFC00, 0x7D01, 0x8000};
           const int place = x * 7 + y * 13 + channel;

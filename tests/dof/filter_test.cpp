@@ -23,8 +23,8 @@ Image filtered(Filter filter, const DofInput& input, ThreadPool& pool) {
   return result;
 }
 
-// What the equations say, in binary64 and with nothing shared with the program: every
-// sample of a neighbourhood, weighed by (10) to (14).
+// The equations in binary64, sharing nothing with the program: every sample of a neighbourhood,
+// weighed by (10) to (14).
 struct Exact {
   double r, g, b, depth;
 };

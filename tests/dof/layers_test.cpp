@@ -8,9 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "dof/scatter/hidden_sheet.h"
 #include "dof/scatter/layer_planes.h"
-#include "dof/scatter/tile_reach.h"
+#include "dof/scatter/scatter_discs.h"
 #include "raster/images/texel.h"
 #include "tests/support/method_checks.h"
 #include "tests/support/test_images.h"

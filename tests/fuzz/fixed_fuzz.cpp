@@ -57,7 +57,7 @@ void check_picture(FuzzNumbers& input, const Settings& settings,
   }
 }
 
-/// The same of RGBA16F.
+/// Checks a frame of RGBA16F in the same way.
 void check_halves(FuzzNumbers& input, const Settings& settings, const std::vector<Weights>& table) {
   Image picture = make_image(Format::rgba16f, settings.width, settings.height);
   std::vector<std::uint8_t> codes;

@@ -1,5 +1,5 @@
 #pragma once
-// What the fuzz targets share: the input as a file or as numbers, and what must hold.
+// Shared by the fuzz targets: the input as a file or as numbers, and claims that must hold.
 
 #include <algorithm>
 #include <cstddef>

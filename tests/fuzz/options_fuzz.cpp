@@ -1,5 +1,5 @@
-// Any lines as the arguments of `refocus`: options that fit each other, or a UsageError. What
-// other commands have beside them is read by the same functions.
+// Any lines as the arguments of `refocus`: options that fit each other, or a UsageError. The same
+// functions read the options of other commands.
 
 #include <iostream>
 #include <string>

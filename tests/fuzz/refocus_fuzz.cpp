@@ -12,7 +12,7 @@
 #include "tools/cli/parser.h"
 #include "tools/refocus/opacity.h"
 #include "tools/refocus/options.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 
 namespace {
 

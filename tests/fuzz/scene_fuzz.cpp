@@ -5,7 +5,7 @@
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/files/scene_error.h"
-#include "scenes/load/scene_file.h"
+#include "scenes/load/load_scene.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// What the fuzz targets begin from: small files of every kind, in FOLDER/TARGET.
+// Seeds of the fuzz targets: small files of every kind, in FOLDER/TARGET.
 //
 //   fuzz_seeds FOLDER TESTS/DATA SCENES
 

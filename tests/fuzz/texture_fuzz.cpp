@@ -2,7 +2,7 @@
 
 #include <stb_image.h>
 
-#include "scenes/files/jpeg_check.h"
+#include "scenes/files/picture_check.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/files/texture_file.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,4 +1,4 @@
-#include "scenes/make/balls.h"
+#include "scenes/make/shapes.h"
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,7 @@ using namespace softfocus;
 
 namespace {
 
-// Where a world point lands: (x, y) in pixels, row 0 on top, and the clip w.
+// A world point's place in the picture: (x, y) in pixels, row 0 on top, and the clip w.
 struct Landing {
   double x, y, depth, w;
 };

@@ -1,4 +1,4 @@
-#include "scenes/files/jpeg_check.h"
+#include "scenes/files/picture_check.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 
 #include <doctest/doctest.h>
 

@@ -12,7 +12,7 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/lens_views/accumulation.h"
-#include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "tests/support/shadow_scene.h"
 
 using namespace softfocus;

@@ -1,4 +1,4 @@
-#include "scenes/files/nearest_name.h"
+#include "scenes/files/scene_error.h"
 
 #include <doctest/doctest.h>
 

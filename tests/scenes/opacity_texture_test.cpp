@@ -1,4 +1,4 @@
-#include "scenes/make/opacity_texture.h"
+#include "scenes/make/procedural_texture.h"
 
 #include <doctest/doctest.h>
 

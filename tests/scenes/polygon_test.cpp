@@ -1,4 +1,4 @@
-#include "scenes/make/polygon.h"
+#include "scenes/make/shapes.h"
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,10 @@
-// What a scene's file must not say, and how that is told.
+// Faults of a scene's file, and how they are told.
 
 #include <doctest/doctest.h>
 
 #include <string>
 
-#include "scenes/load/scene_file.h"
+#include "scenes/load/load_scene.h"
 #include "tests/support/scene_texts.h"
 
 using namespace softfocus;

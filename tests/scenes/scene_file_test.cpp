@@ -1,4 +1,4 @@
-#include "scenes/load/scene_file.h"
+#include "scenes/load/load_scene.h"
 
 #include <doctest/doctest.h>
 

@@ -12,7 +12,7 @@
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/shadows/maps/map_errors.h"
-#include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/shadow_truth.h"
 
 using namespace softfocus;
 

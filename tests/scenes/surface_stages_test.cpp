@@ -8,7 +8,7 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/object_numbers.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/make/opacity_texture.h"
+#include "scenes/make/procedural_texture.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;

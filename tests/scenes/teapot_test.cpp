@@ -150,7 +150,7 @@ TEST_CASE("the teapot has 64 n^2 - 8 n triangles, none without area") {
 TEST_CASE("the teapot's normals have unit length and face outwards") {
   const Mesh mesh = newell_size(16);
   CHECK(normal_length_error(mesh) < 2e-7);
-  // Where the knob curls at its top, a triangle spans a wide turn.
+  // A triangle spans a wide turn at the knob's top.
   CHECK(normal_agreement(mesh) > 0.5);
   CHECK(volume(mesh) > 0.0);
 }

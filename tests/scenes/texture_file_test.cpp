@@ -5,7 +5,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
-#include "scenes/files/jpeg_check.h"
+#include "scenes/files/picture_check.h"
 #include "tests/support/scene_test_files.h"
 
 using namespace softfocus;
@@ -13,7 +13,7 @@ using namespace softfocus::test;
 
 namespace {
 
-// What load_texture says of a file of these bytes, the file's path left out.
+// load_texture()'s complaint about a file of these bytes, without the file's path.
 std::string complaint(const std::string& bytes) {
   const TemporaryDirectory directory;
   const std::string file = directory.file("picture.png");

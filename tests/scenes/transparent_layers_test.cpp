@@ -226,10 +226,12 @@ TEST_CASE("transparent: a frame's parts, unfiltered, are the picture") {
     for (const char* profile_name : {"ieee", "llvmpipe"}) {
       const Profile profile = find_profile(profile_name).value();
       PreparedScene prepared = prepare_scene(scene, profile, pool);
-      const FrameParts parts = draw_parts(prepared, view_of(scene), 0, kSide, kSide, 1, pool);
+      FrameParts parts;
+      draw_parts(prepared, view_of(scene), 0, kSide, kSide, 1, parts, pool);
+      blend(parts, profile, pool);
       const Image picture = drawn(scene, isa, profile);
       CHECK(parts.transparent.size() > 1);
-      CHECK(equal(parts.picture, picture));
+      CHECK(equal(parts.picture(), picture));
       CHECK(equal(filtered_frame(*find_method("pinhole"), scene, view_of(scene), 0, picture, {},
                                  profile, pool),
                   picture));
@@ -243,7 +245,9 @@ TEST_CASE("transparent: where a layer shows nothing it is black and has the opaq
   add_pane(scene, 4, kRed, 0.5f, 0.5);
   ThreadPool pool{2};
   PreparedScene prepared = prepare_scene(scene, {}, pool);
-  const FrameParts parts = draw_parts(prepared, view_of(scene), 0, kSide, kSide, 1, pool);
+  FrameParts parts;
+  draw_parts(prepared, view_of(scene), 0, kSide, kSide, 1, parts, pool);
+  blend(parts, {}, pool);
   REQUIRE(parts.transparent.size() == 1);
   const TransparentPicture& layer = parts.transparent[0];
   CHECK(load_texel(layer.colour, 3, 3) == glm::vec4{0.0f, 0.0f, 0.0f, 8.0f});
@@ -257,8 +261,10 @@ TEST_CASE("transparent: a scene without such surfaces has no layers and keeps no
   CHECK_FALSE(has_transparent(scene));
   ThreadPool pool{2};
   PreparedScene prepared = prepare_scene(scene, {}, pool);
-  const FrameParts parts = draw_parts(prepared, view_of(scene), 0, kSide, kSide, 1, pool);
+  FrameParts parts;
+  draw_parts(prepared, view_of(scene), 0, kSide, kSide, 1, parts, pool);
+  blend(parts, {}, pool);
   CHECK(parts.transparent.empty());
-  CHECK(parts.opaque.bytes.empty());
+  CHECK(parts.blended.bytes.empty());
   CHECK_FALSE(prepared.pass.keep_depth);
 }

@@ -50,7 +50,7 @@ glm::dmat4 to_clip(const Scene& scene, std::size_t object, const Instant& at) {
          object_matrix(scene.objects[object], at.frame);
 }
 
-/// What a pixel's centre shows.
+/// The surface that a pixel's centre shows.
 struct Hit {
   std::size_t object;
   glm::dvec3 place;  ///< on the object
@@ -96,7 +96,7 @@ glm::dvec2 expected_motion(const Scene& scene, const Hit& hit, const MotionSpan&
          in_picture(clip_xyw(to_clip(scene, hit.object, span.from), hit.place));
 }
 
-/// Of the point at infinity that a pixel shows.
+/// Motion of the point at infinity that a pixel shows.
 glm::dvec2 expected_far_motion(const CameraMatrices& shown, const MotionSpan& span, double ndc_x,
                                double ndc_y) {
   const glm::dvec3 eye{ndc_x / shown.eye_to_clip[0][0], ndc_y / shown.eye_to_clip[1][1], -1.0};

@@ -1,5 +1,5 @@
 #pragma once
-// What every refusal of the program has in common.
+// Checks that hold for every refusal of the program.
 
 #include <doctest/doctest.h>
 

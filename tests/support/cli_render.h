@@ -25,7 +25,7 @@ inline Words render(const std::string& scene, const std::string& output, const W
   return words;
 }
 
-/// What a render leaves in a folder: an NPY or a PFM has a sidecar.
+/// The files that a render leaves in a folder: an NPY or a PFM has a sidecar.
 inline Words written(const std::string& name, const std::string& bytes) {
   if (bytes.starts_with("\x89PNG")) return {name};
   return {name, name + ".json"};
@@ -48,7 +48,7 @@ inline Picture rendered_picture(const std::string& scene, const Words& more) {
   return decode_npy(std::as_bytes(std::span{bytes}));
 }
 
-/// What --json says.
+/// --json's report.
 inline nlohmann::json rendered_json(const std::string& scene, Words more) {
   const TemporaryDirectory directory;
   more.emplace_back("--json");
@@ -57,7 +57,7 @@ inline nlohmann::json rendered_json(const std::string& scene, Words more) {
   return nlohmann::json::parse(run.out);
 }
 
-/// What a report's page has to draw.
+/// The report that a page draws.
 inline nlohmann::json report_of_page(const std::string& page) {
   const std::string start = "id=\"results\">";
   const std::size_t place = page.find(start) + start.size();

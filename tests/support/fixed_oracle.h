@@ -122,8 +122,7 @@ inline Picture3<std::int64_t> wide_filter16(const Picture3<std::int64_t>& halves
   return wide_pass(wide_pass(halves, weights, 1, 0, as_units), weights, 0, 1, as_bits);
 }
 
-/// What a pixel is for the equations themselves: its radius in pixels, cut to the largest,
-/// and its side.
+/// A pixel for the equations themselves: its radius in pixels, cut to the largest, and its side.
 struct ExactPixel {
   double radius;
   bool beyond;

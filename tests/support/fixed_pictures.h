@@ -69,7 +69,7 @@ inline PackedPicture random_picture(Random& random, const Settings& settings) {
   return picture;
 }
 
-/// What comes out of the rows one by one. Guards lie behind the memory.
+/// The result of rows given one by one. Guards lie behind the memory.
 inline std::vector<std::uint8_t> filtered_rows(const PackedPicture& picture,
                                                const std::vector<Weights>& table) {
   const Settings& settings = picture.settings;

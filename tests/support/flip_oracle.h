@@ -73,8 +73,8 @@ double filtered(const Picture& picture, int x, int y, int radius, const Kernel& 
   return up / positive + (negative > 0.0 ? down / negative : 0.0);
 }
 
-/// What the eye sees of a pixel: colour after the contrast sensitivity filters, and the
-/// magnitudes of edges and points.
+/// A pixel as the eye sees it: colour after the contrast sensitivity filters, and the magnitudes of
+/// edges and points.
 struct Seen {
   Triple lab;
   double edge, point;

@@ -79,7 +79,7 @@ inline Drawn sample_scene(const Scene& scene, const char* method, const Sampling
   return drawn;
 }
 
-/// Of red: sum, mean place and variances, in pixels.
+/// Moments of red: sum, mean place and variances, in pixels.
 struct Moments {
   double sum = 0.0, x = 0.0, y = 0.0, variance_x = 0.0, variance_y = 0.0;
 };

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "dof/measure/pixel_map.h"
+#include "dof/measure/difference.h"
 #include "raster/images/texel.h"
 #include "tests/support/test_images.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What can be said of any triangle mesh.
+// Claims that hold for any triangle mesh.
 
 #include <array>
 #include <cmath>
@@ -38,7 +38,7 @@ inline double area(const Mesh& mesh) {
   return sum;
 }
 
-/// Of what the triangles enclose; negative where they face inwards.
+/// The volume that the triangles enclose; negative where they face inwards.
 inline double volume(const Mesh& mesh) {
   double sum = 0.0;
   for (const MeshTriangle& t : triangles_of(mesh)) sum += dot(t[0], cross(t[1], t[2])) / 6.0;

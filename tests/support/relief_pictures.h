@@ -28,8 +28,8 @@ inline ReliefTexture empty_relief(int width, int height, int depth_bits, double 
   return relief;
 }
 
-/// The same texels under a perspective camera, whose eye is farther before the plane than the
-/// relief is deep.
+/// These texels under a perspective camera, whose eye is farther before the plane than the relief
+/// is deep.
 inline ReliefTexture seen_from_eye(ReliefTexture relief, glm::dvec3 eye) {
   relief.camera.eye = eye;
   return relief;

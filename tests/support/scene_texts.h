@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "scenes/load/scene_file.h"
+#include "scenes/load/load_scene.h"
 #include "tests/support/scene_test_files.h"
 
 namespace softfocus::test {

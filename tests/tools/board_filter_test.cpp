@@ -36,7 +36,7 @@ CodedPicture random_coded_picture(int width, int height) {
   return picture;
 }
 
-/// What the board's filter makes of it, stored as halves.
+/// The board's filter applied to a picture, stored as halves.
 Image filter_on_board(const CodedPicture& picture, const DofSettings& settings) {
   const int width = picture.image.width;
   const int max_radius = static_cast<int>(settings.max_coc_px);

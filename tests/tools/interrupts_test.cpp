@@ -38,7 +38,7 @@ class Blocked {
   sigset_t signals_{};
 };
 
-// What a child leaves in a folder of its own when a signal ends it before a commit.
+// A child leaves nothing in its folder when a signal ends it before a commit.
 void check_nothing_left(int signal) {
   const auto folder = std::filesystem::temp_directory_path() /
                       ("softfocus-interrupts-" + std::to_string(::getpid()));

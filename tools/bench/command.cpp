@@ -55,7 +55,7 @@ std::vector<TimedStage> stages_of(const BenchWork& work, RepeatedOnGl& on_gl) {
   return stages;
 }
 
-// Of the driver's times keeps those of the form whose filter took less, and notes both.
+// Keeps the driver's faster form; records both.
 void keep_faster_form(BenchRecord& record, const std::vector<std::string>& forms) {
   if (forms.empty()) return;
   std::vector<StageSamples>& all = record.samples.peers;
@@ -169,7 +169,10 @@ int bench(const BenchOptions& options) {
   OurFrame frame{work, pool, on_gl != nullptr};
   const std::vector<TimedStage> ours = stages_of(
       work, [&] { draw(frame); }, [&] { filter(frame); },
-      [&] { copy(frame, frame.drawn), filter(frame), copy(frame, frame.filtered); }, [] {});
+      [&] {
+        copy(frame, frame.drawn.parts.opaque), filter(frame), copy(frame, frame.filtered.picture);
+      },
+      [] {});
 
   progress.show("warming up");
   warm_up(ours);
@@ -177,11 +180,12 @@ int bench(const BenchOptions& options) {
   std::optional<BenchPeer> peer;
   if (on_gl) {
     peer = {std::string{options.versus->name}, on_gl->renderer(),
-            same_pictures(*on_gl, frame.filtered)};
+            same_pictures(*on_gl, frame.filtered.picture)};
     if (!peer->equal) peer->difference = why_different(*options.versus, work);
   }
-  BenchRecord record{options, work,         time_in_pairs(ours, peers, options.runs, show_run),
-                     peer,    frame.choice, frame.samples};
+  BenchRecord record{options, work, time_in_pairs(ours, peers, options.runs, show_run),
+                     peer,    {},   frame.filtered.sampled ? frame.filtered.sampled->samples : 0};
+  if (frame.filtered.chosen) record.choice = frame.filtered.chosen->choice;
   if (on_gl) keep_faster_form(record, on_gl->forms());
   progress.clear();
   print(record);

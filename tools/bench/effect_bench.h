@@ -1,5 +1,5 @@
 #pragma once
-// What `bench --effect` times: effects on one picture, each alone, and on a GL driver in turn.
+// `bench --effect`: times effects on one picture, each alone, and on a GL driver in turn.
 
 #include <functional>
 #include <string>

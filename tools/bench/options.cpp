@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "scenes/make/sphere_field.h"
+#include "scenes/make/shapes.h"
 #include "scenes/temporal/frame_history.h"
 #include "tools/cli/errors.h"
 #include "tools/gl/shaders.h"
@@ -24,7 +24,7 @@ constexpr std::uint64_t kBenchBytesPerPixel = 72;
 /// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kLensSumBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredViewsBytesPerPixel = 8 * 8;
-/// Of each view that is drawn to be warped: four planes of binary32.
+/// Each drawn view that is warped takes four planes of binary32.
 constexpr std::uint64_t kWarpedViewBytesPerPixel = 4 * 4;
 
 /// For effects that read the frames before: of the history five pictures (8 bytes each), a
@@ -76,7 +76,7 @@ void check_effects(BenchOptions& options, const CLI::App& parser) {
   options.method = {.filter = find_method("pinhole")};
 }
 
-/// What the method needs of the options beside it.
+/// Checks the options that the method needs.
 void check_method(BenchOptions& options, const CLI::App& parser) {
   const MethodChoice& method = options.method;
   const std::string name{method.name()};

@@ -1,15 +1,7 @@
 #pragma once
 // Our contender: a frame drawn and given its depth of field again and again.
 
-#include <cstdint>
-#include <optional>
-#include <vector>
-
-#include "dof/auto/auto_method.h"
-#include "scenes/draw/draw_scene.h"
-#include "scenes/filtered_views/filtered_views.h"
-#include "scenes/lens_views/accumulation.h"
-#include "scenes/warped_views/warped_views.h"
+#include "scenes/frame/frame.h"
 #include "tools/bench/work.h"
 
 namespace softfocus {
@@ -21,18 +13,10 @@ struct OurFrame {
   ThreadPool& pool;
   bool one_picture =
       false;  ///< a filter gets no transparent layers: beside a driver, which has none
-  std::optional<PreparedScene> scene{};
-  std::optional<AccumulationBuffer> views{};
-  std::optional<FilteredViewsBuffer> filtered_views{};
-  std::optional<WarpedViewsBuffer> warped_views{};
-  Image drawn{};
-  std::vector<Image> behind{};  ///< the layers behind it, if the method reads them
-  std::vector<TransparentPicture> transparent{};  ///< layers before it, for a filter
-  std::vector<std::uint16_t> objects{};  ///< the drawn objects' numbers, if the method reads them
-  Image filtered{};
-  Image copy{};                        ///< of a pass's picture, if copies are timed
-  std::optional<AutoMethod> choice{};  ///< of auto
-  int samples = 0;                     ///< taken by a method that draws the scene
+  FrameMemory memory{};
+  DrawnFrame drawn{};
+  Frame filtered{};
+  Image copy{};  ///< of a pass's picture, if copies are timed
 };
 
 /// Draws the scene, with the objects' numbers if the method reads them; needs one.

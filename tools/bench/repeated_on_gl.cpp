@@ -1,10 +1,16 @@
 #include "tools/bench/repeated_on_gl.h"
 
 #include <array>
+#include <cstddef>
+#include <cstring>
+#include <functional>
 #include <optional>
+#include <utility>
 
+#include "tools/gl/effects_on_gl.h"
 #include "tools/gl/filter_on_gl.h"
 #include "tools/gl/scene_on_gl.h"
+#include "tools/gl/temporal_on_gl.h"
 
 namespace softfocus {
 
@@ -82,6 +88,101 @@ Image RepeatedOnGl::picture(std::size_t form) const {
   return naming(state_->driver, [&] {
     if (!state_->forms.empty()) return read_colour(state_->forms[form].targets.back(), 0);
     return state_->work.scene ? read_colour(state_->drawn, 0) : state_->work.picture;
+  });
+}
+
+namespace {
+
+Image image_of(const ConstImageView& view) {
+  Image image = make_image(view.format, view.width, view.height);
+  const std::size_t row_bytes = bytes_per_texel(view.format) * static_cast<std::size_t>(view.width);
+  const ImageView to = image;
+  for (int y = 0; y < view.height; ++y) {
+    std::memcpy(to.texels + y * to.stride_bytes, view.texels + y * view.stride_bytes, row_bytes);
+  }
+  return image;
+}
+
+}  // namespace
+
+struct EffectsRepeatedOnGl::State {
+  const Driver& driver;
+  GlContext context;
+  Shaders shaders{};
+  int width, height;
+  GlTexture picture{};
+  std::vector<GlTexture> others{};                      // that the passes read
+  std::array<std::optional<EffectPasses>, 2> passes{};  // of triangles, of quads
+  std::function<const GlTarget&(EffectPasses&)> make{};
+  const GlTarget* result = nullptr;
+
+  void choose(std::function<const GlTarget&(EffectPasses&)> what) {
+    make = std::move(what);
+    for (std::optional<EffectPasses>& each : passes) each.emplace(context, shaders);
+    passes[1]->draw_quads(true);
+    for (std::optional<EffectPasses>& each : passes) make(*each);
+  }
+};
+
+EffectsRepeatedOnGl::EffectsRepeatedOnGl(const Driver& driver, const Image& picture, int threads) {
+  naming(driver, [&] {
+    state_.reset(new State{.driver = driver,
+                           .context = GlContext{driver, threads},
+                           .width = picture.width,
+                           .height = picture.height});
+    state_->picture = upload(picture);
+  });
+}
+
+EffectsRepeatedOnGl::~EffectsRepeatedOnGl() = default;
+
+std::string EffectsRepeatedOnGl::renderer() const {
+  return state_->context.renderer() + ", OpenGL " + state_->context.version();
+}
+
+void EffectsRepeatedOnGl::choose(const ChosenEffect& effect, const Image* velocity) {
+  naming(state_->driver, [&] {
+    State& state = *state_;
+    state.others.clear();
+    if (velocity != nullptr) state.others.push_back(upload(*velocity));
+    state.choose([&state, &effect](EffectPasses& passes) -> const GlTarget& {
+      return effect_on_gl(passes, *effect.effect, effect.parameters,
+                          {state.picture, state.width, state.height},
+                          state.others.empty() ? nullptr : &state.others[0]);
+    });
+  });
+}
+
+void EffectsRepeatedOnGl::choose(const FrameEffect& effect, const FrameSources& sources) {
+  naming(state_->driver, [&] {
+    State& state = *state_;
+    state.others.clear();
+    for (const ConstImageView& source :
+         {sources.drawn, sources.velocity, sources.before, sources.frames}) {
+      state.others.push_back(upload(image_of(source)));
+    }
+    state.choose([&state, effect, turn = sources.turn](EffectPasses& passes) -> const GlTarget& {
+      return make_frame_on_gl(passes, effect,
+                              {state.others[0], state.others[1], state.others[2], state.others[3],
+                               turn, state.width, state.height});
+    });
+  });
+}
+
+void EffectsRepeatedOnGl::run(bool as_quad) {
+  naming(state_->driver, [&] {
+    state_->result = &state_->make(*state_->passes[as_quad ? 1 : 0]);
+    glFinish();
+  });
+}
+
+std::vector<Image> EffectsRepeatedOnGl::pictures() const {
+  return naming(state_->driver, [&] {
+    std::vector<Image> read;
+    for (std::size_t i = 0; i < state_->result->colour.size(); ++i) {
+      read.push_back(read_colour(*state_->result, i));
+    }
+    return read;
   });
 }
 

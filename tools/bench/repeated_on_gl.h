@@ -1,14 +1,16 @@
-#pragma once
 // A frame that a GL driver draws and filters again and again in this process: what
 // `bench --vs` times. Uploads, links and allocates when it is made, and reads back only when
 // asked for the picture.
+#pragma once
 
 #include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "raster/effects/effect.h"
 #include "raster/images/image.h"
+#include "raster/temporal/frame_passes.h"
 #include "tools/bench/work.h"
 #include "tools/gl/driver/driver.h"
 
@@ -38,9 +40,35 @@ class RepeatedOnGl {
   /// the next one reads it. Needs a scene.
   void copy_and_filter(std::size_t form);
 
-  /// What the last filter() of that form made. Without forms: what was drawn, or the work's
-  /// picture.
+  /// The last filter()'s picture by that form. Without forms: the drawn picture, or the work's.
   Image picture(std::size_t form) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Effects that a GL driver runs again and again on one picture: what `bench --effect --vs` times.
+
+class EffectsRepeatedOnGl {
+ public:
+  /// Opens the driver; Mesa's get that number of threads. Throws DriverError.
+  EffectsRepeatedOnGl(const Driver& driver, const Image& picture, int threads);
+  ~EffectsRepeatedOnGl();
+
+  /// GL_RENDERER and GL_VERSION.
+  std::string renderer() const;
+
+  /// Chooses what run() does: links and makes what it needs. Throws DriverError for an effect
+  /// without a shader. The velocity is RG16F of the picture's size, or null if it reads none.
+  void choose(const ChosenEffect& effect, const Image* velocity);
+  /// The passes of a frame that is made from those before, in place of an effect.
+  void choose(const FrameEffect& effect, const FrameSources& sources);
+  /// Returns when it is done: glFinish. Each pass is a triangle, or a quad of two.
+  void run(bool as_quad);
+  /// The last run()'s picture, and for some effects the number of frames that each pixel is made
+  /// of.
+  std::vector<Image> pictures() const;
 
  private:
   struct State;

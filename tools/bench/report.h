@@ -1,5 +1,5 @@
 #pragma once
-// What a bench measured, to read or as JSON.
+// A bench's results, to read or as JSON.
 
 #include <optional>
 #include <string>

@@ -1,8 +1,8 @@
 #include "tools/bench/work.h"
 
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/make/sphere_field.h"
+#include "scenes/make/shapes.h"
 #include "tools/bench/picture.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"

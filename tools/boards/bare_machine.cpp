@@ -1,10 +1,9 @@
-// What Cortex-M and RISC-V have in common: memory as memory.ld lays it out, and files by
-// semihosting.
+// Shared by Cortex-M and RISC-V: memory as memory.ld lays it out, and files by semihosting.
 
 #include "tools/boards/machine.h"
 
 extern "C" {
-// Where memory.ld puts things; their addresses are what counts.
+// Places in memory.ld; their addresses are what counts.
 extern uint8_t variables_begin[], variables_end[], stack_limit[], stack_top[];
 
 /// Comes from the first instruction, with the stack at its top.

@@ -1,6 +1,6 @@
-// What compilers call by themselves, with or without a C library: by words where both
-// addresses allow it, as libraries have it. Compiled with
-// -fno-tree-loop-distribute-patterns, or the loops would become calls of themselves.
+// Functions that compilers call by themselves, with or without a C library: by words if both
+// addresses allow it, as libraries have it. Compiled with -fno-tree-loop-distribute-patterns, or
+// the loops would become calls of themselves.
 
 #include <stddef.h>
 #include <stdint.h>

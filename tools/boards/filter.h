@@ -1,5 +1,5 @@
 #pragma once
-// What run_filter.cpp measures: every *_run.cpp has what is declared here, and one of them
+// A filter for run_filter.cpp to measure: every *_run.cpp defines these functions, and one of them
 // is linked.
 
 #include <stddef.h>

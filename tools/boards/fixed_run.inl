@@ -1,7 +1,6 @@
-// The fixed-point filter for run_filter.cpp. What differs between the formats comes from the
-// file that includes this: kColour and kDepth of softfocus_fixed_settings, kCodes of the
-// table, make_table(), begin_stream(). Three programs, so that each has the code of its
-// format alone.
+// The fixed-point filter for run_filter.cpp. The file that includes this defines what the formats
+// differ in: kColour and kDepth of softfocus_fixed_settings, kCodes of the table, make_table(),
+// begin_stream(). Three programs, so that each has the code of its format alone.
 
 namespace softfocus::boards {
 

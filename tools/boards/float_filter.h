@@ -19,7 +19,7 @@ struct FloatLens {
   float leak;
 };
 
-/// What a code of depth says, dof/weights.h (10) to (13).
+/// A code of depth, by dof/weights.h (10) to (13).
 struct FloatDepth {
   float intensity;
   float edge_weight;  ///< overlap * intensity of the farthest tap

@@ -14,7 +14,7 @@ enum class FrameFormat : uint32_t {
   rgba16f,  ///< alpha is the depth in metres
 };
 
-/// Of a pixel.
+/// Bytes of a pixel's colour.
 constexpr size_t colour_bytes(FrameFormat format) {
   return format == FrameFormat::rgb565 ? 2 : format == FrameFormat::rgba8 ? 4 : 8;
 }

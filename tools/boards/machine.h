@@ -1,15 +1,15 @@
 #pragma once
-// What the programs of this folder need of the machine that they run on. Three kinds:
-// Cortex-M and RISC-V without an operating system, which reach the desktop's files by
-// semihosting, and the desktop itself. There are no standard libraries on the first two.
+// The machine under the programs of this folder. Three kinds: Cortex-M and RISC-V without an
+// operating system, which reach the desktop's files by semihosting, and the desktop itself. There
+// are no standard libraries on the first two.
 
 #include <stddef.h>
 #include <stdint.h>
 
 namespace softfocus::boards {
 
-/// What main() has for buffers: everything between the variables and the deepest stack
-/// that is allowed for.
+/// main()'s memory for buffers: everything between the variables and the deepest stack that is
+/// allowed for.
 struct FreeMemory {
   uint8_t* begin;
   size_t bytes;

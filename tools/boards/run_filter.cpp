@@ -31,7 +31,7 @@ struct Tally {
   void stop() { instructions += instructions_executed() - started; }
 };
 
-/// What the clock says of a loop of 2 kKnownRounds instructions more than another.
+/// The clock's count of a loop of 2 kKnownRounds instructions more than another.
 uint64_t count_known_loop() {
   const uint64_t start = instructions_executed();
   loop_of_known_length(kKnownRounds);

@@ -47,7 +47,7 @@ void settle_front(ChartPanel& panel) {
   }
 }
 
-/// Of settings with one error the first: the smallest radius.
+/// If several settings have one error, the first is taken: the smallest radius.
 void settle_best_settings(ChartPanel& panel) {
   double ChartErrors::*const error = panel.ranked[0].value;
   for (ChartPoint& point : panel.points) {

@@ -7,7 +7,6 @@
 #include "dof/measure/regions.h"
 #include "tools/files/base64.h"
 #include "tools/pictures/image_file.h"
-#include "tools/report/specimen.h"
 #include "tools/report/worst_crop.h"
 
 namespace softfocus {

@@ -20,7 +20,7 @@ constexpr int kMostRounds = 100;
 /// Sums of all samples and of the halves (72 bytes a pixel), a group of pictures (64), textures
 /// and planes of the methods, and the maps of the measures.
 constexpr std::uint64_t kChartBytesPerPixel = 320;
-/// Of impostors also 500 pictures of atlases, each a sixteenth of the sheet, of 6 bytes a texel.
+/// Impostors also take 500 pictures of atlases, each a sixteenth of the sheet, of 6 bytes a texel.
 constexpr std::uint64_t kAtlasBytesPerPixel = 192;
 
 void check_methods(const ChartOptions& options) {

@@ -1,5 +1,5 @@
 #pragma once
-// What `chart` finds out about one contender on one scene.
+// `chart`'s findings about one contender on one scene.
 
 #include <array>
 #include <cstdint>
@@ -24,11 +24,11 @@ struct ChartErrors {
   std::array<double, kRegions> flip_by_region{};
   double hdr_flip = 0.0;
   std::array<double, kRegions> hdr_flip_by_region{};
-  /// Of shadows: pixels times lights in the light that should be in shadow, or the other way about.
-  /// NaN of other subjects.
+  /// Pixels times lights, of a chart of shadows, that are in the light and should be in shadow, or
+  /// the other way about. NaN of other subjects.
   double wrong_pixels = std::numeric_limits<double>::quiet_NaN();
-  /// Of impostors: wrong pixels a pixel of outline, how often a turn was drawn anew, and the most
-  /// memory that was taken. NaN of other subjects.
+  /// Figures of a chart of impostors: wrong pixels a pixel of outline, how often a turn was drawn
+  /// anew, and the most memory that was taken. NaN of other subjects.
   double outline_px = std::numeric_limits<double>::quiet_NaN();
   double renewals = std::numeric_limits<double>::quiet_NaN();
   double megabytes = std::numeric_limits<double>::quiet_NaN();

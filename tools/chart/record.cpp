@@ -10,7 +10,7 @@
 #include "tools/cli/option_values.h"
 #include "tools/golden/hashes.h"
 #include "tools/report/kept_results.h"
-#include "tools/report/specimen.h"
+#include "tools/report/worst_crop.h"
 
 namespace softfocus {
 namespace {
@@ -26,10 +26,10 @@ std::uint64_t hash_bytes(std::string_view bytes) {
   return hash.value;
 }
 
-/// Of a point in its file.
+/// A point's key in its file.
 constexpr const char* kPoint = "point";
 
-/// What is kept of an entry under a hash, if `read` can make something of it.
+/// The part of an entry that is kept under a hash, if `read` can read it.
 template <class Read>
 bool read_kept(const KeptResults& kept, const char* entry, const ChartPoint& point,
                const char* name, const Read& read) {

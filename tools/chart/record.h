@@ -1,6 +1,5 @@
 #pragma once
-// What `chart` keeps in files to go on with later, as JSON, and the keys that tell whether it is
-// still right.
+// `chart`'s files to go on from, as JSON, and the keys that tell whether they are still right.
 
 #include <filesystem>
 #include <string>
@@ -41,7 +40,7 @@ void save_errors(const ChartPoint& point, const std::string& key,
 /// Fills in what save_errors() kept under that key, if the picture's hash is the point's.
 bool load_errors(ChartPoint& point, const std::string& key, const std::filesystem::path& file);
 
-/// Likewise the pictures and the worst place, in the same file.
+/// Pictures and the worst place, kept in the same file.
 void save_pictures(const ChartPoint& point, const std::string& key,
                    const std::filesystem::path& file);
 bool load_pictures(ChartPoint& point, const std::string& key, const std::filesystem::path& file);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "dof/measure/regions.h"
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
@@ -21,7 +21,7 @@ bool moves(const Scene& scene) {
          });
 }
 
-// What the subject makes of a scene.
+// Changes a scene as the subject asks.
 void prepare_for(const ChartSubject& subject, ChartScene& chart) {
   chart.sampling = subject.sampling;
   // Its pinhole is without, and each contender gives all lights its own. Reliefs have none.

@@ -32,7 +32,7 @@ std::vector<ReadFile> check_scenes(const ChartOptions& options);
 /// Loads and draws a scene. Throws SceneError, and UsageError for an impossible lens.
 ChartScene load_chart_scene(const std::string& name, const ChartOptions& options, ThreadPool& pool);
 
-/// For the methods that draw the scene. Of depth of field without jitter: filters, too, look from
+/// Input of the methods that draw the scene. Depth of field has no jitter: filters, too, look from
 /// pixels' centres.
 LensViewInput accumulation_input(const ChartScene& scene, int samples);
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::string_view kAccumulation = "accumulation", kAuto = "auto", kTwoPass = "two-pass";
 
-/// Of every filter, so that no filter is held against another at a larger radius. Radii are
-/// --max-coc for a picture 1024 rows high, scaled with the height as those of scenes are.
+/// The radii of every filter, so that no filter is held against another at a larger radius. Radii
+/// are --max-coc for a picture 1024 rows high, scaled with the height as those of scenes are.
 const std::vector<double>& radii_at_1024(bool quick) {
   static const std::vector<double> all{8, 16, 32, 64}, few{16, 64};
   return quick ? few : all;
@@ -46,7 +46,7 @@ const std::vector<SettingsOfMethod>& table() {
        .profiles = {},
        .max_errors = {0.05, 0.02, 0.01},
        .quick_max_errors = {0.05, 0.02}},
-      // Of every other method.
+      // Settings of every other method.
       {.method = ""},
   };
   return settings;

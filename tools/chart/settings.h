@@ -1,6 +1,5 @@
 #pragma once
-// What `chart` measures: for each method of depth of field a list of settings. subject.h has other
-// subjects.
+// `chart`'s list of settings for each method of depth of field. subject.h has other subjects.
 
 #include <optional>
 #include <string>

@@ -63,9 +63,9 @@ std::vector<ChartEntry> motion_entries(const std::string& method, int, bool quic
 
 // --- anti-aliasing ---
 
-/// What is drawn twice as wide and high, and what is blurred.
+/// The scene drawn twice as wide and high, and two blurs.
 constexpr std::string_view kSupersample = "supersample";
-/// What has seen so many frames from other places in the pixel.
+/// The average of so many frames from other places in the pixel.
 constexpr std::string_view kTemporal = "temporal-aa";
 constexpr std::array<std::string_view, 2> kBlurs{"gaussian-3", "gaussian"};
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a chart is of: a truth, and those that come near it in less time.
+// The subject of a chart: a truth, and contenders that come near it in less time.
 
 #include <functional>
 #include <span>
@@ -26,10 +26,10 @@ struct ChartSubject {
 
   /// Whether pictures are taken through the scene's lens, else through a pinhole.
   bool through_lens = true;
-  /// Of the truth, and of the contender accumulation: jitter, and the shutter of a scene that has
-  /// none of its own.
+  /// Sampling of the truth and of the contender accumulation: jitter, and the shutter of a scene
+  /// that has none of its own.
   Sampling sampling{};
-  /// What a scene in which nothing moves gets: the camera's way around the target.
+  /// The camera's way around the target in a scene in which nothing moves.
   double orbit_degrees_per_frame = 0.0;
 
   /// The truth, calculated. Null: it is the mean of views.

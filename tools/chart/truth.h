@@ -28,7 +28,7 @@ ChartTruth make_truth(const ChartScene& scene, int samples,
 /// Keeps it as FILE.npy and FILE.json.
 void save_truth(const ChartTruth& truth, const std::string& key, const std::filesystem::path& file);
 
-/// What was kept, if it was under that key and is whole.
+/// The truth that was kept, if it was under that key and is whole.
 std::optional<ChartTruth> load_truth(const std::string& key, const std::filesystem::path& file);
 
 /// The truth reduced for the page, under the key of its scene's points; empty if none is kept.

@@ -8,7 +8,6 @@
 #include "tools/chart/record.h"
 #include "tools/chart/truth.h"
 #include "tools/cli/progress.h"
-#include "tools/cli/time_left.h"
 #include "tools/golden/hashes.h"
 #include "tools/report/report.h"
 
@@ -36,7 +35,7 @@ constexpr const char *kLoad = "load", *kTruth = "truth", *kMeasure = "measure",
 std::string run_kind(const ChartEntry& entry) { return "run " + entry_id(entry); }
 std::string time_kind(const ChartEntry& entry) { return "time " + entry_id(entry); }
 
-/// What goes along with the work on all scenes.
+/// Passed along with the work on all scenes.
 struct Work {
   const ChartOptions& options;
   ThreadPool& pool;
@@ -108,7 +107,7 @@ FoundTruth truth_of(Work& work, const ChartScene& scene, const std::string& key,
   return {std::move(truth), false};
 }
 
-/// Where no circle is larger than the smallest radius, all radii give one picture.
+/// If no circle is larger than the smallest radius, all radii give one picture.
 const ChartPoint* same_picture(const ChartPoint& point, const std::vector<ChartPoint>& before) {
   // A light may be too weak for a pixel to show whether its shadow is right.
   // And two turns of one picture may differ in renewals and memory.

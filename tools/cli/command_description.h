@@ -1,6 +1,6 @@
 #pragma once
-// What a command takes, as plain data. --help, the man pages and the shells' completions are
-// made of it.
+// A command's options and arguments as plain data. --help, the man pages and the shells'
+// completions are made of it.
 
 #include <functional>
 #include <string>
@@ -43,7 +43,7 @@ std::string option_with_value(const OptionDescription& option);
 /// "softfocus render [OPTIONS] SCENE".
 std::string usage_of(const CommandDescription& command);
 
-/// What --help prints, no line longer than `columns`, if that is 40 or more.
+/// The text of --help, no line longer than `columns`, if that is 40 or more.
 std::string help_text(const CommandDescription& command, int columns);
 
 /// The command's page for man, in the macros of man(7). `version` is the program's.

@@ -36,7 +36,7 @@ std::string choices_of(const OptionDescription& option) {
   return option.choices ? joined(option.choices(), " ") : "";
 }
 
-/// What the arguments can be, if it can be named.
+/// The arguments' possible values, if they can be named.
 std::string argument_choices(const CommandDescription& command) {
   return command.arguments.empty() ? "" : choices_of(command.arguments.front());
 }

@@ -6,7 +6,7 @@
 
 namespace softfocus {
 
-/// What was typed cannot be right.
+/// The command line cannot be right.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What an interrupt (SIGINT, SIGTERM, SIGHUP) leaves behind: nothing.
+// Interrupts (SIGINT, SIGTERM, SIGHUP) leave nothing behind.
 
 #include <filesystem>
 #include <functional>

@@ -47,7 +47,7 @@ void append_option(std::string& to, const OptionDescription& option) {
   }
   to += names + (option.type.empty() ? "" : " \\fI" + plain(option.type) + "\\fR") + "\n";
   to += plain(option.help) + ".\n";
-  // What the type names already needs no list.
+  // A type that names the values needs no list.
   if (!option.choices || option.type.find('|') != std::string::npos) return;
   std::string list;
   for (const std::string& choice : option.choices()) list += (list.empty() ? "" : ", ") + choice;

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "raster/images/image.h"
-#include "scenes/files/nearest_name.h"
+#include "scenes/files/scene_error.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"

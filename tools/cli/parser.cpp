@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "scenes/files/nearest_name.h"
+#include "scenes/files/scene_error.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 
@@ -207,7 +207,7 @@ Parsed parse(CLI::App& program, std::vector<std::string> arguments) {
     try {
       program.parse(std::move(arguments));
     } catch (const CLI::RequiredError&) {
-      // What is missing may stand there misspelt.
+      // The missing word may stand there misspelt.
       check_rest(program);
       throw;
     }

@@ -21,14 +21,14 @@ namespace softfocus {
 std::shared_ptr<CLI::App> make_program(const std::string& name, const std::string& version,
                                        const std::string& help);
 
-/// What the arguments ask for.
+/// The command that the arguments ask for.
 struct Parsed {
   CLI::App* command;  ///< or nullptr: there was none, or --help or --version was answered
   bool answered;
 };
 
 /// Reads the arguments, without the program's name. Without any, the help is printed on standard
-/// error. What follows `--` is no option. Throws UsageError.
+/// error. Words behind `--` are no options. Throws UsageError.
 Parsed parse(CLI::App& program, std::vector<std::string> arguments);
 
 std::string name_of(const CLI::App& command);
@@ -40,7 +40,7 @@ CommandDescription describe(const CLI::App& program, const std::string& command)
 /// Adds a command to the program. The program owns its parser.
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help);
 
-/// The same, which no list of commands shows.
+/// Adds a command that no list of commands shows.
 CLI::App* add_hidden_command(CLI::App& program, const std::string& name, const std::string& help);
 
 /// The heading of --help, which stands last.
@@ -53,7 +53,7 @@ void begin_group(CLI::App& parser, const std::string& heading);
 /// Adds an option without a value, which sets `given`.
 void add_flag(CLI::App& parser, const std::string& name, const std::string& help, bool& given);
 
-/// The same, which does more than set it.
+/// Adds an option without a value, which does more than set a variable.
 void add_flag(CLI::App& parser, const std::string& name, const std::string& help,
               std::function<void()> take);
 
@@ -62,7 +62,7 @@ void add_flag(CLI::App& parser, const std::string& name, const std::string& help
 void add_value(CLI::App& parser, const std::string& name, const std::string& type,
                const std::string& help, std::function<void(const std::string&)> take);
 
-/// The same, but it may be given often: `take` gets one text after the other.
+/// Adds an option that may be given often: `take` gets one text after the other.
 void add_repeatable_value(CLI::App& parser, const std::string& name, const std::string& type,
                           const std::string& help, std::function<void(const std::string&)> take);
 

@@ -135,8 +135,8 @@ void prepare_process() {
     if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
   }
 #ifdef __GLIBC__
-  // Pictures come and go. What the system takes back comes again as pages of zeros, which can take
-  // as long as what is done with them.
+  // Pictures come and go. Memory that the system takes back comes again as pages of zeros, which
+  // can take as long as the work on it.
   ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif

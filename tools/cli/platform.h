@@ -42,8 +42,8 @@ bool is_reader_gone(int descriptor);
 /// A descriptor to write bytes to what is there, or -1 with errno set.
 int open_existing(const std::filesystem::path& file);
 
-/// Likewise to a new file, which may be read too, with the permissions of the umask; EEXIST where
-/// the name is taken.
+/// A descriptor to a new file, to write and read, with the permissions of the umask; EEXIST if the
+/// name is taken.
 int create_file(const std::filesystem::path& file);
 
 /// Tells is_in_use(), until the descriptor is closed, that somebody writes to the file.
@@ -62,7 +62,7 @@ bool may_write(const std::filesystem::path& file);
 /// Writes some of the bytes, at least one, and returns how many; -1 with errno set.
 std::ptrdiff_t write_some(int descriptor, std::span<const std::byte> bytes);
 
-/// The same at a place of a regular file, whose end moves there if need be.
+/// write_some() at a place of a regular file, whose end moves there if need be.
 std::ptrdiff_t write_some_at(int descriptor, std::uint64_t place, std::span<const std::byte> bytes);
 
 /// Reads some bytes from a place of a regular file on and returns how many, 0 at its end; -1 with

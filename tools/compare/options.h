@@ -1,5 +1,5 @@
 #pragma once
-// What `compare` is asked: two pictures and what to say of them, or two sequences.
+// `compare`'s options: two pictures and measures of them, or two sequences.
 
 #include <filesystem>
 #include <optional>

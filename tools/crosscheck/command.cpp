@@ -33,7 +33,7 @@ struct CrosscheckOptions {
   bool json = false;
 };
 
-/// What a driver is to do.
+/// The work of a driver's process.
 struct DriverWork {
   const Driver* driver;
   ChosenProfile profile;
@@ -105,7 +105,7 @@ Json json_of(const DriverWork& work, const CaseResult& result) {
   Json entry{{"driver", work.driver->name}, {"profile", work.profile.name}, {"stage", result.stage},
              {"case", result.name},         {"values", result.values},      {"differing", nullptr},
              {"max_ulp", nullptr}};
-  // What was not compared is not equal.
+  // A result that was not compared is not equal.
   if (was_compared(result)) {
     entry["differing"] = result.differing;
     entry["max_ulp"] = result.max_ulp;

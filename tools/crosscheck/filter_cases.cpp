@@ -12,7 +12,7 @@
 namespace softfocus {
 namespace {
 
-// What the picture holds that is filtered.
+// The picture that is filtered.
 enum class TestPicture {
   figures,  ///< a drawn scene
   cube_room,

@@ -1,12 +1,9 @@
 // Stands in for what needs GL in a build without libepoxy.
 
-#include "tools/bench/effects_repeated_on_gl.h"
 #include "tools/bench/repeated_on_gl.h"
 #include "tools/crosscheck/probe.h"
 #include "tools/crosscheck/run_cases.h"
 #include "tools/gl/frame_on_gl.h"
-#include "tools/gl/maps_repeated_on_gl.h"
-#include "tools/gl/shadows_repeated_on_gl.h"
 
 namespace softfocus {
 namespace {

@@ -1,5 +1,3 @@
-// softfocus probe: a driver's profile, by experiment.
-
 #include <iostream>
 #include <memory>
 
@@ -11,6 +9,18 @@
 #include "tools/options/run_options.h"
 
 namespace softfocus {
+
+std::string probe_text(const Probe& probe) {
+  std::string heading = "Probed by softfocus " SOFTFOCUS_VERSION " on " + probe.renderer +
+                        "\nFor --profile FILE. What the answers rest on:\n";
+  for (const ProbeFinding& finding : probe.findings) {
+    heading += "- " + finding.question + ": " + finding.answer + " (" + finding.evidence + ")\n";
+  }
+  return profile_text(probe.profile, heading);
+}
+
+// softfocus probe: a driver's profile, by experiment.
+
 namespace {
 
 struct ProbeOptions {

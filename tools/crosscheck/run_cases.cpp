@@ -21,7 +21,7 @@ std::vector<Case> chosen_cases(const std::string& pattern, bool quick, bool slow
   return chosen;
 }
 
-// Of a case, without the ending.
+// A case's picture, without the ending.
 std::filesystem::path picture_name(const CrosscheckWork& work, const std::string& stage,
                                    const std::string& name) {
   return work.pictures / (std::string(work.driver.name) + '.' + stage + '.' + name);

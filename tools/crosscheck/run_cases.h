@@ -32,12 +32,12 @@ struct CrosscheckWork {
   Shaders shaders;
   std::string cases = "*";  ///< a pattern for "stage/name"
   bool quick = false;
-  /// Where to write what differs: the picture, and both sides' values. Empty: nowhere.
+  /// The folder for differing cases: the picture, and both sides' values. Empty: none.
   std::filesystem::path pictures;
   int threads = 1;
 };
 
-/// What a driver's process said besides its results.
+/// A driver's process: its words besides its results.
 struct DriverRun {
   std::string renderer;  ///< GL_RENDERER and GL_VERSION
   std::string error;     ///< why the driver could not be used, or how it ended

@@ -43,7 +43,7 @@ Scene tied_triangles() {
   return scene;
 }
 
-// The same, transparent, about a wall that is not.
+// Those triangles, transparent, about a wall that is not.
 Scene random_panes() {
   Scene scene = tied_triangles();
   scene.name = kPanes;

@@ -111,7 +111,7 @@ bool same_texel(const Image& a, const Image& b, int x, int y) {
   return true;
 }
 
-// Where and, for halves, how much.
+// The places that differ and, for halves, by how much.
 Image difference_map(const Tally& tally) {
   const Image& driver = tally.driver;
   if (driver.format == Format::rgba16f) return difference_picture(driver, tally.emulated);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kSamples = 256;  // a side of the picture of samples
 
-// What a texture's texels are made of.
+// The kind of a texture's texels.
 enum class Texels { any_colour, special };
 
 // Colours with detail; or half subnormals, the largest halves, zeros of both signs,

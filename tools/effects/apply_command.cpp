@@ -16,7 +16,7 @@
 #include "tools/pictures/picture_notes.h"
 #include "tools/refocus/opacity.h"
 #include "tools/refocus/picture_with_depth.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 
 namespace softfocus {
 namespace {

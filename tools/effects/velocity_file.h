@@ -7,7 +7,7 @@
 
 namespace softfocus {
 
-/// What such a file has, for help and messages.
+/// Contents of such a file, for help and messages.
 inline constexpr const char* kVelocityFiles =
     "NPY of shape (height, width, 2), or EXR with channels X and Y, or R and G alone";
 

@@ -55,7 +55,7 @@ class Json {
   bool is_text() const { return kind_ == Kind::text; }
   bool is_object() const { return kind_ == Kind::object; }
 
-  // What the value is. Throw JsonError if it is something else.
+  // The value. Throw JsonError if it is something else.
   bool boolean() const;
   std::int64_t integer() const;
   double number() const;  ///< an integer too

@@ -35,7 +35,7 @@ const char* remedy(int error) {
                    "': " + std::generic_category().message(error) + remedy(error));
 }
 
-/// What `file` leads to, links followed; of type not_found if there is nothing yet.
+/// The status of the file that `file` leads to, links followed; not_found if there is nothing yet.
 std::filesystem::file_status status_of(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);

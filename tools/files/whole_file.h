@@ -30,7 +30,7 @@ class WholeFile {
 
   /// Writes at a place of what is no device or pipe. A file is written so, or by write() alone.
   void write_at(std::uint64_t place, std::span<const std::byte> bytes);
-  /// What write_at() wrote, until commit().
+  /// The bytes that write_at() wrote, until commit().
   ByteSource written() const { return {descriptor_, end_}; }
 
   /// Gives the file its name, in place of one that has it. A new file has the

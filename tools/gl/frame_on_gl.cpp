@@ -1,7 +1,9 @@
 #include "tools/gl/frame_on_gl.h"
 
 #include "tools/gl/filter_on_gl.h"
+#include "tools/gl/maps_on_gl.h"
 #include "tools/gl/scene_on_gl.h"
+#include "tools/gl/shadows_on_gl.h"
 
 namespace softfocus {
 
@@ -46,6 +48,70 @@ Image FrameOnGl::filter(const Method& method, const DofSettings& settings, const
                                          upload(scene), scene.width, scene.height);
     return read_colour(result, 0);
   });
+}
+
+struct ShadowsRepeatedOnGl::State {
+  const Driver& driver;
+  GlContext context;
+  GlShadows shadows;
+};
+
+ShadowsRepeatedOnGl::ShadowsRepeatedOnGl(const Driver& driver, const MaskDraws& draws, int lights,
+                                         int width, int height, int threads) {
+  naming(driver, [&] {
+    state_.reset(new State{driver, GlContext{driver, threads}, {}});
+    state_->shadows = make_gl_shadows(state_->context, Shaders{}, draws, lights, width, height);
+  });
+}
+
+ShadowsRepeatedOnGl::~ShadowsRepeatedOnGl() = default;
+
+std::string ShadowsRepeatedOnGl::renderer() const {
+  return state_->context.renderer() + ", OpenGL " + state_->context.version();
+}
+
+void ShadowsRepeatedOnGl::draw() {
+  softfocus::draw(state_->shadows);
+  glFinish();
+}
+
+std::vector<std::uint8_t> ShadowsRepeatedOnGl::mask(std::span<const std::uint8_t> dark) const {
+  return naming(state_->driver, [&] { return read_mask(state_->shadows, dark); });
+}
+
+struct MapsRepeatedOnGl::State {
+  const Driver& driver;
+  GlContext context;
+  std::vector<GlMap> maps;
+};
+
+MapsRepeatedOnGl::MapsRepeatedOnGl(const Driver& driver, std::span<const MapCasters> maps,
+                                   int threads) {
+  naming(driver, [&] {
+    state_.reset(new State{driver, GlContext{driver, threads}, {}});
+    for (const MapCasters& map : maps) {
+      state_->maps.push_back(make_gl_map(state_->context, Shaders{}, map.settings));
+      for (const std::vector<CutCasters>& casters : map.sides) {
+        add_side(state_->maps.back(), casters);
+      }
+    }
+  });
+}
+
+MapsRepeatedOnGl::~MapsRepeatedOnGl() = default;
+
+std::string MapsRepeatedOnGl::renderer() const {
+  return state_->context.renderer() + ", OpenGL " + state_->context.version();
+}
+
+void MapsRepeatedOnGl::draw() {
+  for (const GlMap& map : state_->maps) softfocus::draw(map);
+  glFinish();
+}
+
+Image MapsRepeatedOnGl::nearness(std::size_t map, std::size_t side) const {
+  return naming(state_->driver,
+                [&] { return read_colour(state_->maps[map].sides[side].target, 0); });
 }
 
 }  // namespace softfocus

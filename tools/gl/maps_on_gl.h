@@ -34,7 +34,7 @@ void add_side(GlMap& map, std::span<const CutCasters> casters);
 
 void draw(const GlMap& map);
 
-/// Of each pixel how many texels are nearer, as blocked_texels() counts them: R32F.
+/// For each pixel how many texels are nearer, as blocked_texels() counts them: R32F.
 Image look_up(const GlMap& map, std::span<const PixelComparison> pixels, int width, int height);
 
 }  // namespace softfocus

@@ -3,7 +3,7 @@
 
 #include "raster/effects/motion/motion_blur.h"
 #include "raster/effects/motion/velocity.h"
-#include "tools/gl/effect_passes.h"
+#include "tools/gl/effects_on_gl.h"
 
 namespace softfocus {
 

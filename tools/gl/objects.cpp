@@ -129,7 +129,7 @@ bool can_be_read_as(const PixelFormat& as) {
   return static_cast<GLenum>(layout) == as.layout && static_cast<GLenum>(type) == as.type;
 }
 
-// Of floats that were halves, or single channels, before they were read: nothing is rounded.
+// Rounds nothing: the floats were halves, or single channels, before they were read.
 Image narrowed(const Image& floats, Format format) {
   Image image = make_image(format, floats.width, floats.height);
   for (int y = 0; y < image.height; ++y) {

@@ -63,7 +63,7 @@ void generate_levels(const GlTexture& texture);
 /// A level as an image of the texture's format; the size is the level's.
 Image read_level(const GlTexture& texture, Format format, int level, int width, int height);
 
-/// What is drawn into: colour textures of one size, and a depth buffer on request.
+/// A target of drawing: colour textures of one size, and a depth buffer on request.
 struct GlTarget {
   int width = 0;
   int height = 0;

@@ -206,7 +206,7 @@ void GlScene::draw_blended(const CameraMatrices& view, double frame, const GlTar
 void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const Peeling& peeling) {
   const GlTexture* before = peeling.before;
   int first_triangle = 0;
-  // What the draw before has set is not set again.
+  // State that the draw before has set is not set again.
   const GlProgram* program_set = nullptr;
   const Material* material_set = nullptr;
   const softfocus::Mesh* mesh_set = nullptr;

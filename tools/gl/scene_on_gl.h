@@ -65,7 +65,7 @@ class GlScene {
   void draw_blended(const CameraMatrices& view, double frame, const GlTarget& target);
 };
 
-/// What `draw` draws into: RGBA16F, with a depth buffer.
+/// The target of `draw`: RGBA16F, with a depth buffer.
 GlTarget make_scene_target(int width, int height);
 
 }  // namespace softfocus

@@ -21,7 +21,7 @@ const std::vector<Shader>& built_in_shaders();
 /// The methods that have a shader: two-pass and one-pass; pinhole needs none.
 bool has_shader(std::string_view method);
 
-/// Where shaders are taken from: the user's, by name, and then the built-in ones.
+/// The sources of shaders: the user's, by name, then the built-in ones.
 struct Shaders {
   std::map<std::string, std::string, std::less<>> own;
   std::filesystem::path folder;  ///< of the user's; empty if there are none

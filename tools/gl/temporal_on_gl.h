@@ -1,8 +1,8 @@
 #pragma once
-// What one frame takes from the frames before, on a GL driver with the project's shaders.
+// Passes from earlier frames to one frame, on a GL driver with the project's shaders.
 
 #include "raster/temporal/frame_passes.h"
-#include "tools/gl/effect_passes.h"
+#include "tools/gl/effects_on_gl.h"
 
 namespace softfocus {
 

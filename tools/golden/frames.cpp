@@ -2,19 +2,10 @@
 #include <array>
 #include <string_view>
 
-#include "dof/dof.h"
-#include "dof/fixed_pictures/arithmetic.h"
-#include "raster/effects/effect.h"
-#include "scenes/draw/frame_parts.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/velocity.h"
-#include "scenes/filtered_views/filtered_views.h"
-#include "scenes/lens_views/accumulation.h"
-#include "scenes/lens_views/sample_sums.h"
+#include "scenes/frame/frame.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/surface_splatting/surface_splatting.h"
-#include "scenes/temporal/frame_history.h"
-#include "scenes/warped_views/warped_views.h"
 #include "tools/golden/hashes.h"
 
 namespace softfocus {
@@ -58,18 +49,41 @@ std::string entry_name(std::string_view scene, std::string_view method, const st
   return name;
 }
 
-LensViewInput seen_from_lens(const Scene& scene, const CameraMatrices& view, const Image& picture,
-                             const Sampling& sampling, const Profile& profile) {
-  const double scale = scene.lens.coc_scale * kRows / picture.height;
-  return {scene,
-          view,
-          kFrame,
-          picture,
-          scene.lens.lens.focus_m,
-          aperture_radius_m(scene.lens.lens, scale),
-          sampling,
-          profile,
-          {}};
+/// A scene's frame, drawn for its methods.
+struct DrawnScene {
+  Shot shot;
+  DrawnFrame drawn;
+  UsedLens lens;
+};
+
+DrawnScene drawn_scene(const Scene& scene, const FrameSize& size, const Profile& profile,
+                       ThreadPool& pool) {
+  const auto [width, height] = size;
+  DrawnScene made{.shot = {.scene = &scene,
+                           .frame = kFrame,
+                           .width = width,
+                           .height = height,
+                           .layers = 0,
+                           .profile = profile},
+                  .drawn = {},
+                  .lens = {.lens = scene.lens.lens,
+                           .aperture_radius_m = aperture_radius_m(
+                               scene.lens.lens, scene.lens.coc_scale * kRows / height),
+                           .settings = settings_for(scene, height)}};
+  FrameMemory memory;
+  draw_shot(made.shot, memory, made.drawn, pool);
+  made.shot.layers.reset();
+  made.drawn.layers = 0;
+  return made;
+}
+
+std::uint64_t hash_by(std::string_view method, const DrawnScene& made, const Sampling& sampling,
+                      ThreadPool& pool) {
+  Shot shot = made.shot;
+  shot.method = find_method_choice(method);
+  shot.sampling = sampling;
+  FrameMemory memory{.is_last = true};
+  return hash_image(make_picture(shot, made.drawn, made.lens, memory, pool).picture);
 }
 
 // A fourth is empty in some scenes, and so the same in all profiles.
@@ -100,14 +114,11 @@ void add_effect_hashes(std::string_view scene, const Image& picture, const Profi
 }
 
 // Views in lens and time: a set, one that grows, and the sequence.
-void add_shutter_hashes(std::string_view scene, const LensViewInput& input,
-                        const std::string& where, std::vector<NamedHash>& hashes,
-                        ThreadPool& pool) {
-  LensViewInput open = input;
+void add_shutter_hashes(std::string_view scene, const DrawnScene& made, const std::string& where,
+                        std::vector<NamedHash>& hashes, ThreadPool& pool) {
   const auto add = [&](std::string_view name, const Sampling& sampling) {
-    open.sampling = sampling;
     hashes.push_back(
-        {entry_name(scene, name, where), hash_image(accumulation(open, pool).picture)});
+        {entry_name(scene, name, where), hash_by("accumulation", made, sampling, pool)});
   };
   add("accumulation-shutter", {.samples = 5, .jitter = true, .shutter_frames = 2.0});
   add("accumulation-shutter-by-tile",
@@ -220,37 +231,26 @@ std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool)
   const Scene scene = load_scene(name, scene_search_path({}));
   const auto [width, height] = kSizes[1];
   const Profile profile;
-  const DofSettings settings = settings_for(scene, height);
-  const CameraMatrices view = camera_matrices(scene.camera, kFrame, width, height);
-  const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
+  const DrawnScene made = drawn_scene(scene, kSizes[1], profile, pool);
+  const CameraMatrices& view = made.drawn.view;
   const std::string where = " ieee " + std::to_string(width) + 'x' + std::to_string(height);
   std::vector<NamedHash> hashes;
-  hashes.reserve(kFewMethods.size() + 1 + kGoldenLayers);
-  for (const std::string_view method : kFewMethods) {
-    hashes.push_back({entry_name(name, method, where),
-                      hash_image(filtered_frame(*find_method(method), scene, view, kFrame, picture,
-                                                settings, profile, pool))});
-  }
-  const LensViewInput from_lens = seen_from_lens(scene, view, picture, {.samples = 5}, profile);
-  hashes.push_back(
-      {entry_name(name, "accumulation", where), hash_image(accumulation(from_lens, pool).picture)});
-  hashes.push_back({entry_name(name, "filtered-views", where),
-                    hash_image(filtered_views(from_lens, pool).picture)});
-  const LensViewInput from_few =
-      seen_from_lens(scene, view, picture, {.samples = 12, .drawn_views = 3}, profile);
-  hashes.push_back({entry_name(name, "warped-accumulation", where),
-                    hash_image(warped_accumulation(from_few, pool).picture)});
-  const Sampling tile_sampling{.samples = 3 * kSampleGroup, .jitter = true, .by_tile = true};
-  const LensViewInput by_tile = seen_from_lens(scene, view, picture, tile_sampling, profile);
-  hashes.push_back({entry_name(name, "accumulation-by-tile", where),
-                    hash_image(accumulation(by_tile, pool).picture)});
-  hashes.push_back({entry_name(name, "filtered-views-by-tile", where),
-                    hash_image(filtered_views(by_tile, pool).picture)});
+  hashes.reserve(kFewMethods.size() + 5 + kGoldenLayers);
+  const auto add = [&](std::string_view entry, std::string_view method, const Sampling& sampling) {
+    hashes.push_back({entry_name(name, entry, where), hash_by(method, made, sampling, pool)});
+  };
+  for (const std::string_view method : kFewMethods) add(method, method, {});
+  add("accumulation", "accumulation", {.samples = 5});
+  add("filtered-views", "filtered-views", {.samples = 5});
+  add("warped-accumulation", "warped-accumulation", {.samples = 12, .drawn_views = 3});
+  const Sampling by_tile{.samples = 3 * kSampleGroup, .jitter = true, .by_tile = true};
+  add("accumulation-by-tile", "accumulation", by_tile);
+  add("filtered-views-by-tile", "filtered-views", by_tile);
   const std::vector<Image> layers =
       draw_layers(scene, view, kFrame, width, height, kGoldenLayers, profile, pool);
   add_layer_hashes(name, layers, where, hashes);
   if (std::find(kShutterScenes.begin(), kShutterScenes.end(), name) != kShutterScenes.end()) {
-    add_shutter_hashes(name, from_lens, where, hashes, pool);
+    add_shutter_hashes(name, made, where, hashes, pool);
   }
   return hashes;
 }
@@ -282,23 +282,24 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
   const auto& [name, scene] = golden;
   const auto [width, height] = size;
   const Profile& profile = known.profile;
-  const DofSettings settings = settings_for(scene, height);
-  const CameraMatrices view = camera_matrices(scene.camera, kFrame, width, height);
-  const Image picture = draw_scene(scene, view, kFrame, width, height, profile, pool);
+  DrawnScene made = drawn_scene(scene, size, profile, pool);
+  const CameraMatrices& view = made.drawn.view;
+  const Image& picture = made.drawn.parts.opaque;
   const std::string where =
       ' ' + std::string{known.name} + ' ' + std::to_string(width) + 'x' + std::to_string(height);
   const std::vector<Image> layers =
       draw_layers(scene, view, kFrame, width, height, kGoldenLayers, profile, pool);
-  const std::vector<ConstImageView> all_behind{layers.begin() + 1, layers.end()};
   std::vector<NamedHash> hashes;
+  const auto add = [&](std::string_view entry, std::string_view method) {
+    hashes.push_back({entry_name(name, entry, where), hash_by(method, made, sampling, pool)});
+  };
+  made.shot.scene = nullptr;  // methods have the layers, and no objects
   for (const Method& method : methods()) {
-    const auto behind = std::span{all_behind}.first(method.layers - 1);
-    hashes.push_back(
-        {entry_name(name, method.name, where),
-         hash_image(apply(
-             method, {.scene = picture, .settings = settings, .profile = profile, .behind = behind},
-             pool))});
+    made.drawn.parts.behind.assign(layers.begin() + 1,
+                                   layers.begin() + static_cast<std::ptrdiff_t>(method.layers));
+    add(method.name, method.name);
   }
+  made.drawn.parts.behind.clear();
   add_layer_hashes(name, layers, where, hashes);
   if (width == kSizes[1].width) {
     add_effect_hashes(name, picture, profile, where, hashes, pool);
@@ -329,18 +330,13 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
     }
   }
   for (const Arithmetic arithmetic : {Arithmetic::fixed, Arithmetic::fixed_8}) {
-    Image filtered = make_image(picture.format, width, height);
-    two_pass_in(arithmetic, {picture, settings, profile}, filtered, pool);
-    const std::string method = "two-pass-" + std::string{arithmetic_name(arithmetic)};
-    hashes.push_back({entry_name(name, method, where), hash_image(filtered)});
+    made.shot.arithmetic = arithmetic;
+    add("two-pass-" + std::string{arithmetic_name(arithmetic)}, "two-pass");
   }
-  const LensViewInput from_lens = seen_from_lens(scene, view, picture, sampling, profile);
-  hashes.push_back(
-      {entry_name(name, "accumulation", where), hash_image(accumulation(from_lens, pool).picture)});
-  hashes.push_back({entry_name(name, "filtered-views", where),
-                    hash_image(filtered_views(from_lens, pool).picture)});
-  hashes.push_back({entry_name(name, "surface-splatting", where),
-                    hash_image(surface_splatting(from_lens, pool).picture)});
+  made.shot.scene = &scene;
+  for (const char* const method : {"accumulation", "filtered-views", "surface-splatting"}) {
+    add(method, method);
+  }
   return hashes;
 }
 

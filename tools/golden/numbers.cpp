@@ -28,7 +28,8 @@ float any_float(RandomSequence& random) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(next_bits(random) >> 32));
 }
 
-// What a half can nearly hold, half of it at or beside a midpoint between two halves.
+// A number that a half can nearly hold; half of them lie at or beside a midpoint between two
+// halves.
 float float_near_halves(RandomSequence& random) {
   const std::uint64_t bits = next_bits(random);
   const auto half = static_cast<std::uint16_t>(bits & 0xFBFFu);

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "raster/images/image_hash.h"
+#include "raster/images/image.h"
 #include "raster/numbers/hash.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/relief/impostors/octahedral_atlas.h"
@@ -23,7 +23,7 @@ void add_all(Hash& hash, const Numbers& numbers) {
 std::uint64_t hash_of(const WarpedRelief& warped) {
   Hash hash;
   add_all(hash, warped.colours);
-  // Where nothing is a depth means nothing.
+  // Empty texels have a depth without a meaning.
   for (std::size_t i = 0; i < warped.depths_m.size(); ++i) {
     if (warped.colours[i] != 0) add_to_hash(hash, warped.depths_m[i]);
   }

@@ -3,7 +3,6 @@
 #include <limits>
 #include <string_view>
 
-#include "raster/images/mipmap.h"
 #include "raster/images/sampler.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/hash.h"

@@ -16,14 +16,13 @@
 #include "dof/measure/flip.h"
 #include "scenes/auto/auto_picture.h"
 #include "scenes/draw/draw_scene.h"
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/lens_views/accumulation.h"
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/info/candidate_table.h"
 #include "tools/info/candidates.h"
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
@@ -86,7 +85,7 @@ LensViewInput views_of(const Subject& subject, int samples) {
           .progress = {}};
 }
 
-/// What --measure finds: the mean FLIP of each choice, in their order.
+/// --measure's findings: the mean FLIP of each choice, in their order.
 struct Measured {
   double noise_floor = 0.0;  ///< of the truth's halves, one against the other
   std::vector<double> flips;
@@ -167,7 +166,7 @@ void print_table(std::span<const AutoMethod> choices, const std::optional<Measur
   }
 }
 
-/// What auto takes for an error, checks and all.
+/// auto's choice for an error, checks and all.
 struct Taken {
   double error_asked;
   AutoMethod choice;

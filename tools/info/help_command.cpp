@@ -21,7 +21,7 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
   whole.commit();
 }
 
-/// Where systems look for them, below a `share` folder.
+/// Files at the places where systems look for them, below a `share` folder.
 void write_documentation(const CommandDescription& program, const std::filesystem::path& share) {
   const auto write_page = [&](const CommandDescription& command, const std::string& name) {
     write_whole(share / "man" / "man1" / (name + ".1"), man_page(command, SOFTFOCUS_VERSION));

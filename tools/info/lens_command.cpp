@@ -42,7 +42,7 @@ struct LensFigures {
   std::vector<CocAtDistance> at;
 };
 
-// Of the focus distance: near, far and, where the circle is zero, the focus itself.
+// Multiples of the focus distance: near, far and, where the circle is zero, the focus itself.
 constexpr std::array kUsualDistances{0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 10.0};
 
 LensFigures figures(const LensCommandOptions& options) {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "raster/images/texel.h"
-#include "scenes/draw/scene_maps.h"
+#include "scenes/draw/light_points.h"
 #include "scenes/shadows/maps/draw_map_side.h"
 #include "scenes/shadows/maps/map_errors.h"
 #include "tools/cli/timing.h"
-#include "tools/gl/maps_repeated_on_gl.h"
+#include "tools/gl/frame_on_gl.h"
 
 namespace softfocus {
 namespace {
@@ -28,7 +28,7 @@ Scene with_settings(Scene scene, const ShadowMapSettings& settings) {
   return scene;
 }
 
-// Of all lights of a drawing, which has maps or projected shadows.
+// The truths of all lights of a drawing, which has maps or projected shadows.
 class LightTruths {
  public:
   LightTruths(const RepeatedShadows& drawing, ThreadPool& pool)

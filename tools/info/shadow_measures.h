@@ -1,5 +1,5 @@
 #pragma once
-// What `softfocus shadows` measures beside projected shadows and volumes.
+// Measures of `softfocus shadows` beside those of projected shadows and volumes.
 
 #include <utility>
 
@@ -7,7 +7,7 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/scene.h"
-#include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "tools/cli/option_values.h"
 #include "tools/gl/driver/driver.h"
 

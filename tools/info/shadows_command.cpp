@@ -14,14 +14,14 @@
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/make/sphere_field.h"
+#include "scenes/make/shapes.h"
 #include "scenes/shadows/embree_shadows.h"
-#include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/timing.h"
-#include "tools/gl/shadows_repeated_on_gl.h"
+#include "tools/gl/frame_on_gl.h"
 #include "tools/info/shadow_measures.h"
 #include "tools/options/light_options.h"
 #include "tools/options/run_options.h"
@@ -29,7 +29,7 @@
 namespace softfocus {
 namespace {
 
-// Of triangles squared: beyond, the schedules of O(n^2) are left out.
+// Schedules of O(n^2) are left out beyond so many triangles.
 constexpr std::size_t kMostForAllPairs = 20000;
 
 struct MeasuredShadows {
@@ -176,7 +176,7 @@ int measure_shadows(const ShadowsOptions& options) {
   if (options.shadows) set_shadows(scene, *options.shadows);
   if (!has_shadows(scene)) set_shadows(scene, ShadowKind::projected);
   set_lights(options.lights, scene);
-  // What a terminator's rule changes is apart from shadows and their truth.
+  // Terminators change light apart from shadows and their truth.
   for (Light& light : scene.lights) light.terminator = Terminator::facets;
   if (scene.lights.empty() || scene.lights.size() > kMostShadowLights) {
     throw UsageError("'" + scene.name + "' has " + std::to_string(scene.lights.size()) +

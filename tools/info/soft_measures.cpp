@@ -10,7 +10,7 @@
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/shadows/maps/map_errors.h"
-#include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "tools/cli/timing.h"
 
 namespace softfocus {
@@ -32,7 +32,7 @@ struct PointFrames : RepeatedShadows {
   std::vector<Light> whole;
 };
 
-// Of each soft light, and one after the other of each pixel, points that do not reach it.
+// Counts of points that do not reach a pixel: of each soft light, pixel after pixel.
 using DarkCounts = std::vector<std::vector<std::uint16_t>>;
 
 // The numbers of SceneShadows::lights that are soft.

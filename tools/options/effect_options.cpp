@@ -68,7 +68,7 @@ std::vector<ChosenEffect> all_effects(const EffectOptions& options,
 
 namespace {
 
-/// Where an effect that makes frames comes after `first`.
+/// Refuses an effect that makes frames and comes after `first`.
 [[noreturn]] void refuse_of_frames(const std::string& where, const Effect& effect,
                                    const Effect& first) {
   const std::string name{effect.name};
@@ -118,21 +118,6 @@ std::string order_warning(const std::vector<ChosenEffect>& effects) {
     last = chosen.effect;
   }
   return "";
-}
-
-Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
-                   const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool) {
-  for (const ChosenEffect& chosen : effects) {
-    if (is_of_frames(*chosen.effect)) continue;  // it has been drawn so
-    Image velocity;
-    EffectInput input{picture, chosen.parameters, profile};
-    if (chosen.effect->velocity != VelocityOf::nothing) {
-      velocity = make_velocity(chosen, picture);
-      input.velocity = velocity;
-    }
-    picture = apply(*chosen.effect, input, pool);
-  }
-  return picture;
 }
 
 }  // namespace softfocus

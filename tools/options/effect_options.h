@@ -1,12 +1,11 @@
 #pragma once
 // Effects on a command line: --effect NAME:key=value,..., one after the other.
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "raster/effects/effect.h"
+#include "scenes/frame/frame.h"
 #include "tools/cli/parser.h"
 
 namespace softfocus {
@@ -31,9 +30,6 @@ void add_effect_options(CLI::App& parser, EffectOptions& options);
 std::vector<ChosenEffect> all_effects(const EffectOptions& options,
                                       std::span<const ChosenEffect> of_scene = {});
 
-/// Whether it makes frames of a scene from those before (scenes/temporal).
-inline bool is_of_frames(const Effect& effect) { return effect.filter == nullptr; }
-
 /// The effect that is_of_frames(), which must be the first. Throws UsageError, naming
 /// `where` they are, if it is not, and if there are two.
 std::optional<ChosenEffect> effect_of_frames(const std::vector<ChosenEffect>& effects,
@@ -42,13 +38,5 @@ std::optional<ChosenEffect> effect_of_frames(const std::vector<ChosenEffect>& ef
 /// A warning if one comes before another that a camera has before it, or "": motion blur, then
 /// bloom and lens flare, then tone mapping (docs/effects/order.md).
 std::string order_warning(const std::vector<ChosenEffect>& effects);
-
-/// Makes the velocity that an effect reads, of the picture as it comes to the effect.
-using MakeVelocity = std::function<Image(const ChosenEffect& chosen, const Image& picture)>;
-
-/// The picture with all of them, in their order, but for the one of frames. `make_velocity` is
-/// called for those that read one.
-Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
-                   const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool);
 
 }  // namespace softfocus

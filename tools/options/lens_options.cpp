@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "dof/parameters.h"
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 #include "tools/options/parameter_options.h"
@@ -165,13 +165,18 @@ void check_lens(const ThinLens& lens, const LensOptions& options, std::string_vi
                    " mm, focused at " + short_number(lens.focus_m) + " m): " + error);
 }
 
-PixelCoc checked_pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px,
-                           double coc_scale) {
-  const PixelCoc coc = pixel_coc(lens, fov_y_degrees, height_px, coc_scale);
-  if (std::isfinite(coc.radius_at_infinity_px) && std::isfinite(coc.focus_m)) return coc;
+void check_pixel_coc(const PixelCoc& coc) {
+  if (std::isfinite(coc.radius_at_infinity_px) && std::isfinite(coc.focus_m)) return;
   throw UsageError(
       "the lens's circles are too large to compute with: give a larger --f-number, "
       "a nearer --focus or a smaller --coc-scale");
+}
+
+PixelCoc checked_pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px,
+                           double coc_scale) {
+  const PixelCoc coc = pixel_coc(lens, fov_y_degrees, height_px, coc_scale);
+  check_pixel_coc(coc);
+  return coc;
 }
 
 }  // namespace softfocus

@@ -19,13 +19,14 @@ struct LensOptions {
   std::optional<double> f_number;
   std::optional<double> focus_m;
   std::optional<double> coc_scale;
-  /// Of commands that animate, in place of one value if not empty: frames from 0 on, increasing.
+  /// Keys of commands that animate, in place of one value if not empty: frames from 0 on,
+  /// increasing.
   std::vector<Keyframe> focus_m_by_frame{};
   std::vector<Keyframe> f_number_by_frame{};
   Easing easing = Easing::linear;
 };
 
-/// The same with the values at a frame in place of keys.
+/// The options with the values at a frame in place of keys.
 LensOptions at_frame(LensOptions options, double frame);
 
 /// The values that --focus and --f-number gave, every bit of them.
@@ -37,19 +38,19 @@ void check_no_keys(const LensOptions& options);
 /// Adds --focus, --focal-length, --f-number and --coc-scale, whose defaults are the scene's.
 void add_lens_options(CLI::App& parser, LensOptions& options);
 
-/// Likewise of a command that animates: --focus and --f-number may have keys, such as
-/// '1:2m 48:6m', and --keyframes is added.
+/// Adds them for a command that animates: --focus and --f-number may have keys, such as '1:2m
+/// 48:6m', and --keyframes is added.
 void add_animated_lens_options(CLI::App& parser, LensOptions& options);
 
-/// Likewise for a command without a scene: the defaults are ThinLens's, and --fov is added.
+/// Adds them for a command without a scene: the defaults are ThinLens's, and --fov is added.
 void add_own_lens_options(CLI::App& parser, LensOptions& options,
                           std::function<void(double degrees)> on_fov);
 
-/// Likewise for pictures that may carry a lens: the defaults are theirs.
+/// Adds them for pictures that may carry a lens: the defaults are theirs.
 void add_compared_lens_options(CLI::App& parser, LensOptions& options,
                                std::function<void(double degrees)> on_fov);
 
-/// Likewise for a picture to refocus, which may carry a lens, and for many, with keys.
+/// Adds them for pictures to refocus, which may carry a lens, with keys.
 void add_refocus_lens_options(CLI::App& parser, LensOptions& options,
                               std::function<void(double degrees)> on_fov);
 
@@ -59,6 +60,9 @@ ThinLens overruled(ThinLens lens, const LensOptions& options);
 /// Throws UsageError if `lens` cannot be, naming the options that made it so or, if
 /// none was given, `otherwise`.
 void check_lens(const ThinLens& lens, const LensOptions& options, std::string_view otherwise);
+
+/// Throws UsageError for circles that single precision cannot hold.
+void check_pixel_coc(const PixelCoc& coc);
 
 /// pixel_coc(), whose circles single precision must be able to hold: UsageError.
 PixelCoc checked_pixel_coc(const ThinLens& lens, double fov_y_degrees, int height_px,

@@ -1,6 +1,6 @@
 #pragma once
-// What the command line says of lights with shadows and of their shadow maps, in place of what the
-// scene says.
+// The command line's settings of lights with shadows and of their shadow maps, in place of the
+// scene's.
 
 #include <optional>
 #include <string>
@@ -30,7 +30,7 @@ void add_terminator_option(CLI::App& parser, LightOptions& options);
 /// is of.
 void set_lights(const LightOptions& options, Scene& scene);
 
-/// What --map says: keys and values, of all lights in place of what the scene says.
+/// --map's keys and values, of all lights, in place of the scene's.
 struct MapOptions {
   struct Value {
     std::size_t key;

@@ -18,10 +18,10 @@ std::string given(Arithmetic arithmetic) {
   return "--arithmetic " + std::string{arithmetic_name(arithmetic)};
 }
 
-// Of Sampling::by_tile: the method's own.
+// Stands for the method's own number with Sampling::by_tile.
 constexpr int kMostUsual = 0;
 
-// Of Sampling::shutter_frames, until the scene is there.
+// Stands in Sampling::shutter_frames until the scene is there.
 constexpr double kShutterOfScene = -1.0;
 
 constexpr std::initializer_list<const char*> kSamplingOptions{
@@ -77,7 +77,7 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
   add_value(parser, "--method", "NAME",
             "Depth-of-field method (default: " + std::string{method.name()} + ")",
             [&method](const std::string& text) {
-              method = {find_method(text), find_lens_view_method(text)};
+              method = find_method_choice(text);
               if (method.filter != nullptr || text == kAutoMethod) return;
               if (method.of_scene == nullptr) refuse_name("--method", text, all_methods());
               if (!method.of_scene->missing.empty()) {
@@ -240,7 +240,7 @@ Sampling with_shutter_of(const Scene& scene, Sampling sampling) {
 std::string shutter_warning(const Scene& scene, const MethodChoice& method,
                             const std::vector<ChosenEffect>& effects) {
   if (!(scene.camera.shutter_frames > 0.0)) return "";
-  if (method.of_scene != nullptr && method.of_scene->has_shutter) return "";
+  if (method.has_shutter()) return "";
   const bool is_blurred = std::any_of(effects.begin(), effects.end(), [](const ChosenEffect& of) {
     return of.effect->velocity != VelocityOf::nothing;
   });

@@ -7,14 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "dof/auto/auto_method.h"
-#include "dof/dof.h"
-#include "dof/fixed_pictures/arithmetic.h"
 #include "dof/parameters.h"
-#include "raster/effects/effect.h"
-#include "scenes/auto/auto_picture.h"
-#include "scenes/lens_views/lens_view_method.h"
-#include "scenes/scene.h"
+#include "scenes/frame/frame.h"
 #include "scenes/warped_views/warped_views.h"
 #include "tools/cli/parser.h"
 #include "tools/files/json.h"
@@ -35,23 +29,8 @@ inline constexpr Parameter kUntil{"until",
 // clang-format on
 }  // namespace parameter
 
-/// What chooses a method by the scene (dof/auto/auto_method.h).
-inline constexpr std::string_view kAutoMethod = "auto";
-
 /// The method that DofSettings::budget bounds.
 inline constexpr std::string_view kBudgetMethod = "importance-ordered";
-
-/// A method of either table: a filter of the drawn picture or one that draws the scene. Or
-/// neither: the scene shall choose.
-struct MethodChoice {
-  const Method* filter = nullptr;
-  const LensViewMethod* of_scene = nullptr;
-
-  bool is_auto() const { return filter == nullptr && of_scene == nullptr; }
-  std::string_view name() const {
-    return is_auto() ? kAutoMethod : filter != nullptr ? filter->name : of_scene->name;
-  }
-};
 
 /// The names of both tables, then `auto`.
 std::vector<std::string> all_methods();

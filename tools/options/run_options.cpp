@@ -20,7 +20,7 @@ std::string isa_names() {
   return list;
 }
 
-// What this CPU has does not matter to a man page.
+// This CPU's own units do not matter to a man page.
 constexpr const char* kIsas = "scalar, baseline, avx2 or avx512";
 
 ChosenProfile profile_of(const std::string& text) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a command runs on, and what it says before it does: --threads and --isa, --shard, --driver,
+// A command's machine, and its words before it runs: --threads and --isa, --shard, --driver,
 // --shaders, --profile, --format, too little memory, what a scene lacks.
 
 #include <cstdint>
@@ -57,7 +57,7 @@ void add_format_option(CLI::App& parser, FileFormat& format);
 void settle_format(const CLI::App& parser, const std::string& output, FileFormat& format);
 
 /// Throws UsageError, naming the option that gave the size, if the machine has less memory
-/// than so many bytes a pixel. Where the system does not tell, allocation decides.
+/// than so many bytes a pixel. If the system does not tell, allocation decides.
 void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel);
 
 /// Adds -q, beside --help.

@@ -101,7 +101,7 @@ Json answer_start(Page& page, const Json& request) {
   page.pool.reset();
   page.gpu_scene.reset();
   page.pool = std::make_unique<ThreadPool>(threads, isa);
-  page.prepared.reset();
+  page.memory = {};
   page.truth.reset();
   return {{"threads", page.pool->threads()}, {"isa", isa_name(isa)}};
 }

@@ -3,33 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dof/circle_sizes.h"
-#include "raster/images/texel.h"
-#include "scenes/draw/draw_scene.h"
-#include "scenes/draw/frame_parts.h"
-#include "scenes/draw/keyframes.h"
+#include "dof/lens.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/cli/errors.h"
+#include "tools/options/effect_options.h"
 #include "tools/page/picture.h"
 #include "tools/stress/cases/make_frame.h"
 
 namespace softfocus {
 namespace {
 
-bool same_drawing(const FrameSettings& a, const FrameSettings& b) {
+/// Effects that make frames from those before are part of the drawing, of a picture alone.
+bool same_drawing(const FrameSettings& a, const FrameSettings& b, bool has_effect_of_frames) {
   return a.size.width == b.size.width && a.size.height == b.size.height && a.preview == b.preview &&
-         a.frame == b.frame && a.camera == b.camera;
-}
-
-void draw_opened_scene(Page& page, Drawn& drawn) {
-  const FrameSettings& settings = drawn.settings;
-  const auto [width, height] = settings.size;
-  const Scene& scene = page.opened->scene;
-  drawn.scene = &scene;
-  drawn.camera = chosen_camera(scene.camera, settings.camera);
-  drawn.view = camera_matrices(drawn.camera, settings.frame, width, height);
-  if (!page.prepared) page.prepared = prepare_scene(scene, Profile{}, *page.pool);
-  drawn.picture = make_image(Format::rgba16f, width, height);
-  draw_scene(*page.prepared, drawn.view, settings.frame, drawn.picture, *page.pool);
+         a.frame == b.frame && a.camera == b.camera &&
+         (!has_effect_of_frames || (a.show == Show::image) == (b.show == Show::image));
 }
 
 /// A case's picture is square, and its radii are pixels: a coarser one would be another case.
@@ -40,49 +28,58 @@ void draw_opened_case(Page& page, Drawn& drawn) {
   drawn.trial = opened.stress_case->make(opened.severity, side, *page.pool);
   const auto last = static_cast<double>(drawn.trial->frames.size() - 1);
   const auto number = static_cast<std::size_t>(std::clamp(settings.frame, 0.0, last));
-  const StressFrame& frame = drawn.trial->frames[number];
+  StressFrame& frame = drawn.trial->frames[number];
   drawn.trial_frame = &frame;
   drawn.camera = opened.scene.camera;
-  drawn.picture = frame.sharp;
+  drawn.frame.parts.opaque = frame.sharp;
   if (!frame.scene) return;
-  const Scene& scene = frame.scene->scene;
+  Scene& scene = frame.scene->scene;
   drawn.scene = &scene;
-  drawn.camera = chosen_camera(scene.camera, settings.camera);
-  drawn.view = frame.scene->camera;
+  drawn.camera = scene.camera = chosen_camera(scene.camera, settings.camera);
+  drawn.frame.view = frame.scene->camera;
   if (!settings.camera) return;
   const int width = frame.sharp.width, height = frame.sharp.height;
-  drawn.view = camera_matrices(drawn.camera, 0.0, width, height);
-  drawn.picture = draw_scene(scene, drawn.view, 0.0, width, height, Profile{}, *page.pool);
+  drawn.frame.view = camera_matrices(drawn.camera, 0.0, width, height);
+  drawn.frame.parts.opaque =
+      draw_scene(scene, drawn.frame.view, 0.0, width, height, Profile{}, *page.pool);
 }
 
-float focus_depth(const Image& picture, glm::dvec2 at) {
-  const auto pixel = [](double part, int count) {
-    return std::min(static_cast<int>(part * count), count - 1);
-  };
-  const int x = pixel(at.x, picture.width), y = pixel(at.y, picture.height);
-  return load_texel<Format::rgba16f>(picture, x, y).w;
+glm::ivec2 pixel_at(glm::dvec2 part, int width, int height) {
+  return {std::min(static_cast<int>(part.x * width), width - 1),
+          std::min(static_cast<int>(part.y * height), height - 1)};
 }
 
 /// A case gives its circles in pixels. Its lens in millimetres stands for them: what is changed in
 /// it changes them in proportion.
-void set_case_lens(FrameLens& used, const SceneLens& stands_for, const Drawn& drawn,
-                   bool found_focus) {
+void set_case_lens(UsedLens& used, const SceneLens& stands_for, const Drawn& drawn,
+                   const FrameSettings& settings, const Shot& shot, ThreadPool& pool) {
   const StressFrame& frame = *drawn.trial_frame;
   used.settings = frame.settings;
   const auto focus_m = static_cast<double>(frame.settings.coc.focus_m);
-  if (!found_focus) used.lens.focus_m = focus_m * (used.lens.focus_m / stands_for.lens.focus_m);
+  if (!settings.focus_at) {
+    used.lens.focus_m = focus_m * (used.lens.focus_m / stands_for.lens.focus_m);
+  }
   const double wider = aperture_mm(used.lens) / aperture_mm(stands_for.lens) * used.coc_scale;
-  used.aperture_m = frame.scene ? frame.scene->aperture_m * wider : 0.0;
+  used.aperture_radius_m = frame.scene ? frame.scene->aperture_m * wider : 0.0;
   PixelCoc& coc = used.settings.coc;
   coc.radius_at_infinity_px = static_cast<float>(static_cast<double>(coc.radius_at_infinity_px) *
                                                  wider * (focus_m / used.lens.focus_m));
   coc.focus_m = static_cast<float>(used.lens.focus_m);
+  used.settings.max_coc_px = settings.max_coc_px.value_or(used.settings.max_coc_px);
+  if (shot.lens->cuts_no_circle) {
+    used.settings.max_coc_px = std::ceil(circle_sizes(drawn.picture(), coc, 0.0f, pool).largest_px);
+  }
 }
 
-bool takes_all_circles(const FrameSettings& settings) {
-  const Method* filter = settings.method.filter;
-  return settings.show == Show::image && filter != nullptr && filter->any_radius_costs_the_same &&
-         !settings.max_coc_px;
+ShotLens asked_lens(const Scene& scene, const FrameSettings& settings) {
+  const auto [width, height] = settings.size;
+  ShotLens asked{overruled(lens_at(scene.lens, settings.frame), settings.lens),
+                 settings.lens.coc_scale.value_or(scene.lens.coc_scale)};
+  if (settings.focus_at) asked.focus_at = pixel_at(*settings.focus_at, width, height);
+  asked.settings.max_coc_px = used_max_coc_px(settings.max_coc_px, scene.lens, height);
+  asked.cuts_no_circle =
+      settings.show == Show::image && settings.method.takes_any_radius() && !settings.max_coc_px;
+  return asked;
 }
 
 }  // namespace
@@ -92,11 +89,40 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
       .count();
 }
 
-std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& settings) {
+Shot asked_shot(Page& page, const FrameSettings& settings) {
   if (!page.opened) throw UsageError("nothing is open; the request 'open' opens a scene");
   if (page.opened->picture) throw UsageError(kNoScene);
+  Scene& scene = page.opened->scene;
+  Shot shot{.scene = &scene,
+            .frame = settings.frame,
+            .width = settings.size.width,
+            .height = settings.size.height,
+            .show = settings.show,
+            .method = settings.method,
+            .sampling = settings.sampling};
+  if (settings.show == Show::image || settings.show == Show::coc) {
+    shot.lens = asked_lens(scene, settings);
+  }
+  if (page.opened->stress_case) return shot;
+  scene.camera = chosen_camera(page.opened->camera, settings.camera);
+  if (settings.show != Show::image) return shot;
+  shot.effects = scene.effects;
+  if (settings.method.has_shutter()) shot.sampling.shutter_frames = scene.camera.shutter_frames;
+  const auto effect = effect_of_frames(shot.effects, "the scene '" + page.opened->source + "'");
+  if (effect && settings.method.filter == nullptr) {
+    throw UsageError("the scene's effect " + std::string{effect->effect->name} +
+                     " makes the picture that a method filters, and " +
+                     std::string{settings.method.name()} + " draws the scene itself");
+  }
+  return shot;
+}
+
+std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& settings) {
+  const Shot shot = asked_shot(page, settings);
+  const std::vector<ChosenEffect>& effects = page.opened->scene.effects;
+  const bool has_effect_of_frames = !effects.empty() && is_of_frames(*effects.front().effect);
   for (std::size_t i = 0; i < page.drawn.size(); ++i) {
-    if (page.drawn[i] && same_drawing(page.drawn[i]->settings, settings)) {
+    if (page.drawn[i] && same_drawing(page.drawn[i]->settings, settings, has_effect_of_frames)) {
       std::swap(page.drawn[0], page.drawn[i]);
       return page.drawn[0];
     }
@@ -104,63 +130,66 @@ std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& sett
   const auto start = std::chrono::steady_clock::now();
   auto drawn = std::make_shared<Drawn>();
   drawn->settings = settings;
-  page.opened->stress_case ? draw_opened_case(page, *drawn) : draw_opened_scene(page, *drawn);
+  if (page.opened->stress_case) {
+    draw_opened_case(page, *drawn);
+  } else {
+    drawn->scene = shot.scene;
+    drawn->camera = shot.scene->camera;
+    Shot for_any_lens = shot;
+    for_any_lens.lens.reset();
+    draw_shot(for_any_lens, page.memory, drawn->frame, *page.pool);
+  }
   drawn->ms = milliseconds_since(start);
   std::rotate(page.drawn.begin(), page.drawn.end() - 1, page.drawn.end());
   page.drawn[0] = drawn;
   return drawn;
 }
 
-FrameLens frame_lens(const Opened& opened, const Drawn& drawn, const FrameSettings& settings,
-                     ThreadPool& pool) {
-  const SceneLens& of_scene = opened.scene.lens;
-  FrameLens used;
-  used.lens = overruled(lens_at(of_scene, settings.frame), settings.lens);
-  if (settings.focus_at) {
-    used.lens.focus_m = static_cast<double>(focus_depth(drawn.picture, *settings.focus_at));
+Shot shot_of_drawn(Page& page, const Drawn& drawn, const FrameSettings& settings) {
+  Shot shot = asked_shot(page, settings);
+  if (!drawn.trial) return shot;
+  const Image& picture = drawn.picture();
+  shot.frame = 0.0;
+  shot.width = picture.width;
+  shot.height = picture.height;
+  if (settings.focus_at && shot.lens) {
+    shot.lens->focus_at = pixel_at(*settings.focus_at, picture.width, picture.height);
   }
-  used.coc_scale = settings.lens.coc_scale.value_or(of_scene.coc_scale);
-  if (const char* error = lens_error(used.lens)) {
-    throw UsageError("the lens is " + short_number(used.lens.focal_length_mm) + " mm, focused at " +
-                     short_number(used.lens.focus_m) + " m: " + error);
-  }
-  if (drawn.trial_frame != nullptr) {
-    set_case_lens(used, of_scene, drawn, settings.focus_at.has_value());
-    used.settings.max_coc_px = settings.max_coc_px.value_or(used.settings.max_coc_px);
+  if (drawn.scene != nullptr) {
+    shot.scene = drawn.scene;
   } else {
-    const int height = drawn.picture.height;
-    used.settings.coc =
-        checked_pixel_coc(used.lens, drawn.camera.fov_y_degrees, height, used.coc_scale);
-    used.settings.max_coc_px = used_max_coc_px(settings.max_coc_px, of_scene, height);
-    used.aperture_m = aperture_radius_m(used.lens, used.coc_scale);
+    shot.layers = 0;  // there is the picture alone
   }
-  if (takes_all_circles(settings)) {
-    const CircleSizes sizes = circle_sizes(drawn.picture, used.settings.coc, 0.0f, pool);
-    used.settings.max_coc_px = std::ceil(sizes.largest_px);
-  }
-  return used;
+  return shot;
 }
 
-LensViewInput lens_view_input(const Drawn& drawn, double focus_m, double aperture_m,
-                              const Sampling& sampling) {
-  return {.scene = *drawn.scene,
-          .camera = drawn.view,
-          .frame = drawn.trial ? 0.0 : drawn.settings.frame,
-          .pinhole = drawn.picture,
-          .focus_m = focus_m,
-          .aperture_radius_m = aperture_m,
-          .sampling = sampling,
-          .profile = Profile{},
-          .progress = {}};
+UsedLens used_lens(const Page& page, const Drawn& drawn, const FrameSettings& settings,
+                   const Shot& shot) {
+  try {
+    UsedLens used = *focused_lens(shot, drawn.frame, *page.pool);
+    if (drawn.trial_frame != nullptr) {
+      set_case_lens(used, page.opened->scene.lens, drawn, settings, shot, *page.pool);
+    }
+    return used;
+  } catch (const LensError& error) {
+    const ThinLens& lens = error.lens.lens;
+    if (lens_error(lens) == nullptr) check_pixel_coc(error.lens.settings.coc);
+    throw UsageError("the lens is " + short_number(lens.focal_length_mm) + " mm, focused at " +
+                     short_number(lens.focus_m) + " m: " + error.what());
+  }
 }
 
-Image filtered_picture(const Drawn& drawn, const Method& method, const DofSettings& settings,
-                       ThreadPool& pool) {
-  const Image& picture = drawn.picture;
-  if (drawn.scene == nullptr) return apply(method, {picture, settings, Profile{}}, pool);
-  const double frame = drawn.trial ? 0.0 : drawn.settings.frame;
-  return filtered_frame(method, *drawn.scene, drawn.view, frame, picture, settings, Profile{},
-                        pool);
+Image made_picture(const Page& page, const Drawn& drawn, const Shot& shot,
+                   const std::optional<UsedLens>& lens) {
+  if (drawn.scene == nullptr && shot.show == Show::image && shot.method.filter == nullptr) {
+    throw UsageError("this case is made as a picture: methods that draw the scene have none");
+  }
+  FrameMemory memory{.is_last = true};
+  FrameHooks hooks;
+  hooks.on_samples = [&page](int) { stop_if_cancelled(page); };
+  Frame frame = make_picture(shot, drawn.frame, lens, memory, *page.pool, hooks);
+  finish_picture(shot, frame, *page.pool);
+  return std::move(frame.picture);
 }
 
 }  // namespace softfocus

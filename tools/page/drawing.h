@@ -1,5 +1,5 @@
 #pragma once
-// From what is open to a sharp picture, and from its lens to the numbers of a filter.
+// From what is open to a shot, its sharp picture, its lens and its finished picture.
 
 #include <chrono>
 
@@ -7,21 +7,24 @@
 
 namespace softfocus {
 
-/// The sharp picture of these settings, drawn or as it was kept. Throws UsageError if nothing is
-/// open.
+/// What these settings ask for of what is open, whose scene then has their camera. Throws
+/// UsageError if nothing is open, or for what the scene's effects do not go with.
+Shot asked_shot(Page& page, const FrameSettings& settings);
+
+/// The sharp picture of these settings, drawn or as it was kept. Throws UsageError as asked_shot().
 std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& settings);
 
-/// The lens of these settings on that picture. Throws UsageError for a lens that cannot be.
-FrameLens frame_lens(const Opened& opened, const Drawn& drawn, const FrameSettings& settings,
-                     ThreadPool& pool);
+/// asked_shot() of what was drawn: a case makes its own scene and size.
+Shot shot_of_drawn(Page& page, const Drawn& drawn, const FrameSettings& settings);
 
-/// The scene as seen from the lens. Needs drawn.scene.
-LensViewInput lens_view_input(const Drawn& drawn, double focus_m, double aperture_m,
-                              const Sampling& sampling);
+/// The lens of these settings, whose shot has one, on that picture. Throws UsageError for a lens
+/// that cannot be.
+UsedLens used_lens(const Page& page, const Drawn& drawn, const FrameSettings& settings,
+                   const Shot& shot);
 
-/// What a filter makes of it.
-Image filtered_picture(const Drawn& drawn, const Method& method, const DofSettings& settings,
-                       ThreadPool& pool);
+/// The shot's picture, by any method, with the effects.
+Image made_picture(const Page& page, const Drawn& drawn, const Shot& shot,
+                   const std::optional<UsedLens>& lens);
 
 double milliseconds_since(std::chrono::steady_clock::time_point start);
 

@@ -7,7 +7,7 @@
 #include "tools/page/picture.h"
 #include "tools/page/requests.h"
 #include "tools/page/scene_text.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 #include "tools/refocus/report.h"
 #include "tools/render/performance_report.h"
 
@@ -32,7 +32,7 @@ std::string source_text(const Opened& opened) {
          short_number(opened.severity) + " " + std::string{of.parameter.unit};
 }
 
-std::string lens_text(const FrameLens& used) {
+std::string lens_text(const UsedLens& used) {
   const ThinLens& lens = used.lens;
   return line("Focus distance", short_number(lens.focus_m) + " m") +
          line("Focal length", short_number(lens.focal_length_mm) + " mm") +
@@ -42,7 +42,7 @@ std::string lens_text(const FrameLens& used) {
                                  " pixels (largest CoC radius)");
 }
 
-/// Of the camera, or of what there is in its place.
+/// The camera as text, or what stands in its place.
 std::string seen_text(const Opened& opened, const ShownFrame& shown) {
   if (const OpenedPicture* picture = opened.picture.get()) {
     return line("Depth",

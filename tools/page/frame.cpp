@@ -2,54 +2,26 @@
 
 #include <cmath>
 
-#include "dof/circle_sizes.h"
-#include "dof/show.h"
+#include "dof/lens.h"
 #include "raster/images/texel.h"
 #include "tools/cli/errors.h"
 #include "tools/page/drawing.h"
 #include "tools/page/picture.h"
 #include "tools/page/requests.h"
+#include "tools/page/scene_text.h"
 #include "tools/page/screen.h"
 
 namespace softfocus {
 namespace {
 
-Image filtered(const Page& page, const Drawn& drawn, const FrameSettings& settings,
-               const FrameLens& lens) {
-  ThreadPool& pool = *page.pool;
-  if (settings.method.of_scene != nullptr) {
-    if (drawn.scene == nullptr) {
-      throw UsageError("this case is made as a picture: methods that draw the scene have none");
-    }
-    LensViewInput input =
-        lens_view_input(drawn, lens.lens.focus_m, lens.aperture_m, settings.sampling);
-    input.progress = [&page](int) { stop_if_cancelled(page); };
-    return settings.method.of_scene->render(input, pool).picture;
-  }
-  return filtered_picture(drawn, *settings.method.filter, lens.settings, pool);
-}
-
-Image wanted_picture(const Page& page, const Drawn& drawn, const FrameSettings& settings,
-                     const std::optional<FrameLens>& lens) {
-  switch (settings.show) {
-    case Show::image: return filtered(page, drawn, settings, *lens);
-    case Show::pinhole: return drawn.picture;
-    case Show::coc: return show_coc(drawn.picture, lens->settings.coc, lens->settings.max_coc_px);
-    case Show::depth:
-      return show_depth(drawn.picture, static_cast<float>(drawn.camera.near_m),
-                        static_cast<float>(drawn.camera.far_m));
-  }
-  return drawn.picture;
-}
-
 /// The lens in the numbers of the thesis's equations; dof/lens.h has them.
-void add_lens_figures(Json& reply, const FrameLens& used, const Drawn& drawn, ThreadPool& pool) {
+void add_lens_figures(Json& reply, const UsedLens& used, const Drawn& drawn, ThreadPool& pool) {
   const ThinLens& lens = used.lens;
   const double film_mm = film_height_mm(lens, drawn.camera.fov_y_degrees);
-  const double sharp_mm = film_mm / drawn.picture.height;
+  const double sharp_mm = film_mm / drawn.picture().height;
   const SharpRange sharp = sharp_range(lens, sharp_mm);
   const CircleSizes sizes =
-      circle_sizes(drawn.picture, used.settings.coc, used.settings.max_coc_px, pool);
+      circle_sizes(drawn.picture(), used.settings.coc, used.settings.max_coc_px, pool);
   reply["focus_m"] = lens.focus_m;
   reply["focal_length_mm"] = lens.focal_length_mm;
   reply["f_number"] = lens.f_number;
@@ -76,10 +48,10 @@ ShownFrame scene_frame(Page& page, const FrameSettings& settings) {
                    .refocused = {}};
   stop_if_cancelled(page);
   const Drawn& drawn = *shown.drawn;
-  const bool needs_lens = settings.show == Show::image || settings.show == Show::coc;
-  if (needs_lens) shown.lens = frame_lens(*page.opened, drawn, settings, *page.pool);
+  const Shot shot = shot_of_drawn(page, drawn, settings);
+  if (shot.lens) shown.lens = used_lens(page, drawn, settings, shot);
   const auto start = std::chrono::steady_clock::now();
-  shown.picture = wanted_picture(page, drawn, settings, shown.lens);
+  shown.picture = made_picture(page, drawn, shot, shown.lens);
   shown.filter_ms = milliseconds_since(start);
   return shown;
 }
@@ -96,7 +68,8 @@ Json answer_frame(Page& page, const Json& request) {
              {"height", shown.picture.height},
              {"hash", settings.hash ? Json(hash_text(shown.hash)) : Json(nullptr)},
              {"draw_ms", drawn.ms},
-             {"filter_ms", shown.filter_ms}};
+             {"filter_ms", shown.filter_ms},
+             {"command", command_text(*page.opened, settings)}};
   if (is_picture) {
     add_refocus_figures(reply, shown);
   } else if (shown.lens) {
@@ -110,7 +83,7 @@ Json answer_frame(Page& page, const Json& request) {
 Json answer_pixel(Page& page, const Json& request) {
   if (!page.shown) throw UsageError("there is no frame yet; the request 'frame' makes one");
   const ShownFrame& shown = *page.shown;
-  const Image& picture = shown.drawn->picture;
+  const Image& picture = shown.drawn->picture();
   const auto x = static_cast<int>(checked_number(request.at("x"), "x", 0, picture.width - 1));
   const auto y = static_cast<int>(checked_number(request.at("y"), "y", 0, picture.height - 1));
   const float depth_m = load_texel<Format::rgba16f>(picture, x, y).w;

@@ -68,7 +68,7 @@ double milliseconds_of(const Work& work) {
   return milliseconds_since(start);
 }
 
-/// What both sides made of one stage.
+/// Both sides' results of one stage.
 struct Stage {
   Image on_gl, emulated;
   double gl_ms = 0.0, emulated_ms = 0.0;
@@ -107,7 +107,7 @@ Stage drawn_by_both(Page& page, const Drawn& drawn, const GlTarget& target) {
   const double frame = drawn.settings.frame;
   Stage stage;
   const auto draw = [&] {
-    scene.on_gl.draw(drawn.view, frame, target);
+    scene.on_gl.draw(drawn.frame.view, frame, target);
     wait_for(target);
   };
   draw();
@@ -115,7 +115,7 @@ Stage drawn_by_both(Page& page, const Drawn& drawn, const GlTarget& target) {
   stage.on_gl = read_colour(target, 0);
   stage.emulated = make_image(Format::rgba16f, target.width, target.height);
   stage.emulated_ms = milliseconds_of(
-      [&] { draw_scene(scene.prepared, drawn.view, frame, stage.emulated, *page.pool); });
+      [&] { draw_scene(scene.prepared, drawn.frame.view, frame, stage.emulated, *page.pool); });
   return stage;
 }
 
@@ -177,7 +177,7 @@ Json answer_gl_frame(Page& page, const Json& request) {
   const FrameSettings settings = read_frame_settings(request);
   Gpu& gpu = opened_gpu(page);
   const std::shared_ptr<const Drawn> drawn = drawn_picture(page, settings);
-  Stage frame{drawn->picture, drawn->picture, 0.0, 0.0};
+  Stage frame{drawn->picture(), drawn->picture(), 0.0, 0.0};
   Json reply{{"width", frame.on_gl.width},
              {"height", frame.on_gl.height},
              {"profile", gpu.profile.name},
@@ -186,15 +186,16 @@ Json answer_gl_frame(Page& page, const Json& request) {
   GlTexture uploaded;
   // A case is made as a picture: both sides begin with it.
   if (drawn->trial) {
-    uploaded = upload(drawn->picture);
+    uploaded = upload(drawn->picture());
   } else {
-    target = make_scene_target(drawn->picture.width, drawn->picture.height);
+    target = make_scene_target(drawn->picture().width, drawn->picture().height);
     frame = drawn_by_both(page, *drawn, target);
     add(reply, "draw", frame);
   }
   const Method* method = settings.show == Show::image ? settings.method.filter : nullptr;
   if (method != nullptr && has_shader(method->name)) {
-    const DofSettings lens = frame_lens(*page.opened, *drawn, settings, *page.pool).settings;
+    const DofSettings lens =
+        used_lens(page, *drawn, settings, shot_of_drawn(page, *drawn, settings)).settings;
     Stage filter = filtered_by_both(page, *method, lens, drawn->trial ? uploaded : target.colour[0],
                                     frame.on_gl);
     add(reply, "filter", filter);

@@ -53,6 +53,7 @@ std::unique_ptr<Opened> opened_scene(const std::string& source) {
   auto opened = std::make_unique<Opened>();
   opened->source = source;
   opened->scene = load_scene(source, scene_search_path({}));
+  opened->camera = opened->scene.camera;
   return opened;
 }
 
@@ -80,7 +81,7 @@ Json warnings_json(const Scene& scene) {
 void put_in_place(Page& page, std::unique_ptr<Opened> opened) {
   page.truth.reset();
   page.shown.reset();
-  page.prepared.reset();
+  page.memory = {};
   page.drawn = {};
   page.gpu_scene.reset();
   page.opened = std::move(opened);

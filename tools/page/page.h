@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "raster/threads/parallel.h"
-#include "scenes/draw/draw_scene.h"
+#include "scenes/frame/frame.h"
 #include "scenes/lens_views/accumulation.h"
 #include "tools/golden/hashes.h"
 #include "tools/page/settings.h"
@@ -29,6 +29,7 @@ struct Opened {
   std::string source;  ///< as `softfocus render` takes it, or the picture's file; empty for a case
   Scene scene;         ///< of a case: empty but for the camera and the lens that stand for it; of a
                        ///< picture: its title alone
+  Camera camera;       ///< the scene's own; the scene has that of the last frame
   std::optional<StressCase> stress_case;
   double severity = 0.0;
   std::shared_ptr<OpenedPicture> picture;
@@ -38,20 +39,13 @@ struct Opened {
 struct Drawn {
   FrameSettings settings;
   Camera camera;
-  CameraMatrices view{};
-  Image picture;                     ///< RGBA16F, depth in alpha
+  DrawnFrame frame;
   std::optional<StressTrial> trial;  ///< of a case; else the scene is the opened one
   const StressFrame* trial_frame = nullptr;
   const Scene* scene = nullptr;  ///< null for a case that is made as a picture
   double ms = 0.0;
-};
 
-/// The lens as a frame used it.
-struct FrameLens {
-  ThinLens lens;
-  double coc_scale = 1.0;
-  double aperture_m = 0.0;  ///< its radius, exaggerated by coc_scale
-  DofSettings settings;
+  const Image& picture() const { return frame.parts.picture(); }
 };
 
 /// How far a picture is from the mean of so many views.
@@ -64,7 +58,7 @@ struct KnownFlip {
 struct ShownFrame {
   std::shared_ptr<const Drawn> drawn;
   FrameSettings settings;
-  std::optional<FrameLens> lens;  ///< none where the picture needs none
+  std::optional<UsedLens> lens;  ///< none where the picture needs none
   Image picture;
   std::uint64_t hash = 0;
   double filter_ms = 0.0;
@@ -94,7 +88,7 @@ struct GpuScene;
 struct Page {
   std::unique_ptr<ThreadPool> pool = std::make_unique<ThreadPool>(1);
   std::unique_ptr<Opened> opened;
-  std::optional<PreparedScene> prepared;  ///< of the opened scene
+  FrameMemory memory;  ///< of drawing the opened scene
   /// The last pictures drawn, the latest first: one as shown, one coarser.
   std::array<std::shared_ptr<const Drawn>, 2> drawn;
   std::optional<ShownFrame> shown;

@@ -26,7 +26,7 @@ DepthOptions read_reading(const Json& request) {
   return reading;
 }
 
-/// What has to be said before the depth can be read, as a clause, or nothing.
+/// A clause that says what is missing before the depth can be read, or nothing.
 std::string lacking(const BelievedEncoding& believed, const DepthNumbers& numbers) {
   if (believed.encoding == nullptr) return believed.why + "; choose what its numbers mean";
   try {
@@ -71,7 +71,7 @@ std::vector<float> thinned(const std::vector<float>& values, const Image& pictur
 
 std::shared_ptr<const Drawn> as_drawn(Image picture) {
   auto drawn = std::make_shared<Drawn>();
-  drawn->picture = std::move(picture);
+  drawn->frame.parts.opaque = std::move(picture);
   return drawn;
 }
 
@@ -79,7 +79,7 @@ const PictureAtSize& at_size(OpenedPicture& opened, int preview) {
   if (preview == 1) return opened.whole;
   if (opened.coarse && opened.coarse->preview == preview) return *opened.coarse;
   const PictureAtSize& whole = opened.whole;
-  const Image& picture = whole.drawn->picture;
+  const Image& picture = whole.drawn->picture();
   Image thin = thinned(picture, preview);
   DepthMap depth{thin.width, thin.height, thinned(whole.depth.metres, picture, preview)};
   opened.coarse = {.preview = preview,
@@ -97,8 +97,8 @@ Json reading_json(const OpenedPicture& opened, const BelievedEncoding& believed,
                                       ? opened.options.reading.encoding
                                       : believed.encoding;
   Json json{
-      {"width", opened.whole.drawn->picture.width},
-      {"height", opened.whole.drawn->picture.height},
+      {"width", opened.whole.drawn->picture().width},
+      {"height", opened.whole.drawn->picture().height},
       {"depth_channel", plane.name},
       {"type", name_of(plane.type)},
       {"least", seen.least},
@@ -136,7 +136,7 @@ RefocusOptions options_of(const OpenedPicture& opened, const FrameSettings& sett
                                                 : RefocusShow::image;
   options.photo.lens = settings.lens;
   if (settings.focus_at) {
-    const Image& picture = opened.whole.drawn->picture;
+    const Image& picture = opened.whole.drawn->picture();
     options.photo.focus_at = Pixel{pixel_of(settings.focus_at->x, picture.width),
                                    pixel_of(settings.focus_at->y, picture.height)};
   }
@@ -206,7 +206,7 @@ ShownFrame refocused_frame(Page& page, const FrameSettings& settings) {
                    .refocused = {}};
   RefocusedFrame frame{options_of(opened, settings), {}, {}};
   if (!opened.reading || settings.show == Show::pinhole) {
-    shown.picture = seen.drawn->picture;
+    shown.picture = seen.drawn->picture();
     return shown;
   }
   stop_if_cancelled(page);
@@ -214,13 +214,13 @@ ShownFrame refocused_frame(Page& page, const FrameSettings& settings) {
                                 frame.options.reading.numbers.focal_px, opened.whole.depth);
   frame.used.lens.coc.radius_at_infinity_px /= static_cast<float>(settings.preview);
   const auto start = std::chrono::steady_clock::now();
-  PictureOnItsWay result = refocused({seen.drawn->picture, seen.opacity}, seen.depth, frame.options,
-                                     frame.used, *page.pool);
+  PictureOnItsWay result = refocused({seen.drawn->picture(), seen.opacity}, seen.depth,
+                                     frame.options, frame.used, *page.pool);
   shown.filter_ms = milliseconds_since(start);
   shown.picture = std::move(result.picture);
   frame.opacity = std::move(result.opacity);
   const SettledLens& lens = frame.used.lens;
-  shown.lens = FrameLens{lens.lens, lens.coc_scale, 0.0, frame.used.settings};
+  shown.lens = UsedLens{lens.lens, lens.coc_scale, 0.0, frame.used.settings};
   // The filter's own may be an equal one with other depths.
   shown.lens->settings.coc = lens.coc;
   shown.refocused = std::make_shared<RefocusedFrame>(std::move(frame));

@@ -27,7 +27,7 @@ struct OpenedPicture {
   std::optional<PictureAtSize> coarse;  ///< the last one that was wanted
 };
 
-/// What a frame of a picture was made with, to write its file.
+/// Settings that a frame of a picture was made with, to write its file.
 struct RefocusedFrame {
   RefocusOptions options;
   UsedRefocus used;
@@ -47,7 +47,7 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool);
 /// The opened picture with these settings. Its size is the file's, divided by `preview`.
 ShownFrame refocused_frame(Page& page, const FrameSettings& settings);
 
-/// What is said of such a frame beside its size and times.
+/// Adds to the reply the figures of such a frame beside its size and times.
 void add_refocus_figures(Json& reply, const ShownFrame& shown);
 
 }  // namespace softfocus

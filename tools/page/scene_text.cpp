@@ -9,6 +9,7 @@
 #include "scenes/load/load_scene.h"
 #include "tools/cli/errors.h"
 #include "tools/page/picture.h"
+#include "tools/render/performance_report.h"
 
 namespace softfocus {
 namespace {
@@ -37,7 +38,7 @@ std::vector<KeyLine> camera_lines(const Camera& camera) {
           {"far_m", text_of(camera.far_m)}};
 }
 
-std::vector<KeyLine> lens_lines(const FrameLens& used) {
+std::vector<KeyLine> lens_lines(const UsedLens& used) {
   return {{"focal_length_mm", text_of(used.lens.focal_length_mm)},
           {"f_number", text_of(used.lens.f_number)},
           {"focus_m", text_of(used.lens.focus_m)},
@@ -134,6 +135,47 @@ std::string scene_text(const Opened& opened, const ShownFrame& shown) {
                          : read_file_bytes(opened.scene.files.back(), kLargestText);
   text = with_section(text, "camera", camera_lines(shown.drawn->camera));
   return shown.lens ? with_section(text, "lens", lens_lines(*shown.lens)) : text;
+}
+
+Json command_text(const Opened& opened, const FrameSettings& settings) {
+  if (opened.picture || opened.stress_case) return nullptr;
+  const bool is_random = is_random_scene(opened.source);
+  if (settings.camera && is_random) return nullptr;
+  const bool needs_file = settings.camera || opened.source.find('/') != opened.source.npos;
+  const auto [width, height] = settings.size;
+  std::string text = "softfocus render " + (needs_file ? "scene.toml" : opened.source) +
+                     " -o picture.png --json --size " + std::to_string(width) + "x" +
+                     std::to_string(height);
+  const auto add = [&](const char* option, const auto& value) {
+    if (!value) return;
+    const std::string number = json_text(static_cast<double>(*value));
+    text.append(option).append(number.ends_with(".0") ? number.substr(0, number.size() - 2)
+                                                      : number);
+  };
+  if (settings.frame != 0.0) add(" --frame ", std::optional{settings.frame});
+  const bool is_image = settings.show == Show::image;
+  text += is_image ? " --method " + std::string{settings.method.name()}
+                   : " --show " + std::string{name_of(settings.show)};
+  if (!is_image && settings.show != Show::coc) return text;
+  if (!needs_file) {
+    if (settings.focus_at) {
+      const auto pixel = [](double part, int count) {
+        return std::to_string(std::min(static_cast<int>(part * count), count - 1));
+      };
+      text += " --autofocus " + pixel(settings.focus_at->x, width) + "," +
+              pixel(settings.focus_at->y, height);
+    } else {
+      add(" --focus ", settings.lens.focus_m);
+    }
+    add(" --focal-length ", settings.lens.focal_length_mm);
+    add(" --f-number ", settings.lens.f_number);
+    add(" --coc-scale ", settings.lens.coc_scale);
+  }
+  if (!is_image || settings.method.filter != nullptr) add(" --max-coc ", settings.max_coc_px);
+  if (is_image && settings.method.samples_lens()) {
+    text += " --samples " + std::to_string(settings.sampling.samples);
+  }
+  return text;
 }
 
 }  // namespace softfocus

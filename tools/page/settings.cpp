@@ -54,7 +54,7 @@ CameraChoice read_camera(const Json& camera) {
 }
 
 MethodChoice read_method(const std::string& name) {
-  const MethodChoice method{find_method(name), find_lens_view_method(name)};
+  const MethodChoice method = find_method_choice(name);
   if (method.is_auto()) {
     throw UsageError("method '" + name + "': there are " + names_of(methods()) + ", " +
                      names_of(lens_view_methods()));

@@ -1,5 +1,5 @@
 #pragma once
-// What a `frame` request asks for.
+// A `frame` request's settings.
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -60,7 +60,7 @@ const Json* given(const Json& request, std::string_view name);
 double checked_number(const Json& value, const Parameter& parameter);
 double checked_number(const Json& value, std::string_view name, double least, double most);
 
-/// What requests set, and the controls show.
+/// Numbers that requests set, and the controls show.
 std::span<const Parameter> page_parameters();
 
 }  // namespace softfocus

@@ -20,8 +20,9 @@ function resolved(from, to) {
 
 // What our modules use, one statement a line: import { a, b as c } from "./x.js";
 // import * as a from "./x.js"; import "./x.js"; export function, class, const; export { a, b };
+// An import takes the value of the moment, so what is exported must never be assigned again: no let.
 const kImport = /^import\s+(?:(\{[^}]*\}|\*\s+as\s+\w+)\s+from\s+)?"([^"]+)";/gm;
-const kExport = /^export\s+(?:async\s+)?(?:function\*?|class|const|let)\s+(\w+)/gm;
+const kExport = /^export\s+(?:async\s+)?(?:function\*?|class|const)\s+(\w+)/gm;
 const kExportList = /^export\s*\{([^}]*)\};/gm;
 
 /** "{a, b as c}" as a pattern that takes an object apart: "{a, b: c}". */
@@ -45,7 +46,7 @@ function function_of(name, text) {
         return names ? `const ${pattern_of(names)} = ${call};` : `${call};`;
       })
       .replace(kExportList, "")
-      .replace(/^export\s+(?=async|function|class|const|let)/gm, "");
+      .replace(/^export\s+(?=async|function|class|const)/gm, "");
   if (/^(import|export)\b/m.test(body)) fail(`${name}: an import or export that is not understood`);
   if (/\bimport\.meta\b|\bimport\(|^\s*await\b/m.test(body.replace(/async[\s\S]*/, ""))) {
     fail(`${name}: import.meta, import() and await at the top need a real module`);

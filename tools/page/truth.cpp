@@ -37,26 +37,33 @@ const Image* known_truth(const Drawn& drawn) {
 
 bool is_of(const Truth& truth, const ShownFrame& shown) {
   return truth.drawn == shown.drawn && truth.focus_m == shown.lens->lens.focus_m &&
-         truth.aperture_m == shown.lens->aperture_m;
+         truth.aperture_m == shown.lens->aperture_radius_m;
 }
 
-Truth begin_truth(const ShownFrame& shown, ThreadPool& pool) {
+/// The last frame's shot by as many views of the lens as there may be, its shutter open as the
+/// scene's.
+Shot shot_of_truth(Page& page, const ShownFrame& shown) {
+  FrameSettings settings = shown.settings;
+  settings.show = Show::image;
+  settings.method = find_method_choice("accumulation");
+  settings.sampling = {.samples = kMostTruthViews};
+  return shot_of_drawn(page, *shown.drawn, settings);
+}
+
+Truth begin_truth(const ShownFrame& shown, const Shot& shot, ThreadPool& pool) {
   const Drawn& drawn = *shown.drawn;
   Truth truth;
   truth.drawn = shown.drawn;
   truth.focus_m = shown.lens->lens.focus_m;
-  truth.aperture_m = shown.lens->aperture_m;
-  truth.buffer = make_accumulation_buffer(
-      lens_view_input(drawn, truth.focus_m, truth.aperture_m, {.samples = kMostTruthViews}), pool);
-  truth.sums = make_sample_sums(drawn.picture.width, drawn.picture.height);
+  truth.aperture_m = shown.lens->aperture_radius_m;
+  truth.buffer = make_accumulation_buffer(lens_views_of(shot, drawn.frame, *shown.lens), pool);
+  truth.sums = make_sample_sums(drawn.picture().width, drawn.picture().height);
   return truth;
 }
 
 /// In the steps of take_samples.h, so that the sums have the bits of `--method accumulation
 /// --until`.
-void add_views(const Page& page, Truth& truth, int views) {
-  const LensViewInput input =
-      lens_view_input(*truth.drawn, truth.focus_m, truth.aperture_m, {.samples = kMostTruthViews});
+void add_views(const Page& page, const LensViewInput& input, Truth& truth, int views) {
   const int wanted = std::min(truth.sums.count + views, kMostTruthViews);
   while (truth.sums.count < wanted) {
     stop_if_cancelled(page);
@@ -71,17 +78,19 @@ void add_views(const Page& page, Truth& truth, int views) {
   }
 }
 
-Image mean_of(const Truth& truth, ThreadPool& pool) {
-  return mean_picture(truth.sums, truth.drawn->picture, Profile{}, pool);
+Image mean_of(const Truth& truth, const Shot& shot, ThreadPool& pool) {
+  Frame frame{.picture = mean_picture(truth.sums, truth.drawn->picture(), Profile{}, pool)};
+  finish_picture(shot, frame, pool);
+  return std::move(frame.picture);
 }
 
 /// The truth of the last frame as far as it has come. Throws UsageError if there is none yet.
-Image found_truth(const Page& page, const ShownFrame& shown) {
+Image found_truth(Page& page, const ShownFrame& shown) {
   if (const Image* known = known_truth(*shown.drawn)) return *known;
   if (!page.truth || !is_of(*page.truth, shown) || page.truth->sums.count == 0) {
     throw UsageError("the truth of this frame has no views yet; give 'views'");
   }
-  return mean_of(*page.truth, *page.pool);
+  return mean_of(*page.truth, shot_of_truth(page, shown), *page.pool);
 }
 
 void show_truth(Page& page, const std::string& what, const Image& truth, const Image& picture) {
@@ -114,8 +123,11 @@ Json answer_truth(Page& page, const Json& request) {
   if (const Json* views = request.find("views"); views != nullptr && !is_known) {
     const auto count = static_cast<int>(checked_number(*views, "views", 1, kMostTruthViews));
     if (drawn.scene == nullptr) throw UsageError("this case has no scene to look at");
-    if (!page.truth || !is_of(*page.truth, shown)) page.truth = begin_truth(shown, *page.pool);
-    add_views(page, *page.truth, count);
+    const Shot shot = shot_of_truth(page, shown);
+    if (!page.truth || !is_of(*page.truth, shown)) {
+      page.truth = begin_truth(shown, shot, *page.pool);
+    }
+    add_views(page, lens_views_of(shot, drawn.frame, *shown.lens), *page.truth, count);
   }
   const Image truth = found_truth(page, shown);
   const int samples = is_known ? 0 : page.truth->sums.count;
@@ -139,6 +151,10 @@ Json answer_truth(Page& page, const Json& request) {
 Json answer_compare_methods(Page& page, const Json& request) {
   const ShownFrame& shown = last_frame(page);
   const Image truth = found_truth(page, shown);
+  FrameSettings settings = shown.settings;
+  settings.show = Show::image;
+  settings.method = find_method_choice("pinhole");
+  Shot shot = shot_of_drawn(page, *shown.drawn, settings);
   Json results = Json::array();
   for (const Json& name : request.at("methods").values()) {
     const Method* method = find_method(name.text());
@@ -147,14 +163,15 @@ Json answer_compare_methods(Page& page, const Json& request) {
     }
     for (const Json& radius : request.at("radii").values()) {
       stop_if_cancelled(page);
-      DofSettings settings = shown.lens->settings;
-      settings.max_coc_px = static_cast<float>(
+      UsedLens lens = *shown.lens;
+      lens.settings.max_coc_px = static_cast<float>(
           checked_number(radius, "radii", 0.0, static_cast<double>(kLargestMaxCoc)));
       const auto start = std::chrono::steady_clock::now();
-      const Image picture = filtered_picture(*shown.drawn, *method, settings, *page.pool);
+      shot.method = {.filter = method};
+      const Image picture = made_picture(page, *shown.drawn, shot, lens);
       const double ms = milliseconds_since(start);
       results.push_back({{"method", method->name},
-                         {"radius", settings.max_coc_px},
+                         {"radius", lens.settings.max_coc_px},
                          {"ms", ms},
                          {"flip_mean", mean_flip(truth, picture, *page.pool)}});
     }

@@ -21,8 +21,8 @@ enum class ExrNumbers : std::uint8_t { half, single };
 
 struct PictureFile;
 
-/// What there is to write beside a picture, and its depth in alpha. Each may be empty; the planes
-/// have a number a pixel. PNG takes the alpha alone, EXR all, other formats nothing.
+/// Data to write beside a picture, and its depth in alpha. Each may be empty; the planes have a
+/// number a pixel. PNG takes the alpha alone, EXR all, other formats nothing.
 struct PictureExtras {
   std::span<const float> alpha{};       ///< 0 to 1: the picture's colour is multiplied by it
   std::span<const float> depth_m{};     ///< channel Z, in place of the picture's own halves
@@ -45,7 +45,7 @@ Bytes encode_depth_exr(std::span<const float> values, int width, int height);
 /// The attribute `softfocus` of such a file, or nothing.
 std::optional<std::string> find_exr_notes(const ByteSource& bytes);
 
-/// What a file's header says of the lens, each if it does: the standard attributes `focus`,
+/// The lens in a file's header, each value if it is there: the standard attributes `focus`,
 /// `aperture` and `nominalFocalLength`.
 struct HeaderLens {
   std::optional<double> focus_m{};
@@ -54,7 +54,7 @@ struct HeaderLens {
   std::vector<std::string> faults{};  ///< attributes that no lens can have, as clauses
 };
 
-/// Of an EXR; else nothing. Does not throw.
+/// The lens of an EXR; else nothing. Does not throw.
 HeaderLens find_exr_lens(const ByteSource& bytes);
 
 /// By the first bytes.

@@ -189,7 +189,7 @@ class SourcePlanes {
     }
   }
 
-  /// Where the data window ends there is nothing, 0.
+  /// Outside the data window there is nothing: 0.
   void copy(const Kept& kept, int y, int rows, std::byte* to) const {
     const Window window = window_of(kept.info->part, y, rows);
     const std::size_t size = bytes_of(kept.type);
@@ -215,8 +215,8 @@ class SourcePlanes {
 
 constexpr std::array<std::string_view, 3> kLensNames{"focus", "aperture", "nominalFocalLength"};
 
-/// What a camera or a program wrote into another file's header, but for its form and, where the
-/// picture has a lens of its own, that.
+/// Copies the attributes of another file's header, but for its form and, if the picture has a lens
+/// of its own, its lens.
 void copy_attributes(const Imf::Header& from, Imf::Header& to, bool keeps_lens) {
   constexpr std::array<std::string_view, 21> kForm{"channels",
                                                    "compression",
@@ -253,7 +253,7 @@ void copy_attributes(const Imf::Header& from, Imf::Header& to, bool keeps_lens) 
 void add_lens(const ThinLens& lens, Imf::Header& header) {
   Imf::addFocus(header, static_cast<float>(lens.focus_m));
   Imf::addAperture(header, static_cast<float>(lens.f_number));
-  // Of OpenEXR 3.2; older libraries have no function for it.
+  // OpenEXR has a function for it from 3.2 on.
   header.insert("nominalFocalLength",
                 Imf::FloatAttribute(static_cast<float>(lens.focal_length_mm)));
 }

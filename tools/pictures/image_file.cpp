@@ -163,7 +163,7 @@ Bytes read_picture_bytes(const std::filesystem::path& file) {
     stream.read(reinterpret_cast<char*>(bytes.data() + before), kPart);
     bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
     if (stream.bad()) refuse(EIO);
-    // Of what is no picture the first part is enough to be refused by: it may have no end.
+    // The first part is enough to refuse a file that is no picture: it may have no end.
     if (!stream || !begins_as_picture(bytes)) return bytes;
     // A device that begins as a picture need not end either.
     const std::size_t most = most_picture_bytes();

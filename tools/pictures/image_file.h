@@ -73,7 +73,7 @@ Picture decode(std::span<const std::byte> bytes, FileFormat format);
 Picture decode_png(std::span<const std::byte> bytes);
 Picture decode_pfm(std::span<const std::byte> bytes);
 Picture decode_npy(std::span<const std::byte> bytes);
-/// Of any kind, by the first bytes. FileError names `path`.
+/// Decodes any kind, by the first bytes. FileError names `path`.
 Picture decode_other(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 /// The bytes of a picture's file, and the picture in them, of any kind that picture_file.h reads,

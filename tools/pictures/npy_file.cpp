@@ -323,7 +323,7 @@ void list_npy(PictureFile& file) {
   if (array.columns_first) file.remark = "Fortran order";
 }
 
-/// Of an array by columns all rows at once.
+/// An array by columns is read whole.
 ReadRows npy_rows(const PictureFile& file, std::vector<std::size_t> planes) {
   return [array = npy_picture(file), source = source_of(file), planes = std::move(planes),
           buffer = Bytes{}](Rows rows, std::span<PlaneValues> values) mutable {

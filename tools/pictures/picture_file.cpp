@@ -78,7 +78,7 @@ const PictureFileReader& reader_of(std::span<const std::byte> bytes) {
   throw FileError("cannot read '" + file.path.string() + "': " + error.what());
 }
 
-/// What comes before the last dot of a channel's name, and what comes behind it.
+/// A channel's name, before its last dot and behind it.
 struct SplitName {
   std::string layer, channel;
 };
@@ -164,7 +164,8 @@ PictureFile open_picture_file(const std::filesystem::path& path) {
 
 namespace {
 
-/// What a file begins with. No header of a picture that is larger than memory comes near.
+/// The most that is read of a file's beginning. No header of a picture that is larger than memory
+/// comes near.
 constexpr std::size_t kMostOfHeader = std::size_t{1} << 20;
 
 /// Reads what stands before the values. False if it is read whole.

@@ -112,15 +112,15 @@ PictureFile open_picture_file(Bytes bytes, const std::filesystem::path& path);
 /// The height of a file that is read by rows.
 inline constexpr int kMostRows = 1 << 20;
 
-/// The same of a file that stays on the disk, for rows_of(). Nothing, with the reason in `why`, if
-/// it is of a kind that is read whole, no regular file, or cannot be opened.
+/// Opens a file that stays on the disk, for rows_of(). Nothing, with the reason in `why`, if it is
+/// of a kind that is read whole, no regular file, or cannot be opened.
 std::optional<PictureFile> open_on_disk(const std::filesystem::path& path, std::string& why);
 
 /// A reader of bands of these planes. Its errors name the file.
 ReadRows rows_of(const PictureFile& file, std::vector<std::size_t> planes);
 
-/// The planes with these indices. Where an EXR has no pixel, the values are `outside`. Throws
-/// FileError that names the file, or for more values than the machine has memory.
+/// The planes with these indices. Pixels that an EXR lacks are `outside`. Throws FileError that
+/// names the file, or for more values than the machine has memory.
 std::vector<PlaneValues> read_planes(const PictureFile& file, std::span<const std::size_t> planes,
                                      float outside);
 
@@ -152,7 +152,7 @@ class ColourHalves {
   /// `with_alpha`: and its alpha, if it has one.
   ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha);
 
-  /// What to read: one plane if it is grey.
+  /// The planes to read: one if it is grey.
   const std::vector<std::size_t>& planes() const { return planes_; }
   /// Puts the values of planes()[i] into as many pixels of RGBA16F.
   void put(std::size_t i, const PlaneValues& values, Image& picture) const;

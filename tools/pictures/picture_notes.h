@@ -1,5 +1,5 @@
 #pragma once
-// What a picture's file says of how the picture was made: its lens, field of view and method.
+// Notes in a picture's file on how it was made: its lens, field of view and method.
 //
 //   PNG        in the file: `Software` (tEXt) and `softfocus` (iTXt), the notes as JSON
 //   EXR        in the file: the attribute `softfocus`
@@ -17,7 +17,7 @@
 
 namespace softfocus {
 
-/// What blurs: the lens, and the camera behind it.
+/// The lens, and the camera behind it.
 struct NotedLens {
   ThinLens lens;
   double coc_scale = 1.0;
@@ -62,7 +62,7 @@ std::filesystem::path sidecar_of(const std::filesystem::path& picture);
 /// or a pipe.
 std::optional<std::filesystem::path> sidecar_place(const std::string& output, FileFormat format);
 
-/// What is to be written beside a picture with these bytes.
+/// The sidecar's text for a picture with these bytes.
 std::string sidecar_text(const PictureNotes& notes, const ByteSource& picture);
 
 /// Whether a sidecar can stand there: there is nothing, or one that may be replaced.
@@ -75,7 +75,7 @@ struct FoundNotes {
   bool stale = false;           ///< a sidecar is there, but of another picture: no notes
 };
 
-/// `bytes` are those of the file `picture`. What is no notes is as if it were not there.
+/// `bytes` are those of the file `picture`. Other text counts as no notes.
 FoundNotes find_notes(const std::filesystem::path& picture, const ByteSource& bytes);
 
 }  // namespace softfocus

@@ -35,12 +35,12 @@ struct PictureToWrite {
   std::function<std::string()> notes_after{};  ///< what takes their place at the end, as long
 };
 
-/// PFM, NPY, HDR, EXR. Of `extras` the lens, the source and what is kept of it are used here; an
-/// EXR has alpha, depth and radii if the spans there are not empty, whatever they point to.
+/// PFM, NPY, HDR, EXR. Only the lens, the source and the kept planes of `extras` are used; an EXR
+/// has alpha, depth and radii if the spans there are not empty, whatever they point to.
 void write_picture_rows(const PictureToWrite& picture, FileFormat format,
                         const PictureExtras& extras, const WriteAt& write);
 
-/// What stands before the rows of a file of `height` of them, and rows, in the file's order.
+/// The bytes before the rows of a file of `height` of them, and rows, in the file's order.
 Bytes npy_start(const ConstImageView& image, int height);
 void append_npy_rows(Bytes& bytes, const ConstImageView& image);
 Bytes pfm_start(int width, int height);

@@ -25,7 +25,7 @@ void* grown(void* memory, std::size_t size) {
   return larger;
 }
 
-/// What malloc gives for no bytes differs between systems.
+/// Systems differ in malloc(0).
 void* allocated(std::size_t size) { return std::malloc(size > 0 ? size : 1); }
 
 }  // namespace

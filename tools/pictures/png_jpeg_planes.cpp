@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "scenes/files/jpeg_check.h"
+#include "scenes/files/picture_check.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/pictures/picture_file.h"
@@ -132,7 +132,7 @@ int exif_orientation(std::span<const std::byte> tiff) {
   return 1;
 }
 
-/// Likewise of a JPEG: Exif data is in a segment APP1 before the first scan.
+/// A JPEG's orientation: Exif data is in a segment APP1 before the first scan.
 int jpeg_orientation(std::span<const std::byte> jpeg) {
   constexpr std::uint32_t kApp1 = 0xFFE1, kStartOfScan = 0xFFDA;
   constexpr std::string_view kExifMark{"Exif\0\0", 6};

@@ -12,7 +12,7 @@ namespace softfocus {
 
 bool is_png(std::span<const std::byte> bytes);
 
-/// What a PNG begins with.
+/// A PNG's first bytes.
 inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
 /// Appends a chunk with its length and checksum; `type` has four letters.
@@ -31,8 +31,8 @@ struct PngText {
   std::string text;          ///< UTF-8
 };
 
-/// A PNG with these texts behind its header. What is plain ASCII on one line without quotes is a
-/// tEXt, all else an uncompressed iTXt.
+/// A PNG with these texts behind its header. Plain ASCII on one line without quotes is a tEXt, all
+/// else an uncompressed iTXt.
 std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
                                       const std::vector<PngText>& texts);
 

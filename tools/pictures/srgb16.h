@@ -6,7 +6,7 @@
 
 namespace softfocus {
 
-/// Of 0 to 65535 for 0 to 1.
+/// Linear light; 0 to 65535 stand for 0 to 1.
 float srgb16_to_linear(std::uint16_t encoded);
 
 /// For every half's bits the number that encodes it, 0 to 65535: values outside of 0 to 1 are cut,

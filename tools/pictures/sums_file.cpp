@@ -26,7 +26,7 @@ constexpr std::size_t kBeforeHeader = kSumsMagic.size() + sizeof(std::uint32_t);
 constexpr std::size_t kMostHeaderBytes = 65536;
 constexpr std::size_t kColours = 3, kTexelHalves = 4;
 
-// Of the header's members only this is another for each shard.
+// The only member of the header that differs from shard to shard.
 constexpr const char* kShard = "shard";
 constexpr const char* kPicture = "picture";
 

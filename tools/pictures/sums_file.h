@@ -20,7 +20,7 @@
 
 namespace softfocus {
 
-/// What one picture's shards have in common, if they are of one picture.
+/// Common to one picture's shards.
 struct SumsOrigin {
   PictureNotes picture;  ///< the hash of its pixels is not known yet: 0
   int samples = 1;
@@ -52,7 +52,7 @@ std::string difference(const SumsFile& file, const SumsFile& first);
 /// Reads all and compares the checksum. Throws FileError.
 void check_sums_file(const SumsFile& file);
 
-/// The same, and adds the file's totals and samples to the sums, and stores its depth as alpha of
+/// Checks the file too, adds its totals and samples to the sums, and stores its depth as alpha of
 /// an RGBA16F picture, both of the file's size. After an error they are of no use.
 void add_sums_file(const SumsFile& file, SampleSums& sums, Image& depth);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What lies beyond the borders of a picture that is refocused.
+// Pixels beyond the borders of a picture that is refocused.
 
 #include "tools/pictures/picture_file.h"
 
@@ -16,7 +16,7 @@ std::string_view name_of(Border border);
 /// The picture, RGBA16F with depth in alpha, with `margin` pixels more on each side.
 Image with_border(const Image& picture, int margin, Border border);
 
-/// The same for a number a pixel; black ones are 0.
+/// Enlarges a plane of numbers; black ones are 0.
 PlaneValues with_border(const PlaneValues& values, int width, int height, int margin,
                         Border border);
 

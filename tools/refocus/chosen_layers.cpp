@@ -18,7 +18,7 @@ std::string lower_case(std::string text) {
 
 std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
-/// What stands before the last dot.
+/// The part of a name before its last dot.
 std::string before_last(const std::string& name) {
   const auto dot = name.rfind('.');
   return dot == name.npos ? "" : name.substr(0, dot);

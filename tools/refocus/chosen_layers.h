@@ -30,7 +30,7 @@ std::optional<std::size_t> find_depth_beside_colour(const PictureFile& file);
 std::size_t choose_depth(const PictureFile& file, const std::optional<std::string>& name,
                          bool beside_colour);
 
-/// What stands where an EXR has no depth.
+/// Stands for a depth that an EXR lacks.
 inline constexpr float kNoDepthThere = std::numeric_limits<float>::quiet_NaN();
 
 /// The plane, and the two beside it if it is red: a grey picture in three channels.

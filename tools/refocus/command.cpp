@@ -12,7 +12,7 @@
 #include "tools/refocus/opacity.h"
 #include "tools/refocus/refocus_by_rows.h"
 #include "tools/refocus/refocus_frames.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 
 namespace softfocus {
 namespace {
@@ -45,7 +45,8 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
   PhotoLens photo = options.photo;
   photo.of_file = sources.lens;
   const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
-  // What was read is not needed again, but for an EXR's other layers. `= {}` would keep the memory.
+  // The bytes read are not needed again, but for an EXR's other layers. `= {}` would keep the
+  // memory.
   if (sources.depth_file) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
   UsedRefocus used{.why_whole = why};

@@ -13,7 +13,7 @@
 #include "tools/cli/errors.h"
 #include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
-#include "tools/refocus/depth/depth_histogram.h"
+#include "tools/refocus/depth/depth_map.h"
 #include "tools/refocus/report.h"
 
 namespace softfocus {
@@ -66,7 +66,7 @@ DepthMap map_of_numbers(PlaneValues values, const PictureFile& file, const Depth
   return {file.width, file.height, std::move(values)};
 }
 
-/// What the plane found to be the depth has.
+/// Looks at the plane found to be the depth.
 void look_at_depth(InspectedFile& found, PlaneValues values, const DepthOptions& reading) {
   const PictureFile& file = found.file;
   const std::size_t plane = *found.depth_plane;

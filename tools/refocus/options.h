@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "dof/aperture.h"
 #include "dof/fixed_pictures/arithmetic.h"
+#include "dof/lens.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 #include "tools/pictures/image_file.h"
@@ -16,7 +16,7 @@
 
 namespace softfocus {
 
-/// What is written: the picture, or a map of what it is made from.
+/// The written picture, or a map of what it is made from.
 enum class RefocusShow : std::uint8_t { image, coc, depth };
 
 struct RefocusOptions {
@@ -48,7 +48,7 @@ struct RefocusOptions {
 
 void add_refocus_options(CLI::App& parser, RefocusOptions& options);
 
-/// What each option alone cannot know: throws UsageError for options that are missing or exclude
+/// Checks options against each other: throws UsageError for options that are missing or exclude
 /// each other and for methods that need the scene, and settles the format.
 void complete(RefocusOptions& options, const CLI::App& parser);
 

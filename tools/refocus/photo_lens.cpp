@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "dof/lens.h"
 #include "dof/parameters.h"
-#include "dof/sensor.h"
 #include "raster/numbers/exact_math.h"
 #include "tools/cli/errors.h"
 #include "tools/options/parameter_options.h"
@@ -48,7 +48,7 @@ SharpDepthRange parse_focus_range(const std::string& text) {
   return range;
 }
 
-/// What says how much the camera sees, in the order in which it is asked.
+/// Sources of the field of view, in the order in which they are asked.
 enum class CameraSource : std::uint8_t { fov, sensor, focal_px, notes, full_frame };
 
 CameraSource camera_source(const PhotoLens& photo, const std::optional<PictureNotes>& notes,

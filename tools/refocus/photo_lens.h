@@ -35,7 +35,7 @@ inline constexpr std::array kSensors{
     NamedSensor{"1/2.3-inch", 6.17, 4.55},  NamedSensor{"6x6cm", 56.0, 56.0},
     NamedSensor{"4x5-inch", 127.0, 102.0}};
 
-/// What was given.
+/// The lens as it was given.
 struct PhotoLens {
   LensOptions lens;
   std::optional<double> fov_y_degrees;
@@ -66,14 +66,14 @@ struct SettledLens {
 };
 
 /// The height of a picture over its height at distance 1, of the camera that was given or noted, or
-/// by `focal_px`. Of a sensor with the lens focused at infinity.
+/// by `focal_px`. A sensor's lens is focused at infinity.
 double pixels_per_tangent(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                           std::optional<double> focal_px, int width, int height);
 
 /// The depths that a lens is focused by: of a map, or of one that comes in bands of rows.
 class FocusDepths {
  public:
-  /// Of a map of that size. What `photo` asks for is kept.
+  /// For a map of that size. Keeps the depths that `photo` asks for.
   FocusDepths(const PhotoLens& photo, int width, int height);
   /// The rows from `first_row` on.
   void add(std::span<const float> metres, int first_row);

@@ -15,7 +15,7 @@
 
 namespace softfocus {
 
-/// What becomes of pixels without a depth.
+/// The fate of pixels without a depth.
 enum class Holes : std::uint8_t { from_far_side, refused };
 
 struct DepthOptions {
@@ -51,8 +51,8 @@ struct PictureSources {
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options);
 
-/// The same of files that stay on the disk. Nothing, with the reason in `why`, if one of them is
-/// read whole, or they differ in size.
+/// Opens files that stay on the disk. Nothing, with the reason in `why`, if one of them is read
+/// whole, or they differ in size.
 std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
                                                    const std::string& depth,
                                                    const DepthOptions& options, std::string& why);

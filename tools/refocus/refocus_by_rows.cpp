@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "dof/two_pass/two_pass_stream.h"
-#include "raster/images/image_hash.h"
+#include "raster/images/image.h"
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/whole_file.h"
 #include "tools/pictures/picture_rows.h"
-#include "tools/refocus/depth/finer_depths.h"
+#include "tools/refocus/depth/mend_depth.h"
 #include "tools/refocus/opacity.h"
-#include "tools/refocus/refocused_file.h"
+#include "tools/refocus/refocused.h"
 #include "tools/refocus/source_rows.h"
 
 namespace softfocus {
@@ -29,7 +29,7 @@ void for_each_band(int height, const Work& work) {
   for (int y = 0; y < height; y += kBandRows) work(Rows{y, std::min(kBandRows, height - y)});
 }
 
-/// What is known of a picture once its depths were looked at.
+/// Facts about a picture once its depths were looked at.
 struct Survey {
   PhotoLens photo{};  ///< with what the file's header says
   ReadDepth depth{};  ///< its map has a size alone
@@ -41,7 +41,7 @@ struct Survey {
   float full_alpha = 1.0f;  ///< the file's number for what is opaque
 };
 
-/// What the pixels' alpha comes to.
+/// Kinds of alpha among the pixels.
 struct AlphaSeen {
   bool is_alpha = true, is_opaque = true;
   void add(const PlaneValues& values, float whole) {
@@ -123,8 +123,8 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
   return false;
 }
 
-/// Whether so large circles make the rows in the filter larger than the whole picture. Where they
-/// are few bytes, nobody minds.
+/// Whether so large circles make the rows in the filter larger than the whole picture. A few bytes
+/// more do not matter.
 bool is_larger_by_rows(const PictureFile& file, const DofSettings& settings, Isa isa) {
   constexpr std::uint64_t kFew = std::uint64_t{64} << 20, kBytesPerPixel = 20;
   const std::uint64_t whole = kBytesPerPixel * static_cast<std::uint64_t>(file.width) *

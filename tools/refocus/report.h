@@ -1,5 +1,5 @@
 #pragma once
-// What a refocus did, to read or as JSON, and as notes in the picture.
+// Report of a refocus, to read or as JSON, and as notes in the picture.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace softfocus {
 
-/// What is said once the files are there.
+/// Words once the files are there.
 struct Refocused {
   Bytes picture{};  ///< of -o -
   std::vector<std::string> warnings{};
@@ -20,7 +20,7 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
 std::string refocus_json(const RefocusOptions& options, const PictureSources& sources,
                          const ReadDepth& depth, const UsedRefocus& used, std::uint64_t hash);
 
-/// Of a picture of that size; `hash` is its hash_image().
+/// Notes for a picture of that size; `hash` is its hash_image().
 PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& used, int width,
                            int height, std::uint64_t hash);
 

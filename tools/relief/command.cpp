@@ -165,7 +165,7 @@ void check_schedule(const CLI::App& parser, const ReliefOptions& options) {
   }
 }
 
-/// Of options of make: those that read a scene, and those that read heights.
+/// Options of make: those that read a scene, and those that read heights.
 constexpr std::array<std::string_view, 8> kOfScene{"--scene-path", "--frame", "--texels",
                                                    "--yaw",        "--pitch", "--projection",
                                                    "--traced",     "--unlit"};
@@ -190,7 +190,8 @@ void check_pairs(const CLI::App& parser, const ReliefOptions& options) {
   }
 }
 
-/// Of turn: what only an atlas reads, what only an impostor does, and what an atlas does not.
+/// Options of turn: only an atlas reads these, only an impostor these, and an atlas does not read
+/// these.
 constexpr std::array<std::string_view, 3> kAtlasOptions{"--views", "--hemisphere", "--parallax"};
 constexpr std::array<std::string_view, 14> kImpostorOptions{
     "--tolerance",     "--no-sprites", "--regions",  "--turns",     "--cache",

@@ -1,4 +1,4 @@
-// Where softfocus relief looks from.
+// Cameras of softfocus relief.
 
 #include <cmath>
 #include <string>

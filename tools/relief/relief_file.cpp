@@ -44,7 +44,7 @@ void append_threes(std::vector<std::byte>& bytes, const std::vector<std::uint32_
   }
 }
 
-/// What is left to read of the bytes, which were measured before.
+/// The unread bytes, which were measured before.
 struct ReliefReader {
   std::span<const std::byte> rest;
 
@@ -86,7 +86,7 @@ void append_unlit(std::vector<std::byte>& bytes, const ReliefTexture& relief) {
   }
 }
 
-/// What comes after the normals of an unlit relief, in a file of the right length.
+/// Reads the part behind the normals of an unlit relief, in a file of the right length.
 void read_unlit(ReliefReader& reader, const std::filesystem::path& file, ReliefTexture& relief) {
   const std::uint16_t empty = empty_depth(relief.depth_bits);
   relief.unlit.reserve(relief.depths.size());
@@ -146,7 +146,7 @@ bool is_camera(const ReliefCamera& camera) {
          std::fabs(dot(camera.b, camera.f)) < kSquare * b;
 }
 
-/// Of a perspective camera: its eye sees the last depth at a finite distance, and would see the
+/// Whether a perspective camera's eye sees the last depth at a finite distance, and would see the
 /// code that is empty.
 bool is_eye_before(const ReliefCamera& camera) {
   return is_place(*camera.eye) && camera.depth_m * (255.0 / 254.0) < source_distance(camera);

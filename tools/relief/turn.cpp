@@ -20,7 +20,7 @@
 namespace softfocus {
 namespace {
 
-/// Of the bound on the error, each way.
+/// Regions of the bound on the error, each way.
 constexpr int kBoundRegions = 16;
 
 CameraMatrices matrices_at(const TurnStage& stage, int frame) {
@@ -190,7 +190,7 @@ int turn_impostor(const ReliefOptions& options) {
                      std::to_string(scene.materials.size()) + " materials; at most " +
                      std::to_string(kMostReliefMaterials) + " are lit anew");
   }
-  // Of the frames: the own thread is one of all.
+  // If the update has a thread of its own, the frames have one less.
   const bool has_own_thread = options.schedule == TurnSchedule::own_thread;
   ThreadPool frame_pool{options.schedule == TurnSchedule::serial ? 1
                         : has_own_thread ? std::max(options.pool.threads - 1, 1)
@@ -226,8 +226,8 @@ int turn_impostor(const ReliefOptions& options) {
     if (!has_own_thread) sums.redrawn_ms.push_back(redrawn_ms(frame));
     ScheduledFrame done{};
     const double ms = milliseconds_of([&] {
-      // What the frame before has drawn is cleared. The update's slice comes last, after the frame
-      // could be shown.
+      // Clears the pixels that the frame before has drawn. The update's slice comes last, after the
+      // frame could be shown.
       clear_area(stage.blank, changed, stage.shown, frame_pool);
       const auto end = std::chrono::steady_clock::now() +
                        std::chrono::duration<double, std::milli>(options.slice_ms);

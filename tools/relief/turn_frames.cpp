@@ -6,7 +6,7 @@
 #include <string>
 
 #include "dof/measure/measures.h"
-#include "dof/measure/outline.h"
+#include "dof/measure/regions.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"
 #include "raster/numbers/vector_math.h"
@@ -35,7 +35,7 @@ Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOpt
   return camera;
 }
 
-/// Of -o, which must have a number.
+/// Names by -o, which must have a number.
 std::optional<NumberedName> frame_names(const ReliefOptions& options, FileFormat& format) {
   if (options.output.empty()) return std::nullopt;
   std::optional<NumberedName> name = numbered_name("-o", options.output);

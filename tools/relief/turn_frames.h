@@ -12,7 +12,7 @@
 
 namespace softfocus {
 
-/// What a turn is made of: the scene, about the object's middle from the scene's camera on, a full
+/// The stage of a turn: the scene, about the object's middle from the scene's camera on, a full
 /// turn in --frames, or none with --approach.
 struct TurnStage {
   /// Throws UsageError if -o has no number or no known ending, or if --zoom would take the eye into

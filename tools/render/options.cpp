@@ -121,8 +121,7 @@ void add_run_options(CLI::App& parser, RenderOptions& options) {
 void check_layers(const RenderOptions& options) {
   if (!options.layers) return;
   if (options.show == Show::image) {
-    const Method* filter = options.method.filter;
-    if (filter != nullptr && filter->layers > 1) return;
+    if (options.method.layers() > 1) return;
     throw UsageError(
         "--layers: the method " + std::string{options.method.name()} +
         " looks at the nearest surface alone; give --method layered or --show pinhole");
@@ -209,15 +208,13 @@ void check_supersample(const RenderOptions& options) {
 /// alone.
 void check_blades(RenderOptions& options, const CLI::App& parser) {
   options.aperture.blades = options.sampling.aperture.blades;
-  const LensViewMethod* of_scene = options.method.of_scene;
-  const bool has_blades = of_scene != nullptr && of_scene->samples_lens;
-  if (!has_blades) {
+  if (!options.method.samples_lens()) {
     check_aperture(parser, options.method.name(), names_of_sampling_methods());
     return;
   }
   refuse_given(parser, {"--aperture-turn", "--anamorphic"},
-               "the method " + std::string{of_scene->name} + " has blades alone; give --method " +
-                   std::string{kApertureMethod});
+               "the method " + std::string{options.method.name()} +
+                   " has blades alone; give --method " + std::string{kApertureMethod});
 }
 
 /// Enough for the drawn and the filtered picture and one between (8 bytes a pixel each),
@@ -231,7 +228,7 @@ constexpr std::uint64_t kLayerBytesPerPixel = 12;
 /// depth; for filtered-views the eight views of a group (8 bytes each).
 constexpr std::uint64_t kSamplingBytesPerPixel = 2 * 32 + 12;
 constexpr std::uint64_t kFilteredBytesPerPixel = kSamplingBytesPerPixel + 8 * 8;
-/// Of each view that is drawn to be warped: four planes of binary32.
+/// Each drawn view that is warped takes four planes of binary32.
 constexpr std::uint64_t kWarpedBytesPerPixel = 4 * 4;
 
 /// And for transparent surfaces: four layers with their depths (12 bytes each), two pictures of
@@ -250,13 +247,13 @@ std::uint64_t bytes_per_pixel(const RenderOptions& options) {
   const bool has_history =
       std::any_of(effects.begin(), effects.end(),
                   [](const ChosenEffect& chosen) { return is_of_frames(*chosen.effect); });
-  const bool may_sample = options.method.of_scene != nullptr || options.method.is_auto();
+  const bool may_sample = options.method.filter == nullptr;
   const bool may_filter_views = options.method.name() == "filtered-views";
-  const bool warps = options.method.of_scene != nullptr && options.method.of_scene->warps_views;
   return kRenderBytesPerPixel + (has_history ? kHistoryBytesPerPixel : 0) +
          (layers_of(options) - 1) * kLayerBytesPerPixel +
-         (warps ? static_cast<std::uint64_t>(options.sampling.drawn_views) * kWarpedBytesPerPixel
-                : 0) +
+         (options.method.warps_views()
+              ? static_cast<std::uint64_t>(options.sampling.drawn_views) * kWarpedBytesPerPixel
+              : 0) +
          (may_filter_views ? kFilteredBytesPerPixel
           : may_sample     ? kSamplingBytesPerPixel
                            : 0);
@@ -300,9 +297,7 @@ PictureSize drawn_size(const RenderOptions& options) {
 }
 
 std::size_t layers_of(const RenderOptions& options) {
-  const Method* filter = options.method.filter;
-  const bool filters = options.show == Show::image && filter != nullptr;
-  return options.layers.value_or(filters ? filter->layers : 1);
+  return options.layers.value_or(options.show == Show::image ? options.method.layers() : 1);
 }
 
 std::uint64_t bytes_of_a_frame(const RenderOptions& options) {
@@ -358,9 +353,8 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   check_layers(options);
   check_auto_options(parser, options.method);
   check_arithmetic(options.arithmetic, options.method.name(), options.gl != nullptr);
-  const bool samples = options.method.of_scene != nullptr;
   check_blades(options, parser);
-  if (samples && options.method.of_scene->samples_lens) {
+  if (options.method.samples_lens()) {
     complete_sampling(options.sampling, *options.method.of_scene, parser);
   } else if (!options.method.is_auto()) {
     refuse_sampling_options(parser, options.method.name());

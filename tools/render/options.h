@@ -7,13 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dof/auto/auto_method.h"
-#include "dof/dof.h"
-#include "dof/fixed_pictures/arithmetic.h"
-#include "raster/numbers/parameter.h"
-#include "raster/numbers/profile.h"
-#include "scenes/auto/auto_picture.h"
-#include "scenes/scene.h"
+#include "scenes/frame/frame.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
 #include "tools/gl/driver/driver.h"
@@ -29,8 +23,6 @@
 
 namespace softfocus {
 
-/// Which picture is wanted: with depth of field, without, or a map of what it works from.
-enum class Show { image, pinhole, coc, depth };
 inline constexpr std::array kShows{
     Choice<Show>{"image", Show::image}, Choice<Show>{"pinhole", Show::pinhole},
     Choice<Show>{"coc", Show::coc}, Choice<Show>{"depth", Show::depth}};
@@ -88,8 +80,8 @@ std::uint64_t bytes_of_a_frame(const RenderOptions& options);
 
 void add_render_options(CLI::App& parser, RenderOptions& options);
 
-/// What each option alone cannot know: throws UsageError for options that are missing,
-/// exclude each other or do not fit together, and settles the format.
+/// Checks options against each other: throws UsageError for options that are missing, exclude each
+/// other or do not fit together, and settles the format.
 void complete(RenderOptions& options, const CLI::App& parser);
 
 /// Gives the scene's lights the shadows of --shadows, and what else is said of lights. Throws

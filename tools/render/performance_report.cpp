@@ -6,6 +6,7 @@
 #include "tools/files/hash_text.h"
 #include "tools/files/json.h"
 #include "tools/info/candidates.h"
+#include "tools/render/shot.h"
 
 namespace softfocus {
 namespace {
@@ -39,11 +40,18 @@ std::string time_line(const char* name, double ms, bool with_rate) {
   return line(name, value);
 }
 
-std::string lens_lines(const UsedLens& used) {
+/// Choosing and checking are stages of auto alone.
+bool is_timed(const NamedTime& stage, const RenderRecord& record) {
+  const std::optional<AutoPicture>& chosen = record.frame.chosen;
+  if (stage.ms == &StageTimes::choose) return chosen.has_value();
+  return stage.ms != &StageTimes::check || (chosen && chosen->measured_error);
+}
+
+std::string lens_lines(const UsedLens& used, const RenderOptions& options) {
   std::string focus = short_number(used.lens.focus_m) + " m";
-  if (used.autofocus_pixel) {
-    focus += ", found at pixel " + std::to_string(used.autofocus_pixel->x) + "," +
-             std::to_string(used.autofocus_pixel->y);
+  if (options.autofocus) {
+    const auto [x, y] = focus_pixel(options);
+    focus += ", found at pixel " + std::to_string(x) + "," + std::to_string(y);
   }
   return line("Focus distance", focus) +
          line("Focal length", short_number(used.lens.focal_length_mm) + " mm") +
@@ -58,15 +66,17 @@ std::string filter_lines(const UsedLens& used) {
          line("Leak", short_number(used.settings.leak));
 }
 
-std::string choice_lines(const AutoMethod& choice, std::optional<double> measured_error) {
+std::string choice_lines(const AutoPicture& chosen) {
+  const AutoMethod& choice = chosen.choice;
   return line("Chosen", setting_text(choice)) + line("Because", choice.reason) +
          line("Predicted error", short_number(choice.predicted_error) + " (mean FLIP)") +
-         (measured_error ? line("Measured error", short_number(*measured_error)) : "") +
+         (chosen.measured_error ? line("Measured error", short_number(*chosen.measured_error))
+                                : "") +
          line("Predicted time",
               short_number(choice.predicted_ms) + " ms (two cores of the reference machine)");
 }
 
-std::string sampling_lines(const Sampling& sampling, const UsedSamples& used) {
+std::string sampling_lines(const Sampling& sampling, const SampledPicture& used) {
   const int blades = sampling.aperture.blades;
   std::string text = line("Samples", std::to_string(used.samples)) +
                      line("Pixel jitter", sampling.jitter ? "yes" : "no") +
@@ -94,8 +104,8 @@ Json camera_json(const Camera& camera) {
           {"far_m", camera.far_m}};
 }
 
-Json choice_json(const UsedMethod& used, const AutoGoal& goal) {
-  const AutoMethod& choice = *used.choice;
+Json choice_json(const AutoPicture& chosen, const AutoGoal& goal) {
+  const AutoMethod& choice = chosen.choice;
   Json json{{"candidate", candidate_id(choice)}, {"method", choice.method}};
   if (choice.radius_px > 0.0f) json["max_coc_px"] = choice.radius_px;
   if (choice.samples > 0) json["samples"] = choice.samples;
@@ -107,7 +117,7 @@ Json choice_json(const UsedMethod& used, const AutoGoal& goal) {
   json["meets_goal"] = choice.meets_goal;
   json["predicted_error"] = choice.predicted_error;
   json["measured_error"] = nullptr;
-  if (used.measured_error) json["measured_error"] = *used.measured_error;
+  if (chosen.measured_error) json["measured_error"] = *chosen.measured_error;
   json["predicted_ms"] = choice.predicted_ms;
   json["reason"] = choice.reason;
   json["traits"] = traits_json(choice.traits);
@@ -146,25 +156,26 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   if (options.arithmetic != Arithmetic::floats) {
     text += line("Arithmetic", std::string{arithmetic_name(options.arithmetic)});
   }
-  if (record.used.choice) text += choice_lines(*record.used.choice, record.used.measured_error);
+  if (record.frame.chosen) text += choice_lines(*record.frame.chosen);
   text += line("Picture", std::string{name_of(options.show)});
   text += record.gl_renderer.empty() ? line("Profile", options.profile_name)
                                      : line("GL driver", record.gl_renderer);
-  if (record.shaded_share) {
-    text += line("Drawn anew", short_number(100.0 * *record.shaded_share) + " % of the pixels");
+  if (record.frame.shaded_share) {
+    text +=
+        line("Drawn anew", short_number(100.0 * *record.frame.shaded_share) + " % of the pixels");
   }
   text += line("Threads", std::to_string(options.pool.threads));
   text += line("Vector unit", std::string{isa_name(options.pool.isa)});
   text += "\n";
-  if (record.lens) {
-    text += lens_lines(*record.lens);
+  if (record.frame.lens) {
+    text += lens_lines(*record.frame.lens, options);
     if (!options.sharp_depths.empty()) {
       text += line("Sharp depths", ranges_text(options.sharp_depths) + " m");
     }
-    if (record.sampled) {
-      text += sampling_lines(record.used.sampling, *record.sampled);
-    } else if (record.used.method.of_scene == nullptr) {
-      text += filter_lines(*record.lens);
+    if (record.frame.sampled) {
+      text += sampling_lines(record.frame.sampling, *record.frame.sampled);
+    } else if (record.frame.method.of_scene == nullptr) {
+      text += filter_lines(*record.frame.lens);
     }
     text += "\n";
   }
@@ -177,8 +188,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
   }
   text += "\n" + line("Stage", "milliseconds");
   for (const NamedTime& stage : kStages) {
-    if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
-    if (stage.ms == &StageTimes::check && !record.used.measured_error) continue;
+    if (!is_timed(stage, record)) continue;
     text += time_line(stage.name, ms.*stage.ms, false);
   }
   return text;
@@ -212,8 +222,8 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     json["gl_driver"] = record.gl_renderer;
     if (!options.shaders.own.empty()) json["shaders"] = options.shaders.folder.string();
   }
-  if (record.lens) {
-    const UsedLens& used = *record.lens;
+  if (record.frame.lens) {
+    const UsedLens& used = *record.frame.lens;
     json["lens"] = {{"focus_m", used.lens.focus_m},
                     {"focal_length_mm", used.lens.focal_length_mm},
                     {"f_number", used.lens.f_number},
@@ -222,33 +232,36 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
                     {"radius_at_infinity_px", used.settings.coc.radius_at_infinity_px},
                     {"max_coc_px", used.settings.max_coc_px},
                     {"leak", used.settings.leak}};
-    if (used.autofocus_pixel) {
-      json["lens"]["autofocus_pixel"] = {used.autofocus_pixel->x, used.autofocus_pixel->y};
+    if (options.autofocus) {
+      const auto [x, y] = focus_pixel(options);
+      json["lens"]["autofocus_pixel"] = {x, y};
     }
   }
   if (!options.sharp_depths.empty()) {
     json["sharp_depths_m"] = ranges_json(options.sharp_depths);
   }
-  if (record.used.choice) json["choice"] = choice_json(record.used, options.goal);
-  if (record.sampled) {
-    json["sampling"] = {{"samples", record.sampled->samples},
-                        {"jitter", record.used.sampling.jitter},
-                        {"aperture_blades", record.used.sampling.aperture.blades}};
-    if (record.used.sampling.shutter_frames > 0.0) {
-      json["sampling"]["shutter_frames"] = record.used.sampling.shutter_frames;
-    }
-    if (record.sampled->mean_samples) {
-      json["sampling"]["mean_samples"] = *record.sampled->mean_samples;
-      json["sampling"]["most_samples"] = record.used.sampling.samples;
-    }
-    if (record.sampled->unseen) {
-      json["sampling"]["views"] = record.used.sampling.drawn_views;
-      json["sampling"]["unseen"] = *record.sampled->unseen;
-    }
-    if (record.sampled->half_set_rms)
-      json["sampling"]["half_set_rms"] = *record.sampled->half_set_rms;
+  if (record.frame.chosen) {
+    json["choice"] = choice_json(*record.frame.chosen, options.goal);
   }
-  if (record.shaded_share) json["drawn_anew"] = *record.shaded_share;
+  if (record.frame.sampled) {
+    json["sampling"] = {{"samples", record.frame.sampled->samples},
+                        {"jitter", record.frame.sampling.jitter},
+                        {"aperture_blades", record.frame.sampling.aperture.blades}};
+    if (record.frame.sampling.shutter_frames > 0.0) {
+      json["sampling"]["shutter_frames"] = record.frame.sampling.shutter_frames;
+    }
+    if (record.frame.sampled->mean_samples) {
+      json["sampling"]["mean_samples"] = *record.frame.sampled->mean_samples;
+      json["sampling"]["most_samples"] = record.frame.sampling.samples;
+    }
+    if (record.frame.sampled->unseen) {
+      json["sampling"]["views"] = record.frame.sampling.drawn_views;
+      json["sampling"]["unseen"] = *record.frame.sampled->unseen;
+    }
+    if (record.frame.sampled->half_set_rms)
+      json["sampling"]["half_set_rms"] = *record.frame.sampled->half_set_rms;
+  }
+  if (record.frame.shaded_share) json["drawn_anew"] = *record.frame.shaded_share;
   json["without_depth_of_field"] = {{"ms", ms.draw}, {"fps", frames_per_second(ms.draw)}};
   if (has_depth_of_field(options)) {
     const double with = ms.draw + cost_ms(ms);
@@ -256,8 +269,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     json["cost_of_depth_of_field_ms"] = cost_ms(ms);
   }
   for (const NamedTime& stage : kStages) {
-    if (stage.ms == &StageTimes::choose && !record.used.choice) continue;
-    if (stage.ms == &StageTimes::check && !record.used.measured_error) continue;
+    if (!is_timed(stage, record)) continue;
     json["stages_ms"][stage.name] = ms.*stage.ms;
   }
   // A file's name need not be UTF-8, but JSON must be.

@@ -24,24 +24,24 @@ float most_max_coc_px(Arithmetic arithmetic) {
 
 Json method_json(const RenderOptions& options, const RenderRecord& record) {
   if (options.show != Show::image) return nullptr;
-  const MethodChoice& method = record.used.method;
+  const MethodChoice& method = record.frame.method;
   Json json{{"name", method.name()}};
   if (options.supersample > 1) json["supersample"] = options.supersample;
-  if (record.sampled) {
-    json["samples"] = record.sampled->samples;
-    if (record.sampled->mean_samples) {
-      json["mean_samples"] = *record.sampled->mean_samples;
-      json["most_samples"] = record.used.sampling.samples;
+  if (record.frame.sampled) {
+    json["samples"] = record.frame.sampled->samples;
+    if (record.frame.sampled->mean_samples) {
+      json["mean_samples"] = *record.frame.sampled->mean_samples;
+      json["most_samples"] = record.frame.sampling.samples;
     }
-    json["jitter"] = record.used.sampling.jitter;
-    json["aperture_blades"] = record.used.sampling.aperture.blades;
-    if (record.used.sampling.shutter_frames > 0.0) {
-      json["shutter_frames"] = record.used.sampling.shutter_frames;
+    json["jitter"] = record.frame.sampling.jitter;
+    json["aperture_blades"] = record.frame.sampling.aperture.blades;
+    if (record.frame.sampling.shutter_frames > 0.0) {
+      json["shutter_frames"] = record.frame.sampling.shutter_frames;
     }
-  } else if (record.lens && method.of_scene == nullptr) {
-    json["max_coc_px"] = record.lens->settings.max_coc_px;
-    json["leak"] = record.lens->settings.leak;
-    if (method.name() == kBudgetMethod) json["budget"] = record.lens->settings.budget;
+  } else if (record.frame.lens && method.of_scene == nullptr) {
+    json["max_coc_px"] = record.frame.lens->settings.max_coc_px;
+    json["leak"] = record.frame.lens->settings.leak;
+    if (method.name() == kBudgetMethod) json["budget"] = record.frame.lens->settings.budget;
     if (method.name() == kApertureMethod && options.aperture != Aperture{}) {
       json["aperture"] = aperture_json(options.aperture);
     }
@@ -109,8 +109,8 @@ PictureNotes notes_of(const RenderOptions& options, const RenderRecord& record) 
                      .lens = {},
                      .method = method_json(options, record),
                      .picture_hash = record.picture_hash};
-  if (record.lens) {
-    notes.lens = {record.lens->lens, record.lens->coc_scale, notes.fov_y_degrees};
+  if (record.frame.lens) {
+    notes.lens = {record.frame.lens->lens, record.frame.lens->coc_scale, notes.fov_y_degrees};
   }
   for (const ChosenEffect& chosen : record.effects) notes.effects.push_back(effect_text(chosen));
   return notes;
@@ -138,8 +138,7 @@ bool cuts_by_default(const RenderOptions& options) {
 }
 
 bool takes_all_circles(const RenderOptions& options) {
-  return options.show == Show::image && options.method.filter != nullptr &&
-         options.method.filter->any_radius_costs_the_same && !options.max_coc_px;
+  return options.show == Show::image && options.method.takes_any_radius() && !options.max_coc_px;
 }
 
 std::string cut_warning(const Image& drawn, const RenderOptions& options, const UsedLens& used,

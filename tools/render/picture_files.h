@@ -1,11 +1,11 @@
 #pragma once
-// What a render writes beside the pixels: its notes, and warnings of what the picture lacks.
+// A render's files beside the pixels: its notes, and warnings of what the picture lacks.
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
-#include "dof/circle_sizes.h"
+#include "dof/lens.h"
 #include "raster/images/image.h"
 #include "scenes/scene.h"
 #include "tools/pictures/picture_notes.h"
@@ -27,8 +27,8 @@ std::filesystem::path layer_place(const RenderOptions& options, std::size_t laye
 /// The file of --depth-output: what the picture has in alpha.
 Bytes depth_bytes(const RenderOptions& options, const Image& picture);
 
-/// Where the notes go beside the picture: nowhere for a format that has them inside, standard
-/// output, a device or a pipe.
+/// The sidecar's path: none for a format that has notes inside, standard output, a device or a
+/// pipe.
 std::optional<std::filesystem::path> sidecar_place(const RenderOptions& options);
 
 /// Whether the largest circle is the scene's default, and larger ones are cut to it.

@@ -2,13 +2,13 @@
 
 #include <optional>
 
-#include "scenes/draw/keyframes.h"
+#include "scenes/draw/frame_matrices.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/pictures/picture_notes.h"
-#include "tools/render/frame_sequence.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
+#include "tools/render/shot.h"
 #include "tools/sequence/journal.h"
 
 namespace softfocus {

@@ -17,7 +17,7 @@ void add_letters(Hash& hash, std::string_view text) {
   for (const char letter : text) add_to_hash(hash, static_cast<unsigned char>(letter));
 }
 
-// Of the files' bytes, not their names: machines may keep them in different places.
+// Hashes the files' bytes, not their names: machines may keep them in different places.
 std::uint64_t hash_of_files(const Scene& scene) {
   Hash hash;
   std::vector<char> part(65536);
@@ -74,17 +74,15 @@ void check_shard_count(const Shard& shard, int samples) {
                    std::to_string(most));
 }
 
-void write_shard(const LensViewInput& input, const RenderOptions& options,
-                 const RenderRecord& record, ThreadPool& pool) {
-  const int samples = input.sampling.samples;
+void write_shard(const Scene& scene, const RenderOptions& options, const RenderRecord& record) {
+  const Frame& frame = record.frame;
   const SumsOrigin origin{.picture = notes_of(options, record),
-                          .samples = samples,
+                          .samples = frame.sampling.samples,
                           .half_store = options.profile.half_store,
-                          .scene_files_hash = hash_of_files(input.scene),
+                          .scene_files_hash = hash_of_files(scene),
                           .profile_hash = hash_of_profile(options.profile),
-                          .pinhole_hash = hash_image(input.pinhole)};
-  const SampleSums sums = accumulation_sums(input, samples_of(*options.shard, samples), pool);
-  write_sums_file(options.output, *options.shard, origin, sums, input.pinhole);
+                          .pinhole_hash = hash_image(frame.picture)};
+  write_sums_file(options.output, *options.shard, origin, frame.sums, frame.picture);
 }
 
 }  // namespace softfocus

@@ -13,8 +13,7 @@ void check_shard_options(const RenderOptions& options, const CLI::App& parser);
 /// Throws UsageError for more shards than groups of samples.
 void check_shard_count(const Shard& shard, int samples);
 
-/// Samples the lens and writes the sums. `record` is of the whole picture but for its pixels.
-void write_shard(const LensViewInput& input, const RenderOptions& options,
-                 const RenderRecord& record, ThreadPool& pool);
+/// Writes a shard's sums. `record` is of the whole picture but for its pixels.
+void write_shard(const Scene& scene, const RenderOptions& options, const RenderRecord& record);
 
 }  // namespace softfocus

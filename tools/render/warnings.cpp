@@ -6,22 +6,23 @@
 namespace softfocus {
 
 std::string until_warning(const RenderRecord& record) {
-  const Sampling& sampling = record.used.sampling;
-  if (!record.sampled || !sampling.until) return {};
-  const auto reached = record.sampled->half_set_rms;
+  const Sampling& sampling = record.frame.sampling;
+  if (!record.frame.sampled || !sampling.until) return {};
+  const auto reached = record.frame.sampled->half_set_rms;
   if (reached && *reached <= *sampling.until) return {};
   const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
                                     : "half-sets are compared from 16 samples on";
   return "--until " + short_number(*sampling.until) + ": not reached with " +
-         count_text(record.sampled->samples, "sample") + ": " + found;
+         count_text(record.frame.sampled->samples, "sample") + ": " + found;
 }
 
 std::string goal_warning(const RenderOptions& options, const RenderRecord& record) {
-  if (!record.used.choice || record.used.choice->meets_goal) return {};
-  const AutoMethod& choice = *record.used.choice;
-  if (record.used.measured_error) {
+  if (!record.frame.chosen || record.frame.chosen->choice.meets_goal) return {};
+  const AutoMethod& choice = record.frame.chosen->choice;
+  if (record.frame.chosen->measured_error) {
     return "--max-error " + short_number(options.goal.max_error) + ": not kept to; " +
-           setting_text(choice) + " shows an error of " + short_number(*record.used.measured_error);
+           setting_text(choice) + " shows an error of " +
+           short_number(*record.frame.chosen->measured_error);
   }
   return "--max-error " + short_number(options.goal.max_error) +
          ": no method is predicted to keep to it; " + setting_text(choice) +

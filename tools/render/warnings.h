@@ -1,5 +1,5 @@
 #pragma once
-// What a render did not do as it was asked to, a line each; "" where there is nothing to say.
+// Warnings of wishes that a render did not meet, a line each; "" for none.
 
 #include <string>
 
@@ -10,10 +10,10 @@
 
 namespace softfocus {
 
-/// What --until asked for and the samples did not give.
+/// --until's error was not reached.
 std::string until_warning(const RenderRecord& record);
 
-/// What auto was to keep to and predicts that it will not.
+/// auto predicts or measures that it misses its goal.
 std::string goal_warning(const RenderOptions& options, const RenderRecord& record);
 
 /// How the picture of a scene with transparent surfaces falls short.

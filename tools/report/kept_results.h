@@ -1,5 +1,5 @@
 #pragma once
-// What an experiment keeps of its work to go on with later: one file of JSON, under a key.
+// Results that an experiment keeps to go on with later: one file of JSON, under a key.
 
 #include <filesystem>
 #include <optional>

@@ -67,7 +67,7 @@ void prepare_results(const std::filesystem::path& directory,
 void write_text(const std::filesystem::path& file, std::string_view text);
 void write_json(const std::filesystem::path& file, const Json& json);
 
-/// What a file holds, if it is there and is JSON.
+/// A file's JSON, if it is there and is JSON.
 std::optional<Json> read_json(const std::filesystem::path& file);
 
 }  // namespace softfocus

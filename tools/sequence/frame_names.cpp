@@ -27,7 +27,7 @@ std::size_t last_part_of(std::string_view text) {
   return slash == text.npos ? 0 : slash + 1;
 }
 
-/// Where the conversion at a % ends, %d behind its digits; nothing if it is none.
+/// The end of the conversion at a %, %d behind its digits; nothing if it is none.
 std::optional<std::size_t> end_of_number(std::string_view text, std::size_t percent) {
   std::size_t end = percent + 1;
   while (end < text.size() && is_digit(text[end])) ++end;
@@ -165,7 +165,7 @@ bool is_glob(const std::string& text) {
 
 bool fits_glob(std::string_view glob, std::string_view name) {
   if (name.starts_with('.') && !glob.starts_with('.')) return false;
-  // Where to go on if a * has to take one letter more.
+  // The place to go on from if a * has to take one letter more.
   std::string_view star_glob, star_name;
   bool has_star = false;
   while (!name.empty() || !glob.empty()) {

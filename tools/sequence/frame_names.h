@@ -71,9 +71,9 @@ class FrameFiles {
   bool many() const { return many_; }
   const std::string& what() const { return what_; }
   const std::string& text() const { return text_; }
-  /// Of many: those that are there, increasing.
+  /// The frames, of many, that are there, increasing.
   std::vector<FrameNumber> frames() const;
-  /// Of many: throws UsageError with the first few of the `wanted` that are not there.
+  /// Throws UsageError with the first few of the `wanted`, of many, that are not there.
   void check_there(const std::vector<FrameNumber>& wanted) const;
   /// The file of a frame; of a single name that.
   std::string at(FrameNumber frame) const;

@@ -99,7 +99,7 @@ bool Journal::add(const JournalLine& line) {
   const std::string text = journal_line(line);
   lines_.insert(text);
   stream_.clear();
-  // What is torn must not take the next line with it.
+  // A torn line must not take the next one with it.
   stream_ << (torn_ ? "\n" : "") << text << std::flush;
   torn_ = !stream_;
   return !torn_;

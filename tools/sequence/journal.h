@@ -34,7 +34,7 @@ std::string journal_line(const JournalLine& line);
 /// Nothing if it is not one that journal_line() gave. `text` has no line end.
 std::optional<JournalLine> parse_journal_line(std::string_view text);
 
-/// Of its letters.
+/// Hash of a text's letters.
 std::uint64_t hash_of(std::string_view text);
 
 /// A hash of names, sizes and times of change; files may be missing.

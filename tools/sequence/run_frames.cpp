@@ -15,13 +15,42 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/progress.h"
-#include "tools/cli/time_left.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
-#include "tools/sequence/frames_in_order.h"
 #include "tools/sequence/journal.h"
 
 namespace softfocus {
+
+void FramesInOrder::write(std::span<const std::byte> picture) {
+  if (end_ != Put::written) return;
+  try {
+    if (!write_(picture)) end_ = Put::reader_gone;
+  } catch (...) {
+    end_ = Put::failed;
+    turn_.notify_all();
+    throw;
+  }
+}
+
+Put FramesInOrder::put(std::size_t place, std::vector<std::byte> picture) {
+  std::unique_lock lock(mutex_);
+  turn_.wait(lock, [&] { return end_ != Put::written || next_ == place; });
+  if (end_ != Put::written) return end_;
+  const bool fits =
+      !same_length_ || picture.empty() || last_.empty() || picture.size() == last_.size();
+  if (!picture.empty() && fits) last_ = std::move(picture);
+  if (last_.empty()) {
+    ++owed_;
+  } else {
+    for (; owed_ > 0; --owed_) write(last_);
+    write(last_);
+  }
+  ++next_;
+  turn_.notify_all();
+  if (end_ != Put::written) return end_;
+  return fits ? Put::written : Put::other_length;
+}
+
 namespace {
 
 /// A disk that is full stays so: more frames would be made in vain.
@@ -45,7 +74,7 @@ std::uint64_t made_from(const FrameWork& frame) {
   return hash.value;
 }
 
-/// What the threads of a run share.
+/// Shared by the threads of a run.
 class Run {
  public:
   Run(const std::vector<FrameWork>& frames, const FrameRunOptions& options, const MakeFrame& make)

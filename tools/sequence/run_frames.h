@@ -1,11 +1,14 @@
+// Pictures of a video in their order, whoever makes them.
 #pragma once
-// Makes many frames: several at once, each with its share of the threads, and goes on where an
-// earlier run ended.
 
+#include <condition_variable>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "raster/threads/parallel.h"
@@ -13,6 +16,40 @@
 #include "tools/sequence/frame_names.h"
 
 namespace softfocus {
+
+enum class Put { written, other_length, reader_gone, failed };
+
+/// Takes each place of a list once, from any thread.
+class FramesInOrder {
+ public:
+  /// Writes a picture; false if the reader is gone. Throws if it cannot.
+  using Write = std::function<bool(std::span<const std::byte> picture)>;
+
+  /// `same_length`: a picture of another length than the first's is not written.
+  FramesInOrder(bool same_length, Write write)
+      : same_length_(same_length), write_(std::move(write)) {}
+
+  /// Waits until all places before have been put, and writes. For an empty picture, and for one
+  /// of another length, the picture before is written again; before the first, the first is.
+  /// `reader_gone` from then on; `failed` once a picture could not be written: the first to see
+  /// that gets the exception.
+  Put put(std::size_t place, std::vector<std::byte> picture);
+
+ private:
+  void write(std::span<const std::byte> picture);
+
+  const bool same_length_;
+  const Write write_;
+  std::mutex mutex_;
+  std::condition_variable turn_;
+  std::size_t next_ = 0;
+  std::size_t owed_ = 0;  ///< places before the first picture
+  std::vector<std::byte> last_;
+  Put end_ = Put::written;  ///< or why nothing is written any more
+};
+
+// Makes many frames: several at once, each with its share of the threads, and goes on where an
+// earlier run ended.
 
 /// A frame before it is made.
 struct FrameWork {
@@ -23,7 +60,7 @@ struct FrameWork {
   std::vector<std::filesystem::path> outputs{};  ///< the first is the picture
 };
 
-/// What a frame's work gets and gives.
+/// Input and result of a frame's work.
 struct FrameRun {
   ThreadPool& pool;
   std::vector<std::byte> picture{};  ///< what would go to standard output

@@ -48,9 +48,9 @@ class FrameOutput {
 /// frame writes, links and hard links followed.
 void check_outputs_apart(const std::vector<FrameWork>& frames);
 
-/// What decides the pictures: the program's version, the profile, and all that was given on the
-/// command line, but for the frames, the files of a frame, the lens by frames, and what only
-/// changes the speed or what is said.
+/// The settings that decide the pictures: the program's version, the profile, and all that was
+/// given on the command line, but for the frames, the files of a frame, the lens by frames, and
+/// options that only change the speed or the words.
 std::string given_settings(const CLI::App& parser, const Profile& profile);
 
 /// How the run goes, but for FrameRunOptions::at_once.

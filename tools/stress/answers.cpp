@@ -4,12 +4,9 @@
 #include <array>
 #include <cassert>
 
-#include "scenes/auto/auto_picture.h"
-#include "scenes/draw/frame_parts.h"
 #include "scenes/draw/shadowed_layers.h"
-#include "scenes/draw/velocity.h"
+#include "scenes/frame/frame.h"
 #include "scenes/lens_views/accumulation.h"
-#include "scenes/lens_views/lens_view_method.h"
 #include "tools/stress/relief_answers.h"
 
 namespace softfocus {
@@ -20,7 +17,7 @@ namespace {
 constexpr int kFirstTruthView = 4096;
 static_assert(kFirstTruthView > kSampleCounts.back());
 
-/// Of a picture filtered by this method before.
+/// Motion blurs take the picture after kBeforeMotionBlur.
 constexpr std::array<std::string_view, 3> kMotionBlurs{"motion-blur-simple", "motion-blur-2012",
                                                        "motion-blur"};
 constexpr std::string_view kBeforeMotionBlur = "disc-layers";
@@ -61,38 +58,38 @@ Image shadowed(const ShadowAnswer& answer, const StressFrame& frame, ThreadPool&
   return picture;
 }
 
-constexpr std::string_view kViewsMethod = "accumulation", kChoosingMethod = "auto";
+constexpr std::string_view kViewsMethod = "accumulation";
 
-LensViewInput views_input(const StressFrame& frame, int samples) {
+/// A trial's frame on its way to the frame maker: its sharp picture is drawn, its lens is known.
+struct StressShot {
+  Shot shot;
+  DrawnFrame drawn;
+  UsedLens lens;
+};
+
+StressShot shot_of(const StressFrame& frame, std::string_view method, int samples) {
+  StressShot made{.shot = {.width = frame.sharp.width,
+                           .height = frame.sharp.height,
+                           .method = find_method_choice(method),
+                           .sampling = {.samples = samples}},
+                  .drawn = {},
+                  .lens = {.settings = frame.settings}};
+  made.drawn.parts.opaque = frame.sharp;
+  if (!frame.scene) return made;
   const StressScene& scene = *frame.scene;
-  return {.scene = scene.scene,
-          .camera = scene.camera,
-          .frame = 0.0,
-          .pinhole = frame.sharp,
-          .focus_m = scene.focus_m,
-          .aperture_radius_m = scene.aperture_m,
-          .sampling = {.samples = samples, .shutter_frames = scene.shutter_frames},
-          .profile = Profile{},
-          .progress = {}};
+  made.shot.scene = &scene.scene;
+  made.shot.sampling.shutter_frames = scene.shutter_frames;
+  made.drawn.view = scene.camera;
+  made.lens.lens.focus_m = scene.focus_m;
+  made.lens.aperture_radius_m = scene.aperture_m;
+  return made;
 }
 
-Image filtered(const Method& method, const StressFrame& frame, float max_coc_px, ThreadPool& pool) {
-  DofSettings settings = frame.settings;
-  settings.max_coc_px = max_coc_px;
-  if (!frame.scene) return apply(method, {frame.sharp, settings, Profile{}}, pool);
-  return filtered_frame(method, frame.scene->scene, frame.scene->camera, 0.0, frame.sharp, settings,
-                        Profile{}, pool);
-}
-
-/// What auto chooses by itself, with no goal but its own.
-Image chosen_picture(const StressFrame& frame, ThreadPool& pool) {
-  const LensViewInput views = views_input(frame, 1);
-  return auto_picture({.views = views,
-                       .settings = frame.settings,
-                       .goal = {},
-                       .limits = {{}, triangle_count(frame.scene->scene)}},
-                      pool)
-      .picture;
+Image picture_of(const StressShot& made, ThreadPool& pool) {
+  FrameMemory memory{.is_last = true};
+  Frame frame = make_picture(made.shot, made.drawn, made.lens, memory, pool);
+  finish_picture(made.shot, frame, pool);
+  return std::move(frame.picture);
 }
 
 /// Depth of field, then motion blur, as engines have it.
@@ -102,24 +99,18 @@ Image motion_blurred(const std::string& method, const StressFrame& frame, Thread
     chosen.parameters.push_back(parameter.preset);
   }
   chosen.parameters[0] = frame.scene->shutter_frames;
-  const Image picture =
-      filtered(*find_method(kBeforeMotionBlur), frame, frame.settings.max_coc_px, pool);
-  const Image velocity = velocity_for(chosen, frame.scene->scene, 0.0, picture, Profile{}, pool);
-  return apply(*chosen.effect, {picture, chosen.parameters, Profile{}, velocity}, pool);
+  StressShot made = shot_of(frame, kBeforeMotionBlur, 1);
+  made.shot.effects = {chosen};
+  return picture_of(made, pool);
 }
 
 Image method_picture(const std::string& method, const StressFrame& frame, ThreadPool& pool) {
-  if (method == kViewsMethod) return accumulation(views_input(frame, kStressSamples), pool).picture;
-  if (method == kChoosingMethod) return chosen_picture(frame, pool);
-  if (const LensViewMethod* of_scene = find_lens_view_method(method)) {
-    return of_scene->render(views_input(frame, 1), pool).picture;
-  }
   if (is_motion_blur(method)) return motion_blurred(method, frame, pool);
   if (is_relief_answer(method)) return relief_answer(method, frame, pool);
   if (const ShadowAnswer* answer = find_shadow_answer(method)) {
     return shadowed(*answer, frame, pool);
   }
-  return filtered(*find_method(method), frame, frame.settings.max_coc_px, pool);
+  return picture_of(shot_of(frame, method, method == kViewsMethod ? kStressSamples : 1), pool);
 }
 
 /// While the shutter is open a filter of depth of field has no part; the pinhole shows an instant.
@@ -143,7 +134,7 @@ std::vector<std::string> stress_methods() {
   for (const LensViewMethod& method : lens_view_methods()) {
     if (!method.samples_lens) names.emplace_back(method.name);
   }
-  names.emplace_back(kChoosingMethod);
+  names.emplace_back(kAutoMethod);
   names.insert(names.end(), kMotionBlurs.begin(), kMotionBlurs.end());
   for (const ShadowAnswer& answer : kShadowAnswers) names.emplace_back(answer.method);
   for (std::string& name : relief_answers()) names.push_back(std::move(name));
@@ -168,7 +159,8 @@ StressTruth make_stress_truth(const StressTrial& trial, int views, ThreadPool& p
       continue;
     }
     assert(views % (2 * kSampleGroup) == 0);
-    const LensViewInput input = views_input(frame, kFirstTruthView + views);
+    const StressShot made = shot_of(frame, kViewsMethod, kFirstTruthView + views);
+    const LensViewInput input = lens_views_of(made.shot, made.drawn, made.lens);
     AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
     SampleSums sums = make_sample_sums(frame.sharp.width, frame.sharp.height);
     const auto add = [&](int begin, int end) {

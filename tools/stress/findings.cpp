@@ -8,7 +8,6 @@
 
 #include "tools/cli/option_values.h"
 #include "tools/cli/progress.h"
-#include "tools/cli/time_left.h"
 #include "tools/report/kept_results.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/trial_record.h"
@@ -21,7 +20,7 @@ constexpr int kQuickViews = 128;
 /// Cases that are measured on the same pictures, by their places in the findings.
 using CaseGroup = std::vector<std::size_t>;
 
-/// What six digits tell, so that nobody's last digit shows.
+/// A number cut to six digits, so that nobody's last digit shows.
 double of_six_digits(double value) {
   if (!std::isfinite(value)) return value;
   std::array<char, 32> text{};
@@ -29,7 +28,7 @@ double of_six_digits(double value) {
   return std::strtod(text.data(), nullptr);
 }
 
-/// What goes along with all the work.
+/// Passed along with all the work.
 struct StressWork {
   const StressOptions& options;
   ThreadPool& pool;

@@ -1,5 +1,5 @@
 #pragma once
-// What `stress` found: values by case, method and severity, and pictures to look at.
+// `stress`'s findings: values by case, method and severity, and pictures to look at.
 
 #include <optional>
 #include <string>
@@ -27,7 +27,7 @@ struct StressCurve {
 struct StressResult {
   StressCase of;
   std::vector<double> severities;
-  /// Of the truth's one half against the other, one a severity; empty where it is calculated.
+  /// The truth's one half against the other, one a severity; empty if it is calculated.
   std::vector<double> noise_floor;
   int views = 0;
   double shown = 0.0;  ///< the severity of the pictures

@@ -1,5 +1,5 @@
 #pragma once
-// What impostors answer to a case of reliefs: drawn from one eye, shown to another.
+// Impostors' answers to a case of reliefs: drawn from one eye, shown to another.
 
 #include <string>
 #include <vector>

@@ -10,7 +10,6 @@
 #include "tools/golden/hashes.h"
 #include "tools/pictures/image_file.h"
 #include "tools/report/kept_results.h"
-#include "tools/report/specimen.h"
 #include "tools/report/worst_crop.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/cases/stress_measures.h"
@@ -37,8 +36,8 @@ int stress_factor(const Image& picture) {
   return reduction_factor(picture.width, picture.height, kStressPagePx);
 }
 
-/// What the measures of all cases on these pictures, and the page's pictures, give for a wrong
-/// answer: it differs whenever one of them has changed.
+/// A hash of the numbers and pictures that all cases on these pictures give for a wrong answer: it
+/// differs whenever a measure or the page's pictures have changed.
 std::uint64_t case_measures_hash(const StressCase& of, const StressAnswer& right) {
   std::vector<Image> wrong;
   for (const Image& picture : right.truth) wrong.push_back(with_wrong_pixels(picture));

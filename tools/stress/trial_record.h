@@ -1,6 +1,6 @@
 #pragma once
-// What `stress` keeps of a trial: its pictures, small enough for a page with hundreds, and the key
-// of all that it measured.
+// `stress`'s record of a trial: its pictures, small enough for a page with hundreds, and the key of
+// all that it measured.
 
 #include <string>
 

@@ -17,7 +17,7 @@ namespace {
 /// Whether a motion reaches that far, with an edge a tenth of it wide.
 float reached(float q) { return cut_to_1((1.05f - q) * 10.0f); }
 
-/// What samples along a way show through the pixel: their sum, and how many they are.
+/// Samples along a way that show through the pixel: their sum, and how many they are.
 struct Shown {
   glm::vec3 sum;
   float count;
@@ -169,7 +169,7 @@ SOFTFOCUS_INLINE ShownLanes shown_lanes(const BlurRow& row, const PixelLanes& pi
   return shown;
 }
 
-/// Of both ways and of the pixel itself.
+/// Parts of both ways and of the pixel itself.
 struct Parts {
   Floats along, across, own;
 };

@@ -11,7 +11,6 @@
 
 #include "raster/numbers/profile.h"
 #include "raster/pipeline/draw_call.h"
-#include "raster/pipeline/edge_functions.h"
 #include "raster/pipeline/setup.h"
 #include "raster/pipeline/stages.h"
 

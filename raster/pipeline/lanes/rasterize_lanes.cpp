@@ -65,7 +65,7 @@ struct TriangleDepths {
   Floats z0, z1, z2;
   Floats inverse_area;
 
-  // Of a part of a block. Lane 0 is pixel (x, y).
+  // Depths of a part of a block. Lane 0 is pixel (x, y).
   SOFTFOCUS_INLINE Floats at(int x, int y, Floats e1, Floats e2) const {
     if (form == DepthForm::barycentric ||
         (form == DepthForm::by_profile &&
@@ -162,7 +162,7 @@ SOFTFOCUS_INLINE BlockRange blocks_of(const LaneTriangle& t, const VisibilityTil
           std::min<int>(t.bounds[2], tile.area.x_end), std::min<int>(t.bounds[3], tile.area.y_end)};
 }
 
-// Where the part of a block that begins with pixel (x, y) is kept.
+// The place in the tile of the part of a block that begins with pixel (x, y).
 SOFTFOCUS_INLINE std::size_t place_in_tile(const VisibilityTile& tile, int x, int y) {
   return place_of_pixel(x - tile.area.x_begin, y - tile.area.y_begin);
 }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "raster/numbers/vector_math.h"
-#include "scenes/relief/coarser_relief.h"
+#include "scenes/relief/relief_texture.h"
 
 namespace softfocus {
 namespace {

@@ -11,12 +11,12 @@ namespace {
 /// The eye comes no nearer than this, in the object's radii, as far as is foreseen.
 constexpr double kNearest = 1.2;
 
-// Of variable slices: a piece is so many triangles, or such a part of a warp. Each piece finds the
+// Pieces of variable slices: so many triangles, or such a part of a warp. Each piece finds the
 // places of all vertices of its objects.
 constexpr std::size_t kPartTriangles = 32768;
 constexpr int kVariableStrips = 8;
 
-/// What update_scheduled() was called with.
+/// update_scheduled()'s arguments.
 struct ScheduledWork {
   ReliefMaker& maker;
   const ImpostorSettings& settings;
@@ -287,7 +287,7 @@ void begin_update(ScheduledImpostor& impostor, const ScheduledWork& work, Schedu
         triangle_count(*work.maker.scene) / kPartTriangles, 1, kMostUpdateFrames));
     update.strips = kVariableStrips;
   }
-  // What was warped last is memory to use again.
+  // The last warp's picture is memory to use again.
   std::swap(update.warped, impostor.spare_warp);
   std::swap(update.strip, impostor.spare_strip);
   impostor.update = std::move(update);

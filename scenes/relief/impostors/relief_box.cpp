@@ -58,7 +58,7 @@ std::vector<std::size_t> in_order(const ReliefBox& box, unsigned seen, glm::dvec
   return order;
 }
 
-/// Of two normals of one surface.
+/// Cosine from which two normals belong to one surface.
 constexpr double kAlikeCosine = 0.9;
 
 glm::dvec3 texel_normal(std::uint32_t packed) {

@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "raster/images/integer_bilinear.h"
+#include "raster/images/integer_filter.h"
 #include "raster/numbers/half.h"
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
@@ -99,7 +99,7 @@ std::array<std::int32_t, 256> halves_of_codes() {
   return halves;
 }
 
-/// Where the plane's rectangle is seen.
+/// The area of the picture in which the plane's rectangle is seen.
 Rectangle place_area(const ReliefCamera& relief, const CameraMatrices& camera,
                      const PlaneRectangle& place, int width, int height) {
   std::array<glm::dvec3, 4> corners{};

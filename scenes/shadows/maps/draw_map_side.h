@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "raster/pipeline/viewport.h"
+#include "raster/pipeline/setup.h"
 #include "scenes/shadows/maps/shadow_map.h"
 
 namespace softfocus {

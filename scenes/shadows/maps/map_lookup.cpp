@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "scenes/shadows/point_in_shadow.h"
+#include "scenes/shadows/shadow_truth.h"
 
 namespace softfocus {
 namespace {

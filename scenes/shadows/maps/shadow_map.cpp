@@ -6,9 +6,9 @@
 #include <span>
 
 #include "raster/numbers/exact_math.h"
+#include "scenes/shadows/facets.h"
 #include "scenes/shadows/light_grid.h"
 #include "scenes/shadows/maps/draw_map_side.h"
-#include "scenes/shadows/place_box.h"
 
 namespace softfocus {
 namespace {
@@ -44,8 +44,8 @@ double depth_m(const MapCamera& camera, glm::dvec3 p) {
   return dot(row_of(camera.world_to_clip, 3), p) + camera.world_to_clip[3][3];
 }
 
-// Where the rays through the picture's corners are at a depth of one metre, from the eye; around
-// the picture. A little outside, so that what is seen in a corner lies inside.
+// Ends of the rays through the picture's corners at a depth of one metre, from the eye, around the
+// picture. A little outside, so that things seen in a corner lie inside.
 std::array<glm::dvec3, 4> corner_rays(const MapCamera& camera) {
   constexpr double kEdge = 1.0 + 1e-6;
   constexpr std::array<glm::dvec2, 4> kCorners{
@@ -73,7 +73,7 @@ Frustum frustum_of(const MapCamera& camera, double near_m, double far_m) {
   return frustum;
 }
 
-// Of the scene, as the camera sees it.
+// Depths of the scene, as the camera sees it.
 struct DepthRange {
   double near_m, far_m;
 };
@@ -173,7 +173,7 @@ MapSide cube_side(glm::dvec3 place, int number) {
   return side;
 }
 
-// What a cube's side sees of a frustum: the box around its faces, cut to the side.
+// A frustum as a cube's side sees it: the box around its faces, cut to the side.
 PlaceBox seen_of(const Frustum& frustum, const MapSide& side, double least_z) {
   static constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
       {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "raster/threads/parallel.h"
-#include "scenes/shadows/volumes/pixel_space.h"
 #include "scenes/shadows/volumes/shadow_volumes.h"
 
 namespace softfocus {

@@ -1,9 +1,105 @@
 #include "scenes/shadows/volumes/shadow_volumes.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <utility>
 
 namespace softfocus {
+namespace {
+
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+// Numbers things in the order in which they first come. Linear probing; at most half full.
+template <class Thing>
+class Numbers {
+ public:
+  explicit Numbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), kNone) {}
+
+  std::uint32_t number_of(const Thing& thing, std::uint64_t hash, std::vector<Thing>& things) {
+    std::size_t slot = (hash ^ hash >> 32) & (slots_.size() - 1);
+    while (slots_[slot] != kNone && things[slots_[slot]] != thing) {
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    if (slots_[slot] == kNone) {
+      slots_[slot] = static_cast<std::uint32_t>(things.size());
+      things.push_back(thing);
+    }
+    return slots_[slot];
+  }
+
+ private:
+  std::vector<std::uint32_t> slots_;
+};
+
+std::uint64_t mix(std::uint64_t hash, std::uint64_t bits) {
+  hash = (hash ^ bits) * 0x9E3779B97F4A7C15u;
+  return hash ^ hash >> 32;
+}
+
+std::uint64_t corner_hash(const glm::dvec3& p) {
+  std::uint64_t hash = 0;
+  for (int i = 0; i < 3; ++i) hash = mix(hash, std::bit_cast<std::uint64_t>(p[i] + 0.0));
+  return hash;
+}
+
+}  // namespace
+
+JoinedFacets join_facets(const Facets& facets) {
+  JoinedFacets joined;
+  const std::size_t count = facets.facets.size();
+  joined.facets.reserve(count);
+  joined.edges_of.reserve(count);
+  Numbers<glm::dvec3> corners{3 * count};
+  Numbers<std::array<std::uint32_t, 2>> edges{3 * count};
+  for (const Facet& facet : facets.facets) {
+    std::array<std::uint32_t, 3> of{}, edges_of{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      of[i] = corners.number_of(facet.corners[i], corner_hash(facet.corners[i]), joined.corners);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = of[i], to = of[(i + 1) % 3];
+      const std::array<std::uint32_t, 2> ends{std::min(from, to), std::max(from, to)};
+      edges_of[i] = edges.number_of(ends, mix(mix(0, ends[0]), ends[1]), joined.edges);
+    }
+    joined.facets.push_back(of);
+    joined.edges_of.push_back(edges_of);
+  }
+  return joined;
+}
+
+PixelSpace pixel_space(const ShadowView& view, glm::dvec3 eye) {
+  const auto row = [&](int i) {
+    const glm::dmat4& m = view.world_to_clip;
+    return glm::dvec3{m[0][i], m[1][i], m[2][i]};
+  };
+  PixelSpace space{};
+  space.eye = eye;
+  space.rows = {(row(0) + row(3)) * (view.width / 2.0), (row(1) + row(3)) * (view.height / 2.0),
+                row(3)};
+  const auto& [x, y, w] = space.rows;
+  const double determinant = dot(x, cross(y, w));
+  space.columns = {cross(y, w) / determinant, cross(w, x) / determinant, cross(x, y) / determinant};
+  space.facing = determinant > 0.0 ? -1.0 : 1.0;
+  // z = a w + b, and -w = z is the near plane. A quarter of its depth: samples may come nearer.
+  const double a = dot(row(2), w) / dot(w, w);
+  const double b = dot(row(2), eye) + view.world_to_clip[3][2];
+  space.least_w = -0.25 * b / (1.0 + a);
+  return space;
+}
+
+glm::dvec3 to_pixels(const PixelSpace& space, glm::dvec3 from_eye) {
+  return {dot(space.rows[0], from_eye), dot(space.rows[1], from_eye), dot(space.rows[2], from_eye)};
+}
+
+glm::dvec3 from_pixels(const PixelSpace& space, glm::dvec3 v) {
+  return (space.columns[0] * v.x + space.columns[1] * v.y) + space.columns[2] * v.z;
+}
+
+glm::dvec3 to_light(const PixelSpace& space, const ShadowLight& light) {
+  return to_pixels(space, light.place - space.eye * light.w);
+}
+
 namespace {
 
 // A triangle with a corner at the light is seen edge-on, and its corner has no direction.

@@ -40,7 +40,7 @@ struct Samples {
 namespace softfocus {
 namespace {
 
-// Of the sum of its terms' sizes, more than a sum of products in binary64 can be wrong.
+// More than the error of a sum of products in binary64, over the sum of its terms' sizes.
 constexpr double kRounding = 0x1p-48;
 
 // Extremes over a block are those of the points that its samples can be.
@@ -242,7 +242,7 @@ std::size_t draw_far_samples(const Facets& facets, const JoinedFacets& joined,
   return sum;
 }
 
-// What the bands of a picture are counted with.
+// Everything that the bands of a picture are counted with.
 struct BandsOfView {
   const SampledScene& scene;
   MaskRows rows;  // all

@@ -89,7 +89,7 @@ TEST_CASE(
   REQUIRE(choice.meets_goal);
   for (const Candidate& candidate : candidates()) {
     if (1.05 * predicted_ms(candidate, traits, 0) >= choice.predicted_ms) continue;
-    // The same as the radius before with more room.
+    // This candidate is the radius before with more room.
     if (candidate.radius > 0 &&
         kFilterRadiiPx[static_cast<std::size_t>(candidate.radius - 1)] >= largest_px(traits)) {
       continue;

@@ -1,4 +1,4 @@
-// What the C interface refuses: one sentence, and nothing is written.
+// The C interface refuses wrong arguments with one sentence, and writes nothing.
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>

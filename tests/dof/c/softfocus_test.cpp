@@ -15,9 +15,8 @@
 #include <vector>
 
 #include "dof/auto/auto_method.h"
-#include "dof/circle_sizes.h"
 #include "dof/dof.h"
-#include "dof/sensor.h"
+#include "dof/lens.h"
 #include "tests/support/c_pictures.h"
 #include "tests/support/test_images.h"
 

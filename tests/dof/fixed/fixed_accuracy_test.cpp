@@ -41,7 +41,7 @@ std::vector<SceneFrame> scene_frames() {
     for (const std::uint16_t half : bytes.depths) {
       depths.push_back(half_to_float(half) * 1e6);
       frame.near_um = std::min(frame.near_um, static_cast<std::uint32_t>(depths.back()));
-      // What lies farther than 8 m is as blurred as what lies there, nearly.
+      // Beyond 8 m all is nearly as blurred as at 8 m.
       frame.far_um =
           std::max(frame.far_um, static_cast<std::uint32_t>(std::fmin(depths.back(), 8e6)));
     }

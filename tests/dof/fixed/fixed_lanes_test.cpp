@@ -54,7 +54,7 @@ PictureAndCodes random_halves(Random& random, int width, int height) {
 }
 
 Image image_like(const Image& picture) {
-  // What was there before must not show.
+  // The result's old contents must not show.
   Image result = make_image(picture.format, picture.width, picture.height);
   std::ranges::fill(result.bytes, std::byte{0x5A});
   return result;
@@ -249,7 +249,7 @@ TEST_CASE("fixed point: codes of 16 bits and codes in alpha give the scalar bits
 }
 
 TEST_CASE("fixed point: a mean of the largest halves is the largest half") {
-  // What is rounded in taking part of a neighbour beyond makes the quotient larger by 1 / weight.
+  // Rounding a part of a neighbour beyond makes the quotient larger by 1 / weight.
   constexpr Weights kSharp{1u << 19, 1u << 19, 32768, 0, 0};
   constexpr Weights kReceiver{2073, 1866, 32600, 15, 0};
   constexpr Weights kNeighbour{2048, 1, 32768, 15, 1};

@@ -21,7 +21,7 @@ namespace {
 constexpr Lens kLens{12u << 16, 1500000, 9u << 16 | 0x8000, 65536};
 constexpr double kOneWeight = 1 << 19;
 
-/// What weights should be before they are rounded.
+/// The weights before they are rounded.
 struct ExactWeights {
   double whole, edge, leak;
   int reach;

@@ -29,8 +29,8 @@ const std::vector<Gaussian> kOne = {{.862325, 1.624835, {.767583, -1.862321}}};
 const std::vector<Gaussian> kTwo = {{.886528, 5.268909, {.411259, .548794}},
                                     {1.960518, 1.558213, {.513282, -4.56111}}};
 
-// The header's equations in binary64, with the library's exponential. Of the near field without
-// shares, and of two values: premultiplied green, and opacity.
+// The header's equations in binary64, with the library's exponential. The near field has no shares
+// and two values: premultiplied green, and opacity.
 struct Oracle {
   const HalfFields& fields;
   const std::vector<Gaussian>& gaussians;

@@ -22,7 +22,7 @@ inline double cell_value(const HalfFields& fields, int plane, int x, int y) {
       std::clamp(y, 0, fields.cells.height - 1))[std::clamp(x, 0, fields.cells.width - 1)]);
 }
 
-/// What a method makes of a cell's green.
+/// A cell's green as a method blurs it.
 struct BlurredCell {
   double far, near, opacity;
 };

@@ -21,7 +21,7 @@ using test::saturated;
 
 namespace {
 
-// What a tap sees of a level: green times share, share, size, and what counts at all.
+// A level as a tap sees it: green times share, share, size, and whether it counts.
 struct Seen {
   double colour = 0.0, share = 0.0, size = 0.0, all = 0.0;
 };

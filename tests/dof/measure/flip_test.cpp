@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include "dof/measure/flip_filters.h"
 #include "dof/measure/measures.h"
 #include "dof/measure/opponent.h"
 #include "tests/support/flip_oracle.h"

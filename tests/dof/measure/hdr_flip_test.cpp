@@ -1,4 +1,4 @@
-#include "dof/measure/hdr_flip.h"
+#include "dof/measure/flip.h"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@ using doctest::Approx;
 
 namespace {
 
-// What the film curve takes to 0.85.
+// The film curve takes this value to 0.85.
 constexpr double kBright = 2.118872323987315;
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "dof/measure/outline.h"
+#include "dof/measure/regions.h"
 
 #include <doctest/doctest.h>
 

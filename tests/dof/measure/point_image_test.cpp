@@ -57,7 +57,7 @@ TEST_CASE("point: a disc is round, has its radius, its place and its area") {
 }
 
 TEST_CASE("point: a rectangle's eigenvalues are as the squares of its sides") {
-  // Of n pixels in a row the centres' variance is (n^2 - 1) / 12.
+  // The centres of n pixels in a row have the variance (n^2 - 1) / 12.
   CHECK(point_shape(rectangle(20, 10)).eigenvalue_ratio == Approx(99.0 / 399.0).epsilon(1e-9));
   CHECK(point_shape(rectangle(10, 20)).eigenvalue_ratio == Approx(99.0 / 399.0).epsilon(1e-9));
   CHECK(point_shape(rectangle(20, 20)).eigenvalue_ratio == Approx(1.0).epsilon(1e-9));

@@ -1,10 +1,9 @@
-#include "dof/measure/squared_error.h"
+#include "dof/measure/difference.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-#include "dof/measure/difference.h"
 #include "raster/numbers/half.h"
 #include "tests/support/measure_pictures.h"
 

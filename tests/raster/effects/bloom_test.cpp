@@ -154,7 +154,7 @@ TEST_CASE("bloom by a Gaussian is picture + strength (scattered - bright), in bi
   constexpr double kSigma = 2.5;
   constexpr int kReach = 7;  // whole distances up to 3 sigma
   const Image picture = test::random_halves(kWidth, kHeight, 31, 0.0, 6.0);
-  // Of the channel c.
+  // The light of channel c.
   const auto light = [&](int x, int y, int c) {
     const glm::dvec4 texel{
         load_texel(picture, std::clamp(x, 0, kWidth - 1), std::clamp(y, 0, kHeight - 1))};

@@ -155,7 +155,7 @@ Image lamp_at(double x, double y, bool smooth) {
   return picture;
 }
 
-/// Of the light that a moving lamp scatters farther than 4 pixels.
+/// Flicker of the light that a moving lamp scatters farther than 4 pixels.
 struct Flicker {
   double range;  ///< most - least
   double mean;

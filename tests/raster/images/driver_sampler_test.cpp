@@ -9,11 +9,9 @@
 #include <limits>
 #include <vector>
 
-#include "raster/images/llvmpipe_sampler.h"
-#include "raster/images/softpipe_sampler.h"
-#include "raster/images/swiftshader_sampler.h"
+#include "raster/images/driver_samplers.h"
 #include "raster/images/texel.h"
-#include "raster/numbers/float_to_int.h"
+#include "raster/numbers/fixed_point.h"
 #include "raster/numbers/lerp.h"
 #include "tests/support/raster_helpers.h"
 

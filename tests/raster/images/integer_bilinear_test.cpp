@@ -1,6 +1,6 @@
-// What D3D11.3 7.18.16.3 asks of a filter, of both roundings of 8-bit texels in integers.
+// D3D11.3 7.18.16.3 on filters: both roundings of 8-bit texels in integers.
 
-#include "raster/images/integer_bilinear.h"
+#include "raster/images/integer_filter.h"
 
 #include <doctest/doctest.h>
 

@@ -84,7 +84,7 @@ std::int64_t sum_at(const Texture& texture, int index, Place place, int channel)
   }
 }
 
-// Of bytes: rounded to 24 bits, from binary64, which holds the sum; then divided.
+// Bytes: the sum in binary64, which holds it, is rounded to 24 bits, then divided.
 float from_bytes(std::int64_t fine, std::int64_t coarse, int weight) {
   const std::int64_t sum = fine * (256 - weight) + coarse * weight;
   return static_cast<float>(static_cast<double>(sum)) / (255.0f * 0x1p24f);

@@ -1,4 +1,4 @@
-#include "raster/images/level_of_detail.h"
+#include "raster/images/sampler.h"
 
 #include <doctest/doctest.h>
 

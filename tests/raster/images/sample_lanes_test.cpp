@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "raster/images/decoded_texture.h"
-#include "raster/images/integer_bilinear.h"
+#include "raster/images/integer_filter.h"
 #include "tests/support/raster_helpers.h"
 
 namespace softfocus {
@@ -148,7 +148,7 @@ int count_wrong(Isa isa, const Texture& texture, const DecodedTexture& decoded,
   return wrong;
 }
 
-// The same over all samplers and kinds of points.
+// Counts wrong samples over all samplers and kinds of points.
 int count_wrong(Isa isa, const Texture& texture, const Profile& profile, Random& random) {
   const DecodedTexture decoded = decode_texture(texture, profile);
   int wrong = 0;

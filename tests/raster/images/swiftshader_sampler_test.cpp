@@ -1,4 +1,4 @@
-#include "raster/images/swiftshader_sampler.h"
+#include "raster/images/driver_samplers.h"
 
 #include <doctest/doctest.h>
 

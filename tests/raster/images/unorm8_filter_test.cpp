@@ -1,4 +1,4 @@
-#include "raster/images/unorm8_filter.h"
+#include "raster/images/integer_filter.h"
 
 #include <doctest/doctest.h>
 

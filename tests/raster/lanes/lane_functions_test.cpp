@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "raster/numbers/float_to_int.h"
+#include "raster/numbers/fixed_point.h"
 #include "tests/support/test_images.h"
 
 #define SOFTFOCUS_KERNELS "tests/raster/lanes/lane_functions_test.cpp"

@@ -11,9 +11,9 @@
 #include "raster/numbers/hash.h"
 #include "tests/support/raster_helpers.h"
 
-// The oracle is the C library in long double. Where that has 64 bits of mantissa (x86),
-// the documented bounds are tested; elsewhere it may be no better than binary64 itself,
-// and twice the bound is allowed for.
+// The oracle is the C library in long double. If that has 64 bits of mantissa (x86), the documented
+// bounds are tested. Else it may be no better than binary64 itself, and twice the bound is allowed
+// for.
 
 using namespace softfocus;
 

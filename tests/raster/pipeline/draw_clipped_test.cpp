@@ -1,5 +1,5 @@
-// What becomes of clipped triangles in whole draw calls: the order of their parts, which
-// the bits depend on, flat values, viewport transform and culling.
+// Clipped triangles in whole draw calls: the order of their parts, on which the bits depend, flat
+// values, viewport transform and culling.
 
 #include <doctest/doctest.h>
 

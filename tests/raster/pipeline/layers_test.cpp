@@ -44,7 +44,7 @@ DrawState both_sides() {
   return state;
 }
 
-// Of few depths, so that many are equal; each triangle level or sloping, with its own number.
+// Triangles of few depths, so that many are equal, level or sloping, each with its own number.
 std::vector<VertexOutput<4>> stacked_triangles(int count, std::uint64_t seed) {
   test::Random random{seed};
   std::vector<VertexOutput<4>> vertices;

@@ -1,6 +1,6 @@
 // Coverage by spans between floating-point edges.
 
-#include "raster/pipeline/scanlines.h"
+#include "raster/pipeline/setup.h"
 
 #include <doctest/doctest.h>
 

@@ -27,7 +27,7 @@ Image reprojected(const ReprojectSettings& settings, const Image& depths, const 
 TEST_CASE("reverse reprojection of a pan by whole pixels is exact") {
   const Image before = test::random_patches(37, 23, 1);
   constexpr int kRight = 3, kUp = 2;
-  // What is seen now lies kRight to the right of, and kUp above, where it was.
+  // Surfaces have moved kRight to the right and kUp upwards.
   Image now = make_image(Format::rgba16f, 37, 23);
   for (int y = 0; y < 23; ++y) {
     for (int x = 0; x < 37; ++x) {

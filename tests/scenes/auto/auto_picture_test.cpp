@@ -199,7 +199,7 @@ TEST_CASE("auto picture: an error that nothing reaches is said to be missed" *
   REQUIRE(found.measured_error);
   CHECK(*found.measured_error > 1e-6);
   CHECK(found.choice.samples == kSampleCounts.back());
-  // What was doubled is the table's line for so many samples.
+  // The doubled number of samples is the table's last line.
   CHECK(found.choice.candidate == candidates().size() - 1);
 }
 

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "dof/measure/flip.h"
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/accumulation.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/lens_view_scenes.h"
 

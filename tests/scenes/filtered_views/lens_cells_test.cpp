@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
+#include "scenes/lens_views/lens_points.h"
 
 using namespace softfocus;
 
@@ -73,7 +73,7 @@ TEST_CASE("cells of the lens: a cell's points lie about its view") {
   for (const int views : {4, 8, 16, 32}) {
     CAPTURE(views);
     const LensCells cells = lens_cells({}, views, points_of_cell(views));
-    // Of discs of a cell's area it would be 1 / (2 n).
+    // Discs of a cell's area have 1 / (2 n).
     CHECK(mean_square(cells.points) < 0.6 / views);
     CHECK(mean_square(cells.points) > 0.4 / views);
     for (const glm::dvec2 point : cells.points) {

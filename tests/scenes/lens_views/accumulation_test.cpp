@@ -2,9 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/lens_view_scenes.h"

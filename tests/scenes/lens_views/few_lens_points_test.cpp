@@ -1,4 +1,4 @@
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 
 #include <doctest/doctest.h>
 
@@ -31,9 +31,8 @@ std::vector<glm::dvec2> lattice_of(ApertureShape shape) {
   return lattice;
 }
 
-// What a pixel on an edge out of focus gets wrong, by the definition: over lines in every
-// direction and place, the root of the mean square of the share of points on one side less that
-// of the area.
+// The error of a pixel on an edge out of focus, by the definition: over lines in every direction
+// and place, the root of the mean square of the share of points on one side less that of the area.
 double half_plane_error(const std::vector<glm::dvec2>& points, ApertureShape shape) {
   const std::vector<glm::dvec2> lattice = lattice_of(shape);
   constexpr int kDirections = 24, kPlaces = 81;
@@ -98,7 +97,7 @@ TEST_CASE("few points of the lens: no line parts them as unevenly as it parts th
       const double few = half_plane_error(few_lens_points({blades}, count), {blades});
       const double sequence = half_plane_error(lens_points({blades}, count), {blades});
       CHECK(few < 0.85 * sequence);
-      // Of points each placed by itself it would be 0.35 / sqrt(n): theirs falls as n^-3/4.
+      // Points each placed by itself have 0.35 / sqrt(n); these fall as n^-3/4.
       CHECK(few < 0.36 * std::pow(count, -0.75));
     }
   }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 
 using namespace softfocus;
 
@@ -32,7 +32,7 @@ double share_below(const std::vector<double>& sorted, double place) {
          static_cast<double>(sorted.size());
 }
 
-// What a pixel on an edge gets wrong: the root of the mean square over directions and places.
+// The error of a pixel on an edge: the root of the mean square over directions and places.
 double edge_error(const Points& points, const Points& offsets, double radius_px) {
   constexpr int kMany = 4096, kDirections = 24, kPlaces = 81;
   const Points many_points = lens_points({}, kMany), many_offsets = pixel_offsets(true, kMany);

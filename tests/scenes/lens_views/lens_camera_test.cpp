@@ -1,4 +1,4 @@
-#include "scenes/lens_views/lens_camera.h"
+#include "scenes/lens_views/accumulation.h"
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ constexpr int kWidth = 640, kHeight = 480;
 const Camera kCamera{.position = {1.0, 2.0, 3.0}, .target = {0.5, 0.1, -2.0}, .fov_y_degrees = 45};
 const ThinLens kLens{.focal_length_mm = 85, .f_number = 1.8, .focus_m = 2.5};
 
-/// Where in the picture a point of the pinhole camera's space lies, in pixels.
+/// The place in the picture, in pixels, of a point of the pinhole camera's space.
 glm::dvec2 seen_at(const CameraMatrices& camera, const CameraMatrices& pinhole,
                    glm::dvec3 camera_space) {
   glm::dvec3 world = pinhole.eye;
@@ -58,7 +58,7 @@ TEST_CASE("a point elsewhere moves by its circle of confusion from the lens's ed
           lens_camera(pinhole, edge * radius_m, kLens.focus_m, {0, 0}, kWidth, kHeight);
       return seen_at(camera, pinhole, at) - seen_at(pinhole, pinhole, at);
     };
-    // What lies behind the focus moves with the eye.
+    // Points behind the focus move with the eye.
     CHECK(moved_from({1, 0}).x == doctest::Approx(radius_px).epsilon(1e-6));
     CHECK(std::fabs(moved_from({1, 0}).y) < 1e-9);
     CHECK(moved_from({0, 1}).y == doctest::Approx(-radius_px).epsilon(1e-6));

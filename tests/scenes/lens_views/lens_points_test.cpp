@@ -73,7 +73,7 @@ TEST_CASE("the points of a polygon lie in it, evenly, with a corner up") {
     CHECK(farthest <= std::cos(sector / 2.0) + 1e-9);
     CHECK(farthest > 0.95 * std::cos(sector / 2.0));
     CHECK(highest > 0.9);
-    // Of a regular polygon of radius 1: the mean of x^2 over a triangle at the centre.
+    // A regular polygon of radius 1 has the mean of x^2 over a triangle at its centre.
     const double variance = (2.0 + std::cos(sector)) / 12.0;
     CHECK(squares_x == doctest::Approx(variance).epsilon(0.01));
     CHECK(squares_y == doctest::Approx(variance).epsilon(0.01));

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/lens_views/sample_sums.h"
-#include "scenes/lens_views/tile_difference.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/lens_view_scenes.h"
 

@@ -7,7 +7,6 @@
 
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
-#include "scenes/lens_views/lens_camera.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/lens_views/shard.h"
 #include "scenes/lens_views/shutter_times.h"
@@ -22,7 +21,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDepth = 2.0;
 
-// Of square_scene() at kDepth, in a picture of that height.
+// A pixel's size on square_scene() at kDepth, in a picture of that height.
 double pixel_m(int height) { return 2.0 * kDepth * std::tan(kPi / 9.0) / height; }
 
 /// The picture of `frame`, and its aperture's radius in metres.
@@ -32,7 +31,7 @@ struct Taken {
   double radius_m = 0.0;
 };
 
-/// What accumulation() gets beside its sampling.
+/// accumulation()'s arguments beside its sampling.
 struct View {
   CameraMatrices camera;
   Image pinhole;

@@ -9,7 +9,6 @@
 #include <map>
 #include <vector>
 
-#include "scenes/lens_views/few_lens_points.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/lens_points.h"
 #include "tests/support/random.h"

@@ -1,4 +1,4 @@
-#include "scenes/lens_views/tile_difference.h"
+#include "scenes/lens_views/samples_by_tile.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "scenes/relief/coarser_relief.h"
+#include "scenes/relief/relief_texture.h"
 
 #include <doctest/doctest.h>
 

@@ -160,7 +160,7 @@ TEST_CASE("a warp that is foreseen is for the eye of the frame that shows it") {
   const auto late_of = [](bool predicts) {
     const TurnRecord record = turn_by({ScheduleKind::slices, true, 4, predicts}, 40);
     int most = 0;
-    // Of the first frame there is no motion yet.
+    // The first frame has no motion yet.
     for (std::size_t i = 8; i < 40; ++i) most = std::max(most, record.frames[i].late_frames);
     return most;
   };

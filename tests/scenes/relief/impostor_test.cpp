@@ -72,7 +72,7 @@ TEST_CASE("an impostor drawn for a view shows what is drawn, at its depths") {
     }
     CAPTURE(choice.name);
     CHECK(seen > 1500);
-    // Of an outline of some 300 pixels.
+    // The outline has some 300 pixels.
     CHECK(lost < (in_perspective ? 40 : 60));
     CHECK(gained < (in_perspective ? 40 : 60));
     CHECK(wrong_depths < seen / 50);

@@ -115,7 +115,7 @@ TEST_CASE("a ring is whole from everywhere, its faces laid over each other by de
     CHECK(lost < seen / 8);
     CHECK(gained < seen / 25);
     CHECK(wrong_depths < seen / 50);
-    // Of the hole's waist, which is seen along its surface alone.
+    // The hole's waist is seen along its surface alone.
     CHECK(count_of(unseen_pixels(box, camera, drawn, kBoxFar, pool), FacePoint::by_none) <
           seen / 50);
   }
@@ -146,7 +146,7 @@ TEST_CASE("a texel that is steep to a face is left to a seen face that has its p
            static_cast<double>(box.faces[0]->extent.filled);
   };
   CHECK(left_from({5.0, 0.0, 0.0}) == 1.0);  // +x alone
-  // Of the rim beyond sin 60 degrees, a quarter of the disc, what +y and +z have better.
+  // +y and +z are better on the rim beyond sin 60 degrees, a quarter of the disc.
   CHECK(left_from({3.0, 3.0, 3.0}) > 0.8);
   CHECK(left_from({3.0, 3.0, 3.0}) < 0.93);
   CHECK(left_from({5.0, 0.0, 0.0}) == 1.0);

@@ -19,8 +19,8 @@ namespace {
 const glm::dvec3 kEyes[] = {{0.0, 0.0, 1.5},   {0.5, 0.3, 1.2},   {-0.6, 0.1, 1.0},
                             {0.05, -0.7, 0.9}, {-0.4, -0.5, 1.4}, {0.03, 0.02, 0.4}};
 
-/// Of a perspective relief. Some of the eyes are nearer to the plane, some farther: texels move
-/// towards the epipole or away from it.
+/// The eye of a perspective relief. Some of the eyes are nearer to the plane, some farther: texels
+/// move towards the epipole or away from it.
 constexpr glm::dvec3 kSource{-0.2, 0.15, 1.1};
 
 /// The oracle of the passes: a line of texels, written down as the rule reads. `along` is the place

@@ -1,6 +1,6 @@
 // The oracle on shadows that are known.
 
-#include "scenes/shadows/point_in_shadow.h"
+#include "scenes/shadows/shadow_truth.h"
 
 #include <doctest/doctest.h>
 

@@ -145,7 +145,7 @@ TEST_CASE("a texel holds the nearest caster that a ray of the light meets") {
         }
       }
       CHECK(covered > 100);
-      // Where several snapped edges meet, or a caster is nearly edge-on.
+      // Several snapped edges meet there, or a caster is nearly edge-on.
       CHECK(beside * 500 <= texels);
     }
   }
@@ -186,7 +186,7 @@ TEST_CASE("casters that the light sees edge-on are no nearer than their corners"
   const glm::dvec3 towards = normalize(glm::dvec3{0.3, 1.0, 0.2});
   const glm::dvec3 along = normalize(cross(towards, {0, 0, 1})), across = cross(along, towards);
   std::vector<Facet> corners;
-  // Walls of 1/30 to 1/3000 texel. What is below them makes the map so wide.
+  // Walls of 1/30 to 1/3000 texel. The map is so wide because of the things below them.
   add_quad(corners, {-4, -6, 4}, {4, -6, 4}, {4, -6, -4}, {-4, -6, -4});
   test::Random random{5};
   for (int i = 0; i < 200; ++i) {

@@ -12,9 +12,7 @@
 #include <vector>
 
 #include "scenes/draw/frame_matrices.h"
-#include "scenes/shadows/point_in_shadow.h"
-#include "scenes/shadows/shadow_errors.h"
-#include "scenes/shadows/volumes/pixel_space.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "scenes/shadows/volumes/volume_mask.h"
 #include "tests/support/random.h"
 #include "tests/support/shadow_facets.h"
@@ -284,8 +282,9 @@ TEST_CASE("volumes of thin casters, and of casters through their receivers, are 
 }
 
 TEST_CASE("what is a little more than epsilon over a receiver casts, what is less does not") {
-  // Of 283 m across, so that epsilon is a sixth of a pixel of a close look. The look is at a corner
-  // of the receiver's second facet, which may lie off its plane by less than half of epsilon.
+  // The scene is 283 m across, so that epsilon is a sixth of a pixel of a close look. The look is
+  // at a corner of the receiver's second facet, which may lie off its plane by less than half of
+  // epsilon.
   const glm::dvec3 bent{-0.1, 0, -0.1}, middle{-0.08, 0, -0.08};
   for (const double height : {0.6, 1.2, 3.0, 20.0}) {
     for (const double bend : {0.0, 0.4}) {
@@ -387,7 +386,7 @@ TEST_CASE("a pixel with a sample is dark exactly if its count and the eye's are 
 }
 
 TEST_CASE("bands, blocks and outlines leave out no face that counts") {
-  // Of 100 km across, so that samples lie up to half a pixel beside their centres.
+  // The scene is 100 km across, so that samples lie up to half a pixel beside their centres.
   std::vector<Facet> corners;
   add_floor(corners, 4);
   test::Random random{21};

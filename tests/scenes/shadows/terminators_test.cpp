@@ -1,4 +1,4 @@
-// Where light ends on curves of few facets.
+// The place at which light ends on curves of few facets.
 
 #include "scenes/shadows/terminators.h"
 
@@ -14,7 +14,7 @@
 #include "raster/images/texel.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/make/shapes.h"
-#include "scenes/shadows/point_in_shadow.h"
+#include "scenes/shadows/shadow_truth.h"
 #include "tests/support/shadow_facets.h"
 #include "tests/support/shadow_scene.h"
 

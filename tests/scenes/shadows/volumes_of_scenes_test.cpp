@@ -7,7 +7,7 @@
 
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/shadows/shadow_errors.h"
+#include "scenes/shadows/shadow_truth.h"
 
 using namespace softfocus;
 

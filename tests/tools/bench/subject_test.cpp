@@ -1,4 +1,4 @@
-// What bench measures where it takes no scene: the sphere field and the picture.
+// bench without a scene: the sphere field and the picture.
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include "dof/lens.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
-#include "scenes/make/sphere_field.h"
+#include "scenes/make/shapes.h"
 #include "tools/bench/picture.h"
 
 using namespace softfocus;

@@ -1,4 +1,4 @@
-// What is in the chart's report. No test can say how it looks.
+// The contents of the chart's report. No test can say how it looks.
 
 #include "tools/chart/report/page.h"
 

@@ -1,4 +1,4 @@
-// What else than depth of field a chart can be of.
+// Charts of other subjects than depth of field.
 
 #include "tools/chart/subject.h"
 

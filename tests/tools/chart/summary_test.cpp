@@ -1,4 +1,4 @@
-// What the chart says of all scenes: the best for a budget, and each contender's summary.
+// The chart's summary of all scenes: the best for a budget, and each contender.
 
 #include "tools/chart/report/summary.h"
 

@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <iterator>
+#include <sstream>
+
 #include "dof/measure/flip.h"
 #include "raster/images/texel.h"
-#include "scenes/lens_views/few_lens_points.h"
+#include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/gl_drivers.h"
 #include "tests/support/run_program.h"
@@ -35,6 +38,11 @@ void open(Page& page, const std::string& scene) {
 
 std::string hash_of(Page& page, const std::string& settings) {
   return ask_well(page, R"({"do":"frame",)" + settings + "}").at("hash").text();
+}
+
+std::vector<std::string> words_of(const std::string& line) {
+  std::istringstream words{line};
+  return {std::istream_iterator<std::string>{words}, {}};
 }
 
 Image two_pass_picture(const Scene& scene, int width, int height) {
@@ -135,6 +143,99 @@ TEST_CASE("a model's file names the model, and draws what was shown") {
   write_file(folder.file("thing.toml"), text);
   open(page, folder.file("thing.toml"));
   CHECK(hash_of(page, R"("size":[40,40],"max_coc_px":)" + max_coc) == hash);
+}
+
+TEST_CASE("a command repeats the frame, or there is none") {
+  Page page;
+  open(page, "figures");
+  const auto command_of = [&](const std::string& settings) {
+    return ask_well(page, R"({"do":"frame","size":[32,16],)" + settings + "}").at("command");
+  };
+  CHECK(command_of(R"("time":3,"focus":{"at":[0.5,1]},"focal_length_mm":50,"f_number":2.5,)"
+                   R"("coc_scale":1,"max_coc_px":24)")
+            .text() ==
+        "softfocus render figures -o picture.png --json --size 32x16 --frame 3 --method two-pass "
+        "--autofocus 16,15 --focal-length 50 --f-number 2.5 --coc-scale 1 --max-coc 24");
+  CHECK(command_of(R"("dof":false)").text().ends_with("--show pinhole"));
+  CHECK(
+      command_of(R"("method":"filtered-views","max_coc_px":24)").text().ends_with("--samples 64"));
+  CHECK(command_of(R"("method":"surface-splatting","f_number":2,"max_coc_px":24)")
+            .text()
+            .ends_with("--f-number 2"));
+  const std::string moved =
+      R"("max_coc_px":24,"camera":{"position_m":[0,0.3,1],"target_m":[0,0,0],"fov_y_degrees":30})";
+  CHECK(command_of(moved).text() ==
+        "softfocus render scene.toml -o picture.png --json --size 32x16 --method two-pass "
+        "--max-coc 24");
+  open(page, "random:1");
+  CHECK(command_of(moved).is_null());
+}
+
+TEST_CASE("every scene's frame has the picture_hash of the page's command") {
+  const TemporaryDirectory folder;
+  Page page;
+  const auto check = [&](const std::string& settings) {
+    const Json frame = ask_well(page, R"({"do":"frame","size":[40,24],)" + settings + "}");
+    write_file(folder.file("scene.toml"), "");
+    std::vector<std::string> words = words_of(frame.at("command").text());
+    REQUIRE(words.size() > 4);
+    words.erase(words.begin());
+    for (std::string& word : words) {
+      if (word == "scene.toml") {
+        word = folder.file(word);
+        write_file(word, ask_well(page, R"({"do":"file","name":"scene.toml"})").at("text").text());
+      } else if (word == "picture.png") {
+        word = folder.file("picture.npy");
+      }
+    }
+    CAPTURE(frame.at("command").text());
+    const ProgramRun run = run_program(words);
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    const std::optional<Json> report = parse_json(run.out);
+    REQUIRE(report);
+    CHECK(frame.at("hash").text() == report->at("picture_hash").text());
+  };
+  const Json scenes = ask_well(page, R"({"do":"scenes"})").at("scenes");
+  for (const Json& listed : scenes.values()) {
+    open(page, listed.at("name").text());
+    check(R"("time":2,"method":"disc-layers")");
+    check(R"("f_number":1.5,"focus":{"at":[0.3,0.7]},"max_coc_px":7.5)");
+  }
+  open(page, "windmill");
+  for (const char* const method : {"accumulation", "filtered-views", "warped-accumulation"}) {
+    check(R"("time":1,"samples":17,"method":")" + std::string{method} + "\"");
+  }
+  open(page, "glass");
+  for (const char* const method : {"layered", "pinhole", "object-identification", "scatter"}) {
+    check(R"("method":")" + std::string{method} + "\"");
+  }
+  check(R"("show":"coc","coc_scale":4)");
+  check(R"("show":"depth")");
+  check(R"("dof":false)");
+  const std::string camera =
+      R"(,"camera":{"position_m":[1,1.5,4],"target_m":[0,0.5,0],"fov_y_degrees":30})";
+  // Effects and the shutter, with the scene's camera and with another.
+  for (const std::string effects :
+       {"[[effect]]\nname = \"motion-blur\"\nshutter = 2\n[[effect]]\nname = \"bloom\"\n",
+        "[[effect]]\nname = \"temporal-aa\"\n"}) {
+    const std::string own = folder.file("own.toml");
+    write_file(own,
+               "[camera]\nposition = [0, 1, 5]\norbit_degrees_per_frame = 3\nshutter = 1\n"
+               "[[light]]\nkind = \"directional\"\ndirection = [1, 2, 3]\n"
+               "[material.red]\ndiffuse = [0.9, 0.2, 0.1]\n"
+               "[[object]]\nshape = \"cube\"\nmaterial = \"red\"\n"
+               "spin_degrees_per_frame = [0, 9, 0]\n" +
+                   effects);
+    open(page, own);
+    for (const std::string& seen_by : {std::string{}, camera}) {
+      check(R"("time":4,"method":"one-pass")" + seen_by);
+      check(R"("dof":false,"time":4)" + seen_by);
+      if (!contains(effects, "temporal-aa")) {
+        check(R"("time":4,"samples":9,"method":"accumulation")" + seen_by);
+      }
+    }
+  }
 }
 
 TEST_CASE("the truth is accumulation's picture of many views, and its distance the mean FLIP") {

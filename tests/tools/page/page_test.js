@@ -110,22 +110,6 @@ test("the camera turns around its target and never over it", async () => {
   near(panned(camera, 0, 1).target_m[1], 1 + 8 * Math.tan(20 * Math.PI / 180));
 });
 
-test("a command repeats the frame, or there is none", async () => {
-  const { first_side, first_state } = await module_of("state.js");
-  const { command_of } = await module_of("panels/hashes.js");
-  const side = { ...first_side(), focus: { at: [0.5, 1] }, max_coc_px: 24 };
-  assert.strictEqual(
-      command_of({ ...first_state(), time: 3 }, side),
-      "softfocus render figures -o picture.png --json --size 512x512 --frame 3 --method two-pass " +
-      "--autofocus 256,511 --focal-length 50 --f-number 2 --coc-scale 1 --max-coc 24");
-  assert.ok(command_of(first_state(), { ...side, dof: false }).endsWith("--show pinhole"));
-  assert.ok(command_of(first_state(), { ...side, method: "accumulation" }).endsWith("--samples 64"));
-  assert.strictEqual(
-      command_of({ ...first_state(), camera: {} }, side),
-      "softfocus render scene.toml -o picture.png --json --size 512x512 --method two-pass --max-coc 24");
-  assert.strictEqual(command_of({ ...first_state(), camera: {}, scene: "random:1" }, side), null);
-});
-
 test("the error of a picture without depth of field is that of the pinhole", async () => {
   const { first_side, first_state, frame_request } = await module_of("state.js");
   const off = { ...first_side(), dof: false };
@@ -155,7 +139,7 @@ test("of two dropped pictures one is the depth", async () => {
 
 test("a picture's request and its command have the numbers that its encoding takes", async () => {
   const { picture_request } = await module_of("panels/picture.js");
-  const { command_of } = await module_of("panels/hashes.js");
+  const { refocus_command } = await module_of("panels/hashes.js");
   const { first_side, first_state, with_picture } = await module_of("state.js");
   const encodings = [{ name: "metres", needs: "", takes: "scale offset" },
                      { name: "device", needs: "near far", takes: "" }];
@@ -170,10 +154,10 @@ test("a picture's request and its command have the numbers that its encoding tak
                              { width: 300, height: 200 }, [{ name: "two-pass", kind: "filter" }]);
   assert.deepStrictEqual([state.show, state.sides[0].method], ["image", "two-pass"]);
   assert.strictEqual(
-      command_of(state, state.sides[0], encodings),
+      refocus_command(state, state.sides[0], encodings),
       "softfocus refocus a.png 'my d.png' -o picture.png --json --depth-encoding device --near 1 --far 9 " +
       "--method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --coc-scale 1");
-  assert.strictEqual(command_of(state, { ...side, dof: false }, encodings), null);
+  assert.strictEqual(refocus_command(state, { ...side, dof: false }, encodings), null);
 });
 
 test("radii are read from a line of text", async () => {

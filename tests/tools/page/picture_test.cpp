@@ -42,7 +42,7 @@ std::string error_of(Page& page, const Json& request) {
   return error == nullptr ? "" : error->text();
 }
 
-/// What `refocus` says of the same files.
+/// The report of `refocus` on the same files.
 nlohmann::json refocused_by_program(const Files& files, Words words) {
   words.insert(words.begin(), "refocus");
   words.insert(words.end(), {"-o", files.directory.file("result.npy"), "--json"});

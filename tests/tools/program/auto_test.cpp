@@ -30,7 +30,7 @@ Picture picture_at(const std::string& file) {
   return decode_npy(std::as_bytes(std::span{bytes}));
 }
 
-// What asks for the same by name.
+// The words that ask for the choice by name.
 Words asked_by_name(const nlohmann::json& choice) {
   Words words{"--method", choice["method"].get<std::string>()};
   if (choice.contains("max_coc_px")) {

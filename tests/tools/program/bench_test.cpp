@@ -49,7 +49,7 @@ void check_stages(const json& stages, const Words& names) {
 
 const Words kAllStages{"raster", "dof", "frame"};
 
-// Of a shader's two forms the one that took less is the peer.
+// The faster of a shader's two forms is the peer.
 void check_faster_form(const json& result, bool filters) {
   const json& shaders = result["peer"]["shaders"];
   CHECK(shaders.size() == (filters ? 2 : 0));
@@ -261,7 +261,7 @@ TEST_CASE("bench: --vs llvmpipe runs every effect's shaders, whose bits are ours
     }
     return result["effects"].size();
   };
-  // What reads a velocity or the frames before needs a scene.
+  // Effects that read a velocity or the frames before need a scene.
   const auto of_picture = effects_of({"--image", "24x16"});
   CHECK(of_picture >= 13);
   CHECK(effects_of({"crossing", "--size", "24x16", "--frame", "7"}) == of_picture + 4 + 3);

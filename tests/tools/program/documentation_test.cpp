@@ -24,7 +24,7 @@ class Share {
   TemporaryDirectory directory_;
 };
 
-/// What a command line prints, errors too, and its status in `status`.
+/// A command line's output, errors too, and its status in `status`.
 std::string said_by(const std::string& command, int& status) {
   std::FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");
   REQUIRE(pipe != nullptr);
@@ -58,7 +58,7 @@ Words commands() {
   return first_words(help.substr(0, help.find("\nGeneral:")), 'a');
 }
 
-/// What bash offers for the last word.
+/// Bash's offers for the last word.
 Words completed(const Share& share, const Words& words) {
   std::string line;
   for (const std::string& word : words) line += " '" + word + "'";

@@ -1,4 +1,4 @@
-// What a user of other programs expects of this one.
+// Habits of other programs that a user expects here too.
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"

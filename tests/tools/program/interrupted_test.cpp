@@ -1,4 +1,4 @@
-// What a signal leaves of a run: nothing half-written, and an end as the signal's.
+// A signal leaves nothing half-written, and ends the run with the signal's status.
 
 #include <sys/stat.h>
 

@@ -1,6 +1,6 @@
 // Depths of another lens with the same circles, known better.
 
-#include "tools/refocus/depth/finer_depths.h"
+#include "tools/refocus/depth/mend_depth.h"
 
 #include <doctest/doctest.h>
 

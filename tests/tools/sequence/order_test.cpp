@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "tools/sequence/frames_in_order.h"
+#include "tools/sequence/run_frames.h"
 
 using namespace softfocus;
 

@@ -15,7 +15,7 @@ using namespace softfocus;
 
 namespace {
 
-/// What a run says on standard error.
+/// Collects a run's lines on standard error.
 class Said {
  public:
   Said() : before_(std::cerr.rdbuf(text_.rdbuf())) {}

@@ -1,4 +1,4 @@
-#include "tools/cli/time_left.h"
+#include "tools/cli/progress.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// What the atlas keeps of a trial, and when it is still right.
+// The atlas's record of a trial, and when it is still right.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What bloom comes near to: the bright light convolved with one kernel.
+// The truth of bloom: the bright light convolved with one kernel.
 
 #include <vector>
 

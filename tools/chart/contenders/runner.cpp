@@ -6,8 +6,6 @@
 
 #include "dof/halve.h"
 #include "raster/numbers/profile.h"
-#include "scenes/auto/auto_picture.h"
-#include "scenes/draw/object_numbers.h"
 #include "scenes/draw/velocity.h"
 #include "scenes/temporal/frame_history.h"
 
@@ -52,27 +50,48 @@ RunTime ChartRunner::run_warm(const ChartEntry& entry) {
   return run(entry);
 }
 
-PreparedScene& ChartRunner::prepared_for(const std::string& profile) {
-  const auto found = prepared_.find(profile);
-  if (found != prepared_.end()) return found->second;
-  return prepared_.emplace(profile, prepare_scene(scene_.scene, *find_profile(profile), pool_))
-      .first->second;
+FrameMemory& ChartRunner::memory_for(const std::string& profile) {
+  FrameMemory& memory = memories_[profile];
+  if (!memory.prepared) {
+    memory.prepared = prepare_scene(scene_.scene, *find_profile(profile), pool_);
+  }
+  return memory;
 }
 
-void ChartRunner::filter_drawn(const Method& filter, float max_coc_px, const Profile& profile) {
-  const std::vector<ConstImageView> behind{behind_.begin(), behind_.end()};
-  const std::vector<TransparentLayer> transparent = views_of(transparent_);
-  apply(filter,
-        {drawn_,
-         {.coc = scene_.coc, .max_coc_px = max_coc_px},
-         profile,
-         objects_,
-         behind,
-         transparent},
-        result_, pool_);
+Shot ChartRunner::shot_by(const MethodChoice& method, const Profile& profile) const {
+  Shot shot{.scene = &scene_.scene,
+            .frame = scene_.frame,
+            .width = scene_.pinhole.width,
+            .height = scene_.pinhole.height,
+            .method = method,
+            .blends = false,
+            .sampling = views_.sampling,
+            .profile = profile};
+  if (method.filter == nullptr) shot.layers = 0;
+  return shot;
 }
 
-// What belongs to a lens is made once, as it would be for many frames.
+/// Draws the shot and makes its picture, as `render` has it.
+RunTime ChartRunner::run_shot(const Shot& shot, float max_coc_px, FrameMemory& memory) {
+  const Clock::time_point start = Clock::now();
+  draw_shot(shot, memory, frame_, pool_);
+  const Clock::time_point drawn = Clock::now();
+  make_result(shot, max_coc_px, memory);
+  const Clock::time_point end = Clock::now();
+  return {ms_between(start, end), ms_between(drawn, end)};
+}
+
+void ChartRunner::make_result(const Shot& shot, float max_coc_px, FrameMemory& memory) {
+  memory.picture = std::move(result_);
+  const UsedLens lens{.lens = scene_.lens,
+                      .aperture_radius_m = scene_.aperture_m,
+                      .settings = {.coc = scene_.coc, .max_coc_px = max_coc_px}};
+  Frame made = make_picture(shot, frame_, lens, memory, pool_);
+  result_ = std::move(made.picture);
+  if (made.chosen) chosen_ = setting_text(made.chosen->choice);
+}
+
+// A lens's table is made once, as it would be for many frames.
 const FixedTable& ChartRunner::table_for(float max_coc_px) {
   const auto found = tables_.find(max_coc_px);
   if (found != tables_.end()) return found->second;
@@ -80,33 +99,16 @@ const FixedTable& ChartRunner::table_for(float max_coc_px) {
   return tables_.emplace(max_coc_px, fixed_table(half_table(lens))).first->second;
 }
 
-void ChartRunner::filter_drawn(const ChartEntry& entry, const Profile& profile) {
-  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
-  if (entry.arithmetic == Arithmetic::fixed_8) {
-    two_pass_bytes(drawn_, table_for(max_coc_px), result_, pool_);
-  } else {
-    filter_drawn(*entry.filter, max_coc_px, profile);
-  }
-}
-
 RunTime ChartRunner::filter(const ChartEntry& entry) {
-  const Profile profile = *find_profile(entry.profile);
-  PreparedScene& prepared = prepared_for(entry.profile);
-  behind_.resize(entry.filter->layers - 1);
-  for (Image& layer : behind_) {
-    if (layer.bytes.empty()) layer = make_image(Format::rgba16f, drawn_.width, drawn_.height);
-  }
+  FrameMemory& memory = memory_for(entry.profile);
+  Shot shot = shot_by({.filter = entry.filter}, *find_profile(entry.profile));
+  const float max_coc_px = entry.max_coc_px.value_or(DofSettings{}.max_coc_px);
+  if (entry.arithmetic != Arithmetic::fixed_8) return run_shot(shot, max_coc_px, memory);
+  shot.layers = 0;
   const Clock::time_point start = Clock::now();
-  if (entry.arithmetic == Arithmetic::floats) {
-    draw_layers(prepared, scene_.view, scene_.frame, drawn_, behind_, pool_);
-    transparent_ = draw_transparent(prepared, scene_.view, scene_.frame, drawn_, pool_);
-  } else {
-    draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
-  }
-  objects_ = object_numbers_for(*entry.filter, scene_.scene, scene_.view, scene_.frame,
-                                drawn_.width, drawn_.height, profile, pool_);
+  draw_shot(shot, memory, frame_, pool_);
   const Clock::time_point drawn = Clock::now();
-  filter_drawn(entry, profile);
+  two_pass_bytes(frame_.parts.opaque, table_for(max_coc_px), result_, pool_);
   const Clock::time_point end = Clock::now();
   return {ms_between(start, end), ms_between(drawn, end)};
 }
@@ -123,7 +125,7 @@ Image ChartRunner::with_effect(ChosenEffect chosen, const Image& before) {
 
 /// The last of so many frames of the moment: what came before is no part of its time.
 RunTime ChartRunner::draw_after_frames(const ChosenEffect& chosen, int frames) {
-  PreparedScene& prepared = prepared_for("ieee");
+  PreparedScene& prepared = *memory_for("ieee").prepared;
   const FrameEffect effect = frame_effect(chosen);
   FrameHistory history;
   const auto draw = [&] {
@@ -147,7 +149,7 @@ RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
     large_ = make_image(Format::rgba16f, entry.supersample * drawn_.width,
                         entry.supersample * drawn_.height);
   }
-  PreparedScene& prepared = is_large ? *prepared_large_ : prepared_for("ieee");
+  PreparedScene& prepared = is_large ? *prepared_large_ : *memory_for("ieee").prepared;
   const Clock::time_point start = Clock::now();
   draw_scene(prepared, scene_.view, scene_.frame, is_large ? large_ : drawn_, pool_);
   const Clock::time_point drawn = Clock::now();
@@ -247,49 +249,33 @@ RunTime ChartRunner::warp_views(int samples, int drawn_views) {
 
 // The sharp picture tells such a method what is seen, so its drawing counts.
 RunTime ChartRunner::draw_otherwise(const LensViewMethod& method) {
-  const Clock::time_point start = Clock::now();
-  draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
-  const Clock::time_point drawn = Clock::now();
-  result_ = method.render(views_, pool_).picture;
-  const Clock::time_point end = Clock::now();
-  return {ms_between(start, end), ms_between(drawn, end)};
-}
-
-AutoMethod ChartRunner::predicted_for(double max_error) {
-  return auto_method(scene_traits(drawn_, scene_.coc, pool_), {max_error},
-                     {{}, triangle_count(scene_.scene)});
+  return run_shot(shot_by({.of_scene = &method}, Profile{}), 0.0f, memory_for("ieee"));
 }
 
 // As `render` has it: a doubtful choice is checked, which takes its time.
 RunTime ChartRunner::choose(double max_error) {
-  PreparedScene& prepared = prepared_for("ieee");
-  const Clock::time_point start = Clock::now();
-  draw_scene(prepared, scene_.view, scene_.frame, drawn_, pool_);
-  const Clock::time_point drawn = Clock::now();
-  LensViewInput views = views_;
-  views.prepared = &prepared;
-  AutoPicture found = auto_picture({.views = views,
-                                    .settings = {.coc = scene_.coc},
-                                    .goal = {max_error},
-                                    .limits = {{}, triangle_count(scene_.scene)}},
-                                   pool_);
-  const Clock::time_point end = Clock::now();
-  prepared_.erase("ieee");  // moved from, perhaps
-  result_ = std::move(found.picture);
-  chosen_ = setting_text(found.choice);
-  return {ms_between(start, end), ms_between(drawn, end)};
+  FrameMemory& memory = memory_for("ieee");
+  memory.is_last = true;
+  Shot shot = shot_by({}, Profile{});
+  shot.goal = {max_error};
+  const RunTime time = run_shot(shot, DofSettings{}.max_coc_px, memory);
+  memories_.erase("ieee");  // its scene was moved from, perhaps
+  return time;
 }
 
-// Of an accumulation the first group of pictures is enough.
+// An accumulation's first group of pictures is enough.
 void ChartRunner::warm_up(const ChartEntry& entry) {
   int samples = entry.samples;
   if (entry.max_error) {
-    draw_scene(prepared_for("ieee"), scene_.view, scene_.frame, drawn_, pool_);
-    transparent_.clear();
-    const AutoMethod choice = predicted_for(*entry.max_error);
+    FrameMemory& memory = memory_for("ieee");
+    Shot shot = shot_by({}, Profile{});
+    draw_shot(shot, memory, frame_, pool_);
+    const AutoMethod choice = auto_method(scene_traits(frame_.parts.opaque, scene_.coc, pool_),
+                                          {*entry.max_error}, {{}, triangle_count(scene_.scene)});
     samples = choice.samples;
     if (samples == 0) {
-      filter_drawn(*find_method(choice.method), choice.radius_px, views_.profile);
+      shot.method = find_method_choice(choice.method);
+      make_result(shot, choice.radius_px, memory);
     }
   } else if (entry.filter != nullptr) {
     filter(entry);

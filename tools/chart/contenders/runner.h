@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "dof/auto/auto_method.h"
 #include "scenes/filtered_views/filtered_views.h"
+#include "scenes/frame/frame.h"
 #include "scenes/warped_views/warped_views.h"
 #include "tools/chart/contenders/shadow_contenders.h"
 #include "tools/chart/contenders/turn_contenders.h"
@@ -34,17 +34,16 @@ class ChartRunner {
 
   /// Draws a whole frame, by a filter, from the lens's points or by what auto chooses.
   RunTime run(const ChartEntry& entry);
-  /// The same, after a run without a clock: the contender before has filled the caches with its
-  /// own.
+  /// run() after a run without a clock: the contender before has filled the caches with its own.
   RunTime run_warm(const ChartEntry& entry);
 
-  /// Of the last run.
+  /// The last run's picture.
   const Image& result() const { return result_; }
-  /// Of a chart of shadows: ChartErrors::wrong_pixels of the last run, which was of that entry.
+  /// ChartErrors::wrong_pixels of the last run, of a chart of shadows. The run was of that entry.
   double wrong_pixels(const ChartEntry& entry);
-  /// Of a chart of impostors: outline, renewals and memory of the last run.
+  /// Adds outline, renewals and memory of the last run, of a chart of impostors.
   void add_turn_errors(const Image& truth, ChartErrors& errors);
-  /// What auto chose last, in words.
+  /// auto's last choice, in words.
   const std::string& chosen() const { return chosen_; }
 
  private:
@@ -60,10 +59,10 @@ class ChartRunner {
   RunTime warp_views(int samples, int drawn_views);
   RunTime draw_otherwise(const LensViewMethod& method);
   RunTime choose(double max_error);
-  AutoMethod predicted_for(double max_error);
-  PreparedScene& prepared_for(const std::string& profile);
-  void filter_drawn(const Method& filter, float max_coc_px, const Profile& profile);
-  void filter_drawn(const ChartEntry& entry, const Profile& profile);
+  FrameMemory& memory_for(const std::string& profile);
+  Shot shot_by(const MethodChoice& method, const Profile& profile) const;
+  RunTime run_shot(const Shot& shot, float max_coc_px, FrameMemory& memory);
+  void make_result(const Shot& shot, float max_coc_px, FrameMemory& memory);
   const FixedTable& table_for(float max_coc_px);
   AccumulationBuffer& buffer();
   void add_views(int first, int last);
@@ -74,8 +73,8 @@ class ChartRunner {
   const ChartScene& scene_;
   LensViewInput views_;  // with as many points of the lens as anything here takes
   ThreadPool& pool_;
-  std::map<std::string, PreparedScene> prepared_;  // by profile
-  std::map<float, FixedTable> tables_;             // by radius
+  std::map<std::string, FrameMemory> memories_;  // by profile, with the prepared scene
+  std::map<float, FixedTable> tables_;           // by radius
   std::optional<AccumulationBuffer> buffer_;
   std::optional<FilteredViewsBuffer> filtered_;
   std::optional<WarpedViewsBuffer> warped_;
@@ -83,10 +82,8 @@ class ChartRunner {
   std::optional<PreparedScene> prepared_large_;  // of what is drawn larger
   std::optional<ShadowContenders> shadows_;
   std::optional<TurnContenders> turns_;
-  Image drawn_, large_;
-  std::vector<Image> behind_;                    ///< as many layers as the method reads
-  std::vector<TransparentPicture> transparent_;  ///< layers before drawn_
-  std::vector<std::uint16_t> objects_;           // of the filter drawn last, if it reads them
+  Image drawn_, large_;  // without depth of field
+  DrawnFrame frame_;     // of the method run last
   Image result_;
   std::string chosen_;
 };

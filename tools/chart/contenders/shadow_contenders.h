@@ -33,9 +33,8 @@ class ShadowContenders {
   /// A whole frame of the contender that is prepared.
   void draw(Image& picture);
 
-  /// Of the frame that was drawn last, pixels times lights that are answered otherwise than by a
-  /// ray from anywhere within 1/256 pixel. A pixel is dark by a map if more than half of the kernel
-  /// is.
+  /// Counts pixels times lights of the last drawn frame that are answered otherwise than by a ray
+  /// from anywhere within 1/256 pixel. A pixel is dark by a map if more than half of the kernel is.
   std::size_t wrong_pixels();
 
   /// Without any shadow: all that a ray finds dark.
@@ -56,7 +55,7 @@ class ShadowContenders {
   std::optional<PreparedScene> prepared_;
   std::string prepared_id_;
   bool keeps_ = false;
-  // Of the truth.
+  // The truth's facets.
   Facets facets_;
   ShadowView view_;
   std::vector<ShadowLight> lights_;

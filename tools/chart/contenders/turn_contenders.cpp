@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dof/measure/outline.h"
+#include "dof/measure/regions.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"

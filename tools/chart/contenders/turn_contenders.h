@@ -34,7 +34,7 @@ class TurnContenders {
   /// the turn, renewals included. An atlas is drawn before, and is no part of it.
   double run(const ChartTurn& turn, Image& sheet);
 
-  /// Of the last turn, against the truth's sheet: outline, renewals, memory.
+  /// Adds the last turn's outline, renewals and memory, against the truth's sheet.
   void add_errors(const Image& truth, const Image& sheet, ChartErrors& errors) const;
 
  private:
@@ -53,7 +53,7 @@ class TurnContenders {
   Image blank_, shown_;
   Impostor impostor_;
   std::map<int, OctahedralAtlas> atlases_;
-  // Of the last turn.
+  // The last turn's.
   int renewals_ = 0;
   std::size_t most_bytes_ = 0;
 };

@@ -14,7 +14,7 @@ struct Contender {
   const ChartPoint* point;
 };
 
-/// What all scenes' points of one contender have in common: auto's choices differ.
+/// The contender that all scenes' points share: auto's choices differ.
 ChartEntry without_choice(ChartEntry entry) {
   entry.chosen.clear();
   return entry;

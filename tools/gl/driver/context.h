@@ -29,7 +29,7 @@ class GlContext {
   const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
   const std::string& version() const { return version_; }    ///< GL_VERSION
 
-  /// What every shader begins with: its version, the precision that GLSL ES needs, and a meaning
+  /// The beginning of every shader: its version, the precision that GLSL ES needs, and a meaning
   /// for `precise`, which GLSL has from 4.00 on.
   const std::string& shader_header() const { return shader_header_; }
 

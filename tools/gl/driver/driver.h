@@ -8,7 +8,7 @@
 
 namespace softfocus {
 
-/// What a driver refused or lacks, in one line.
+/// A driver refuses or lacks something; in one line.
 struct DriverError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -14,7 +14,8 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// Of a list such as "/usr/local/share:/usr/share"; `otherwise` stands for one that is not set.
+// The paths of a list such as "/usr/local/share:/usr/share"; `otherwise` stands for a variable that
+// is not set.
 Paths paths_in(const char* variable, const std::string& otherwise) {
   const char* const set = std::getenv(variable);
   std::istringstream list{set != nullptr && *set != '\0' ? set : otherwise};

@@ -4,12 +4,12 @@ export const kSizes = [[512, 512], [1024, 512], [1024, 1024]];
 export const kShows = ["image", "coc", "depth", "truth", "error"];
 
 /** Of what can be set, by the keys of requests: text, unit, least, most, preset. The module tells. */
-export let parameters = {};
+export const parameters = {};
 /** name, width_mm, height_mm. */
-export let sensors = [];
+export const sensors = [];
 export function set_parameters(of_module, known_sensors) {
-  sensors = known_sensors;
-  parameters = of_module;
+  Object.assign(parameters, of_module);
+  sensors.splice(0, sensors.length, ...known_sensors);
 }
 
 const preset = (key) => parameters[key]?.preset ?? null;

@@ -14,7 +14,7 @@ const kTips = {
               "dof/lens.h, pixel_coc"],
   fov_y_degrees: [null, "film height = 2 v0 tan(fov/2)", "dof/lens.h, film_height_mm"],
   samples: [null, "mean of the views (Haeberli and Akeley 1990)",
-            "scenes/lens_views/take_samples.h"],
+            "scenes/lens_views/accumulation.h"],
   object: ["A point on the axis. Drag it in the drawing, or move it here.",
            "Eq. 2: c = A f |z − z_f| / (z (z_f − f))", "dof/lens.h, coc_on_film_mm"],
   flip: ["How different two pictures look to somebody who flips between them: 0 equal, 1 most. The truth stops growing when its own noise is small against the errors.",

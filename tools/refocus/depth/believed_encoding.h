@@ -1,5 +1,5 @@
 #pragma once
-// What a depth map's numbers are taken for if nobody says.
+// The encoding that a depth map's numbers suggest if nobody says.
 
 #include <span>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace softfocus {
 
-/// What there is to see in a plane's numbers.
+/// Findings in a plane's numbers.
 struct NumbersSeen {
   std::size_t count = 0;
   std::size_t nans = 0;

@@ -60,7 +60,7 @@ double device_of_metres(double z, const DepthNumbers& n) {
 double metres_of_reversed(double d, const DepthNumbers& n) { return metres_of_device(1.0 - d, n); }
 double reversed_of_metres(double z, const DepthNumbers& n) { return 1.0 - device_of_metres(z, n); }
 
-// The same with far at infinity: d = 1 - near / z
+// metres_of_device() with far at infinity: d = 1 - near / z
 double metres_of_infinite(double d, const DepthNumbers& n) {
   return d >= 1.0 ? kInfinity : *n.near_m / (1.0 - d);
 }

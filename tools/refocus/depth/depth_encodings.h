@@ -16,7 +16,7 @@
 
 namespace softfocus {
 
-/// What encodings need beside the code: options of the command line.
+/// Numbers that encodings need beside the code: options of the command line.
 struct DepthNumbers {
   std::optional<double> near_m{};
   std::optional<double> far_m{};

@@ -1,6 +1,7 @@
-#pragma once
 // A depth map as metres along the camera's axis: from the codes of a file.
+#pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,7 +35,7 @@ struct DepthReading {
 DepthMap depth_of_codes(PlaneValues codes, NumberType type, int width, int height,
                         const DepthReading& reading, const PlaneValues& mask);
 
-/// The same of a map that comes in bands of rows. First all codes are looked at, for least_code and
+/// Reads a map that comes in bands of rows. First all codes are looked at, for least_code and
 /// largest_code; then each code gives way to its depth.
 class CodeEnds {
  public:
@@ -55,7 +56,7 @@ PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthRead
 
 std::size_t missing_depths(const DepthMap& map);
 
-/// What finite depths lie between, and whether there are infinite ones.
+/// The least and largest finite depth, and whether there are infinite ones.
 struct DepthEnds {
   double near_m = 1e30, far_m = 0.0;
   bool has_infinite = false;
@@ -65,5 +66,24 @@ void add_to_ends(DepthEnds& ends, std::span<const float> metres);
 /// Gives each missing depth the farthest of the nearest known ones to its left and right, above
 /// and below: a hole opens behind what is near, where the camera saw nothing. Needs a known one.
 void fill_from_far_side(DepthMap& map);
+
+// How many pixels lie how deep.
+
+struct DepthBin {
+  double from = 0.0;
+  double to = 0.0;
+  std::size_t count = 0;
+};
+
+struct DepthHistogram {
+  std::vector<DepthBin> bins{};  ///< none if nothing has a finite depth
+  std::size_t infinite = 0;
+};
+
+inline constexpr std::size_t kDepthBins = 12;
+
+/// Bins of equal steps of 1/z, as circles of confusion grow, or, if `even`, of z, which may then be
+/// below 0. Missing depths are not counted.
+DepthHistogram depth_histogram(const DepthMap& map, bool even);
 
 }  // namespace softfocus

@@ -153,7 +153,7 @@ constexpr std::array kCrowdCases{
                kWhyFlip,
                kRatios,
                4,
-               // Of 512, the noise is as large as what the better methods are off by.
+               // 512 views have a noise as large as the better methods' error.
                4096,
                make_cut_circles,
                crowd_error},

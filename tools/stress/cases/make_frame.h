@@ -63,7 +63,8 @@ Scene flat_scene();
 void add_rectangle(Scene& scene, int size_px, const PixelBox& box, double depth_m, glm::vec3 colour,
                    std::optional<std::uint32_t> texture = {}, glm::vec2 repeats = {1, 1});
 
-/// The same over all of the picture and its size around it, for lenses look past the border.
+/// Adds a rectangle over all of the picture and its size around it, for lenses look past the
+/// border.
 void add_backdrop(Scene& scene, int size_px, double depth_m, glm::vec3 colour,
                   std::optional<std::uint32_t> texture = {}, float repeats = 3);
 

@@ -214,7 +214,7 @@ StressTrial make_lamp(double height_m, int size, ThreadPool& pool) {
   return trial_of(std::move(scene), size, pool);
 }
 
-/// Of a thousand, pixels whose light is not the truth's: a shadow takes much more away than that.
+/// Pixels of a thousand whose light is not the truth's: a shadow takes much more away than that.
 double wrong_share(const StressAnswer& answer) {
   constexpr double kSeen = 1.0 / 255.0;
   const Image& truth = answer.truth[0];

@@ -16,13 +16,13 @@
 
 namespace softfocus {
 
-/// Where and in which light an object was drawn, that is shown from elsewhere.
+/// The place and the light in which an object was drawn that is shown from elsewhere.
 struct StressRelief {
   glm::dvec3 drawn_from;
   std::vector<Light> drawn_lights;
 };
 
-/// What methods that draw the scene need beside the sharp picture.
+/// The scene for methods that draw it themselves, beside the sharp picture.
 struct StressScene {
   Scene scene;
   CameraMatrices camera{};

@@ -7,7 +7,6 @@
 
 #include "dof/measure/flicker.h"
 #include "dof/measure/flip.h"
-#include "dof/measure/hdr_flip.h"
 #include "dof/measure/point_image.h"
 #include "raster/images/texel.h"
 

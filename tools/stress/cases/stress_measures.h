@@ -56,7 +56,7 @@ double false_change(std::span<const Image> truth, std::span<const Image> result)
 /// The light of a disc of `radius_px` about (x, y), summing to 1, at a pixel.
 double disc_light(int x, int y, double centre_x_px, double centre_y_px, double radius_px);
 
-/// The same of a square of bright pixels, each blurred: sums to side^2.
+/// The light of a square of bright pixels, each blurred: sums to side^2.
 double square_light(int x, int y, int left, int top, int side, double radius_px);
 
 }  // namespace softfocus

@@ -401,8 +401,8 @@ TEST_CASE("a tile's motion is its longest, and a neighbour at a corner must come
   CHECK(tiles.v[1] == glm::vec2{-2.0f, 2.0f});
   CHECK(tiles.v[5] == glm::vec2{0.0f, 16.0f});
   CHECK(tiles.v[3] == glm::vec2{0.0f});
-  // Of tile 3, below tile 0 and left of tile 4, tile 1 lies at the corner up right: its motion goes
-  // up right or down left.
+  // Tile 1 lies at the upper right corner of tile 3, which is below tile 0 and left of tile 4: its
+  // motion goes up right or down left.
   const MotionTiles one = longest_of_neighbours(tiles, MotionFilter::one_way);
   const MotionTiles two = longest_of_neighbours(tiles, MotionFilter::two_ways);
   CHECK(one.v[3] == glm::vec2{5.0f, 0.0f});

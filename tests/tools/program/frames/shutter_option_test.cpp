@@ -8,7 +8,7 @@ using namespace softfocus;
 
 namespace {
 
-// Of a scene whose camera goes around.
+// The words for a scene whose camera goes around.
 Words open_for(const char* frames, const Words& more = {}) {
   Words words{"--method", "accumulation", "--samples", "16", "--shutter", frames};
   words.insert(words.end(), more.begin(), more.end());

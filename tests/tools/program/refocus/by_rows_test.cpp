@@ -77,7 +77,7 @@ struct SceneFiles {
     return all;
   }
 
-  /// The same colours in 8 bits.
+  /// These colours in 8 bits.
   Bytes bytes_npy() const {
     Image eight = make_image(Format::rgba8, scene.width, scene.height);
     for (int y = 0; y < scene.height; ++y) {
@@ -96,7 +96,7 @@ struct SceneFiles {
     return joined(words, more);
   }
 
-  /// What --json says of a run by rows or not. Its picture is in `out`.
+  /// --json's report of a run, by rows or not. Its picture is in `out`.
   json run(const Words& inputs, const std::string& out, const Words& more) const {
     const ProgramRun run = run_program(command(inputs, joined(more, {"-o", file(out), "--json"})));
     CAPTURE(run.err);

@@ -13,12 +13,10 @@ function needs_file(state) {
   return Boolean(state.camera) || state.scene.startsWith("/own/");
 }
 
-function lens_words(state, side) {
-  const size = state.picture?.size ?? state.size;
+function lens_words({ picture: { size } }, side) {
   const pixel = side.focus.at?.map((part, axis) => Math.min(
       size[axis] - 1, Math.floor(part * size[axis])));
-  const at = state.picture ? "--focus-at" : "--autofocus";
-  return [pixel ? `${at} ${pixel.join(",")}` : `--focus ${side.focus.m}`,
+  return [pixel ? `--focus-at ${pixel.join(",")}` : `--focus ${side.focus.m}`,
           `--focal-length ${side.focal_length_mm}`, `--f-number ${side.f_number}`,
           `--coc-scale ${side.coc_scale}`];
 }
@@ -28,7 +26,8 @@ const name_of = (path) => {
   return /^[\w.+-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`;
 };
 
-function refocus_command(state, side, encodings) {
+/** The command for a picture whose --json tells the same picture_hash, or null if there is none. */
+export function refocus_command(state, side, encodings = []) {
   const { picture } = state;
   if (!side.dof) return null;
   const show = state.show === "coc" || state.show === "depth" ? [`--show ${state.show}`] : [];
@@ -36,28 +35,6 @@ function refocus_command(state, side, encodings) {
           "-o picture.png --json", ...depth_words(picture, encodings), ...show,
           `--method ${side.method}`, ...lens_words(state, side),
           ...(side.max_coc_px === null ? [] : [`--max-coc ${side.max_coc_px}`])].join(" ");
-}
-
-/** The command whose --json tells the same picture_hash, or null if there is none. */
-export function command_of(state, side, encodings = []) {
-  if (state.picture) return refocus_command(state, side, encodings);
-  if (state.failure || (state.camera && state.scene.startsWith("random:"))) return null;
-  const show = state.show === "coc" || state.show === "depth" ? state.show
-      : side.dof ? "image" : "pinhole";
-  const file = needs_file(state);
-  const words = ["softfocus render", file ? "scene.toml" : state.scene, "-o picture.png --json",
-                 `--size ${state.size.join("x")}`];
-  if (state.time !== 0) words.push(`--frame ${state.time}`);
-  if (show !== "image") words.push(`--show ${show}`);
-  if (show === "image") words.push(`--method ${side.method}`);
-  if (show === "image" || show === "coc") {
-    if (!file) words.push(...lens_words(state, side));
-    const sampled = show === "image" && ["accumulation", "ray-traced"].includes(side.method);
-    const splats = show === "image" && side.method === "surface-splatting";
-    if (side.max_coc_px !== null && !sampled && !splats) words.push(`--max-coc ${side.max_coc_px}`);
-    if (sampled) words.push(`--samples ${side.samples}`);
-  }
-  return words.join(" ");
 }
 
 function command_note(state, command) {
@@ -74,7 +51,8 @@ function command_note(state, command) {
 
 export function show_hash(reply, state, side, encodings) {
   const has_lens = !state.picture || reply.focus_m;
-  const command = reply.hash && has_lens ? command_of(state, side, encodings) : null;
+  const found = state.picture ? refocus_command(state, side, encodings) : reply.command;
+  const command = reply.hash && has_lens ? found : null;
   by_id("hash").textContent = reply.hash ?? "–";
   by_id("hash-full").textContent = reply.hash ?? "–";
   by_id("command").textContent = command ?? "";

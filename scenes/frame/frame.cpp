@@ -1,0 +1,327 @@
+#include "scenes/frame/frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dof/halve.h"
+#include "dof/lens.h"
+#include "dof/show.h"
+#include "raster/images/texel.h"
+#include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/object_numbers.h"
+#include "scenes/draw/surface_draws.h"
+#include "scenes/draw/velocity.h"
+
+namespace softfocus {
+namespace {
+
+void tell(const FrameHooks& hooks, FrameStage stage) {
+  if (hooks.on_stage) hooks.on_stage(stage);
+}
+
+std::size_t layers_of(const Shot& shot) {
+  return shot.layers.value_or(shot.show == Show::image ? shot.method.layers() : 1);
+}
+
+bool is_filtered(const Shot& shot) {
+  return shot.show == Show::image && shot.method.filter != nullptr;
+}
+
+/// The depth of the focus, if it is known: no filter looks behind what is in focus.
+std::optional<double> sharp_depth(const Shot& shot) {
+  if (!is_filtered(shot) || !shot.lens) return {};
+  const ShotLens& lens = *shot.lens;
+  if (lens.focus_at || !lens.sharp_depths.empty()) return {};
+  return static_cast<double>(static_cast<float>(lens.lens.focus_m));  // as PixelCoc has it
+}
+
+void draw_after_others(const Shot& shot, const ChosenEffect& effect, PreparedScene& prepared,
+                       int width, int height, DrawnFrame& drawn, ThreadPool& pool) {
+  FrameSequence own{.first = shot.frame};
+  FrameSequence& sequence = shot.sequence != nullptr ? *shot.sequence : own;
+  draw_up_to(prepared, effect, shot.frame, width, height, sequence, pool);
+  // What is transparent is in the picture, and filtered with it.
+  drawn.parts.opaque = sequence.history.picture;
+  drawn.parts.blended = {};
+  drawn.parts.transparent.clear();
+  drawn.shaded_share = sequence.history.shaded_share;
+}
+
+// Of each picture that is blurred by itself.
+float largest_circle_px(const FrameParts& parts, const PixelCoc& coc, ThreadPool& pool) {
+  float most = circle_sizes(parts.opaque, coc, 0.0f, pool).largest_px;
+  for (const TransparentPicture& layer : parts.transparent) {
+    most = std::max(most, circle_sizes(layer.colour, coc, 0.0f, pool).largest_px);
+  }
+  return most;
+}
+
+Image map_of(const Shot& shot, const Image& drawn, const std::optional<UsedLens>& lens) {
+  switch (shot.show) {
+    case Show::coc: return show_coc(drawn, lens->settings.coc, lens->settings.max_coc_px);
+    case Show::depth:
+      return show_depth(drawn, static_cast<float>(shot.scene->camera.near_m),
+                        static_cast<float>(shot.scene->camera.far_m));
+    default: return drawn;
+  }
+}
+
+/// Memory for a picture like this one.
+Image picture_like(const Image& drawn, FrameMemory& memory) {
+  Image picture = std::exchange(memory.picture, {});
+  if (picture.format == drawn.format && picture.width == drawn.width &&
+      picture.height == drawn.height && !picture.bytes.empty()) {
+    return picture;
+  }
+  return make_image(drawn.format, drawn.width, drawn.height);
+}
+
+Image filtered(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens, FrameMemory& memory,
+               ThreadPool& pool, const FrameHooks& hooks) {
+  const Method& method = *shot.method.filter;
+  const FrameParts& parts = drawn.parts;
+  if (hooks.filter) return hooks.filter(method, lens.settings, parts.opaque);
+  if (shot.arithmetic != Arithmetic::floats) {
+    Image result = picture_like(parts.picture(), memory);
+    two_pass_in(shot.arithmetic, {parts.picture(), lens.settings, shot.profile}, result, pool);
+    return result;
+  }
+  const std::size_t layers = layers_of(shot);
+  const bool reads_more = layers > 1 || (shot.scene != nullptr && has_transparent(*shot.scene));
+  if (shot.scene != nullptr && drawn.layers < layers && reads_more) {
+    return filtered_frame(method, *shot.scene, drawn.view, shot.frame, parts.picture(),
+                          lens.settings, shot.profile, pool);
+  }
+  std::vector<std::uint16_t> objects;
+  if (drawn.objects.empty() && layers > 0 && shot.scene != nullptr) {
+    objects = object_numbers_for(method, *shot.scene, drawn.view, shot.frame, parts.opaque.width,
+                                 parts.opaque.height, shot.profile, pool);
+  }
+  Image result = picture_like(parts.opaque, memory);
+  with_dof_input(parts, lens.settings, shot.profile, objects.empty() ? drawn.objects : objects,
+                 lens.radii_px, [&](const DofInput& input) { apply(method, input, result, pool); });
+  return result;
+}
+
+void sample_lens(const Shot& shot, const LensViewInput& views, Frame& frame, ThreadPool& pool) {
+  SampledPicture sampled = shot.method.of_scene->render(views, pool);
+  frame.picture = std::move(sampled.picture);
+  if (shot.method.samples_lens()) frame.sampled = std::move(sampled);
+}
+
+void choose_and_draw(const Shot& shot, const LensViewInput& views, Frame& frame, ThreadPool& pool,
+                     const FrameHooks& hooks) {
+  const auto on_stage = [&](AutoStage stage) {
+    tell(hooks, stage == AutoStage::choosing    ? FrameStage::choosing
+                : stage == AutoStage::filtering ? FrameStage::filtering
+                : stage == AutoStage::sampling  ? FrameStage::sampling
+                                                : FrameStage::checking);
+  };
+  AutoPicture found = auto_picture({.views = views,
+                                    .settings = frame.lens->settings,
+                                    .goal = shot.goal,
+                                    .limits = {shot.most_coc_px, triangle_count(*shot.scene)},
+                                    .verify = shot.verify,
+                                    .on_stage = on_stage},
+                                   pool);
+  frame.picture = std::move(found.picture);
+  const AutoMethod& choice = found.choice;
+  frame.method = find_method_choice(choice.method);
+  if (choice.samples > 0) {
+    frame.sampling.samples = choice.samples;
+    frame.sampled = SampledPicture{.picture = {}, .samples = choice.samples};
+  } else {
+    frame.lens->settings.max_coc_px = choice.radius_px;
+  }
+  frame.chosen = std::move(found);
+}
+
+LensViewInput views_of(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens,
+                       FrameMemory& memory, const FrameHooks& hooks) {
+  LensViewInput views = lens_views_of(shot, drawn, lens);
+  views.progress = hooks.on_samples;
+  if (!memory.is_last) {
+    views.memory = &memory.views;
+  } else if (memory.prepared) {
+    views.prepared = &*memory.prepared;
+  }
+  return views;
+}
+
+}  // namespace
+
+MethodChoice find_method_choice(std::string_view name) {
+  return {find_method(name), find_lens_view_method(name)};
+}
+
+Shot shot_of(const Scene& scene, double frame, int width, int height, const MethodChoice& method) {
+  Shot shot{.scene = &scene,
+            .frame = frame,
+            .width = width,
+            .height = height,
+            .method = method,
+            .effects = scene.effects};
+  shot.lens = {lens_at(scene.lens, frame), scene.lens.coc_scale};
+  shot.lens->settings.max_coc_px =
+      std::min(static_cast<float>(scene.lens.max_coc_px_at_1024 * height / 1024.0), kLargestMaxCoc);
+  shot.lens->cuts_no_circle = method.takes_any_radius();
+  if (method.samples_lens()) shot.sampling.samples = method.of_scene->usual_samples;
+  if (method.has_shutter()) shot.sampling.shutter_frames = scene.camera.shutter_frames;
+  return shot;
+}
+
+Frame make_frame(const Shot& shot, ThreadPool& pool, const FrameHooks& hooks) {
+  FrameMemory memory{.is_last = true};
+  DrawnFrame drawn;
+  draw_shot(shot, memory, drawn, pool, hooks);
+  tell(hooks, FrameStage::focusing);
+  const std::optional<UsedLens> lens = focused_lens(shot, drawn, pool);
+  if (hooks.on_drawn) hooks.on_drawn(drawn, lens);
+  if (shot.show != Show::image || is_filtered(shot)) memory.prepared.reset();
+  Frame frame = make_picture(shot, drawn, lens, memory, pool, hooks);
+  if (shot.show != Show::image) {
+    for (const Image& layer : drawn.parts.behind) {
+      frame.behind.push_back(map_of(shot, layer, lens));
+    }
+  }
+  finish_picture(shot, frame, pool, hooks);
+  tell(hooks, FrameStage::done);
+  return frame;
+}
+
+void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadPool& pool,
+               const FrameHooks& hooks) {
+  tell(hooks, FrameStage::drawing);
+  const int width = shot.width * shot.supersample, height = shot.height * shot.supersample;
+  drawn.view = camera_matrices(shot.scene->camera, shot.frame, width, height);
+  drawn.layers = layers_of(shot);
+  if (hooks.draw) {
+    drawn.parts = hooks.draw(drawn.view, width, height, drawn.layers);
+    return;
+  }
+  if (!memory.prepared) memory.prepared = prepare_scene(*shot.scene, shot.profile, pool);
+  const bool is_after_others = !shot.effects.empty() && is_of_frames(*shot.effects.front().effect);
+  if (!is_after_others || drawn.layers > 1) {
+    draw_parts(*memory.prepared, drawn.view, shot.frame, width, height, drawn.layers, drawn.parts,
+               pool, sharp_depth(shot));
+    if (shot.blends) blend(drawn.parts, shot.profile, pool);
+  }
+  if (is_after_others) {
+    draw_after_others(shot, shot.effects.front(), *memory.prepared, width, height, drawn, pool);
+  }
+  if (is_filtered(shot) && drawn.layers > 0) {
+    drawn.objects = object_numbers_for(*shot.method.filter, *shot.scene, drawn.view, shot.frame,
+                                       width, height, shot.profile, pool);
+  }
+}
+
+std::optional<UsedLens> focused_lens(const Shot& shot, const DrawnFrame& drawn, ThreadPool& pool) {
+  if (!shot.lens) return {};
+  const ShotLens& wanted = *shot.lens;
+  const Image& picture = drawn.parts.picture();
+  UsedLens used{.lens = wanted.lens, .coc_scale = wanted.coc_scale, .settings = wanted.settings};
+  if (wanted.focus_at) {
+    const glm::ivec2 at = *wanted.focus_at * shot.supersample + shot.supersample / 2;
+    used.lens.focus_m = static_cast<double>(load_texel<Format::rgba16f>(picture, at.x, at.y).w);
+  }
+  if (wanted.sharp_depths.empty()) {
+    if (const char* error = lens_error(used.lens)) throw LensError(error, used);
+  }
+  used.aperture_radius_m = aperture_radius_m(used.lens, used.coc_scale);
+  PixelCoc& coc = used.settings.coc;
+  coc = pixel_coc(used.lens, shot.scene->camera.fov_y_degrees, picture.height, used.coc_scale);
+  if (!std::isfinite(coc.radius_at_infinity_px) || !std::isfinite(coc.focus_m)) {
+    throw LensError("the lens's circles are too large to compute with", used);
+  }
+  if (!wanted.sharp_depths.empty()) {
+    used.radii_px = sharp_depths_radii(picture, wanted.sharp_depths, pool);
+  }
+  if (wanted.cuts_no_circle) {
+    used.settings.max_coc_px = std::ceil(
+        used.radii_px.empty() ? largest_circle_px(drawn.parts, coc, pool)
+                              : *std::max_element(used.radii_px.begin(), used.radii_px.end()));
+  }
+  if (shot.show == Show::image && shot.arithmetic != Arithmetic::floats) {
+    if (const char* error = fixed_settings_error(used.settings)) throw LensError(error, used);
+  }
+  return used;
+}
+
+Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optional<UsedLens>& lens,
+                   FrameMemory& memory, ThreadPool& pool, const FrameHooks& hooks) {
+  Frame frame{.view = drawn.view,
+              .lens = lens,
+              .method = shot.method,
+              .sampling = shot.sampling,
+              .shaded_share = drawn.shaded_share};
+  const UsedLens used = lens.value_or(UsedLens{});
+  if (shot.show != Show::image) {
+    tell(hooks, FrameStage::filtering);
+    frame.picture = map_of(shot, drawn.parts.picture(), lens);
+  } else if (shot.shard) {
+    tell(hooks, FrameStage::sampling);
+    frame.sums = accumulation_sums(views_of(shot, drawn, used, memory, hooks),
+                                   samples_of(*shot.shard, shot.sampling.samples), pool);
+    frame.sampled = SampledPicture{.picture = {}, .samples = shot.sampling.samples};
+    frame.picture = drawn.parts.picture();
+  } else if (shot.method.filter != nullptr) {
+    tell(hooks, FrameStage::filtering);
+    frame.picture = filtered(shot, drawn, used, memory, pool, hooks);
+  } else if (shot.method.of_scene != nullptr) {
+    tell(hooks, FrameStage::sampling);
+    sample_lens(shot, views_of(shot, drawn, used, memory, hooks), frame, pool);
+  } else {
+    choose_and_draw(shot, views_of(shot, drawn, used, memory, hooks), frame, pool, hooks);
+  }
+  return frame;
+}
+
+void finish_picture(const Shot& shot, Frame& frame, ThreadPool& pool, const FrameHooks& hooks) {
+  if (shot.supersample == 2) {
+    tell(hooks, FrameStage::halving);
+    frame.picture = halve(frame.picture, shot.profile, pool);
+    if (frame.lens) {
+      DofSettings& settings = frame.lens->settings;
+      settings.max_coc_px *= 0.5f;
+      settings.coc = pixel_coc(frame.lens->lens, shot.scene->camera.fov_y_degrees, shot.height,
+                               frame.lens->coc_scale);
+    }
+  }
+  if (shot.effects.empty()) return;
+  tell(hooks, FrameStage::effects);
+  const auto make_velocity = [&](const ChosenEffect& chosen, const Image& of) {
+    return velocity_for(chosen, *shot.scene, shot.frame, of, shot.profile, pool);
+  };
+  frame.picture =
+      with_effects(std::move(frame.picture), shot.effects, make_velocity, shot.profile, pool);
+}
+
+LensViewInput lens_views_of(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens) {
+  return {.scene = *shot.scene,
+          .camera = drawn.view,
+          .frame = shot.frame,
+          .pinhole = drawn.parts.picture(),
+          .focus_m = lens.lens.focus_m,
+          .aperture_radius_m = lens.aperture_radius_m,
+          .sampling = shot.sampling,
+          .profile = shot.profile,
+          .progress = {}};
+}
+
+Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,
+                   const MakeVelocity& make_velocity, const Profile& profile, ThreadPool& pool) {
+  for (const ChosenEffect& chosen : effects) {
+    if (is_of_frames(*chosen.effect)) continue;  // it has been drawn so
+    Image velocity;
+    EffectInput input{picture, chosen.parameters, profile};
+    if (chosen.effect->velocity != VelocityOf::nothing) {
+      velocity = make_velocity(chosen, picture);
+      input.velocity = velocity;
+    }
+    picture = apply(*chosen.effect, input, pool);
+  }
+  return picture;
+}
+
+}  // namespace softfocus
