@@ -23,7 +23,7 @@ struct LayerSplit {
 LayerSplit split_layers(const Planes& scene);
 
 /// Planes of a layer: red, green and blue times opacity, opacity, signed radius. The radius is
-/// guessed where the layer has none (hidden_sheet.h).
+/// guessed where the layer has none.
 inline constexpr int kLayerOpacity = 3;
 inline constexpr int kLayerRadius = 4;
 inline constexpr int kLayerPlanes = 5;

@@ -1,5 +1,5 @@
 // The texture unit of Mesa 22.3's llvmpipe, bit for bit: addresses, the float filter, the choice
-// of levels. Linear 8-bit textures have unorm8_filter.h instead.
+// of levels. Linear 8-bit textures have integer_filter.h instead.
 #pragma once
 
 #include <cstdint>

@@ -157,7 +157,7 @@ glm::vec4 sample_unorm8(const Texture& texture, const Sampler& sampler, glm::vec
                         std::size_t level, float next_weight);
 
 // The standard texture unit's integer filter, for linear bytes and halves: 8-bit weights, exact
-// sums (integer_bilinear.h), one rounding.
+// sums, one rounding.
 
 /// Whether textures of this format are filtered in integers. sRGB bytes are not, as they are
 /// decoded first; nor are texels of 32 bits.

@@ -90,7 +90,7 @@ struct Sampler {
 /// right corner of the last. `lod` is the level of detail, 0 for full size, clamped to the levels
 /// that there are. Needs at least one level.
 ///
-/// llvmpipe_sampler.h, softpipe_sampler.h and swiftshader_sampler.h describe the drivers' texture
+/// driver_samplers.h describes the drivers' texture
 /// units. In the standard
 /// one, infinite and NaN coordinates are 0, those past 2^22 texels are 2^22 texels, and a lod of
 /// NaN is 0. Order of operations, in binary32, for a level of width w:

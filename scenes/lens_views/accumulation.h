@@ -51,7 +51,7 @@ struct AccumulationBuffer;
 SampledPicture accumulation(AccumulationBuffer& buffer, const LensViewInput& input,
                             ThreadPool& pool);
 
-/// The points of accumulation(): a set made for their number (few_lens_points.h), or, where they
+/// The points of accumulation(): a set made for their number (lens_points.h), or, where they
 /// are many or `until` may stop at any, the sequence lens_points().
 std::vector<glm::dvec2> view_points(const Sampling& sampling);
 

@@ -23,7 +23,7 @@ std::uint64_t squared_difference(std::span<const std::uint16_t* const> views, in
 // As many samples as each tile needs: one in focus few, one with silhouettes many.
 //
 // All tiles take the first size of tile_sample_sizes(). How far these views differ
-// (tile_difference.h) decides which size a tile goes on to. The views are growing_lens_points() of
+// decides which size a tile goes on to. The views are growing_lens_points() of
 // these sizes: no view is drawn for nothing, and a tile is to the bit what it is in a picture in
 // which all tiles take so many of these views.
 //
