@@ -1,6 +1,6 @@
+#pragma once
 // A picture cut by depth into three layers, each filled in behind nearer ones: what layers.h
 // blurs, before it is blurred.
-#pragma once
 
 #include "dof/picture_planes.h"
 

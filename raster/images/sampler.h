@@ -1,17 +1,19 @@
-// An image with its mip levels.
 #pragma once
+// Texture sampling as OpenGL 4.6 section 8.14 and D3D11.3 section 7.18 describe it: nearest,
+// bilinear and trilinear, with three wrap modes. Drivers' own ways have files of their own.
 
 #include <cstdint>
-#include <utility>
-#include <vector>
-
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <utility>
+#include <vector>
 
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 
 namespace softfocus {
+
+// An image with its mip levels.
 
 /// Each level has half the size of the one before, rounded down, to 1x1. Without mipmaps there
 /// is one level.
@@ -64,9 +66,6 @@ float log2_by_table(float x);
 /// twice; of an odd side the last texel is left out (box filter of GL's reference
 /// implementations).
 void generate_mipmaps(Texture& texture, const Profile& profile);
-
-// Texture sampling as OpenGL 4.6 section 8.14 and D3D11.3 section 7.18 describe it: nearest,
-// bilinear and trilinear, with three wrap modes. Drivers' own ways have files of their own.
 
 enum class Wrap : std::uint8_t {
   repeat,

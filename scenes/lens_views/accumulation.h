@@ -1,11 +1,12 @@
-// The camera at a point of the lens.
 #pragma once
+// The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
+// lens, and the mean of the pictures. With Sampling::shutter_frames also at many times: the motion
+// blur of the same paper.
 
 #include <functional>
+#include <glm/vec2.hpp>
 #include <span>
 #include <vector>
-
-#include <glm/vec2.hpp>
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
@@ -13,6 +14,8 @@
 #include "scenes/lens_views/sample_sums.h"
 
 namespace softfocus {
+
+// The camera at a point of the lens.
 
 /// Haeberli and Akeley (1990): the eye moves on the lens, by (e_x, e_y) metres to the right
 /// and up, and the frustum is sheared so that the plane in focus stays where it was:
@@ -35,10 +38,6 @@ using AddSamples = std::function<void(int begin, int end, SampleSums& sums)>;
 /// In steps of kSampleGroup, and from 16 samples on of `step`: kSampleGroup or twice that.
 SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_samples, int step,
                             ThreadPool& pool);
-
-// The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
-// lens, and the mean of the pictures. With Sampling::shutter_frames also at many times: the motion
-// blur of the same paper.
 
 /// Each lens view is drawn in RGBA16F, as the pinhole's picture is, by the lens_camera() of one of
 /// the view_points(). One sample without jitter is the pinhole's picture. At few samples

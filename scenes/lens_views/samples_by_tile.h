@@ -1,25 +1,4 @@
-// How far the first views of a tile differ, as a viewer sees it: what decides how many more it
-// needs.
 #pragma once
-
-#include <cstdint>
-#include <span>
-#include <vector>
-
-#include "scenes/lens_views/accumulation.h"
-#include "scenes/lens_views/lens_view_method.h"
-
-namespace softfocus {
-
-/// Steps of a colour on its way from 0 to 1: of its square root, which is near to how bright it
-/// looks.
-inline constexpr int kBrightnessSteps = 4095;
-
-/// Of one of a tile's pixels and colours, the difference is that of the largest and the least of
-/// the views' values, both taken as 0 to 1, in kBrightnessSteps. Returned is the sum of the
-/// squares. Whole numbers: the same in any order. `views` are RGBA16F, `pixels` each.
-std::uint64_t squared_difference(std::span<const std::uint16_t* const> views, int pixels);
-
 // As many samples as each tile needs: one in focus few, one with silhouettes many.
 //
 // All tiles take the first size of tile_sample_sizes(). How far these views differ
@@ -30,6 +9,27 @@ std::uint64_t squared_difference(std::span<const std::uint16_t* const> views, in
 // Known failures: what lies between the first views, a thin thing far out of focus, is not seen by
 // them and may be missed; a tile is 64x64 pixels, so a scene with something out of focus in
 // every tile saves nothing.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scenes/lens_views/accumulation.h"
+#include "scenes/lens_views/lens_view_method.h"
+
+namespace softfocus {
+
+// How far the first views of a tile differ, as a viewer sees it: what decides how many more it
+// needs.
+
+/// Steps of a colour on its way from 0 to 1: of its square root, which is near to how bright it
+/// looks.
+inline constexpr int kBrightnessSteps = 4095;
+
+/// Of one of a tile's pixels and colours, the difference is that of the largest and the least of
+/// the views' values, both taken as 0 to 1, in kBrightnessSteps. Returned is the sum of the
+/// squares. Whole numbers: the same in any order. `views` are RGBA16F, `pixels` each.
+std::uint64_t squared_difference(std::span<const std::uint16_t* const> views, int pixels);
 
 /// Fewer can miss what lies between them.
 inline constexpr int kFirstTileViews = kSampleGroup;

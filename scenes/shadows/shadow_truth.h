@@ -1,15 +1,14 @@
+#pragma once
 // The definition of a shadow, as an oracle: a ray from a point towards the light against every
 // facet, in binary64.
-#pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
-
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
+#include <vector>
 
 #include "raster/threads/parallel.h"
 #include "scenes/shadows/facets.h"

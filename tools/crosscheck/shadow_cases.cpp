@@ -1,3 +1,5 @@
+// Stage `shadow`: shadows projected onto what a camera sees, drawn by both sides.
+
 #include "tools/crosscheck/shadow_cases.h"
 
 #include <utility>
@@ -28,8 +30,6 @@ ShadowedFrame draw_shadowed_frame(const Bench& bench, const std::string& scene, 
 std::string name_and_size(const std::string& scene, int width, int height) {
   return scene + ' ' + std::to_string(width) + 'x' + std::to_string(height);
 }
-
-// Stage `shadow`: shadows projected onto what a camera sees, drawn by both sides.
 
 namespace {
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "raster/images/decoded_texture.h"
+#include "raster/images/integer_bilinear.h"
 #include "raster/images/integer_filter.h"
 #include "tests/support/raster_helpers.h"
 
