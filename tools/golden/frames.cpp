@@ -279,7 +279,8 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
                                     const NamedProfile& known, ThreadPool& pool) {
   // A whole group of sums and a part of one.
   const Sampling sampling{.samples = kSampleGroup + 3, .jitter = true, .aperture = {7}};
-  const auto& [name, scene] = golden;
+  const std::string& name = golden.name;
+  const Scene& scene = golden.scene;
   const auto [width, height] = size;
   const Profile& profile = known.profile;
   DrawnScene made = drawn_scene(scene, size, profile, pool);
