@@ -1,3 +1,4 @@
+#pragma once
 // The thin lens: the six equations of the thesis, and the circle of confusion in the form
 // that the methods use, a signed radius in pixels.
 //
@@ -13,7 +14,6 @@
 // lens is focused: the film's height is 2 v0 tan(fov/2). Then focusing does not zoom, and the
 // film's circle of confusion, scaled to pixels, is exactly the footprint that rays through
 // the aperture leave on a pinhole image.
-#pragma once
 
 #include <string_view>
 

@@ -36,7 +36,7 @@ struct Keyframe {
   bool operator==(const Keyframe&) const = default;
 };
 
-/// The way from key to key (draw/keyframes.h).
+/// The way from key to key (draw/frame_matrices.h).
 enum class Easing : std::uint8_t { linear, smooth };
 
 /// The lens that the scene suggests; the command line can overrule every value.
@@ -104,7 +104,7 @@ struct Material {
   std::optional<std::uint32_t> texture;  ///< multiplies ambient and diffuse; index into textures
   Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
   float opacity = 1.0f;  ///< 0 to 1: the share of what is behind that the surface hides
-  /// Its red multiplies `opacity`; index into textures (see make/opacity_texture.h).
+  /// Its red multiplies `opacity`; index into textures (see make/procedural_texture.h).
   std::optional<std::uint32_t> opacity_texture;
   Sampler opacity_sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
   /// The surface is there where opacity_texture is 1/2 or more, nowhere else, and `opacity` alone

@@ -4,9 +4,8 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <limits>
-
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/half.h"

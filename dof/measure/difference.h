@@ -1,5 +1,5 @@
-// A number for each pixel: a measure before it is averaged over the picture or a region.
 #pragma once
+// How two pictures differ: counted in representable half values, and as PSNR.
 
 #include <array>
 #include <cstddef>
@@ -12,6 +12,8 @@
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
+
+// A number for each pixel: a measure before it is averaged over the picture or a region.
 
 struct PixelMap {
   int width = 0;
@@ -39,8 +41,6 @@ inline double mean(const PixelMap& map) {
   for (const double value : map.values) sum += value;
   return sum / static_cast<double>(map.values.size());
 }
-
-// How two pictures differ: counted in representable half values, and as PSNR.
 
 struct Difference {
   std::uint64_t values = 0;     ///< compared: width * height * 4

@@ -1,3 +1,4 @@
+#pragma once
 // FLIP: how different two pictures look to someone who flips between them, 0 (the same)
 // to 1, for each pixel.
 //
@@ -9,7 +10,6 @@
 // the first and second derivative of a Gaussian as wide as the eye's detectors (0.082
 // degrees from peak to trough); the larger difference of magnitudes, over sqrt(2), to the
 // power of 0.5. Together: colour^(1 - feature).
-#pragma once
 
 #include "dof/measure/difference.h"
 #include "dof/measure/ssim.h"

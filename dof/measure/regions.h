@@ -1,5 +1,6 @@
-// How far the outline of what a picture shows lies from where it should.
 #pragma once
+// A label for each pixel, from its depth and the lens: depth of field fails differently in each
+// region, and a mean over the whole picture hides it.
 
 #include <array>
 #include <cstddef>
@@ -12,6 +13,8 @@
 #include "raster/images/image.h"
 
 namespace softfocus {
+
+// How far the outline of what a picture shows lies from where it should.
 
 /// Which pixels of an RGBA16F picture show something: 1 where alpha, the depth, is not the
 /// background's; row by row.
@@ -28,9 +31,6 @@ struct OutlineError {
 /// Of coverages of width x height pixels.
 OutlineError outline_error(const std::vector<std::uint8_t>& drawn,
                            const std::vector<std::uint8_t>& shown, int width, int height);
-
-// A label for each pixel, from its depth and the lens: depth of field fails differently in each
-// region, and a mean over the whole picture hides it.
 
 enum class Region : std::uint8_t {
   /// Within reach of the blur of an edge in depth: leaks, halos, hard edges.

@@ -9,7 +9,7 @@
 // Each field is blurred by one disc D of its radius, whatever its depths:
 //   far    = D(n c) / D(n): nothing that is sharp or near is in it
 //   behind = mix(c, far, n) of far pixels, c in focus; guessed from around where n >= 1/2 of a
-//            near pixel (hidden_sheet.h)
+//            near pixel (layer_planes.h)
 //   near   = D(n c) and its opacity D(n), a picture of its own, soft to both sides of an outline
 //   out    = near + (1 - opacity) behind
 //

@@ -1,3 +1,4 @@
+#pragma once
 // What lies behind the borders of nearer things, continued from what is visible beside them.
 //
 // Where neighbours show two surfaces (picture_objects.h), the farther one, of radius r_b, goes on
@@ -12,7 +13,6 @@
 // of radius), count with it, weighed by 1 / d. So what a pole hides is drawn out from both its
 // sides, in a straight line from one border's colour and depth to the other's. Mirror images about
 // the border in place of its colour keep the texture, but are farther from the truth on scenes.
-#pragma once
 
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,6 @@
+#pragma once
 // A picture cut by depth into three layers, each filled in behind nearer ones: what layers.h
 // blurs, before it is blurred.
-#pragma once
 
 #include "dof/picture_planes.h"
 
@@ -23,7 +23,7 @@ struct LayerSplit {
 LayerSplit split_layers(const Planes& scene);
 
 /// Planes of a layer: red, green and blue times opacity, opacity, signed radius. The radius is
-/// guessed where the layer has none (hidden_sheet.h).
+/// guessed where the layer has none.
 inline constexpr int kLayerOpacity = 3;
 inline constexpr int kLayerRadius = 4;
 inline constexpr int kLayerPlanes = 5;

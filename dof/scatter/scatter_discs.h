@@ -1,5 +1,5 @@
-// The discs of scatter.h, as spans.
 #pragma once
+// The discs of scatter.h, as spans.
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
-// The texture unit of Mesa 22.3's llvmpipe, bit for bit: addresses, the float filter, the choice
-// of levels. Linear 8-bit textures have unorm8_filter.h instead.
 #pragma once
+// The texture unit of Mesa 22.3's llvmpipe, bit for bit: addresses, the float filter, the choice
+// of levels. Linear 8-bit textures have integer_filter.h instead.
 
 #include <cstdint>
-
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 

@@ -1,6 +1,6 @@
+#pragma once
 // An image: texels of one format in rows, row 0 on top. Rows begin on 64-byte
 // boundaries, so that vector code can read and write whole lines.
-#pragma once
 
 #include <cstddef>
 #include <cstdint>

@@ -27,8 +27,8 @@ void sample_vectors(Isa isa, const DecodedTexture& texture, const Sampler& sampl
 
 #include "raster/images/sample_lanes.inl"
 
-// The addresses are those of sampler.cpp, llvmpipe_sampler.cpp, unorm8_filter.cpp and
-// swiftshader_sampler.cpp, to the bit. For any coordinate and lod, NaN too, the texels lie in the
+// The addresses are those of sampler.cpp, integer_filter.cpp and driver_samplers.cpp,
+// to the bit. For any coordinate and lod, NaN too, the texels lie in the
 // texture.
 
 namespace {
@@ -250,7 +250,7 @@ SOFTFOCUS_INLINE Ints swiftshader_nearest_byte(const AxisLanes& axis) {
   return (position & 0xFFFF) * size >> 16;
 }
 
-// Taps of unorm8_filter.cpp, which repeat or clamp; weights are multiples of 1/256.
+// Taps of integer_filter.cpp, which repeat or clamp; weights are multiples of 1/256.
 SOFTFOCUS_INLINE TapLanes unorm8_taps(const AxisLanes& axis) {
   const Ints size = truncate(axis.size);
   Floats position_256;

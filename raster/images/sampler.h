@@ -1,17 +1,19 @@
-// An image with its mip levels.
 #pragma once
+// Texture sampling as OpenGL 4.6 section 8.14 and D3D11.3 section 7.18 describe it: nearest,
+// bilinear and trilinear, with three wrap modes. Drivers' own ways have files of their own.
 
 #include <cstdint>
-#include <utility>
-#include <vector>
-
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <utility>
+#include <vector>
 
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 
 namespace softfocus {
+
+// An image with its mip levels.
 
 /// Each level has half the size of the one before, rounded down, to 1x1. Without mipmaps there
 /// is one level.
@@ -65,9 +67,6 @@ float log2_by_table(float x);
 /// implementations).
 void generate_mipmaps(Texture& texture, const Profile& profile);
 
-// Texture sampling as OpenGL 4.6 section 8.14 and D3D11.3 section 7.18 describe it: nearest,
-// bilinear and trilinear, with three wrap modes. Drivers' own ways have files of their own.
-
 enum class Wrap : std::uint8_t {
   repeat,
   mirrored_repeat,
@@ -90,7 +89,7 @@ struct Sampler {
 /// right corner of the last. `lod` is the level of detail, 0 for full size, clamped to the levels
 /// that there are. Needs at least one level.
 ///
-/// llvmpipe_sampler.h, softpipe_sampler.h and swiftshader_sampler.h describe the drivers' texture
+/// driver_samplers.h describes the drivers' texture
 /// units. In the standard
 /// one, infinite and NaN coordinates are 0, those past 2^22 texels are 2^22 texels, and a lod of
 /// NaN is 0. Order of operations, in binary32, for a level of width w:

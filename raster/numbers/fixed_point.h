@@ -1,13 +1,17 @@
-// Floats to 32-bit integers as x86 vector units convert them (Intel's manual, CVTTPS2DQ and
-// CVTPS2DQ): values that do not fit, NaN too, become the least integer. C++ leaves such
-// conversions undefined, and other CPUs saturate.
 #pragma once
+// Window positions in fixed point. A position counts 1/256 pixel (8 fractional
+// bits), measured from the centre of pixel (0, 0): pixel (x, y) has its centre at
+// exactly (256 x, 256 y), so an edge function at a pixel centre has no fraction.
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 namespace softfocus {
+
+// Floats to 32-bit integers as x86 vector units convert them (Intel's manual, CVTTPS2DQ and
+// CVTPS2DQ): values that do not fit, NaN too, become the least integer. C++ leaves such
+// conversions undefined, and other CPUs saturate.
 
 /// The integer part.
 inline std::int32_t truncate_to_int(float value) {
@@ -17,10 +21,6 @@ inline std::int32_t truncate_to_int(float value) {
 
 /// The nearest integer, ties to even.
 inline std::int32_t round_to_int(float value) { return truncate_to_int(std::nearbyint(value)); }
-
-// Window positions in fixed point. A position counts 1/256 pixel (8 fractional
-// bits), measured from the centre of pixel (0, 0): pixel (x, y) has its centre at
-// exactly (256 x, 256 y), so an edge function at a pixel centre has no fraction.
 
 inline constexpr int kSubpixelBits = 8;
 inline constexpr std::int32_t kSubpixelOne = 1 << kSubpixelBits;

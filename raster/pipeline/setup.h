@@ -1,19 +1,20 @@
-// The viewport transform: from clip coordinates to the window.
 #pragma once
+// Triangle set-up: what a triangle covers, facing, culling, and bounds.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec4.hpp>
 #include <optional>
 #include <variant>
-
-#include <glm/vec4.hpp>
 
 #include "raster/numbers/lerp.h"
 #include "raster/numbers/profile.h"
 #include "raster/pipeline/state.h"
 
 namespace softfocus {
+
+// The viewport transform: from clip coordinates to the window.
 
 /// A vertex in the window.
 struct WindowVertex {
@@ -114,8 +115,6 @@ std::optional<Scanlines> make_scanlines(const std::array<WindowVertex, 3>& verti
 
 /// The covered pixels of row y among x_begin <= x < x_end; needs x_begin >= 0.
 Span covered_span(const Scanlines& scanlines, int y, int x_begin, int x_end);
-
-// Triangle set-up: what a triangle covers, facing, culling, and bounds.
 
 /// In pixels. The guard band keeps positions far below this; set-up treats those beyond as not
 /// finite.

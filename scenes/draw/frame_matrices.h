@@ -1,10 +1,9 @@
-// Where the camera and the objects stand at a frame: matrices, in binary64.
 #pragma once
-
-#include <span>
+// Where the camera and the objects stand at a frame: matrices, in binary64.
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 
 #include "scenes/scene.h"
 

@@ -1,3 +1,4 @@
+#pragma once
 // Lights with a size: points of them, each a light with hard shadows, whose mean is the soft shadow
 // (Heckbert and Herf 1997). Each point lights the scene from where it is, so the mean is the scene
 // lit by the whole light. A share of the light at the middle would not do: a facet that turns away
@@ -17,7 +18,6 @@
 // from far away on every side the ball looks like a uniform disc, as a glowing ball does. A disc
 // that faces each pixel would be the same to the first order of radius / distance, but its points
 // would differ from pixel to pixel, and no shadow of theirs could be projected.
-#pragma once
 
 #include <cstddef>
 #include <cstdint>

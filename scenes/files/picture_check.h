@@ -1,5 +1,5 @@
-// Damage in a PNG that stb_image (2.27) lets pass.
 #pragma once
+// Damage in a PNG that stb_image (2.27) lets pass.
 
 #include <string_view>
 

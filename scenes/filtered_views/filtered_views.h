@@ -1,6 +1,6 @@
+#pragma once
 // Few views, each spread over its cell of the lens (view_spread.h), and averaged: between the
 // filters and the accumulation in time and in error.
-#pragma once
 
 #include <vector>
 

@@ -1,11 +1,12 @@
-// The camera at a point of the lens.
 #pragma once
+// The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
+// lens, and the mean of the pictures. With Sampling::shutter_frames also at many times: the motion
+// blur of the same paper.
 
 #include <functional>
+#include <glm/vec2.hpp>
 #include <span>
 #include <vector>
-
-#include <glm/vec2.hpp>
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
@@ -13,6 +14,8 @@
 #include "scenes/lens_views/sample_sums.h"
 
 namespace softfocus {
+
+// The camera at a point of the lens.
 
 /// Haeberli and Akeley (1990): the eye moves on the lens, by (e_x, e_y) metres to the right
 /// and up, and the frustum is sheared so that the plane in focus stays where it was:
@@ -36,10 +39,6 @@ using AddSamples = std::function<void(int begin, int end, SampleSums& sums)>;
 SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_samples, int step,
                             ThreadPool& pool);
 
-// The accumulation buffer (Haeberli and Akeley 1990): the scene drawn from points of the
-// lens, and the mean of the pictures. With Sampling::shutter_frames also at many times: the motion
-// blur of the same paper.
-
 /// Each lens view is drawn in RGBA16F, as the pinhole's picture is, by the lens_camera() of one of
 /// the view_points(). One sample without jitter is the pinhole's picture. At few samples
 /// a thing out of focus is a handful of sharp ghosts.
@@ -51,7 +50,7 @@ struct AccumulationBuffer;
 SampledPicture accumulation(AccumulationBuffer& buffer, const LensViewInput& input,
                             ThreadPool& pool);
 
-/// The points of accumulation(): a set made for their number (few_lens_points.h), or, where they
+/// The points of accumulation(): a set made for their number (lens_points.h), or, where they
 /// are many or `until` may stop at any, the sequence lens_points().
 std::vector<glm::dvec2> view_points(const Sampling& sampling);
 

@@ -1,12 +1,11 @@
+#pragma once
 // Points of the aperture, and of a pixel, to look from: low-discrepancy sequences, whose first
 // n points cover the area evenly for any n.
-#pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <span>
 #include <vector>
-
-#include <glm/vec2.hpp>
 
 #include "dof/lens.h"
 

@@ -1,6 +1,14 @@
-// How far the first views of a tile differ, as a viewer sees it: what decides how many more it
-// needs.
 #pragma once
+// As many samples as each tile needs: one in focus few, one with silhouettes many.
+//
+// All tiles take the first size of tile_sample_sizes(). How far these views differ
+// decides which size a tile goes on to. The views are growing_lens_points() of
+// these sizes: no view is drawn for nothing, and a tile is to the bit what it is in a picture in
+// which all tiles take so many of these views.
+//
+// Known failures: what lies between the first views, a thin thing far out of focus, is not seen by
+// them and may be missed; a tile is 64x64 pixels, so a scene with something out of focus in
+// every tile saves nothing.
 
 #include <cstdint>
 #include <span>
@@ -11,6 +19,9 @@
 
 namespace softfocus {
 
+// How far the first views of a tile differ, as a viewer sees it: what decides how many more it
+// needs.
+
 /// Steps of a colour on its way from 0 to 1: of its square root, which is near to how bright it
 /// looks.
 inline constexpr int kBrightnessSteps = 4095;
@@ -19,17 +30,6 @@ inline constexpr int kBrightnessSteps = 4095;
 /// the views' values, both taken as 0 to 1, in kBrightnessSteps. Returned is the sum of the
 /// squares. Whole numbers: the same in any order. `views` are RGBA16F, `pixels` each.
 std::uint64_t squared_difference(std::span<const std::uint16_t* const> views, int pixels);
-
-// As many samples as each tile needs: one in focus few, one with silhouettes many.
-//
-// All tiles take the first size of tile_sample_sizes(). How far these views differ
-// (tile_difference.h) decides which size a tile goes on to. The views are growing_lens_points() of
-// these sizes: no view is drawn for nothing, and a tile is to the bit what it is in a picture in
-// which all tiles take so many of these views.
-//
-// Known failures: what lies between the first views, a thin thing far out of focus, is not seen by
-// them and may be missed; a tile is 64x64 pixels, so a scene with something out of focus in
-// every tile saves nothing.
 
 /// Fewer can miss what lies between them.
 inline constexpr int kFirstTileViews = kSampleGroup;

@@ -1,5 +1,5 @@
-// Scene files: TOML in the format of docs/scene-format.md.
 #pragma once
+// From a name or a file to a scene.
 
 #include <filesystem>
 #include <string>
@@ -10,6 +10,8 @@
 #include "scenes/scene.h"
 
 namespace softfocus {
+
+// Scene files: TOML in the format of docs/scene-format.md.
 
 /// Reads a scene file and what it refers to. Throws SceneError, with the line, for
 /// everything that is not as docs/scene-format.md says, unknown keys included.
@@ -22,8 +24,6 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file);
 /// A scene file's title without reading the scene; empty where there is none. Throws
 /// SceneError for what is no TOML.
 std::string read_scene_title(const std::filesystem::path& file);
-
-// From a name or a file to a scene.
 
 /// Where scenes are looked for, in this order: the directories given by the user,
 /// the source tree that the program was built from, the installed share directory.

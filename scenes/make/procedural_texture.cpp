@@ -64,15 +64,15 @@ double smooth_step(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-// A position in cells: the cell and where in it.
+// A position in cells, not below 0: the cell and where in it.
 struct Cell {
   int index;
   double inside;  // 0 to 1
 };
 
 Cell cell_at(double position) {
-  const double floor = std::floor(position);
-  return {static_cast<int>(floor), position - floor};
+  const int index = static_cast<int>(position);
+  return {index, position - index};
 }
 
 double cell_random(std::uint64_t seed, int x, int y) {
@@ -86,8 +86,11 @@ double cell_random(std::uint64_t seed, int x, int y) {
 double value_noise(std::uint64_t seed, double x, double y, int period_x, int period_y) {
   const Cell column = cell_at(x);
   const Cell row = cell_at(y);
+  // A remainder would take longer than all else.
+  const int right = column.index + 1 < period_x ? column.index + 1 : 0;
+  const int below = row.index + 1 < period_y ? row.index + 1 : 0;
   const auto lattice = [&](int i, int j) {
-    return cell_random(seed, (column.index + i) % period_x, (row.index + j) % period_y);
+    return cell_random(seed, i == 0 ? column.index : right, j == 0 ? row.index : below);
   };
   const double s = smooth_step(0.0, 1.0, column.inside);
   const double t = smooth_step(0.0, 1.0, row.inside);

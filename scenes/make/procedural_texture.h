@@ -1,16 +1,18 @@
-// Opacity from a picture, as `map_d` of materials and `opacity_texture` of scenes name one.
 #pragma once
+// Textures made by a formula. The texels are LINEAR 8-bit values (Format::rgba8), so
+// that a driver samples the very same numbers without an sRGB decoder of its own.
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "raster/images/sampler.h"
 
 namespace softfocus {
+
+// Opacity from a picture, as `map_d` of materials and `opacity_texture` of scenes name one.
 
 /// Format::rgba8 with all its mipmaps (of the ieee profile); the four channels of a texel are its
 /// opacity. That is the picture's alpha if any texel's is below 1, or else the mean of red, green
@@ -20,9 +22,6 @@ Texture make_opacity_texture(const Image& picture);
 
 /// Whether each texel of level 0 is 0 or 1. Such a surface needs no blending.
 bool is_cut_out(const Texture& opacity);
-
-// Textures made by a formula. The texels are LINEAR 8-bit values (Format::rgba8), so
-// that a driver samples the very same numbers without an sRGB decoder of its own.
 
 struct TextureRecipe {
   int size = 256;  ///< texels along a side, a power of two, 1 to kMaxTextureSize

@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-
 #include <glm/vec2.hpp>
 
 #include "raster/numbers/exact_math.h"

@@ -1,18 +1,21 @@
-// Polygons to triangles.
 #pragma once
+// The shapes of geometry books as meshes: closed (but for the plane), with unit normals
+// and uvs, counter-clockwise from outside. Sizes are metres and above 0. Points that
+// two grids share have the same bits, so that welding by position closes each shape.
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-
 #include "scenes/scene.h"
 
 namespace softfocus {
+
+// Polygons to triangles.
 
 /// Triangles over the corners (indices into them), wound as the polygon is: always
 /// corners - 2 of them. A quadrilateral is cut along the shorter diagonal that lies
@@ -20,10 +23,6 @@ namespace softfocus {
 /// seen along the axis in which it is largest. One that crosses itself, or has no
 /// area, is cut anyhow. Needs 3 corners or more.
 std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(std::span<const glm::dvec3> corners);
-
-// The shapes of geometry books as meshes: closed (but for the plane), with unit normals
-// and uvs, counter-clockwise from outside. Sizes are metres and above 0. Points that
-// two grids share have the same bits, so that welding by position closes each shape.
 
 /// About the origin. `segments` >= 3 around the y axis, `rings` >= 2 from pole to pole:
 /// 2 segments (rings - 1) triangles. u runs around eastwards from +z, v from the

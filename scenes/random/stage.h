@@ -1,9 +1,8 @@
+#pragma once
 // What the parts of a random scene are put on: the scene so far, its random numbers, and the
 // camera, by whose picture everything is placed. Lengths are metres.
-#pragma once
 
 #include <cstdint>
-
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 

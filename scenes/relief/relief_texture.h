@@ -1,17 +1,31 @@
-// A relief's colours and normals as they are stored.
 #pragma once
+// A relief texture: colour, depth and perhaps normals of an object under an orthographic or a
+// perspective camera (Oliveira, Bishop and McAllister 2000). A texel of depth d shows the point
+//
+//   orthographic   X = C + u a + v b + d f        u, v: whole numbers at the texels' centres
+//   perspective    X = S + (C + u a + v b - S) / (1 - d / n)
+//
+// S is a perspective camera's eye, n its distance from the plane. A point that lies z behind the
+// plane has d = z under an orthographic camera, and d = n z / (n + z) under a perspective one: n
+// times its generalised disparity (McMillan 1997). With this d the pre-warp of both is one equation
+// (pre_warp.h), codes are even in a depth buffer's numbers, and a plane in space is a plane over
+// the texture.
+//
+// Depths are codes, evenly spaced from 0, the plane of C, to the last one but one; the last code,
+// 255 of 8 bits and 65535 of 16, is a texel that shows nothing.
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
-
-#include <glm/vec3.hpp>
 
 #include "raster/numbers/vector_math.h"
 
 namespace softfocus {
+
+// A relief's colours and normals as they are stored.
 
 /// Three halves of linear light; `codes` has linear_to_srgb8() of each half.
 inline std::uint32_t packed_colour(const std::uint16_t* texel,
@@ -28,21 +42,6 @@ inline std::uint32_t packed_normal(glm::vec3 normal) {
   };
   return byte(unit.x) | byte(unit.y) << 8 | byte(unit.z) << 16;
 }
-
-// A relief texture: colour, depth and perhaps normals of an object under an orthographic or a
-// perspective camera (Oliveira, Bishop and McAllister 2000). A texel of depth d shows the point
-//
-//   orthographic   X = C + u a + v b + d f        u, v: whole numbers at the texels' centres
-//   perspective    X = S + (C + u a + v b - S) / (1 - d / n)
-//
-// S is a perspective camera's eye, n its distance from the plane. A point that lies z behind the
-// plane has d = z under an orthographic camera, and d = n z / (n + z) under a perspective one: n
-// times its generalised disparity (McMillan 1997). With this d the pre-warp of both is one equation
-// (pre_warp.h), codes are even in a depth buffer's numbers, and a plane in space is a plane over
-// the texture.
-//
-// Depths are codes, evenly spaced from 0, the plane of C, to the last one but one; the last code,
-// 255 of 8 bits and 65535 of 16, is a texel that shows nothing.
 
 struct ReliefCamera {
   glm::dvec3 origin{0.0};        ///< C: the centre of the first texel, where the depth is 0

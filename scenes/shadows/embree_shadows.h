@@ -1,6 +1,6 @@
 #pragma once
 // A second truth, which shares no arithmetic with the first: Embree's rays, in binary32. The rules
-// are those of point_in_shadow.h: which side of a receiver is lit, what stops light, epsilon. An
+// are those of shadow_truth.h: which side of a receiver is lit, what stops light, epsilon. An
 // answer differs where binary32 does not tell a ray from an edge.
 
 #include <array>

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <utility>
-
-#include <glm/vec2.hpp>
 
 namespace softfocus {
 namespace {

@@ -1,20 +1,22 @@
-// A box around places as a light sees them.
 #pragma once
+// The surfaces of a scene as shadows need them: facets in the world, in binary64, and receivers,
+// which are coplanar facets joined at their edges.
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
-
 #include "raster/numbers/vector_math.h"
 
 namespace softfocus {
+
+// A box around places as a light sees them.
 
 /// Empty at first.
 struct PlaceBox {
@@ -26,9 +28,6 @@ inline void add(PlaceBox& box, glm::dvec2 p) {
   box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
   box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
 }
-
-// The surfaces of a scene as shadows need them: facets in the world, in binary64, and receivers,
-// which are coplanar facets joined at their edges.
 
 /// A triangle. A one-sided facet can be seen from its front alone, and stops light on its front
 /// alone.

@@ -1,15 +1,14 @@
+#pragma once
 // The definition of a shadow, as an oracle: a ray from a point towards the light against every
 // facet, in binary64.
-#pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
-
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
+#include <vector>
 
 #include "raster/threads/parallel.h"
 #include "scenes/shadows/facets.h"
@@ -34,7 +33,7 @@ bool point_in_shadow(const Facets& facets, std::uint32_t facet, bool seen_from_b
 glm::dvec3 seen_point(const FacetPlane& plane, const glm::dmat4& world_to_clip, glm::dvec3 eye,
                       glm::dvec2 window, int width, int height);
 
-// What a pixel shows of one light's shadow, by the definition (point_in_shadow.h).
+// What a pixel shows of one light's shadow, by the definition.
 
 class ShadowTruth {
  public:
@@ -67,7 +66,7 @@ class ShadowTruth {
 std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
                                       int width, int height, ThreadPool& pool);
 
-// How right a shadow mask is: every pixel against the definition (point_in_shadow.h).
+// How right a shadow mask is: every pixel against the definition.
 
 /// Pixels times lights.
 struct ShadowErrors {

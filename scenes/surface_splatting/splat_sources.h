@@ -1,14 +1,13 @@
-// The scene's triangles on the pinhole's screen, where surface_splats.h takes its points.
 #pragma once
+// The scene's triangles on the pinhole's screen, where surface_splats.h takes its points.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
-
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "dof/dof.h"
 #include "raster/images/image.h"

@@ -161,7 +161,7 @@ TEST_CASE("the filters equal their oracles to the bit") {
       const Profile& profile = known.profile;
       for (const int size : {1, 2, 33}) {
         const Image scene = random_scene_image(size, 70 - size, 3);
-        for (const float max_coc : {0.0f, 0.5f, 1.0f, 7.25f, 90.0f}) {
+        for (const float max_coc : {0.0f, 0.5f, 1.0f, 7.25f, 40.0f}) {
           const DofSettings s = settings(40.0f, max_coc);
           CHECK(equal(filtered(filter, {scene, s, profile}, pool),
                       filtered(oracle, {scene, s, profile}, pool)));

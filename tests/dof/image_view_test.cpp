@@ -115,7 +115,7 @@ Image scene_image(int width, int height) {
 struct Size {
   int width, height;
 };
-constexpr std::array kSizes{Size{1, 1}, Size{3, 5}, Size{93, 58}, Size{128, 33}};
+constexpr std::array kSizes{Size{1, 1}, Size{3, 5}, Size{69, 44}, Size{64, 37}};
 
 }  // namespace
 

@@ -28,7 +28,7 @@ struct Size {
   int width, height;
 };
 
-// The equations of hidden_sheet.h for one plane, level by level.
+// The equations of layer_planes.h for one plane, level by level.
 struct Level {
   int width, height;
   std::vector<float> value, known;

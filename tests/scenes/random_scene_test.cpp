@@ -50,7 +50,8 @@ Seen look_at(const Scene& scene, ThreadPool& pool) {
 
 }  // namespace
 
-TEST_CASE("random scenes: something is in focus, something is not, nothing touches the camera") {
+TEST_CASE("random scenes: something is in focus, something is not, nothing touches the camera" *
+          doctest::test_suite("long")) {
   ThreadPool pool(2);
   std::set<std::string> classes;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {

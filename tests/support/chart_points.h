@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "tools/chart/point.h"
+#include "tools/chart/front.h"
 
 namespace softfocus::test {
 

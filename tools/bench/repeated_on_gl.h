@@ -1,7 +1,7 @@
+#pragma once
 // A frame that a GL driver draws and filters again and again in this process: what
 // `bench --vs` times. Uploads, links and allocates when it is made, and reads back only when
 // asked for the picture.
-#pragma once
 
 #include <cstddef>
 #include <memory>

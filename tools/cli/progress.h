@@ -1,5 +1,5 @@
-// How long work still takes, by the time that each kind of it has taken so far.
 #pragma once
+// One line on a terminal that says what is being done, gone when it is done.
 
 #include <functional>
 #include <map>
@@ -7,6 +7,8 @@
 #include <string_view>
 
 namespace softfocus {
+
+// How long work still takes, by the time that each kind of it has taken so far.
 
 /// Work is planned in units of named kinds. The rate of a kind is what its units have taken; of a
 /// kind that nothing was done of yet it is a guess, scaled by how long the kinds that were done
@@ -45,8 +47,6 @@ class TimeLeft {
 /// "about 2 h left", "about 3 min left", "about 20 s left"; rounded up to quarters of an hour from
 /// two hours on, to minutes, to ten seconds below one minute, and to five below twenty.
 std::string time_left_text(double seconds);
-
-// One line on a terminal that says what is being done, gone when it is done.
 
 /// Silent where standard error is no terminal, or if `quiet` (--quiet).
 class Progress {

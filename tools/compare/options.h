@@ -1,5 +1,5 @@
 #pragma once
-// How far off a picture may be: limits, and whether they were kept.
+// `compare`'s options: two pictures and measures of them, or two sequences.
 
 #include <filesystem>
 #include <optional>
@@ -9,10 +9,12 @@
 #include "dof/measure/difference.h"
 #include "dof/measure/measures.h"
 #include "tools/cli/parser.h"
-#include "tools/files/whole_file.h"
+#include "tools/files/same_file.h"
 #include "tools/options/lens_options.h"
 
 namespace softfocus {
+
+// How far off a picture may be: limits, and whether they were kept.
 
 struct Tolerance {
   std::optional<int> max_half_ulps;  ///< of any value, alpha too
@@ -38,8 +40,6 @@ std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Differe
 
 /// "--max-ulps 4: broken by 1, 5 half-ULPs".
 std::string limit_text(const LimitFinding& finding);
-
-// `compare`'s options: two pictures and measures of them, or two sequences.
 
 struct CompareOptions {
   std::string first;   ///< what is judged

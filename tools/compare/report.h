@@ -1,5 +1,5 @@
 #pragma once
-// Which lens the regions are of, and who says so.
+// `compare`'s findings, as text and as JSON.
 
 #include <optional>
 #include <string>
@@ -9,9 +9,12 @@
 #include "dof/measure/measures.h"
 #include "dof/measure/point_image.h"
 #include "tools/compare/options.h"
+#include "tools/compare/tolerance.h"
 #include "tools/pictures/picture_notes.h"
 
 namespace softfocus {
+
+// Which lens the regions are of, and who says so.
 
 /// A picture's file and its notes.
 struct NamedNotes {
@@ -40,8 +43,6 @@ std::string source_text(const AssumedLens& assumed);
 
 /// A line each, on what is doubtful: pictures of two lenses, a sidecar of another picture.
 std::vector<std::string> lens_doubts(const std::vector<NamedNotes>& pictures);
-
-// `compare`'s findings, as text and as JSON.
 
 struct PointFindings {
   PointShape a, b;

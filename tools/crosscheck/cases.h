@@ -10,6 +10,7 @@
 #include "raster/numbers/profile.h"
 #include "raster/numbers/random_bits.h"
 #include "raster/threads/parallel.h"
+#include "scenes/scene.h"
 #include "tools/crosscheck/tally.h"
 #include "tools/gl/driver/context.h"
 #include "tools/gl/shaders.h"
@@ -52,6 +53,10 @@ void add_shadow_map_cases(std::vector<Case>& cases);
 void add_shadow_volume_cases(std::vector<Case>& cases);
 void add_relief_cases(std::vector<Case>& cases);
 void add_polygon_cases(std::vector<Case>& cases);
+
+/// A scene that comes along, or one of the two that scene_cases.cpp makes. Making a scene's
+/// textures takes longer than drawing it small: each is loaded once.
+const Scene& loaded_scene(const std::string& name);
 
 /// Random numbers for making cases up.
 struct RandomNumbers {

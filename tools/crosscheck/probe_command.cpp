@@ -1,3 +1,5 @@
+// softfocus probe: a driver's profile, by experiment.
+
 #include <iostream>
 #include <memory>
 
@@ -18,8 +20,6 @@ std::string probe_text(const Probe& probe) {
   }
   return profile_text(probe.profile, heading);
 }
-
-// softfocus probe: a driver's profile, by experiment.
 
 namespace {
 

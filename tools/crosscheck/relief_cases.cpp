@@ -8,7 +8,6 @@
 #include "raster/numbers/half.h"
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/load/load_scene.h"
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "scenes/relief/warp/map_relief.h"
 #include "scenes/relief/warp/march_relief.h"
@@ -111,8 +110,7 @@ Image drawn_on_gl(const GlProgram& program, const ReliefCase& what) {
 /// that it will lie over.
 struct SeenCase {
   SeenCase(const Bench& bench, const ReliefCase& what)
-      : scene(load_scene(what.scene, scene_search_path({}))),
-        maker(prepare_relief(scene, 0.0, bench.pool)) {
+      : scene(loaded_scene(what.scene)), maker(prepare_relief(scene, 0.0, bench.pool)) {
     const double away = 3.2 * maker.radius_m;
     Camera camera;
     camera.target = maker.middle;

@@ -1,15 +1,17 @@
+// Stage `shadow`: shadows projected onto what a camera sees, drawn by both sides.
+
 #include "tools/crosscheck/shadow_cases.h"
 
 #include <utility>
 
-#include "scenes/load/load_scene.h"
+#include "tools/gl/maps_on_gl.h"
 #include "tools/gl/shadows_on_gl.h"
 
 namespace softfocus {
 
 ShadowedFrame draw_shadowed_frame(const Bench& bench, const std::string& scene, ShadowKind kind,
                                   const ShadowMapSettings& map, int width, int height) {
-  Scene loaded = load_scene(scene, scene_search_path({}));
+  Scene loaded = loaded_scene(scene);
   set_shadows(loaded, kind);
   for (Light& light : loaded.lights) light.map = map;
   PreparedScene prepared = prepare_scene(loaded, bench.profile, bench.pool);
@@ -28,8 +30,6 @@ ShadowedFrame draw_shadowed_frame(const Bench& bench, const std::string& scene, 
 std::string name_and_size(const std::string& scene, int width, int height) {
   return scene + ' ' + std::to_string(width) + 'x' + std::to_string(height);
 }
-
-// Stage `shadow`: shadows projected onto what a camera sees, drawn by both sides.
 
 namespace {
 

@@ -1,5 +1,5 @@
-// A frame with shadows, for the stages that compare them.
 #pragma once
+// A frame with shadows, for the stages that compare them.
 
 #include <cstdint>
 #include <memory>

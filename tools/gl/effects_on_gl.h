@@ -1,5 +1,5 @@
-// Full-screen passes of an effect on a GL driver, one after the other.
 #pragma once
+// Image-space effects on a GL driver, with the project's shaders.
 
 #include <deque>
 #include <map>
@@ -15,6 +15,8 @@
 #include "tools/gl/shaders.h"
 
 namespace softfocus {
+
+// Full-screen passes of an effect on a GL driver, one after the other.
 
 /// Keeps programs, targets and tables: passes that are run again after begin(), in the same order,
 /// make nothing anew. A pass's result is valid until begin().
@@ -53,8 +55,6 @@ class EffectPasses {
   bool quads_ = false;
   std::size_t used_targets_ = 0, used_tables_ = 0;
 };
-
-// Image-space effects on a GL driver, with the project's shaders.
 
 /// RGBA16F to be read, and its size.
 struct GlPicture {

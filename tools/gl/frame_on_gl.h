@@ -1,5 +1,5 @@
-// A frame rendered by a GL driver in this process: what `render --gl` does.
 #pragma once
+// A frame rendered by a GL driver in this process: what `render --gl` does.
 
 #include <cstdint>
 #include <memory>

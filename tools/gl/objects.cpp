@@ -273,11 +273,13 @@ void wait_for(const GlTarget& target) {
 GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
                        std::string_view fragment, const std::string& defines) {
   const std::string header = context.shader_header() + defines;
-  GlProgram program{glCreateProgram()};
-  for (const auto& [stage, name] :
-       {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
-    const ShaderSource source = shader_source(shaders, name);
-    const GLuint shader = compile(static_cast<GLenum>(stage), header + source.text, source.files);
+  const std::array sources{shader_source(shaders, vertex), shader_source(shaders, fragment)};
+  unsigned& known = context.programs()[header + sources[0].text + sources[1].text];
+  if (known != 0) return {known};
+  const GlProgram program{glCreateProgram()};
+  for (const std::size_t i : {0u, 1u}) {
+    const GLenum stage = i == 0 ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER;
+    const GLuint shader = compile(stage, header + sources[i].text, sources[i].files);
     glAttachShader(program, shader);
     glDeleteShader(shader);  // with the program
   }
@@ -291,6 +293,7 @@ GlProgram link_program(const GlContext& context, const Shaders& shaders, std::st
     throw DriverError("linking " + std::string(vertex) + " and " + std::string(fragment) + ": " +
                       complaint.substr(0, complaint.find('\n')));
   }
+  known = program;
   return program;
 }
 

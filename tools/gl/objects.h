@@ -43,12 +43,16 @@ class GlName {
 inline void destroy_texture(GLuint name) { glDeleteTextures(1, &name); }
 inline void destroy_buffer(GLuint name) { glDeleteBuffers(1, &name); }
 inline void destroy_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-inline void destroy_program(GLuint name) { glDeleteProgram(name); }
 
 using GlTexture = GlName<destroy_texture>;
 using GlBuffer = GlName<destroy_buffer>;
 using GlFramebuffer = GlName<destroy_framebuffer>;
-using GlProgram = GlName<destroy_program>;
+
+/// One of its context's programs, which end with the context.
+struct GlProgram {
+  GLuint name = 0;
+  operator GLuint() const { return name; }  // NOLINT(google-explicit-constructor)
+};
 
 /// A texture with all its levels; one level is sampled without mipmaps.
 GlTexture upload(const Texture& texture, const Sampler& sampler);
@@ -82,7 +86,8 @@ Image read_depth(const GlContext& context, const GlTarget& target);
 void wait_for(const GlTarget& target);
 
 /// Compiles and links two of the project's shaders (tools/gl/shaders.h). `defines` come
-/// after the version line. Throws DriverError with the driver's first message.
+/// after the version line. A context has one program of one text: its uniforms are as the last user
+/// left them. Throws DriverError with the driver's first message.
 GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
                        std::string_view fragment, const std::string& defines = {});
 

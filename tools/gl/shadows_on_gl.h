@@ -1,6 +1,5 @@
 #pragma once
-// Shadow volumes counted by a GL driver: the faces and samples of
-// scenes/shadows/volumes/volume_mask.h.
+// Projected shadows drawn by a GL driver: the triangles of scenes/shadows/shadow_mask.h.
 
 #include <cstdint>
 #include <span>
@@ -14,6 +13,9 @@
 #include "tools/gl/objects.h"
 
 namespace softfocus {
+
+// Shadow volumes counted by a GL driver: the faces and samples of
+// scenes/shadows/volumes/volume_mask.h.
 
 /// A face is drawn as rectangles that hold all pixels which it may count.
 struct GlVolumes {
@@ -30,8 +32,6 @@ GlVolumes make_gl_volumes(const GlContext& context, const Shaders& shaders,
                           const ShadowView& view, glm::dvec3 eye, VolumeCount count);
 
 void draw(const GlVolumes& volumes);
-
-// Projected shadows drawn by a GL driver: the triangles of scenes/shadows/shadow_mask.h.
 
 struct GlShadows {
   int width, height;

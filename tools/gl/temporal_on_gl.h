@@ -1,5 +1,5 @@
 #pragma once
-// Velocity from a picture's depth, and motion blur, on a GL driver with the project's shaders.
+// Passes from earlier frames to one frame, on a GL driver with the project's shaders.
 
 #include "raster/effects/motion/motion_blur.h"
 #include "raster/effects/motion/velocity.h"
@@ -7,6 +7,8 @@
 #include "tools/gl/effects_on_gl.h"
 
 namespace softfocus {
+
+// Velocity from a picture's depth, and motion blur, on a GL driver with the project's shaders.
 
 /// As camera_velocity(): RG16F in the target's one texture.
 GlTarget camera_velocity_on_gl(const GlContext& context, const Shaders& shaders,
@@ -26,8 +28,6 @@ const GlTarget& motion_blur_on_gl(EffectPasses& passes, const MotionBlurSettings
                                   const GlMovingPicture& of);
 const GlTarget& motion_blur_along_own_on_gl(EffectPasses& passes, float shutter, int samples,
                                             const GlMovingPicture& of);
-
-// Passes from earlier frames to one frame, on a GL driver with the project's shaders.
 
 /// As FrameSources.
 struct GlFrameSources {

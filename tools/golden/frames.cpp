@@ -262,7 +262,7 @@ std::span<const std::string_view> golden_scenes() { return kScenes; }
 std::span<const std::string_view> more_golden_scenes() { return kMoreScenes; }
 
 std::span<const FrameSize> golden_sizes(GoldenSet set) {
-  return std::span{kSizes}.subspan(set == GoldenSet::quick ? 1 : 0);
+  return std::span{kSizes}.subspan(set == GoldenSet::all ? 0 : 1);
 }
 
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
@@ -279,7 +279,8 @@ std::vector<NamedHash> frame_hashes(const GoldenScene& golden, const FrameSize& 
                                     const NamedProfile& known, ThreadPool& pool) {
   // A whole group of sums and a part of one.
   const Sampling sampling{.samples = kSampleGroup + 3, .jitter = true, .aperture = {7}};
-  const auto& [name, scene] = golden;
+  const std::string& name = golden.name;
+  const Scene& scene = golden.scene;
   const auto [width, height] = size;
   const Profile& profile = known.profile;
   DrawnScene made = drawn_scene(scene, size, profile, pool);
@@ -344,7 +345,7 @@ std::vector<NamedHash> more_frame_hashes(std::span<const std::string_view> scene
                                          ThreadPool& pool) {
   std::vector<std::vector<NamedHash>> by_scene(scenes.size());
   pool.for_each(static_cast<int>(by_scene.size()), [&](int i) {
-    ThreadPool one(1);
+    ThreadPool one(1, pool.isa());
     const auto index = static_cast<std::size_t>(i);
     by_scene[index] = few_frame_hashes(scenes[index], one);
   });

@@ -93,9 +93,10 @@ struct Page {
   std::array<std::shared_ptr<const Drawn>, 2> drawn;
   std::optional<ShownFrame> shown;
   std::optional<Truth> truth;
-  std::vector<HashCheck> golden;  ///< of the self-test, as far as computed
-  std::size_t golden_parts = 0;   ///< that these are of
-  std::shared_ptr<Gpu> gpu;       ///< once the request 'gl_open' or another gl_* has come
+  GoldenSet golden_set = GoldenSet::all;  ///< of the self-test
+  std::vector<GoldenPart> golden_parts;   ///< those to come, the next one last
+  std::vector<NamedHash> golden;          ///< as far as computed
+  std::shared_ptr<Gpu> gpu;               ///< once the request 'gl_open' or another gl_* has come
   std::shared_ptr<GpuScene> gpu_scene;
   Pixels pixels;
   Bytes saved;  ///< the file that `save` made

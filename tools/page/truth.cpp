@@ -16,7 +16,7 @@ namespace softfocus {
 namespace {
 
 constexpr int kMostTruthViews = 4096;
-/// Half-sets of fewer views can agree by chance, as in take_samples.h.
+/// Half-sets of fewer views can agree by chance, as in accumulation.h.
 constexpr int kFirstComparison = 16;
 /// Half-sets that differ by less look the same: below half a level of 8 bits.
 constexpr double kGoodEnough = 0.002;
@@ -61,7 +61,7 @@ Truth begin_truth(const ShownFrame& shown, const Shot& shot, ThreadPool& pool) {
   return truth;
 }
 
-/// In the steps of take_samples.h, so that the sums have the bits of `--method accumulation
+/// In the steps of accumulation.h, so that the sums have the bits of `--method accumulation
 /// --until`.
 void add_views(const Page& page, const LensViewInput& input, Truth& truth, int views) {
   const int wanted = std::min(truth.sums.count + views, kMostTruthViews);

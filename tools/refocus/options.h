@@ -1,5 +1,5 @@
 #pragma once
-// Pixels beyond the borders of a picture that is refocused.
+// Everything that `refocus` is told.
 
 #include <optional>
 #include <string>
@@ -14,6 +14,8 @@
 #include "tools/sequence/sequence_options.h"
 
 namespace softfocus {
+
+// Pixels beyond the borders of a picture that is refocused.
 
 /// `by_method`: as each filter has it (docs/refocus.md). The others are pixels around the picture,
 /// which the filter then sees: its edge again and again, its mirror image, or black, where nothing
@@ -54,8 +56,6 @@ HighlightCurve parse_highlights(const std::string& text);
 /// `opacity` is empty or has a number a pixel, by which the colours are multiplied.
 void raise_highlights(const HighlightCurve& highlights, const PlaneValues& opacity, Image& picture);
 void lower_highlights(const HighlightCurve& highlights, const PlaneValues& opacity, Image& picture);
-
-// Everything that `refocus` is told.
 
 /// The written picture, or a map of what it is made from.
 enum class RefocusShow : std::uint8_t { image, coc, depth };

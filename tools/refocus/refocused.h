@@ -1,5 +1,5 @@
-// A picture with depth, as a lens focused elsewhere would have made it.
 #pragma once
+// A picture with depth, as a lens focused elsewhere would have made it.
 
 #include <optional>
 #include <vector>

@@ -1,6 +1,5 @@
-// A small fixed pair of pictures to try measures on: what they give for it goes into the key of
-// what is kept, so that a changed measure is noticed.
 #pragma once
+// The worst place of a map of errors, and parts of pictures to look at.
 
 #include <string_view>
 
@@ -9,6 +8,9 @@
 #include "raster/numbers/hash.h"
 
 namespace softfocus {
+
+// A small fixed pair of pictures to try measures on: what they give for it goes into the key of
+// what is kept, so that a changed measure is noticed.
 
 /// RGBA16F, depth in alpha, of one size.
 struct SpecimenPair {
@@ -26,8 +28,6 @@ Image with_wrong_pixels(const Image& picture);
 /// Adds a measure's number.
 void add_number(Hash& hash, double number);
 void add_text(Hash& hash, std::string_view text);
-
-// The worst place of a map of errors, and parts of pictures to look at.
 
 /// A square part of a picture.
 struct Crop {

@@ -1,5 +1,6 @@
-// Pictures of a video in their order, whoever makes them.
 #pragma once
+// Makes many frames: several at once, each with its share of the threads, and goes on where an
+// earlier run ended.
 
 #include <condition_variable>
 #include <cstddef>
@@ -16,6 +17,8 @@
 #include "tools/sequence/frame_names.h"
 
 namespace softfocus {
+
+// Pictures of a video in their order, whoever makes them.
 
 enum class Put { written, other_length, reader_gone, failed };
 
@@ -47,9 +50,6 @@ class FramesInOrder {
   std::vector<std::byte> last_;
   Put end_ = Put::written;  ///< or why nothing is written any more
 };
-
-// Makes many frames: several at once, each with its share of the threads, and goes on where an
-// earlier run ended.
 
 /// A frame before it is made.
 struct FrameWork {

@@ -1,5 +1,5 @@
 #pragma once
-// Everything that `stress` is told.
+// `stress`'s findings: values by case, method and severity, and pictures to look at.
 
 #include <filesystem>
 #include <optional>
@@ -11,6 +11,8 @@
 #include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
+
+// Everything that `stress` is told.
 
 struct StressOptions {
   std::filesystem::path directory;
@@ -27,8 +29,6 @@ void add_stress_options(CLI::App& parser, StressOptions& options);
 
 /// Settles what was not given. Throws UsageError.
 void complete(StressOptions& options);
-
-// `stress`'s findings: values by case, method and severity, and pictures to look at.
 
 /// PNG in base64, of the telling severity.
 struct StressPictures {

@@ -1,5 +1,5 @@
 // Triangle set-up for as many triangles at once as a vector has lanes. The scalar form is
-// setup.cpp and edge_functions.cpp.
+// setup.cpp.
 
 #ifndef SOFTFOCUS_ISA
 

@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "raster/images/integer_filter.h"
+#include "raster/images/integer_bilinear.h"
 #include "raster/numbers/half.h"
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"

@@ -1,5 +1,5 @@
 #pragma once
-// How wrong a shadow map is, and why: every pixel against the definition (point_in_shadow.h).
+// How wrong a shadow map is, and why: every pixel against the definition (shadow_truth.h).
 
 #include <cstddef>
 #include <cstdint>

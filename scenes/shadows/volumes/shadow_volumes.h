@@ -1,20 +1,26 @@
-// Facets as a mesh: corners that are equal in the world, and edges between them, are one.
 #pragma once
+// Shadow volumes (Crow 1977): the faces around what a light's casters keep in the dark.
+//
+// A casting triangle's volume is what lies behind it as the light sees it. The volumes of all
+// casters are counted together, so a side face stands only where an edge's triangles do not cancel
+// out: an edge whose sum of directions is not 0 (Bergeron 1986; Kim, Kim and Turk 2008). Meshes
+// may be open, and three or more triangles may share an edge.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <vector>
-
-#include <glm/vec3.hpp>
 
 #include "scenes/shadows/facets.h"
 #include "scenes/shadows/light_grid.h"
 #include "scenes/shadows/shadow_mask.h"
 
 namespace softfocus {
+
+// Facets as a mesh: corners that are equal in the world, and edges between them, are one.
 
 struct JoinedFacets {
   std::vector<glm::dvec3> corners;
@@ -52,13 +58,6 @@ PixelSpace pixel_space(const ShadowView& view, glm::dvec3 eye);
 glm::dvec3 to_pixels(const PixelSpace& space, glm::dvec3 from_eye);
 glm::dvec3 from_pixels(const PixelSpace& space, glm::dvec3 v);
 glm::dvec3 to_light(const PixelSpace& space, const ShadowLight& light);
-
-// Shadow volumes (Crow 1977): the faces around what a light's casters keep in the dark.
-//
-// A casting triangle's volume is what lies behind it as the light sees it. The volumes of all
-// casters are counted together, so a side face stands only where an edge's triangles do not cancel
-// out: an edge whose sum of directions is not 0 (Bergeron 1986; Kim, Kim and Turk 2008). Meshes
-// may be open, and three or more triangles may share an edge.
 
 /// Corner i below the number of joined corners is that corner. Above, it is infinitely far from
 /// the light: for a point light in the direction of corner i - corners, for a directional light in

@@ -3,7 +3,7 @@
 //
 // A pixel's sample is not the point that it shows but the one that is epsilon_m over the
 // receiver's plane, towards the light. It is in a volume exactly if a caster stops the light there
-// at a height of more than epsilon_m, which is the definition (point_in_shadow.h). A surface's own
+// at a height of more than epsilon_m, which is the definition (shadow_truth.h). A surface's own
 // cap, and all that touches it, lies clear of its sample.
 //
 // The ray from the eye through the sample meets the faces of the volumes. Coverage and the faces'
@@ -39,7 +39,7 @@ std::size_t draw_volume_mask(const Facets& facets, const JoinedFacets& joined,
 
 /// What pixels' samples come to, for who counts by other means.
 struct VolumeCounts {
-  std::vector<glm::dvec3> corners;  ///< in pixels (pixel_space.h), as the faces number them
+  std::vector<glm::dvec3> corners;  ///< in pixels (shadow_volumes.h), as the faces number them
   std::size_t faces = 0;            ///< so many of the light's are counted
   /// Of each pixel: x, y and q = 1 / w. Zero if it has none, or if that lies elsewhere.
   std::vector<glm::dvec3> samples;

@@ -1,6 +1,6 @@
 // D3D11.3 7.18.16.3 on filters: both roundings of 8-bit texels in integers.
 
-#include "raster/images/integer_filter.h"
+#include "raster/images/integer_bilinear.h"
 
 #include <doctest/doctest.h>
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "raster/images/integer_bilinear.h"
 #include "raster/images/integer_filter.h"
 #include "raster/numbers/half.h"
 #include "tests/support/test_images.h"

@@ -67,7 +67,8 @@ TEST_CASE("tile sample: chances are within 1, sum up to the count, and follow th
   CHECK(changed >= 20);  // a third of the tiles
 }
 
-TEST_CASE("tile sample: the estimate lies within three standard errors of the whole picture's") {
+TEST_CASE("tile sample: the estimate lies within three standard errors of the whole picture's" *
+          doctest::test_suite("long")) {
   ThreadPool pool{2};
   const Image truth = picture_with(0.4f);
   const TileSample sample = sample_tiles(picture_with(0.0f), picture_with(0.5f), 24, pool);

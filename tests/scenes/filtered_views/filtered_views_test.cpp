@@ -97,7 +97,8 @@ TEST_CASE("filtered views: the same bits for any number of threads and on every 
   }
 }
 
-TEST_CASE("filtered views: nearer to the truth than as many views unfiltered") {
+TEST_CASE("filtered views: nearer to the truth than as many views unfiltered" *
+          doctest::test_suite("long")) {
   ThreadPool pool{2};
   for (const char* name : {"figures", "sphere-world", "near-fence"}) {
     const Scene scene = scene_named(name);

@@ -88,7 +88,8 @@ TEST_CASE("few points of the lens: their mean is exactly 0, and they lie on it, 
   CHECK(few_lens_points({0}, 1)[0] == glm::dvec2{0.0});
 }
 
-TEST_CASE("few points of the lens: no line parts them as unevenly as it parts the sequence") {
+TEST_CASE("few points of the lens: no line parts them as unevenly as it parts the sequence" *
+          doctest::test_suite("long")) {
   for (const int blades : {0, 3, 5, 6}) {
     for (const int count : {8, 12, 16, 32, 64, 128, 256}) {
       CAPTURE(blades);

@@ -51,7 +51,8 @@ RegionMean mean_difference(const Image& a, const Image& b, const PixelCoc& coc, 
 
 }  // namespace
 
-TEST_CASE("ray-traced: the image of a point is the aperture, as large as the lens says") {
+TEST_CASE("ray-traced: the image of a point is the aperture, as large as the lens says" *
+          doctest::test_suite("long")) {
   if (is_missing()) return;
   test::check_image_of_point("ray-traced", 1.0, 0);
   test::check_image_of_point("ray-traced", 8.0, 0);

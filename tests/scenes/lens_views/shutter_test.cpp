@@ -257,7 +257,8 @@ TEST_CASE("shutter: by tile, a tile with things that move takes more views than 
   CHECK(one_tile.mean_samples.value() == (64 + 3 * 8) / 4.0);
 }
 
-TEST_CASE("shutter: more views come nearer to the mean over lens and time") {
+TEST_CASE("shutter: more views come nearer to the mean over lens and time" *
+          doctest::test_suite("long")) {
   ThreadPool pool{2};
   const Scene scene = turning_and_crossing();
   const Taken taken{.width = 90, .height = 70, .frame = 2.0, .radius_m = 0.02};

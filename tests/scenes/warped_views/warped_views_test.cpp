@@ -237,7 +237,8 @@ TEST_CASE("warped accumulation: with as many drawn views as samples it is accumu
   CHECK(equal(drawn.sampled.picture, other.sampled.picture));
 }
 
-TEST_CASE("warped accumulation: 64 views from 7 are nearer to the truth than those 7") {
+TEST_CASE("warped accumulation: 64 views from 7 are nearer to the truth than those 7" *
+          doctest::test_suite("long")) {
   ThreadPool pool{2};
   constexpr int kSide = 160;
   for (const char* name : {"sphere-world", "portrait"}) {

@@ -10,7 +10,7 @@
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/make/shapes.h"
-#include "tools/bench/work.h"
+#include "tools/bench/picture.h"
 
 using namespace softfocus;
 

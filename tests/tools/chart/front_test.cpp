@@ -1,4 +1,4 @@
-#include "tools/chart/point.h"
+#include "tools/chart/front.h"
 
 #include <doctest/doctest.h>
 

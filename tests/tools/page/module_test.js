@@ -166,16 +166,17 @@ const kTests = {
     assert.strictEqual(ask({ do: "frame", size: [32, 32] }).hash, hash);
   },
 
-  "every golden hash is the table's"({ ask }) {
+  // browser_test.js has all of them.
+  "every quick golden hash is the table's"({ ask }) {
     let first = 0;
     for (let total = 1; first < total;) {
-      const reply = ask({ do: "selftest", first, count: 50 });
-      for (const { name, equal } of reply.results) assert.ok(equal, name);
+      const reply = ask({ do: "selftest", quick: true, first, count: 50 });
+      for (const { name, hash, wanted } of reply.results) assert.strictEqual(hash, wanted, name);
       assert.ok(reply.results.length > 0, `only ${first} of ${reply.total}`);
       first += reply.results.length;
       total = reply.total;
     }
-    assert.ok(first > 800, `only ${first}`);
+    assert.ok(first > 500, `only ${first}`);
   },
 };
 

@@ -85,7 +85,7 @@ TEST_CASE("auto: the same choice and bytes for any number of threads and on ever
   const auto with = [&](const Words& more) {
     Words words = options;
     words.insert(words.end(), more.begin(), more.end());
-    return rendered("sphere-world", words);
+    return rendered("lattice", words);
   };
   const std::string expected = with({"--threads", "1", "--isa", "scalar"});
   for (const Isa isa : available_isas()) {

@@ -163,7 +163,7 @@ TEST_CASE("bench: --vs llvmpipe times both, whose pictures are equal in its prof
 TEST_CASE("bench: --vs softpipe times both, whose pictures are equal in its profile" *
           doctest::test_suite("long")) {
   // The driver is slow.
-  check_versus("softpipe", {"figures", "--size", "32x32"}, {"two-pass", "pinhole"});
+  check_versus("softpipe", {"figures", "--size", "16x12"}, {"two-pass", "pinhole"});
 }
 
 TEST_CASE("bench: --vs lavapipe times both, whose pictures are equal in its profile" *
@@ -249,6 +249,7 @@ TEST_CASE("bench: effects are timed one by one, on a scene or a picture") {
 TEST_CASE("bench: --vs llvmpipe runs every effect's shaders, whose bits are ours" *
           doctest::test_suite("long")) {
   if (!has_driver("llvmpipe")) return;
+  // Their bits on more and larger pictures: crosscheck.
   const auto effects_of = [](const Words& subject) {
     const json result = benched(
         subject, {"--effect", "all", "--vs", "llvmpipe", "--profile", profile_of("llvmpipe")});
@@ -261,9 +262,9 @@ TEST_CASE("bench: --vs llvmpipe runs every effect's shaders, whose bits are ours
     return result["effects"].size();
   };
   // Effects that read a velocity or the frames before need a scene.
-  const auto of_picture = effects_of(kPicture);
+  const auto of_picture = effects_of({"--image", "24x16"});
   CHECK(of_picture >= 13);
-  CHECK(effects_of({"crossing", "--size", "64x64", "--frame", "7"}) == of_picture + 4 + 3);
+  CHECK(effects_of({"crossing", "--size", "24x16", "--frame", "7"}) == of_picture + 4 + 3);
 }
 
 TEST_CASE(

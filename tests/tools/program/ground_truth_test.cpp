@@ -33,8 +33,7 @@ TEST_CASE("ground truth: the bytes are the same for 1, 2 and 3 threads" *
   if (ray_traced_missing().empty()) methods.emplace_back("ray-traced");
   for (const std::string& method : methods) {
     const auto with_threads = [&](const std::string& threads) {
-      return rendered("sphere-world",
-                      {"--method", method, "--samples", "11", "--threads", threads});
+      return rendered("figures", {"--method", method, "--samples", "11", "--threads", threads});
     };
     const std::string one = with_threads("1");
     CHECK(with_threads("2") == one);

@@ -7,17 +7,7 @@
 
 using namespace softfocus;
 
-TEST_CASE("selftest passes on every vector unit of this CPU" * doctest::test_suite("long")) {
-  for (const Isa isa : available_isas()) {
-    if (isa == widest_isa()) continue;  // golden_test.cpp
-    CAPTURE(isa_name(isa));
-    const ProgramRun run = run_program({"selftest", "--isa", std::string{isa_name(isa)}});
-    CHECK(run.status == 0);
-    CHECK(run.out.starts_with("pass: "));
-  }
-}
-
-// Other methods: the selftest above, picture_methods_test.cpp and filter_isa_test.cpp.
+// Other methods: selftest_test.cpp, picture_methods_test.cpp and filter_isa_test.cpp.
 TEST_CASE("render: the bytes are the same on every vector unit") {
   const auto on = [](Isa isa) {
     return rendered("cube-room", {"--max-coc", "6", "--isa", std::string{isa_name(isa)}});

@@ -26,16 +26,14 @@ TEST_CASE("render: a picture is 1024 x 1024 if no size is given") {
   CHECK(bytes.size() == 128 + 1024 * 1024 * 8);
 }
 
-TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads, by every method" *
+// Other methods: picture_methods_test.cpp.
+TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads" *
           doctest::test_suite("threads")) {
-  for (const Method& entry : methods()) {
-    const std::string method{entry.name};
-    const auto with_threads = [&](const std::string& threads) {
-      return rendered("figures", {"--method", method, "--max-coc", "6", "--threads", threads});
-    };
-    const std::string one = with_threads("1");
-    for (const std::string threads : {"2", "3", "8"}) CHECK(with_threads(threads) == one);
-  }
+  const auto with_threads = [&](const std::string& threads) {
+    return rendered("figures", {"--max-coc", "6", "--threads", threads});
+  };
+  const std::string one = with_threads("1");
+  for (const std::string threads : {"2", "3", "8"}) CHECK(with_threads(threads) == one);
 }
 
 TEST_CASE("render: a method that reads object numbers gets those of the scene's objects") {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tools/cli/errors.h"
+#include "tools/refocus/depth/believed_encoding.h"
 #include "tools/refocus/depth/depth_map.h"
 
 using namespace softfocus;

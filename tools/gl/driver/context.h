@@ -7,6 +7,7 @@
 #include <epoxy/egl.h>
 #endif
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -39,6 +40,9 @@ class GlContext {
   /// Whether shaders can compute in binary64: OpenGL 4.0, or GL_ARB_gpu_shader_fp64.
   bool has_doubles() const { return has_doubles_; }
 
+  /// What has been linked here, by its source: a driver takes longer to compile than to draw.
+  std::map<std::string, unsigned>& programs() const { return programs_; }
+
   /// Whether a browser has taken the driver away: nothing works from then on.
   bool is_lost() const;
 
@@ -54,6 +58,7 @@ class GlContext {
   std::string renderer_;
   std::string version_;
   std::string shader_header_;
+  mutable std::map<std::string, unsigned> programs_;
 
 #ifndef __EMSCRIPTEN__
   bool open(EGLDisplay display);

@@ -74,6 +74,7 @@ GlContext::GlContext(const Driver& /*driver*/, std::optional<int> /*threads*/) {
 }
 
 void GlContext::close() {
+  for (const auto& linked : programs_) glDeleteProgram(linked.second);
   if (context_ != 0) emscripten_webgl_destroy_context(context_);
   context_ = 0;
 }

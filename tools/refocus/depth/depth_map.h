@@ -1,5 +1,5 @@
-// A depth map as metres along the camera's axis: from the codes of a file.
 #pragma once
+// A depth map as metres along the camera's axis: from the codes of a file.
 
 #include <cstddef>
 #include <optional>

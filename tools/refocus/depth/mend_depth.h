@@ -1,3 +1,17 @@
+#pragma once
+// Depth as it comes, mended: too few pixels, edges that are a mixture of two depths, too few
+// steps. Every function is a map of pixels and gives the same bits on any number of threads.
+
+#include <optional>
+#include <span>
+
+#include "dof/lens.h"
+#include "raster/images/image.h"
+#include "raster/threads/parallel.h"
+#include "tools/refocus/depth/depth_map.h"
+
+namespace softfocus {
+
 // Depths on their way through a picture of halves.
 //
 // A half has 11 bits, so a circle r = R (z - f) / z, with the horizon's R and the focus f, is known
@@ -9,17 +23,6 @@
 //
 // of the same order, and to (R' - r) / 2048 pixels. R' needs to be above the largest circle behind
 // the focus, no more.
-#pragma once
-
-#include <optional>
-#include <span>
-
-#include "dof/lens.h"
-#include "raster/images/image.h"
-#include "raster/threads/parallel.h"
-#include "tools/refocus/depth/depth_map.h"
-
-namespace softfocus {
 
 /// The other lens, and the way from depths of the one to those of the other.
 struct FinerLens {
@@ -36,9 +39,6 @@ void to_finer_depths(std::span<float> metres, const FinerLens& lens);
 
 /// Replaces depths, finite ones, by those of the other lens, and returns it; or leaves them.
 std::optional<PixelCoc> with_finer_depths(DepthMap& map, const PixelCoc& coc);
-
-// Depth as it comes, mended: too few pixels, edges that are a mixture of two depths, too few
-// steps. Every function is a map of pixels and gives the same bits on any number of threads.
 
 struct Mending {
   bool by_colour = true;  ///< a smaller map is upsampled along the edges of the colour
