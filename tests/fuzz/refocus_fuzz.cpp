@@ -10,8 +10,8 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/parser.h"
-#include "tools/refocus/opacity.h"
 #include "tools/refocus/options.h"
+#include "tools/refocus/picture_with_depth.h"
 #include "tools/refocus/refocused.h"
 
 namespace {

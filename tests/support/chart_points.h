@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "tools/chart/front.h"
+#include "tools/chart/point.h"
 
 namespace softfocus::test {
 

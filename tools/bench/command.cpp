@@ -7,9 +7,9 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/fixed_pictures/fixed_two_pass.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/frame/frame.h"
 #include "tools/bench/effect_bench.h"
 #include "tools/bench/options.h"
-#include "tools/bench/our_frame.h"
 #include "tools/bench/paired_runs.h"
 #include "tools/bench/repeated_on_gl.h"
 #include "tools/bench/report.h"
@@ -20,6 +20,74 @@
 
 namespace softfocus {
 namespace {
+
+/// Our contender: the work, and what its stages leave for the next frame: memory, and what a driver
+/// has in place as well (decoded textures).
+struct OurFrame {
+  const BenchWork& work;
+  ThreadPool& pool;
+  bool one_picture =
+      false;  ///< a filter gets no transparent layers: beside a driver, which has none
+  FrameMemory memory{};
+  DrawnFrame drawn{};
+  Frame filtered{};
+  Image copy{};  ///< of a pass's picture, if copies are timed
+};
+
+Shot shot_of(const OurFrame& frame) {
+  const BenchWork& work = frame.work;
+  Shot shot{.scene = &*work.scene,
+            .frame = work.frame,
+            .width = work.size.width,
+            .height = work.size.height,
+            .method = work.method,
+            .blends = false,
+            .lens = ShotLens{.lens = {.focus_m = work.focus_m}},
+            .sampling = work.sampling,
+            .goal = work.goal,
+            .verify = work.verify,
+            .most_coc_px = work.largest_radius_px,
+            .profile = work.profile};
+  if (work.method.filter == nullptr || frame.one_picture) shot.layers = 0;
+  return shot;
+}
+
+/// Draws the scene, with the objects' numbers if the method reads them; needs one.
+void draw(OurFrame& frame) { draw_shot(shot_of(frame), frame.memory, frame.drawn, frame.pool); }
+
+/// Gives depth of field to what was drawn, or to the work's picture. Auto looks at the picture and
+/// chooses each time.
+void filter(OurFrame& frame) {
+  const BenchWork& work = frame.work;
+  Image& picture = frame.filtered.picture;  // one memory for all frames
+  if (!work.scene) {
+    if (picture.bytes.empty())
+      picture = make_image(work.picture.format, work.size.width, work.size.height);
+    apply(*work.method.filter, {work.picture, work.settings, work.profile}, picture, frame.pool);
+    return;
+  }
+  frame.memory.picture = std::move(picture);
+  const UsedLens lens{.lens = {.focus_m = work.focus_m},
+                      .aperture_radius_m = work.aperture_radius_m,
+                      .settings = work.settings};
+  frame.filtered = make_picture(shot_of(frame), frame.drawn, lens, frame.memory, frame.pool);
+}
+
+/// Copies a picture of the frame's size, as a program without frame-buffer objects does after each
+/// pass. Our filter keeps what is between its passes in the caches, so it is one of the same size
+/// that is copied.
+void copy(OurFrame& frame, const Image& picture) {
+  if (frame.copy.bytes.empty()) {
+    frame.copy = make_image(picture.format, picture.width, picture.height);
+  }
+  constexpr int kRows = 16;
+  frame.pool.for_each((picture.height + kRows - 1) / kRows, [&](int band) {
+    for (int y = band * kRows; y < std::min((band + 1) * kRows, picture.height); ++y) {
+      const auto from = row<std::uint16_t>(picture, y);
+      std::copy(from.begin(), from.end(), row<std::uint16_t>(frame.copy, y).begin());
+    }
+  });
+}
 
 // The stages of one contender, by what it does to draw and to filter and how it ends:
 // a frame is both without a pause between. `filters_copies` filters with a copy of each picture.

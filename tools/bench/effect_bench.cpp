@@ -9,16 +9,55 @@
 #include "raster/effects/effect_settings.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/velocity.h"
-#include "tools/bench/repeated_frame.h"
+#include "scenes/temporal/frame_history.h"
 #include "tools/bench/repeated_on_gl.h"
-#include "tools/cli/machine.h"
+#include "tools/bench/work.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/platform.h"
 #include "tools/cli/timing.h"
 #include "tools/files/json.h"
 #include "tools/options/effect_options.h"
 
 namespace softfocus {
 namespace {
+
+/// A frame that is made from those before, again and again: what `bench --effect temporal-aa`
+/// times.
+struct RepeatedFrame {
+  FrameEffect effect;
+  FrameHistory history;  ///< up to the frame's passes, with what they read
+  Image frames;          ///< that the passes write, R32F
+  Image between;
+};
+
+/// The first frame of `reproject` by its default is drawn, and then every other: the eighth is not.
+constexpr int kFramesBefore = 7;
+
+/// Draws the history of the work's frame: the effect's `warm-up` frames before it, or 7 where that
+/// is 0, with a step of 1; and one more if the frame would be drawn whole. Needs a scene.
+RepeatedFrame make_repeated_frame(const ChosenEffect& chosen, const BenchWork& work,
+                                  ThreadPool& pool) {
+  const auto [width, height] = work.size;
+  const int warm_up = warm_up_frames(chosen);
+  int before = warm_up > 0 ? warm_up : kFramesBefore;
+  RepeatedFrame made{.effect = frame_effect(chosen),
+                     .history = {},
+                     .frames = make_image(Format::r32f, width, height),
+                     .between = make_image(Format::rgba16f, width, height)};
+  if (is_drawn_whole(made.effect, {.count = before})) ++before;
+  PreparedScene prepared = prepare_scene(*work.scene, work.profile, pool);
+  for (int i = 0; i < before; ++i) {
+    draw_next(prepared, made.effect, work.frame - before + i, width, height, made.history, pool);
+  }
+  draw_sources(prepared, made.effect, work.frame, width, height, made.history, pool);
+  return made;
+}
+
+/// The passes alone; the history stays as it is.
+void run(RepeatedFrame& frame, Image& picture, const Profile& profile, ThreadPool& pool) {
+  make_frame(frame.effect, sources_of(frame.effect, frame.history),
+             {picture, frame.frames, frame.between}, profile, pool);
+}
 
 std::string fixed(double value, int decimals) {
   std::array<char, 32> text{};

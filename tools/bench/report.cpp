@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/cli/machine.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/platform.h"
 #include "tools/cli/timing.h"
 #include "tools/files/json.h"
 

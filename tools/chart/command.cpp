@@ -1,24 +1,329 @@
-// softfocus chart: speed against accuracy of every method on every scene.
+// softfocus chart: speed against accuracy of every method on every scene. What it measures is kept
+// in DIR/cache as it goes:
+//
+//   cache/SCENE.truth.npy, .json      the ground truth, and its noise
+//   cache/SCENE/ENTRY.json            errors of a contender; its pictures, if the page shows them
+//   cache/SCENE/truth.picture.json    the truth for the page
+//   cache/SCENE/times.json            the times of all, written after each round
 
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <vector>
 
+#include "tools/chart/contenders/runner.h"
 #include "tools/chart/measure.h"
 #include "tools/chart/options.h"
+#include "tools/chart/point.h"
 #include "tools/chart/record.h"
-#include "tools/chart/report/numbers.h"
 #include "tools/chart/report/page.h"
+#include "tools/chart/report/summary.h"
 #include "tools/chart/scene.h"
-#include "tools/chart/work.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/files/same_file.h"
+#include "tools/cli/progress.h"
 #include "tools/files/whole_file.h"
+#include "tools/golden/hashes.h"
 #include "tools/report/report.h"
 
 namespace softfocus {
 namespace {
+
+struct ChartFindings {
+  std::vector<ChartPanel> panels;
+  int kept = 0;  ///< results that an earlier run left: truths, errors and times
+  int all = 0;   ///< results
+};
+
+/// Slower contenders are timed less often.
+constexpr double kLongMs = 1000.0;
+constexpr std::size_t kRoundsOfLong = 3;
+
+/// Guesses of how long work takes, in drawings of a pinhole's picture. They count until the first
+/// of its kind is done.
+constexpr double kLoadGuess = 20.0, kFilterGuess = 6.0, kAutoGuess = 60.0, kSceneGuess = 60.0,
+                 kMeasureGuess = 200.0, kPicturesGuess = 80.0;
+
+double run_guess(const ChartEntry& entry) {
+  if (entry.max_error) return kAutoGuess;
+  if (entry.of_scene != nullptr) return kSceneGuess;
+  if (is_of_pinhole(entry)) return kFilterGuess;
+  return entry.filter != nullptr ? kFilterGuess : static_cast<double>(entry.samples);
+}
+
+constexpr const char *kLoad = "load", *kTruth = "truth", *kMeasure = "measure",
+                     *kPictures = "pictures";
+std::string run_kind(const ChartEntry& entry) { return "run " + entry_id(entry); }
+std::string time_kind(const ChartEntry& entry) { return "time " + entry_id(entry); }
+
+/// Passed along with the work on all scenes.
+struct Work {
+  const ChartOptions& options;
+  ThreadPool& pool;
+  std::vector<ChartEntry> entries;
+  std::uint64_t measures;  ///< measures_hash()
+  ChartFindings findings{};
+  Progress progress{options.quiet};
+  TimeLeft left{};
+
+  void show(const std::string& stage) {
+    const double seconds = left.seconds();
+    progress.show(seconds > 0.0 ? stage + "; " + time_left_text(seconds) : stage);
+  }
+  std::filesystem::path folder_of(const std::string& scene) const {
+    return options.directory / "cache" / name_for_files(scene);
+  }
+};
+
+std::vector<ChartEntry> wanted_entries(const ChartOptions& options) {
+  std::vector<ChartEntry> entries;
+  for (const std::string& method : options.methods) {
+    for (ChartEntry& entry : options.subject->entries(method, options.size.height, options.quick)) {
+      entries.push_back(std::move(entry));
+    }
+  }
+  return entries;
+}
+
+void plan(Work& work) {
+  const ChartOptions& options = work.options;
+  const auto scenes = static_cast<double>(options.scenes.size());
+  work.left.plan(kLoad, scenes, kLoadGuess);
+  work.left.plan(kTruth, scenes * options.truth_samples, 1.0);
+  for (const ChartEntry& entry : work.entries) {
+    work.left.plan(run_kind(entry), scenes, run_guess(entry));
+    work.left.plan(kMeasure, scenes, kMeasureGuess);
+    work.left.plan(time_kind(entry), scenes * options.rounds, 2.0 * run_guess(entry));
+  }
+  const std::size_t pictures =
+      expected_pictures(options.scenes.size(), work.entries.size(), options.methods.size());
+  work.left.plan(kPictures, static_cast<double>(pictures), kPicturesGuess);
+}
+
+struct FoundTruth {
+  ChartTruth truth;
+  bool kept;  ///< by an earlier run
+};
+
+/// Nothing is loaded if `anew`.
+FoundTruth truth_of(Work& work, const ChartScene& scene, const std::string& key, bool anew) {
+  const int samples = work.options.truth_samples;
+  const std::string name = name_for_files(scene.scene.name);
+  const std::filesystem::path file = work.options.directory / "cache" / (name + ".truth");
+  if (!anew) {
+    if (auto kept = load_truth(key, file)) return {std::move(*kept), true};
+  }
+  int before = 0;
+  work.left.start();
+  ChartTruth truth = make_truth(
+      scene, samples,
+      [&](int done) {
+        work.left.done(kTruth, done - before);
+        before = done;
+        work.show(scene.scene.name + ": ground truth, " + std::to_string(done) + " of " +
+                  std::to_string(samples) + " samples");
+      },
+      work.pool);
+  save_truth(truth, key, file);
+  return {std::move(truth), false};
+}
+
+/// If no circle is larger than the smallest radius, all radii give one picture.
+const ChartPoint* same_picture(const ChartPoint& point, const std::vector<ChartPoint>& before) {
+  // A light may be too weak for a pixel to show whether its shadow is right.
+  // And two turns of one picture may differ in renewals and memory.
+  if (point.entry.shadows || point.entry.turn) return nullptr;
+  const auto same = std::find_if(before.begin(), before.end(), [&](const ChartPoint& other) {
+    return other.picture_hash == point.picture_hash;
+  });
+  return same == before.end() ? nullptr : &*same;
+}
+
+/// Draws each contender's picture once, and measures those that are not kept.
+void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth,
+                    const std::string& key, ChartRunner& runner, std::vector<ChartPoint>& points) {
+  for (const ChartEntry& entry : work.entries) {
+    if (!can_run(scene, entry)) {
+      work.left.drop(run_kind(entry), 1);
+      work.left.drop(kMeasure, 1);
+      work.left.drop(time_kind(entry), work.options.rounds);
+      continue;
+    }
+    work.show(scene.scene.name + ": error of " + entry.method + ", " + settings_text(entry));
+    ChartPoint point{.entry = entry};
+    work.left.start();
+    runner.run(entry);
+    if (entry.max_error) point.entry.chosen = runner.chosen();
+    point.picture_hash = hash_image(runner.result());
+    work.left.done(run_kind(entry), 1);
+    ++work.findings.all;
+    const std::filesystem::path file =
+        work.folder_of(scene.scene.name) / (entry_id(entry) + ".json");
+    if (!work.options.again && load_errors(point, key, file)) {
+      ++work.findings.kept;
+      work.left.drop(kMeasure, 1);
+    } else if (const ChartPoint* same = same_picture(point, points)) {
+      point.errors = same->errors;
+      save_errors(point, key, file);
+      work.left.drop(kMeasure, 1);
+    } else {
+      point.errors = measure_picture(runner.result(), truth.picture, scene.labels, work.pool);
+      point.errors.wrong_pixels = runner.wrong_pixels(entry);
+      runner.add_turn_errors(truth.picture, point.errors);
+      save_errors(point, key, file);
+      work.left.done(kMeasure, 1);
+    }
+    points.push_back(std::move(point));
+  }
+}
+
+std::size_t wanted_rounds(const ChartPoint& point, std::size_t rounds) {
+  const auto& ms = point.times.frame_ms;
+  const bool takes_long = !ms.empty() && *std::min_element(ms.begin(), ms.end()) > kLongMs;
+  return takes_long ? std::min(rounds, kRoundsOfLong) : rounds;
+}
+
+/// Takes out the rounds that are not to be run.
+void drop_rounds(Work& work, const ChartPoint& point, std::size_t count) {
+  work.left.drop(time_kind(point.entry), static_cast<double>(count));
+}
+
+/// Round by round over all contenders, so that what disturbs the machine disturbs all.
+void measure_times(Work& work, const std::string& scene, ChartRunner& runner,
+                   std::vector<ChartPoint>& points) {
+  const auto rounds = static_cast<std::size_t>(work.options.rounds);
+  if (rounds == 0) return;
+  const std::string key = machine_key(work.options.pool);
+  const std::filesystem::path file = work.folder_of(scene) / "times.json";
+  if (!work.options.again) load_times(points, key, file);
+  for (const ChartPoint& point : points) {
+    const std::size_t there = std::min(point.times.frame_ms.size(), rounds);
+    const std::size_t wanted = wanted_rounds(point, rounds);
+    drop_rounds(work, point, rounds - (wanted - std::min(there, wanted)));
+    ++work.findings.all;
+    work.findings.kept += there >= wanted ? 1 : 0;
+  }
+  for (std::size_t round = 0; round < rounds; ++round) {
+    bool timed = false;
+    for (ChartPoint& point : points) {
+      ChartTimes& times = point.times;
+      const std::size_t wanted = wanted_rounds(point, rounds);
+      if (times.frame_ms.size() > round || times.frame_ms.size() >= wanted) continue;
+      work.show(scene + ": time of " + point.entry.method + ", round " + std::to_string(round + 1) +
+                " of " + std::to_string(wanted));
+      work.left.start();
+      const RunTime time = runner.run_warm(point.entry);
+      work.left.done(time_kind(point.entry), 1);
+      times.frame_ms.push_back(time.frame_ms);
+      if (time.filter_ms) times.filter_ms.push_back(*time.filter_ms);
+      if (times.frame_ms.size() == 1) {
+        drop_rounds(work, point, wanted - wanted_rounds(point, rounds));
+      }
+      timed = true;
+    }
+    if (timed) save_times(points, key, file);
+  }
+}
+
+std::string key_of(Work& work, const ChartScene& scene, const std::string& given_name) {
+  return truth_key(scene, scene_file_bytes(given_name, work.options.scene_path),
+                   work.options.truth_samples, work.measures, work.pool);
+}
+
+ChartPanel measure_scene(Work& work, const std::string& given_name) {
+  const ChartOptions& options = work.options;
+  work.show(given_name + ": loading");
+  work.left.start();
+  const ChartScene scene = load_chart_scene(given_name, options, work.pool);
+  const std::string& name = scene.scene.name;
+  const std::string key = key_of(work, scene, given_name);
+  make_directory(work.folder_of(name));
+  work.left.done(kLoad, 1);
+  ++work.findings.all;
+  const auto [truth, kept] = truth_of(work, scene, key, options.again);
+  if (kept) {
+    ++work.findings.kept;
+    work.left.drop(kTruth, options.truth_samples);
+  }
+
+  ChartRunner runner{scene, work.pool};
+  ChartPanel panel{.scene = name,
+                   .title = scene.scene.title,
+                   .truth_samples = options.truth_samples,
+                   .noise_floor = truth.noise_floor,
+                   .given_name = given_name,
+                   .key = point_key(key, truth.picture),
+                   .ranked = options.subject->ranked};
+  measure_errors(work, scene, truth, panel.key, runner, panel.points);
+  measure_times(work, name, runner, panel.points);
+  settle_points(panel);
+  return panel;
+}
+
+/// The points of a scene that have no pictures in the cache.
+std::vector<ChartPoint*> without_pictures(Work& work, ChartPanel& panel,
+                                          const std::vector<ChartPoint*>& wanted) {
+  std::vector<ChartPoint*> missing;
+  const std::filesystem::path folder = work.folder_of(panel.scene);
+  for (ChartPoint* point : wanted) {
+    const std::filesystem::path file = folder / (entry_id(point->entry) + ".json");
+    if (work.options.again || !load_pictures(*point, panel.key, file)) {
+      missing.push_back(point);
+    } else {
+      work.left.drop(kPictures, 1);
+    }
+  }
+  return missing;
+}
+
+void add_pictures(Work& work, ChartPanel& panel, const std::vector<ChartPoint*>& wanted) {
+  const std::filesystem::path folder = work.folder_of(panel.scene);
+  const std::vector<ChartPoint*> missing = without_pictures(work, panel, wanted);
+  const std::filesystem::path truth_file = folder / "truth.picture.json";
+  if (!work.options.again) panel.truth_picture = load_truth_picture(panel.key, truth_file);
+  if (missing.empty() && !panel.truth_picture.empty()) return;
+
+  const ChartScene scene = load_chart_scene(panel.given_name, work.options, work.pool);
+  const ChartTruth truth =
+      truth_of(work, scene, key_of(work, scene, panel.given_name), false).truth;
+  panel.truth_picture = page_picture(truth.picture);
+  save_truth_picture(panel.truth_picture, panel.key, truth_file);
+  ChartRunner runner{scene, work.pool};
+  work.left.start();
+  for (ChartPoint* point : missing) {
+    work.show(panel.scene + ": pictures of " + point->entry.method);
+    runner.run(point->entry);
+    add_point_pictures(*point, runner.result(), truth.picture, work.pool);
+    save_pictures(*point, panel.key, folder / (entry_id(point->entry) + ".json"));
+    work.left.done(kPictures, 1);
+  }
+}
+
+void add_all_pictures(Work& work) {
+  std::vector<ChartPanel>& panels = work.findings.panels;
+  const std::vector<PicturedPoint> chosen = pictured_points(panels);
+  work.left.drop(kPictures, work.left.units_left(kPictures));
+  work.left.plan(kPictures, static_cast<double>(chosen.size()), kPicturesGuess);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    std::vector<ChartPoint*> wanted;
+    for (const PicturedPoint& of : chosen) {
+      if (of.panel == i) wanted.push_back(&panels[i].points[of.point]);
+    }
+    if (!wanted.empty()) add_pictures(work, panels[i], wanted);
+  }
+}
+
+/// Settled panels with pictures. Measures what is not kept already, with a line on the terminal
+/// that says how long it takes. Needs the directory, with "cache" in it.
+ChartFindings measure_chart(const ChartOptions& options, ThreadPool& pool) {
+  Work work{options, pool, wanted_entries(options), measures_hash(pool)};
+  plan(work);
+  for (const std::string& name : options.scenes) {
+    work.findings.panels.push_back(measure_scene(work, name));
+  }
+  add_all_pictures(work);
+  return std::move(work.findings);
+}
 
 void write_list(const Json& list, const std::string& name, const ChartOptions& options) {
   write_text(options.directory / (name + ".csv"), csv_of(list));

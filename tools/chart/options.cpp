@@ -6,8 +6,8 @@
 
 #include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
+#include "tools/chart/record.h"
 #include "tools/chart/settings.h"
-#include "tools/chart/truth.h"
 #include "tools/cli/errors.h"
 #include "tools/options/run_options.h"
 

@@ -7,7 +7,7 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
 #include "tools/chart/options.h"
-#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
 
 namespace softfocus {
 

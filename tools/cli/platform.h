@@ -1,5 +1,5 @@
 #pragma once
-// The calls that differ between POSIX and Windows.
+// The calls that differ between POSIX and Windows, and what the machine is.
 
 #include <cstddef>
 #include <cstdint>
@@ -75,5 +75,11 @@ bool sync_file(int descriptor);
 
 /// Closes a descriptor; false with errno set if what was written is lost.
 bool close_file(int descriptor);
+
+/// The processor's name, where Linux tells it in /proc/cpuinfo.
+std::optional<std::string> cpu_name();
+
+/// The compiler that this program was built with, and its version.
+std::string compiler_name();
 
 }  // namespace softfocus

@@ -10,7 +10,6 @@
 #include "tools/cli/option_values.h"
 #include "tools/compare/options.h"
 #include "tools/compare/report.h"
-#include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/pictures/image_file.h"
 

@@ -4,7 +4,7 @@
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
 #include "tools/options/parameter_options.h"
 #include "tools/pictures/image_file.h"
 #include "tools/pictures/picture_notes.h"

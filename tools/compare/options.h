@@ -9,7 +9,7 @@
 #include "dof/measure/difference.h"
 #include "dof/measure/measures.h"
 #include "tools/cli/parser.h"
-#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
 #include "tools/options/lens_options.h"
 
 namespace softfocus {

@@ -9,7 +9,6 @@
 #include "dof/measure/measures.h"
 #include "dof/measure/point_image.h"
 #include "tools/compare/options.h"
-#include "tools/compare/tolerance.h"
 #include "tools/pictures/picture_notes.h"
 
 namespace softfocus {

@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "tools/gl/maps_on_gl.h"
 #include "tools/gl/shadows_on_gl.h"
 
 namespace softfocus {

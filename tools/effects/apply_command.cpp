@@ -1,25 +1,91 @@
 // softfocus apply: effects on a picture's file.
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
 
+#include "raster/images/image.h"
+#include "raster/images/texel.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
-#include "tools/effects/velocity_file.h"
-#include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/options/effect_options.h"
 #include "tools/options/run_options.h"
+#include "tools/pictures/picture_file.h"
 #include "tools/pictures/picture_notes.h"
-#include "tools/refocus/opacity.h"
 #include "tools/refocus/picture_with_depth.h"
 #include "tools/refocus/refocused.h"
 
 namespace softfocus {
 namespace {
+
+/// Contents of such a file, for help and messages.
+constexpr const char* kVelocityFiles =
+    "NPY of shape (height, width, 2), or EXR with channels X and Y, or R and G alone";
+
+/// The channels of two names of the first layer that has both, and none of a third: a colour moves
+/// nothing.
+std::optional<std::array<std::size_t, 2>> channels_of(const PictureFile& file,
+                                                      std::string_view first,
+                                                      std::string_view second,
+                                                      std::string_view without) {
+  const auto layer_of = [](const std::string& name, std::string_view channel) {
+    const bool is_it = name == channel || name.ends_with('.' + std::string{channel});
+    return is_it ? std::optional{name.substr(0, name.size() - channel.size())} : std::nullopt;
+  };
+  for (std::size_t i = 0; i < file.planes.size(); ++i) {
+    const std::optional<std::string> layer = layer_of(file.planes[i].name, first);
+    const bool is_other = std::any_of(
+        file.planes.begin(), file.planes.end(),
+        [&](const PlaneInfo& plane) { return layer && layer_of(plane.name, without) == layer; });
+    if (!layer || is_other) continue;
+    for (std::size_t j = 0; j < file.planes.size(); ++j) {
+      if (layer_of(file.planes[j].name, second) == layer) return std::array{i, j};
+    }
+  }
+  return {};
+}
+
+std::string velocity_size(int width, int height) {
+  return std::to_string(width) + 'x' + std::to_string(height);
+}
+
+/// RG16F of that size: an EXR's channels X and Y, or R and G without B, or the two that a file has.
+/// Numbers beyond the largest half are cut to it. Throws FileError for a file that cannot be read,
+/// UsageError for one of another shape.
+Image read_velocity(const std::filesystem::path& path, int width, int height) {
+  const PictureFile file = open_picture_file(path);
+  const std::string where = "--velocity '" + path.string() + "' ";
+  auto channels = channels_of(file, "X", "Y", "R");
+  if (!channels) channels = channels_of(file, "R", "G", "B");
+  if (!channels && file.planes.size() == 2) channels = {0, 1};
+  const bool is_whole = channels && full_scale(file.planes[(*channels)[0]].type) != 1.0;
+  if (!channels || is_whole) {
+    throw UsageError(where + "holds no motions; " + kVelocityFiles +
+                     ", in pixels a frame, would be right");
+  }
+  if (file.width != width || file.height != height) {
+    throw UsageError(where + "is " + velocity_size(file.width, file.height) +
+                     "; the picture's size, " + velocity_size(width, height) + ", would be right");
+  }
+  const std::vector<PlaneValues> values = read_planes(file, *channels, 0.0f);
+  Image velocity = make_image(Format::rg16f, width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x);
+      const auto cut = [](float px) { return std::clamp(px, -65504.0f, 65504.0f); };
+      store_texel<Format::rg16f>(velocity, x, y,
+                                 {cut(values[0][at]), cut(values[1][at]), 0.0f, 1.0f}, {});
+    }
+  }
+  return velocity;
+}
 
 struct ApplyOptions {
   std::string picture;

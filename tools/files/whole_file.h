@@ -1,13 +1,16 @@
 #pragma once
 // A file that appears whole or not at all: the bytes go into a temporary file beside
 // it, .softfocus-MACHINE-PROCESS-NUMBER, which takes its name at the end. An interrupt removes it.
+// Whether two names lead to one file, so that no command writes over what it reads.
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/cli/interrupts.h"
 #include "tools/files/byte_source.h"
@@ -55,5 +58,19 @@ void check_writable(const std::filesystem::path& target);
 
 /// Writes to standard output. False if it is a pipe that nobody reads any more. Throws FileError.
 bool write_to_standard_output(std::span<const std::byte> bytes);
+
+/// Whether two names lead to one place: the same path once links are followed, there already or
+/// not, or two names (hard links) of one file.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// A file that a command reads, and what it is: "the scene".
+struct ReadFile {
+  std::filesystem::path file;
+  std::string what;
+};
+
+/// Throws UsageError if the file that an option asks to write is one of those that are read.
+void check_not_read(const std::string& option, const std::filesystem::path& output,
+                    const std::vector<ReadFile>& inputs);
 
 }  // namespace softfocus

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/gl/motion_on_gl.h"
+#include "tools/gl/temporal_on_gl.h"
 
 namespace softfocus {
 

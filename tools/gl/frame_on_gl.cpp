@@ -1,7 +1,6 @@
 #include "tools/gl/frame_on_gl.h"
 
 #include "tools/gl/filter_on_gl.h"
-#include "tools/gl/maps_on_gl.h"
 #include "tools/gl/scene_on_gl.h"
 #include "tools/gl/shadows_on_gl.h"
 

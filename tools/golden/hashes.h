@@ -1,6 +1,7 @@
 #pragma once
 // Fingerprints of what must have the same bits everywhere: frames, samplers, numbers.
-// `softfocus selftest` and the tests hold them against one table, golden/table.inc.
+// `softfocus selftest` and the tests hold them against one table, golden/table.inc: a hash for
+// each group.
 
 #include <cstdint>
 #include <functional>
@@ -31,6 +32,27 @@ struct GoldenScene {
 /// The thesis's three scenes, as load_scene() takes them, and loaded. Throws SceneError.
 std::span<const std::string_view> golden_scenes();
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool);
+
+/// Golden hashes are the leaves of a tree: a scene, or samplers or numbers; a group below it, which
+/// has one profile and one size; the group's members.
+struct HashGroup {
+  std::string name;        ///< "SCENE PROFILE WIDTHxHEIGHT", "samplers PROFILE" or "number"
+  std::uint64_t hash = 0;  ///< of its members' names and hashes, in their order
+  std::vector<std::uint16_t>
+      ends{};  ///< last 16 bits of each member's hash: they tell members apart
+};
+
+/// The group of a member, by the member's name.
+std::string group_of(std::string_view member);
+
+/// Whether a group is `branch` or below it: "figures" has "figures ieee 97x61", "" has all.
+bool is_below(std::string_view branch, std::string_view group);
+
+/// The groups of some hashes, in the order of their first members.
+std::vector<HashGroup> groups_of(std::span<const NamedHash> hashes);
+
+/// How many members groups have together.
+std::size_t member_count(std::span<const HashGroup> groups);
 
 /// Which of the golden hashes. `quick` lacks the frames of the larger size, and has profiles other
 /// than ieee on the first scene alone: every operation is left. Of these `few` has what byte order
@@ -65,30 +87,38 @@ std::vector<NamedHash> sampler_hashes(std::span<const NamedProfile> profiles);
 /// "number ...": half, 8 bits, fixed point, fused multiply-add, exact_math.
 std::vector<NamedHash> number_hashes();
 
-/// All of the above under every profile.
-std::vector<NamedHash> golden_hashes(ThreadPool& pool, GoldenSet set = GoldenSet::all);
+/// All of the above, under every profile, whose groups are below `branch`.
+std::vector<NamedHash> golden_hashes(ThreadPool& pool, GoldenSet set = GoldenSet::all,
+                                     std::string_view branch = {});
 
 /// The same in parts, in the order of golden_hashes(), for callers that want to stop in between. A
-/// part takes a second at most. Parts of a scene share it once it is loaded.
-using GoldenPart = std::function<std::vector<NamedHash>(ThreadPool&)>;
+/// part takes a second at most and has whole groups. Parts of a scene share it once it is loaded.
+struct GoldenPart {
+  std::string branch;  ///< "SCENE PROFILE", "samplers PROFILE" or "number"
+  std::function<std::vector<NamedHash>(ThreadPool&)> hashes;
+};
 std::vector<GoldenPart> golden_parts(GoldenSet set = GoldenSet::all);
 
-/// The table: what golden_hashes() must give.
-std::vector<NamedHash> expected_hashes(GoldenSet set = GoldenSet::all);
+/// The table: the groups that golden_hashes() must give.
+std::vector<HashGroup> expected_groups(GoldenSet set = GoldenSet::all,
+                                       std::string_view branch = {});
 
-/// One entry of the table and what became of it.
+/// One golden hash and what became of it.
 struct HashCheck {
-  std::string name;
-  std::optional<std::uint64_t> expected;  ///< none: the table lacks it
-  std::optional<std::uint64_t> computed;  ///< none: nothing of that name was computed
+  std::string name;                         ///< its group's if nothing was computed
+  std::optional<std::uint16_t> expected{};  ///< how the hash ends; none: the table lacks it
+  std::optional<std::uint64_t> computed{};
+  bool passes = false;
 };
 
-inline bool passes(const HashCheck& check) { return check.expected == check.computed; }
-
-/// What was computed against what was expected, in the computed order; what is left of
-/// the expected comes last.
-std::vector<HashCheck> check_hashes(std::span<const NamedHash> expected,
+/// What was computed against the table, in the computed order; of the table what was not computed
+/// comes last. A group whose hash is the table's passes as a whole. Of another group those members
+/// fail whose ends differ from the table's, or all if no end differs.
+std::vector<HashCheck> check_hashes(std::span<const HashGroup> expected,
                                     std::span<const NamedHash> computed);
+
+/// "345a": how a hash ends, as the table has it.
+std::string end_text(std::uint16_t end);
 
 /// What does not pass, in words that name the first; empty where all do.
 std::string describe_failures(std::span<const HashCheck> checks);

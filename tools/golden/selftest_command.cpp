@@ -15,28 +15,41 @@ namespace {
 
 struct SelftestOptions {
   PoolOptions pool;
+  std::string branch;
   GoldenSet set = GoldenSet::all;
   bool json = false;
   bool print = false;
 };
 
-void print_table(const std::vector<HashCheck>& checks) {
-  for (const HashCheck& check : checks) {
-    if (!check.computed) continue;
-    std::cout << "{\"" << check.name << "\", " << hash_text(*check.computed) << "},\n";
+/// As golden/table.inc has it.
+void print_group(const HashGroup& group) {
+  constexpr std::size_t kEndsOfLine = 18;
+  std::cout << "{\"" << group.name << "\", " << hash_text(group.hash) << ",\n \"";
+  for (std::size_t i = 0; i < group.ends.size(); ++i) {
+    if (i > 0) std::cout << (i % kEndsOfLine == 0 ? " \"\n \"" : " ");
+    std::cout << end_text(group.ends[i]);
+  }
+  std::cout << "\"},\n";
+}
+
+/// Groups, or the members of the only group.
+void print(const std::vector<NamedHash>& hashes, std::string_view branch) {
+  const std::vector<HashGroup> groups = groups_of(hashes);
+  if (groups.size() > 1 || groups.front().name != branch) {
+    for (const HashGroup& group : groups) print_group(group);
+  } else {
+    for (const NamedHash& one : hashes) std::cout << hash_text(one.hash) << ' ' << one.name << '\n';
   }
 }
 
 void print_json(const std::vector<HashCheck>& checks) {
-  const auto text_or_null = [](const std::optional<std::uint64_t>& hash) {
-    return hash ? Json(hash_text(*hash)) : Json(nullptr);
-  };
   auto list = Json::array();
   for (const HashCheck& check : checks) {
-    list.push_back({{"name", check.name},
-                    {"expected", text_or_null(check.expected)},
-                    {"computed", text_or_null(check.computed)},
-                    {"pass", passes(check)}});
+    list.push_back(
+        {{"name", check.name},
+         {"expected_end", check.expected ? Json(end_text(*check.expected)) : Json(nullptr)},
+         {"computed", check.computed ? Json(hash_text(*check.computed)) : Json(nullptr)},
+         {"pass", check.passes}});
   }
   std::cout << json_text(list, 2) << '\n';
 }
@@ -46,12 +59,17 @@ int selftest(const SelftestOptions& options) {
     throw UsageError("--json and --print would both write to standard output; give one");
   }
   ThreadPool pool{options.pool.threads, options.pool.isa};
-  const std::vector<HashCheck> checks =
-      check_hashes(expected_hashes(options.set), golden_hashes(pool, options.set));
+  const std::vector<NamedHash> computed = golden_hashes(pool, options.set, options.branch);
+  const std::vector<HashGroup> expected = expected_groups(options.set, options.branch);
+  if (computed.empty() && expected.empty()) {
+    throw UsageError("no golden hashes are below '" + options.branch +
+                     "'; 'softfocus selftest --print' lists their groups");
+  }
   if (options.print) {
-    print_table(checks);
+    if (!computed.empty()) print(computed, options.branch);
     return kDone;
   }
+  const std::vector<HashCheck> checks = check_hashes(expected, computed);
   if (options.json) print_json(checks);
   const std::string failures = describe_failures(checks);
   if (!failures.empty()) {
@@ -67,11 +85,15 @@ Command add_selftest_command(CLI::App& program) {
   CLI::App* parser = add_command(program, "selftest",
                                  "Check that this machine gives the bits that every other gives");
   const auto options = std::make_shared<SelftestOptions>();
+  add_optional_argument(*parser, "GROUP",
+                        "Only what is below it: 'figures', 'figures ieee', 'figures ieee 97x61'",
+                        options->branch);
   add_pool_options(*parser, options->pool, "the hashes are the same");
   add_flag(*parser, "--quick", "Leave out larger frames, and most under other profiles than ieee",
            [options] { options->set = GoldenSet::quick; });
   add_flag(*parser, "--json", "Print every hash, expected and computed, as JSON", options->json);
-  add_flag(*parser, "--print", "Print what was computed as the table's source, and compare nothing",
+  add_flag(*parser, "--print",
+           "Print what was computed as the table's source, or one group's hashes; compare nothing",
            options->print);
   return {parser, [options] { return selftest(*options); }};
 }

@@ -107,9 +107,12 @@ Json answer_start(Page& page, const Json& request) {
 }
 
 Json answer_about(Page& page, const Json& /*request*/) {
-  return {{"version", SOFTFOCUS_VERSION},       {"isa", isa_name(page.pool->isa())},
-          {"threads", page.pool->threads()},    {"simd", kSimd},
-          {"hashes", expected_hashes().size()}, {"parameters", parameters_json()},
+  return {{"version", SOFTFOCUS_VERSION},
+          {"isa", isa_name(page.pool->isa())},
+          {"threads", page.pool->threads()},
+          {"simd", kSimd},
+          {"hashes", member_count(expected_groups())},
+          {"parameters", parameters_json()},
           {"sensors", sensors_json()}};
 }
 

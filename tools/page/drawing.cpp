@@ -8,7 +8,7 @@
 #include "tools/cli/errors.h"
 #include "tools/options/effect_options.h"
 #include "tools/page/picture.h"
-#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
 namespace {

@@ -95,7 +95,7 @@ struct Page {
   std::optional<Truth> truth;
   GoldenSet golden_set = GoldenSet::all;  ///< of the self-test
   std::vector<GoldenPart> golden_parts;   ///< those to come, the next one last
-  std::vector<NamedHash> golden;          ///< as far as computed
+  std::vector<HashCheck> golden;          ///< as far as computed
   std::shared_ptr<Gpu> gpu;               ///< once the request 'gl_open' or another gl_* has come
   std::shared_ptr<GpuScene> gpu_scene;
   Pixels pixels;

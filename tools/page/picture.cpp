@@ -5,7 +5,7 @@
 #include "raster/images/texel.h"
 #include "tools/cli/errors.h"
 #include "tools/page/drawing.h"
-#include "tools/refocus/opacity.h"
+#include "tools/refocus/picture_with_depth.h"
 
 namespace softfocus {
 namespace {

@@ -12,7 +12,7 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/platform.h"
-#include "tools/pictures/srgb16.h"
+#include "tools/pictures/image_file.h"
 
 namespace softfocus {
 namespace {

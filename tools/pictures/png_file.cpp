@@ -14,7 +14,6 @@
 #include "tools/cli/errors.h"
 #include "tools/pictures/image_file.h"
 #include "tools/pictures/png_text.h"
-#include "tools/pictures/srgb16.h"
 
 namespace {
 

@@ -11,7 +11,6 @@
 
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/refocus/depth/depth_map.h"
 #include "tools/refocus/report.h"

@@ -8,7 +8,7 @@
 #include "tools/cli/parser.h"
 #include "tools/pictures/picture_notes.h"
 #include "tools/refocus/chosen_layers.h"
-#include "tools/refocus/depth/believed_encoding.h"
+#include "tools/refocus/depth/depth_encodings.h"
 #include "tools/refocus/depth/depth_map.h"
 #include "tools/refocus/depth/mend_depth.h"
 #include "tools/refocus/photo_lens.h"

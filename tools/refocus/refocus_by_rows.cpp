@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "dof/two_pass/two_pass_stream.h"
 #include "raster/images/image.h"
@@ -14,12 +15,105 @@
 #include "tools/files/whole_file.h"
 #include "tools/pictures/picture_rows.h"
 #include "tools/refocus/depth/mend_depth.h"
-#include "tools/refocus/opacity.h"
+#include "tools/refocus/picture_with_depth.h"
 #include "tools/refocus/refocused.h"
-#include "tools/refocus/source_rows.h"
 
 namespace softfocus {
 namespace {
+
+/// Which of it is wanted.
+struct WantedRows {
+  bool colour = false, alpha = false, depth = false;
+};
+
+class SourceRows {
+ public:
+  /// Needs the sources as long as it lives.
+  SourceRows(const PictureSources& sources, const WantedRows& wanted);
+
+  /// Throws FileError; UsageError for a depth of three channels that differ.
+  void read(Rows rows);
+
+  Image colour{};       ///< RGBA16F, of light; alpha is 0
+  PlaneValues alpha{};  ///< as they are in the file
+  PlaneValues codes{};  ///< of the depth
+
+ private:
+  /// Planes of one file, read together: they may lie in the same compressed blocks.
+  struct Group {
+    const PictureFile* file;
+    std::vector<std::size_t> planes;
+    std::vector<float> outside;  // of each plane
+    ReadRows read;
+    std::vector<PlaneValues> values;
+  };
+  struct Place {
+    std::size_t group, plane;
+  };
+
+  Place want(const PictureFile& file, std::size_t plane, float outside);
+  PlaneValues& values_of(Place place) { return groups_[place.group].values[place.plane]; }
+
+  const PictureSources& sources_;
+  ColourHalves halves_;
+  std::vector<Group> groups_{};
+  std::vector<Place> colour_{}, alpha_{}, depth_{};
+};
+
+SourceRows::SourceRows(const PictureSources& sources, const WantedRows& wanted)
+    : sources_(sources), halves_(sources.colour_file, sources.colour, false) {
+  const PictureFile& file = sources.colour_file;
+  if (wanted.colour) {
+    for (const std::size_t plane : halves_.planes()) colour_.push_back(want(file, plane, 0.0f));
+  }
+  if (wanted.alpha) alpha_.push_back(want(file, *sources.colour.alpha, 0.0f));
+  if (wanted.depth) {
+    const PictureFile& of_depth = sources.of_depth();
+    for (const std::size_t plane : planes_of_depth(of_depth, sources.depth_plane)) {
+      depth_.push_back(want(of_depth, plane, kNoDepthThere));
+    }
+  }
+  for (Group& group : groups_) group.read = rows_of(*group.file, group.planes);
+}
+
+SourceRows::Place SourceRows::want(const PictureFile& file, std::size_t plane, float outside) {
+  std::size_t at = 0;
+  for (; at < groups_.size(); ++at) {
+    const auto& planes = groups_[at].planes;
+    // A plane that is wanted twice, as colour and as depth, is read twice.
+    const bool is_free = std::find(planes.begin(), planes.end(), plane) == planes.end();
+    if (groups_[at].file == &file && is_free) break;
+  }
+  if (at == groups_.size()) groups_.push_back({&file, {}, {}, {}, {}});
+  Group& group = groups_[at];
+  group.planes.push_back(plane);
+  group.outside.push_back(outside);
+  group.values.emplace_back();
+  return {at, group.planes.size() - 1};
+}
+
+void SourceRows::read(Rows rows) {
+  const int width = sources_.colour_file.width;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(rows.count);
+  for (Group& group : groups_) {
+    for (std::size_t i = 0; i < group.values.size(); ++i) {
+      group.values[i].assign(pixels, group.outside[i]);
+    }
+    group.read(rows, group.values);
+  }
+  if (!colour_.empty()) {
+    if (colour.height != rows.count) colour = make_image(Format::rgba16f, width, rows.count);
+    for (std::size_t i = 0; i < colour_.size(); ++i) halves_.put(i, values_of(colour_[i]), colour);
+  }
+  if (!alpha_.empty()) alpha.swap(values_of(alpha_[0]));
+  if (depth_.empty()) return;
+  if (depth_.size() > 1) {
+    std::vector<PlaneValues> all;
+    for (const Place place : depth_) all.push_back(values_of(place));
+    check_one_depth(sources_.of_depth(), all);
+  }
+  codes.swap(values_of(depth_[0]));
+}
 
 constexpr int kBandRows = 64;
 

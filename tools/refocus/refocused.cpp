@@ -9,7 +9,7 @@
 #include "tools/cli/errors.h"
 #include "tools/pictures/exr_file.h"
 #include "tools/refocus/depth/mend_depth.h"
-#include "tools/refocus/opacity.h"
+#include "tools/refocus/picture_with_depth.h"
 
 namespace softfocus {
 namespace {

@@ -15,7 +15,6 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
-#include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/relief/relief_file.h"
 #include "tools/relief/relief_options.h"

@@ -5,28 +5,80 @@
 #include <deque>
 #include <iostream>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "scenes/draw/frame_parts.h"
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/surface_draws.h"
+#include "scenes/draw/transparent_layers.h"
 #include "scenes/frame/frame.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/progress.h"
 #include "tools/files/whole_file.h"
 #include "tools/gl/frame_on_gl.h"
 #include "tools/options/run_options.h"
+#include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
 #include "tools/render/render_frames.h"
 #include "tools/render/shard_file.h"
 #include "tools/render/shot.h"
-#include "tools/render/warnings.h"
 
 namespace softfocus {
 namespace {
+
+/// --until's error was not reached.
+std::string until_warning(const RenderRecord& record) {
+  const Sampling& sampling = record.frame.sampling;
+  if (!record.frame.sampled || !sampling.until) return {};
+  const auto reached = record.frame.sampled->half_set_rms;
+  if (reached && *reached <= *sampling.until) return {};
+  const std::string found = reached ? "the half-sets differ by " + short_number(*reached)
+                                    : "half-sets are compared from 16 samples on";
+  return "--until " + short_number(*sampling.until) + ": not reached with " +
+         count_text(record.frame.sampled->samples, "sample") + ": " + found;
+}
+
+/// auto predicts or measures that it misses its goal.
+std::string goal_warning(const RenderOptions& options, const RenderRecord& record) {
+  if (!record.frame.chosen || record.frame.chosen->choice.meets_goal) return {};
+  const AutoMethod& choice = record.frame.chosen->choice;
+  if (record.frame.chosen->measured_error) {
+    return "--max-error " + short_number(options.goal.max_error) + ": not kept to; " +
+           setting_text(choice) + " shows an error of " +
+           short_number(*record.frame.chosen->measured_error);
+  }
+  return "--max-error " + short_number(options.goal.max_error) +
+         ": no method is predicted to keep to it; " + setting_text(choice) +
+         " comes nearest, with a predicted error of " + short_number(choice.predicted_error);
+}
+
+/// How the picture of a scene with transparent surfaces falls short.
+std::string transparent_warning(const Scene& scene, const FrameParts& parts,
+                                const RenderOptions& options) {
+  if (!has_transparent(scene)) return {};
+  const bool filters = options.show == Show::image && options.method.filter != nullptr;
+  if (options.show == Show::image && options.method.name() == "surface-splatting") {
+    return "--method surface-splatting: surfaces of opacity 1/2 or more are drawn opaque, other "
+           "transparent ones not at all";
+  }
+  if (filters && options.method.name() != "pinhole" &&
+      (options.gl != nullptr || options.arithmetic != Arithmetic::floats ||
+       !options.sharp_depths.empty())) {
+    return std::string{options.gl != nullptr                      ? "--gl"
+                       : options.arithmetic != Arithmetic::floats ? "--arithmetic"
+                                                                  : "--sharp-depths"} +
+           ": a transparent surface and what is seen through it are blurred by one circle";
+  }
+  if (parts.transparent.size() < kTransparentLayers) return {};
+  return "there are pixels of " + std::to_string(kTransparentLayers) +
+         " transparent surfaces; if there are more behind them, those are left out";
+}
 
 /// Does a stage's work, with its name on the terminal and its time noted.
 template <class Work>

@@ -11,7 +11,6 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/cli/progress.h"
-#include "tools/files/same_file.h"
 #include "tools/files/whole_file.h"
 #include "tools/options/run_options.h"
 #include "tools/pictures/sums_file.h"

@@ -9,7 +9,7 @@
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
-#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
 #include "tools/options/method_options.h"
 #include "tools/options/parameter_options.h"
 #include "tools/options/run_options.h"

@@ -6,7 +6,7 @@
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/files/same_file.h"
+#include "tools/files/whole_file.h"
 
 namespace softfocus {
 namespace {

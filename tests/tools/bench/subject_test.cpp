@@ -10,7 +10,7 @@
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/make/shapes.h"
-#include "tools/bench/picture.h"
+#include "tools/bench/work.h"
 
 using namespace softfocus;
 

@@ -1,4 +1,4 @@
-#include "tools/chart/front.h"
+#include "tools/chart/point.h"
 
 #include <doctest/doctest.h>
 

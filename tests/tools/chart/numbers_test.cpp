@@ -1,4 +1,4 @@
-#include "tools/chart/report/numbers.h"
+#include "tools/chart/report/summary.h"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,6 @@
 
 #include "tests/support/chart_points.h"
 #include "tests/support/run_program.h"
-#include "tools/chart/truth.h"
 
 using namespace softfocus;
 

@@ -10,10 +10,10 @@
 #include "dof/measure/measures.h"
 #include "tools/chart/contenders/runner.h"
 #include "tools/chart/contenders/turn_contenders.h"
-#include "tools/chart/front.h"
 #include "tools/chart/options.h"
+#include "tools/chart/point.h"
+#include "tools/chart/record.h"
 #include "tools/chart/scene.h"
-#include "tools/chart/truth.h"
 #include "tools/cli/errors.h"
 
 using namespace softfocus;

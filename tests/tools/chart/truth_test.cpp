@@ -1,12 +1,11 @@
 // The truth that contenders are held against: what it is, and when it is still right.
 
-#include "tools/chart/truth.h"
+#include "tools/chart/record.h"
 
 #include <doctest/doctest.h>
 
 #include "tests/support/cli_render.h"
 #include "tools/chart/measure.h"
-#include "tools/chart/record.h"
 
 using namespace softfocus;
 

@@ -171,7 +171,7 @@ const kTests = {
     let first = 0;
     for (let total = 1; first < total;) {
       const reply = ask({ do: "selftest", quick: true, first, count: 50 });
-      for (const { name, hash, wanted } of reply.results) assert.strictEqual(hash, wanted, name);
+      for (const { name, equal } of reply.results) assert.ok(equal, name);
       assert.ok(reply.results.length > 0, `only ${first} of ${reply.total}`);
       first += reply.results.length;
       total = reply.total;

@@ -17,7 +17,6 @@
 #include "tools/pictures/exr_file.h"
 #include "tools/pictures/image_file.h"
 #include "tools/pictures/png_text.h"
-#include "tools/pictures/srgb16.h"
 
 using namespace softfocus;
 

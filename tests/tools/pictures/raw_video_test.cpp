@@ -3,7 +3,6 @@
 #include "raster/images/texel.h"
 #include "tests/support/random.h"
 #include "tools/pictures/image_file.h"
-#include "tools/pictures/srgb16.h"
 
 using namespace softfocus;
 

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "tools/cli/errors.h"
-#include "tools/refocus/depth/believed_encoding.h"
 #include "tools/refocus/depth/depth_map.h"
 
 using namespace softfocus;

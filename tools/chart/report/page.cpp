@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "tools/chart/front.h"
 #include "tools/chart/measure.h"
+#include "tools/chart/point.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/timing.h"
 #include "tools/report/report.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/chart/front.h"
+#include "tools/chart/point.h"
 #include "tools/chart/record.h"
 #include "tools/cli/timing.h"
 #include "tools/files/json.h"

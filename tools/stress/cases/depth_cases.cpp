@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "raster/numbers/random_bits.h"
-#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_case.h"
 #include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_case.h"
 #include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {

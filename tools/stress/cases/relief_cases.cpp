@@ -6,7 +6,7 @@
 #include "raster/numbers/exact_math.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/make/shapes.h"
-#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_case.h"
 #include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {

@@ -7,7 +7,7 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/make/shapes.h"
-#include "tools/stress/cases/make_frame.h"
+#include "tools/stress/cases/stress_case.h"
 #include "tools/stress/cases/stress_measures.h"
 
 namespace softfocus {

@@ -75,9 +75,9 @@ export function start_hashes({ engine }) {
   const table = by_id("selftest-table");
   let running = false;
 
-  function row_of({ name, hash, wanted }) {
-    return element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, hash),
-                   element("td", {}, wanted ?? "none"));
+  function row_of({ name, hash, wanted_end }) {
+    return element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, hash ?? "none"),
+                   element("td", {}, wanted_end ? `…${wanted_end}` : "none"));
   }
 
   async function compare() {
