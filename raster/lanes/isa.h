@@ -36,7 +36,13 @@ std::span<const Isa> available_isas();
 Isa widest_isa();
 
 /// 32-bit numbers in a vector of a unit, and in the widest of all. Needs an isa with vectors.
-constexpr int lanes_of(Isa isa) { return isa == Isa::avx512 ? 16 : isa == Isa::avx2 ? 8 : 4; }
+constexpr int lanes_of([[maybe_unused]] Isa isa) {
+#ifdef SOFTFOCUS_ONLY_LANES
+  return SOFTFOCUS_ONLY_LANES;  // `scalar` takes its kernels too where they do the scalar's work
+#else
+  return isa == Isa::avx512 ? 16 : isa == Isa::avx2 ? 8 : 4;
+#endif
+}
 inline constexpr int kMostLanes = 16;
 
 /// "scalar", "baseline", "avx2", "avx512".
