@@ -1,7 +1,7 @@
 #pragma once
 // The way of a frame: a shot is drawn, the lens focuses on what was drawn, a method makes the
-// picture, and effects finish it. make_frame() goes all of it; who keeps what was drawn for another
-// lens, or times a part again and again, calls the parts.
+// picture, and effects finish it. make_frame() does all of it. Callers that keep the drawing for
+// another lens, or time a part alone, call the parts.
 
 #include <functional>
 #include <glm/vec2.hpp>
@@ -20,11 +20,11 @@
 
 namespace softfocus {
 
-/// What chooses a method by the scene (dof/auto/auto_method.h).
+/// The name that lets the scene choose its method (dof/auto/auto_method.h).
 inline constexpr std::string_view kAutoMethod = "auto";
 
-/// A method of either table: a filter of the drawn picture or one that draws the scene. Or
-/// neither: the scene shall choose.
+/// A method of either table: a filter of the drawn picture or one that draws the scene. If it is
+/// neither, the scene chooses.
 struct MethodChoice {
   const Method* filter = nullptr;
   const LensViewMethod* of_scene = nullptr;
@@ -140,7 +140,7 @@ enum class FrameStage : std::uint8_t {
   done
 };
 
-/// What comes between the stages; any may be empty.
+/// Callbacks between the stages; any may be empty.
 struct FrameHooks {
   std::function<void(FrameStage)> on_stage;  ///< told as each begins
   std::function<void(int samples)> on_samples;
@@ -151,7 +151,7 @@ struct FrameHooks {
   std::function<Image(const Method&, const DofSettings&, const Image&)> filter;
 };
 
-/// What a frame leaves for the next of the same scene and profile.
+/// Memory that a frame leaves for the next of the same scene and profile.
 struct FrameMemory {
   std::optional<PreparedScene> prepared{};
   LensViewMemory views{};
@@ -179,7 +179,8 @@ Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optiona
 /// Halves a picture that was drawn at twice the size, with its lens's lengths, and adds effects.
 void finish_picture(const Shot& shot, Frame& frame, ThreadPool& pool, const FrameHooks& hooks = {});
 
-/// The scene as seen from the lens, for who takes views step by step. It refers to the arguments.
+/// The scene as seen from the lens, for callers that take views step by step. It refers to the
+/// arguments.
 LensViewInput lens_views_of(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens);
 
 // --- effects ---

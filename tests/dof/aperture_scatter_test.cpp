@@ -161,7 +161,7 @@ TEST_CASE("scatter-aperture: the same bits on every vector unit, by any number o
   const DofSettings settings{.coc = {12.0f, 2.0f},
                              .max_coc_px = 9.5f,
                              .aperture = {.blades = 5, .turn_degrees = 10.0f, .stretch = 1.3f}};
-  ThreadPool one(1, Isa::baseline);
+  ThreadPool one(1, Isa::scalar);
   Image expected = make_image(scene.format, scene.width, scene.height);
   scatter_aperture({scene, settings, {}}, expected, one);
   for (const Isa isa : available_isas()) {

@@ -7,6 +7,7 @@
 #include "dof/measure/regions.h"
 #include "tools/files/base64.h"
 #include "tools/pictures/image_file.h"
+#include "tools/report/kept_results.h"
 #include "tools/report/worst_crop.h"
 
 namespace softfocus {

@@ -147,10 +147,7 @@ void add_peel_cases(std::vector<Case>& cases) {
   };
   for (const char* scene : {"ties", "sphere-world", "near-fence", "foliage", "lattice", "interior",
                             "canopy", "random:6", "random:20"}) {
-    // Of as many triangles a driver that is slow takes seconds.
-    const bool is_large =
-        scene == std::string_view{"sphere-world"} || scene == std::string_view{"random:6"};
-    add({scene, 128, 96, 7}, true, !is_large);
+    add({scene, 128, 96, 7}, true, true);
     add({scene, 512, 512, 7}, false, false);
   }
   add({"clutter", 333, 517, 31}, false, false);

@@ -149,7 +149,7 @@ TEST_CASE("fixed point: the largest sums do not overflow") {
   for (const std::uint16_t half : {std::uint16_t{0x7BFF}, std::uint16_t{0xFBFF}}) {
     PictureAndCodes halves{make_image(Format::rgba16f, kWidth, 1), bytes.codes};
     std::ranges::fill(row<std::uint16_t>(halves.picture, 0), half);
-    for (const Isa isa : {Isa::scalar, Isa::baseline, widest_isa()}) {
+    for (const Isa isa : available_isas()) {
       ThreadPool pool(1, isa);
       INFO(std::string{isa_name(isa)}, ", half ", half);
       CHECK(same(in_lanes(halves, table, pool), halves.picture));

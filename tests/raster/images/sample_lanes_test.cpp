@@ -56,7 +56,7 @@ constexpr std::array kSizes{Size{1, 1}, Size{1, 7},  Size{6, 1},    Size{3, 5},
                             Size{8, 4}, Size{17, 9}, Size{64, 128}, Size{128, 67}};
 
 // A multiple of every unit's lanes.
-constexpr std::size_t kPoints = 96;
+constexpr std::size_t kPoints = 192;
 
 // The known ones, and d3d11's texture unit filtering the other way and without its weights.
 std::vector<NamedProfile> tested_profiles() {
