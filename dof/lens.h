@@ -15,9 +15,13 @@
 // film's circle of confusion, scaled to pixels, is exactly the footprint that rays through
 // the aperture leave on a pinhole image.
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string_view>
 
 #include "raster/images/image_view.h"
+#include "raster/numbers/parameter.h"
 #include "raster/threads/parallel.h"
 
 namespace softfocus {
@@ -27,6 +31,62 @@ struct ThinLens {
   double focal_length_mm = 50.0;
   double f_number = 2.0;
   double focus_m = 2.0;
+  bool operator==(const ThinLens&) const = default;
+};
+
+namespace parameter {
+
+/// What is not 0, and far past anything real: no circle of such a lens is too large for binary32,
+/// for its radius is at most coc_scale / (2 f_number) times a picture's height over 2 tan(fov/2).
+inline constexpr double kNearlyNothing = 1e-9, kLargest = 1e9;
+
+// clang-format off
+inline constexpr Parameter kFocus{"focus", "Distance in focus, along the axis",
+    kNearlyNothing, kLargest, ThinLens{}.focus_m, "m", "METRES", "focus_m"};
+inline constexpr Parameter kFocalLength{"focal-length", "Focal length: a longer lens blurs more",
+    kNearlyNothing, kLargest, ThinLens{}.focal_length_mm, "mm", "MM", "focal_length_mm"};
+inline constexpr Parameter kFNumber{"f-number",
+    "Focal length over aperture: a full stop, times 1.41, halves the light and blurs less",
+    kNearlyNothing, kLargest, ThinLens{}.f_number, "", "N", "f_number"};
+inline constexpr Parameter kCocScale{"coc-scale",
+    "Exaggeration of the circles; 1 is the lens itself",
+    0.0, kLargest, 1.0, "", "S", "coc_scale"};
+inline constexpr Parameter kFov{"fov", "Vertical field of view",
+    0.001, 179.999, 40.0, "degrees", "DEGREES", "fov_degrees"};
+inline constexpr Parameter kSensorSide{"sensor", "A side of the sensor",
+    kNearlyNothing, kLargest, 36.0, "mm"};
+inline constexpr Parameter kBlurAtInfinity{"blur-at-infinity",
+    "In place of a lens: the radius of the circle of what is infinitely far",
+    0.0, kLargest, 0.0, "px", "PIXELS", "blur_at_infinity_px"};
+// clang-format on
+
+}  // namespace parameter
+
+/// A number of the lens. Options, scene files, notes in pictures, the page and C read this table.
+struct LensNumber {
+  const Parameter& parameter;
+  double ThinLens::*place;
+  bool has_keys;  ///< scene files and options may give it at some frames
+};
+inline constexpr std::array kLensNumbers{
+    LensNumber{parameter::kFocus, &ThinLens::focus_m, true},
+    LensNumber{parameter::kFocalLength, &ThinLens::focal_length_mm, false},
+    LensNumber{parameter::kFNumber, &ThinLens::f_number, true}};
+
+/// A value for each number of the lens, in the order of kLensNumbers.
+template <class Value>
+struct OfLensNumbers {
+  std::array<Value, kLensNumbers.size()> values{};
+
+  constexpr Value& operator[](double ThinLens::*place) { return values[index_of(place)]; }
+  constexpr const Value& operator[](double ThinLens::*place) const {
+    return values[index_of(place)];
+  }
+
+  static constexpr std::size_t index_of(double ThinLens::*place) {
+    const auto* const found = std::ranges::find(kLensNumbers, place, &LensNumber::place);
+    return static_cast<std::size_t>(found - kLensNumbers.begin());
+  }
 };
 
 /// The reason why a lens is unusable, as a sentence, or nullptr. A usable lens has finite,

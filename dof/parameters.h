@@ -1,36 +1,12 @@
 #pragma once
-// What can be set of the lens and of the methods. The texts are the help's and the page's.
+// What can be set of the methods; dof/lens.h has the lens. The texts are the help's and the page's.
 
 #include "dof/dof.h"
 #include "raster/numbers/parameter.h"
 
 namespace softfocus::parameter {
 
-/// What is not 0, and far past anything real: no circle of such a lens is too large for binary32,
-/// for its radius is at most coc_scale / (2 f_number) times a picture's height over 2 tan(fov/2).
-inline constexpr double kNearlyNothing = 1e-9, kLargest = 1e9;
-
 // clang-format off
-// --- the lens ---
-inline constexpr Parameter kFocus{"focus", "Distance in focus, along the axis",
-    kNearlyNothing, kLargest, ThinLens{}.focus_m, "m", "METRES", "focus_m"};
-inline constexpr Parameter kFocalLength{"focal-length", "Focal length: a longer lens blurs more",
-    kNearlyNothing, kLargest, ThinLens{}.focal_length_mm, "mm", "MM", "focal_length_mm"};
-inline constexpr Parameter kFNumber{"f-number",
-    "Focal length over aperture: a full stop, times 1.41, halves the light and blurs less",
-    kNearlyNothing, kLargest, ThinLens{}.f_number, "", "N", "f_number"};
-inline constexpr Parameter kCocScale{"coc-scale",
-    "Exaggeration of the circles; 1 is the lens itself",
-    0.0, kLargest, 1.0, "", "S", "coc_scale"};
-inline constexpr Parameter kFov{"fov", "Vertical field of view",
-    0.001, 179.999, 40.0, "degrees", "DEGREES", "fov_degrees"};
-inline constexpr Parameter kSensorSide{"sensor", "A side of the sensor",
-    kNearlyNothing, kLargest, 36.0, "mm"};
-inline constexpr Parameter kBlurAtInfinity{"blur-at-infinity",
-    "In place of a lens: the radius of the circle of what is infinitely far",
-    0.0, kLargest, 0.0, "px", "PIXELS", "blur_at_infinity_px"};
-
-// --- the methods ---
 inline constexpr Parameter kMaxCoc{"max-coc",
     "Filter size: the largest radius, to which larger circles are cut; a larger filter takes "
     "longer",

@@ -43,8 +43,7 @@ enum class Easing : std::uint8_t { linear, smooth };
 struct SceneLens {
   ThinLens lens;  ///< at frame 0; lens_at() gives it at others
   /// If not empty: frames from 0 on, increasing.
-  std::vector<Keyframe> focus_m_by_frame{};
-  std::vector<Keyframe> f_number_by_frame{};
+  OfLensNumbers<std::vector<Keyframe>> keys{};
   Easing easing = Easing::linear;
   double coc_scale = 1.0;
   /// Largest CoC as a radius in pixels of a picture 1024 rows high; scaled with the

@@ -25,14 +25,21 @@ double checked(const Parameter& parameter, double value) {
   return checked(parameter, key_of(parameter), value);
 }
 
+/// Where settings have the numbers of the lens.
+constexpr OfLensNumbers<double softfocus_settings::*> kLensFields{
+    {&softfocus_settings::focus_m, &softfocus_settings::focal_length_mm,
+     &softfocus_settings::f_number}};
+static_assert(kLensFields.values.back() != nullptr);
+
 PixelCoc coc_of(const softfocus_settings& settings, int width_px, int height_px) {
   if (settings.blur_at_infinity_px != 0.0) {
     return {static_cast<float>(checked(parameter::kBlurAtInfinity, settings.blur_at_infinity_px)),
             static_cast<float>(checked(parameter::kFocus, settings.focus_m))};
   }
-  const ThinLens lens{checked(parameter::kFocalLength, settings.focal_length_mm),
-                      checked(parameter::kFNumber, settings.f_number),
-                      checked(parameter::kFocus, settings.focus_m)};
+  ThinLens lens;
+  for (const auto& [parameter, place, has_keys] : kLensNumbers) {
+    lens.*place = checked(parameter, settings.*kLensFields[place]);
+  }
   if (const char* error = lens_error(lens)) refuse("settings", error);
   const double scale = checked(parameter::kCocScale, settings.coc_scale);
   PixelCoc coc;

@@ -130,11 +130,10 @@ double value_at(std::span<const Keyframe> keys, Easing easing, double frame) {
 
 ThinLens lens_at(const SceneLens& lens, double frame) {
   ThinLens at_frame = lens.lens;
-  const auto set = [&](double& value, const std::vector<Keyframe>& keys) {
-    if (!keys.empty()) value = value_at(keys, lens.easing, frame);
-  };
-  set(at_frame.focus_m, lens.focus_m_by_frame);
-  set(at_frame.f_number, lens.f_number_by_frame);
+  for (const LensNumber& number : kLensNumbers) {
+    const std::vector<Keyframe>& keys = lens.keys[number.place];
+    if (!keys.empty()) at_frame.*number.place = value_at(keys, lens.easing, frame);
+  }
   return at_frame;
 }
 

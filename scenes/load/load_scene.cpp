@@ -85,16 +85,16 @@ double read_keyed_number(Section& section, const Parameter& parameter, double fa
 
 SceneLens read_lens(Section section) {
   SceneLens lens;
-  ThinLens& thin = lens.lens;
-  thin.focal_length_mm = read_number(section, parameter::kFocalLength, thin.focal_length_mm);
-  thin.f_number =
-      read_keyed_number(section, parameter::kFNumber, thin.f_number, lens.f_number_by_frame);
-  thin.focus_m = read_keyed_number(section, parameter::kFocus, thin.focus_m, lens.focus_m_by_frame);
+  for (const auto& [number, place, has_keys] : kLensNumbers) {
+    double& value = lens.lens.*place;
+    value = has_keys ? read_keyed_number(section, number, value, lens.keys[place])
+                     : read_number(section, number, value);
+  }
   lens.easing = read_choice(section, "keyframes", lens.easing, parameter::kEasings);
   lens.coc_scale = read_number(section, parameter::kCocScale, lens.coc_scale);
   lens.max_coc_px_at_1024 = read_number(section, parameter::kMaxCoc, lens.max_coc_px_at_1024);
   ThinLens nearest = lens.lens;
-  for (const Keyframe& key : lens.focus_m_by_frame) {
+  for (const Keyframe& key : lens.keys[&ThinLens::focus_m]) {
     nearest.focus_m = std::min(nearest.focus_m, key.value);
   }
   if (const char* error = lens_error(nearest)) fail_at(section, "focus_m", error);

@@ -107,10 +107,10 @@ TEST_CASE("smooth: the same bits on every machine") {
 TEST_CASE("the lens at a frame has the values of its keys") {
   SceneLens lens;
   lens.lens.focal_length_mm = 85.0;
-  lens.focus_m_by_frame = {{0.0, 2.0}, {10.0, 4.0}};
+  lens.keys[&ThinLens::focus_m] = {{0.0, 2.0}, {10.0, 4.0}};
   CHECK(lens_at(lens, 5.0).focus_m == 3.0);
   CHECK(lens_at(lens, 5.0).f_number == lens.lens.f_number);
   CHECK(lens_at(lens, 5.0).focal_length_mm == 85.0);
-  lens.f_number_by_frame = {{5.0, 8.0}};
+  lens.keys[&ThinLens::f_number] = {{5.0, 8.0}};
   CHECK(lens_at(lens, 0.0).f_number == 8.0);
 }

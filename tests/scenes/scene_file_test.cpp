@@ -60,8 +60,8 @@ TEST_CASE("a lens may have its focus and f-number by frames") {
   const SceneLens lens =
       read("[lens]\nfocus_m = [[0, 2], [48, 6.5]]\nf_number = [[12, 4]]\nkeyframes = \"smooth\"\n")
           .lens;
-  CHECK(lens.focus_m_by_frame == std::vector<Keyframe>{{0, 2}, {48, 6.5}});
-  CHECK(lens.f_number_by_frame == std::vector<Keyframe>{{12, 4}});
+  CHECK(lens.keys[&ThinLens::focus_m] == std::vector<Keyframe>{{0, 2}, {48, 6.5}});
+  CHECK(lens.keys[&ThinLens::f_number] == std::vector<Keyframe>{{12, 4}});
   CHECK(lens.easing == Easing::smooth);
   CHECK(lens.lens.focus_m == 2);
   CHECK(lens.lens.f_number == 4);

@@ -79,9 +79,9 @@ std::string for_regions(const CompareOptions& options) {
   if (options.depth_file) return "--depth";
   if (options.scene) return "--scene";
   if (options.fov_y_degrees) return "--fov";
-  if (options.lens.focus_m) return "--focus";
-  if (options.lens.focal_length_mm) return "--focal-length";
-  if (options.lens.f_number) return "--f-number";
+  for (const LensNumber& number : kLensNumbers) {
+    if (options.lens.given[number.place]) return "--" + std::string{number.parameter.name};
+  }
   if (options.lens.coc_scale) return "--coc-scale";
   return "";
 }

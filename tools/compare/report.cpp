@@ -37,18 +37,19 @@ std::string degrees_text(double degrees) { return short_number(degrees) + " degr
 
 AssumedLens assumed_lens(const CompareOptions& options, const std::vector<NamedNotes>& pictures) {
   AssumedLens assumed = known_lens(options, pictures);
-  const auto overrule = [&](const char* option, std::optional<double> value, double& place) {
+  const auto overrule = [&](const std::string& option, std::optional<double> value, double& place) {
     if (!value) return;
     place = *value;
     assumed.given.emplace_back(option);
   };
   NotedLens& lens = assumed.lens;
-  overrule("--focus", options.lens.focus_m, lens.lens.focus_m);
-  overrule("--focal-length", options.lens.focal_length_mm, lens.lens.focal_length_mm);
-  overrule("--f-number", options.lens.f_number, lens.lens.f_number);
+  for (const LensNumber& number : kLensNumbers) {
+    overrule("--" + std::string{number.parameter.name}, options.lens.given[number.place],
+             lens.lens.*number.place);
+  }
   overrule("--coc-scale", options.lens.coc_scale, lens.coc_scale);
   overrule("--fov", options.fov_y_degrees, lens.fov_y_degrees);
-  constexpr std::size_t kAllOptions = 5;
+  constexpr std::size_t kAllOptions = kLensNumbers.size() + 2;
   if (assumed.given.size() == kAllOptions) assumed.source = "options";
   check_lens(lens.lens, options.lens,
              assumed.source == "default" ? "the default lens" : "the lens of " + assumed.name);
@@ -203,14 +204,13 @@ Json texts_json(const std::vector<std::string>& texts) {
 
 Json lens_json(const AssumedLens& assumed) {
   const auto& [lens, coc_scale, fov_y_degrees] = assumed.lens;
-  return {{"focus_m", lens.focus_m},
-          {"focal_length_mm", lens.focal_length_mm},
-          {"f_number", lens.f_number},
-          {"coc_scale", coc_scale},
-          {"fov_y_degrees", fov_y_degrees},
-          {"source", assumed.source},
-          {"name", assumed.name.empty() ? Json() : Json(assumed.name)},
-          {"given", texts_json(assumed.given)}};
+  Json json = Json::object();
+  add_lens(json, lens, coc_scale);
+  json["fov_y_degrees"] = fov_y_degrees;
+  json["source"] = assumed.source;
+  json["name"] = assumed.name.empty() ? Json() : Json(assumed.name);
+  json["given"] = texts_json(assumed.given);
+  return json;
 }
 
 Json limits_json(const std::vector<LimitFinding>& findings) {

@@ -41,16 +41,10 @@ std::vector<Keyframe> parse_keys(const std::string& option, const std::string& t
   return keys;
 }
 
-/// For the help.
-struct LensDefaults {
-  std::string focus, focal_length, f_number, coc_scale;
-};
-
 enum class Keys : std::uint8_t { none, some };
 
 void add_keyed(CLI::App& parser, const Parameter& parameter, const std::string& standard,
-               std::optional<double>& place, std::vector<Keyframe>& keys, Keys has_keys) {
-  if (has_keys == Keys::none) return add_parameter(parser, parameter, standard, place);
+               std::optional<double>& place, std::vector<Keyframe>& keys) {
   const std::string option = "--" + std::string{parameter.name};
   add_value(parser, option, std::string{parameter.type},
             help_of(parameter, ", or FRAME:VALUE for some frames", standard),
@@ -63,91 +57,94 @@ void add_keyed(CLI::App& parser, const Parameter& parameter, const std::string& 
             });
 }
 
-void add_lens_options(CLI::App& parser, LensOptions& options, const LensDefaults& defaults,
+/// `standard` gives the help's default of a number.
+void add_lens_options(CLI::App& parser, LensOptions& options,
+                      const std::function<std::string(const Parameter&)>& standard,
                       Keys has_keys = Keys::none) {
-  add_keyed(parser, parameter::kFocus, defaults.focus, options.focus_m, options.focus_m_by_frame,
-            has_keys);
-  add_parameter(parser, parameter::kFocalLength, defaults.focal_length, options.focal_length_mm);
-  add_keyed(parser, parameter::kFNumber, defaults.f_number, options.f_number,
-            options.f_number_by_frame, has_keys);
-  add_parameter(parser, parameter::kCocScale, defaults.coc_scale, options.coc_scale);
+  for (const LensNumber& number : kLensNumbers) {
+    const Parameter& parameter = number.parameter;
+    std::optional<double>& place = options.given[number.place];
+    if (has_keys == Keys::some && number.has_keys) {
+      add_keyed(parser, parameter, standard(parameter), place, options.keys[number.place]);
+    } else {
+      add_parameter(parser, parameter, standard(parameter), place);
+    }
+  }
+  add_parameter(parser, parameter::kCocScale, standard(parameter::kCocScale), options.coc_scale);
   if (has_keys == Keys::none) return;
   add_choice(parser, "--keyframes",
              "The way from key to key of --focus and --f-number (default: linear)",
              parameter::kEasings, options.easing);
 }
 
-void add_fov(CLI::App& parser, const std::string& standard,
-             std::function<void(double degrees)> on_fov) {
-  add_parameter(parser, parameter::kFov, standard, std::move(on_fov));
-}
+std::string of_scene(const Parameter&) { return "the scene's"; }
+std::string preset_of(const Parameter& parameter) { return plain_number(parameter.preset); }
 
 }  // namespace
 
 void add_lens_options(CLI::App& parser, LensOptions& options) {
-  const std::string scenes = "the scene's";
-  add_lens_options(parser, options, {scenes, scenes, scenes, scenes});
+  add_lens_options(parser, options, of_scene);
 }
 
 void add_animated_lens_options(CLI::App& parser, LensOptions& options) {
-  const std::string scenes = "the scene's";
-  add_lens_options(parser, options, {scenes, scenes, scenes, scenes}, Keys::some);
+  add_lens_options(parser, options, of_scene, Keys::some);
 }
 
 void add_own_lens_options(CLI::App& parser, LensOptions& options,
                           std::function<void(double degrees)> on_fov) {
-  add_lens_options(parser, options,
-                   {.focus = plain_number(parameter::kFocus.preset),
-                    .focal_length = plain_number(parameter::kFocalLength.preset),
-                    .f_number = plain_number(parameter::kFNumber.preset),
-                    .coc_scale = plain_number(parameter::kCocScale.preset)});
-  add_fov(parser, plain_number(parameter::kFov.preset), std::move(on_fov));
+  add_lens_options(parser, options, preset_of);
+  add_parameter(parser, parameter::kFov, preset_of(parameter::kFov), std::move(on_fov));
 }
 
 void add_compared_lens_options(CLI::App& parser, LensOptions& options,
                                std::function<void(double degrees)> on_fov) {
   const std::string theirs = "--scene's or the picture's";
-  add_lens_options(parser, options, {theirs, theirs, theirs, theirs});
-  add_fov(parser, theirs, std::move(on_fov));
+  add_lens_options(parser, options, [&](const Parameter&) { return theirs; });
+  add_parameter(parser, parameter::kFov, theirs, std::move(on_fov));
 }
 
 void add_refocus_lens_options(CLI::App& parser, LensOptions& options,
                               std::function<void(double degrees)> on_fov) {
-  add_lens_options(parser, options,
-                   {.focus = "an EXR's own, or what is in the middle",
-                    .focal_length = "the picture's or 50",
-                    .f_number = "the picture's or 2",
-                    .coc_scale = "the picture's or 1"},
-                   Keys::some);
-  add_fov(parser, "the picture's, or by --sensor", std::move(on_fov));
+  const auto standard = [](const Parameter& parameter) {
+    return &parameter == &parameter::kFocus ? "an EXR's own, or what is in the middle"
+                                            : "the picture's or " + preset_of(parameter);
+  };
+  add_lens_options(parser, options, standard, Keys::some);
+  add_parameter(parser, parameter::kFov, "the picture's, or by --sensor", std::move(on_fov));
 }
 
 LensOptions at_frame(LensOptions options, double frame) {
-  const auto set = [&](std::optional<double>& value, std::vector<Keyframe>& keys) {
-    if (!keys.empty()) value = value_at(keys, options.easing, frame);
+  for (const LensNumber& number : kLensNumbers) {
+    std::vector<Keyframe>& keys = options.keys[number.place];
+    if (!keys.empty()) options.given[number.place] = value_at(keys, options.easing, frame);
     keys.clear();
-  };
-  set(options.focus_m, options.focus_m_by_frame);
-  set(options.f_number, options.f_number_by_frame);
+  }
   return options;
 }
 
 std::string lens_text(const LensOptions& options) {
-  return (options.focus_m ? "focus " + exact_number(*options.focus_m) + "\n" : "") +
-         (options.f_number ? "f-number " + exact_number(*options.f_number) + "\n" : "");
+  std::string text;
+  for (const auto& [parameter, place, has_keys] : kLensNumbers) {
+    const std::optional<double>& value = options.given[place];
+    if (!has_keys || !value) continue;
+    text.append(parameter.name).append(" ").append(exact_number(*value)).append("\n");
+  }
+  return text;
 }
 
 void check_no_keys(const LensOptions& options) {
-  const bool of_focus = !options.focus_m_by_frame.empty();
-  if (!of_focus && options.f_number_by_frame.empty()) return;
-  throw UsageError(std::string{of_focus ? "--focus" : "--f-number"} +
-                   ": FRAME:VALUE is of many frames; give one value, or --frames A..B");
+  for (const LensNumber& number : kLensNumbers) {
+    if (options.keys[number.place].empty()) continue;
+    throw UsageError("--" + std::string{number.parameter.name} +
+                     ": FRAME:VALUE is of many frames; give one value, or --frames A..B");
+  }
 }
 
 ThinLens overruled(ThinLens lens, const LensOptions& options) {
-  lens.focal_length_mm = options.focal_length_mm.value_or(lens.focal_length_mm);
-  lens.f_number = options.f_number.value_or(lens.f_number);
-  lens.focus_m = options.focus_m.value_or(lens.focus_m);
+  for (const LensNumber& number : kLensNumbers) {
+    double& value = lens.*number.place;
+    value = options.given[number.place].value_or(value);
+  }
   return lens;
 }
 
@@ -158,8 +155,8 @@ void check_lens(const ThinLens& lens, const LensOptions& options, std::string_vi
   const auto add = [&](const char* option, std::optional<double> value, const char* unit) {
     if (value) given += (given.empty() ? "" : ", ") + (option + short_number(*value)) + unit;
   };
-  add("--focal-length ", options.focal_length_mm, " mm");
-  add("--focus ", options.focus_m, " m");
+  add("--focal-length ", options.given[&ThinLens::focal_length_mm], " mm");
+  add("--focus ", options.given[&ThinLens::focus_m], " m");
   if (given.empty()) given = otherwise;
   throw UsageError(given + " (the lens is " + short_number(lens.focal_length_mm) +
                    " mm, focused at " + short_number(lens.focus_m) + " m): " + error);

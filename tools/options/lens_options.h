@@ -15,21 +15,18 @@ namespace softfocus {
 
 /// The lens values that were given.
 struct LensOptions {
-  std::optional<double> focal_length_mm;
-  std::optional<double> f_number;
-  std::optional<double> focus_m;
+  OfLensNumbers<std::optional<double>> given{};
   std::optional<double> coc_scale;
   /// Keys of commands that animate, in place of one value if not empty: frames from 0 on,
   /// increasing.
-  std::vector<Keyframe> focus_m_by_frame{};
-  std::vector<Keyframe> f_number_by_frame{};
+  OfLensNumbers<std::vector<Keyframe>> keys{};
   Easing easing = Easing::linear;
 };
 
 /// The options with the values at a frame in place of keys.
 LensOptions at_frame(LensOptions options, double frame);
 
-/// The values that --focus and --f-number gave, every bit of them.
+/// The values given of numbers that may have keys, every bit of them.
 std::string lens_text(const LensOptions& options);
 
 /// Throws UsageError if there are keys: of a picture that is no frame.

@@ -43,8 +43,13 @@ Json parameter_json(const Parameter& parameter) {
 /// By the keys of requests.
 Json parameters_json() {
   Json all = Json::object();
+  for (const LensNumber& number : kLensNumbers) {
+    Json& of_lens = all[key_of(number.parameter)];
+    of_lens = parameter_json(number.parameter);
+    of_lens["of_lens"] = true;
+  }
   for (const Parameter& parameter : page_parameters()) {
-    all[std::string{key_of(parameter)}] = parameter_json(parameter);
+    all[key_of(parameter)] = parameter_json(parameter);
   }
   for (const OfDepth& of : kDepthNumbers)
     all[std::string{of.number.name}] = parameter_json(of.number);

@@ -22,10 +22,7 @@ void add_lens_figures(Json& reply, const UsedLens& used, const Drawn& drawn, Thr
   const SharpRange sharp = sharp_range(lens, sharp_mm);
   const CircleSizes sizes =
       circle_sizes(drawn.picture(), used.settings.coc, used.settings.max_coc_px, pool);
-  reply["focus_m"] = lens.focus_m;
-  reply["focal_length_mm"] = lens.focal_length_mm;
-  reply["f_number"] = lens.f_number;
-  reply["coc_scale"] = used.coc_scale;
+  add_lens(reply, lens, used.coc_scale);
   reply["aperture_mm"] = aperture_mm(lens);
   reply["image_distance_mm"] = image_distance_mm(lens, lens.focus_m);
   reply["film_height_mm"] = film_mm;

@@ -58,11 +58,10 @@ std::unique_ptr<Opened> opened_scene(const std::string& source) {
 }
 
 Json lens_json(const SceneLens& of, double fov_y_degrees) {
-  return {{"focal_length_mm", of.lens.focal_length_mm},
-          {"f_number", of.lens.f_number},
-          {"focus_m", of.lens.focus_m},
-          {"coc_scale", of.coc_scale},
-          {"sensor_height_mm", film_height_mm(of.lens, fov_y_degrees)}};
+  Json json;
+  add_lens(json, of.lens, of.coc_scale);
+  json["sensor_height_mm"] = film_height_mm(of.lens, fov_y_degrees);
+  return json;
 }
 
 /// The largest radius that cuts no circle of the case, in pixels of the usual size.

@@ -184,13 +184,10 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
                 {"triangles", 0},
                 {"animation_frames", 0},
                 {"camera", nullptr},
-                {"lens",
-                 {{"focal_length_mm", lens.lens.focal_length_mm},
-                  {"f_number", lens.lens.f_number},
-                  {"focus_m", lens.lens.focus_m},
-                  {"coc_scale", lens.coc_scale}}},
+                {"lens", nullptr},
                 {"autofocus", true},
                 {"picture", reading_json(*picture, believed, seen)}};
+  add_lens(made.reply["lens"], lens.lens, lens.coc_scale);
   made.opened->picture = std::move(picture);
   return made;
 }
@@ -230,11 +227,8 @@ ShownFrame refocused_frame(Page& page, const FrameSettings& settings) {
 void add_refocus_figures(Json& reply, const ShownFrame& shown) {
   if (!shown.refocused) return;
   const SettledLens& lens = shown.refocused->used.lens;
-  reply["focus_m"] = lens.lens.focus_m;
+  add_lens(reply, lens.lens, lens.coc_scale);
   reply["focus_from"] = lens.focus_from;
-  reply["focal_length_mm"] = lens.lens.focal_length_mm;
-  reply["f_number"] = lens.lens.f_number;
-  reply["coc_scale"] = lens.coc_scale;
   reply["fov_y_degrees"] = lens.fov_y_degrees;
   reply["radius_at_infinity_px"] = lens.coc.radius_at_infinity_px;
   reply["largest_coc_px"] = shown.refocused->used.largest_circle_px;

@@ -39,10 +39,12 @@ std::vector<KeyLine> camera_lines(const Camera& camera) {
 }
 
 std::vector<KeyLine> lens_lines(const UsedLens& used) {
-  return {{"focal_length_mm", text_of(used.lens.focal_length_mm)},
-          {"f_number", text_of(used.lens.f_number)},
-          {"focus_m", text_of(used.lens.focus_m)},
-          {"coc_scale", text_of(used.coc_scale)}};
+  std::vector<KeyLine> lines;
+  for (const LensNumber& number : kLensNumbers) {
+    lines.push_back({std::string{key_of(number.parameter)}, text_of(used.lens.*number.place)});
+  }
+  lines.push_back({"coc_scale", text_of(used.coc_scale)});
+  return lines;
 }
 
 std::string lines_text(const std::vector<KeyLine>& lines) {
@@ -146,7 +148,7 @@ Json command_text(const Opened& opened, const FrameSettings& settings) {
   std::string text = "softfocus render " + (needs_file ? "scene.toml" : opened.source) +
                      " -o picture.png --json --size " + std::to_string(width) + "x" +
                      std::to_string(height);
-  const auto add = [&](const char* option, const auto& value) {
+  const auto add = [&](const std::string& option, const auto& value) {
     if (!value) return;
     const std::string number = json_text(static_cast<double>(*value));
     text.append(option).append(number.ends_with(".0") ? number.substr(0, number.size() - 2)
@@ -165,10 +167,10 @@ Json command_text(const Opened& opened, const FrameSettings& settings) {
       text += " --autofocus " + pixel(settings.focus_at->x, width) + "," +
               pixel(settings.focus_at->y, height);
     } else {
-      add(" --focus ", settings.lens.focus_m);
     }
-    add(" --focal-length ", settings.lens.focal_length_mm);
-    add(" --f-number ", settings.lens.f_number);
+    for (const auto& [parameter, place, has_keys] : kLensNumbers) {
+      add(" --" + std::string{parameter.name} + " ", settings.lens.given[place]);
+    }
     add(" --coc-scale ", settings.lens.coc_scale);
   }
   if (!is_image || settings.method.filter != nullptr) add(" --max-coc ", settings.max_coc_px);

@@ -21,14 +21,8 @@ constexpr Parameter kPageFov = with_key(parameter::kFov, "fov_y_degrees");
 constexpr Parameter kPageTime = with_key(parameter::kFrame, "time");
 constexpr Parameter kPreview{"preview", "What sizes and radii are divided by", 1, 16, 1, "", "", "",
                              1};
-constexpr std::array kPageParameters{parameter::kFocus,
-                                     parameter::kFocalLength,
-                                     parameter::kFNumber,
-                                     parameter::kCocScale,
-                                     parameter::kMaxCoc,
-                                     kPageSamples,
-                                     kPageFov,
-                                     kPageTime};
+constexpr std::array kPageParameters{parameter::kCocScale, parameter::kMaxCoc, kPageSamples,
+                                     kPageFov, kPageTime};
 
 std::vector<double> checked_numbers(const Json& value, std::string_view name, std::size_t count,
                                     double least, double most) {
@@ -78,7 +72,7 @@ void read_focus(const Json& focus, FrameSettings& settings) {
     settings.focus_at = glm::dvec2{numbers[0], numbers[1]};
     return;
   }
-  settings.lens.focus_m = checked_number(focus.at("m"), parameter::kFocus);
+  settings.lens.given[&ThinLens::focus_m] = checked_number(focus.at("m"), parameter::kFocus);
 }
 
 }  // namespace
@@ -123,8 +117,9 @@ FrameSettings read_frame_settings(const Json& request) {
           static_cast<std::remove_reference_t<decltype(place)>>(checked_number(*value, parameter));
     }
   };
-  take(parameter::kFocalLength, settings.lens.focal_length_mm);
-  take(parameter::kFNumber, settings.lens.f_number);
+  for (const LensNumber& number : kLensNumbers) {
+    take(number.parameter, settings.lens.given[number.place]);
+  }
   take(parameter::kCocScale, settings.lens.coc_scale);
   take(parameter::kMaxCoc, settings.max_coc_px);
   take(kPageSamples, settings.sampling.samples);

@@ -53,10 +53,10 @@ PictureNotes notes_of(const Json& json) {
   notes.method = json.at("method");
   const Json& lens = json.at("lens");
   if (!lens.is_null()) {
-    notes.lens = {{lens.at("focal_length_mm").number(), lens.at("f_number").number(),
-                   lens.at("focus_m").number()},
-                  lens.at("coc_scale").number(),
-                  notes.fov_y_degrees};
+    notes.lens = {{}, lens.at(key_of(parameter::kCocScale)).number(), notes.fov_y_degrees};
+    for (const LensNumber& number : kLensNumbers) {
+      notes.lens->lens.*number.place = lens.at(key_of(number.parameter)).number();
+    }
   }
   if (const Json* effects = json.find("effects")) {
     for (const Json& effect : effects->values()) notes.effects.push_back(effect.text());
@@ -74,6 +74,13 @@ bool is_usable(const PictureNotes& notes) {
 
 }  // namespace
 
+void add_lens(Json& json, const ThinLens& lens, double coc_scale) {
+  for (const LensNumber& number : kLensNumbers) {
+    json[key_of(number.parameter)] = lens.*number.place;
+  }
+  json[key_of(parameter::kCocScale)] = coc_scale;
+}
+
 Json notes_json(const PictureNotes& notes) {
   Json json{{kMark, kForm},
             {"softfocus", SOFTFOCUS_VERSION},
@@ -87,10 +94,7 @@ Json notes_json(const PictureNotes& notes) {
             {"method", notes.method},
             {"picture_hash", hash_text(notes.picture_hash)}};
   if (notes.lens) {
-    json["lens"] = {{"focus_m", notes.lens->lens.focus_m},
-                    {"focal_length_mm", notes.lens->lens.focal_length_mm},
-                    {"f_number", notes.lens->lens.f_number},
-                    {"coc_scale", notes.lens->coc_scale}};
+    add_lens(json["lens"], notes.lens->lens, notes.lens->coc_scale);
   }
   for (const std::string& effect : notes.effects) json["effects"].push_back(effect);
   return json;

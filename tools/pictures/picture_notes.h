@@ -25,10 +25,11 @@ struct NotedLens {
 };
 
 inline bool operator==(const NotedLens& a, const NotedLens& b) {
-  return a.lens.focus_m == b.lens.focus_m && a.lens.focal_length_mm == b.lens.focal_length_mm &&
-         a.lens.f_number == b.lens.f_number && a.coc_scale == b.coc_scale &&
-         a.fov_y_degrees == b.fov_y_degrees;
+  return a.lens == b.lens && a.coc_scale == b.coc_scale && a.fov_y_degrees == b.fov_y_degrees;
 }
+
+/// Adds the lens's numbers to an object, by the keys of scene files.
+void add_lens(Json& json, const ThinLens& lens, double coc_scale);
 
 struct PictureNotes {
   std::string scene;

@@ -67,7 +67,8 @@ double focal_length_mm(const PhotoLens& photo, const std::optional<PictureNotes>
   const ThinLens standard;
   const double noted =
       notes && notes->lens ? notes->lens->lens.focal_length_mm : standard.focal_length_mm;
-  return photo.lens.focal_length_mm.value_or(photo.of_file.focal_length_mm.value_or(noted));
+  return photo.lens.given[&ThinLens::focal_length_mm].value_or(
+      photo.of_file.focal_length_mm.value_or(noted));
 }
 
 /// Who said it, in the order in which they are asked.
@@ -84,12 +85,12 @@ ThinLens settled_thin_lens(ThinLens lens, const PhotoLens& photo, bool is_noted,
   const HeaderLens& header = photo.of_file;
   lens.focal_length_mm = header.focal_length_mm.value_or(lens.focal_length_mm);
   lens.f_number = header.f_number.value_or(lens.f_number);
-  from = source_of(photo.lens.focal_length_mm.has_value(), "--focal-length",
+  from = source_of(photo.lens.given[&ThinLens::focal_length_mm].has_value(), "--focal-length",
                    header.focal_length_mm.has_value(), "nominalFocalLength", is_noted,
                    "focal length") +
          ", " +
-         source_of(photo.lens.f_number.has_value(), "--f-number", header.f_number.has_value(),
-                   "aperture", is_noted, "f-number");
+         source_of(photo.lens.given[&ThinLens::f_number].has_value(), "--f-number",
+                   header.f_number.has_value(), "aperture", is_noted, "f-number");
   return overruled(lens, photo.lens);
 }
 
@@ -129,9 +130,9 @@ std::string pixel_text(Pixel pixel) {
 
 /// The distance in focus and who said it.
 double focus_of(const PhotoLens& photo, FocusDepths& depths, std::string& from) {
-  if (photo.lens.focus_m) {
+  if (photo.lens.given[&ThinLens::focus_m]) {
     from = "--focus";
-    return *photo.lens.focus_m;
+    return *photo.lens.given[&ThinLens::focus_m];
   }
   if (photo.focus_range) {
     from = "--focus-range";

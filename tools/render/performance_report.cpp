@@ -224,14 +224,12 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
   }
   if (record.frame.lens) {
     const UsedLens& used = *record.frame.lens;
-    json["lens"] = {{"focus_m", used.lens.focus_m},
-                    {"focal_length_mm", used.lens.focal_length_mm},
-                    {"f_number", used.lens.f_number},
-                    {"aperture_mm", aperture_mm(used.lens)},
-                    {"coc_scale", used.coc_scale},
-                    {"radius_at_infinity_px", used.settings.coc.radius_at_infinity_px},
-                    {"max_coc_px", used.settings.max_coc_px},
-                    {"leak", used.settings.leak}};
+    Json& lens = json["lens"];
+    add_lens(lens, used.lens, used.coc_scale);
+    lens["aperture_mm"] = aperture_mm(used.lens);
+    lens["radius_at_infinity_px"] = used.settings.coc.radius_at_infinity_px;
+    lens["max_coc_px"] = used.settings.max_coc_px;
+    lens["leak"] = used.settings.leak;
     if (options.autofocus) {
       const auto [x, y] = focus_pixel(options);
       json["lens"]["autofocus_pixel"] = {x, y};

@@ -20,7 +20,11 @@ const near = (a, b, part = 1e-5) => assert.ok(Math.abs(a - b) <= part * Math.abs
 
 /** What the module tells of what can be set, as far as it is needed here. */
 const kParameters = {
-  focus_m: { preset: 2 }, focal_length_mm: { preset: 50 }, f_number: { preset: 2 }, coc_scale: { preset: 1 },
+  focus_m: { name: "focus", preset: 2, of_lens: true },
+  focal_length_mm: { name: "focal-length", preset: 50, of_lens: true },
+  f_number: { name: "f-number", preset: 2, of_lens: true },
+  shift_mm: { name: "shift", preset: 0, of_lens: true },  // a number that the page knows nothing of
+  coc_scale: { name: "coc-scale", preset: 1 },
   samples: { preset: 64 }, max_coc_px: { most: 1024 }, near: { key: "near_m" }, far: { key: "far_m" },
   scale: { key: "scale" }, offset: { key: "offset" },
 };
@@ -29,7 +33,6 @@ const kSensors = [{ name: "full-frame", width_mm: 36, height_mm: 24 }];
 
 test("a side begins with what the module has for presets", async () => {
   const { first_side, set_parameters } = await module_of("state.js");
-  assert.deepStrictEqual([first_side().f_number, first_side().focus.m], [null, null]);
   set_parameters(kParameters, kSensors);
   assert.deepStrictEqual([first_side().f_number, first_side().focus.m], [2, 2]);
 });
@@ -43,7 +46,8 @@ test("a link gives the state back", async () => {
     camera: { position_m: [1, -2.5, 3], target_m: [0, 0.125, 0], fov_y_degrees: 31.5 },
     photo: { on: true, sensor: "aps-c", lock: true },
     sides: [{ ...first_side(), dof: false, focus: { m: 1.25 }, max_coc_px: 12, samples: 16 },
-            { ...first_side(), method: "disc-layers", focus: { at: [0.25, 0.75] }, f_number: 5.6 }],
+            { ...first_side(), method: "disc-layers", focus: { at: [0.25, 0.75] }, f_number: 5.6,
+              shift_mm: -3 }],
   };
   const words = read_link(`#${link_of(state)}`);
   const opened = state_to_open(words);
@@ -156,7 +160,7 @@ test("a picture's request and its command have the numbers that its encoding tak
   assert.strictEqual(
       refocus_command(state, state.sides[0], encodings),
       "softfocus refocus a.png 'my d.png' -o picture.png --json --depth-encoding device --near 1 --far 9 " +
-      "--method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --coc-scale 1");
+      "--method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --shift 0 --coc-scale 1");
   assert.strictEqual(refocus_command(state, { ...side, dof: false }, encodings), null);
 });
 

@@ -57,7 +57,7 @@ TEST_CASE("f-numbers are read as they are written") {
 
 TEST_CASE("the circle on a full-frame sensor is the one on film, in pixels") {
   PhotoLens photo;
-  photo.lens = {.focal_length_mm = 85.0, .f_number = 1.4, .focus_m = 1.5, .coc_scale = {}};
+  photo.lens.given = {{1.5, 85.0, 1.4}};  // focus, focal length, f-number
   photo.sensor = Sensor{"full-frame", 36.0, 24.0};
   const DepthMap map{300, 200, std::vector<float>(60000, 3.0f)};
   const SettledLens lens = settle_lens(photo, {}, {}, map);
@@ -67,7 +67,7 @@ TEST_CASE("the circle on a full-frame sensor is the one on film, in pixels") {
 
 TEST_CASE("a picture upright has the sensor upright, one of another shape the largest part of it") {
   PhotoLens photo;
-  photo.lens.focus_m = 2.0;
+  photo.lens.given[&ThinLens::focus_m] = 2.0;
   photo.sensor = Sensor{"full-frame", 36.0, 24.0};
   const auto at_infinity = [&](int width, int height) {
     const DepthMap map{width, height,
@@ -81,7 +81,7 @@ TEST_CASE("a picture upright has the sensor upright, one of another shape the la
 
 TEST_CASE("--focal-px and --fov say the same field of view") {
   PhotoLens photo;
-  photo.lens.focus_m = 2.0;
+  photo.lens.given[&ThinLens::focus_m] = 2.0;
   const DepthMap map = square_depths();
   const SettledLens by_pixels = settle_lens(photo, {}, 5.0, map);  // half of the height: 90 degrees
   photo.fov_y_degrees = 90.0;
@@ -92,7 +92,7 @@ TEST_CASE("--focal-px and --fov say the same field of view") {
 
 TEST_CASE("a field of view by degrees has the bits of pixel_coc()") {
   PhotoLens photo;
-  photo.lens.focus_m = 1.1;
+  photo.lens.given[&ThinLens::focus_m] = 1.1;
   photo.fov_y_degrees = 28.0;
   const SettledLens lens = settled(photo);
   CHECK(lens.coc.radius_at_infinity_px ==
@@ -127,7 +127,7 @@ TEST_CASE("focus where nothing has a depth is refused") {
 TEST_CASE("the blur at infinity alone is a lens") {
   PhotoLens photo;
   photo.blur_at_infinity_px = 12.0;
-  photo.lens.focus_m = 2.0;
+  photo.lens.given[&ThinLens::focus_m] = 2.0;
   const SettledLens lens = settled(photo);
   CHECK_FALSE(lens.has_lens);
   CHECK(lens.coc.radius_at_infinity_px == 12.0f);

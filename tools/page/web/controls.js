@@ -3,7 +3,7 @@
 import { by_id, element } from "./dom.js";
 import { make_number } from "./numbers.js";
 import { kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
-import { kSizes, parameters, sensors } from "./state.js";
+import { kSizes, lens_keys, parameters, sensors } from "./state.js";
 
 function checked_of(name) {
   return document.querySelector(`input[name="${name}"]:checked`)?.value;
@@ -24,13 +24,23 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
   let methods = [];
   const side = (patch) => store.change_side(patch);
   const numbers = {};
+  const known = new Set();
 
   /** A control of what the module has a parameter for: `key`. */
   function add(name, key, control) {
     const { least, most, unit } = parameters[key];
+    known.add(key);
     numbers[name] = make_number(by_id(`${name}-part`), {
       id: name, tip: key, min: least, max: most, unit: unit === "degrees" ? "°" : unit,
       get: () => store.side()[key], set: (value) => side({ [key]: value }), ...control });
+  }
+
+  /** A number of the lens that has no control of its own: the whole range, under the others. */
+  function add_plain(key) {
+    const { name, least, most } = parameters[key];
+    by_id("coc-scale-part").after(element("div", { id: `${name}-part`, class: "number" }));
+    const label = name[0].toUpperCase() + name.slice(1).replaceAll("-", " ");
+    add(name, key, { label, from: least, to: most });
   }
 
   /** Once the parameters are known. The sliders' ends are the usual range, for a hand. */
@@ -50,6 +60,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
                                    digits: 2, get: max_coc, shown_digits: () => 4 });
     add("coc-scale", "coc_scale", { label: "Scale of the circles", unit: "×", key: "K",
                                     curve: "root", from: 0, to: 10, digits: 2 });
+    for (const key of lens_keys().filter((one) => !known.has(one))) add_plain(key);
     add("samples", "samples", {
       label: "Points of the lens", values: [1, 4, 16, 64, 256, 1024, 4096],
       set: (value) => side({ samples: Math.round(value) }),

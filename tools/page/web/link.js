@@ -2,12 +2,19 @@
 // digits, so that the same picture comes back, to the bit. What cannot be read is left at its
 // default, so an old link still opens.
 
-import { first_side, first_state, kShows } from "./state.js";
+import { first_side, first_state, kShows, lens_keys } from "./state.js";
 
-const kSideKeys = {
+const kShortKeys = {
   method: "method", f: "focal_length_mm", N: "f_number", max: "max_coc_px", scale: "coc_scale",
   samples: "samples",
 };
+
+/** Pairs of a key of links and its name in a side. A number of the lens is called as there. */
+function side_keys() {
+  const short = Object.values(kShortKeys);
+  const others = lens_keys().filter((key) => key !== "focus_m" && !short.includes(key));
+  return [...Object.entries(kShortKeys), ...others.map((key) => [key, key])];
+}
 
 function numbers_of(text, count) {
   const numbers = text.split(",").map(Number);
@@ -16,7 +23,7 @@ function numbers_of(text, count) {
 
 function write_side(pairs, side, prefix) {
   pairs.push([`${prefix}dof`, side.dof ? "1" : "0"]);
-  for (const [key, name] of Object.entries(kSideKeys)) {
+  for (const [key, name] of side_keys()) {
     const value = side[name];
     if (value === null) continue;
     pairs.push([prefix + key, String(value)]);
@@ -86,7 +93,7 @@ export function state_to_open(words) {
 function read_side(words, prefix, side) {
   const read = { ...side };
   if (words.has(`${prefix}dof`)) read.dof = words.get(`${prefix}dof`) !== "0";
-  for (const [key, name] of Object.entries(kSideKeys)) {
+  for (const [key, name] of side_keys()) {
     const text = words.get(prefix + key);
     if (text === undefined) continue;
     if (name === "method") read.method = text;

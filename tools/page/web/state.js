@@ -12,6 +12,15 @@ export function set_parameters(of_module, known_sensors) {
   sensors.splice(0, sensors.length, ...known_sensors);
 }
 
+/** The keys of the lens's numbers. */
+export const lens_keys = () => Object.keys(parameters).filter((key) => parameters[key].of_lens);
+
+/** A lens's numbers out of something that has more; the focus is `side.focus`. */
+function lens_of(from) {
+  const keys = lens_keys().filter((key) => key !== "focus_m");
+  return Object.fromEntries(keys.map((key) => [key, from(key)]));
+}
+
 const preset = (key) => parameters[key]?.preset ?? null;
 
 /** One of the two settings that can be compared: a method and its lens. */
@@ -21,8 +30,7 @@ export function first_side() {
     method: "two-pass",
     /** Metres, or a place in the picture, 0..1 from the top left. */
     focus: { m: preset("focus_m") },
-    focal_length_mm: preset("focal_length_mm"),
-    f_number: preset("f_number"),
+    ...lens_of(preset),
     max_coc_px: null,  // null: the scene's, or what the method does best with
     coc_scale: preset("coc_scale"),
     samples: preset("samples"),
@@ -50,9 +58,9 @@ export function first_state() {
 
 /** The state with the camera and lens that a scene or a picture asks for. */
 export function with_scene(state, opened) {
-  const { focus_m, focal_length_mm, f_number, coc_scale } = opened.lens;
+  const { focus_m, coc_scale } = opened.lens;
   const side = {
-    ...first_side(), focal_length_mm, f_number, coc_scale,
+    ...first_side(), ...lens_of((key) => opened.lens[key]), coc_scale,
     focus: opened.autofocus ? { at: [0.5, 0.5] } : { m: focus_m },
   };
   const sides = state.sides.map((old) => ({ ...side, dof: old.dof, method: old.method,
@@ -86,8 +94,7 @@ export function frame_request(state, side, preview, hash = true) {
     method: side.dof || !measured ? side.method : "pinhole",
     show: state.show === "coc" || state.show === "depth" ? state.show : "image",
     focus: side.focus,
-    focal_length_mm: side.focal_length_mm,
-    f_number: side.f_number,
+    ...lens_of((key) => side[key]),
     max_coc_px: side.max_coc_px,
     coc_scale: side.coc_scale,
     samples: side.samples,

@@ -36,7 +36,7 @@ export function start_tips() {
   }
 
   function show(button) {
-    const [words, equation, source] = kTips[button.dataset.tip];
+    const [words, equation, source] = kTips[button.dataset.tip] ?? [null, "", "dof/lens.h"];
     hide();
     owner = button;
     tip.replaceChildren(words ?? parameters[button.dataset.tip].text, document.createElement("br"),

@@ -3,6 +3,7 @@
 
 import { announce, by_id, copy_text, element, save_text, show_error } from "../dom.js";
 import { kBackground } from "../engine.js";
+import { lens_keys, parameters } from "../state.js";
 import { depth_words } from "./picture.js";
 
 const kSlice = 8;  // golden hashes a request
@@ -16,9 +17,9 @@ function needs_file(state) {
 function lens_words({ picture: { size } }, side) {
   const pixel = side.focus.at?.map((part, axis) => Math.min(
       size[axis] - 1, Math.floor(part * size[axis])));
+  const others = lens_keys().filter((key) => key !== "focus_m");
   return [pixel ? `--focus-at ${pixel.join(",")}` : `--focus ${side.focus.m}`,
-          `--focal-length ${side.focal_length_mm}`, `--f-number ${side.f_number}`,
-          `--coc-scale ${side.coc_scale}`];
+          ...[...others, "coc_scale"].map((key) => `--${parameters[key].name} ${side[key]}`)];
 }
 
 const name_of = (path) => {
