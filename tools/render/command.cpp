@@ -27,7 +27,6 @@
 #include "tools/render/picture_files.h"
 #include "tools/render/render_frames.h"
 #include "tools/render/shard_file.h"
-#include "tools/render/shot.h"
 
 namespace softfocus {
 namespace {

@@ -1,5 +1,5 @@
-#pragma once
 // Everything that `render` is told.
+#pragma once
 
 #include <array>
 #include <filesystem>
@@ -97,5 +97,25 @@ void check_soft_memory(const RenderOptions& options);
 /// --autofocus may stand without a value, and CLI11 would take the next argument for
 /// it, a scene perhaps. So what follows is joined to it with "=": the pixel, or "centre".
 std::vector<std::string> with_autofocus_joined(std::vector<std::string> arguments);
+
+// From the options of `render` to the shot that the frame maker takes.
+
+/// What is asked for of this scene. Throws UsageError for a lens that cannot be. `sequence` is that
+/// of frames that depend on those before.
+Shot asked_shot(const RenderOptions& options, const Scene& scene, FrameSequence& sequence);
+
+/// Says in the words of the options why a lens cannot be.
+[[noreturn]] void refuse_lens(const LensError& error, const RenderOptions& options);
+
+/// That of --frames, or of the one frame.
+FrameSequence frame_sequence(const RenderOptions& options);
+
+/// The effect that makes frames from those before, if there is one. Throws UsageError if it does
+/// not go with the other options.
+std::optional<ChosenEffect> checked_effect_of_frames(const RenderOptions& options,
+                                                     const Scene& scene);
+
+/// The pixel of --autofocus.
+Pixel focus_pixel(const RenderOptions& options);
 
 }  // namespace softfocus

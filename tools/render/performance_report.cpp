@@ -6,7 +6,7 @@
 #include "tools/files/hash_text.h"
 #include "tools/files/json.h"
 #include "tools/info/candidates.h"
-#include "tools/render/shot.h"
+#include "tools/render/options.h"
 
 namespace softfocus {
 namespace {

@@ -8,7 +8,7 @@
 #include "tools/pictures/picture_notes.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
-#include "tools/render/shot.h"
+#include "tools/render/options.h"
 #include "tools/sequence/journal.h"
 
 namespace softfocus {
