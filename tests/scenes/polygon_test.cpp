@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "raster/numbers/exact_math.h"
+#include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
 
 using namespace softfocus;
@@ -60,6 +61,95 @@ Polygon comb(double size, glm::dvec3 place) {
     polygon.push_back(place + glm::dvec3{x, y, 0.5 * x} * size);
   }
   return polygon;
+}
+
+// What the even-odd rule counts as inside, of an outline in z = 0 that may touch itself but does
+// not cross itself: between the heights of two corners its edges have an order.
+double even_odd_area(const Polygon& polygon) {
+  std::vector<double> heights;
+  for (const glm::dvec3& p : polygon) heights.push_back(p.y);
+  std::ranges::sort(heights);
+  double area = 0.0;
+  for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
+    const double low = heights[i], high = heights[i + 1], middle = (low + high) / 2.0;
+    if (low == high) continue;
+    std::vector<double> crossings;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const glm::dvec3 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+      if ((a.y < middle) == (b.y < middle)) continue;
+      crossings.push_back(a.x + (middle - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+    std::ranges::sort(crossings);
+    for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
+      area += (crossings[k + 1] - crossings[k]) * (high - low);
+    }
+  }
+  return area;
+}
+
+bool is_even_odd_inside(const Polygon& polygon, double x, double y) {
+  bool inside = false;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const glm::dvec3 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+    if ((a.y < y) == (b.y < y)) continue;
+    if (x < a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+  }
+  return inside;
+}
+
+// Outlines such as exporters make: concave, with doubled and straight corners, spikes, and holes
+// joined by bridges, some of which run along an edge. Coordinates are multiples of 2^-12, so that
+// what lies on an edge does so exactly.
+Polygon random_outline(std::uint64_t seed) {
+  std::uint64_t draws = 0;
+  const auto random = [&](double low, double high) {
+    const auto bits = mix_bits(seed * 1'000'003 + draws++);
+    return low + (high - low) * static_cast<double>(bits >> 40) / static_cast<double>(1 << 24);
+  };
+  const auto chance = [&](double share) { return random(0.0, 1.0) < share; };
+  const auto on_grid = [](double x) { return std::round(x * 1024.0) / 1024.0; };
+  const auto star = [&](double x, double y, double least, double most, int corners) {
+    Polygon polygon;
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 360.0 * (i + random(0.3, 0.7)) / corners;
+      const double radius = random(least, most);
+      polygon.emplace_back(on_grid(x + radius * exact_math::cos_degrees(angle)),
+                           on_grid(y + radius * exact_math::sin_degrees(angle)), 0.0);
+    }
+    return polygon;
+  };
+  Polygon outline = star(0.0, 0.0, 1.0, 4.0, 8 + static_cast<int>(random(0, 12)));
+  if (chance(0.5)) {
+    // A hole in the half that lies to the right of the first corner's ray, whose bridge leaves the
+    // corner itself or a place on its edge and comes in at the hole's corner or along its edge.
+    const glm::dvec3 first = outline[0];
+    const double nearer = 1.0 / 8.0;
+    Polygon hole{{first.x * nearer, first.y * nearer, 0.0}};
+    hole.push_back(hole[0] * 2.0);  // on the ray
+    hole.push_back({hole[0].x + hole[0].y / 2.0, hole[0].y - hole[0].x / 2.0, 0.0});
+    std::vector<std::size_t> way{1, 2, 0, 1};
+    if (chance(0.5)) way = {0, 1, 2, 0};         // comes along the hole's edge
+    if (chance(0.3)) std::ranges::reverse(way);  // a hole that runs as the outline does
+    Polygon with_hole{first};
+    for (const std::size_t at : way) with_hole.push_back(hole[at]);
+    with_hole.insert(with_hole.end(), outline.begin(), outline.end());
+    outline = with_hole;
+  }
+  Polygon decorated;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec3 p = outline[i], next = outline[(i + 1) % outline.size()];
+    decorated.push_back(p);
+    while (chance(0.2)) decorated.push_back(p);
+    if (chance(0.2)) {  // on the edge, and perhaps back again
+      decorated.push_back((p + next) / 2.0);
+      if (chance(0.3)) decorated.push_back((p + (p + next) / 2.0) / 2.0);
+    }
+  }
+  const auto start =
+      static_cast<std::ptrdiff_t>(random(0.0, static_cast<double>(decorated.size())));
+  std::ranges::rotate(decorated, decorated.begin() + start);
+  if (chance(0.5)) std::ranges::reverse(decorated);
+  return decorated;
 }
 
 }  // namespace
@@ -128,6 +218,44 @@ TEST_CASE("a round polygon of a thousand corners is covered") {
     round.emplace_back(exact_math::cos_degrees(degrees), 0.0, exact_math::sin_degrees(degrees));
   }
   check_covered(round);
+}
+
+TEST_CASE("outlines that touch themselves have the area of the even-odd rule") {
+  int holes = 0;
+  for (std::uint64_t seed = 0; seed < 5000; ++seed) {
+    CAPTURE(seed);
+    const Polygon outline = random_outline(seed);
+    const auto triangles = triangulate_polygon(outline);
+    REQUIRE(triangles.size() == outline.size() - 2);
+    const double wound = area_vector(outline).z;
+    double sum = 0.0;
+    for (const auto& [a, b, c] : triangles) {
+      const double part = cross(outline[b] - outline[a], outline[c] - outline[a]).z;
+      CHECK(part * wound >= 0.0);
+      sum += std::fabs(part) / 2.0;
+    }
+    CHECK(sum == doctest::Approx(even_odd_area(outline)).epsilon(1e-9));
+    for (int i = 0; i < 20; ++i) {
+      const auto place = [&](int axis) {
+        return static_cast<double>(mix_bits(seed * 40 + static_cast<std::uint64_t>(2 * i + axis)) >>
+                                   40) /
+                   static_cast<double>(1 << 24) * 8.0 -
+               4.0;
+      };
+      const glm::dvec3 p{place(0), place(1), 0.0};
+      int covered = 0;
+      for (const auto& [a, b, c] : triangles) {
+        const auto side = [&](std::uint32_t from, std::uint32_t to) {
+          return cross(outline[to] - outline[from], p - outline[from]).z * wound >= 0.0;
+        };
+        const bool has_area = cross(outline[b] - outline[a], outline[c] - outline[a]).z != 0.0;
+        covered += has_area && side(a, b) && side(b, c) && side(c, a) ? 1 : 0;
+      }
+      CHECK(covered == (is_even_odd_inside(outline, p.x, p.y) ? 1 : 0));
+      holes += covered;
+    }
+  }
+  CHECK(holes > 10000);
 }
 
 TEST_CASE("what crosses itself or has no area still gives corners - 2 triangles") {
