@@ -120,6 +120,7 @@ struct Mesh {
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> uvs;
   std::vector<std::uint32_t> indices;
+  std::vector<glm::vec3> colours{};  ///< multiply ambient and diffuse; one a vertex or none
 };
 
 /// A mesh put into the world: scaled, then turned about x, y and z in that order,
@@ -127,6 +128,7 @@ struct Mesh {
 struct Object {
   std::uint32_t mesh = 0;
   std::uint32_t material = 0;
+  glm::dvec3 mesh_origin{0.0};  ///< what was subtracted from the mesh's positions
   glm::dvec3 position{0.0};
   glm::dvec3 rotation_degrees{0.0};
   glm::dvec3 scale{1.0};
@@ -158,6 +160,7 @@ struct Scene {
   std::vector<ChosenEffect> effects;  ///< on the finished picture
   /// What was missing, a line each: a model's texture, say.
   std::vector<std::string> warnings;
+  std::vector<std::string> notes{};  ///< what was chosen for it, a line each
   /// What it was read from: the scene's file, models, material libraries, textures.
   std::vector<std::filesystem::path> files;
 };

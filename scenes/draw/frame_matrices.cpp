@@ -82,7 +82,11 @@ glm::dmat4 object_matrix(const Object& object, double frame) {
   }
   const glm::dmat4 turned =
       multiply(multiply(turn(0, 1, degrees.z), turn(2, 0, degrees.y)), turn(1, 2, degrees.x));
-  return multiply(move, multiply(turned, scale));
+  const glm::dmat4 to_world = multiply(move, multiply(turned, scale));
+  if (object.mesh_origin == glm::dvec3{0.0}) return to_world;
+  glm::dmat4 origin{1.0};
+  for (int i = 0; i < 3; ++i) origin[3][i] = object.mesh_origin[i];
+  return multiply(to_world, origin);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "dof/halve.h"
@@ -216,14 +217,47 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   }
 }
 
+namespace {
+
+/// The pixel that fits and is nearest to another, or this if none fits.
+template <class Fits>
+glm::ivec2 nearest_pixel(glm::ivec2 middle, int width, int height, const Fits& fits) {
+  if (fits(middle)) return middle;
+  glm::ivec2 nearest = middle;
+  int least = std::numeric_limits<int>::max();
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const glm::ivec2 away = glm::ivec2{x, y} - middle;
+      const int distance = away.x * away.x + away.y * away.y;
+      if (distance >= least || !fits({x, y})) continue;
+      least = distance;
+      nearest = {x, y};
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
 std::optional<UsedLens> focused_lens(const Shot& shot, const DrawnFrame& drawn, ThreadPool& pool) {
   if (!shot.lens) return {};
   const ShotLens& wanted = *shot.lens;
   const Image& picture = drawn.parts.picture();
   UsedLens used{.lens = wanted.lens, .coc_scale = wanted.coc_scale, .settings = wanted.settings};
   if (wanted.focus_at) {
-    const glm::ivec2 at = *wanted.focus_at * shot.supersample + shot.supersample / 2;
-    used.lens.focus_m = static_cast<double>(load_texel<Format::rgba16f>(picture, at.x, at.y).w);
+    const auto depth_at = [&](glm::ivec2 pixel) {
+      const glm::ivec2 at = pixel * shot.supersample + shot.supersample / 2;
+      return load_texel<Format::rgba16f>(picture, at.x, at.y).w;
+    };
+    used.focus_at = wanted.focus_at;
+    if (wanted.focuses_on_a_thing) {
+      const float background = alpha_depth(static_cast<float>(shot.scene->camera.far_m));
+      const auto is_thing = [&](glm::ivec2 pixel) {
+        return depth_at(pixel) < background * 0.999f;  // which is rounded to half
+      };
+      used.focus_at = nearest_pixel(*wanted.focus_at, shot.width, shot.height, is_thing);
+    }
+    used.lens.focus_m = static_cast<double>(depth_at(*used.focus_at));
   }
   if (wanted.sharp_depths.empty()) {
     if (const char* error = lens_error(used.lens)) throw LensError(error, used);

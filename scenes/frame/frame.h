@@ -54,6 +54,7 @@ struct ShotLens {
   double coc_scale = 1.0;
   /// The pixel of the picture whose depth is the focus, in place of the lens's.
   std::optional<glm::ivec2> focus_at = {};
+  bool focuses_on_a_thing = false;  ///< the nearest pixel to focus_at that is no background
   /// In pixels of what is drawn. `coc` is not looked at.
   DofSettings settings = {};
   bool cuts_no_circle = false;  ///< max_coc_px is the largest circle of what is drawn
@@ -106,7 +107,8 @@ struct UsedLens {
   double coc_scale = 1.0;
   double aperture_radius_m = 0.0;  ///< exaggerated by coc_scale
   DofSettings settings{};
-  std::vector<float> radii_px{};  ///< by ShotLens::sharp_depths
+  std::vector<float> radii_px{};            ///< by ShotLens::sharp_depths
+  std::optional<glm::ivec2> focus_at = {};  ///< whose depth became the focus
 };
 
 /// A lens that cannot be, once its focus is known, or that Shot::arithmetic cannot hold.

@@ -26,11 +26,14 @@ RayMesh ray_mesh(const SurfaceDraw& draw, const glm::dmat4& world_to_eye, const 
     mesh.normals.push_back(normal);
     const glm::vec3 anywhere{0.0f, 0.0f, 1.0f};
     for (int side = 0; side < 2; ++side) {
-      mesh.base[side].push_back(material.lit
-                                    ? light_point(material, input.ambient_light, input.lights,
-                                                  world, side == 0 ? normal : -normal, anywhere)
-                                          .base
-                                    : material.diffuse);
+      glm::vec3 base = material.diffuse;
+      if (material.lit) {
+        base = light_point(material, input.ambient_light, input.lights, world,
+                           side == 0 ? normal : -normal, anywhere)
+                   .base;
+      }
+      if (!input.mesh->colours.empty()) base *= input.mesh->colours[i];
+      mesh.base[side].push_back(base);
     }
   }
   return mesh;

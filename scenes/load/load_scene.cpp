@@ -227,6 +227,12 @@ bool has_extension(std::string_view path, std::string_view extension) {
 }
 
 [[noreturn]] void fail_unknown(std::string_view name, const std::vector<SceneListing>& listings) {
+  std::error_code unreadable;
+  if (std::filesystem::exists(name, unreadable)) {
+    throw SceneError(std::string{name} +
+                     ": scenes are .toml files and models .obj files; Blender, MeshLab and assimp "
+                     "write others as .obj");
+  }
   std::vector<std::string> there;
   std::string names;
   for (const SceneListing& listing : listings) {

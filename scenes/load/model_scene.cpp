@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
@@ -118,8 +120,9 @@ void fit_lens(Scene& scene) {
   const double aperture_m = 2.0 * kModelCocPx / (largest * pixels);
   ThinLens& lens = scene.lens.lens;
   lens.focus_m = focus;
-  lens.focal_length_mm = focus * 1000.0 / 20.0;
-  lens.f_number = lens.focal_length_mm / (aperture_m * 1000.0);
+  lens.focal_length_mm = std::min(50.0, focus * 50.0);
+  lens.f_number = 2.0;
+  scene.lens.coc_scale = aperture_m * 1000.0 * lens.f_number / lens.focal_length_mm;
 }
 
 }  // namespace
@@ -131,7 +134,9 @@ void add_model(Scene& scene, ObjModel model, const Object& placement,
   for (ObjModel::Part& part : model.parts) {
     Object object = placement;
     object.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+    object.mesh_origin = model.origin;
     object.material = material.value_or(first_material + part.material);
+    if (!material) place_uvs(part.mesh, part.placement);
     scene.meshes.push_back(std::move(part.mesh));
     scene.objects.push_back(object);
   }
@@ -157,9 +162,19 @@ Scene make_model_scene(ObjModel model, const std::string& name) {
       {LightKind::directional, {-0.5f, 0.9f, 0.8f}, {1.05f, 1.0f, 0.92f}},
       {LightKind::directional, {1.0f, 0.25f, 0.35f}, {0.25f, 0.28f, 0.34f}},
   };
+  model.origin = glm::dvec3{0.0};
   add_model(scene, std::move(model), Object{}, std::nullopt);
   fit_camera(scene);
   fit_lens(scene);
+  const SceneLens& lens = scene.lens;
+  const auto rounded = [](double value) {
+    std::ostringstream text;
+    text << std::setprecision(3) << value;
+    return text.str();
+  };
+  scene.notes.push_back(name + ": a lens of " + rounded(lens.lens.focal_length_mm) + " mm at f/" +
+                        rounded(lens.lens.f_number) + ", focused at " + rounded(lens.lens.focus_m) +
+                        " m, circles " + rounded(lens.coc_scale) + " times as large (--coc-scale)");
   return scene;
 }
 

@@ -21,9 +21,9 @@ void add_model(Scene& scene, ObjModel model, const Object& placement,
 ///           90 % of a square picture; 40 degrees
 ///   focus   where the middle of the picture first meets the model, or the middle of
 ///           the model's depth where it meets none
-///   lens    focal length 1/20 of the focus distance (50 mm at 1 m), and the f-number
-///           that gives the point of the model farthest out of focus a circle of
-///           kModelCocPx, whatever the model's size
+///   lens    50 mm (nearer than 1 m: 1/20 of the focus distance) at f/2, and circles so
+///           much larger or smaller that the point of the model farthest out of focus has one
+///           of kModelCocPx, whatever the model's size
 ///   light   a key from the upper left, a weak fill from the right, neutral grey behind
 Scene make_model_scene(ObjModel model, const std::string& name);
 

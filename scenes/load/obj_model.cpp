@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <string>
 
 #include "raster/numbers/vector_math.h"
 #include "scenes/files/file_bytes.h"
@@ -164,7 +167,9 @@ void append_corner(GrowingPart& growing, const ObjText& obj,
   const auto [vertex, is_new] = growing.vertices.number(key_of(corner));
   mesh.indices.push_back(vertex);
   if (!is_new) return;
-  mesh.positions.push_back(obj.positions[static_cast<std::size_t>(corner.position)]);
+  const auto position = static_cast<std::size_t>(corner.position);
+  mesh.positions.push_back(obj.positions[position]);
+  if (!obj.colours.empty()) mesh.colours.push_back(obj.colours[position]);
   mesh.normals.push_back(all_normals[static_cast<std::size_t>(corner.normal)]);
   glm::vec2 uv{0.0f};
   if (corner.uv >= 0) {
@@ -233,10 +238,56 @@ void check_size(const std::vector<Triangle>& triangles, const ObjText& obj,
                    ": no face has an area; a model at least 1e-9 across would be right");
 }
 
+// The middle of the corners, in whole units, where it is so far from the origin that binary32 would
+// lose more than six bits of the model; else the origin.
+glm::dvec3 far_middle(const ObjText& obj) {
+  constexpr double kFar = 64.0;  // halves of the size
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high = -low;
+  for (const ObjCorner& corner : obj.corners) {
+    const glm::dvec3 p{obj.positions[static_cast<std::size_t>(corner.position)]};
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::dvec3 half = (high - low) / 2.0;
+  const glm::dvec3 middle = (low + high) / 2.0;
+  const double size = std::max({half.x, half.y, half.z});
+  const double away = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z)});
+  if (!(away > kFar * size && away > kFar)) return glm::dvec3{0.0};
+  return {std::round(middle.x), std::round(middle.y), std::round(middle.z)};
+}
+
+std::string whole_text(glm::dvec3 v) {
+  std::string text = "(";
+  for (int axis = 0; axis < 3; ++axis) {
+    text.append(axis == 0 ? "" : ", ").append(std::to_string(static_cast<std::int64_t>(v[axis])));
+  }
+  return text.append(")");
+}
+
+// A model of which nothing would show: d and Tr are taken for each other by exporters.
+void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjModel& model) {
+  const auto is_shown = [&](const ObjFace& face) {
+    return face.material < 0 ||
+           model.materials[static_cast<std::size_t>(face.material)].opacity > 0;
+  };
+  if (std::ranges::any_of(obj.faces, is_shown)) return;
+  for (Material& material : model.materials) {
+    if (material.opacity > 0.0f) continue;
+    material.opacity = 1.0f;
+    model.warnings.push_back(printable(file.string() + ": material " + material.name +
+                                       " is invisible, as all of the model would be; it is drawn "
+                                       "opaque"));
+  }
+}
+
 }  // namespace
 
 ObjModel load_obj_model(const std::filesystem::path& file) {
-  ObjText obj = parse_obj_text(read_file_bytes(file, kMaxObjBytes), file.string());
+  const std::string text = read_file_text(file, kMaxObjBytes);
+  ObjText obj = parse_obj_text(text, file.string());
+  const glm::dvec3 origin = far_middle(obj);
+  if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin);
   const std::vector<std::uint32_t> place_of = number_places(obj);
   const std::size_t face_count = obj.faces.size();
   const std::size_t doubled = drop_doubled_faces(obj, place_of);
@@ -248,11 +299,17 @@ ObjModel load_obj_model(const std::filesystem::path& file) {
   MtlMaterials library;
   load_libraries(obj, file, library);
   ObjModel model;
+  model.origin = origin;
   model.materials = list_materials(obj, file, library);
   model.textures = std::move(library.textures);
   model.files = std::move(library.files);
   model.files.push_back(file);
   for (const std::string& warning : obj.warnings) model.warnings.push_back(printable(warning));
+  show_invisible(obj, file, model);
+  if (origin != glm::dvec3{0.0}) {
+    model.warnings.push_back(printable(file.string()) + ": is far from the origin for its size; " +
+                             whole_text(origin) + " is subtracted from its positions");
+  }
   if (doubled > 0) {
     model.warnings.push_back(printable(file.string()) + ": " + std::to_string(doubled) + " of " +
                              std::to_string(face_count) +
@@ -270,7 +327,12 @@ ObjModel load_obj_model(const std::filesystem::path& file) {
     const std::size_t material = named >= 0 ? static_cast<std::size_t>(named) : without_material;
     if (!part_of[material]) {
       part_of[material] = growing.size();
-      growing.emplace_back().part.material = static_cast<std::uint32_t>(material);
+      ObjModel::Part& part = growing.emplace_back().part;
+      part.material = static_cast<std::uint32_t>(material);
+      if (named >= 0) {
+        const auto placed = library.placements.find(obj.material_names[material]);
+        if (placed != library.placements.end()) part.placement = placed->second;
+      }
     }
     for (const ObjCorner& corner : triangle.corners) {
       append_corner(growing[*part_of[material]], obj, all_normals, corner);

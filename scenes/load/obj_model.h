@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "scenes/load/mtl_file.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
 
-/// A model split by material. Positions are the file's; textures and materials are
-/// numbered from 0.
+/// A model split by material. Textures and materials are numbered from 0.
 struct ObjModel {
   std::vector<Texture> textures;
   std::vector<Material> materials;  ///< two-sided
@@ -18,8 +18,10 @@ struct ObjModel {
   struct Part {
     Mesh mesh;
     std::uint32_t material = 0;
+    UvPlacement placement{};  ///< of the material's textures, not yet applied
   };
   std::vector<Part> parts;
+  glm::dvec3 origin{0.0};  ///< what was subtracted from the file's positions
   /// What was missing, a line each.
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> files;  ///< the model, its libraries and their textures
@@ -33,6 +35,10 @@ struct ObjModel {
 ///
 /// A face whose corners lie where another's do, in the same or the reverse order, is left out; a
 /// warning counts them. The first one of the file stays, with its material.
+///
+/// Of a model that is far from the origin for its size, as a map's coordinates are, the middle
+/// is subtracted before positions are rounded, and a warning tells it. If all materials in use
+/// are invisible, they are opaque instead. Vertex colours come with the meshes.
 ///
 /// Polygons become triangles. Missing normals are made: of a smooth surface, or as the
 /// smoothing groups say where there are any. Faces without normals are turned to fit

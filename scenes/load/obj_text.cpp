@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -43,9 +44,9 @@ std::string_view trimmed(std::string_view text) {
                            : "\"" + std::string(word.substr(0, 40)) + "\" is no number");
 }
 
-// The numbers of a v or vn line.
-glm::vec3 read_vector(const Place& place, std::string_view line) {
-  glm::vec3 vector{0.0f};
+// Takes a position off a v line.
+glm::vec3 read_position(const Place& place, std::string_view& line, glm::dvec3 origin) {
+  glm::vec3 position{0.0f};
   for (int i = 0; i < 3; ++i) {
     const std::string_view word = next_word(line);
     const auto number = decimal_to_float(word);
@@ -54,9 +55,32 @@ glm::vec3 read_vector(const Place& place, std::string_view line) {
       fail(place, std::string(word.substr(0, 40)) +
                       " is out of range; a number from -1e9 to 1e9 would be right");
     }
-    vector[i] = *number;
+    position[i] =
+        origin[i] == 0.0 ? *number : static_cast<float>(*decimal_to_double(word) - origin[i]);
   }
-  return vector;
+  return position;
+}
+
+// What follows a position: r g b, and perhaps more. A fourth number alone is a weight.
+std::optional<glm::vec3> read_colour(std::string_view line) {
+  glm::vec3 colour{0.0f};
+  for (int i = 0; i < 3; ++i) {
+    const auto number = decimal_to_float(next_word(line));
+    if (!number || !(*number >= 0.0f && *number <= 255.0f)) return std::nullopt;
+    colour[i] = *number;
+  }
+  return colour;
+}
+
+// One of length 0, which counts as none, if it is none.
+std::optional<glm::vec3> read_normal(std::string_view line) {
+  glm::vec3 normal{0.0f};
+  for (int i = 0; i < 3; ++i) {
+    const auto number = decimal_to_float(next_word(line));
+    if (!number || !(std::fabs(*number) <= kLargestCoordinate)) return std::nullopt;
+    normal[i] = *number;
+  }
+  return normal;
 }
 
 // One index of a corner such as 7/-1/3; `count` is how many there are so far, from
@@ -117,8 +141,7 @@ glm::vec2 read_uv(const Place& place, std::string_view line, Tolerated& out_of_r
     const std::string_view word = next_word(line);
     if (word.empty() && i > 0) break;
     const auto number = decimal_to_float(word);
-    if (!number) fail_as_number(place, word, i, 1);
-    if (!(std::fabs(*number) <= kLargestCoordinate)) {
+    if (!number || !(std::fabs(*number) <= kLargestCoordinate)) {
       tolerate(out_of_range, place);
       return glm::vec2{0.0f};
     }
@@ -148,8 +171,9 @@ std::string_view next_line(std::string_view& text, std::string& joined, std::siz
     const std::size_t ending = text.substr(end).starts_with("\r\n") ? 2 : 1;
     text.remove_prefix(std::min(end + ending, text.size()));
     ++line_count;
-    const bool continues = line.ends_with('\\');
-    if (continues) line.remove_suffix(1);
+    const std::size_t last = line.find_last_not_of(kBlanks);
+    const bool continues = last != line.npos && line[last] == '\\';
+    if (continues) line = line.substr(0, last);
     if (!continues && joined.empty()) return line;
     joined.append(line).append(" ");
     if (!continues || text.empty()) return joined;
@@ -158,7 +182,7 @@ std::string_view next_line(std::string_view& text, std::string& joined, std::siz
 
 }  // namespace
 
-ObjText parse_obj_text(std::string_view text, const std::string& file) {
+ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec3 origin) {
   Place place{file};
   if (text.find('\0') != std::string_view::npos) {
     throw SceneError(file + ": is binary; an OBJ model is text");
@@ -167,7 +191,7 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
   ObjText obj;
   FaceState state;
   std::vector<std::size_t> face_lines;
-  Tolerated short_faces, wild_uvs, missing_uvs;
+  Tolerated short_faces, wild_uvs, missing_uvs, wild_normals, bright_colours;
   std::unordered_map<std::string, std::int32_t> number_of_material;
   std::unordered_set<std::string> known_libraries;
   std::string joined;
@@ -177,11 +201,19 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
     std::string_view line = next_line(text, joined, lines_read);
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
-      obj.positions.push_back(read_vector(place, line));
+      obj.positions.push_back(read_position(place, line, origin));
+      const auto colour = read_colour(line);
+      if (!colour && obj.colours.empty()) continue;
+      obj.colours.resize(obj.positions.size() - 1, glm::vec3{1.0f});
+      obj.colours.push_back(colour.value_or(glm::vec3{1.0f}));
+      const glm::vec3& last = obj.colours.back();
+      if (std::max({last.x, last.y, last.z}) > 1.0f) tolerate(bright_colours, place);
     } else if (keyword == "vt") {
       obj.uvs.push_back(read_uv(place, line, wild_uvs));
     } else if (keyword == "vn") {
-      obj.normals.push_back(read_vector(place, line));
+      const auto normal = read_normal(line);
+      if (!normal) tolerate(wild_normals, place);
+      obj.normals.push_back(normal.value_or(glm::vec3{0.0f}));
     } else if (keyword == "f") {
       ObjFace face{static_cast<std::uint32_t>(obj.corners.size()), 0, state.material,
                    state.smoothing_group};
@@ -241,6 +273,13 @@ ObjText parse_obj_text(std::string_view text, const std::string& file) {
        " faces have fewer than 3 corners and are left out");
   warn(obj, place, wild_uvs, "a texture coordinate is out of range; 0 stands in",
        " texture coordinates are out of range; 0 stands in");
+  warn(obj, place, wild_normals, "a normal is no direction and is left out",
+       " normals are no directions and are left out");
+  if (bright_colours.count > 0) {
+    for (glm::vec3& colour : obj.colours) colour /= 255.0f;
+    warn(obj, place, bright_colours, "a colour is beyond 1: colours are taken for 0 to 255",
+         " colours are beyond 1: they are taken for 0 to 255");
+  }
   warn(obj, place, missing_uvs, "a corner's texture coordinate is not there; it gets none",
        " corners' texture coordinates are not there; they get none");
   return obj;

@@ -31,7 +31,8 @@ struct ObjFace {
 
 struct ObjText {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec2> uvs;  ///< v as the file has it, upwards
+  std::vector<glm::vec3> colours;  ///< one a position, 0 to 1; none if the file has none
+  std::vector<glm::vec2> uvs;      ///< v as the file has it, upwards
   std::vector<glm::vec3> normals;
   std::vector<ObjCorner> corners;
   std::vector<ObjFace> faces;
@@ -46,15 +47,18 @@ inline constexpr std::uint32_t kMaxFaceCorners = 1024;
 /// Coordinates beyond this are taken for damage; their squares are still floats.
 inline constexpr float kLargestCoordinate = 1e9f;
 
-/// Understands v, vt, vn, f, s, usemtl, mtllib and lines continued by a backslash, and
-/// passes over the rest (groups, lines, curves). `file` is for complaints. Exporters write
-/// some things that do no harm. A warning counts them:
+/// Understands v (x y z, and perhaps r g b), vt, vn, f, s, usemtl, mtllib and lines continued by a
+/// backslash, and passes over the rest (groups, lines, curves). `file` is for complaints. `origin`
+/// is subtracted from positions, in double precision before they are rounded. Exporters write some
+/// things that do no harm. A warning counts them:
 ///   a face of fewer than 3 corners                   is left out
-///   a texture coordinate that is not finite, or past kLargestCoordinate   is 0
+///   a texture coordinate that is no number, or past kLargestCoordinate   is 0
+///   a normal that is none                            counts as not given
 ///   a corner whose texture coordinate is not there   has none
-/// Throws SceneError for what is not text, a number that is none, a position or normal
-/// that is not finite, another index out of range, a face of too many corners, and a file
-/// without a face.
-ObjText parse_obj_text(std::string_view text, const std::string& file);
+///   colours beyond 1                                 are taken for 0 to 255
+/// Throws SceneError for what is not text, a position that is none, another index out of range, a
+/// face of too many corners, and a file without a face.
+ObjText parse_obj_text(std::string_view text, const std::string& file,
+                       glm::dvec3 origin = glm::dvec3{0.0});
 
 }  // namespace softfocus

@@ -5,6 +5,7 @@
 layout(location = 0) in vec3 mesh_position;
 layout(location = 1) in vec3 mesh_normal;
 layout(location = 2) in vec2 mesh_uv;
+layout(location = 3) in vec3 mesh_colour;  // white where the mesh has none
 
 uniform mat4 to_clip;  // y points down, so that row 0 is the top of the picture
 uniform mat4 to_world;
@@ -49,13 +50,13 @@ void main() {
   vec3 towards_eye = unit(away);
 
   LitColour front = light_point(world, normal, towards_eye);
-  front_base = front.base;
+  front_base = front.base * mesh_colour;
 #ifdef SPECULAR
   front_specular = front.specular;
 #endif
 #ifdef TWO_SIDED
   LitColour back = light_point(world, -normal, towards_eye);
-  back_base = back.base;
+  back_base = back.base * mesh_colour;
 #ifdef SPECULAR
   back_specular = back.specular;
 #endif

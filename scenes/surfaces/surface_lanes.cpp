@@ -89,11 +89,16 @@ struct SurfaceVertexLanes {
                                   (r[0][1] * n.x + r[1][1] * n.y) + r[2][1] * n.z,
                                   (r[0][2] * n.x + r[1][2] * n.y) + r[2][2] * n.z});
     const Vec3Lanes towards_eye = normalize(splat(input.eye) - world);
+    const auto& colours = input.mesh->colours;
     for (int side = 0; side < (variant.two_sided ? 2 : 1); ++side) {
-      const LitLanes lit = input.material->lit
-                               ? light_points(*input.material, input.ambient_light, input.lights,
-                                              variant.specular, world, normal, towards_eye)
-                               : LitLanes{splat(input.material->diffuse), splat(glm::vec3{0.0f})};
+      LitLanes lit = input.material->lit
+                         ? light_points(*input.material, input.ambient_light, input.lights,
+                                        variant.specular, world, normal, towards_eye)
+                         : LitLanes{splat(input.material->diffuse), splat(glm::vec3{0.0f})};
+      if (!colours.empty()) {
+        const Vec3Lanes colour = load_vectors(colours, index);
+        lit.base = {lit.base.x * colour.x, lit.base.y * colour.y, lit.base.z * colour.z};
+      }
       const std::size_t at = side == 0 ? SurfaceLayout::kFront : layout.back;
       varyings[at] = lit.base.x;
       varyings[at + 1] = lit.base.y;

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 
 #include "scenes/load/obj_model.h"
@@ -91,15 +92,93 @@ TEST_CASE("d is an opacity from 0 to 1, Tr is 1 - d, and d wins") {
                           {"d 0.25\nTr 0.25", 0.25f},
                           {"Tr 0.25\nd 0.25", 0.25f},
                           {"d -halo 0.25", 0.25f},
-                          {"d -1", 0.0f},
+                          {"d -1", 1.0f},
+                          {"d nan", 1.0f},
                           {"d 7", 1.0f},
-                          {"Tr 7", 0.0f}}) {
+                          {"Tr 1", 1.0f},
+                          {"Tr 7", 1.0f},
+                          {"d 0\nTr 1", 1.0f},  // or nothing would show
+                          {"D 0.25", 0.25f}}) {
     const std::string& written = one.written;
     CAPTURE(written);
     const ObjModel model = load_with_library(obj, "newmtl a\nKd 1 1 1\n" + written + "\n");
     CHECK(model.materials[0].opacity == one.opacity);
     CHECK_FALSE(model.materials[0].opacity_texture);
   }
+}
+
+TEST_CASE(
+    "what makes a material invisible stays where others show, and is told where it does not") {
+  const std::string obj =
+      triangle_and("v 0 0 1\nmtllib a.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 4\n");
+  const ObjModel glass = load_with_library(obj, "newmtl a\nKd 1 1 1\nd 0\nnewmtl b\nKd 1 1 1\n");
+  CHECK(glass.materials[0].opacity == 0.0f);
+  const ObjModel hidden = load_with_library(obj, "newmtl a\nd 0\nnewmtl b\nTr 1\n");
+  CHECK(hidden.materials[0].opacity == 0.0f);
+  REQUIRE(hidden.warnings.size() >= 1);
+  CHECK(contains(hidden.warnings.back(), "material b: Tr 1 without d"));
+}
+
+TEST_CASE("colours are one number or three; what is none is told") {
+  struct Case {
+    std::string written;
+    glm::vec3 diffuse;
+    bool warns;
+  };
+  for (const Case& one : {Case{"Kd 0.5", glm::vec3{0.5f}, false},
+                          {"KD 0.5 0.25 1", {0.5f, 0.25f, 1.0f}, false},
+                          {"Kd spectral a.rfl 1.0", glm::vec3{0.5f}, true},
+                          {"Kd xyz 0.1 0.2 0.3", glm::vec3{0.5f}, true},
+                          {"Kd nan 1 1", {0.0f, 1.0f, 1.0f}, true},
+                          {"Kd -5 0.5 0.5", {0.0f, 0.5f, 0.5f}, true},
+                          {"Kd red", glm::vec3{0.0f}, true}}) {
+    CAPTURE(one.written);
+    const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                             "newmtl a\n" + one.written + "\n");
+    CHECK(model.materials[0].diffuse == one.diffuse);
+    CHECK(model.warnings.empty() != one.warns);
+  }
+}
+
+TEST_CASE("Ns 0 is no highlight") {
+  for (const auto& [written, shines] :
+       {std::pair{"Ns 0\n", false}, {"Ns nan\n", true}, {"Ns 0.5\n", true}, {"", true}}) {
+    CAPTURE(written);
+    const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                             std::string("newmtl a\nKs 1 1 1\n") + written);
+    CHECK((model.materials[0].specular != glm::vec3{0.0f}) == shines);
+  }
+}
+
+TEST_CASE("options of maps place the texture, or are told once") {
+  const auto uvs_of = [](const std::string& map, std::size_t warnings) {
+    CAPTURE(map);
+    ObjModel model =
+        load_with_library(triangle_and("vt 0.25 0.5\nmtllib a.mtl\nusemtl a\nf 1/1 2/1 3/1\n"),
+                          "newmtl a\nKd 1 1 1\n" + map + "\n");
+    CHECK(model.materials[0].texture.has_value());
+    CHECK(model.warnings.size() == warnings);
+    place_uvs(model.parts[0].mesh, model.parts[0].placement);
+    const glm::vec2 uv = model.parts[0].mesh.uvs[0];
+    return glm::vec2{uv.x, 1.0f - uv.y};
+  };
+  CHECK(uvs_of("map_Kd wood.png", 0) == glm::vec2{0.25f, 0.5f});
+  CHECK(uvs_of("map_Kd -s 4 4 wood.png", 0) == glm::vec2{1.0f, 2.0f});
+  CHECK(uvs_of("map_kd -S 4 wood.png", 0) == glm::vec2{1.0f, 0.5f});
+  CHECK(uvs_of("map_Kd -s 2 2 1 -o 0.5 0.25 0 wood.png", 0) == glm::vec2{1.0f, 1.25f});
+  CHECK(uvs_of("map_Kd -o 0.5 -clamp on wood.png", 0) == glm::vec2{0.75f, 0.5f});
+  CHECK(uvs_of("map_Kd -mm 0 1 -blendu off -mm 0.5 2 wood.png", 2) == glm::vec2{0.25f, 0.5f});
+  CHECK(uvs_of("MAP_KD \"wood.png\"", 0) == glm::vec2{0.25f, 0.5f});
+  const glm::vec2 turbulent = uvs_of("map_Kd -t 0.1 0 wood.png", 0);
+  CHECK(turbulent.y == 0.5f);
+  CHECK(std::fabs(turbulent.x - 0.25f) <= 0.1f);
+  CHECK(turbulent.x != 0.25f);
+}
+
+TEST_CASE("a library with a byte order mark is read") {
+  const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                           "\xEF\xBB\xBFnewmtl a\nKd 1 0 0\n");
+  CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
 }
 
 TEST_CASE("a map_d becomes an opacity texture, made once") {

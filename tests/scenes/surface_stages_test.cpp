@@ -77,6 +77,19 @@ TEST_CASE("through a hole one sees what is behind, with its depth") {
   }
 }
 
+TEST_CASE("vertex colours multiply the surface's, alike on all vector units") {
+  Scene scene = scene_with_holes();
+  scene.materials[0] = scene.materials[1];
+  scene.materials[0].diffuse = {1.0f, 0.5f, 0.25f};
+  scene.meshes[0].colours = {{1, 0, 1}, {1, 0, 1}, {1, 1, 1}, {1, 1, 1}};
+  const Image expected = drawn(scene, Isa::scalar);
+  const glm::vec4 middle = load_texel(expected, 32, 32);
+  CHECK(middle.x == 1.0f);
+  CHECK(middle.y == doctest::Approx(0.25).epsilon(0.02));  // half way from 0 to 1
+  CHECK(middle.z == 0.25f);
+  for (const Isa isa : available_isas()) CHECK(hash_image(drawn(scene, isa)) == hash_image(expected));
+}
+
 TEST_CASE("an opacity of 1/2 is there, and one below is not") {
   for (const auto& [byte, is_there] : {std::pair{127, false}, {128, true}}) {
     Scene scene = scene_with_holes();

@@ -70,9 +70,12 @@ GlScene::GlScene(const GlContext& context, const Shaders& shaders, const Scene& 
   for (const softfocus::Mesh& mesh : scene.meshes) {
     std::vector<glm::vec2> uvs = mesh.uvs;
     uvs.resize(mesh.positions.size());
-    meshes_.push_back(
-        {make_buffer(GL_ARRAY_BUFFER, mesh.positions), make_buffer(GL_ARRAY_BUFFER, mesh.normals),
-         make_buffer(GL_ARRAY_BUFFER, uvs), make_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices)});
+    std::vector<glm::vec3> colours = mesh.colours;
+    colours.resize(mesh.positions.size(), glm::vec3{1.0f});
+    meshes_.push_back({make_buffer(GL_ARRAY_BUFFER, mesh.positions),
+                       make_buffer(GL_ARRAY_BUFFER, mesh.normals),
+                       make_buffer(GL_ARRAY_BUFFER, uvs), make_buffer(GL_ARRAY_BUFFER, colours),
+                       make_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices)});
   }
   for (const Material& material : scene.materials) {
     if (material.texture) {
@@ -88,18 +91,20 @@ GlScene::GlScene(const GlContext& context, const Shaders& shaders, const Scene& 
 void GlScene::make_unshared_meshes() {
   if (!unshared_meshes_.empty()) return;
   for (const softfocus::Mesh& mesh : scene_.meshes) {
-    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec3> positions, normals, colours;
     std::vector<glm::vec2> uvs;
     std::vector<std::uint32_t> indices;
     for (const std::uint32_t i : mesh.indices) {
       positions.push_back(mesh.positions[i]);
       normals.push_back(mesh.normals[i]);
       uvs.push_back(mesh.uvs.empty() ? glm::vec2{0.0f} : mesh.uvs[i]);
+      colours.push_back(mesh.colours.empty() ? glm::vec3{1.0f} : mesh.colours[i]);
       indices.push_back(static_cast<std::uint32_t>(indices.size()));
     }
     unshared_meshes_.push_back(
         {make_buffer(GL_ARRAY_BUFFER, positions), make_buffer(GL_ARRAY_BUFFER, normals),
-         make_buffer(GL_ARRAY_BUFFER, uvs), make_buffer(GL_ELEMENT_ARRAY_BUFFER, indices)});
+         make_buffer(GL_ARRAY_BUFFER, uvs), make_buffer(GL_ARRAY_BUFFER, colours),
+         make_buffer(GL_ELEMENT_ARRAY_BUFFER, indices)});
   }
 }
 
@@ -249,6 +254,7 @@ void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const Peel
       set_attribute(0, mesh.positions, 3);
       set_attribute(1, mesh.normals, 3);
       set_attribute(2, mesh.uvs, 2);
+      set_attribute(3, mesh.colours, 3);
       glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
     }
     set_state(surface.state);
@@ -258,7 +264,7 @@ void GlScene::draw_surfaces(const CameraMatrices& view, double frame, const Peel
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(input.mesh->indices.size()), GL_UNSIGNED_INT,
                    nullptr);
   }
-  for (const GLuint attribute : {0u, 1u, 2u}) glDisableVertexAttribArray(attribute);
+  for (const GLuint attribute : {0u, 1u, 2u, 3u}) glDisableVertexAttribArray(attribute);
 }
 
 Image GlScene::draw_velocity(const Instant& shown, const MotionSpan& span, int width, int height) {

@@ -36,6 +36,7 @@ class GlScene {
     GlBuffer positions;
     GlBuffer normals;
     GlBuffer uvs;
+    GlBuffer colours;
     GlBuffer indices;
   };
 

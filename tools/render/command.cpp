@@ -270,6 +270,9 @@ Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms)
   settle_shadows(options, scene);
   for (std::string& warning : shadow_warnings(scene)) scene.warnings.push_back(std::move(warning));
   print_scene_warnings(scene.warnings, options.verbose);
+  if (!options.quiet) {
+    for (const std::string& note : scene.notes) std::cerr << "softfocus: " << note << '\n';
+  }
   if (has_transparent(scene)) check_transparent_memory(options);
   if (has_soft_shadows(scene)) check_soft_memory(options);
   return scene;

@@ -412,8 +412,10 @@ ShotLens asked_lens(const RenderOptions& options, const Scene& scene) {
   asked.settings.aperture = options.aperture;
   asked.cuts_no_circle = takes_all_circles(options);
   if (options.autofocus) {
-    const auto [x, y] = focus_pixel(options);
+    const auto [x, y] = options.autofocus_pixel.value_or(
+        Pixel{options.size.width / 2, options.size.height / 2});
     asked.focus_at = {x, y};
+    asked.focuses_on_a_thing = !options.autofocus_pixel;
   } else if (!options.sharp_depths.empty()) {
     asked.sharp_depths = sharp_depths(options.sharp_depths, asked.lens, scene.camera.fov_y_degrees,
                                       drawn_size(options).height, asked.coc_scale);
@@ -453,8 +455,8 @@ Shot asked_shot(const RenderOptions& options, const Scene& scene, FrameSequence&
 void refuse_lens(const LensError& error, const RenderOptions& options) {
   std::string where = options.scene;
   if (options.autofocus) {
-    const auto [x, y] = focus_pixel(options);
-    where = "--autofocus " + std::to_string(x) + "," + std::to_string(y);
+    const glm::ivec2 at = *error.lens.focus_at;
+    where = "--autofocus " + std::to_string(at.x) + "," + std::to_string(at.y);
   }
   if (options.sharp_depths.empty()) check_lens(error.lens.lens, options.lens, where);
   check_pixel_coc(error.lens.settings.coc);
@@ -484,10 +486,6 @@ std::optional<ChosenEffect> checked_effect_of_frames(const RenderOptions& option
                      " draws the scene itself; give a method of a picture, or pinhole");
   }
   return effect;
-}
-
-Pixel focus_pixel(const RenderOptions& options) {
-  return options.autofocus_pixel.value_or(Pixel{options.size.width / 2, options.size.height / 2});
 }
 
 }  // namespace softfocus

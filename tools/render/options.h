@@ -115,7 +115,4 @@ FrameSequence frame_sequence(const RenderOptions& options);
 std::optional<ChosenEffect> checked_effect_of_frames(const RenderOptions& options,
                                                      const Scene& scene);
 
-/// The pixel of --autofocus.
-Pixel focus_pixel(const RenderOptions& options);
-
 }  // namespace softfocus

@@ -50,8 +50,8 @@ bool is_timed(const NamedTime& stage, const RenderRecord& record) {
 std::string lens_lines(const UsedLens& used, const RenderOptions& options) {
   std::string focus = short_number(used.lens.focus_m) + " m";
   if (options.autofocus) {
-    const auto [x, y] = focus_pixel(options);
-    focus += ", found at pixel " + std::to_string(x) + "," + std::to_string(y);
+    const glm::ivec2 at = *used.focus_at;
+    focus += ", found at pixel " + std::to_string(at.x) + "," + std::to_string(at.y);
   }
   return line("Focus distance", focus) +
          line("Focal length", short_number(used.lens.focal_length_mm) + " mm") +
@@ -231,8 +231,8 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
     lens["max_coc_px"] = used.settings.max_coc_px;
     lens["leak"] = used.settings.leak;
     if (options.autofocus) {
-      const auto [x, y] = focus_pixel(options);
-      json["lens"]["autofocus_pixel"] = {x, y};
+      const glm::ivec2 at = *used.focus_at;
+      json["lens"]["autofocus_pixel"] = {at.x, at.y};
     }
   }
   if (!options.sharp_depths.empty()) {

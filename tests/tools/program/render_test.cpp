@@ -190,6 +190,21 @@ TEST_CASE("render: --autofocus gives the picture that --focus at the found dista
         rendered("figures", {"--autofocus", "30,12"}));
 }
 
+TEST_CASE("render: --autofocus of a model finds it where the picture's middle does not show it") {
+  const TemporaryDirectory directory;
+  const std::string ring = directory.file("ring.obj");
+  // A frame with nothing in its middle.
+  write_file(ring,
+             "v -3 -3 0\nv 3 -3 0\nv 3 3 0\nv -3 3 0\nv -2 -2 0\nv 2 -2 0\nv 2 2 0\n"
+             "v -2 2 0\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const auto lens = rendered_json(ring, {"--autofocus"})["lens"];
+  const auto own = rendered_json(ring, {})["lens"];
+  CHECK(lens["focus_m"].get<double>() ==
+        doctest::Approx(own["focus_m"].get<double>()).epsilon(0.2));
+  CHECK(own["focal_length_mm"] == 50.0);
+  CHECK(own["f_number"] == 2.0);
+}
+
 TEST_CASE("render: --autofocus without a pixel takes the centre, wherever it stands") {
   const std::string centre = rendered("figures", {"--autofocus", "24,16"});
   CHECK(rendered("figures", {"--autofocus"}) == centre);
