@@ -12,13 +12,8 @@
 namespace softfocus {
 namespace {
 
-/// One line whatever the message holds: a file's name may contain a newline.
-int report(std::string message, int status) {
-  for (char& c : message) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7F) c = '?';
-  }
-  std::cerr << "softfocus: " << message << '\n';
+int report(std::string_view message, int status) {
+  tell(message);
   return status;
 }
 
@@ -40,7 +35,9 @@ int run_command(const Command& command) {
   } catch (const UsageError& error) {
     return report(error.what(), kWrongUsage);
   } catch (const std::bad_alloc&) {
-    return report("out of memory; a smaller picture needs less", failed);
+    return report(
+        "out of memory; a smaller picture, smaller shadow maps or coarser meshes need less",
+        failed);
   } catch (const std::exception& error) {
     return report(error.what(), failed);
   }

@@ -86,12 +86,16 @@ std::string utf8_of_utf16(std::string_view bytes, bool high_byte_first) {
 
 }  // namespace
 
-std::string read_file_text(const std::filesystem::path& file, std::size_t largest) {
+void check_no_pipe(const std::filesystem::path& file) {
   std::error_code unknown;
   if (std::filesystem::exists(file, unknown) && !std::filesystem::is_directory(file, unknown) &&
       !std::filesystem::is_regular_file(file, unknown)) {
     throw SceneError(file.string() + ": is a pipe or a device; a file would be right");
   }
+}
+
+std::string read_file_text(const std::filesystem::path& file, std::size_t largest) {
+  check_no_pipe(file);
   std::string text = read_file_bytes(file, largest);
   const std::string_view bytes = text;
   if (bytes.starts_with("\xEF\xBB\xBF")) return text.substr(3);

@@ -11,8 +11,11 @@ namespace softfocus {
 /// cannot be read or it has more than `largest` bytes.
 std::string read_file_bytes(const std::filesystem::path& file, std::size_t largest);
 
+/// Throws SceneError for a pipe or a device, whose end may never come.
+void check_no_pipe(const std::filesystem::path& file);
+
 /// A file of text as UTF-8: without a byte order mark, and from UTF-16 of either byte order if its
-/// mark says so. Throws as read_file_bytes(), and for a pipe or a device, whose end may never come.
+/// mark says so. Throws as read_file_bytes() and check_no_pipe().
 std::string read_file_text(const std::filesystem::path& file, std::size_t largest);
 
 /// Zeros, for std::free(), or null: what a decoder fills, so that what a damaged file leaves unset

@@ -1,9 +1,57 @@
 #include "scenes/files/scene_error.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace softfocus {
+
+namespace {
+
+/// How many bytes the UTF-8 letter at the beginning has, and its code; none if it is no UTF-8.
+std::pair<std::size_t, char32_t> first_letter(std::string_view text) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const unsigned first = byte(0);
+  if (first < 0x80) return {1, first};
+  const std::size_t count = first >> 5 == 0x6    ? 2
+                            : first >> 4 == 0xE  ? 3
+                            : first >> 3 == 0x1E ? 4
+                                                 : 0;
+  if (count == 0 || text.size() < count) return {0, 0};
+  char32_t code = first & (0x7Fu >> count);
+  for (std::size_t i = 1; i < count; ++i) {
+    if (byte(i) >> 6 != 2) return {0, 0};
+    code = code << 6 | (byte(i) & 0x3Fu);
+  }
+  constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool is_right = code >= kLeast[count] && code <= 0x10FFFF && code >> 11 != 0x1B;
+  return is_right ? std::pair{count, code} : std::pair<std::size_t, char32_t>{0, 0};
+}
+
+bool is_deceiving(char32_t code) {
+  const bool is_control = code < 0x20 || (code >= 0x7F && code < 0xA0);
+  const bool is_separator = code == 0x2028 || code == 0x2029;
+  const bool is_direction = code == 0x061C || code == 0x200E || code == 0x200F ||
+                            (code >= 0x202A && code <= 0x202E) ||
+                            (code >= 0x2066 && code <= 0x2069);
+  return is_control || is_separator || is_direction;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  while (!text.empty()) {
+    const auto [count, code] = first_letter(text);
+    if (count == 0 || is_deceiving(code)) {
+      shown.push_back('?');
+    } else {
+      shown.append(text.substr(0, count));
+    }
+    text.remove_prefix(std::max<std::size_t>(count, 1));
+  }
+  return shown;
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   // Rows of the table of distances between beginnings: of a's first i letters, and of one and two

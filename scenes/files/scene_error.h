@@ -7,15 +7,10 @@
 
 namespace softfocus {
 
-/// The text with '?' for control characters: names in files may hold line ends and
-/// terminal sequences.
-inline std::string printable(std::string text) {
-  for (char& letter : text) {
-    const auto code = static_cast<unsigned char>(letter);
-    if (code < 0x20 || code == 0x7F) letter = '?';
-  }
-  return text;
-}
+/// The text with '?' for what a terminal or a reader could be deceived by, for names in files may
+/// hold it: control characters (C0, C1), separators of lines, marks and overrides of the direction
+/// of writing, and bytes that are not UTF-8.
+std::string printable(std::string_view text);
 
 /// A fault in a file. The message is one line that names the file, the line in it, and what
 /// would be right.

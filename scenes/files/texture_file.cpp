@@ -40,6 +40,7 @@ std::string stb_reason() {
 }  // namespace
 
 Texture load_texture(const std::filesystem::path& file) {
+  check_no_pipe(file);
   const std::string bytes = read_file_bytes(file, kMaxTextureBytes);
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());

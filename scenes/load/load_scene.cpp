@@ -21,16 +21,6 @@ namespace {
 constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 24;
 constexpr double kBrightest = 1000.0;
 
-toml::table parse_toml(std::string_view text, const std::filesystem::path& file) {
-  try {
-    return toml::parse(text, file.string());
-  } catch (const toml::parse_error& error) {
-    throw SceneError(file.string() + ":" + std::to_string(error.source().begin.line) +
-                     ": is no TOML: " + std::string(error.description()) +
-                     "; see https://toml.io and docs/scene-format.md");
-  }
-}
-
 Camera read_camera(Section section) {
   Camera camera;
   camera.position = read_vector(section, "position", camera.position, kAnyPlace);
@@ -167,11 +157,11 @@ ChosenEffect read_effect(Section& section) {
 }  // namespace
 
 Scene read_scene_text(std::string_view text, const std::filesystem::path& file) {
-  const toml::table table = parse_toml(text, file);
+  const toml::table table = parse_toml(text, file.string(), "docs/scene-format.md");
   Section top{&table, file.string(), "", {}};
   Scene scene;
   scene.name = file.stem().string();
-  scene.title = read_text(top, "title", scene.name);
+  scene.title = printable(read_text(top, "title", scene.name));
   scene.background = read_colour(top, "background", scene.background, kBrightest);
   scene.ambient_light = read_colour(top, "ambient_light", scene.ambient_light, kBrightest);
   scene.camera = read_camera(read_section(top, "camera"));
@@ -211,8 +201,8 @@ Scene read_scene_file(const std::filesystem::path& file) {
 }
 
 std::string read_scene_title(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(read_file_bytes(file, kMaxSceneBytes), file);
-  return table["title"].value_or(std::string{});
+  const toml::table table = parse_toml(read_file_bytes(file, kMaxSceneBytes), file.string(), "docs/scene-format.md");
+  return printable(table["title"].value_or(std::string{}));
 }
 
 namespace {

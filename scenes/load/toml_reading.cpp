@@ -98,7 +98,59 @@ const toml::node* node_of(const Section& section, std::string_view key) {
   return node != nullptr ? node : section.table->get(american(key));
 }
 
+/// The end of the string that begins at `at`, or of the text.
+std::size_t string_end(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string_view mark =
+      text.substr(at, text.substr(at).starts_with(std::string(3, quote)) ? 3 : 1);
+  for (std::size_t i = at + mark.size(); i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text.substr(i).starts_with(mark) || (mark.size() == 1 && text[i] == '\n')) {
+      return i + mark.size();
+    }
+  }
+  return text.size();
+}
+
+/// The line of a key of too many parts, or 0.
+int line_of_long_key(std::string_view text) {
+  int line = 1;
+  int parts = 1;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i];
+    if (letter == '"' || letter == '\'') {
+      const std::size_t end = string_end(text, i);
+      line += static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(i),
+                                          text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+      i = end - 1;
+    } else if (letter == '.') {
+      if (++parts > kMostKeyParts) return line;
+    } else if (letter == '#') {
+      i = std::min(text.find('\n', i), text.size()) - 1;
+    } else if (std::string_view{"=,[]{}\n"}.find(letter) != std::string_view::npos) {
+      parts = 1;
+      if (letter == '\n') ++line;
+    }
+  }
+  return 0;
+}
+
 }  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& file, std::string_view reference) {
+  if (const int line = line_of_long_key(text)) {
+    throw SceneError(file + ":" + std::to_string(line) + ": a key has more than " +
+                     std::to_string(kMostKeyParts) + " parts; fewer would be right");
+  }
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw SceneError(file + ":" + std::to_string(error.source().begin.line) +
+                     ": is no TOML: " + std::string(error.description()) +
+                     "; see https://toml.io and " + std::string(reference));
+  }
+}
 
 void fail_at(const Section& section, std::string_view key, const std::string& reason) {
   toml::source_index line = 0;

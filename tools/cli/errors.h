@@ -3,6 +3,7 @@
 // option or the file and says what would be right.
 
 #include <stdexcept>
+#include <string_view>
 
 namespace softfocus {
 
@@ -20,5 +21,13 @@ struct FileError : std::runtime_error {
 struct WriteError : FileError {
   using FileError::FileError;
 };
+
+// One line on standard error, whatever the text holds (printable()).
+
+/// "softfocus: TEXT"
+void tell(std::string_view text);
+
+/// "softfocus: warning: TEXT"
+void warn(std::string_view text);
 
 }  // namespace softfocus

@@ -16,6 +16,7 @@
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -149,7 +150,10 @@ std::optional<std::uint64_t> memory_bytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES);
   const long page_bytes = ::sysconf(_SC_PAGESIZE);
   if (pages <= 0 || page_bytes <= 0) return std::nullopt;
-  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
+  const auto there = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return there;
+  return std::min(there, static_cast<std::uint64_t>(limit.rlim_cur));
 }
 
 bool is_terminal(int descriptor) { return ::isatty(descriptor) != 0; }

@@ -6,10 +6,17 @@
 #include <iostream>
 #include <utility>
 
+#include "scenes/files/scene_error.h"
+#include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/platform.h"
 
 namespace softfocus {
+
+void tell(std::string_view text) { std::cerr << "softfocus: " + printable(text) + '\n'; }
+
+void warn(std::string_view text) { std::cerr << "softfocus: warning: " + printable(text) + '\n'; }
+
 namespace {
 
 double steady_seconds() {

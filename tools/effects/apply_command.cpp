@@ -205,9 +205,6 @@ int apply_to_file(const ApplyOptions& options) {
     picture.commit();
     if (notes_file) notes_file->commit();
   }
-  const auto warn = [](const std::string& text) {
-    std::cerr << "softfocus: warning: " << text << '\n';
-  };
   if (!has_room) {
     warn("'" + sidecar->string() +
          "' is no sidecar of a picture and stays as it is: what was done is written nowhere");

@@ -111,14 +111,7 @@ std::string profile_text(const ChosenProfile& chosen, const std::string& heading
 ChosenProfile load_profile(const std::filesystem::path& file) {
   constexpr std::size_t kMaxFileBytes = 65536;
   const std::string text = read_file_bytes(file, kMaxFileBytes);
-  toml::table table;
-  try {
-    table = toml::parse(text, file.string());
-  } catch (const toml::parse_error& error) {
-    throw SceneError(file.string() + ':' + std::to_string(error.source().begin.line) +
-                     ": is no TOML: " + std::string(error.description()) +
-                     "; see https://toml.io and docs/specification.md");
-  }
+  const toml::table table = parse_toml(text, file.string(), "docs/specification.md");
   Section section{&table, file.string(), "", {}};
 
   ChosenProfile chosen;

@@ -48,12 +48,13 @@ std::filesystem::file_status status_of(const std::filesystem::path& file) {
 /// The end of a chain of links, which need not exist.
 std::filesystem::path links_followed(std::filesystem::path file) {
   std::error_code no_link;
-  // The chain ends: status_of() has refused a circle (ELOOP).
-  for (;;) {
+  constexpr int kMostLinks = 40;  // as systems follow
+  for (int i = 0; i < kMostLinks; ++i) {
     const auto next = std::filesystem::read_symlink(file, no_link);
     if (no_link) return file;
     file = file.parent_path() / next;
   }
+  return file;
 }
 
 /// Temporary files of this machine are called so, with the process and a number behind it.
@@ -204,8 +205,9 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
   std::error_code error;
   if (std::filesystem::equivalent(a, b, error) && !error) return true;
   std::error_code error_a, error_b;
-  const auto whole_a = std::filesystem::absolute(a, error_a);  // an empty name has no place
-  const auto whole_b = std::filesystem::absolute(b, error_b);
+  const auto whole_a =
+      std::filesystem::absolute(links_followed(a), error_a);  // an empty name has no place
+  const auto whole_b = std::filesystem::absolute(links_followed(b), error_b);
   if (error_a || error_b) return false;
   const auto place_a = std::filesystem::weakly_canonical(whole_a, error_a);
   const auto place_b = std::filesystem::weakly_canonical(whole_b, error_b);
@@ -215,15 +217,30 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
 void check_not_read(const std::string& option, const std::filesystem::path& output,
                     const std::vector<ReadFile>& inputs) {
   for (const auto& [file, what] : inputs) {
-    if (!is_same_file(output, file)) continue;
+    std::error_code unknown;
+    const std::filesystem::path sidecar = file.string() + ".json";
+    const bool is_sidecar =
+        std::filesystem::exists(sidecar, unknown) && is_same_file(output, sidecar);
+    if (!is_sidecar && !is_same_file(output, file)) continue;
     throw UsageError(std::string{option}
                          .append(" '")
                          .append(output.string())
                          .append("' would write over ")
                          .append(what)
-                         .append(", '")
-                         .append(file.string())
+                         .append(is_sidecar ? "'s sidecar, '" : ", '")
+                         .append((is_sidecar ? sidecar : file).string())
                          .append("'; give another name"));
+  }
+}
+
+void check_written(const std::vector<WrittenFile>& outputs, const std::vector<ReadFile>& inputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    check_not_read(outputs[i].option, outputs[i].file, inputs);
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!is_same_file(outputs[i].file, outputs[k].file)) continue;
+      throw UsageError(outputs[i].option + " '" + outputs[i].file.string() + "' is where " +
+                       outputs[k].option + " writes; give another name");
+    }
   }
 }
 

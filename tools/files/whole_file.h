@@ -69,8 +69,18 @@ struct ReadFile {
   std::string what;
 };
 
-/// Throws UsageError if the file that an option asks to write is one of those that are read.
+/// Throws UsageError if the file that an option asks to write is one of those that are read, or the
+/// sidecar of one.
 void check_not_read(const std::string& option, const std::filesystem::path& output,
                     const std::vector<ReadFile>& inputs);
+
+/// A file that is to be written, and what asks for it: "--report".
+struct WrittenFile {
+  std::string option;
+  std::filesystem::path file;
+};
+
+/// check_not_read() of each, and UsageError if two are one file.
+void check_written(const std::vector<WrittenFile>& outputs, const std::vector<ReadFile>& inputs);
 
 }  // namespace softfocus

@@ -180,25 +180,48 @@ void check_talk(const CLI::App& parser) {
   throw UsageError("-v and -q exclude each other; give one");
 }
 
+namespace {
+std::string gigabytes(std::uint64_t bytes) {
+  return short_number(static_cast<double>(bytes) / 1e9) + " GB";
+}
+}  // namespace
+
 void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes_per_pixel) {
   const auto needed = bytes_per_pixel * static_cast<std::uint64_t>(size.width) *
                       static_cast<std::uint64_t>(size.height);
   const auto there = memory_bytes();
   if (!there || needed <= *there) return;
-  constexpr double kGigabyte = 1e9;
-  throw UsageError(
-      std::string{option} + " " + size_text(size) + ": needs " +
-      short_number(static_cast<double>(needed) / kGigabyte) + " GB of memory and there are " +
-      short_number(static_cast<double>(*there) / kGigabyte) + " GB; give a smaller size");
+  throw UsageError(std::string{option} + " " + size_text(size) + ": needs " + gigabytes(needed) +
+                   " of memory and there are " + gigabytes(*there) + "; give a smaller size");
+}
+
+void check_shadow_memory(const Scene& scene) {
+  constexpr std::uint64_t kBytesPerFacet = 160;  // its corners, neighbours and place in the grid
+  std::uint64_t maps = 0;
+  bool has_shadows = false;
+  for (const Light& light : scene.lights) {
+    has_shadows = has_shadows || light.shadows != ShadowKind::none;
+    if (light.shadows != ShadowKind::map) continue;
+    const auto size = static_cast<std::uint64_t>(light.map.size);
+    const int sides = light.kind == LightKind::point ? 6 : light.map.cascades;
+    maps += size * size * sizeof(float) * static_cast<std::uint64_t>(sides);
+  }
+  const std::uint64_t facets = has_shadows ? triangle_count(scene) * kBytesPerFacet : 0;
+  const auto there = memory_bytes();
+  if (!there || maps + facets <= *there) return;
+  throw UsageError("the scene's shadows need " + gigabytes(maps) + " for maps and " +
+                   gigabytes(facets) + " for " + std::to_string(triangle_count(scene)) +
+                   " triangles, and there are " + gigabytes(*there) + " of memory; " +
+                   (maps > facets ? "smaller ones (--map size=N) or fewer cascades would do"
+                                  : "fewer or coarser meshes, or --shadows none, would do"));
 }
 
 void print_scene_warnings(const std::vector<std::string>& warnings, bool all) {
   constexpr std::size_t kMostLines = 3;
   const std::size_t lines = all ? warnings.size() : std::min(warnings.size(), kMostLines);
-  for (std::size_t i = 0; i < lines; ++i)
-    std::cerr << "softfocus: warning: " << warnings[i] << '\n';
+  for (std::size_t i = 0; i < lines; ++i) warn(warnings[i]);
   if (lines < warnings.size()) {
-    std::cerr << "softfocus: warning: " << warnings.size() - lines << " more; -v lists them\n";
+    warn(std::to_string(warnings.size() - lines) + " more; -v lists them");
   }
 }
 

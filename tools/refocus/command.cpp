@@ -181,7 +181,7 @@ int refocus(const RefocusOptions& options) {
   if (options.output == "-") write_to_standard_output(made.picture);
   progress.clear();
   for (const std::string& warning : made.warnings) {
-    std::cerr << "softfocus: warning: " << warning << '\n';
+    warn(warning);
   }
   if (options.json) std::cout << made.json;
   if (options.verbose) std::cerr << made.report;

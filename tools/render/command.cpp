@@ -271,8 +271,9 @@ Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms)
   for (std::string& warning : shadow_warnings(scene)) scene.warnings.push_back(std::move(warning));
   print_scene_warnings(scene.warnings, options.verbose);
   if (!options.quiet) {
-    for (const std::string& note : scene.notes) std::cerr << "softfocus: " << note << '\n';
+    for (const std::string& note : scene.notes) tell(note);
   }
+  check_shadow_memory(scene);
   if (has_transparent(scene)) check_transparent_memory(options);
   if (has_soft_shadows(scene)) check_soft_memory(options);
   return scene;
@@ -300,7 +301,7 @@ int render(const RenderOptions& options) {
   if (to_standard_output) write_to_standard_output(made.picture);
   progress.clear();
   for (const std::string& warning : made.warnings) {
-    std::cerr << "softfocus: warning: " << warning << '\n';
+    warn(warning);
   }
   if (options.json) std::cout << made.json;
   if (options.verbose) std::cerr << made.report;

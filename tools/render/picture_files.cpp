@@ -68,27 +68,16 @@ void check_outputs(const RenderOptions& options, const Scene& scene) {
   for (const auto& [name, text] : options.shaders.own) {
     inputs.push_back({options.shaders.folder / name, "a shader"});
   }
-  if (options.output != "-") check_not_read("-o", options.output, inputs);
-  if (options.report) check_not_read("--report", *options.report, inputs);
-  if (options.depth_output) check_not_read("--depth-output", *options.depth_output, inputs);
+  std::vector<WrittenFile> outputs;
+  if (options.output != "-") outputs.push_back({"-o", options.output});
   for (std::size_t layer = 2; options.show != Show::image && layer <= layers_of(options); ++layer) {
-    check_not_read("--layers", layer_place(options, layer), inputs);
-    if (options.report && is_same_file(*options.report, layer_place(options, layer))) {
-      throw UsageError("--report '" + options.report->string() +
-                       "' is where --layers writes a layer; give another name");
-    }
+    outputs.push_back({"--layers", layer_place(options, layer)});
   }
-  if (const auto sidecar = sidecar_place(options)) {
-    check_not_read("the sidecar of -o", *sidecar, inputs);
-    if (options.depth_output && is_same_file(*options.depth_output, *sidecar)) {
-      throw UsageError("--depth-output '" + *options.depth_output +
-                       "' is where -o writes the picture's lens; give another name");
-    }
-    if (options.report && is_same_file(*options.report, *sidecar)) {
-      throw UsageError("--report '" + options.report->string() +
-                       "' is where -o writes the picture's lens; give another name");
-    }
-  }
+  if (const auto sidecar = sidecar_place(options))
+    outputs.push_back({"the sidecar of -o", *sidecar});
+  if (options.depth_output) outputs.push_back({"--depth-output", *options.depth_output});
+  if (options.report) outputs.push_back({"--report", *options.report});
+  check_written(outputs, inputs);
 }
 
 std::filesystem::path layer_place(const RenderOptions& options, std::size_t layer) {

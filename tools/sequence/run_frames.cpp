@@ -112,7 +112,7 @@ class Run {
   int finish() {
     const std::size_t there = frames_.size() - todo_.size();
     if (warnings_ > kMostWarnings && !options_.verbose) {
-      std::cerr << "softfocus: warning: " << warnings_ - kMostWarnings << " more; -v lists them\n";
+      warn(std::to_string(warnings_ - kMostWarnings) + " more; -v lists them");
     }
     std::sort(failed_.begin(), failed_.end(),
               [](const FailedFrame& a, const FailedFrame& b) { return a.number < b.number; });
@@ -134,7 +134,7 @@ class Run {
     if (left > 0) text += ", " + std::to_string(left) + " left";
     const bool all_made = failed_.empty() && left == 0;
     if (!reader_is_gone_ && !(options_.quiet && all_made)) {
-      std::cerr << "softfocus: " << text << '\n';
+      tell(text);
     }
     if (options_.json) {
       const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
@@ -228,7 +228,7 @@ class Run {
     } catch (const FileError& failure) {
       const std::lock_guard lock(mutex_);
       progress_.clear();
-      std::cerr << "softfocus: " << printable(failure.what()) << '\n';
+      tell(failure.what());
     }
     stopped_ = true;
     return false;
@@ -238,7 +238,7 @@ class Run {
     failed_.push_back({frame.number, frame.file, error});
     std::string who = "frame " + std::to_string(frame.number);
     if (error.find('\'' + frame.file + '\'') == error.npos) who += ", '" + frame.file + "'";
-    std::cerr << "softfocus: " << printable(who + ": " + error) << '\n';
+    tell(who + ": " + error);
     unwritten_ = unwritten ? unwritten_ + 1 : 0;
     if (unwritten_ < kMostUnwritten || stopped_) return;
     stopped_ = true;

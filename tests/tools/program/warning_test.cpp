@@ -33,7 +33,8 @@ TEST_CASE(
   CHECK(run.err.starts_with("softfocus: warning: "));
   CHECK(run.err.find("material a is not defined") != std::string::npos);
   CHECK(run.err.find("2 more; -v lists them") != std::string::npos);
-  CHECK(lines_of(run.err) == 4);
+  CHECK(run.err.find("m: a lens of 50 mm at f/2") != std::string::npos);
+  CHECK(lines_of(run.err) == 5);
 }
 
 TEST_CASE("render: with -v every warning is a line") {
