@@ -16,6 +16,17 @@ TEST_CASE("what is no TOML is a complaint with the line") {
   CHECK(contains(complaint("title = \"x\"\ntitle = \"y\"\n"), "a.toml:2: is no TOML: "));
 }
 
+TEST_CASE("a key of too many parts is an error with its line, and dots in texts are none") {
+  std::string key = "a";
+  for (int i = 0; i < 5000; ++i) key += ".a";
+  const std::string wanted = "a key has more than 64 parts; fewer would be right";
+  CHECK(complaint("[" + key + "]\n") == "a.toml:1: " + wanted);
+  CHECK(complaint("title = \"x\"\n" + key + " = 1\n") == "a.toml:2: " + wanted);
+  CHECK(complaint("title = \"\"\"\n\n\"\"\"\nx = {" + key + " = 1}\n") == "a.toml:4: " + wanted);
+  const std::string dots(100, '.');
+  CHECK(read_scene_text("title = \"" + dots + "\" # " + dots + "\n", "a.toml").title == dots);
+}
+
 TEST_CASE("every unknown key is an error that names the line and the keys there are") {
   CHECK(complaint("title = \"x\"\ntitel = \"y\"\n") ==
         "a.toml:2: titel: there is no such key; here are title, background, ambient_light, "

@@ -256,3 +256,38 @@ TEST_CASE("bad input: a line is one line, even for a name with a newline in it")
   check_refused(directory, {"render", "figures", "-o", directory.file("no\nsuch/out.png")}, 1,
                 {"no?such/out.png"});
 }
+
+TEST_CASE("bad input: a model or a texture that is a pipe, and a model of another format") {
+  const TemporaryDirectory directory;
+  REQUIRE(mkfifo(directory.file("m.obj").c_str(), 0600) == 0);
+  check_refused(directory, {"render", directory.file("m.obj"), "-o", directory.file("out.png")}, 1,
+                {"m.obj", "is a pipe or a device"});
+  write_file(directory.file("m.glb"), "glTF");
+  check_refused(directory, {"render", directory.file("m.glb"), "-o", directory.file("out.png")}, 1,
+                {"m.glb", ".obj files"});
+}
+
+TEST_CASE("bad input: two outputs that are one file through a link that leads nowhere yet") {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink("out.npy", directory.file("link"));
+  const std::string out = directory.file("out.npy");
+  check_refused(directory, {"render", "figures", "-o", out, "--report", directory.file("link")}, 2,
+                {"--report"});
+  check_refused(directory,
+                {"render", "figures", "-o", out, "--depth-output", directory.file("link")}, 2,
+                {"--depth-output"});
+  check_refused(directory,
+                {"render", "figures", "--method", "pinhole", "--show", "pinhole", "-o", out,
+                 "--layers", "2", "--report", directory.file("out.layer2.npy")},
+                2, {"--report", "is where --layers writes"});
+}
+
+TEST_CASE("bad input: an output that is the sidecar of an input") {
+  const TemporaryDirectory directory;
+  const std::string picture = directory.file("a.npy");
+  REQUIRE(run_program({"render", "figures", "--size", "16x16", "-o", picture}).status == 0);
+  check_refused(directory,
+                {"refocus", picture, "--depth-encoding", "metres", "-o",
+                 directory.file("a.npy.json"), "--format", "png"},
+                2, {"the picture's sidecar"});
+}

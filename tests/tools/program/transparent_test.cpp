@@ -61,7 +61,7 @@ TEST_CASE("render: the opacity of a model's materials counts") {
     const std::string file = directory.file(material + ".obj");
     std::ofstream{file} << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl " + material +
                                "\nf 1 2 3 4\n";
-    return pinhole_of(file);
+    return pinhole_of(file, {"-q"});
   };
   const Image wall = model("wall"), pane = model("pane");
   CHECK_FALSE(equal(wall, pane));
