@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "dof/c/arguments.h"
+#include "dof/c/settings.h"
 #include "dof/c/softfocus.h"
 #include "dof/dof.h"
 #include "raster/images/image.h"

@@ -9,7 +9,6 @@
 #include <new>
 
 #include "dof/auto/auto_method.h"
-#include "dof/c/arguments.h"
 #include "dof/c/pictures.h"
 #include "dof/c/settings.h"
 #include "dof/lens.h"

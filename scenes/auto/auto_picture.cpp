@@ -7,7 +7,7 @@
 
 #include "dof/measure/flip.h"
 #include "scenes/auto/tile_sample.h"
-#include "scenes/draw/frame_parts.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/lens_points.h"
 

@@ -1,22 +1,49 @@
 #pragma once
-// From a scene to draw calls.
+// A scene's frame: its list of draws, the draws, and the parts that methods work from.
 
-#include <glm/vec4.hpp>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include <glm/vec4.hpp>
+
+#include "dof/dof.h"
 #include "raster/images/decoded_texture.h"
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 #include "raster/pipeline/render_pass.h"
+#include "raster/pipeline/state.h"
 #include "raster/threads/parallel.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/transparent_layers.h"
 #include "scenes/scene.h"
+#include "scenes/surfaces/surface_stages.h"
 
 namespace softfocus {
+
+/// One object. The pointers are into the scene.
+struct SurfaceDraw {
+  DrawState state;
+  SurfaceVertexInput input;
+  const Texture* texture;  ///< none if the variant is not textured
+  SurfaceOpacity opacity;
+  SurfaceVariant variant;  ///< the features of the material
+};
+
+/// Whether a surface is blended with what lies behind it.
+bool is_transparent(const Material& material, const Mesh& mesh);
+
+/// Whether any of a scene's objects is.
+bool has_transparent(const Scene& scene);
+
+/// One for each of the scene's objects, in the order of drawing. Those of opacity 0 show nothing:
+/// callers leave them out.
+std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,
+                                       double frame);
+
+// From a scene to draw calls.
 
 struct SceneShadows;  // shadowed_layers.h
 
@@ -101,5 +128,50 @@ void record_transparent(const PreparedScene& prepared, const CameraMatrices& cam
 /// same depths: what is cut out stays so. The materials must outlive finish().
 void record_surfaces(const PreparedScene& prepared, std::span<const Material> of_objects,
                      const CameraMatrices& camera, double frame, RenderPass& pass);
+
+// A frame in the parts that a depth-of-field method reads: what is opaque, the surfaces behind it,
+// and the transparent ones before it.
+
+struct FrameParts {
+  Image opaque;                                 ///< draw_layers()'s first
+  std::vector<Image> behind;                    ///< and its others
+  std::vector<TransparentPicture> transparent;  ///< before `opaque`
+  Image blended;                                ///< these over it; none if nothing is transparent
+
+  /// All of it, as draw_scene() has it. Needs blend().
+  const Image& picture() const { return transparent.empty() ? opaque : blended; }
+};
+
+/// Draws a frame, with `layers` - 1 opaque surfaces behind the first, as draw_layers(), into the
+/// memory of `parts` as far as it has the size; without blend(). 0 layers: draw_scene() alone.
+void draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame, int width,
+                int height, std::size_t layers, FrameParts& parts, ThreadPool& pool,
+                std::optional<double> behind_before_m = {});
+
+void blend(FrameParts& parts, const Profile& profile, ThreadPool& pool);
+
+/// Calls `use(DofInput)` with a frame's parts as a method reads them. With `radii_px`, which are of
+/// one picture, that is the blended picture alone.
+template <class Use>
+auto with_dof_input(const FrameParts& parts, const DofSettings& settings, const Profile& profile,
+                    std::span<const std::uint16_t> objects, std::span<const float> radii_px,
+                    const Use& use) {
+  const std::vector<ConstImageView> behind{parts.behind.begin(), parts.behind.end()};
+  const bool is_one = parts.transparent.empty() || !radii_px.empty();
+  const std::vector<TransparentLayer> transparent =
+      is_one ? std::vector<TransparentLayer>{} : views_of(parts.transparent);
+  return use(DofInput{.scene = is_one ? parts.picture() : parts.opaque,
+                      .settings = settings,
+                      .profile = profile,
+                      .objects = objects,
+                      .behind = behind,
+                      .transparent = transparent,
+                      .radii_px = radii_px});
+}
+
+/// A frame by a method, with all that the method reads of the scene. `picture` is draw_scene()'s.
+Image filtered_frame(const Method& method, const Scene& scene, const CameraMatrices& camera,
+                     double frame, const Image& picture, const DofSettings& settings,
+                     const Profile& profile, ThreadPool& pool);
 
 }  // namespace softfocus

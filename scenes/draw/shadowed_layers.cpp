@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "raster/threads/scratch_shelf.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/draw/light_points.h"
-#include "scenes/draw/surface_draws.h"
 #include "scenes/shadows/shadow_truth.h"
 
 namespace softfocus {

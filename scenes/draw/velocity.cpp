@@ -14,7 +14,7 @@
 #include "raster/numbers/half.h"
 #include "raster/pipeline/draw.h"
 #include "raster/pipeline/lanes/draw_in_lanes.h"
-#include "scenes/draw/surface_draws.h"
+#include "scenes/draw/draw_scene.h"
 
 namespace softfocus {
 

@@ -9,9 +9,9 @@
 #include "dof/lens.h"
 #include "dof/show.h"
 #include "raster/images/texel.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/object_numbers.h"
-#include "scenes/draw/surface_draws.h"
 #include "scenes/draw/velocity.h"
 
 namespace softfocus {

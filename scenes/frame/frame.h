@@ -13,7 +13,7 @@
 #include "dof/fixed_pictures/arithmetic.h"
 #include "dof/sharp_depths.h"
 #include "scenes/auto/auto_picture.h"
-#include "scenes/draw/frame_parts.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/lens_views/shard.h"
 #include "scenes/temporal/frame_history.h"

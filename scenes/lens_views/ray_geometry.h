@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "raster/numbers/profile.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
-#include "scenes/draw/surface_draws.h"
 #include "scenes/scene.h"
 
 namespace softfocus {

@@ -3,7 +3,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/vector_math.h"
 #include "raster/pipeline/draw.h"
-#include "scenes/draw/surface_draws.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/relief/make_relief.h"
 
 namespace softfocus {

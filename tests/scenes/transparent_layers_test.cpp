@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "raster/images/texel.h"
-#include "scenes/draw/frame_parts.h"
-#include "scenes/draw/surface_draws.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/test_images.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "scenes/draw/draw_scene.h"
-#include "scenes/draw/surface_draws.h"
 #include "scenes/draw/transparent_layers.h"
 
 namespace softfocus {

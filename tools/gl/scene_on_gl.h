@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
-#include "scenes/draw/surface_draws.h"
 #include "scenes/draw/velocity.h"
 #include "scenes/scene.h"
 #include "tools/gl/objects.h"

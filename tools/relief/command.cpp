@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/draw/surface_draws.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/load/load_scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"

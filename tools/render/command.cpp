@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "scenes/draw/frame_parts.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
-#include "scenes/draw/surface_draws.h"
 #include "scenes/draw/transparent_layers.h"
 #include "scenes/frame/frame.h"
 #include "scenes/load/load_scene.h"
