@@ -178,4 +178,9 @@ inline bool is_one_line(std::string_view text) {
          std::count(text.begin(), text.end(), '\n') == 1;
 }
 
+/// The one line that every refocus has to say without -q, and no other.
+inline bool tells_depth_alone(std::string_view text) {
+  return is_one_line(text) && text.starts_with("softfocus: the depth is ");
+}
+
 }  // namespace softfocus

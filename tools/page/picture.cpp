@@ -162,7 +162,8 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
   const NumberType type = depth_file.planes[sources.depth_plane].type;
   const NumbersSeen seen = numbers_seen(depth_codes(depth_file, sources.depth_plane), type);
   const BelievedEncoding believed =
-      believed_encoding(seen, type, !sources.depth_file && sources.notes);
+      believed_encoding(seen, type, !sources.depth_file && sources.notes,
+                        depth_file.planes[sources.depth_plane].name);
   const DepthEncoding* chosen = options.reading.encoding;
   picture->lacks =
       lacking(chosen != nullptr ? BelievedEncoding{chosen, ""} : believed, options.reading.numbers);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "scenes/files/scene_error.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -180,6 +181,7 @@ int refocus(const RefocusOptions& options) {
   const Refocused made = make_refocused(options, progress, pool);
   if (options.output == "-") write_to_standard_output(made.picture);
   progress.clear();
+  if (!options.quiet) std::cerr << "softfocus: " << printable(made.depth) << '\n';
   for (const std::string& warning : made.warnings) {
     std::cerr << "softfocus: warning: " << warning << '\n';
   }
@@ -204,6 +206,7 @@ Command add_refocus_command(CLI::App& program) {
                                       Progress silent{true};
                                       Refocused made = make_refocused(frame, silent, run.pool);
                                       run.picture = std::move(made.picture);
+                                      run.note = std::move(made.depth);
                                       run.warnings = std::move(made.warnings);
                                       run.report = std::move(made.report);
                                     });

@@ -72,7 +72,8 @@ void look_at_depth(InspectedFile& found, PlaneValues values, const DepthOptions&
   const NumberType type = file.planes[plane].type;
   found.believed = reading.encoding != nullptr
                        ? BelievedEncoding{reading.encoding, "--depth-encoding says so"}
-                       : believed_encoding(found.planes[plane].seen, type, found.notes.has_value());
+                       : believed_encoding(found.planes[plane].seen, type, found.notes.has_value(),
+                                           file.planes[plane].name);
   const DepthEncoding* encoding = found.believed.encoding;
   try {
     if (encoding != nullptr) check_depth_numbers(*encoding, reading.numbers);

@@ -41,6 +41,7 @@ struct PhotoLens {
   std::optional<double> fov_y_degrees;
   std::optional<Sensor> sensor;
   std::optional<Pixel> focus_at;
+  bool autofocus = false;  ///< on what is at that pixel, or the middle
   bool focus_nearest = false;
   std::optional<SharpDepthRange> focus_range;
   std::optional<double> blur_at_infinity_px;  ///< a radius
@@ -81,7 +82,7 @@ class FocusDepths {
   int width, height;
   Pixel pixel;                   ///< --focus-at, or the middle
   std::vector<float> around{};   ///< finite depths of the 5x5 pixels there
-  std::size_t finite = 0;        ///< how many depths are
+  std::size_t finite = 0;        ///< how many depths are, where the nearest are asked for
   std::vector<float> nearest{};  ///< of these the nearest thousandth and one more, or more
 
  private:
@@ -89,7 +90,8 @@ class FocusDepths {
 };
 
 /// The lens for a picture of the map's size. The median around a pixel is of the 5x5 pixels there;
-/// the nearest is the depth that one pixel in a thousand is nearer than. Throws UsageError for a
+/// the nearest is the depth that one pixel in a thousand is nearer than. If nobody says what is in
+/// focus, it is the middle or, where that is infinitely far, the nearest. Throws UsageError for a
 /// lens that cannot be, a pixel outside, or a map in which nothing has a finite depth.
 SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                         std::optional<double> focal_px, FocusDepths depths);

@@ -15,8 +15,9 @@
 
 namespace softfocus {
 
-/// The fate of pixels without a depth.
-enum class Holes : std::uint8_t { from_far_side, refused };
+/// How a depth of another shape than the picture lies on it: stretched in one direction, or its
+/// middle, of the picture's shape.
+enum class DepthFit : std::uint8_t { stretch, crop };
 
 struct DepthOptions {
   std::optional<std::string> layer;  ///< of the colour
@@ -26,12 +27,13 @@ struct DepthOptions {
   DepthNumbers numbers;
   std::optional<DepthAlong> along;  ///< none: the encoding's
   std::vector<double> missing_codes;
-  Holes holes = Holes::from_far_side;
+  Holes holes = Holes::background;
+  std::optional<DepthFit> fit;  ///< none: stretched by up to 2 %
   Mending mending;
 };
 
 /// Adds --layer, --depth-layer, --depth-encoding, its numbers, --depth-along, --missing, --mask,
-/// --holes and the three ways of mending.
+/// --holes, --depth-fit and the three ways of mending.
 void add_depth_options(CLI::App& parser, DepthOptions& options);
 
 /// Files whose headers were read.
@@ -62,11 +64,14 @@ struct ReadDepth {
   DepthMap map{};  ///< of the colour's size, nothing missing
   NumbersSeen seen{};
   const DepthEncoding* encoding = nullptr;
-  std::string why{};  ///< of a believed encoding
+  std::string why{};      ///< of a believed encoding
+  bool is_guess = false;  ///< the numbers alone say what they mean
   DepthAlong along = DepthAlong::axis;
-  int width = 0, height = 0;  ///< of the file's map
+  int width = 0, height = 0;  ///< of the file's map, its middle if that is taken
+  std::string fit{};          ///< of another shape than the colour: a clause
   DepthEnds ends{};
-  std::size_t filled = 0;  ///< missing depths of the file's map
+  std::size_t filled = 0;      ///< missing depths of the map
+  std::size_t background = 0;  ///< of these those that became infinitely far
   MendedDepth mended{};
 };
 

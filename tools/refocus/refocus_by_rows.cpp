@@ -213,7 +213,7 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
   survey.is_opaque = !survey.has_opacity || alpha.is_opaque;
   if (survey.depth.filled == 0) return true;
   why = std::to_string(survey.depth.filled) +
-        " pixels have no depth, and are filled from all four sides";
+        " pixels have no depth, and are filled from around them";
   return false;
 }
 

@@ -25,6 +25,23 @@ double mm_of_metres(double z, const DepthNumbers&) { return z * 1000.0; }
 double metres_of_tum(double d, const DepthNumbers&) { return d / 5000.0; }
 double tum_of_metres(double z, const DepthNumbers&) { return z * 5000.0; }
 
+double metres_of_cm(double d, const DepthNumbers&) { return d / 100.0; }
+double cm_of_metres(double z, const DepthNumbers&) { return z * 100.0; }
+
+// Geiger et al. 2013
+double metres_of_kitti(double d, const DepthNumbers&) { return d / 256.0; }
+double kitti_of_metres(double z, const DepthNumbers&) { return z * 256.0; }
+
+// Whole millimetres whose 16 bits are turned left by three (Song et al. 2015); between whole ones
+// the rest is added.
+double turned_left(double number, unsigned bits) {
+  const double whole = std::floor(std::clamp(number, 0.0, 65535.0));
+  const auto code = static_cast<std::uint32_t>(whole);
+  return ((code << bits | code >> (16 - bits)) & 0xFFFF) + (number - whole);
+}
+double metres_of_sun(double d, const DepthNumbers&) { return turned_left(d, 13) / 1000.0; }
+double sun_of_metres(double z, const DepthNumbers&) { return turned_left(z * 1000.0, 3); }
+
 // z = 1 / (scale d + offset)
 double metres_of_inverse(double d, const DepthNumbers& n) {
   const double inverse = metres_of(d, n);
@@ -119,6 +136,12 @@ constexpr std::array kEncodings{
                   false, true, true, metres_of, of_metres},
     DepthEncoding{"millimetres", "whole millimetres (Kinect, RealSense)", "", "", kAxis, false,
                   true, false, metres_of_mm, mm_of_metres},
+    DepthEncoding{"centimetres", "centimetres (Unreal, Virtual KITTI)", "", "", kAxis, false, true,
+                  true, metres_of_cm, cm_of_metres},
+    DepthEncoding{"kitti", "256 a metre (KITTI's depth)", "", "", kAxis, false, true, false,
+                  metres_of_kitti, kitti_of_metres},
+    DepthEncoding{"sun-rgb-d", "whole millimetres, their 16 bits turned left by 3 (SUN RGB-D)", "",
+                  "", kAxis, false, true, false, metres_of_sun, sun_of_metres},
     DepthEncoding{"tum", "5000 a metre (TUM RGB-D)", "", "", kAxis, false, true, false,
                   metres_of_tum, tum_of_metres},
     DepthEncoding{"inverse", "1/metres, dioptres, a phone's disparity: 1 / (scale d + offset)", "",
@@ -228,6 +251,7 @@ void NumberCounter::add(std::span<const float> values) {
 NumbersSeen NumberCounter::seen() const {
   NumbersSeen seen = seen_;
   seen.different = static_cast<std::size_t>(std::count(there_.begin(), there_.end(), true));
+  for (std::size_t i = 0; i < there_.size(); ++i) seen.eighths += there_[i] && i % 8 == 0;
   if (least_ <= largest_) {
     seen.least = least_;
     seen.largest = largest_;
@@ -243,7 +267,10 @@ NumbersSeen numbers_seen(const PlaneValues& values, NumberType type) {
 
 bool knows_nothing(const NumbersSeen& seen) { return seen.count > 0 && seen.nans == seen.count; }
 
-BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours) {
+BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours,
+                                   std::string_view channel) {
+  // A sensor has noise: that so many numbers have three bits of 0 is no chance.
+  constexpr std::size_t kManyNumbers = 32;
   if (is_ours) return {find_depth_encoding("metres"), "softfocus wrote it, in metres"};
   if (knows_nothing(seen)) return {nullptr, "all its numbers are NaN, or beyond the data window"};
   switch (type) {
@@ -255,12 +282,23 @@ BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, boo
     case NumberType::unsigned16:
       if (seen.largest >= 60000.0) {
         return {nullptr,
-                "16 bits that use the whole range may be a depth buffer, a grey picture, tum or "
-                "cityscapes"};
+                "16 bits that use the whole range may be a depth buffer, a grey picture, tum, "
+                "sun-rgb-d or cityscapes"};
+      }
+      if (seen.different > kManyNumbers && seen.eighths == seen.different) {
+        return {nullptr,
+                "16 bits of which all are multiples of 8 may be sun-rgb-d, or millimetres "
+                "in such steps"};
       }
       return {find_depth_encoding("millimetres"),
-              "16 bits that stay below 60000: millimetres, as most depth cameras write"};
+              "16 bits that stay below 60000: millimetres, as most depth cameras write, but not "
+              "kitti, tum and sun-rgb-d"};
     default: break;
+  }
+  for (const std::string_view unreal : {"WorldDepth", "SceneDepth"}) {
+    if (channel.find(unreal) != channel.npos) {
+      return {find_depth_encoding("centimetres"), "Unreal's " + std::string{unreal} + " has them"};
+    }
   }
   if (seen.largest >= 9.9e9) {
     return {find_depth_encoding("blender-z"), "1e10 is what Blender writes where there is nothing"};

@@ -98,6 +98,7 @@ struct NumbersSeen {
   std::size_t zeros = 0;
   std::size_t negatives = 0;
   std::size_t different = 0;  ///< distinct whole numbers, of types that are; else 0
+  std::size_t eighths = 0;    ///< of these the multiples of 8
   double least = 0.0;         ///< of finite numbers; 0 if there is none
   double largest = 0.0;
 };
@@ -125,7 +126,9 @@ struct BelievedEncoding {
   std::string why;                          ///< one sentence without its full stop
 };
 
-/// `is_ours`: the file has softfocus's notes, whose depths are metres.
-BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours);
+/// `is_ours`: the file has softfocus's notes, whose depths are metres. `channel` is the plane's
+/// name, which tells Unreal's.
+BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours,
+                                   std::string_view channel);
 
 }  // namespace softfocus
