@@ -71,7 +71,7 @@ void look_at_depth(InspectedFile& found, PlaneValues values, const DepthOptions&
   const std::size_t plane = *found.depth_plane;
   const NumberType type = file.planes[plane].type;
   found.believed = reading.encoding != nullptr
-                       ? BelievedEncoding{reading.encoding, "--depth-encoding says so"}
+                       ? BelievedEncoding{reading.encoding, "it is said"}
                        : believed_encoding(found.planes[plane].seen, type, found.notes.has_value(),
                                            file.planes[plane].name);
   const DepthEncoding* encoding = found.believed.encoding;
@@ -102,8 +102,8 @@ std::optional<PlaneValues> grey_in_colours(const InspectedFile& found) {
 }
 
 /// Reads one plane after the other, so that a file of forty layers takes the memory of one.
-InspectedFile inspected(const std::string& name, const DepthOptions& reading) {
-  InspectedFile found{.file = open_picture_file(name)};
+InspectedFile inspected(PictureFile opened, const DepthOptions& reading) {
+  InspectedFile found{.file = std::move(opened)};
   const PictureFile& file = found.file;
   found.colours = colour_layers(file);
   found.notes = find_notes(file.path, file.bytes).notes;
@@ -281,6 +281,25 @@ void write_circles(const InspectOptions& options) {
             << refocus_text(preview, sources, depth, used);
 }
 
+/// The file, and the depth that a phone put into it.
+std::vector<InspectedFile> inspected(const std::string& name, const DepthOptions& reading) {
+  std::vector<InspectedFile> all;
+  PictureFile file = open_picture_file(name);
+  std::optional<PhoneDepth> phone;
+  if (file.reader == &kJpegReader) phone = find_phone_depth(file.bytes);
+  all.push_back(inspected(std::move(file), reading));
+  if (!phone) return all;
+  DepthOptions said = reading;
+  if (said.encoding == nullptr) {
+    said.encoding = phone->encoding;
+    for (const OfDepth& of : kDepthNumbers) {
+      if (!(said.numbers.*of.place)) said.numbers.*of.place = phone->numbers.*of.place;
+    }
+  }
+  all.push_back(inspected(open_picture_file(std::move(phone->file), name + ", its depth"), said));
+  return all;
+}
+
 int inspect(const InspectOptions& options) {
   if (const std::string& output = options.preview.output; !output.empty()) {
     check_writable(output);
@@ -290,11 +309,12 @@ int inspect(const InspectOptions& options) {
   }
   Json all = Json::array();
   for (const std::string& name : options.files) {
-    const InspectedFile found = inspected(name, options.preview.reading);
-    if (options.json) {
-      all.push_back(json_of(found));
-    } else {
-      std::cout << text_of(found);
+    for (const InspectedFile& found : inspected(name, options.preview.reading)) {
+      if (options.json) {
+        all.push_back(json_of(found));
+      } else {
+        std::cout << text_of(found);
+      }
     }
   }
   if (options.json) std::cout << json_text(all, 2) << '\n';

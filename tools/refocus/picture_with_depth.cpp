@@ -163,6 +163,20 @@ void choose_planes(PictureSources& sources, const DepthOptions& options) {
   if (!sources.notes) sources.lens = find_exr_lens(source_of(sources.colour_file));
 }
 
+/// The depth of a phone lies as the pixels of its picture do.
+void open_phone_depth(PictureSources& sources) {
+  const PictureFile& colour = sources.colour_file;
+  sources.phone = find_phone_depth(colour.bytes);
+  if (!sources.phone) return;
+  std::filesystem::path path = colour.path;
+  PictureFile depth = open_picture_file(std::move(sources.phone->file), path += ", its depth");
+  if (depth.exif_orientation == 1) {
+    depth.exif_orientation = colour.exif_orientation;
+    if (depth.exif_orientation >= 5) std::swap(depth.width, depth.height);
+  }
+  sources.depth_file = std::move(depth);
+}
+
 }  // namespace
 
 PictureSources open_sources(const std::string& colour, const std::string& depth,
@@ -170,8 +184,10 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
   PictureSources sources{.colour_file = open_picture_file(colour)};
   if (!depth.empty()) {
     sources.depth_file = open_picture_file(depth);
-    check_shape(sources.colour_file, *sources.depth_file, options);
+  } else if (sources.colour_file.reader == &kJpegReader) {
+    open_phone_depth(sources);
   }
+  if (sources.depth_file) check_shape(sources.colour_file, *sources.depth_file, options);
   choose_planes(sources, options);
   return sources;
 }
@@ -194,14 +210,31 @@ std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
   return sources;
 }
 
+BelievedEncoding believed_encoding(const PictureSources& sources, const NumbersSeen& seen) {
+  const PictureFile& file = sources.of_depth();
+  const PlaneInfo& plane = file.planes[sources.depth_plane];
+  if (sources.phone && sources.phone->encoding != nullptr) {
+    return {sources.phone->encoding, "the file says so"};
+  }
+  return believed_encoding(seen, plane.type, !sources.depth_file && sources.notes, plane.name);
+}
+
+DepthNumbers depth_numbers(const PictureSources& sources, const DepthOptions& options,
+                           const DepthEncoding* encoding) {
+  DepthNumbers numbers = options.numbers;
+  if (!sources.phone || sources.phone->encoding != encoding) return numbers;
+  for (const OfDepth& of : kDepthNumbers) {
+    std::optional<double>& number = numbers.*of.place;
+    if (!number) number = sources.phone->numbers.*of.place;
+  }
+  return numbers;
+}
+
 void settle_encoding(const PictureSources& sources, const DepthOptions& options, ReadDepth& read) {
   const PictureFile& file = sources.of_depth();
   read.encoding = options.encoding;
   if (read.encoding == nullptr) {
-    const bool is_ours = !sources.depth_file && sources.notes;
-    const BelievedEncoding believed =
-        believed_encoding(read.seen, file.planes[sources.depth_plane].type, is_ours,
-                          file.planes[sources.depth_plane].name);
+    const BelievedEncoding believed = believed_encoding(sources, read.seen);
     if (knows_nothing(read.seen)) {
       throw UsageError("'" + file.path.string() + "' has no depth: " + believed.why +
                        "; give another file, or --depth-layer");
@@ -212,16 +245,18 @@ void settle_encoding(const PictureSources& sources, const DepthOptions& options,
     }
     read.encoding = believed.encoding;
     read.why = believed.why;
-    read.is_guess = !is_ours;
+    const bool is_ours = !sources.depth_file && sources.notes;
+    read.is_guess = !is_ours && !sources.phone;
   }
-  check_depth_numbers(*read.encoding, options.numbers);
-  read.along = options.along.value_or(read.encoding->along);
+  check_depth_numbers(*read.encoding, depth_numbers(sources, options, read.encoding));
+  const bool is_said = sources.phone && sources.phone->encoding == read.encoding;
+  read.along = options.along.value_or(is_said ? sources.phone->along : read.encoding->along);
 }
 
 DepthReading depth_reading(const PictureSources& sources, const DepthOptions& options,
                            const PhotoLens& photo, const ReadDepth& read) {
   DepthReading reading{.encoding = read.encoding,
-                       .numbers = options.numbers,
+                       .numbers = depth_numbers(sources, options, read.encoding),
                        .along = read.along,
                        .missing_codes = options.missing_codes};
   // A smaller map has a smaller focal length in pixels.

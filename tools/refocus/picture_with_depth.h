@@ -11,6 +11,7 @@
 #include "tools/refocus/depth/depth_encodings.h"
 #include "tools/refocus/depth/depth_map.h"
 #include "tools/refocus/depth/mend_depth.h"
+#include "tools/refocus/depth/phone_depth.h"
 #include "tools/refocus/photo_lens.h"
 
 namespace softfocus {
@@ -40,6 +41,7 @@ void add_depth_options(CLI::App& parser, DepthOptions& options);
 struct PictureSources {
   PictureFile colour_file;
   std::optional<PictureFile> depth_file{};  ///< none: the colour's
+  std::optional<PhoneDepth> phone{};        ///< the depth's file came inside of the colour's
   ColourLayer colour{};
   std::size_t depth_plane = 0;
   std::optional<PictureNotes> notes{};  ///< of the colour's file
@@ -48,8 +50,9 @@ struct PictureSources {
   const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
 };
 
-/// Opens COLOUR and, unless it is empty, DEPTH, and chooses layers. Throws FileError; UsageError
-/// for layers that are not there and a depth of another shape than the colour.
+/// Opens COLOUR and, unless it is empty, DEPTH, else a depth inside of a JPEG, and chooses layers.
+/// Throws FileError; UsageError for layers that are not there and a depth of another shape than the
+/// colour.
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options);
 
@@ -74,6 +77,13 @@ struct ReadDepth {
   std::size_t background = 0;  ///< of these those that became infinitely far
   MendedDepth mended{};
 };
+
+/// The encoding that the depth's file says or its numbers suggest.
+BelievedEncoding believed_encoding(const PictureSources& sources, const NumbersSeen& seen);
+
+/// The numbers that were given, and those that the file says of that encoding.
+DepthNumbers depth_numbers(const PictureSources& sources, const DepthOptions& options,
+                           const DepthEncoding* encoding);
 
 /// Settles the encoding, asked for or believed by `read.seen`. Throws UsageError if it cannot be
 /// told or lacks numbers.
