@@ -75,7 +75,9 @@ std::uint64_t bytes_of_a_frame(const std::vector<FrameWork>& frames) {
 /// COLOUR, DEPTH and --mask, those that are given.
 std::vector<FrameFiles> frame_files(const RefocusOptions& options) {
   std::vector<FrameFiles> files{{"COLOUR", options.colour}};
-  if (!options.depth.empty()) files.emplace_back("DEPTH", options.depth);
+  if (!options.depth.empty()) {
+    files.emplace_back(options.has_circles ? "--circles" : "DEPTH", options.depth);
+  }
   if (options.reading.mask) files.emplace_back("--mask", *options.reading.mask);
   return files;
 }
@@ -111,7 +113,8 @@ void check_outputs(const RefocusOptions& options) {
   if (options.output == "-") return;
   check_writable(options.output);
   std::vector<ReadFile> inputs{{options.colour, "the picture"}};
-  if (!options.depth.empty()) inputs.push_back({options.depth, "its depth"});
+  if (!options.depth.empty())
+    inputs.push_back({options.depth, options.has_circles ? "the circles" : "its depth"});
   if (options.reading.mask) inputs.push_back({*options.reading.mask, "the mask"});
   check_not_read("-o", options.output, inputs);
   if (const auto sidecar = sidecar_place(options.output, options.format))
@@ -140,6 +143,7 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
   if (sources.depth_file) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
   UsedRefocus used{.why_whole = why};
+  if (options.has_circles) photo.circles = coc_of_circles(depth.numbers);
   used.lens = settle_lens(photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
   const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
@@ -198,6 +202,7 @@ Command add_refocus_command(CLI::App& program) {
   const auto options = std::make_shared<RefocusOptions>();
   add_refocus_options(*parser, *options);
   return {parser, [parser, options] {
+            take_circles(*options, *parser);
             const auto files = frame_files(*options);
             complete(*options, *parser);
             if (is_sequence(*options, files)) {

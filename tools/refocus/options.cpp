@@ -179,6 +179,10 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
            [&options] { options.keep_layers = false; });
   add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
   add_depth_options(parser, options.reading);
+  add_text(parser, "--circles", "FILE",
+           "Radii of circles in pixels in place of depth and lens, negative before the focus: of "
+           "any camera, by any program",
+           options.circles);
   add_photo_lens_options(parser, options.photo);
   begin_group(parser, "Bokeh");
   add_blades_option(parser, "An aperture", options.aperture.blades);
@@ -203,6 +207,24 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_profile_option(parser, options.profile, options.profile_name);
   add_pool_options(parser, options.pool, "the picture is the same");
   add_talk_options(parser, options.verbose, options.quiet);
+}
+
+void take_circles(RefocusOptions& options, const CLI::App& parser) {
+  if (!options.circles) return;
+  if (!options.depth.empty()) {
+    throw UsageError("--circles and DEPTH '" + options.depth +
+                     "' exclude each other: circles take its place");
+  }
+  for (const char* option :
+       {"--depth-encoding", "--near", "--far", "--scale", "--offset", "--baseline", "--focal-px",
+        "--depth-along", "--focus", "--focus-at", "--autofocus", "--focus-nearest", "--focus-range",
+        "--f-number", "--focal-length", "--sensor", "--fov", "--coc-scale", "--blur-at-infinity"}) {
+    check_one_of(parser, {"--circles", option});
+  }
+  options.depth = *options.circles;
+  options.has_circles = true;
+  options.reading.encoding = &circles_encoding();
+  if (options.reading.holes == Holes::background) options.reading.holes = Holes::far_side;
 }
 
 void complete(RefocusOptions& options, const CLI::App& parser) {

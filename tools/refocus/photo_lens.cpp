@@ -262,7 +262,11 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
   const bool is_noted = notes && notes->lens;
   settled.lens = settled_thin_lens(settled.lens, photo, is_noted, settled.lens_from);
   settled.coc_scale = photo.lens.coc_scale.value_or(settled.coc_scale);
-  settled.lens.focus_m = focus_of(photo, depths, settled.focus_from);
+  if (photo.circles) {
+    settled.focus_from = "--circles";
+  } else {
+    settled.lens.focus_m = focus_of(photo, depths, settled.focus_from);
+  }
   settled.range = photo.focus_range;
   const CameraSource source = camera_source(photo, notes, focal_px);
   constexpr std::array<const char*, 5> kSources{"--fov", "--sensor ", "--focal-px",
@@ -278,6 +282,12 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
                                                           : notes->fov_y_degrees;
     return pixels;
   };
+  if (photo.circles) {
+    settled.has_lens = false;
+    camera(focal_length_mm(photo, notes));
+    settled.coc = *photo.circles;
+    return settled;
+  }
   if (photo.blur_at_infinity_px) {
     // A lens focused at the near end of a range has more blur beyond it than one at the far end.
     const double more =

@@ -45,6 +45,7 @@ struct PhotoLens {
   bool focus_nearest = false;
   std::optional<SharpDepthRange> focus_range;
   std::optional<double> blur_at_infinity_px;  ///< a radius
+  std::optional<PixelCoc> circles;            ///< in place of a lens: coc_of_circles()
   HeaderLens of_file;                         ///< where nothing above says it
 };
 
@@ -59,7 +60,7 @@ struct SettledLens {
   double coc_scale = 1.0;
   double fov_y_degrees = 0.0;
   PixelCoc coc{};
-  bool has_lens = true;  ///< false: --blur-at-infinity alone says how much is blurred
+  bool has_lens = true;  ///< false: --blur-at-infinity or --circles says how much is blurred
   std::optional<SharpDepthRange> range{};
   std::string focus_from;   ///< "--focus", "the median around pixel 3,4"
   std::string lens_from;    ///< "--focal-length and the default f-number"

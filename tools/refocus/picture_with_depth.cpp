@@ -156,11 +156,23 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
 
 namespace {
 
+/// Whether XMP says so (Google's GPano).
+bool is_photo_panorama(const PictureFile& file) {
+  if (file.reader != &kJpegReader && file.reader != &kPngReader) return false;
+  constexpr std::size_t kMost = std::size_t{1} << 18;
+  const std::string_view text{reinterpret_cast<const char*>(file.bytes.data()),
+                              std::min(file.bytes.size(), kMost)};
+  return text.find("GPano:ProjectionType") != text.npos;
+}
+
 void choose_planes(PictureSources& sources, const DepthOptions& options) {
   sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
-  sources.depth_plane = choose_depth(sources.of_depth(), options.depth_layer, !sources.depth_file);
+  const bool has_circles = options.encoding == &circles_encoding();
+  sources.depth_plane =
+      choose_depth(sources.of_depth(), options.depth_layer, !sources.depth_file, has_circles);
   sources.notes = find_notes(sources.colour_file.path, source_of(sources.colour_file)).notes;
   if (!sources.notes) sources.lens = find_exr_lens(source_of(sources.colour_file));
+  if (is_photo_panorama(sources.colour_file)) sources.lens.camera = "panoramic";
 }
 
 /// The depth of a phone lies as the pixels of its picture do.
@@ -289,7 +301,11 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
         " %";
   }
   settle_encoding(sources, options, read);
-  const DepthReading reading = depth_reading(sources, options, photo, read);
+  DepthReading reading = depth_reading(sources, options, photo, read);
+  CodeEnds ends{type, reading};
+  ends.add(codes, mask);
+  ends.put_in(reading.numbers);
+  read.numbers = reading.numbers;
   const bool has_bands = options.mending.bands && full_scale(type) > 1.0;
   if (has_bands) codes = without_bands(codes, width, height, pool);
   read.mended.bands = has_bands;

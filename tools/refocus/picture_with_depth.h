@@ -67,8 +67,9 @@ struct ReadDepth {
   DepthMap map{};  ///< of the colour's size, nothing missing
   NumbersSeen seen{};
   const DepthEncoding* encoding = nullptr;
-  std::string why{};      ///< of a believed encoding
-  bool is_guess = false;  ///< the numbers alone say what they mean
+  DepthNumbers numbers{};  ///< as used; of an encoding by_ends with the map's
+  std::string why{};       ///< of a believed encoding
+  bool is_guess = false;   ///< the numbers alone say what they mean
   DepthAlong along = DepthAlong::axis;
   int width = 0, height = 0;  ///< of the file's map, its middle if that is taken
   std::string fit{};          ///< of another shape than the colour: a clause

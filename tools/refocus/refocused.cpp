@@ -109,6 +109,10 @@ void settle_largest_circle(const ConstImageView& picture, const RefocusOptions& 
   used.settings.max_coc_px = options.max_coc_px.value_or(std::ceil(sizes.largest_px));
 }
 
+void put_depth_in_alpha(const RefocusOptions& options, const PlaneValues& metres, Image& picture) {
+  put_in_alpha(options.has_circles ? PlaneValues(metres.size(), 0.0f) : metres, picture);
+}
+
 PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
                           const RefocusOptions& options, UsedRefocus& used, ThreadPool& pool) {
   Image& colour = source.picture;
@@ -139,7 +143,7 @@ PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
   if (options.highlights) {
     lower_highlights(*options.highlights, result.opacity, result.picture);
   }
-  put_in_alpha(depth.metres, result.picture);
+  put_depth_in_alpha(options, depth.metres, result.picture);
   return result;
 }
 
@@ -190,6 +194,7 @@ Bytes refocused_file(const RefocusOptions& options, const PictureSources& source
     radii_px = circle_radii(depth, used);
     extras.radii_px = radii_px;
     extras.depth_m = depth.metres;
+    extras.has_depth = !options.has_circles;
     if (sources.colour_file.reader == &kExrReader) {
       kept = kept_planes(options, sources);
       extras.source = &sources.colour_file;

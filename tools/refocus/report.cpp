@@ -9,6 +9,11 @@
 namespace softfocus {
 namespace {
 
+std::string circles_text(const ReadDepth& depth) {
+  return short_number(depth.numbers.least_code) + " to " +
+         short_number(depth.numbers.largest_code) + " px radius";
+}
+
 std::string lines_of_lens(const SettledLens& lens) {
   std::string text = "focus            " + short_number(static_cast<double>(lens.coc.focus_m)) +
                      " m, by " + lens.focus_from;
@@ -54,10 +59,12 @@ std::string holes_text(const ReadDepth& depth, Holes holes) {
 
 std::string depth_line(const RefocusOptions& options, const PictureSources& sources,
                        const ReadDepth& depth) {
-  std::string line = "the depth is " + std::string{depth.encoding->name} +
-                     (depth.along == DepthAlong::ray ? " along the ray, " : ", ") +
-                     depth_range_text(depth.ends) +
-                     (depth.why.empty() ? "" : " (believed: " + depth.why + ")");
+  std::string line = options.has_circles
+                         ? "the circles are " + circles_text(depth)
+                         : "the depth is " + std::string{depth.encoding->name} +
+                               (depth.along == DepthAlong::ray ? " along the ray, " : ", ") +
+                               depth_range_text(depth.ends) +
+                               (depth.why.empty() ? "" : " (believed: " + depth.why + ")");
   if (depth.filled > 0) line += "; " + holes_text(depth, options.reading.holes);
   if (!depth.fit.empty()) line += "; " + depth.fit;
   const int orientation = sources.colour_file.exif_orientation;
@@ -96,8 +103,8 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
                      file.planes[sources.depth_plane].name + ", " +
                      std::string{depth.encoding->name} + " along the " +
                      std::string{name_of(depth.along)} +
-                     (depth.why.empty() ? "" : " (believed: " + depth.why + ")") +
-                     "\n                 " + depth_range_text(depth.ends) + "\n";
+                     (depth.why.empty() ? "" : " (believed: " + depth.why + ")") + "\n";
+  if (!options.has_circles) text += "                 " + depth_range_text(depth.ends) + "\n";
   if (depth.filled > 0) {
     text += "                 " + holes_text(depth, options.reading.holes) + "\n";
   }
@@ -112,7 +119,8 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
     text += "                 " + std::to_string(depth.mended.edge_pixels) +
             " pixels between two surfaces given to one\n";
   }
-  text += lines_of_lens(used.lens);
+  text += options.has_circles ? "circles          " + circles_text(depth) + "\n"
+                              : lines_of_lens(used.lens);
   if (used.choice)
     text += "chosen           " + setting_text(*used.choice) + ": " + used.choice->reason + "\n";
   if (options.show == RefocusShow::image) {
@@ -156,6 +164,11 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
   if (!depth.why.empty()) json["depth_believed"] = depth.why;
   if (!used.why_whole.empty()) json["why_whole"] = used.why_whole;
   if (options.show == RefocusShow::image) json["method"] = used.method->name;
+  if (options.has_circles) {
+    for (const char* key : {"nearest_m", "farthest_m", "focus_m", "radius_at_infinity_px"}) {
+      json[key] = nullptr;
+    }
+  }
   if (lens.has_lens) {
     json["lens"] = {{"focal_length_mm", lens.lens.focal_length_mm},
                     {"f_number", lens.lens.f_number},
@@ -202,6 +215,11 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
           const UsedRefocus& used, std::uint64_t hash, Refocused& made) {
   for (const std::string& fault : sources.lens.faults) {
     made.warnings.push_back("'" + options.colour + "': " + fault + "; it is ignored");
+  }
+  if (const std::string& camera = sources.lens.camera; !camera.empty() && !options.has_circles) {
+    made.warnings.push_back("'" + options.colour + "' says that its camera is " + camera +
+                            ", and a lens's circles are a perspective's; --circles FILE takes "
+                            "those of any camera");
   }
   if (is_odd(depth)) made.warnings.push_back(odd_depth_warning(sources, depth));
   if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {

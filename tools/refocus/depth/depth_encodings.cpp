@@ -101,14 +101,17 @@ double white_near_of_metres(double z, const DepthNumbers& n) {
   return 1.0 - linear_of_metres(z, n);
 }
 
-// 1/z runs in a line from 1/far at the least code to 1/near at the largest
+// 1/z runs in a line from 1/far at the least code to 1/near at the largest; one code alone is far
+double span_of_codes(const DepthNumbers& n) {
+  return n.largest_code > n.least_code ? n.largest_code - n.least_code : 1.0;
+}
 double metres_of_midas(double d, const DepthNumbers& n) {
-  const double share = (d - n.least_code) / (n.largest_code - n.least_code);
+  const double share = (d - n.least_code) / span_of_codes(n);
   return 1.0 / (1.0 / *n.far_m + share * (1.0 / *n.near_m - 1.0 / *n.far_m));
 }
 double midas_of_metres(double z, const DepthNumbers& n) {
   const double share = (1.0 / z - 1.0 / *n.far_m) / (1.0 / *n.near_m - 1.0 / *n.far_m);
-  return n.least_code + share * (n.largest_code - n.least_code);
+  return n.least_code + share * span_of_codes(n);
 }
 
 // Blender writes 1e10 where there is nothing.
@@ -127,6 +130,15 @@ double metres_of_mist(double d, const DepthNumbers& n) {
 double mist_of_metres(double z, const DepthNumbers& n) {
   const double share = linear_of_metres(z, n);
   return share * share;
+}
+
+constexpr double kCirclesFocus = 16.0;
+double horizon_of(const DepthNumbers& n) { return std::max(1.125 * n.largest_code, 4.0); }
+double metres_of_circle(double radius, const DepthNumbers& n) {
+  return kCirclesFocus * horizon_of(n) / (horizon_of(n) - radius);
+}
+double circle_of_metres(double z, const DepthNumbers& n) {
+  return horizon_of(n) * (z - kCirclesFocus) / z;
 }
 
 constexpr DepthAlong kAxis = DepthAlong::axis, kRay = DepthAlong::ray;
@@ -173,7 +185,8 @@ constexpr std::array kEncodings{
     DepthEncoding{"gdepth-linear", "Google's GDepth, RangeLinear: 0 near, in steps of metres",
                   "near far", "", kAxis, true, false, false, metres_of_linear, linear_of_metres},
     DepthEncoding{"midas", "1/metres of unknown scale (MiDaS and its like): largest code at near",
-                  "near far", "", kAxis, false, false, false, metres_of_midas, midas_of_metres},
+                  "near far", "", kAxis, false, false, false, metres_of_midas, midas_of_metres,
+                  true},
     DepthEncoding{"blender-z", "metres, 1e10 where there is nothing", "", "", kAxis, false, true,
                   true, metres_of_blender, blender_of_metres},
     DepthEncoding{"blender-mist", "mist of quadratic falloff from near to far, along the ray",
@@ -191,6 +204,17 @@ bool lists(std::string_view list, std::string_view word) {
 }  // namespace
 
 std::span<const DepthEncoding> depth_encodings() { return kEncodings; }
+
+const DepthEncoding& circles_encoding() {
+  static constexpr DepthEncoding kCircles{
+      "circles",        "radii in pixels", "",  "", kAxis, false, false, false,
+      metres_of_circle, circle_of_metres,  true};
+  return kCircles;
+}
+
+PixelCoc coc_of_circles(const DepthNumbers& numbers) {
+  return {static_cast<float>(horizon_of(numbers)), static_cast<float>(kCirclesFocus)};
+}
 
 const DepthEncoding* find_depth_encoding(std::string_view name) {
   for (const DepthEncoding& encoding : kEncodings) {

@@ -73,7 +73,7 @@ void CodeEnds::add(std::span<const float> codes, std::span<const float> mask) {
 
 void CodeEnds::put_in(DepthNumbers& numbers) const {
   numbers.least_code = least_;
-  numbers.largest_code = largest_ > least_ ? largest_ : least_ + 1.0;
+  numbers.largest_code = largest_;
 }
 
 void codes_to_depths(std::span<float> codes, NumberType type, int first_row, int width, int height,

@@ -60,6 +60,10 @@ Told refocused(const TemporaryDirectory& directory, const Words& files, const Wo
   return {json::parse(run.out), run.err};
 }
 
+float red_in_result(const TemporaryDirectory& directory, int x, int y) {
+  return load_texel(read_image_file(directory.file("o.npy")).image, x, y).x;
+}
+
 double depth_in_result(const TemporaryDirectory& directory, int x, int y) {
   return static_cast<double>(load_texel(read_image_file(directory.file("o.npy")).image, x, y).w);
 }
@@ -191,4 +195,79 @@ TEST_CASE("refocus: --depth-fit crop takes the middle of the depth, as a picture
   put(directory, "d.pfm", encode_grey_pfm(wide, 80, kDown));
   refocused(directory, {"c.npy", "d.pfm"}, {"--depth-fit", "crop", "--depth-encoding", "metres"});
   for (const int x : {0, 31, 63}) CHECK(depth_in_result(directory, x, 7) == 1.0 + 8 + x);
+}
+
+TEST_CASE("refocus: --circles has the circles of a lens that has them") {
+  const TemporaryDirectory directory;
+  put(directory, "c.npy", encode_npy(squares(kAcross, kDown)));
+  put(directory, "sky.pfm", encode_grey_pfm(halves(INFINITY, INFINITY), kAcross, kDown));
+  put(directory, "r.pfm", encode_grey_pfm(halves(5, 5), kAcross, kDown));
+  const Words method{"--method", "scatter-aperture"};
+  Words lens = method;
+  lens.insert(lens.end(),
+              {"--focus", "2", "--blur-at-infinity", "5", "--depth-encoding", "metres"});
+  refocused(directory, {"c.npy", "sky.pfm"}, lens);
+  std::vector<float> expected;
+  for (int x = 0; x < kAcross; ++x) expected.push_back(red_in_result(directory, x, 20));
+  Words circles = method;
+  circles.insert(circles.end(), {"--circles", directory.file("r.pfm")});
+  const Told told = refocused(directory, {"c.npy"}, circles);
+  CHECK(contains(told.err, "the circles are 5 to 5 px radius"));
+  CHECK(told.report["largest_circle_px"] == 5.0);
+  CHECK(told.report["lens"].is_null());
+  CHECK(told.report["nearest_m"].is_null());
+  for (int x = 0; x < kAcross; ++x) {
+    CHECK(red_in_result(directory, x, 20) ==
+          doctest::Approx(expected[static_cast<std::size_t>(x)]).epsilon(0.005));
+  }
+  CHECK(depth_in_result(directory, 3, 3) == 0.0);  // none is known
+}
+
+TEST_CASE("refocus: --circles before the focus spread over what is sharp, those behind do not") {
+  const TemporaryDirectory directory;
+  Image white_left = make_image(Format::rgba16f, kAcross, kDown);
+  for (int i = 0; i < kAcross * kDown; ++i) {
+    const float grey = i % kAcross < kAcross / 2 ? 1.0f : 0.0f;
+    store_texel(white_left, i % kAcross, i / kAcross, {grey, grey, grey, 1.0f}, {});
+  }
+  put(directory, "c.npy", encode_npy(white_left));
+  const auto red_beside = [&](float radius) {
+    put(directory, "r.pfm", encode_grey_pfm(halves(radius, 0), kAcross, kDown));
+    refocused(directory, {"c.npy"},
+              {"--method", "disc-layers", "--circles", directory.file("r.pfm")});
+    return red_in_result(directory, kAcross / 2 + 1, 20);
+  };
+  CHECK(red_beside(-6.0f) > 0.2f);
+  CHECK(red_beside(6.0f) < 0.02f);
+}
+
+TEST_CASE("refocus: --circles give the same picture by rows and whole, and take our own EXR's") {
+  const TemporaryDirectory directory;
+  put(directory, "c.npy", encode_npy(squares(kAcross, kDown)));
+  put(directory, "r.pfm", encode_grey_pfm(halves(-3, 4.5f), kAcross, kDown));
+  const Words circles{"--circles", directory.file("r.pfm"), "--method", "two-pass"};
+  const Told rows = refocused(directory, {"c.npy"}, circles);
+  CHECK(rows.report["by_rows"] == true);
+  Words whole{"refocus", directory.file("c.npy"), "-o", directory.file("o.png"), "--json"};
+  whole.insert(whole.end(), circles.begin(), circles.end());
+  CHECK(json::parse(run_program(whole).out)["picture_hash"] == rows.report["picture_hash"]);
+  if (!missing_exr().empty()) return;
+  whole[3] = directory.file("o.exr");
+  CHECK(run_program(whole).status == 0);
+  CHECK(plane_names(open_picture_file(directory.file("o.exr"))) == "A, B, G, R, coc");
+  const Told again = refocused(directory, {"c.npy"},
+                               {"--circles", directory.file("o.exr"), "--method", "two-pass"});
+  CHECK(contains(again.err, "the circles are -3 to 4.5 px radius"));
+}
+
+TEST_CASE("bad input: --circles beside a depth, an encoding or a lens") {
+  const TemporaryDirectory directory;
+  put(directory, "c.npy", encode_npy(squares(8, 8)));
+  const std::string c = directory.file("c.npy"), out = directory.file("p.npy");
+  check_refused(directory, {"refocus", c, c, "--circles", c, "-o", out}, 2,
+                {"--circles", "DEPTH", "exclude"});
+  for (const std::string option : {"--focus", "--f-number", "--fov", "--near"}) {
+    check_refused(directory, {"refocus", c, "--circles", c, "-o", out, option, "2"}, 2,
+                  {"--circles", option, "exclude"});
+  }
 }
