@@ -206,6 +206,13 @@ Command add_refocus_command(CLI::App& program) {
             const auto files = frame_files(*options);
             complete(*options, *parser);
             if (is_sequence(*options, files)) {
+              for (const FrameFiles& file : files) {
+                if (file.text() == "-") {
+                  throw UsageError(file.what() +
+                                   " -: standard input can be read for one picture, "
+                                   "not for many; give a file");
+                }
+              }
               return refocus_frames(*options, *parser, files,
                                     [](const RefocusOptions& frame, FrameRun& run) {
                                       Progress silent{true};

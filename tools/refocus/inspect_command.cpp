@@ -387,6 +387,9 @@ Command add_inspect_command(CLI::App& program) {
                 throw UsageError("-o: it takes one file, or a colour and its depth; " +
                                  std::to_string(options->files.size()) + " are given");
               }
+              if (std::count(options->files.begin(), options->files.end(), "-") > 0) {
+                throw UsageError("-o: standard input can be read once; give a file in place of -");
+              }
               if (preview.output == "-") {
                 throw UsageError("-o -: standard output has the text; give -o a file");
               }

@@ -164,7 +164,7 @@ void check_method(const RefocusOptions& options) {
 void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_argument(parser, "COLOUR",
                "A picture: PNG and JPEG (sRGB), EXR, HDR, PFM (linear), NPY (linear; whole numbers "
-               "sRGB)",
+               "sRGB); - for standard input",
                options.colour);
   add_optional_argument(parser, "DEPTH", "Its depth, unless COLOUR has it: any of these",
                         options.depth);
@@ -230,6 +230,10 @@ void take_circles(RefocusOptions& options, const CLI::App& parser) {
 void complete(RefocusOptions& options, const CLI::App& parser) {
   check_talk(parser);
   settle_format(parser, options.output, options.format);
+  const bool masks_by_input = options.reading.mask == "-";
+  if ((options.colour == "-") + (options.depth == "-") + masks_by_input > 1) {
+    throw UsageError("-: standard input is one file; name the others");
+  }
   const bool to_standard_output = options.output == "-";
   if (to_standard_output && options.json) {
     throw UsageError("--json and -o - would both write to standard output; give -o a file");

@@ -271,3 +271,26 @@ TEST_CASE("bad input: --circles beside a depth, an encoding or a lens") {
                   {"--circles", option, "exclude"});
   }
 }
+
+TEST_CASE("refocus: - is standard input, for the picture or for the depth") {
+  const TemporaryDirectory directory;
+  const std::string colour = directory.file("c.npy"), depth = directory.file("d.pfm");
+  put(directory, "c.npy", encode_npy(squares(kAcross, kDown)));
+  put(directory, "d.pfm", encode_grey_pfm(halves(2, 5), kAcross, kDown));
+  const auto hash_of = [&](const std::string& first, const std::string& second,
+                           const std::string& input) {
+    const ProgramRun run = run_program(
+        {"refocus", first, second, "-o", directory.file("o.png"), "--json"}, {.in_from = input});
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    return json::parse(run.out)["picture_hash"].get<std::string>();
+  };
+  const std::string expected = hash_of(colour, depth, "/dev/null");
+  CHECK(hash_of("-", depth, colour) == expected);
+  CHECK(hash_of(colour, "-", depth) == expected);
+  check_refused(directory, {"refocus", "-", "-", "-o", directory.file("p.png")}, 2,
+                {"standard input is one file"});
+  check_refused(directory,
+                {"refocus", "-", depth, "-o", directory.file("p%d.png"), "--frames", "1..3"}, 2,
+                {"COLOUR -", "standard input"});
+}
