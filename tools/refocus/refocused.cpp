@@ -33,27 +33,30 @@ DepthBounds bounds_of(const DepthMap& depth) {
   return bounds;
 }
 
-Image filtered(const Image& picture, const RefocusOptions& options, const UsedRefocus& used,
-               ThreadPool& pool) {
+Image filtered(const Image& picture, const KeptPart& kept, const RefocusOptions& options,
+               const UsedRefocus& used, ThreadPool& pool) {
   if (options.arithmetic != Arithmetic::floats) {
     check_arithmetic(options.arithmetic, used.settings);
     Image result = make_image(picture.format, picture.width, picture.height);
     two_pass_in(options.arithmetic, {picture, used.settings, options.profile}, result, pool);
     return result;
   }
-  return apply(*used.method, {picture, used.settings, options.profile}, pool);
+  DofInput input{picture, used.settings, options.profile};
+  input.kept = kept;
+  return apply(*used.method, input, pool);
 }
 
 /// Colour and opacity, each filtered.
-PictureOnItsWay both_filtered(PictureOnItsWay source, const RefocusOptions& options,
-                              const UsedRefocus& used, ThreadPool& pool) {
-  PictureOnItsWay result{filtered(source.picture, options, used, pool)};
+PictureOnItsWay both_filtered(PictureOnItsWay source, const KeptPart& kept,
+                              const RefocusOptions& options, const UsedRefocus& used,
+                              ThreadPool& pool) {
+  PictureOnItsWay result{filtered(source.picture, kept, options, used, pool)};
   if (!is_transparent(source.opacity)) {
     result.opacity = std::move(source.opacity);
     return result;
   }
   source.picture = opacity_picture(source.opacity, source.picture);
-  result.opacity = opacity_of(filtered(source.picture, options, used, pool));
+  result.opacity = opacity_of(filtered(source.picture, kept, options, used, pool));
   return result;
 }
 
@@ -64,7 +67,7 @@ PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions&
   const int margin = static_cast<int>(std::ceil(reach_px));
   const int width = source.picture.width, height = source.picture.height;
   if (options.border == Border::by_method || margin == 0) {
-    return both_filtered(std::move(source), options, used, pool);
+    return both_filtered(std::move(source), {}, options, used, pool);
   }
   if (std::max(width, height) + 2 * margin > kMaxImageSize) {
     throw UsageError("--border: with a border of " + std::to_string(margin) +
@@ -77,7 +80,8 @@ PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions&
   }
   const bool has_opacity = !source.opacity.empty();
   source = {};
-  PictureOnItsWay result = both_filtered(std::move(wide), options, used, pool);
+  PictureOnItsWay result =
+      both_filtered(std::move(wide), {margin, margin, width, height}, options, used, pool);
   result.picture = without_border(result.picture, margin);
   if (has_opacity) {
     result.opacity =

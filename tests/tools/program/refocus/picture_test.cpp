@@ -270,7 +270,8 @@ TEST_CASE("refocus: --border is what the same filter makes of a larger picture")
         depths.push_back(depth_at(from_x, from_y));
       }
     }
-    for (const std::string method : {"two-pass", "scatter-aperture", "disc-layers"}) {
+    for (const std::string method :
+         {"two-pass", "scatter-aperture", "disc-layers", "one-pass", "scatter-sorted", "layers"}) {
       CAPTURE(method);
       put_depth(directory);
       refocus(directory, "a.npy", "b.npy", {"--method", method, "--border", border});
