@@ -15,7 +15,6 @@
 // film's circle of confusion, scaled to pixels, is exactly the footprint that rays through
 // the aperture leave on a pinhole image.
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -84,8 +83,9 @@ struct OfLensNumbers {
   }
 
   static constexpr std::size_t index_of(double ThinLens::*place) {
-    const auto* const found = std::ranges::find(kLensNumbers, place, &LensNumber::place);
-    return static_cast<std::size_t>(found - kLensNumbers.begin());
+    std::size_t index = 0;
+    while (kLensNumbers[index].place != place) ++index;
+    return index;
   }
 };
 

@@ -7,6 +7,7 @@
 #include "dof/c/arguments.h"
 #include "dof/lens.h"
 #include "dof/parameters.h"
+#include "raster/numbers/parameter_text.h"
 
 namespace softfocus {
 namespace {

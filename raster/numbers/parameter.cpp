@@ -1,4 +1,4 @@
-#include "raster/numbers/parameter.h"
+#include "raster/numbers/parameter_text.h"
 
 #include <cmath>
 #include <cstdio>

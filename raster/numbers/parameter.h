@@ -2,7 +2,6 @@
 // What can be set, stated once. Options and their help, keys of scene files, controls of the page,
 // checks of the C interface and tables of the documentation are made of it.
 
-#include <string>
 #include <string_view>
 
 namespace softfocus {
@@ -28,15 +27,6 @@ struct Choice {
 
 /// NaN is not.
 bool is_allowed(const Parameter& parameter, double value);
-
-/// "0 to 1", "above 0, up to 1e9".
-std::string range_text(const Parameter& parameter);
-
-/// What would be right: "a whole number from 1 to 4096 (points)".
-std::string wanted_text(const Parameter& parameter);
-
-/// "0.25", "1000000", "1e9".
-std::string plain_number(double value);
 
 inline std::string_view key_of(const Parameter& parameter) {
   return parameter.key.empty() ? parameter.name : parameter.key;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dof/parameters.h"
+#include "raster/numbers/parameter_text.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <sstream>
 
+#include "raster/numbers/parameter_text.h"
 #include "scenes/files/scene_error.h"
 
 namespace softfocus {

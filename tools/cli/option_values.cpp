@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "raster/images/image.h"
+#include "raster/numbers/parameter_text.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/parameters.h"

@@ -1,6 +1,7 @@
 #include "tools/options/effect_options.h"
 
 #include "raster/effects/tone_map.h"
+#include "raster/numbers/parameter_text.h"
 #include "tools/cli/errors.h"
 #include "tools/options/parameter_options.h"
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dof/parameters.h"
+#include "raster/numbers/parameter_text.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"

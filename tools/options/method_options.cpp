@@ -5,6 +5,7 @@
 #include <string>
 
 #include "dof/parameters.h"
+#include "raster/numbers/parameter_text.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/parameters.h"
 #include "scenes/warped_views/warped_views.h"

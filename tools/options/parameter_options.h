@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "raster/numbers/parameter.h"
+#include "raster/numbers/parameter_text.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
 

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "dof/parameters.h"
+#include "raster/numbers/parameter_text.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"

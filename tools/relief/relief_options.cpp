@@ -10,6 +10,7 @@
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/half.h"
+#include "raster/numbers/parameter_text.h"
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/relief/height_relief.h"
