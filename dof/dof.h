@@ -53,6 +53,17 @@ struct DofSettings {
   Aperture aperture{};
 };
 
+/// The part of a result that is wanted; without a width all of it.
+struct KeptPart {
+  int x = 0, y = 0, width = 0, height = 0;
+
+  /// Whether any pixel from (x_begin, y_begin) up to (x_end, y_end) is in it.
+  bool meets(int x_begin, int y_begin, int x_end, int y_end) const {
+    return width == 0 || (x_begin < x + width && x < x_end && y_begin < y + height && y < y_end);
+  }
+  bool has_row(int row) const { return width == 0 || (row >= y && row < y + height); }
+};
+
 /// A picture and how to blur it.
 struct DofInput {
   /// RGBA16F: linear colour, and in alpha the depth in metres along the axis. pack() makes
@@ -75,6 +86,9 @@ struct DofInput {
   /// Signed radii in pixels, row by row from the top, in place of those that the lens gives, or
   /// empty. Only methods that take_radii read them.
   std::span<const float> radii_px = {};
+  /// A method may leave what is not kept of the result as it is. What it does not keep, such as a
+  /// border, still is blurred into what it keeps.
+  KeptPart kept = {};
 };
 
 /// A depth-of-field method: an entry of the table in method.cpp.

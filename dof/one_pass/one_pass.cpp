@@ -104,6 +104,7 @@ void one_pass_scalar(const DofInput& input, const ImageView& result, ThreadPool&
   const std::vector<RingTap> taps = ring_taps(radius);
   pool.for_each((scene.height + kBandRows - 1) / kBandRows, [&](int number) {
     const int y = number * kBandRows;
+    if (!input.kept.meets(0, y, scene.width, y + kBandRows)) return;
     const Area area{0, y, scene.width, std::min(y + kBandRows, scene.height)};
     filter_area(input, result, area, taps, tap_count(radius));
   });
@@ -230,13 +231,15 @@ TileTask& tile_of(std::vector<TileTask>& tiles, const ConstImageView& scene, int
   return tiles[static_cast<std::size_t>(y / kTileHeight * across + x / kTileWidth)];
 }
 
-std::vector<TileTask> plan_tiles(const ConstImageView& scene, const FocusMap& map, int farthest) {
+std::vector<TileTask> plan_tiles(const DofInput& input, const FocusMap& map, int farthest) {
+  const ConstImageView& scene = input.scene;
   std::vector<TileTask> tiles = tiles_of(scene);
   for (int row = 0; row < map.rows; ++row) {
     for (int column = 0; column < map.columns; ++column) {
       const int reach = reach_of_cell(map, column, row, farthest);
       if (reach == 0) continue;
       const int x = column * kCellWidth, y = row * kCellHeight;
+      if (!input.kept.meets(x, y, x + kCellWidth, y + kCellHeight)) continue;
       tile_of(tiles, scene, x, y)
           .add({x, y, std::min(x + kCellWidth, scene.width),
                 std::min(y + kCellHeight, scene.height)},
@@ -339,7 +342,7 @@ void filter_tiles(const DofInput& input, const std::vector<TileTask>& tasks, int
 void one_pass_lanes(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   const FocusMap map = pass_in_focus(input, result, pool);
   const int farthest = tap_count(*std::max_element(map.largest_px.begin(), map.largest_px.end()));
-  filter_tiles(input, plan_tiles(input.scene, map, farthest), farthest, result, pool);
+  filter_tiles(input, plan_tiles(input, map, farthest), farthest, result, pool);
 }
 
 }  // namespace

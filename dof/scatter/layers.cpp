@@ -195,6 +195,7 @@ void layers_oracle(const DofInput& input, const ImageView& result, ThreadPool& p
   const Layers layers = make_layers(input, true, pool);
   const auto width = static_cast<std::size_t>(layers.width);
   pool.for_each(layers.height, [&](int y) {
+    if (!input.kept.has_row(y)) return;
     std::array<std::vector<Light>, kSheets> sums;
     for (std::size_t i = 0; i < kSheets; ++i) {
       sums[i].resize(width);
@@ -257,6 +258,7 @@ void layers_lanes(const DofInput& input, const ImageView& result, ThreadPool& po
     float* colour = buffers.colour.data();
     const int end = std::min((task + 1) * kLayerRows, height);
     for (int y = task * kLayerRows; y < end; ++y) {
+      if (!input.kept.has_row(y)) continue;
       std::array<bool, kSheets> any;
       for (std::size_t i = 0; i < kSheets; ++i) {
         any[i] = add_spans(sheet(layers, i), layers.discs, y, pool.isa(),

@@ -110,6 +110,7 @@ void scatter_in_slabs_oracle(const DofInput& input, const ImageView& result, Sla
   const int width = sources.width, height = sources.height;
   const int slabs = slab_count(rule);
   pool.for_each(height, [&](int y) {
+    if (!input.kept.has_row(y)) return;
     std::vector<Light> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(slabs));
     for (int from_y = 0; from_y < height; ++from_y) {
       const int dy = std::abs(from_y - y);
@@ -175,6 +176,7 @@ void scatter_lanes(const DofInput& input, const ImageView& result, SlabRule rule
     float* colour = buffers.colour.data();
     const int end = std::min((task + 1) * kScatterRows, height);
     for (int y = task * kScatterRows; y < end; ++y) {
+      if (!input.kept.has_row(y)) continue;
       std::uint32_t in_slab = 0;
       for (int from = std::max(y - sources.discs.reach, 0);
            from <= std::min(y + sources.discs.reach, height - 1); ++from) {

@@ -42,8 +42,9 @@ struct ProgramRun {
 };
 
 struct RunSetting {
-  std::string out_to{};  ///< standard output goes to this file, not to `out`
-  std::string err_to{};  ///< likewise standard error
+  std::string in_from{"/dev/null"};  ///< standard input is this file
+  std::string out_to{};              ///< standard output goes to this file, not to `out`
+  std::string err_to{};              ///< likewise standard error
   /// Stands for a full disk: a file's bytes past it cannot be written.
   std::optional<rlim_t> file_size_limit{};
   /// As this user, where it may be changed.
@@ -63,7 +64,7 @@ inline pid_t start_program(const std::vector<std::string>& arguments, const RunS
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("no child");
   if (child == 0) {
-    if (std::freopen("/dev/null", "r", stdin) == nullptr) ::_exit(125);
+    if (std::freopen(setting.in_from.c_str(), "r", stdin) == nullptr) ::_exit(125);
     const auto connect = [](int descriptor, const std::string& name, int pipe) {
       const int to = name.empty() ? pipe : ::open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
       if (::dup2(to, descriptor) < 0) ::_exit(125);
@@ -176,6 +177,11 @@ inline bool contains(std::string_view text, std::string_view part) {
 inline bool is_one_line(std::string_view text) {
   return text.starts_with("softfocus: ") && text.ends_with('\n') &&
          std::count(text.begin(), text.end(), '\n') == 1;
+}
+
+/// The one line that every refocus has to say without -q, and no other.
+inline bool tells_depth_alone(std::string_view text) {
+  return is_one_line(text) && text.starts_with("softfocus: the depth is ");
 }
 
 }  // namespace softfocus

@@ -21,4 +21,25 @@ std::string base64(std::span<const std::byte> bytes) {
   return text;
 }
 
+std::vector<std::byte> bytes_of_base64(std::string_view text) {
+  std::vector<std::byte> bytes;
+  std::uint32_t bits = 0;  // of the digits so far, the last ones
+  int waiting = 0;         // of these that are in no byte
+  for (const char c : text) {
+    const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '+'             ? 62
+                      : c == '/'             ? 63
+                                             : -1;
+    if (digit < 0) continue;
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    waiting += 6;
+    if (waiting < 8) continue;
+    waiting -= 8;
+    bytes.push_back(static_cast<std::byte>(bits >> waiting & 0xFFu));
+  }
+  return bytes;
+}
+
 }  // namespace softfocus

@@ -161,11 +161,10 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
 
   const NumberType type = depth_file.planes[sources.depth_plane].type;
   const NumbersSeen seen = numbers_seen(depth_codes(depth_file, sources.depth_plane), type);
-  const BelievedEncoding believed =
-      believed_encoding(seen, type, !sources.depth_file && sources.notes);
+  const BelievedEncoding believed = believed_encoding(sources, seen);
   const DepthEncoding* chosen = options.reading.encoding;
-  picture->lacks =
-      lacking(chosen != nullptr ? BelievedEncoding{chosen, ""} : believed, options.reading.numbers);
+  const BelievedEncoding used = chosen != nullptr ? BelievedEncoding{chosen, ""} : believed;
+  picture->lacks = lacking(used, depth_numbers(sources, options.reading, used.encoding));
   PictureAtSize& whole = picture->whole;
   if (picture->lacks.empty()) {
     picture->reading = read_depth(sources, source.picture, options.reading, options.photo, pool);

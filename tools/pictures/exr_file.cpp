@@ -5,8 +5,10 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputPart.h>
+#include <ImfMatrixAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
 
@@ -229,6 +231,39 @@ void take_lens_attribute(const Imf::Header& header, const LensAttribute& attribu
   }
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+/// A camera that is no perspective's: an environment map is panoramic, a matrix onto the screen
+/// that leaves w alone orthographic, and texts of cameras say it in words.
+std::string camera_of(const Imf::Header& header) {
+  if (Imf::hasEnvmap(header)) return "panoramic";
+  for (const char* const name : {"worldToNDC", "worldToScreen", "NP"}) {
+    const auto* matrix = header.findTypedAttribute<Imf::M44fAttribute>(name);
+    if (matrix == nullptr) continue;
+    const Imath::M44f& m = matrix->value();
+    if (m[0][3] == 0.0f && m[1][3] == 0.0f && m[2][3] == 0.0f) return "orthographic";
+  }
+  for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
+    const std::string name = lower_case(attribute.name());
+    const auto has = [](const std::string& all, const char* word) {
+      return all.find(word) != all.npos;
+    };
+    if (text == nullptr || !(has(name, "camera") || has(name, "projection"))) continue;
+    const std::string value = lower_case(text->value());
+    if (has(value, "ortho")) return "orthographic";
+    for (const char* const word : {"panoram", "equirect", "latlong", "spheric", "cylindric"}) {
+      if (has(value, word)) return "panoramic";
+    }
+  }
+  return {};
+}
+
 /// A lens cannot focus nearer than its focal length.
 void drop_impossible_focus(HeaderLens& lens) {
   if (!lens.focus_m) return;
@@ -267,6 +302,7 @@ HeaderLens find_exr_lens(const ByteSource& bytes) {
     for (const LensAttribute& attribute : kLensAttributes) {
       take_lens_attribute(exr.header(0), attribute, lens);
     }
+    lens.camera = camera_of(exr.header(0));
   } catch (const std::exception&) {  // what cannot be read has no lens
     return {};
   }

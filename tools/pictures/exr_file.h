@@ -51,6 +51,7 @@ struct HeaderLens {
   std::optional<double> focus_m{};
   std::optional<double> f_number{};
   std::optional<double> focal_length_mm{};
+  std::string camera{};               ///< "orthographic" or "panoramic" if the file says so
   std::vector<std::string> faults{};  ///< attributes that no lens can have, as clauses
 };
 

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <limits>
 #include <string>
 #include <system_error>
@@ -154,9 +155,13 @@ Bytes read_picture_bytes(const std::filesystem::path& file) {
     throw FileError("cannot read '" + file.string() +
                     "': " + std::generic_category().message(error) + "; give a picture's file");
   };
-  if (std::filesystem::is_directory(file)) refuse(EISDIR);
-  std::ifstream stream{file, std::ios::binary};
-  if (!stream) refuse(errno);
+  std::ifstream from_file;
+  if (file != "-") {
+    if (std::filesystem::is_directory(file)) refuse(EISDIR);
+    from_file.open(file, std::ios::binary);
+    if (!from_file) refuse(errno);
+  }
+  std::istream& stream = file == "-" ? std::cin : from_file;
   Bytes bytes;
   for (;;) {
     constexpr std::size_t kPart = 1 << 20;

@@ -78,8 +78,9 @@ Picture decode_npy(std::span<const std::byte> bytes);
 Picture decode_other(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 /// The bytes of a picture's file, and the picture in them, of any kind that picture_file.h reads,
-/// told by the first bytes; of an EXR its first colour, with Z in alpha. FileError names the file,
-/// also for one of more bytes than half of the machine's memory: a device need not end.
+/// told by the first bytes; of an EXR its first colour, with Z in alpha. "-" is standard input,
+/// which can be read once; a file of that name is "./-". FileError names the file, also for one of
+/// more bytes than half of the machine's memory: a device need not end.
 Bytes read_picture_bytes(const std::filesystem::path& file);
 Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::path& file);
 

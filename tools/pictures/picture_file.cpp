@@ -31,7 +31,7 @@ constexpr std::string_view kByOiiotool =
 constexpr std::string_view kByNetpbm = "pnmtopng IN >OUT.png converts it";
 constexpr std::string_view kByDjxl = "djxl IN OUT.png converts it";
 constexpr std::string_view kByHeif =
-    "heif-convert IN OUT.png converts it, its depth into a second file";
+    "heif-convert IN OUT.png converts both parts, the picture and, as OUT-depth.png, its depth";
 constexpr std::array kForeignKinds{
     ForeignKind{{"II*\0", 4}, 0, "a TIFF", kByOiiotool},
     ForeignKind{{"MM\0*", 4}, 0, "a TIFF", kByOiiotool},

@@ -61,9 +61,10 @@ struct PictureFile {
   std::vector<PlaneInfo> planes{};
   /// Whether 0..1 stands for the sRGB curve and not for light. Alpha and depth have none.
   bool is_srgb = false;
-  bool has_rows = true;      ///< whether a row's values lie together, as `rows` of its reader needs
-  int exif_orientation = 1;  ///< of a JPEG: 1 if it stands upright, else 2 to 8; not followed
-  std::string remark{};      ///< what else there is to tell: "3 parts, data window 10,10..99,99"
+  bool has_rows = true;  ///< whether a row's values lie together, as `rows` of its reader needs
+  int exif_orientation =
+      1;                 ///< 1 if the pixels stand upright, else 2 to 8; planes are turned by it
+  std::string remark{};  ///< what else there is to tell: "3 parts, data window 10,10..99,99"
 };
 
 inline ByteSource source_of(const PictureFile& file) {

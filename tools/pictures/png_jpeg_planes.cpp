@@ -51,14 +51,34 @@ void list_channels(PictureFile& file, std::string_view kind, NumberType type) {
   file.is_srgb = true;
 }
 
+/// The pixel as it is stored that the upright picture shows at (x, y): orientations 5 to 8 lie on
+/// their side (CIPA DC-008, 4.6.5).
+std::size_t stored_place(const PictureFile& file, int x, int y) {
+  const int orientation = file.exif_orientation;
+  const bool on_side = orientation >= 5;
+  const int width = on_side ? file.height : file.width;
+  const int height = on_side ? file.width : file.height;
+  if (on_side) std::swap(x, y);
+  if (orientation == 2 || orientation == 3 || orientation >= 7) x = width - 1 - x;
+  if (orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7) {
+    y = height - 1 - y;
+  }
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(x);
+}
+
 /// The wanted channels of interleaved values.
 template <class Value>
-void take_channels(const Value* from, std::size_t channels, std::span<const std::size_t> planes,
+void take_channels(const PictureFile& file, const Value* from, std::span<const std::size_t> planes,
                    std::span<PlaneValues> values) {
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    PlaneValues& plane = values[i];
-    for (std::size_t p = 0; p < plane.size(); ++p) {
-      plane[p] = static_cast<float>(from[p * channels + planes[i]]);
+  const std::size_t channels = file.planes.size();
+  std::size_t to = 0;
+  for (int y = 0; y < file.height; ++y) {
+    for (int x = 0; x < file.width; ++x, ++to) {
+      const std::size_t at = file.exif_orientation == 1 ? to : stored_place(file, x, y);
+      for (std::size_t i = 0; i < planes.size(); ++i) {
+        values[i][to] = static_cast<float>(from[at * channels + planes[i]]);
+      }
     }
   }
 }
@@ -73,35 +93,20 @@ void read_channels(const PictureFile& file, std::string_view kind,
               : stbi_load_from_memory(data_of(file), size_of(file), &width, &height, &channels, 0);
   const std::unique_ptr<void, decltype(&stbi_image_free)> texels{loaded, stbi_image_free};
   if (!texels) refuse_as_damaged(kind, stbi_failure_reason());
+  if (file.exif_orientation >= 5) std::swap(width, height);
   if (width != file.width || height != file.height ||
       static_cast<std::size_t>(channels) != file.planes.size()) {
     refuse_as_damaged(kind, "its header and its data differ");
   }
   if (is_wide) {
-    take_channels(static_cast<const stbi_us*>(loaded), file.planes.size(), planes, values);
+    take_channels(file, static_cast<const stbi_us*>(loaded), planes, values);
   } else {
-    take_channels(static_cast<const stbi_uc*>(loaded), file.planes.size(), planes, values);
+    take_channels(file, static_cast<const stbi_uc*>(loaded), planes, values);
   }
 }
 
 bool begins_as_jpeg(std::span<const std::byte> bytes) {
   return bytes.size() >= 3 && std::memcmp(bytes.data(), "\xFF\xD8\xFF", 3) == 0;
-}
-
-void list_png(PictureFile& file) {
-  check_png_chunks(file.bytes);  // stb reads them without checksums, and does not mind the end
-  constexpr std::size_t kDepthAt = 24;
-  const bool is_wide = file.bytes.size() > kDepthAt && file.bytes[kDepthAt] == std::byte{16};
-  list_channels(file, "the PNG", is_wide ? NumberType::unsigned16 : NumberType::unsigned8);
-  // A bit a pixel at least.
-  if (pixels_of(file) / 8 > kMostOfDeflate * file.bytes.size()) {
-    refuse_as_damaged("the PNG", "it is too small a file for the size that it claims");
-  }
-}
-
-void read_png(const PictureFile& file, std::span<const std::size_t> planes,
-              std::span<PlaneValues> values) {
-  read_channels(file, "the PNG", planes, values);
 }
 
 /// The orientation in Exif data (CIPA DC-008, 4.6): a TIFF, of either byte order, whose first
@@ -132,6 +137,43 @@ int exif_orientation(std::span<const std::byte> tiff) {
   return 1;
 }
 
+void turn_by_exif(PictureFile& file, int orientation) {
+  if (orientation == 1) return;
+  file.exif_orientation = orientation;
+  if (orientation >= 5) std::swap(file.width, file.height);
+  file.remark = "turned by its EXIF orientation, " + std::to_string(orientation);
+}
+
+/// A PNG's orientation: Exif data is a chunk. Needs sound chunks.
+int png_orientation(std::span<const std::byte> png) {
+  constexpr std::size_t kFrame = 12;  // of a chunk: length, type, CRC
+  for (auto rest = png.subspan(kPngSignature.size()); rest.size() >= kFrame;) {
+    const std::size_t length = big_endian<std::uint32_t>(rest);
+    if (std::memcmp(rest.data() + 4, "eXIf", 4) == 0) {
+      return exif_orientation(rest.subspan(8, length));
+    }
+    rest = rest.subspan(kFrame + length);
+  }
+  return 1;
+}
+
+void list_png(PictureFile& file) {
+  check_png_chunks(file.bytes);  // stb reads them without checksums, and does not mind the end
+  constexpr std::size_t kDepthAt = 24;
+  const bool is_wide = file.bytes.size() > kDepthAt && file.bytes[kDepthAt] == std::byte{16};
+  list_channels(file, "the PNG", is_wide ? NumberType::unsigned16 : NumberType::unsigned8);
+  // A bit a pixel at least.
+  if (pixels_of(file) / 8 > kMostOfDeflate * file.bytes.size()) {
+    refuse_as_damaged("the PNG", "it is too small a file for the size that it claims");
+  }
+  turn_by_exif(file, png_orientation(file.bytes));
+}
+
+void read_png(const PictureFile& file, std::span<const std::size_t> planes,
+              std::span<PlaneValues> values) {
+  read_channels(file, "the PNG", planes, values);
+}
+
 /// A JPEG's orientation: Exif data is in a segment APP1 before the first scan.
 int jpeg_orientation(std::span<const std::byte> jpeg) {
   constexpr std::uint32_t kApp1 = 0xFFE1, kStartOfScan = 0xFFDA;
@@ -160,10 +202,7 @@ void list_jpeg(PictureFile& file) {
   }
   if (is_cut_jpeg(text)) refuse_as_damaged("the JPEG", "its end is missing");
   list_channels(file, "the JPEG", NumberType::unsigned8);
-  file.exif_orientation = jpeg_orientation(file.bytes);
-  if (file.exif_orientation != 1) {
-    file.remark = "EXIF orientation " + std::to_string(file.exif_orientation);
-  }
+  turn_by_exif(file, jpeg_orientation(file.bytes));
   if (pixels_of(file) > kMostPixelsOfJpegByte * file.bytes.size()) {
     refuse_as_damaged("the JPEG", "it is too small a file for the size that it claims");
   }

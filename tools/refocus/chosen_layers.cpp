@@ -37,19 +37,49 @@ std::string layers_there(const std::vector<ColourLayer>& layers) {
   return names;
 }
 
+/// Whether a part of a name, in small letters, speaks of a depth: VRayZDepth, WorldDepth, Z-Depth.
+bool speaks_of_depth(const std::string& part) {
+  const auto has = [&](const char* word) { return part.find(word) != part.npos; };
+  return has("depth") && !has("field") && !has("mask") && !has("matte");
+}
+
+constexpr int kLastRank = 5;
+
 /// How surely a plane is a depth by its name: 0 for certain, or nothing.
-std::optional<int> depth_rank(const std::string& full_name) {
-  const std::string name = lower_case(full_name);
+std::optional<int> depth_rank(const PictureFile& file, std::size_t plane) {
+  const std::string name = lower_case(file.planes[plane].name);
   const std::string channel = last_part(name), layer = last_part(before_last(name));
   if (name == "z" || name == "depth") return 0;
   if (any_of(layer, {"depth", "z", "zdepth"}) && any_of(channel, {"z", "v", "y", "r", "depth"})) {
     return 1;
   }
-  if (channel == "depth" || channel == "zdepth") return 2;
+  if (any_of(channel, {"depth", "zdepth", "pz"})) return 2;
   if (channel == "z" && any_of(layer, {"rgba", "beauty", "combined", "viewlayer", "view layer"})) {
     return 3;
   }
+  if (speaks_of_depth(channel) ||
+      (speaks_of_depth(layer) && any_of(channel, {"z", "v", "y", "r"}))) {
+    return 4;
+  }
+  // X, Y, Z are a direction or a place.
+  const bool is_of_three =
+      std::any_of(file.planes.begin(), file.planes.end(), [&](const PlaneInfo& other) {
+        const std::string other_name = lower_case(other.name);
+        return before_last(other_name) == before_last(name) &&
+               any_of(last_part(other_name), {"x", "y"});
+      });
+  if (channel == "z" && !is_of_three) return kLastRank;
   return std::nullopt;
+}
+
+/// Whether a name is `wanted`, or ends in it behind a dot.
+bool ends_in(const std::string& name, const std::string& wanted, bool is_whole) {
+  return is_whole ? name == wanted : name.ends_with("." + wanted);
+}
+
+[[noreturn]] void refuse_layer(const std::string& option, const std::string& name,
+                               const PictureFile& file, const std::string& there) {
+  throw UsageError(option + " '" + name + "': '" + file.path.string() + "' has " + there);
 }
 
 }  // namespace
@@ -61,11 +91,15 @@ ColourLayer choose_colour(const PictureFile& file, const std::optional<std::stri
     throw UsageError("'" + file.path.string() + "' has no colour, but " + plane_names(file));
   }
   if (name) {
-    for (const ColourLayer& layer : layers) {
-      if (layer.name == *name) return layer;
+    for (const bool is_whole : {true, false}) {
+      std::vector<ColourLayer> found;
+      for (const ColourLayer& layer : layers) {
+        if (ends_in(layer.name, *name, is_whole)) found.push_back(layer);
+      }
+      if (found.size() == 1) return found.front();
+      if (found.size() > 1) refuse_layer(option, *name, file, layers_there(found));
     }
-    throw UsageError(option + " '" + *name + "': '" + file.path.string() + "' has " +
-                     layers_there(layers));
+    refuse_layer(option, *name, file, layers_there(layers));
   }
   for (const std::string_view usual : {"", "combined", "rgba", "beauty"}) {
     for (const ColourLayer& layer : layers) {
@@ -74,14 +108,17 @@ ColourLayer choose_colour(const PictureFile& file, const std::optional<std::stri
       if (lower_case(last) == usual) return layer;
     }
   }
+  for (const ColourLayer& layer : layers) {
+    if (!depth_rank(file, layer.red)) return layer;
+  }
   return layers.front();
 }
 
 std::vector<std::size_t> depth_planes(const PictureFile& file) {
   std::vector<std::size_t> planes;
-  for (int rank = 0; rank <= 3; ++rank) {
+  for (int rank = 0; rank <= kLastRank; ++rank) {
     for (std::size_t i = 0; i < file.planes.size(); ++i) {
-      if (depth_rank(file.planes[i].name) == rank) planes.push_back(i);
+      if (depth_rank(file, i) == rank) planes.push_back(i);
     }
   }
   return planes;
@@ -95,18 +132,25 @@ std::optional<std::size_t> find_depth_beside_colour(const PictureFile& file) {
 }
 
 std::size_t choose_depth(const PictureFile& file, const std::optional<std::string>& name,
-                         bool beside_colour) {
+                         bool beside_colour, bool of_circles) {
   if (name) {
-    for (std::size_t i = 0; i < file.planes.size(); ++i) {
-      if (file.planes[i].name == *name) return i;
-    }
-    for (const std::string_view channel : {"Z", "V", "Y", "R"}) {
-      for (std::size_t i = 0; i < file.planes.size(); ++i) {
-        if (file.planes[i].name == *name + "." + std::string{channel}) return i;
+    for (const bool is_whole : {true, false}) {
+      for (const std::string channel : {"", ".Z", ".V", ".Y", ".R"}) {
+        std::vector<std::size_t> found;
+        for (std::size_t i = 0; i < file.planes.size(); ++i) {
+          if (ends_in(file.planes[i].name, *name + channel, is_whole)) found.push_back(i);
+        }
+        if (found.size() == 1) return found.front();
+        std::string names;
+        for (const std::size_t i : found)
+          names.append(names.empty() ? "" : ", ").append(file.planes[i].name);
+        if (found.size() > 1) refuse_layer("--depth-layer", *name, file, names);
       }
     }
-    throw UsageError("--depth-layer '" + *name + "': '" + file.path.string() + "' has " +
-                     plane_names(file));
+    refuse_layer("--depth-layer", *name, file, plane_names(file));
+  }
+  for (std::size_t i = 0; of_circles && i < file.planes.size(); ++i) {
+    if (last_part(file.planes[i].name) == "coc") return i;
   }
   if (beside_colour) {
     if (const auto found = find_depth_beside_colour(file)) return *found;

@@ -11,12 +11,14 @@
 
 namespace softfocus {
 
-/// The layer of that name ("ViewLayer.Combined"), or without a name: plain R, G, B, else Blender's
+/// The layer of that name ("ViewLayer.Combined"), or whose name alone ends so ("Combined"), or
+/// without a name: plain R, G, B, else Blender's
 /// Combined, else the first. Throws UsageError that names `option` and lists those there are.
 ColourLayer choose_colour(const PictureFile& file, const std::optional<std::string>& name,
                           const std::string& option);
 
-/// Depth planes that the names of the channels tell, best first: Z, depth.Z, ViewLayer.Depth.V, ...
+/// Depth planes that the names of the channels tell, best first: Z, depth.Z, ViewLayer.Depth.V,
+/// VRayZDepth.R, FinalImageMovieRenderQueue_WorldDepth.R, a Z without X and Y, ...
 /// Not Position.Z or Normal.Z.
 std::vector<std::size_t> depth_planes(const PictureFile& file);
 
@@ -24,11 +26,11 @@ std::vector<std::size_t> depth_planes(const PictureFile& file);
 /// alpha.
 std::optional<std::size_t> find_depth_beside_colour(const PictureFile& file);
 
-/// The plane of that name or of the layer of that name; without a name
-/// find_depth_beside_colour() if it is `beside_colour`, else the first of depth_planes() or the
-/// file's one plane. Throws UsageError likewise.
+/// The plane of that name or of the layer of that name, or whose name alone ends so; without a
+/// name, `of_circles`, our own channel coc, find_depth_beside_colour() if it is `beside_colour`,
+/// else the first of depth_planes() or the file's one plane. Throws UsageError likewise.
 std::size_t choose_depth(const PictureFile& file, const std::optional<std::string>& name,
-                         bool beside_colour);
+                         bool beside_colour, bool of_circles = false);
 
 /// Stands for a depth that an EXR lacks.
 inline constexpr float kNoDepthThere = std::numeric_limits<float>::quiet_NaN();

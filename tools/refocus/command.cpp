@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "scenes/files/scene_error.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -74,7 +75,9 @@ std::uint64_t bytes_of_a_frame(const std::vector<FrameWork>& frames) {
 /// COLOUR, DEPTH and --mask, those that are given.
 std::vector<FrameFiles> frame_files(const RefocusOptions& options) {
   std::vector<FrameFiles> files{{"COLOUR", options.colour}};
-  if (!options.depth.empty()) files.emplace_back("DEPTH", options.depth);
+  if (!options.depth.empty()) {
+    files.emplace_back(options.has_circles ? "--circles" : "DEPTH", options.depth);
+  }
   if (options.reading.mask) files.emplace_back("--mask", *options.reading.mask);
   return files;
 }
@@ -110,7 +113,8 @@ void check_outputs(const RefocusOptions& options) {
   if (options.output == "-") return;
   check_writable(options.output);
   std::vector<ReadFile> inputs{{options.colour, "the picture"}};
-  if (!options.depth.empty()) inputs.push_back({options.depth, "its depth"});
+  if (!options.depth.empty())
+    inputs.push_back({options.depth, options.has_circles ? "the circles" : "its depth"});
   if (options.reading.mask) inputs.push_back({*options.reading.mask, "the mask"});
   check_not_read("-o", options.output, inputs);
   if (const auto sidecar = sidecar_place(options.output, options.format))
@@ -139,6 +143,7 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
   if (sources.depth_file) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
   UsedRefocus used{.why_whole = why};
+  if (options.has_circles) photo.circles = coc_of_circles(depth.numbers);
   used.lens = settle_lens(photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
   const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
@@ -180,6 +185,7 @@ int refocus(const RefocusOptions& options) {
   const Refocused made = make_refocused(options, progress, pool);
   if (options.output == "-") write_to_standard_output(made.picture);
   progress.clear();
+  if (!options.quiet) std::cerr << "softfocus: " << printable(made.depth) << '\n';
   for (const std::string& warning : made.warnings) {
     warn(warning);
   }
@@ -196,14 +202,23 @@ Command add_refocus_command(CLI::App& program) {
   const auto options = std::make_shared<RefocusOptions>();
   add_refocus_options(*parser, *options);
   return {parser, [parser, options] {
+            take_circles(*options, *parser);
             const auto files = frame_files(*options);
             complete(*options, *parser);
             if (is_sequence(*options, files)) {
+              for (const FrameFiles& file : files) {
+                if (file.text() == "-") {
+                  throw UsageError(file.what() +
+                                   " -: standard input can be read for one picture, "
+                                   "not for many; give a file");
+                }
+              }
               return refocus_frames(*options, *parser, files,
                                     [](const RefocusOptions& frame, FrameRun& run) {
                                       Progress silent{true};
                                       Refocused made = make_refocused(frame, silent, run.pool);
                                       run.picture = std::move(made.picture);
+                                      run.note = std::move(made.depth);
                                       run.warnings = std::move(made.warnings);
                                       run.report = std::move(made.report);
                                     });

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "tools/cli/commands.h"
@@ -71,8 +73,9 @@ void look_at_depth(InspectedFile& found, PlaneValues values, const DepthOptions&
   const std::size_t plane = *found.depth_plane;
   const NumberType type = file.planes[plane].type;
   found.believed = reading.encoding != nullptr
-                       ? BelievedEncoding{reading.encoding, "--depth-encoding says so"}
-                       : believed_encoding(found.planes[plane].seen, type, found.notes.has_value());
+                       ? BelievedEncoding{reading.encoding, "it is said"}
+                       : believed_encoding(found.planes[plane].seen, type, found.notes.has_value(),
+                                           file.planes[plane].name);
   const DepthEncoding* encoding = found.believed.encoding;
   try {
     if (encoding != nullptr) check_depth_numbers(*encoding, reading.numbers);
@@ -100,22 +103,56 @@ std::optional<PlaneValues> grey_in_colours(const InspectedFile& found) {
   }
 }
 
-/// Reads one plane after the other, so that a file of forty layers takes the memory of one.
-InspectedFile inspected(const std::string& name, const DepthOptions& reading) {
-  InspectedFile found{.file = open_picture_file(name)};
+/// Calls look(plane, its values in a band of rows), in order. A file that has rows is decoded once,
+/// in bands, so that one of forty layers takes little memory.
+void look_at_planes(const PictureFile& file, std::optional<std::size_t> depth_plane,
+                    const std::function<void(std::size_t plane, PlaneValues& values)>& look) {
+  std::vector<std::size_t> planes(file.planes.size());
+  std::iota(planes.begin(), planes.end(), std::size_t{0});
+  if (file.reader->rows == nullptr || !file.has_rows) {
+    std::vector<PlaneValues> values = read_planes(file, planes, 0.0f);
+    for (const std::size_t plane : planes) look(plane, values[plane]);
+    return;
+  }
+  constexpr std::size_t kMostValues = std::size_t{1} << 26;
+  constexpr std::size_t kLargestBlock = 256;  // rows, of an EXR
+  const auto columns = static_cast<std::size_t>(file.width);
+  const int most_rows = static_cast<int>(
+      std::clamp<std::size_t>(kMostValues / (columns * planes.size()), 1, kLargestBlock));
+  const ReadRows read = rows_of(file, planes);
+  std::vector<PlaneValues> values(planes.size());
+  for (int y = 0; y < file.height; y += most_rows) {
+    const Rows rows{y, std::min(most_rows, file.height - y)};
+    for (const std::size_t plane : planes) {
+      values[plane].assign(columns * static_cast<std::size_t>(rows.count),
+                           plane == depth_plane ? kNoDepthThere : 0.0f);
+    }
+    read(rows, values);
+    for (const std::size_t plane : planes) look(plane, values[plane]);
+  }
+}
+
+InspectedFile inspected(PictureFile opened, const DepthOptions& reading) {
+  InspectedFile found{.file = std::move(opened)};
   const PictureFile& file = found.file;
   found.colours = colour_layers(file);
   found.notes = find_notes(file.path, file.bytes).notes;
   if (!found.notes) found.lens = find_exr_lens(file.bytes);
   found.depth_plane = likely_depth(file, reading);
+  std::vector<NumberCounter> counters;
+  for (const PlaneInfo& plane : file.planes) counters.emplace_back(plane.type);
+  PlaneValues depth;
+  look_at_planes(file, found.depth_plane, [&](std::size_t plane, PlaneValues& values) {
+    counters[plane].add(values);
+    if (found.depth_plane == plane) depth.insert(depth.end(), values.begin(), values.end());
+  });
   for (std::size_t i = 0; i < file.planes.size(); ++i) {
-    const NumberType type = file.planes[i].type;
-    const bool is_depth = found.depth_plane == i;
-    PlaneValues values = std::move(read_planes(file, {&i, 1}, is_depth ? kNoDepthThere : 0.0f)[0]);
-    found.planes.push_back({file.planes[i], numbers_seen(values, type)});
-    if (is_depth) look_at_depth(found, std::move(values), reading);
+    found.planes.push_back({file.planes[i], counters[i].seen()});
   }
-  if (found.depth_plane) return found;
+  if (found.depth_plane) {
+    look_at_depth(found, std::move(depth), reading);
+    return found;
+  }
   if (std::optional<PlaneValues> grey = grey_in_colours(found)) {
     found.depth_plane = found.colours.front().red;
     look_at_depth(found, std::move(*grey), reading);
@@ -171,6 +208,7 @@ std::string lens_text(const HeaderLens& lens) {
   add(lens.f_number, "f/", "");
   add(lens.focus_m, "focus ", " m");
   if (!text.empty()) text += "\n";
+  if (!lens.camera.empty()) text += "  camera: " + lens.camera + "\n";
   for (const std::string& fault : lens.faults) text += "  " + fault + ": ignored\n";
   return text;
 }
@@ -280,6 +318,25 @@ void write_circles(const InspectOptions& options) {
             << refocus_text(preview, sources, depth, used);
 }
 
+/// The file, and the depth that a phone put into it.
+std::vector<InspectedFile> inspected(const std::string& name, const DepthOptions& reading) {
+  std::vector<InspectedFile> all;
+  PictureFile file = open_picture_file(name);
+  std::optional<PhoneDepth> phone;
+  if (file.reader == &kJpegReader) phone = find_phone_depth(file.bytes);
+  all.push_back(inspected(std::move(file), reading));
+  if (!phone) return all;
+  DepthOptions said = reading;
+  if (said.encoding == nullptr) {
+    said.encoding = phone->encoding;
+    for (const OfDepth& of : kDepthNumbers) {
+      if (!(said.numbers.*of.place)) said.numbers.*of.place = phone->numbers.*of.place;
+    }
+  }
+  all.push_back(inspected(open_picture_file(std::move(phone->file), name + ", its depth"), said));
+  return all;
+}
+
 int inspect(const InspectOptions& options) {
   if (const std::string& output = options.preview.output; !output.empty()) {
     check_writable(output);
@@ -289,11 +346,12 @@ int inspect(const InspectOptions& options) {
   }
   Json all = Json::array();
   for (const std::string& name : options.files) {
-    const InspectedFile found = inspected(name, options.preview.reading);
-    if (options.json) {
-      all.push_back(json_of(found));
-    } else {
-      std::cout << text_of(found);
+    for (const InspectedFile& found : inspected(name, options.preview.reading)) {
+      if (options.json) {
+        all.push_back(json_of(found));
+      } else {
+        std::cout << text_of(found);
+      }
     }
   }
   if (options.json) std::cout << json_text(all, 2) << '\n';
@@ -328,6 +386,9 @@ Command add_inspect_command(CLI::App& program) {
               if (options->files.size() > 2) {
                 throw UsageError("-o: it takes one file, or a colour and its depth; " +
                                  std::to_string(options->files.size()) + " are given");
+              }
+              if (std::count(options->files.begin(), options->files.end(), "-") > 0) {
+                throw UsageError("-o: standard input can be read once; give a file in place of -");
               }
               if (preview.output == "-") {
                 throw UsageError("-o -: standard output has the text; give -o a file");

@@ -164,7 +164,7 @@ void check_method(const RefocusOptions& options) {
 void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_argument(parser, "COLOUR",
                "A picture: PNG and JPEG (sRGB), EXR, HDR, PFM (linear), NPY (linear; whole numbers "
-               "sRGB)",
+               "sRGB); - for standard input",
                options.colour);
   add_optional_argument(parser, "DEPTH", "Its depth, unless COLOUR has it: any of these",
                         options.depth);
@@ -179,6 +179,10 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
            [&options] { options.keep_layers = false; });
   add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
   add_depth_options(parser, options.reading);
+  add_text(parser, "--circles", "FILE",
+           "Radii of circles in pixels in place of depth and lens, negative before the focus: of "
+           "any camera, by any program",
+           options.circles);
   add_photo_lens_options(parser, options.photo);
   begin_group(parser, "Bokeh");
   add_blades_option(parser, "An aperture", options.aperture.blades);
@@ -205,9 +209,31 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_talk_options(parser, options.verbose, options.quiet);
 }
 
+void take_circles(RefocusOptions& options, const CLI::App& parser) {
+  if (!options.circles) return;
+  if (!options.depth.empty()) {
+    throw UsageError("--circles and DEPTH '" + options.depth +
+                     "' exclude each other: circles take its place");
+  }
+  for (const char* option :
+       {"--depth-encoding", "--near", "--far", "--scale", "--offset", "--baseline", "--focal-px",
+        "--depth-along", "--focus", "--focus-at", "--autofocus", "--focus-nearest", "--focus-range",
+        "--f-number", "--focal-length", "--sensor", "--fov", "--coc-scale", "--blur-at-infinity"}) {
+    check_one_of(parser, {"--circles", option});
+  }
+  options.depth = *options.circles;
+  options.has_circles = true;
+  options.reading.encoding = &circles_encoding();
+  if (options.reading.holes == Holes::background) options.reading.holes = Holes::far_side;
+}
+
 void complete(RefocusOptions& options, const CLI::App& parser) {
   check_talk(parser);
   settle_format(parser, options.output, options.format);
+  const bool masks_by_input = options.reading.mask == "-";
+  if ((options.colour == "-") + (options.depth == "-") + masks_by_input > 1) {
+    throw UsageError("-: standard input is one file; name the others");
+  }
   const bool to_standard_output = options.output == "-";
   if (to_standard_output && options.json) {
     throw UsageError("--json and -o - would both write to standard output; give -o a file");

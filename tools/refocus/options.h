@@ -62,9 +62,11 @@ enum class RefocusShow : std::uint8_t { image, coc, depth };
 
 struct RefocusOptions {
   std::string colour;
-  std::string depth;   ///< empty: COLOUR has it
-  std::string output;  ///< "-" for standard output
+  std::string depth;         ///< empty: COLOUR has it
+  bool has_circles = false;  ///< `depth` has radii in pixels, and `reading` reads them
+  std::string output;        ///< "-" for standard output
   FileFormat format = FileFormat::png;
+  std::optional<std::string> circles;
   DepthOptions reading;
   PhotoLens photo;
   MethodChoice method{.filter = find_method("two-pass")};
@@ -88,6 +90,9 @@ struct RefocusOptions {
 };
 
 void add_refocus_options(CLI::App& parser, RefocusOptions& options);
+
+/// Puts --circles in the depth's place. Throws UsageError for options that it excludes.
+void take_circles(RefocusOptions& options, const CLI::App& parser);
 
 /// Checks options against each other: throws UsageError for options that are missing or exclude
 /// each other and for methods that need the scene, and settles the format.

@@ -128,6 +128,13 @@ std::string pixel_text(Pixel pixel) {
   return std::to_string(pixel.x) + "," + std::to_string(pixel.y);
 }
 
+/// Whether the nearest may be asked for.
+bool looks_at_nearest(const PhotoLens& photo) {
+  const bool is_said = photo.lens.given[&ThinLens::focus_m] || photo.focus_at || photo.autofocus ||
+                       photo.focus_range || photo.of_file.focus_m;
+  return photo.focus_nearest || !is_said;
+}
+
 /// The distance in focus and who said it.
 double focus_of(const PhotoLens& photo, FocusDepths& depths, std::string& from) {
   if (photo.lens.given[&ThinLens::focus_m]) {
@@ -138,13 +145,15 @@ double focus_of(const PhotoLens& photo, FocusDepths& depths, std::string& from) 
     from = "--focus-range";
     return photo.focus_range->near_m;
   }
-  if (photo.focus_nearest) {
+  const bool is_asked = photo.focus_at || photo.autofocus;
+  if (photo.focus_nearest || (looks_at_nearest(photo) && depths.around.empty())) {
     if (depths.finite == 0)
       throw UsageError("--focus-nearest: nothing has a finite depth; give a --focus");
-    from = "the nearest thousandth";
+    from = photo.focus_nearest ? "the nearest thousandth"
+                               : "the nearest thousandth, for the middle is infinitely far";
     return ranked(depths.nearest, depths.finite / 1000);
   }
-  if (photo.of_file.focus_m && !photo.focus_at) {
+  if (photo.of_file.focus_m && !is_asked) {
     from = "the file's focus";
     return *photo.of_file.focus_m;
   }
@@ -171,6 +180,11 @@ void add_photo_lens_options(CLI::App& parser, PhotoLens& photo) {
   add_value(
       parser, "--focus-at", "X,Y", "Focus on what is at this pixel: the median of the 5x5 there",
       [&photo](const std::string& text) { photo.focus_at = parse_pixel("--focus-at", text); });
+  add_value(parser, "--autofocus", "[X,Y]", "The same, or on the middle, whatever the file says",
+            [&photo](const std::string& text) {
+              photo.autofocus = true;
+              if (text != "centre") photo.focus_at = parse_pixel("--autofocus", text);
+            });
   add_flag(parser, "--focus-nearest", "Focus on what is nearest", photo.focus_nearest);
   add_value(parser, "--focus-range", "NEAR..FAR",
             "All between these distances is sharp; beyond, the blur begins at their ends",
@@ -184,7 +198,8 @@ void add_photo_lens_options(CLI::App& parser, PhotoLens& photo) {
 }
 
 void check_photo_lens(const CLI::App& parser) {
-  check_one_of(parser, {"--focus", "--focus-at", "--focus-nearest", "--focus-range"});
+  check_one_of(parser,
+               {"--focus", "--focus-at", "--autofocus", "--focus-nearest", "--focus-range"});
   check_one_of(parser, {"--fov", "--sensor"});
   for (const char* option : {"--f-number", "--focal-length", "--sensor", "--coc-scale"}) {
     check_one_of(parser, {"--blur-at-infinity", option});
@@ -201,10 +216,10 @@ FocusDepths::FocusDepths(const PhotoLens& photo, int map_width, int map_height)
     : width(map_width),
       height(map_height),
       pixel(photo.focus_at.value_or(Pixel{map_width / 2, map_height / 2})),
-      most_nearest_(photo.focus_nearest ? static_cast<std::size_t>(map_width) *
-                                                  static_cast<std::size_t>(map_height) / 1000 +
-                                              1
-                                        : 0) {}
+      most_nearest_(looks_at_nearest(photo) ? static_cast<std::size_t>(map_width) *
+                                                      static_cast<std::size_t>(map_height) / 1000 +
+                                                  1
+                                            : 0) {}
 
 void FocusDepths::add(std::span<const float> metres, int first_row) {
   constexpr int kReach = 2;
@@ -247,7 +262,11 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
   const bool is_noted = notes && notes->lens;
   settled.lens = settled_thin_lens(settled.lens, photo, is_noted, settled.lens_from);
   settled.coc_scale = photo.lens.coc_scale.value_or(settled.coc_scale);
-  settled.lens.focus_m = focus_of(photo, depths, settled.focus_from);
+  if (photo.circles) {
+    settled.focus_from = "--circles";
+  } else {
+    settled.lens.focus_m = focus_of(photo, depths, settled.focus_from);
+  }
   settled.range = photo.focus_range;
   const CameraSource source = camera_source(photo, notes, focal_px);
   constexpr std::array<const char*, 5> kSources{"--fov", "--sensor ", "--focal-px",
@@ -263,6 +282,12 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
                                                           : notes->fov_y_degrees;
     return pixels;
   };
+  if (photo.circles) {
+    settled.has_lens = false;
+    camera(focal_length_mm(photo, notes));
+    settled.coc = *photo.circles;
+    return settled;
+  }
   if (photo.blur_at_infinity_px) {
     // A lens focused at the near end of a range has more blur beyond it than one at the far end.
     const double more =

@@ -41,9 +41,11 @@ struct PhotoLens {
   std::optional<double> fov_y_degrees;
   std::optional<Sensor> sensor;
   std::optional<Pixel> focus_at;
+  bool autofocus = false;  ///< on what is at that pixel, or the middle
   bool focus_nearest = false;
   std::optional<SharpDepthRange> focus_range;
   std::optional<double> blur_at_infinity_px;  ///< a radius
+  std::optional<PixelCoc> circles;            ///< in place of a lens: coc_of_circles()
   HeaderLens of_file;                         ///< where nothing above says it
 };
 
@@ -58,7 +60,7 @@ struct SettledLens {
   double coc_scale = 1.0;
   double fov_y_degrees = 0.0;
   PixelCoc coc{};
-  bool has_lens = true;  ///< false: --blur-at-infinity alone says how much is blurred
+  bool has_lens = true;  ///< false: --blur-at-infinity or --circles says how much is blurred
   std::optional<SharpDepthRange> range{};
   std::string focus_from;   ///< "--focus", "the median around pixel 3,4"
   std::string lens_from;    ///< "--focal-length and the default f-number"
@@ -81,7 +83,7 @@ class FocusDepths {
   int width, height;
   Pixel pixel;                   ///< --focus-at, or the middle
   std::vector<float> around{};   ///< finite depths of the 5x5 pixels there
-  std::size_t finite = 0;        ///< how many depths are
+  std::size_t finite = 0;        ///< how many depths are, where the nearest are asked for
   std::vector<float> nearest{};  ///< of these the nearest thousandth and one more, or more
 
  private:
@@ -89,7 +91,8 @@ class FocusDepths {
 };
 
 /// The lens for a picture of the map's size. The median around a pixel is of the 5x5 pixels there;
-/// the nearest is the depth that one pixel in a thousand is nearer than. Throws UsageError for a
+/// the nearest is the depth that one pixel in a thousand is nearer than. If nobody says what is in
+/// focus, it is the middle or, where that is infinitely far, the nearest. Throws UsageError for a
 /// lens that cannot be, a pixel outside, or a map in which nothing has a finite depth.
 SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                         std::optional<double> focal_px, FocusDepths depths);

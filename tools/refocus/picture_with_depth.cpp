@@ -16,8 +16,12 @@ namespace {
 constexpr std::array kUpsamplings{Choice<bool>{"colour", true}, Choice<bool>{"nearest", false}};
 constexpr std::array kAlongs{Choice<DepthAlong>{"axis", DepthAlong::axis},
                              Choice<DepthAlong>{"ray", DepthAlong::ray}};
-constexpr std::array kHoles{Choice<Holes>{"far", Holes::from_far_side},
-                            Choice<Holes>{"refuse", Holes::refused}};
+constexpr std::array kHoles{
+    Choice<Holes>{"background", Holes::background}, Choice<Holes>{"near", Holes::near_side},
+    Choice<Holes>{"far", Holes::far_side}, Choice<Holes>{"infinity", Holes::infinity},
+    Choice<Holes>{"refuse", Holes::refused}};
+constexpr std::array kFits{Choice<DepthFit>{"stretch", DepthFit::stretch},
+                           Choice<DepthFit>{"crop", DepthFit::crop}};
 
 void add_mending_options(CLI::App& parser, Mending& mending) {
   add_choice(parser, "--upsample",
@@ -43,15 +47,64 @@ PlaneValues read_mask(const std::string& name, const PictureFile& depth) {
   return read_planes(file, {&plane, 1}, 0.0f)[0];
 }
 
-void check_shape(const PictureFile& colour, const PictureFile& depth) {
-  // A map of an odd size is the half of one rounded either way.
-  const double across = static_cast<double>(colour.width) / depth.width;
-  const double down = static_cast<double>(colour.height) / depth.height;
-  const double most = 1.0 + 1.5 / std::min(depth.width, depth.height);
-  if (std::max(across, down) <= most * std::min(across, down)) return;
-  throw UsageError("'" + depth.path.string() + "' is " + size_text({depth.width, depth.height}) +
-                   " pixels and the colour " + size_text({colour.width, colour.height}) +
-                   ", another shape; give a depth of the same part of the picture");
+/// How much wider or higher than a depth's the colour's shape is: 1 of the same.
+double stretching(const PictureFile& colour, int depth_width, int depth_height) {
+  const double across = static_cast<double>(colour.width) / depth_width;
+  const double down = static_cast<double>(colour.height) / depth_height;
+  return std::max(across, down) / std::min(across, down);
+}
+double stretching(const PictureFile& colour, const PictureFile& depth) {
+  return stretching(colour, depth.width, depth.height);
+}
+
+/// A map of an odd size is the half of one rounded either way.
+bool has_shape_of(const PictureFile& colour, const PictureFile& depth) {
+  return stretching(colour, depth) <= 1.0 + 1.5 / std::min(depth.width, depth.height);
+}
+
+void check_shape(const PictureFile& colour, const PictureFile& depth, const DepthOptions& options) {
+  constexpr double kLittle = 1.02;  // networks want sides of multiples of 14 or 32
+  const bool is_near = stretching(colour, depth) <= kLittle;
+  if (options.fit || is_near || has_shape_of(colour, depth)) return;
+  const bool is_turned = (colour.exif_orientation >= 5) != (depth.exif_orientation >= 5) &&
+                         stretching(colour, depth.height, depth.width) <= kLittle;
+  throw UsageError(
+      "'" + depth.path.string() + "' is " + size_text({depth.width, depth.height}) +
+      " pixels and the colour " + size_text({colour.width, colour.height}) + ", another shape; " +
+      (is_turned ? "the EXIF orientation of one turns it: turn the other's pixels likewise"
+                 : "give a depth of the same part of the picture") +
+      ", or --depth-fit stretch or crop");
+}
+
+/// The part of a map that lies on the picture.
+struct Part {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+Part part_on(const PictureFile& colour, const PictureFile& depth, const DepthOptions& options) {
+  Part part{0, 0, depth.width, depth.height};
+  if (options.fit != DepthFit::crop || has_shape_of(colour, depth)) return part;
+  const double shape = static_cast<double>(colour.width) / colour.height;
+  const auto whole = [](double side, int most) {
+    return std::clamp(static_cast<int>(std::floor(side + 0.5)), 1, most);
+  };
+  if (shape * depth.height < depth.width) {
+    part.width = whole(shape * depth.height, depth.width);
+    part.x = (depth.width - part.width) / 2;
+  } else {
+    part.height = whole(depth.width / shape, depth.height);
+    part.y = (depth.height - part.height) / 2;
+  }
+  return part;
+}
+
+void cut(PlaneValues& values, int width, const Part& part) {
+  if (values.empty()) return;
+  PlaneValues kept;
+  for (int y = part.y; y < part.y + part.height; ++y) {
+    const auto from = values.begin() + std::ptrdiff_t{y} * width + part.x;
+    kept.insert(kept.end(), from, from + part.width);
+  }
+  values = std::move(kept);
 }
 
 }  // namespace
@@ -90,18 +143,50 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
   add_text(parser, "--mask", "FILE", "A picture of the depth's size, 0 where nothing is known",
            options.mask);
   add_choice(parser, "--holes",
-             "What is not known is filled from the far side, or refused (default: far)", kHoles,
-             options.holes);
+             "What is not known is background, infinitely far, if it touches the border or is "
+             "larger than things, and else filled from the far side; or all is filled from the "
+             "near or far side, or infinitely far, or refused (default: background)",
+             kHoles, options.holes);
+  add_choice(parser, "--depth-fit",
+             "A depth of another shape than the picture is stretched, or its middle is taken "
+             "(default: stretched by up to 2 %, else refused)",
+             kFits, options.fit);
   add_mending_options(parser, options.mending);
 }
 
 namespace {
 
+/// Whether XMP says so (Google's GPano).
+bool is_photo_panorama(const PictureFile& file) {
+  if (file.reader != &kJpegReader && file.reader != &kPngReader) return false;
+  constexpr std::size_t kMost = std::size_t{1} << 18;
+  const std::string_view text{reinterpret_cast<const char*>(file.bytes.data()),
+                              std::min(file.bytes.size(), kMost)};
+  return text.find("GPano:ProjectionType") != text.npos;
+}
+
 void choose_planes(PictureSources& sources, const DepthOptions& options) {
   sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
-  sources.depth_plane = choose_depth(sources.of_depth(), options.depth_layer, !sources.depth_file);
+  const bool has_circles = options.encoding == &circles_encoding();
+  sources.depth_plane =
+      choose_depth(sources.of_depth(), options.depth_layer, !sources.depth_file, has_circles);
   sources.notes = find_notes(sources.colour_file.path, source_of(sources.colour_file)).notes;
   if (!sources.notes) sources.lens = find_exr_lens(source_of(sources.colour_file));
+  if (is_photo_panorama(sources.colour_file)) sources.lens.camera = "panoramic";
+}
+
+/// The depth of a phone lies as the pixels of its picture do.
+void open_phone_depth(PictureSources& sources) {
+  const PictureFile& colour = sources.colour_file;
+  sources.phone = find_phone_depth(colour.bytes);
+  if (!sources.phone) return;
+  std::filesystem::path path = colour.path;
+  PictureFile depth = open_picture_file(std::move(sources.phone->file), path += ", its depth");
+  if (depth.exif_orientation == 1) {
+    depth.exif_orientation = colour.exif_orientation;
+    if (depth.exif_orientation >= 5) std::swap(depth.width, depth.height);
+  }
+  sources.depth_file = std::move(depth);
 }
 
 }  // namespace
@@ -111,8 +196,10 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
   PictureSources sources{.colour_file = open_picture_file(colour)};
   if (!depth.empty()) {
     sources.depth_file = open_picture_file(depth);
-    check_shape(sources.colour_file, *sources.depth_file);
+  } else if (sources.colour_file.reader == &kJpegReader) {
+    open_phone_depth(sources);
   }
+  if (sources.depth_file) check_shape(sources.colour_file, *sources.depth_file, options);
   choose_planes(sources, options);
   return sources;
 }
@@ -135,13 +222,31 @@ std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
   return sources;
 }
 
+BelievedEncoding believed_encoding(const PictureSources& sources, const NumbersSeen& seen) {
+  const PictureFile& file = sources.of_depth();
+  const PlaneInfo& plane = file.planes[sources.depth_plane];
+  if (sources.phone && sources.phone->encoding != nullptr) {
+    return {sources.phone->encoding, "the file says so"};
+  }
+  return believed_encoding(seen, plane.type, !sources.depth_file && sources.notes, plane.name);
+}
+
+DepthNumbers depth_numbers(const PictureSources& sources, const DepthOptions& options,
+                           const DepthEncoding* encoding) {
+  DepthNumbers numbers = options.numbers;
+  if (!sources.phone || sources.phone->encoding != encoding) return numbers;
+  for (const OfDepth& of : kDepthNumbers) {
+    std::optional<double>& number = numbers.*of.place;
+    if (!number) number = sources.phone->numbers.*of.place;
+  }
+  return numbers;
+}
+
 void settle_encoding(const PictureSources& sources, const DepthOptions& options, ReadDepth& read) {
   const PictureFile& file = sources.of_depth();
   read.encoding = options.encoding;
   if (read.encoding == nullptr) {
-    const bool is_ours = !sources.depth_file && sources.notes;
-    const BelievedEncoding believed =
-        believed_encoding(read.seen, file.planes[sources.depth_plane].type, is_ours);
+    const BelievedEncoding believed = believed_encoding(sources, read.seen);
     if (knows_nothing(read.seen)) {
       throw UsageError("'" + file.path.string() + "' has no depth: " + believed.why +
                        "; give another file, or --depth-layer");
@@ -152,22 +257,25 @@ void settle_encoding(const PictureSources& sources, const DepthOptions& options,
     }
     read.encoding = believed.encoding;
     read.why = believed.why;
+    const bool is_ours = !sources.depth_file && sources.notes;
+    read.is_guess = !is_ours && !sources.phone;
   }
-  check_depth_numbers(*read.encoding, options.numbers);
-  read.along = options.along.value_or(read.encoding->along);
+  check_depth_numbers(*read.encoding, depth_numbers(sources, options, read.encoding));
+  const bool is_said = sources.phone && sources.phone->encoding == read.encoding;
+  read.along = options.along.value_or(is_said ? sources.phone->along : read.encoding->along);
 }
 
 DepthReading depth_reading(const PictureSources& sources, const DepthOptions& options,
                            const PhotoLens& photo, const ReadDepth& read) {
   DepthReading reading{.encoding = read.encoding,
-                       .numbers = options.numbers,
+                       .numbers = depth_numbers(sources, options, read.encoding),
                        .along = read.along,
                        .missing_codes = options.missing_codes};
   // A smaller map has a smaller focal length in pixels.
   const PictureFile& colour = sources.colour_file;
   reading.pixels_per_tangent = pixels_per_tangent(photo, sources.notes, options.numbers.focal_px,
                                                   colour.width, colour.height) *
-                               sources.of_depth().height / colour.height;
+                               read.height / colour.height;
   return reading;
 }
 
@@ -176,15 +284,32 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
   const PictureFile& file = sources.of_depth();
   const NumberType type = file.planes[sources.depth_plane].type;
   PlaneValues codes = depth_codes(file, sources.depth_plane);
-  const PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
+  PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
+  const Part part = part_on(sources.colour_file, file, options);
+  const int width = part.width, height = part.height;
 
-  ReadDepth read{.seen = numbers_seen(codes, type), .width = file.width, .height = file.height};
+  ReadDepth read{.seen = numbers_seen(codes, type), .width = width, .height = height};
+  if (width < file.width || height < file.height) {
+    cut(codes, file.width, part);
+    cut(mask, file.width, part);
+    read.fit = "the middle " + size_text({width, height}) + " of " +
+               size_text({file.width, file.height}) + " pixels lies on the picture";
+  } else if (!has_shape_of(sources.colour_file, file)) {
+    read.fit =
+        size_text({width, height}) + " pixels are stretched to the picture's shape, by " +
+        short_number(std::round(1000.0 * stretching(sources.colour_file, file) - 1000.0) / 10.0) +
+        " %";
+  }
   settle_encoding(sources, options, read);
-  const DepthReading reading = depth_reading(sources, options, photo, read);
+  DepthReading reading = depth_reading(sources, options, photo, read);
+  CodeEnds ends{type, reading};
+  ends.add(codes, mask);
+  ends.put_in(reading.numbers);
+  read.numbers = reading.numbers;
   const bool has_bands = options.mending.bands && full_scale(type) > 1.0;
-  if (has_bands) codes = without_bands(codes, file.width, file.height, pool);
+  if (has_bands) codes = without_bands(codes, width, height, pool);
   read.mended.bands = has_bands;
-  read.map = depth_of_codes(std::move(codes), type, file.width, file.height, reading, mask);
+  read.map = depth_of_codes(std::move(codes), type, width, height, reading, mask);
   read.filled = missing_depths(read.map);
   const std::size_t all = read.map.metres.size();
   if (read.filled == all) {
@@ -196,7 +321,7 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
                      std::to_string(read.filled) + " of " + std::to_string(all) +
                      " pixels; --holes far fills them");
   }
-  fill_from_far_side(read.map);
+  read.background = fill_holes(read.map, options.holes);
   mend(read.map, colour, options.mending, read.mended, pool);
   add_to_ends(read.ends, read.map.metres);
   return read;

@@ -11,12 +11,14 @@
 #include "tools/refocus/depth/depth_encodings.h"
 #include "tools/refocus/depth/depth_map.h"
 #include "tools/refocus/depth/mend_depth.h"
+#include "tools/refocus/depth/phone_depth.h"
 #include "tools/refocus/photo_lens.h"
 
 namespace softfocus {
 
-/// The fate of pixels without a depth.
-enum class Holes : std::uint8_t { from_far_side, refused };
+/// How a depth of another shape than the picture lies on it: stretched in one direction, or its
+/// middle, of the picture's shape.
+enum class DepthFit : std::uint8_t { stretch, crop };
 
 struct DepthOptions {
   std::optional<std::string> layer;  ///< of the colour
@@ -26,18 +28,20 @@ struct DepthOptions {
   DepthNumbers numbers;
   std::optional<DepthAlong> along;  ///< none: the encoding's
   std::vector<double> missing_codes;
-  Holes holes = Holes::from_far_side;
+  Holes holes = Holes::background;
+  std::optional<DepthFit> fit;  ///< none: stretched by up to 2 %
   Mending mending;
 };
 
 /// Adds --layer, --depth-layer, --depth-encoding, its numbers, --depth-along, --missing, --mask,
-/// --holes and the three ways of mending.
+/// --holes, --depth-fit and the three ways of mending.
 void add_depth_options(CLI::App& parser, DepthOptions& options);
 
 /// Files whose headers were read.
 struct PictureSources {
   PictureFile colour_file;
   std::optional<PictureFile> depth_file{};  ///< none: the colour's
+  std::optional<PhoneDepth> phone{};        ///< the depth's file came inside of the colour's
   ColourLayer colour{};
   std::size_t depth_plane = 0;
   std::optional<PictureNotes> notes{};  ///< of the colour's file
@@ -46,8 +50,9 @@ struct PictureSources {
   const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
 };
 
-/// Opens COLOUR and, unless it is empty, DEPTH, and chooses layers. Throws FileError; UsageError
-/// for layers that are not there and a depth of another shape than the colour.
+/// Opens COLOUR and, unless it is empty, DEPTH, else a depth inside of a JPEG, and chooses layers.
+/// Throws FileError; UsageError for layers that are not there and a depth of another shape than the
+/// colour.
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options);
 
@@ -62,13 +67,24 @@ struct ReadDepth {
   DepthMap map{};  ///< of the colour's size, nothing missing
   NumbersSeen seen{};
   const DepthEncoding* encoding = nullptr;
-  std::string why{};  ///< of a believed encoding
+  DepthNumbers numbers{};  ///< as used; of an encoding by_ends with the map's
+  std::string why{};       ///< of a believed encoding
+  bool is_guess = false;   ///< the numbers alone say what they mean
   DepthAlong along = DepthAlong::axis;
-  int width = 0, height = 0;  ///< of the file's map
+  int width = 0, height = 0;  ///< of the file's map, its middle if that is taken
+  std::string fit{};          ///< of another shape than the colour: a clause
   DepthEnds ends{};
-  std::size_t filled = 0;  ///< missing depths of the file's map
+  std::size_t filled = 0;      ///< missing depths of the map
+  std::size_t background = 0;  ///< of these those that became infinitely far
   MendedDepth mended{};
 };
+
+/// The encoding that the depth's file says or its numbers suggest.
+BelievedEncoding believed_encoding(const PictureSources& sources, const NumbersSeen& seen);
+
+/// The numbers that were given, and those that the file says of that encoding.
+DepthNumbers depth_numbers(const PictureSources& sources, const DepthOptions& options,
+                           const DepthEncoding* encoding);
 
 /// Settles the encoding, asked for or believed by `read.seen`. Throws UsageError if it cannot be
 /// told or lacks numbers.

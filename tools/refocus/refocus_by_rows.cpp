@@ -151,7 +151,6 @@ void survey_codes(const PictureSources& sources, const RefocusOptions& options, 
   const PictureFile& file = sources.of_depth();
   const NumberType type = file.planes[sources.depth_plane].type;
   const bool is_ours = !sources.depth_file && sources.notes;
-  const DepthEncoding* const by_ends = find_depth_encoding("midas");
   const auto settle = [&] {
     settle_encoding(sources, options.reading, survey.depth);
     survey.reading = depth_reading(sources, options.reading, survey.photo, survey.depth);
@@ -166,7 +165,7 @@ void survey_codes(const PictureSources& sources, const RefocusOptions& options, 
     survey.depth.seen = counter.seen();
   }
   settle();
-  if (survey.depth.encoding != by_ends) return;
+  if (!survey.depth.encoding->by_ends) return;
   SourceRows rows{sources, {.depth = true}};
   CodeEnds ends{type, survey.reading};
   for_each_band(file.height, [&](Rows band) {
@@ -174,6 +173,7 @@ void survey_codes(const PictureSources& sources, const RefocusOptions& options, 
     ends.add(rows.codes, {});
   });
   ends.put_in(survey.reading.numbers);
+  survey.depth.numbers = survey.reading.numbers;
 }
 
 /// Depths of a band of rows.
@@ -213,7 +213,7 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
   survey.is_opaque = !survey.has_opacity || alpha.is_opaque;
   if (survey.depth.filled == 0) return true;
   why = std::to_string(survey.depth.filled) +
-        " pixels have no depth, and are filled from all four sides";
+        " pixels have no depth, and are filled from around them";
   return false;
 }
 
@@ -278,7 +278,7 @@ class FilteredRows {
     }
     take(finished_, rows.count, picture_);
     if (options_.highlights) lower_highlights(*options_.highlights, opacity_, picture_);
-    put_in_alpha(depth_.metres, picture_);
+    put_depth_in_alpha(options_, depth_.metres, picture_);
     add_rows_to_hash(hash_, picture_);
     if (!is_of_exr(options_.format)) return {picture_};
     if (survey_.has_opacity && !opacity_stream_) opacity_.assign(depth_.metres.size(), 1.0f);
@@ -363,6 +363,7 @@ void write_files(const RefocusOptions& options, const PictureSources& sources, c
   constexpr std::array kSome{0.0f};
   if (is_of_exr(options.format)) {
     extras.depth_m = extras.radii_px = kSome;
+    extras.has_depth = !options.has_circles;
     if (survey.has_opacity) extras.alpha = kSome;
     if (sources.colour_file.reader == &kExrReader) extras.source = &sources.colour_file;
     extras.kept = kept;
@@ -435,6 +436,7 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
                      " pixels, and more than " + std::to_string(kMaxImageSize) +
                      " rows are read in bands alone; but " + why);
   }
+  if (options.has_circles) photo.circles = coc_of_circles(survey.depth.numbers);
   UsedRefocus used{.by_rows = true};
   used.lens =
       settle_lens(photo, sources->notes, options.reading.numbers.focal_px, std::move(survey.focus));

@@ -33,27 +33,30 @@ DepthBounds bounds_of(const DepthMap& depth) {
   return bounds;
 }
 
-Image filtered(const Image& picture, const RefocusOptions& options, const UsedRefocus& used,
-               ThreadPool& pool) {
+Image filtered(const Image& picture, const KeptPart& kept, const RefocusOptions& options,
+               const UsedRefocus& used, ThreadPool& pool) {
   if (options.arithmetic != Arithmetic::floats) {
     check_arithmetic(options.arithmetic, used.settings);
     Image result = make_image(picture.format, picture.width, picture.height);
     two_pass_in(options.arithmetic, {picture, used.settings, options.profile}, result, pool);
     return result;
   }
-  return apply(*used.method, {picture, used.settings, options.profile}, pool);
+  DofInput input{picture, used.settings, options.profile};
+  input.kept = kept;
+  return apply(*used.method, input, pool);
 }
 
 /// Colour and opacity, each filtered.
-PictureOnItsWay both_filtered(PictureOnItsWay source, const RefocusOptions& options,
-                              const UsedRefocus& used, ThreadPool& pool) {
-  PictureOnItsWay result{filtered(source.picture, options, used, pool)};
+PictureOnItsWay both_filtered(PictureOnItsWay source, const KeptPart& kept,
+                              const RefocusOptions& options, const UsedRefocus& used,
+                              ThreadPool& pool) {
+  PictureOnItsWay result{filtered(source.picture, kept, options, used, pool)};
   if (!is_transparent(source.opacity)) {
     result.opacity = std::move(source.opacity);
     return result;
   }
   source.picture = opacity_picture(source.opacity, source.picture);
-  result.opacity = opacity_of(filtered(source.picture, options, used, pool));
+  result.opacity = opacity_of(filtered(source.picture, kept, options, used, pool));
   return result;
 }
 
@@ -64,7 +67,7 @@ PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions&
   const int margin = static_cast<int>(std::ceil(reach_px));
   const int width = source.picture.width, height = source.picture.height;
   if (options.border == Border::by_method || margin == 0) {
-    return both_filtered(std::move(source), options, used, pool);
+    return both_filtered(std::move(source), {}, options, used, pool);
   }
   if (std::max(width, height) + 2 * margin > kMaxImageSize) {
     throw UsageError("--border: with a border of " + std::to_string(margin) +
@@ -77,7 +80,8 @@ PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions&
   }
   const bool has_opacity = !source.opacity.empty();
   source = {};
-  PictureOnItsWay result = both_filtered(std::move(wide), options, used, pool);
+  PictureOnItsWay result =
+      both_filtered(std::move(wide), {margin, margin, width, height}, options, used, pool);
   result.picture = without_border(result.picture, margin);
   if (has_opacity) {
     result.opacity =
@@ -107,6 +111,10 @@ void settle_largest_circle(const ConstImageView& picture, const RefocusOptions& 
   const CircleSizes sizes = circle_sizes(picture, used.settings.coc, 0.0f, pool);
   used.largest_circle_px = sizes.largest_px;
   used.settings.max_coc_px = options.max_coc_px.value_or(std::ceil(sizes.largest_px));
+}
+
+void put_depth_in_alpha(const RefocusOptions& options, const PlaneValues& metres, Image& picture) {
+  put_in_alpha(options.has_circles ? PlaneValues(metres.size(), 0.0f) : metres, picture);
 }
 
 PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
@@ -139,7 +147,7 @@ PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
   if (options.highlights) {
     lower_highlights(*options.highlights, result.opacity, result.picture);
   }
-  put_in_alpha(depth.metres, result.picture);
+  put_depth_in_alpha(options, depth.metres, result.picture);
   return result;
 }
 
@@ -190,6 +198,7 @@ Bytes refocused_file(const RefocusOptions& options, const PictureSources& source
     radii_px = circle_radii(depth, used);
     extras.radii_px = radii_px;
     extras.depth_m = depth.metres;
+    extras.has_depth = !options.has_circles;
     if (sources.colour_file.reader == &kExrReader) {
       kept = kept_planes(options, sources);
       extras.source = &sources.colour_file;

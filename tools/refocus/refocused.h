@@ -30,6 +30,9 @@ void move_to_seen(DepthMap& map, const std::optional<SharpDepthRange>& range);
 void settle_largest_circle(const ConstImageView& picture, const RefocusOptions& options,
                            UsedRefocus& used, ThreadPool& pool);
 
+/// Metres as the result's alpha; of circles, which lie at no depth, 0.
+void put_depth_in_alpha(const RefocusOptions& options, const PlaneValues& metres, Image& picture);
+
 /// A picture with depth. RGBA16F, depth in alpha, its colour times its opacity.
 struct PictureOnItsWay {
   Image picture{};

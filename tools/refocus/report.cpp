@@ -9,6 +9,11 @@
 namespace softfocus {
 namespace {
 
+std::string circles_text(const ReadDepth& depth) {
+  return short_number(depth.numbers.least_code) + " to " +
+         short_number(depth.numbers.largest_code) + " px radius";
+}
+
 std::string lines_of_lens(const SettledLens& lens) {
   std::string text = "focus            " + short_number(static_cast<double>(lens.coc.focus_m)) +
                      " m, by " + lens.focus_from;
@@ -26,15 +31,68 @@ std::string lines_of_lens(const SettledLens& lens) {
          short_number(static_cast<double>(lens.coc.radius_at_infinity_px)) + " px radius\n";
 }
 
-}  // namespace
-
-std::string_view name_of(DepthAlong along) { return along == DepthAlong::axis ? "axis" : "ray"; }
-
+/// "0.71 m to 12 m" of a map without missing depths.
 std::string depth_range_text(const DepthEnds& ends) {
   if (ends.far_m == 0.0) return "nothing nearer than infinity";
   return short_number(ends.near_m) + " m to " + short_number(ends.far_m) + " m" +
          (ends.has_infinite ? ", and infinity" : "");
 }
+
+std::string percent_text(std::size_t count, std::size_t of) {
+  return short_number(std::round(1000.0 * static_cast<double>(count) / static_cast<double>(of)) /
+                      10.0) +
+         " %";
+}
+
+/// The pixels without a depth, and what became of them.
+std::string holes_text(const ReadDepth& depth, Holes holes) {
+  const std::size_t all =
+      static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height);
+  const std::size_t from_side = depth.filled - depth.background;
+  const std::string infinite =
+      percent_text(depth.background, all) + " have none and are background";
+  const std::string filled = percent_text(from_side, all) + " have none and are filled from the " +
+                             (holes == Holes::near_side ? "near" : "far") + " side";
+  if (from_side == 0) return infinite;
+  return depth.background == 0 ? filled : infinite + ", " + filled;
+}
+
+std::string depth_line(const RefocusOptions& options, const PictureSources& sources,
+                       const ReadDepth& depth) {
+  std::string line = options.has_circles
+                         ? "the circles are " + circles_text(depth)
+                         : "the depth is " + std::string{depth.encoding->name} +
+                               (depth.along == DepthAlong::ray ? " along the ray, " : ", ") +
+                               depth_range_text(depth.ends) +
+                               (depth.why.empty() ? "" : " (believed: " + depth.why + ")");
+  if (depth.filled > 0) line += "; " + holes_text(depth, options.reading.holes);
+  if (!depth.fit.empty()) line += "; " + depth.fit;
+  const int orientation = sources.colour_file.exif_orientation;
+  if (orientation != 1) line += "; EXIF turns the picture, " + std::to_string(orientation);
+  return line;
+}
+
+/// Whether a guess puts so much where few pictures have anything that it may be wrong.
+bool is_odd(const ReadDepth& depth) {
+  const DepthEnds& ends = depth.ends;
+  return depth.is_guess && ends.finite > 0 &&
+         2 * std::max(ends.beyond_100_m, ends.within_1_cm) >= ends.finite;
+}
+
+std::string odd_depth_warning(const PictureSources& sources, const ReadDepth& depth) {
+  const DepthEnds& ends = depth.ends;
+  const bool is_far = ends.beyond_100_m >= ends.within_1_cm;
+  return "'" + sources.of_depth().path.string() + "' is taken for " +
+         std::string{depth.encoding->name} + ", which puts " +
+         percent_text(is_far ? ends.beyond_100_m : ends.within_1_cm, ends.finite) +
+         (is_far ? " beyond 100 m" : " within 1 cm") +
+         "; give the --depth-encoding: midas or inverse if large numbers are near, millimetres, "
+         "centimetres, metres with a --scale";
+}
+
+}  // namespace
+
+std::string_view name_of(DepthAlong along) { return along == DepthAlong::axis ? "axis" : "ray"; }
 
 std::string refocus_text(const RefocusOptions& options, const PictureSources& sources,
                          const ReadDepth& depth, const UsedRefocus& used) {
@@ -45,12 +103,12 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
                      file.planes[sources.depth_plane].name + ", " +
                      std::string{depth.encoding->name} + " along the " +
                      std::string{name_of(depth.along)} +
-                     (depth.why.empty() ? "" : " (believed: " + depth.why + ")") +
-                     "\n                 " + depth_range_text(depth.ends) + "\n";
+                     (depth.why.empty() ? "" : " (believed: " + depth.why + ")") + "\n";
+  if (!options.has_circles) text += "                 " + depth_range_text(depth.ends) + "\n";
   if (depth.filled > 0) {
-    text += "                 " + std::to_string(depth.filled) +
-            " pixels without a depth, filled from the far side\n";
+    text += "                 " + holes_text(depth, options.reading.holes) + "\n";
   }
+  if (!depth.fit.empty()) text += "                 " + depth.fit + "\n";
   if (depth.mended.upsampled) {
     text +=
         "                 " + size_text({depth.width, depth.height}) + " pixels, brought to " +
@@ -61,7 +119,8 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
     text += "                 " + std::to_string(depth.mended.edge_pixels) +
             " pixels between two surfaces given to one\n";
   }
-  text += lines_of_lens(used.lens);
+  text += options.has_circles ? "circles          " + circles_text(depth) + "\n"
+                              : lines_of_lens(used.lens);
   if (used.choice)
     text += "chosen           " + setting_text(*used.choice) + ": " + used.choice->reason + "\n";
   if (options.show == RefocusShow::image) {
@@ -84,11 +143,13 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
             {"depth_channel", file.planes[sources.depth_plane].name},
             {"depth_encoding", depth.encoding->name},
             {"depth_along", name_of(depth.along)},
+            {"depth_believed", nullptr},
             {"width", depth.map.width},
             {"height", depth.map.height},
             {"nearest_m", number_or_null(ends.near_m)},
             {"farthest_m", number_or_null(ends.far_m)},
             {"filled_pixels", static_cast<std::int64_t>(depth.filled)},
+            {"background_pixels", static_cast<std::int64_t>(depth.background)},
             {"mended_edge_pixels", static_cast<std::int64_t>(depth.mended.edge_pixels)},
             {"focus_m", lens.coc.focus_m},
             {"focus_from", lens.focus_from},
@@ -100,8 +161,14 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
             {"by_rows", used.by_rows},
             {"why_whole", nullptr},
             {"picture_hash", hash_text(hash)}};
+  if (!depth.why.empty()) json["depth_believed"] = depth.why;
   if (!used.why_whole.empty()) json["why_whole"] = used.why_whole;
   if (options.show == RefocusShow::image) json["method"] = used.method->name;
+  if (options.has_circles) {
+    for (const char* key : {"nearest_m", "farthest_m", "focus_m", "radius_at_infinity_px"}) {
+      json[key] = nullptr;
+    }
+  }
   if (lens.has_lens) {
     json["lens"] = {{"focal_length_mm", lens.lens.focal_length_mm},
                     {"f_number", lens.lens.f_number},
@@ -149,17 +216,18 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
   for (const std::string& fault : sources.lens.faults) {
     made.warnings.push_back("'" + options.colour + "': " + fault + "; it is ignored");
   }
-  if (const int orientation = sources.colour_file.exif_orientation; orientation != 1) {
-    made.warnings.push_back("'" + options.colour + "' has the EXIF orientation " +
-                            std::to_string(orientation) +
-                            ", which is not followed: the result lies as the pixels do; "
-                            "exiftran -a -i FILE turns them, and the depth must lie as they do");
+  if (const std::string& camera = sources.lens.camera; !camera.empty() && !options.has_circles) {
+    made.warnings.push_back("'" + options.colour + "' says that its camera is " + camera +
+                            ", and a lens's circles are a perspective's; --circles FILE takes "
+                            "those of any camera");
   }
+  if (is_odd(depth)) made.warnings.push_back(odd_depth_warning(sources, depth));
   if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
     made.warnings.push_back("circles of more than " +
                             std::to_string(static_cast<int>(kLargestMaxCoc)) +
                             " pixels are cut to that; a larger --f-number has smaller ones");
   }
+  made.depth = depth_line(options, sources, depth);
   made.report = refocus_text(options, sources, depth, used);
   made.json = refocus_json(options, sources, depth, used, hash);
 }

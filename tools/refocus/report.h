@@ -10,7 +10,8 @@ namespace softfocus {
 
 /// Words once the files are there.
 struct Refocused {
-  Bytes picture{};  ///< of -o -
+  Bytes picture{};      ///< of -o -
+  std::string depth{};  ///< one line: what was believed of the depth
   std::vector<std::string> warnings{};
   std::string report{}, json{};
 };
@@ -30,9 +31,6 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
 
 std::string busy_sidecar_warning(const std::filesystem::path& sidecar);
 std::string lost_alpha_warning(const std::string& colour);
-
-/// "near 0.71 m, far 12 m" of a map without missing depths.
-std::string depth_range_text(const DepthEnds& ends);
 
 std::string_view name_of(DepthAlong along);
 

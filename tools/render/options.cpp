@@ -90,6 +90,11 @@ void add_lens_and_method_options(CLI::App& parser, RenderOptions& options) {
               options.autofocus = true;
               if (text != "centre") options.autofocus_pixel = parse_pixel("--autofocus", text);
             });
+  add_value(parser, "--focus-at", "X,Y", "The same, at a pixel, as refocus has it",
+            [&options](const std::string& text) {
+              options.autofocus = true;
+              options.autofocus_pixel = parse_pixel("--focus-at", text);
+            });
   add_sharp_depths_option(parser, options.sharp_depths);
   begin_group(parser, "Method");
   add_method_option(parser, options.method);
@@ -341,12 +346,13 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   }
   check_depth_output(options);
   check_one_of(parser, {"--frame", "--frames"});
-  check_one_of(parser, {"--focus", "--autofocus"});
+  check_one_of(parser, {"--focus", "--autofocus", "--focus-at"});
   if (options.autofocus_pixel) {
     const auto [x, y] = *options.autofocus_pixel;
     const auto [width, height] = options.size;
     if (x < 0 || x >= width || y < 0 || y >= height) {
-      throw UsageError("--autofocus " + std::to_string(x) + "," + std::to_string(y) +
+      throw UsageError((is_given(parser, "--focus-at") ? "--focus-at " : "--autofocus ") +
+                       std::to_string(x) + "," + std::to_string(y) +
                        ": the pixel must lie in the picture, 0,0 to " + std::to_string(width - 1) +
                        "," + std::to_string(height - 1));
     }

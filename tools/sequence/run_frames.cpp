@@ -247,6 +247,9 @@ class Run {
   }
 
   void say(const FrameWork& frame, const FrameRun& run) {
+    if (!std::exchange(has_note_, true) && !run.note.empty() && !options_.quiet) {
+      std::cerr << "softfocus: frame " << frame.number << ": " << printable(run.note) << '\n';
+    }
     for (const std::string& warning : run.warnings) {
       if (++warnings_ > kMostWarnings && !options_.verbose) continue;
       std::cerr << "softfocus: warning: frame " << frame.number << ": " << printable(warning)
@@ -273,6 +276,7 @@ class Run {
   std::size_t made_ = 0;
   std::vector<FailedFrame> failed_;
   std::size_t warnings_ = 0;
+  bool has_note_ = false;
   int unwritten_ = 0;
   bool journal_failed_ = false;
 };

@@ -65,6 +65,7 @@ struct FrameRun {
   ThreadPool& pool;
   std::vector<std::byte> picture{};  ///< what would go to standard output
   std::vector<std::string> warnings{};
+  std::string note{};    ///< one line, told of the first frame alone
   std::string report{};  ///< for -v
 };
 

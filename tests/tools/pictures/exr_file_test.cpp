@@ -8,6 +8,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfMatrixAttribute.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
@@ -222,7 +223,7 @@ TEST_CASE("refocus: an EXR's own lens is the default, options overrule it, and -
     return run;
   };
   const auto hash_after = [&](const std::string& file, const std::vector<std::string>& more) {
-    CHECK(refocus(file, more).err == "");
+    CHECK(tells_depth_alone(refocus(file, more).err));
     return hash_image(read_image_file(out).image);
   };
   const auto own = hash_after(with, {});
@@ -334,13 +335,13 @@ TEST_CASE("EXR: refocus keeps other layers, or leaves them out") {
   }
   std::vector<std::string> words{"refocus", directory.file("a.exr"), "-o", directory.file("b.exr")};
   words.insert(words.end(), {"--depth-encoding", "metres", "--f-number", "16"});
-  CHECK(run_program(words).err == "");
+  CHECK(tells_depth_alone(run_program(words).err));
   const PictureFile kept = open_picture_file(directory.file("b.exr"));
   CHECK(plane_names(kept) == "B, G, R, Z, coc, view.mask.V");
   CHECK(wrong_values(kept, 5, 4) == 0);
   CHECK(wrong_values(kept, 3, 3) == 0);  // the depth's floats
   words.emplace_back("--no-layers");
-  CHECK(run_program(words).err == "");
+  CHECK(tells_depth_alone(run_program(words).err));
   CHECK(plane_names(open_picture_file(directory.file("b.exr"))) == "B, G, R, Z, coc");
 }
 
@@ -446,6 +447,86 @@ TEST_CASE("EXR: layers as Blender names them give colour and depth without an op
   CHECK(choose_depth(file, "ViewLayer.Normal", true) == plane_of(file, "ViewLayer.Normal.Z"));
   CHECK(wrong_values(file, plane_of(file, "ViewLayer.Depth.Z"), 4) == 0);
   CHECK_THROWS_AS(choose_depth(file, "Nowhere", true), UsageError);
+}
+
+namespace {
+
+/// A file with these channels, of no pixels.
+PictureFile file_of(const std::vector<std::string>& names) {
+  PictureFile file{.path = "a.exr", .reader = &kExrReader, .width = 1, .height = 1};
+  for (const std::string& name : names) file.planes.push_back({.name = name});
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("EXR: depths are found by the names that programs give them") {
+  const std::vector<std::string> colour{"R", "G", "B", "A", "Normal.X", "Normal.Y", "Normal.Z"};
+  for (const std::string name :
+       {"Z", "subimage00.Z", "rgb_depth.Z", "VRayZDepth.R", "VRayZDepth", "ZDepth.R",
+        "FinalImageWorldDepth.R", "FinalImageMovieRenderQueue_WorldDepth.R", "SceneDepth.R",
+        "CESSENTIAL_ZDepth.R", "Z-Depth.Z", "Pz", "depth.depth", "beauty.Z", "linear_depth.Y"}) {
+    CAPTURE(name);
+    std::vector<std::string> names = colour;
+    names.push_back(name);
+    names.emplace_back("WorldPosition.X");
+    names.emplace_back("WorldPosition.Y");
+    names.emplace_back("WorldPosition.Z");
+    CHECK(choose_depth(file_of(names), {}, true) == colour.size());
+  }
+  CHECK_FALSE(find_depth_beside_colour(file_of(colour)));
+  CHECK_FALSE(find_depth_beside_colour(file_of({"R", "G", "B", "depth_of_field.R"})));
+  const PictureFile unreal =
+      file_of({"WorldDepth.R", "WorldDepth.G", "WorldDepth.B", "x.R", "x.G", "x.B"});
+  CHECK(choose_colour(unreal, {}, "--layer").name == "x");
+}
+
+TEST_CASE("EXR: a layer is named without what stands before it, if it is the only one") {
+  const PictureFile file = file_of({"View.Combined.R", "View.Combined.G", "View.Combined.B",
+                                    "View.Depth.Z", "a.Light.R", "a.Light.G", "a.Light.B",
+                                    "b.Light.R", "b.Light.G", "b.Light.B", "a.Far.V", "b.Far.V"});
+  CHECK(choose_colour(file, "Combined", "--layer").name == "View.Combined");
+  CHECK(choose_colour(file, "b.Light", "--layer").name == "b.Light");
+  CHECK(choose_depth(file, "Depth", true) == plane_of(file, "View.Depth.Z"));
+  CHECK(choose_depth(file, "Depth.Z", true) == plane_of(file, "View.Depth.Z"));
+  CHECK_THROWS_WITH_AS(choose_colour(file, "Light", "--layer"),
+                       "--layer 'Light': 'a.exr' has 'a.Light', 'b.Light'", UsageError);
+  CHECK_THROWS_WITH_AS(choose_depth(file, "Far", true),
+                       "--depth-layer 'Far': 'a.exr' has a.Far.V, b.Far.V", UsageError);
+  CHECK_THROWS_AS(choose_colour(file, "ombined", "--layer"), UsageError);
+}
+
+TEST_CASE("EXR: a camera that is no perspective's is told") {
+  const TemporaryDirectory directory;
+  const std::string name = directory.file("a.exr");
+  const auto camera = [&](const std::function<void(Imf::Header&)>& add) {
+    write_with(name, add);
+    return find_exr_lens(read_picture_bytes(name)).camera;
+  };
+  CHECK(camera([](Imf::Header&) {}) == "");
+  CHECK(camera([](Imf::Header& header) { Imf::addEnvmap(header, Imf::ENVMAP_LATLONG); }) ==
+        "panoramic");
+  const auto matrix = [&](float w) {
+    return camera([w](Imf::Header& header) {
+      Imath::M44f onto_screen;
+      onto_screen[2][3] = w;
+      header.insert("worldToNDC", Imf::M44fAttribute(onto_screen));
+    });
+  };
+  CHECK(matrix(0.0f) == "orthographic");
+  CHECK(matrix(-1.0f) == "");
+  const auto text = [&](const char* attribute, const char* value) {
+    return camera(
+        [=](Imf::Header& header) { header.insert(attribute, Imf::StringAttribute(value)); });
+  };
+  CHECK(text("cameraProjection", "Orthographic") == "orthographic");
+  CHECK(text("renderer/camera/type", "PANO: equirectangular") == "panoramic");
+  CHECK(text("cameraProjection", "perspective") == "");
+  text("camera.type", "orthographic");
+  const ProgramRun run = run_program({"refocus", name, "-o", directory.file("o.npy")});
+  CHECK(run.status == 0);
+  CHECK(contains(run.err, "its camera is orthographic"));
+  CHECK(contains(run.err, "--circles"));
 }
 
 TEST_CASE("EXR: parts of a file are layers") {

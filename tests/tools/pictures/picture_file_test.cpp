@@ -334,12 +334,50 @@ TEST_CASE("JPEG: the orientation of Exif data is told, of either byte order, and
   const auto big = "MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0"sv;
   CHECK(orientation(big) == 6);
   CHECK(orientation("II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0\x08\0\0\0\0\0\0\0"sv) == 8);
-  CHECK(open_picture_file(turned_jpeg(big), "a.jpg").remark == "EXIF orientation 6");
+  CHECK(open_picture_file(turned_jpeg(big), "a.jpg").remark == "turned by its EXIF orientation, 6");
   for (std::size_t length = 0; length < 22; ++length)
     CHECK(orientation(big.substr(0, length)) == 1);
   CHECK(orientation("MM\0*\xFF\xFF\xFF\xFF\0\1"sv) == 1);
   CHECK(orientation("MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\x09\0\0"sv) == 1);
   CHECK(open_picture_file(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg").exif_orientation == 1);
+}
+
+TEST_CASE("JPEG, PNG: each EXIF orientation turns the pixels upright") {
+  // The corner of the pixels as they are stored that is the upright picture's top left.
+  constexpr std::array<std::array<int, 2>, 8> kTopLeft{
+      {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {0, 1}, {1, 1}, {1, 0}}};
+  const PlaneValues stored = [] {
+    const PictureFile file = open_picture_file(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg");
+    const std::size_t red = 0;
+    return read_planes(file, {&red, 1}, 0.0f)[0];
+  }();
+  std::vector<std::uint16_t> codes(6);
+  for (std::size_t i = 0; i < 6; ++i) codes[i] = static_cast<std::uint16_t>(100 + i);
+  const Bytes png = encode_grey_png_16(codes, 3, 2);
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    CAPTURE(orientation);
+    std::string tiff{"MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0", 26};
+    tiff[19] = static_cast<char>(orientation);
+    const auto& corner = kTopLeft[static_cast<std::size_t>(orientation - 1)];
+    const PictureFile jpeg = open_picture_file(turned_jpeg(tiff), "a.jpg");
+    CHECK((jpeg.width == 16) == (orientation < 5));
+    const std::size_t plane = 0;
+    const PlaneValues red = read_planes(jpeg, {&plane, 1}, 0.0f)[0];
+    CHECK(red[0] == stored[static_cast<std::size_t>(corner[1] * 7 * 16 + corner[0] * 15)]);
+    Bytes exif;
+    append_png_chunk(exif, "eXIf", tiff);
+    Bytes turned = png;
+    constexpr int kBehindHeader = 8 + 25;
+    turned.insert(turned.begin() + kBehindHeader, exif.begin(), exif.end());
+    const PictureFile file = open_picture_file(turned, "a.png");
+    CHECK((file.width == 3) == (orientation < 5));
+    const PlaneValues grey = read_planes(file, {&plane, 1}, 0.0f)[0];
+    CHECK(grey[0] == static_cast<float>(100 + corner[1] * 3 + corner[0] * 2));
+    // The next pixel to the right.
+    const bool on_side = orientation >= 5;
+    const int step = on_side ? (corner[1] == 0 ? 3 : -3) : (corner[0] == 0 ? 1 : -1);
+    CHECK(grey[1] == grey[0] + static_cast<float>(step));
+  }
 }
 
 TEST_CASE("a picture that is not read is named, and the program that converts it") {

@@ -65,7 +65,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                         "--depth-along axis|ray",
                         "--missing NUMBER",
                         "--mask FILE",
-                        "--holes far|refuse",
+                        "--holes background|near|far|infinity|refuse",
                         "--upsample colour|nearest",
                         "--mend-edges",
                         "--mend-bands",

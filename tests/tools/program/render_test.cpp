@@ -209,6 +209,7 @@ TEST_CASE("render: --autofocus without a pixel takes the centre, wherever it sta
   const std::string centre = rendered("figures", {"--autofocus", "24,16"});
   CHECK(rendered("figures", {"--autofocus"}) == centre);
   CHECK(rendered("figures", {"--autofocus=24,16"}) == centre);
+  CHECK(rendered("figures", {"--focus-at", "24,16"}) == centre);
   CHECK(rendered("figures", {"--autofocus", "centre"}) == centre);
   CHECK(rendered("figures", {"--autofocus", "--threads", "1"}) == centre);
   const TemporaryDirectory directory;

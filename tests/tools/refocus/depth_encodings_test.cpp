@@ -93,6 +93,10 @@ TEST_CASE("depth encodings: whole numbers count as parts of their largest where 
 TEST_CASE("depth encodings: the equations of their sources, by hand") {
   CHECK(metres("millimetres", 1500) == 1.5);
   CHECK(metres("tum", 5000) == 1.0);
+  CHECK(metres("centimetres", 250) == 2.5);
+  CHECK(metres("kitti", 1536) == 6.0);
+  CHECK(metres("sun-rgb-d", 1500 << 3) == 1.5);
+  CHECK(metres("sun-rgb-d", (9001 << 3 | 9001 >> 13) & 0xFFFF) == 9.001);
   CHECK(metres("inverse", 2.0, {}) == 0.5);
   CHECK(metres("metres", 2.5, {}) == 2.5);
   // Middlebury 2014, Adirondack: f 4161.221, doffs 209.059, baseline 176.252 mm
@@ -154,21 +158,21 @@ TEST_CASE("depth encodings: what is nearer than a nanometre counts as so near") 
 
 TEST_CASE("depth map: a hole is filled from the far side") {
   DepthMap map{5, 1, {1.0f, kNone, kNone, 7.0f, 2.0f}};
-  fill_from_far_side(map);
+  fill_holes(map, Holes::far_side);
   CHECK(map.metres == std::vector<float>{1.0f, 7.0f, 7.0f, 7.0f, 2.0f});
 }
 
 TEST_CASE("depth map: one known pixel fills a map") {
   DepthMap map{7, 5, std::vector<float>(35, kNone)};
   map.metres[17] = 3.0f;
-  fill_from_far_side(map);
+  fill_holes(map, Holes::far_side);
   CHECK(missing_depths(map) == 0);
   CHECK(map.metres[0] == 3.0f);
 }
 
 TEST_CASE("depth map: infinity fills holes beside it") {
   DepthMap map{3, 1, {1.0f, kNone, kInfinite}};
-  fill_from_far_side(map);
+  fill_holes(map, Holes::far_side);
   CHECK(std::isinf(map.metres[1]));
 }
 
@@ -204,7 +208,7 @@ TEST_CASE("depth encodings: a number that an encoding needs, or cannot use, is n
 
 TEST_CASE("believed encoding: millimetres, metres and Blender's Z are told by their numbers") {
   const auto believed = [](const PlaneValues& values, NumberType type) {
-    const auto found = believed_encoding(numbers_seen(values, type), type, false);
+    const auto found = believed_encoding(numbers_seen(values, type), type, false, "Y");
     CHECK_FALSE(found.why.empty());
     return found.encoding == nullptr ? std::string_view{"none"} : found.encoding->name;
   };
@@ -215,4 +219,65 @@ TEST_CASE("believed encoding: millimetres, metres and Blender's Z are told by th
   CHECK(believed({1, 7, 20}, NumberType::single) == "metres");
   CHECK(believed({0, 0.5f, 1}, NumberType::single) == "none");
   CHECK(believed({-2, 0.5f, 7}, NumberType::half) == "none");
+  PlaneValues sun;
+  for (int mm = 1000; mm < 1040; ++mm) sun.push_back(static_cast<float>(mm << 3));
+  CHECK(believed(sun, NumberType::unsigned16) == "none");
+  CHECK(believed({8, 16, 8000}, NumberType::unsigned16) == "millimetres");
+  const auto unreal = believed_encoding(numbers_seen({150, 9000}, NumberType::half),
+                                        NumberType::half, false, "FinalImageWorldDepth.R");
+  CHECK(unreal.encoding == find_depth_encoding("centimetres"));
+}
+
+namespace {
+
+/// 64x64 metres: a disc of 1.5 m with a hole of `hole` pixels on a side, and `outside` around it.
+DepthMap disc_with_hole(float outside, int hole) {
+  DepthMap map{64, 64, {}};
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const int dx = x - 32, dy = y - 32;
+      const bool in_hole = std::max(std::abs(dx), std::abs(dy)) * 2 < hole;
+      map.metres.push_back(in_hole ? kNone : dx * dx + dy * dy < 400 ? 1.5f : outside);
+    }
+  }
+  return map;
+}
+
+}  // namespace
+
+TEST_CASE("holes: what touches the border or is larger than things is background") {
+  DepthMap all_around = disc_with_hole(kNone, 6);
+  const std::size_t missing = missing_depths(all_around);
+  CHECK(fill_holes(all_around, Holes::background) == missing);  // the disc's hole, too
+  CHECK(std::isinf(all_around.metres[0]));
+  CHECK(std::isinf(all_around.metres[32 * 64 + 32]));
+  CHECK(all_around.metres[32 * 64 + 20] == 1.5f);
+
+  DepthMap in_room = disc_with_hole(4.0f, 6);
+  CHECK(fill_holes(in_room, Holes::background) == 0);
+  CHECK(in_room.metres[32 * 64 + 32] == 1.5f);
+
+  DepthMap stripe = disc_with_hole(4.0f, 0);
+  for (std::size_t y = 0; y < 64; ++y) stripe.metres[y * 64] = stripe.metres[y * 64 + 1] = kNone;
+  CHECK(fill_holes(stripe, Holes::background) == 0);
+  CHECK(stripe.metres[64 * 32] == 4.0f);
+
+  DepthMap frame{64, 64, std::vector<float>(64 * 64, kNone)};
+  for (std::size_t i = 0; i < 64; ++i) {
+    frame.metres[i] = frame.metres[i * 64] = frame.metres[i * 64 + 63] = 2.0f;
+    frame.metres[63 * 64 + i] = 2.0f;
+  }
+  CHECK(fill_holes(frame, Holes::background) == 62 * 62);
+}
+
+TEST_CASE("holes: all from the near side, the far side, or infinitely far") {
+  const DepthMap map{5, 1, {1.0f, kNone, kNone, 7.0f, kNone}};
+  const auto filled = [&](Holes holes) {
+    DepthMap copy = map;
+    fill_holes(copy, holes);
+    return copy.metres;
+  };
+  CHECK(filled(Holes::near_side) == std::vector<float>{1, 1, 1, 7, 7});
+  CHECK(filled(Holes::far_side) == std::vector<float>{1, 7, 7, 7, 7});
+  CHECK(filled(Holes::infinity) == std::vector<float>{1, kInfinite, kInfinite, 7, kInfinite});
 }

@@ -25,6 +25,23 @@ double mm_of_metres(double z, const DepthNumbers&) { return z * 1000.0; }
 double metres_of_tum(double d, const DepthNumbers&) { return d / 5000.0; }
 double tum_of_metres(double z, const DepthNumbers&) { return z * 5000.0; }
 
+double metres_of_cm(double d, const DepthNumbers&) { return d / 100.0; }
+double cm_of_metres(double z, const DepthNumbers&) { return z * 100.0; }
+
+// Geiger et al. 2013
+double metres_of_kitti(double d, const DepthNumbers&) { return d / 256.0; }
+double kitti_of_metres(double z, const DepthNumbers&) { return z * 256.0; }
+
+// Whole millimetres whose 16 bits are turned left by three (Song et al. 2015); between whole ones
+// the rest is added.
+double turned_left(double number, unsigned bits) {
+  const double whole = std::floor(std::clamp(number, 0.0, 65535.0));
+  const auto code = static_cast<std::uint32_t>(whole);
+  return ((code << bits | code >> (16 - bits)) & 0xFFFF) + (number - whole);
+}
+double metres_of_sun(double d, const DepthNumbers&) { return turned_left(d, 13) / 1000.0; }
+double sun_of_metres(double z, const DepthNumbers&) { return turned_left(z * 1000.0, 3); }
+
 // z = 1 / (scale d + offset)
 double metres_of_inverse(double d, const DepthNumbers& n) {
   const double inverse = metres_of(d, n);
@@ -84,14 +101,17 @@ double white_near_of_metres(double z, const DepthNumbers& n) {
   return 1.0 - linear_of_metres(z, n);
 }
 
-// 1/z runs in a line from 1/far at the least code to 1/near at the largest
+// 1/z runs in a line from 1/far at the least code to 1/near at the largest; one code alone is far
+double span_of_codes(const DepthNumbers& n) {
+  return n.largest_code > n.least_code ? n.largest_code - n.least_code : 1.0;
+}
 double metres_of_midas(double d, const DepthNumbers& n) {
-  const double share = (d - n.least_code) / (n.largest_code - n.least_code);
+  const double share = (d - n.least_code) / span_of_codes(n);
   return 1.0 / (1.0 / *n.far_m + share * (1.0 / *n.near_m - 1.0 / *n.far_m));
 }
 double midas_of_metres(double z, const DepthNumbers& n) {
   const double share = (1.0 / z - 1.0 / *n.far_m) / (1.0 / *n.near_m - 1.0 / *n.far_m);
-  return n.least_code + share * (n.largest_code - n.least_code);
+  return n.least_code + share * span_of_codes(n);
 }
 
 // Blender writes 1e10 where there is nothing.
@@ -112,6 +132,15 @@ double mist_of_metres(double z, const DepthNumbers& n) {
   return share * share;
 }
 
+constexpr double kCirclesFocus = 16.0;
+double horizon_of(const DepthNumbers& n) { return std::max(1.125 * n.largest_code, 4.0); }
+double metres_of_circle(double radius, const DepthNumbers& n) {
+  return kCirclesFocus * horizon_of(n) / (horizon_of(n) - radius);
+}
+double circle_of_metres(double z, const DepthNumbers& n) {
+  return horizon_of(n) * (z - kCirclesFocus) / z;
+}
+
 constexpr DepthAlong kAxis = DepthAlong::axis, kRay = DepthAlong::ray;
 // name, summary, needs, takes, along, by full scale, 0 is missing, infinity is far, functions
 constexpr std::array kEncodings{
@@ -119,6 +148,12 @@ constexpr std::array kEncodings{
                   false, true, true, metres_of, of_metres},
     DepthEncoding{"millimetres", "whole millimetres (Kinect, RealSense)", "", "", kAxis, false,
                   true, false, metres_of_mm, mm_of_metres},
+    DepthEncoding{"centimetres", "centimetres (Unreal, Virtual KITTI)", "", "", kAxis, false, true,
+                  true, metres_of_cm, cm_of_metres},
+    DepthEncoding{"kitti", "256 a metre (KITTI's depth)", "", "", kAxis, false, true, false,
+                  metres_of_kitti, kitti_of_metres},
+    DepthEncoding{"sun-rgb-d", "whole millimetres, their 16 bits turned left by 3 (SUN RGB-D)", "",
+                  "", kAxis, false, true, false, metres_of_sun, sun_of_metres},
     DepthEncoding{"tum", "5000 a metre (TUM RGB-D)", "", "", kAxis, false, true, false,
                   metres_of_tum, tum_of_metres},
     DepthEncoding{"inverse", "1/metres, dioptres, a phone's disparity: 1 / (scale d + offset)", "",
@@ -150,7 +185,8 @@ constexpr std::array kEncodings{
     DepthEncoding{"gdepth-linear", "Google's GDepth, RangeLinear: 0 near, in steps of metres",
                   "near far", "", kAxis, true, false, false, metres_of_linear, linear_of_metres},
     DepthEncoding{"midas", "1/metres of unknown scale (MiDaS and its like): largest code at near",
-                  "near far", "", kAxis, false, false, false, metres_of_midas, midas_of_metres},
+                  "near far", "", kAxis, false, false, false, metres_of_midas, midas_of_metres,
+                  true},
     DepthEncoding{"blender-z", "metres, 1e10 where there is nothing", "", "", kAxis, false, true,
                   true, metres_of_blender, blender_of_metres},
     DepthEncoding{"blender-mist", "mist of quadratic falloff from near to far, along the ray",
@@ -168,6 +204,17 @@ bool lists(std::string_view list, std::string_view word) {
 }  // namespace
 
 std::span<const DepthEncoding> depth_encodings() { return kEncodings; }
+
+const DepthEncoding& circles_encoding() {
+  static constexpr DepthEncoding kCircles{
+      "circles",        "radii in pixels", "",  "", kAxis, false, false, false,
+      metres_of_circle, circle_of_metres,  true};
+  return kCircles;
+}
+
+PixelCoc coc_of_circles(const DepthNumbers& numbers) {
+  return {static_cast<float>(horizon_of(numbers)), static_cast<float>(kCirclesFocus)};
+}
 
 const DepthEncoding* find_depth_encoding(std::string_view name) {
   for (const DepthEncoding& encoding : kEncodings) {
@@ -228,6 +275,7 @@ void NumberCounter::add(std::span<const float> values) {
 NumbersSeen NumberCounter::seen() const {
   NumbersSeen seen = seen_;
   seen.different = static_cast<std::size_t>(std::count(there_.begin(), there_.end(), true));
+  for (std::size_t i = 0; i < there_.size(); ++i) seen.eighths += there_[i] && i % 8 == 0;
   if (least_ <= largest_) {
     seen.least = least_;
     seen.largest = largest_;
@@ -243,7 +291,10 @@ NumbersSeen numbers_seen(const PlaneValues& values, NumberType type) {
 
 bool knows_nothing(const NumbersSeen& seen) { return seen.count > 0 && seen.nans == seen.count; }
 
-BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours) {
+BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours,
+                                   std::string_view channel) {
+  // A sensor has noise: that so many numbers have three bits of 0 is no chance.
+  constexpr std::size_t kManyNumbers = 32;
   if (is_ours) return {find_depth_encoding("metres"), "softfocus wrote it, in metres"};
   if (knows_nothing(seen)) return {nullptr, "all its numbers are NaN, or beyond the data window"};
   switch (type) {
@@ -255,12 +306,23 @@ BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, boo
     case NumberType::unsigned16:
       if (seen.largest >= 60000.0) {
         return {nullptr,
-                "16 bits that use the whole range may be a depth buffer, a grey picture, tum or "
-                "cityscapes"};
+                "16 bits that use the whole range may be a depth buffer, a grey picture, tum, "
+                "sun-rgb-d or cityscapes"};
+      }
+      if (seen.different > kManyNumbers && seen.eighths == seen.different) {
+        return {nullptr,
+                "16 bits of which all are multiples of 8 may be sun-rgb-d, or millimetres "
+                "in such steps"};
       }
       return {find_depth_encoding("millimetres"),
-              "16 bits that stay below 60000: millimetres, as most depth cameras write"};
+              "16 bits that stay below 60000: millimetres, as most depth cameras write, but not "
+              "kitti, tum and sun-rgb-d"};
     default: break;
+  }
+  for (const std::string_view unreal : {"WorldDepth", "SceneDepth"}) {
+    if (channel.find(unreal) != channel.npos) {
+      return {find_depth_encoding("centimetres"), "Unreal's " + std::string{unreal} + " has them"};
+    }
   }
   if (seen.largest >= 9.9e9) {
     return {find_depth_encoding("blender-z"), "1e10 is what Blender writes where there is nothing"};

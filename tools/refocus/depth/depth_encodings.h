@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dof/lens.h"
 #include "dof/parameters.h"
 #include "tools/pictures/picture_file.h"
 
@@ -76,9 +77,20 @@ struct DepthEncoding {
   double (*distance_m)(double code, const DepthNumbers& numbers);
   /// The inverse.
   double (*code)(double distance_m, const DepthNumbers& numbers);
+  bool by_ends = false;  ///< needs the map's least and largest code
 };
 
 std::span<const DepthEncoding> depth_encodings();
+
+// Radii of circles in pixels in place of a depth, negative before the focus: read as depths at
+// which coc_of_circles() has these circles. By R and f of that lens a radius r lies at f R / (R -
+// r), so R must be above all of them, but little above, for R - r is what the halves of a picture
+// know to a 2048th.
+
+/// In no table: it is asked for by an option of its own.
+const DepthEncoding& circles_encoding();
+
+PixelCoc coc_of_circles(const DepthNumbers& numbers);
 
 /// The encoding of that name, or nullptr.
 const DepthEncoding* find_depth_encoding(std::string_view name);
@@ -98,6 +110,7 @@ struct NumbersSeen {
   std::size_t zeros = 0;
   std::size_t negatives = 0;
   std::size_t different = 0;  ///< distinct whole numbers, of types that are; else 0
+  std::size_t eighths = 0;    ///< of these the multiples of 8
   double least = 0.0;         ///< of finite numbers; 0 if there is none
   double largest = 0.0;
 };
@@ -125,7 +138,9 @@ struct BelievedEncoding {
   std::string why;                          ///< one sentence without its full stop
 };
 
-/// `is_ours`: the file has softfocus's notes, whose depths are metres.
-BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours);
+/// `is_ours`: the file has softfocus's notes, whose depths are metres. `channel` is the plane's
+/// name, which tells Unreal's.
+BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, bool is_ours,
+                                   std::string_view channel);
 
 }  // namespace softfocus

@@ -36,16 +36,17 @@ double largest_of(NumberType type, const DepthEncoding& encoding) {
 }
 
 /// Walks over the places of a line, `count` of them, `step` apart from `first` on, and puts into
-/// `farthest` the last known depth where that is farther.
-void sweep(const std::vector<float>& metres, std::vector<float>& farthest, std::ptrdiff_t first,
-           std::ptrdiff_t step, int count) {
+/// `found` the last known depth where that is farther, or nearer.
+void sweep(const std::vector<float>& metres, std::vector<float>& found, Holes side,
+           std::ptrdiff_t first, std::ptrdiff_t step, int count) {
   float last = kMissing;
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(first + i * step);
     if (!is_missing(metres[at])) {
       last = metres[at];
-    } else if (!is_missing(last) && !(farthest[at] >= last)) {
-      farthest[at] = last;
+    } else if (!is_missing(last) &&
+               !(side == Holes::near_side ? found[at] <= last : found[at] >= last)) {
+      found[at] = last;
     }
   }
 }
@@ -72,7 +73,7 @@ void CodeEnds::add(std::span<const float> codes, std::span<const float> mask) {
 
 void CodeEnds::put_in(DepthNumbers& numbers) const {
   numbers.least_code = least_;
-  numbers.largest_code = largest_ > least_ ? largest_ : least_ + 1.0;
+  numbers.largest_code = largest_;
 }
 
 void codes_to_depths(std::span<float> codes, NumberType type, int first_row, int width, int height,
@@ -131,30 +132,123 @@ void add_to_ends(DepthEnds& ends, std::span<const float> metres) {
   for (const float depth_m : metres) {
     if (std::isinf(depth_m)) ends.has_infinite = true;
     if (!std::isfinite(depth_m)) continue;
+    ++ends.finite;
+    ends.beyond_100_m += depth_m > 100.0f;
+    ends.within_1_cm += depth_m < 0.01f;
     ends.near_m = std::min(ends.near_m, static_cast<double>(depth_m));
     ends.far_m = std::max(ends.far_m, static_cast<double>(depth_m));
   }
 }
 
-void fill_from_far_side(DepthMap& map) {
+namespace {
+
+void fill_from_side(DepthMap& map, Holes side) {
   const int width = map.width, height = map.height;
   // Twice: a pixel whose row and column know nothing finds a filled one in its row.
   for (int pass = 0; pass < 2 && missing_depths(map) > 0; ++pass) {
-    std::vector<float> farthest(map.metres.size(), kMissing);
+    std::vector<float> found(map.metres.size(), kMissing);
     for (int y = 0; y < height; ++y) {
       const std::ptrdiff_t start = std::ptrdiff_t{y} * width;
-      sweep(map.metres, farthest, start, 1, width);
-      sweep(map.metres, farthest, start + width - 1, -1, width);
+      sweep(map.metres, found, side, start, 1, width);
+      sweep(map.metres, found, side, start + width - 1, -1, width);
     }
     for (int x = 0; x < width; ++x) {
       const std::ptrdiff_t last = x + std::ptrdiff_t{height - 1} * width;
-      sweep(map.metres, farthest, x, width, height);
-      sweep(map.metres, farthest, last, -width, height);
+      sweep(map.metres, found, side, x, width, height);
+      sweep(map.metres, found, side, last, -width, height);
     }
     for (std::size_t i = 0; i < map.metres.size(); ++i) {
-      if (is_missing(map.metres[i])) map.metres[i] = farthest[i];
+      if (is_missing(map.metres[i])) map.metres[i] = found[i];
     }
   }
+}
+
+/// Neighbours, beside or above each other, of which all have a depth or none has.
+struct Piece {
+  bool is_hole = false;
+  std::size_t size = 0, at_border = 0;  ///< pixels
+};
+
+struct Pieces {
+  std::vector<Piece> all{};
+  std::vector<std::uint32_t> of_pixel{};
+};
+
+Pieces pieces_of(const DepthMap& map) {
+  constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+  Pieces pieces{.of_pixel = std::vector<std::uint32_t>(map.metres.size(), kNone)};
+  const auto width = static_cast<std::size_t>(map.width);
+  std::vector<std::size_t> waiting;
+  for (std::size_t start = 0; start < map.metres.size(); ++start) {
+    if (pieces.of_pixel[start] != kNone) continue;
+    const auto number = static_cast<std::uint32_t>(pieces.all.size());
+    Piece piece{.is_hole = is_missing(map.metres[start])};
+    const auto visit = [&](std::size_t at) {
+      if (pieces.of_pixel[at] != kNone || is_missing(map.metres[at]) != piece.is_hole) return;
+      pieces.of_pixel[at] = number;
+      waiting.push_back(at);
+    };
+    visit(start);
+    while (!waiting.empty()) {
+      const std::size_t at = waiting.back(), x = at % width;
+      waiting.pop_back();
+      const bool has_left = x > 0, has_right = x + 1 < width;
+      const bool has_above = at >= width, has_below = at + width < map.metres.size();
+      ++piece.size;
+      piece.at_border += !(has_left && has_right && has_above && has_below);
+      if (has_left) visit(at - 1);
+      if (has_right) visit(at + 1);
+      if (has_above) visit(at - width);
+      if (has_below) visit(at + width);
+    }
+    pieces.all.push_back(piece);
+  }
+  return pieces;
+}
+
+/// The pixels of holes that are background.
+std::vector<bool> background_of(const DepthMap& map) {
+  const Pieces pieces = pieces_of(map);
+  std::size_t largest_thing = 0;
+  for (const Piece& piece : pieces.all) {
+    if (!piece.is_hole) largest_thing = std::max(largest_thing, piece.size);
+  }
+  const auto stripe = static_cast<std::size_t>(std::max(1, std::min(map.width, map.height) / 32));
+  const auto is_background = [&](const Piece& piece) {
+    if (!piece.is_hole) return false;
+    return piece.at_border > 0 ? piece.size > stripe * piece.at_border : piece.size > largest_thing;
+  };
+  std::size_t background = 0, missing = 0;
+  for (const Piece& piece : pieces.all) {
+    if (piece.is_hole) missing += piece.size;
+    if (is_background(piece)) background += piece.size;
+  }
+  const bool are_all = 2 * background > missing;
+  std::vector<bool> found(map.metres.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Piece& piece = pieces.all[pieces.of_pixel[i]];
+    found[i] = are_all ? piece.is_hole : is_background(piece);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::size_t fill_holes(DepthMap& map, Holes holes) {
+  if (missing_depths(map) == 0) return 0;
+  std::vector<bool> infinite(map.metres.size());
+  if (holes == Holes::background) infinite = background_of(map);
+  for (std::size_t i = 0; i < infinite.size() && holes == Holes::infinity; ++i) {
+    infinite[i] = is_missing(map.metres[i]);
+  }
+  fill_from_side(map, holes);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < infinite.size(); ++i) {
+    if (!infinite[i]) continue;
+    map.metres[i] = std::numeric_limits<float>::infinity();
+    ++count;
+  }
+  return count;
 }
 
 DepthHistogram depth_histogram(const DepthMap& map, bool even) {

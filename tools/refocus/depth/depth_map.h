@@ -56,16 +56,29 @@ PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthRead
 
 std::size_t missing_depths(const DepthMap& map);
 
-/// The least and largest finite depth, and whether there are infinite ones.
+/// The least and largest finite depth, how many there are and lie where few pictures have any, and
+/// whether there are infinite ones.
 struct DepthEnds {
   double near_m = 1e30, far_m = 0.0;
+  std::size_t finite = 0, beyond_100_m = 0, within_1_cm = 0;
   bool has_infinite = false;
 };
 void add_to_ends(DepthEnds& ends, std::span<const float> metres);
 
-/// Gives each missing depth the farthest of the nearest known ones to its left and right, above
-/// and below: a hole opens behind what is near, where the camera saw nothing. Needs a known one.
-void fill_from_far_side(DepthMap& map);
+/// The depths of holes, which are pieces of the map without one.
+///
+///   far, near   the farthest or nearest of the nearest known depths to the left and right, above
+///               and below: a hole opens behind what is near, where the camera saw nothing
+///   infinity    all are infinitely far
+///   background  infinitely far are holes that touch the border or are larger than every piece of
+///               known depth, as a renderer leaves the background; and, if these are most of what
+///               is missing, the others. Else far, as is a stripe along the border, which a depth
+///               camera leaves: thinner than a 32nd of the map's shorter side.
+enum class Holes : std::uint8_t { background, near_side, far_side, infinity, refused };
+
+/// Fills all holes; returns how many pixels got infinity. Needs a known depth, and holes that are
+/// not refused.
+std::size_t fill_holes(DepthMap& map, Holes holes);
 
 // How many pixels lie how deep.
 
