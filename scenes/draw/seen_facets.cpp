@@ -27,9 +27,10 @@ struct NumberVertexStage {
 
   VertexOutput<3> operator()(std::uint32_t index) const {
     const std::uint32_t number = 1 + mesh->first_facet + index / 3;
+    const auto low = number % kDigit, middle = number / kDigit % kDigit,
+               high = number / kDigit / kDigit;
     return {transform_point(to_clip, mesh->positions[index]),
-            {static_cast<float>(number % kDigit), static_cast<float>(number / kDigit % kDigit),
-             static_cast<float>(number / kDigit / kDigit)}};
+            {static_cast<float>(low), static_cast<float>(middle), static_cast<float>(high)}};
   }
 };
 

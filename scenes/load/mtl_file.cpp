@@ -210,7 +210,10 @@ Map read_map(MtlText& mtl, const std::string& key, std::string_view line) {
       next_word(rest);
       if (option == "-mm") next_word(rest);
       if (mtl.told.insert(option).second) {
-        warn(mtl, key + "'s option " + option + " is not obeyed, here and in what follows");
+        warn(mtl, std::string{key}
+                      .append("'s option ")
+                      .append(option)
+                      .append(" is not obeyed, here and in what follows"));
       }
     }
     line = rest;

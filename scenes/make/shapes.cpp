@@ -274,7 +274,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(std::span<const gl
     }
   }
   std::array<std::uint32_t, 3> last{ring.before[corner], corner, ring.after[corner]};
-  std::ranges::rotate(last, std::ranges::min_element(last));
+  std::rotate(last.begin(), std::min_element(last.begin(), last.end()), last.end());
   triangles.push_back(last);
   return triangles;
 }

@@ -147,7 +147,7 @@ Polygon random_outline(std::uint64_t seed) {
   }
   const auto start =
       static_cast<std::ptrdiff_t>(random(0.0, static_cast<double>(decorated.size())));
-  std::ranges::rotate(decorated, decorated.begin() + start);
+  std::rotate(decorated.begin(), decorated.begin() + start, decorated.end());
   if (chance(0.5)) std::ranges::reverse(decorated);
   return decorated;
 }

@@ -250,7 +250,8 @@ Image around_every_byte() {
   for (int y = 0; y < 3; ++y) {
     const auto values = row<float>(image, y);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const float at = static_cast<float>(i / 4) * 0.5f / 255.0f;
+      const std::size_t texel = i / 4;
+      const float at = static_cast<float>(texel) * 0.5f / 255.0f;
       values[i] = y == 0 ? at : std::nextafterf(at, y == 1 ? HUGE_VALF : -HUGE_VALF);
     }
   }

@@ -99,9 +99,9 @@ void add_own_lens_options(CLI::App& parser, LensOptions& options,
 
 void add_compared_lens_options(CLI::App& parser, LensOptions& options,
                                std::function<void(double degrees)> on_fov) {
-  const std::string theirs = "--scene's or the picture's";
-  add_lens_options(parser, options, [&](const Parameter&) { return theirs; });
-  add_parameter(parser, parameter::kFov, theirs, std::move(on_fov));
+  constexpr const char* kTheirs = "--scene's or the picture's";
+  add_lens_options(parser, options, [](const Parameter&) { return kTheirs; });
+  add_parameter(parser, parameter::kFov, kTheirs, std::move(on_fov));
 }
 
 void add_refocus_lens_options(CLI::App& parser, LensOptions& options,

@@ -40,6 +40,7 @@ std::vector<KeyLine> camera_lines(const Camera& camera) {
 
 std::vector<KeyLine> lens_lines(const UsedLens& used) {
   std::vector<KeyLine> lines;
+  lines.reserve(kLensNumbers.size() + 1);
   for (const LensNumber& number : kLensNumbers) {
     lines.push_back({std::string{key_of(number.parameter)}, text_of(used.lens.*number.place)});
   }

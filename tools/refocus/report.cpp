@@ -49,8 +49,7 @@ std::string holes_text(const ReadDepth& depth, Holes holes) {
   const std::size_t all =
       static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height);
   const std::size_t from_side = depth.filled - depth.background;
-  const std::string infinite =
-      percent_text(depth.background, all) + " have none and are background";
+  std::string infinite = percent_text(depth.background, all) + " have none and are background";
   const std::string filled = percent_text(from_side, all) + " have none and are filled from the " +
                              (holes == Holes::near_side ? "near" : "far") + " side";
   if (from_side == 0) return infinite;

@@ -418,8 +418,8 @@ ShotLens asked_lens(const RenderOptions& options, const Scene& scene) {
   asked.settings.aperture = options.aperture;
   asked.cuts_no_circle = takes_all_circles(options);
   if (options.autofocus) {
-    const auto [x, y] = options.autofocus_pixel.value_or(
-        Pixel{options.size.width / 2, options.size.height / 2});
+    const auto [x, y] =
+        options.autofocus_pixel.value_or(Pixel{options.size.width / 2, options.size.height / 2});
     asked.focus_at = {x, y};
     asked.focuses_on_a_thing = !options.autofocus_pixel;
   } else if (!options.sharp_depths.empty()) {
@@ -480,7 +480,7 @@ std::optional<ChosenEffect> checked_effect_of_frames(const RenderOptions& option
                                                      const Scene& scene) {
   const std::string where =
       options.effects.are_given ? "--effect" : "the scene '" + options.scene + "'";
-  const auto effect = effect_of_frames(effects_on(options, scene), where);
+  auto effect = effect_of_frames(effects_on(options, scene), where);
   if (!effect) return {};
   const std::string name = where + ": " + std::string{effect->effect->name};
   if (options.gl != nullptr) {

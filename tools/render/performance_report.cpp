@@ -6,6 +6,7 @@
 #include "tools/files/hash_text.h"
 #include "tools/files/json.h"
 #include "tools/info/candidates.h"
+#include "tools/pictures/picture_notes.h"
 #include "tools/render/options.h"
 
 namespace softfocus {

@@ -92,6 +92,7 @@ void show_octahedral(const AtlasAnswer& answer, const StressFrame& frame, Relief
 /// One relief warped or marched, the impostor that may renew it, and octahedral atlases.
 std::vector<std::string> relief_answers() {
   std::vector<std::string> names;
+  names.reserve(kWarpAnswers.size() + kMarchAnswers.size() + 8);
   for (const WarpAnswer& of : kWarpAnswers) names.emplace_back(of.method);
   for (const MarchAnswer& of : kMarchAnswers) names.emplace_back(of.method);
   names.emplace_back(kRenewed);
