@@ -202,7 +202,8 @@ Scene read_scene_file(const std::filesystem::path& file) {
 }
 
 std::string read_scene_title(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(read_file_bytes(file, kMaxSceneBytes), file.string(), "docs/scene-format.md");
+  const toml::table table =
+      parse_toml(read_file_bytes(file, kMaxSceneBytes), file.string(), "docs/scene-format.md");
   return printable(table["title"].value_or(std::string{}));
 }
 

@@ -34,9 +34,9 @@
 
 namespace softfocus {
 
-/// The table of a file's text. Throws SceneError with the line for what is no TOML, `reference` says
-/// more about it, and for keys of more than kMostKeyParts parts, which toml++ would nest on the
-/// stack without a limit.
+/// The table of a file's text. Throws SceneError with the line for what is no TOML, `reference`
+/// says more about it, and for keys of more than kMostKeyParts parts, which toml++ would nest on
+/// the stack without a limit.
 toml::table parse_toml(std::string_view text, const std::string& file, std::string_view reference);
 
 inline constexpr int kMostKeyParts = 64;

@@ -113,9 +113,9 @@ struct SurfaceVertexStage {
         normalize(transform_direction(input.normal_to_world, input.mesh->normals[index]));
     const glm::vec3 towards_eye = normalize(input.eye - world);
     const auto light_side = [&](glm::vec3 side_normal, std::size_t at, std::size_t highlight_at) {
-      LitColour lit = material.lit ? light_point(material, input.ambient_light, input.lights,
-                                                       world, side_normal, towards_eye)
-                                         : LitColour{material.diffuse, glm::vec3{0.0f}};
+      LitColour lit = material.lit ? light_point(material, input.ambient_light, input.lights, world,
+                                                 side_normal, towards_eye)
+                                   : LitColour{material.diffuse, glm::vec3{0.0f}};
       if (!input.mesh->colours.empty()) lit.base *= input.mesh->colours[index];
       for (std::size_t i = 0; i < 3; ++i) {
         output.varyings[at + i] = lit.base[static_cast<int>(i)];

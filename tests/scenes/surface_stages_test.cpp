@@ -87,7 +87,8 @@ TEST_CASE("vertex colours multiply the surface's, alike on all vector units") {
   CHECK(middle.x == 1.0f);
   CHECK(middle.y == doctest::Approx(0.25).epsilon(0.02));  // half way from 0 to 1
   CHECK(middle.z == 0.25f);
-  for (const Isa isa : available_isas()) CHECK(hash_image(drawn(scene, isa)) == hash_image(expected));
+  for (const Isa isa : available_isas())
+    CHECK(hash_image(drawn(scene, isa)) == hash_image(expected));
 }
 
 TEST_CASE("an opacity of 1/2 is there, and one below is not") {

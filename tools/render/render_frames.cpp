@@ -6,9 +6,9 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/pictures/picture_notes.h"
+#include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
-#include "tools/render/options.h"
 #include "tools/sequence/journal.h"
 
 namespace softfocus {
