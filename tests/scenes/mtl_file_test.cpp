@@ -143,9 +143,10 @@ TEST_CASE("colours are one number or three; what is none is told") {
 TEST_CASE("Ns 0 is no highlight") {
   for (const auto& [written, shines] :
        {std::pair{"Ns 0\n", false}, {"Ns nan\n", true}, {"Ns 0.5\n", true}, {"", true}}) {
-    CAPTURE(written);
-    const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                             std::string("newmtl a\nKs 1 1 1\n") + written);
+    const std::string text = std::string("newmtl a\nKs 1 1 1\n") + written;
+    CAPTURE(text);
+    const ObjModel model =
+        load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"), text);
     CHECK((model.materials[0].specular != glm::vec3{0.0f}) == shines);
   }
 }
