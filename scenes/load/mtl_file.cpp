@@ -338,7 +338,8 @@ void load_mtl(const std::filesystem::path& library, MtlMaterials& materials) {
   tinyobj::LoadMtl(&index_of_name, &read, &numbers, &warning, &error);
   for (const tinyobj::material_t& from : read) {
     if (from.name.empty() || materials.by_name.contains(from.name)) continue;
-    const Maps& maps = mtl.maps.at(from.name);
+    const auto found = mtl.maps.find(from.name);  // tinyobjloader ends a name at a zero
+    const Maps maps = found != mtl.maps.end() ? found->second : Maps{};
     materials.by_name.emplace(from.name, make_material(library, from, maps, materials));
     const Map& placed = maps.diffuse.file.empty() ? maps.opacity : maps.diffuse;
     materials.placements.emplace(from.name, placed.placement);

@@ -176,6 +176,13 @@ TEST_CASE("options of maps place the texture, or are told once") {
   CHECK(turbulent.x != 0.25f);
 }
 
+TEST_CASE("a material whose name has a zero in it is no failure") {
+  const std::string name("a\0b", 3);
+  const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                           "newmtl " + name + "\nKd 1 0 0\nmap_Kd wood.png\n");
+  CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
+}
+
 TEST_CASE("a library with a byte order mark is read") {
   const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
                                            "\xEF\xBB\xBFnewmtl a\nKd 1 0 0\n");
