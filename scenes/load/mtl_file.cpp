@@ -206,7 +206,8 @@ Map read_map(MtlText& mtl, const std::string& key, std::string_view line) {
     } else {
       constexpr std::array<std::string_view, 9> kOthers = {
           "-blendu", "-blendv", "-boost", "-mm", "-texres", "-bm", "-imfchan", "-type", "-cc"};
-      if (std::ranges::find(kOthers, option) == kOthers.end()) break;  // a file's name
+      if (std::find(kOthers.begin(), kOthers.end(), option) == kOthers.end())
+        break;  // a file's name
       next_word(rest);
       if (option == "-mm") next_word(rest);
       if (mtl.told.insert(option).second) {
