@@ -1,4 +1,4 @@
-#include "scenes/make/shapes.h"
+#include "scenes/make/polygon.h"
 
 #include <doctest/doctest.h>
 
@@ -97,9 +97,9 @@ bool is_even_odd_inside(const Polygon& polygon, double x, double y) {
   return inside;
 }
 
-// Outlines such as exporters make: concave, with doubled and straight corners, spikes, and holes
-// joined by bridges, some of which run along an edge. Coordinates are multiples of 2^-12, so that
-// what lies on an edge does so exactly.
+// An outline such as exporters make: concave, with doubled and straight corners and spikes, perhaps
+// with a hole that a bridge joins. The bridge may run along an edge. Coordinates are multiples of
+// 2^-12: what lies on an edge lies on it exactly.
 Polygon random_outline(std::uint64_t seed) {
   std::uint64_t draws = 0;
   const auto random = [&](double low, double high) {
