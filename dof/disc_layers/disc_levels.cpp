@@ -21,16 +21,16 @@ BlockRange blocks_near(int begin, int count, int blocks) {
 
 }  // namespace
 
-DiscRow disc_row(const DiscLevel& level, int side, int x, int y) {
+LevelRow disc_row(const DiscLevel& level, int side, int x, int y) {
   const int inside = std::clamp(y, 0, level.height - 1);
-  DiscRow row;
+  LevelRow row;
   if (!row_filled(level, side, inside)) {
     for (const float*& channel : row.channel) channel = level.zeros.data() + kDiscMargin + x;
     return row;
   }
-  const DiscPlanes& planes = level.sides[side];
-  const float* at = plane_row(planes, 0, inside) + kDiscMargin + x;
-  for (int i = 0; i < kDiscChannels; ++i) row.channel[i] = at + i * planes.plane;
+  const LevelPlanes& planes = level.sides[side];
+  const float* at = plane_row(planes, 0, inside) + x;
+  for (int i = 0; i < kLevelChannels; ++i) row.channel[i] = at + i * planes.plane;
   return row;
 }
 

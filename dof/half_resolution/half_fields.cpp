@@ -267,14 +267,6 @@ SOFTFOCUS_INLINE Floats weighted_sum(const Floats* weights, const Floats* v) {
   return sum_of_four(products);
 }
 
-template <std::size_t... lane>
-SOFTFOCUS_INLINE void unzip(const float* from, Floats& even, Floats& odd,
-                            std::index_sequence<lane...>) {
-  const Floats lower = load(from), upper = load(from + kLanes);
-  even = __builtin_shufflevector(lower, upper, (2 * lane)...);
-  odd = __builtin_shufflevector(lower, upper, (2 * lane + 1)...);
-}
-
 }  // namespace
 
 void halve_row(const HalfRow& row) {
@@ -282,8 +274,9 @@ void halve_row(const HalfRow& row) {
     Floats v[4][4];  // channel, pixel
     for (int c = 0; c < 4; ++c) {
       for (int i = 0; i < 2; ++i) {
-        unzip(row.rows[i] + c * row.row_plane + 2 * x, v[c][2 * i], v[c][2 * i + 1],
-              std::make_index_sequence<kLanes>{});
+        const TwoVectors pixels = load_pairs(row.rows[i] + c * row.row_plane + 2 * x);
+        v[c][2 * i] = pixels.first;
+        v[c][2 * i + 1] = pixels.second;
       }
     }
     Floats near[4], behind[4], left[4], weight[4], depth[4], before[4], brightest = splat(0.0f);

@@ -162,18 +162,9 @@ SOFTFOCUS_INLINE Floats neighbour_share(Floats k, Floats radius, Floats per_squa
 }
 
 // kLanes cells as 2 kLanes pixels.
-struct Enlarged {
-  Floats lower, upper;
-};
-template <std::size_t... lane>
-SOFTFOCUS_INLINE Enlarged zip(Floats even, Floats odd, std::index_sequence<lane...>) {
-  return {__builtin_shufflevector(even, odd, (lane % 2 * kLanes + lane / 2)...),
-          __builtin_shufflevector(even, odd, (lane % 2 * kLanes + lane / 2 + kLanes / 2)...)};
-}
-SOFTFOCUS_INLINE Enlarged enlarge(const float* cells) {
+SOFTFOCUS_INLINE TwoVectors enlarge(const float* cells) {
   const Floats own = load(cells);
-  return zip(own + (load(cells - 1) - own) * 0.25f, own + (load(cells + 1) - own) * 0.25f,
-             std::make_index_sequence<kLanes>{});
+  return zip(own + (load(cells - 1) - own) * 0.25f, own + (load(cells + 1) - own) * 0.25f);
 }
 
 }  // namespace
@@ -252,9 +243,9 @@ void merge_half_row(const MergeRow& row) {
   for (int x = 0; x < row.count; x += kLanes) {
     Floats lower[kAllMerged] = {}, upper[kAllMerged] = {};
     for (int c = 0; c < planes; ++c) {
-      const Enlarged both = enlarge(row.blurred + c * row.blurred_plane + x);
-      lower[c] = both.lower;
-      upper[c] = both.upper;
+      const TwoVectors both = enlarge(row.blurred + c * row.blurred_plane + x);
+      lower[c] = both.first;
+      upper[c] = both.second;
     }
     float* pixels = row.pixels + 2 * x;
     merge_vector(pixels, row.pixel_plane, lower, row.near_field, row.clear + 2 * x);

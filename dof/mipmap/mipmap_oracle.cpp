@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "dof/mipmap/mip_ladder.h"
 #include "dof/mipmap/mip_levels.h"
 #include "dof/mipmap/mipmap.h"
 #include "dof/picture_planes.h"
@@ -32,15 +31,11 @@ struct Grid {
   Grid half() const { return Grid((width + 1) / 2, (height + 1) / 2); }
 };
 // Red, green and blue times weight, weight, square.
-using Side = Grid<kMipChannels>;
+using Side = Grid<kLevelChannels>;
 // Red, green and blue times weight, square times weight, weight.
 using Holed = Grid<kHoledChannels>;
 using Filled = Grid<kFilledChannels>;
 using Seen = Grid<kSeenChannels>;
-
-float share_from(MipStep step, float square) {
-  return std::clamp((square - step.begin) * step.slope, 0.0f, 1.0f);
-}
 
 template <class Set>
 void for_each_pixel(int width, int height, const Set& set) {
@@ -60,13 +55,13 @@ float enlarged(const Grid<channels>& from, std::size_t channel, int x, int y) {
   return 0.75f * column(inside_x) + 0.25f * column(other_x);
 }
 
-Holed without_near(const Side& picture, MipStep near) {
+Holed without_near(const Side& picture, RungStep near) {
   Holed result(picture.width, picture.height);
   for_each_pixel(result.width, result.height, [&](int x, int y) {
     const auto& from = std::as_const(picture).at(x, y);
-    const float weight = 1.0f - share_from(near, -from[kMipSquare]);
+    const float weight = 1.0f - share_from(near, -from[kLevelSquare]);
     result.at(x, y) = {from[0] * weight, from[1] * weight, from[2] * weight,
-                       std::max(from[kMipSquare], 0.0f) * weight, weight};
+                       std::max(from[kLevelSquare], 0.0f) * weight, weight};
   });
   return result;
 }
@@ -99,7 +94,7 @@ Filled filled(const Holed& from, const Filled* next) {
 }
 
 // The picture without what lies before the focus, its holes filled.
-Side fill_picture(const Side& picture, MipStep near) {
+Side fill_picture(const Side& picture, RungStep near) {
   std::vector<Holed> levels;
   for (Holed level = halved(without_near(picture, near));; level = halved(level)) {
     levels.push_back(level);
@@ -110,35 +105,35 @@ Side fill_picture(const Side& picture, MipStep near) {
   Side result(picture.width, picture.height);
   for_each_pixel(result.width, result.height, [&](int x, int y) {
     const auto& own = picture.at(x, y);
-    const float hole = share_from(near, -own[kMipSquare]);
+    const float hole = share_from(near, -own[kLevelSquare]);
     const auto mixed = [&](float value, std::size_t channel) {
       return value + hole * (enlarged(fill, channel, x, y) - value);
     };
     result.at(x, y) = {mixed(own[0], 0), mixed(own[1], 1), mixed(own[2], 2), 1.0f,
-                       mixed(std::max(own[kMipSquare], 0.0f), kFilledSquare)};
+                       mixed(std::max(own[kLevelSquare], 0.0f), kFilledSquare)};
   });
   return result;
 }
 
-Side next_level(const Side& from, MipStep beyond, float least_square) {
+Side next_level(const Side& from, RungStep beyond, float least_square) {
   Side result = from.half();
   for_each_pixel(result.width, result.height, [&](int x, int y) {
-    std::array<float, kMipChannels> sums[2]{};
+    std::array<float, kLevelChannels> sums[2]{};
     for (int column = 0; column < 2; ++column) {
       for (int row = 0; row < 2; ++row) {
         const auto& pixel = from.at(2 * x + column, 2 * y + row);
-        const float share = share_from(beyond, pixel[kMipSquare]);
-        const float weight = pixel[kMipWeight] * share;
+        const float share = share_from(beyond, pixel[kLevelSquare]);
+        const float weight = pixel[kLevelWeight] * share;
         for (std::size_t i = 0; i < 3; ++i) sums[column][i] += pixel[i] * share;
-        sums[column][kMipWeight] += weight;
-        sums[column][kMipSquare] += weight * std::max(pixel[kMipSquare], least_square);
+        sums[column][kLevelWeight] += weight;
+        sums[column][kLevelSquare] += weight * std::max(pixel[kLevelSquare], least_square);
       }
     }
     auto& to = result.at(x, y);
     for (std::size_t i = 0; i < 4; ++i) to[i] = 0.25f * (sums[0][i] + sums[1][i]);
-    const float weight = sums[0][kMipWeight] + sums[1][kMipWeight];
-    const float square = sums[0][kMipSquare] + sums[1][kMipSquare];
-    to[kMipSquare] = weight > 0.0f ? square / weight : 0.0f;
+    const float weight = sums[0][kLevelWeight] + sums[1][kLevelWeight];
+    const float square = sums[0][kLevelSquare] + sums[1][kLevelSquare];
+    to[kLevelSquare] = weight > 0.0f ? square / weight : 0.0f;
   });
   return result;
 }
@@ -168,27 +163,27 @@ float filtered(const MipRung& rung, const Side& from, std::size_t channel, int x
 }
 
 // Adds a rung behind what is seen of nearer ones.
-void add_rung(const Side& level, const MipRung& rung, MipStep end, bool near, Seen& seen) {
+void add_rung(const Side& level, const MipRung& rung, RungStep end, bool near, Seen& seen) {
   Side products(level.width, level.height);
   for_each_pixel(level.width, level.height, [&](int x, int y) {
     const auto& from = level.at(x, y);
-    const float begun = share_from(rung.step, from[kMipSquare]);
-    const float ended = share_from(end, from[kMipSquare]);
-    const float share = begun - ended, weight = from[kMipWeight];
+    const float begun = share_from(rung.step, from[kLevelSquare]);
+    const float ended = share_from(end, from[kLevelSquare]);
+    const float share = begun - ended, weight = from[kLevelWeight];
     products.at(x, y) = {from[0] * share, from[1] * share, from[2] * share, weight * share,
                          near ? 1.0f - weight * ended : weight * begun};
   });
   for_each_pixel(level.width, level.height, [&](int x, int y) {
     const float all = filtered(rung, products, 4, x, y);
     auto& to = seen.at(x, y);
-    const float scale = all > 0.0f ? to[kMipTransmitted] / all : 0.0f;
+    const float scale = all > 0.0f ? to[kTransmitted] / all : 0.0f;
     for (std::size_t i = 0; i < 3; ++i) to[i] += filtered(rung, products, i, x, y) * scale;
-    to[kMipTransmitted] =
-        std::max(to[kMipTransmitted] - filtered(rung, products, kMipWeight, x, y) * scale, 0.0f);
+    to[kTransmitted] =
+        std::max(to[kTransmitted] - filtered(rung, products, kLevelWeight, x, y) * scale, 0.0f);
   });
 }
 
-MipStep end_of(const MipLevelRungs& rungs, std::size_t number) {
+RungStep end_of(const MipLevelRungs& rungs, std::size_t number) {
   return number + 1 == rungs.rungs.size() ? rungs.beyond : rungs.rungs[number + 1].step;
 }
 
@@ -197,7 +192,7 @@ Seen see_near(const Side& level, const MipLevelRungs& rungs, const Seen* larger,
   for_each_pixel(seen.width, seen.height, [&](int x, int y) {
     for (std::size_t i = 0; i < kSeenChannels; ++i) {
       seen.at(x, y)[i] =
-          larger != nullptr ? enlarged(*larger, i, x, y) : (i == kMipTransmitted ? 1.0f : 0.0f);
+          larger != nullptr ? enlarged(*larger, i, x, y) : (i == kTransmitted ? 1.0f : 0.0f);
     }
   });
   for (std::size_t i = rungs.rungs.size(); i-- > (whole ? 1u : 0u);) {
@@ -213,9 +208,9 @@ void see_far(const Side& level, const MipLevelRungs& rungs, const Seen* larger, 
   if (larger == nullptr) return;
   for_each_pixel(seen.width, seen.height, [&](int x, int y) {
     auto& to = seen.at(x, y);
-    const float open = to[kMipTransmitted];
+    const float open = to[kTransmitted];
     for (std::size_t i = 0; i < 3; ++i) to[i] += open * enlarged(*larger, i, x, y);
-    to[kMipTransmitted] = open * enlarged(*larger, kMipTransmitted, x, y);
+    to[kTransmitted] = open * enlarged(*larger, kTransmitted, x, y);
   });
 }
 
@@ -230,7 +225,7 @@ void mipmap_oracle(const DofInput& input, const ImageView& result, ThreadPool& p
     const float square = texel.radius_px * texel.radius_px;
     picture.at(x, y) = {texel.r, texel.g, texel.b, 1.0f, texel.radius_px < 0.0f ? -square : square};
     before.at(x, y) = picture.at(x, y);
-    before.at(x, y)[kMipSquare] = std::max(-picture.at(x, y)[kMipSquare], 0.0f);
+    before.at(x, y)[kLevelSquare] = std::max(-picture.at(x, y)[kLevelSquare], 0.0f);
   });
   const std::vector<Side> far = levels_of(fill_picture(picture, ladder[0].rungs[1].step), ladder);
   const std::vector<Side> near = levels_of(std::move(before), ladder);
@@ -242,7 +237,7 @@ void mipmap_oracle(const DofInput& input, const ImageView& result, ThreadPool& p
     if (i == 0) {
       own = seen;
     } else {
-      for (auto& pixel : own.pixels) pixel[kMipTransmitted] = 1.0f;
+      for (auto& pixel : own.pixels) pixel[kTransmitted] = 1.0f;
     }
     see_far(far[i], ladder[i], last ? nullptr : &behind, own);
     behind = std::move(own);
@@ -252,7 +247,7 @@ void mipmap_oracle(const DofInput& input, const ImageView& result, ThreadPool& p
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const auto& pixel = behind.at(x, y);
-      const float scale = 1.0f / (1.0f - pixel[kMipTransmitted]);
+      const float scale = 1.0f / (1.0f - pixel[kTransmitted]);
       for (std::size_t i = 0; i < 3; ++i) rows[i][static_cast<std::size_t>(x)] = pixel[i] * scale;
     }
     store_row(input, result, y, rows[0].data(), rows[1].data(), rows[2].data(), pool.isa());
