@@ -11,12 +11,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
-#include <utility>
 
 #include "dof/dof.h"
 #include "raster/images/image.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -146,15 +144,11 @@ template <class Workspace, class Level, class Body>
 void for_each_tile(const Level& level, ThreadPool& pool, const Body& body) {
   const int columns = (level.width + kLevelTileWidth - 1) / kLevelTileWidth;
   const int rows = (level.height + kLevelTileHeight - 1) / kLevelTileHeight;
-  ScratchShelf<std::unique_ptr<Workspace>> shelf;
-  pool.for_each(columns * rows, [&](int task) {
-    std::unique_ptr<Workspace> work = shelf.take();
-    if (!work) work = std::make_unique<Workspace>();
+  for_each_with<Workspace>(pool, columns * rows, [&](int task, auto& work) {
     const int x = task % columns * kLevelTileWidth, y = task / columns * kLevelTileHeight;
     body(LevelRectangle{x, y, std::min(kLevelTileWidth, level.width - x),
                         std::min(kLevelTileHeight, level.height - y)},
-         *work);
-    shelf.put_back(std::move(work));
+         work);
   });
 }
 

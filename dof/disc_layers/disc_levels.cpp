@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "raster/threads/loops.h"
+
 namespace softfocus {
 namespace {
 
@@ -37,11 +39,9 @@ LevelRow disc_row(const DiscLevel& level, int side, int x, int y) {
 Image copy_of(const ConstImageView& picture, ThreadPool& pool) {
   Image copy = make_image(picture.format, picture.width, picture.height);
   constexpr int kRows = 16;
-  pool.for_each((picture.height + kRows - 1) / kRows, [&](int task) {
-    for (int y = task * kRows; y < std::min((task + 1) * kRows, picture.height); ++y) {
-      const auto from = row<std::uint16_t>(picture, y);
-      std::copy(from.begin(), from.end(), row<std::uint16_t>(copy, y).begin());
-    }
+  for_each_row(pool, picture.height, kRows, [&](int y) {
+    const auto from = row<std::uint16_t>(picture, y);
+    std::copy(from.begin(), from.end(), row<std::uint16_t>(copy, y).begin());
   });
   return copy;
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "dof/picture_planes.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -294,12 +294,9 @@ DiscLevels make_disc_levels(const DofInput& input, const HiddenPicture& hidden,
     const float square = i + 1 < ladder.size() ? ladder[i + 1].rungs[0].square : 0.0f;
     const Halving halving{input,  hidden,     levels[i],  levels[i + 1], i == 0, ladder[i].beyond,
                           square, first_rung, ones.data()};
-    ScratchShelf<RowScratch> shelf;
-    pool.for_each((levels[i + 1].height + kDiscBlock - 1) / kDiscBlock, [&](int task) {
-      RowScratch scratch = shelf.take();
-      halve_task(halving, task, scratch, pool.isa());
-      shelf.put_back(std::move(scratch));
-    });
+    for_each_with<RowScratch>(
+        pool, (levels[i + 1].height + kDiscBlock - 1) / kDiscBlock,
+        [&](int task, auto& scratch) { halve_task(halving, task, scratch, pool.isa()); });
   }
   levels.resize(ladder.size());
   return result;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -110,12 +110,9 @@ void merge_fields(const DofInput& input, const HalfFields& fields, const ImageVi
   const Highlights& highlights = fields.highlights;
   const std::ptrdiff_t padded = plane_stride(width) + 2 * kMostLanes;
   const std::ptrdiff_t half_padded = plane_stride(blurred.width) + 3 * kMostLanes;
-  ScratchShelf<Scratch> shelf;
-  pool.for_each((height + kMergeRows - 1) / kMergeRows, [&](int task) {
-    Scratch scratch = shelf.take();
+  for_each_band_with<Scratch>(pool, height, kMergeRows, [&](int first, int end, auto& scratch) {
     scratch.pixels.resize(static_cast<std::size_t>(5 * padded));
     scratch.blurred.resize(static_cast<std::size_t>(kAllMerged * half_padded));
-    const int first = task * kMergeRows, end = std::min(first + kMergeRows, height);
     const std::ptrdiff_t sharp_plane = padded + 2 * kMostLanes;
     scratch.sharp.resize(static_cast<std::size_t>((kMergeRows + 2) * 4 * sharp_plane));
     const auto sharp = [&](int y) {
@@ -143,7 +140,6 @@ void merge_fields(const DofInput& input, const HalfFields& fields, const ImageVi
       }
       store_row(input, result, y, pixels, pixels + padded, pixels + 2 * padded, pool.isa());
     }
-    shelf.put_back(std::move(scratch));
   });
 }
 

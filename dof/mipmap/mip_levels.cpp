@@ -9,6 +9,7 @@
 
 #include "dof/disc_layers/disc_levels.h"
 #include "dof/picture_planes.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -78,13 +79,10 @@ struct Making {
   ThreadPool& pool;
 };
 
-// Calls body(y) for each row of a level, eight rows a task.
+// Rows of a block are a task.
 template <class Body>
 void for_each_row(const MipLevel& level, ThreadPool& pool, const Body& body) {
-  pool.for_each(level.block_rows, [&](int task) {
-    const int end = std::min((task + 1) * kMipBlockHeight, level.height);
-    for (int y = task * kMipBlockHeight; y < end; ++y) body(y);
-  });
+  for_each_row(pool, level.height, kMipBlockHeight, body);
 }
 
 MipHalving halving_to(const Making& making, int level, MipSide side, int x, int y) {
