@@ -1,11 +1,10 @@
-#include "dof/disc_layers/layered.h"
+#include "dof/disc_layers/disc_layers.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "dof/disc_layers/disc_hidden.h"
 #include "dof/disc_layers/disc_hidden_search.h"
-#include "dof/disc_layers/disc_layers.h"
 #include "dof/picture_planes.h"
 #include "raster/threads/loops.h"
 
