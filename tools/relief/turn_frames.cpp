@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "dof/measure/measures.h"
@@ -132,13 +131,17 @@ void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& 
   if (stage.name) write_pair(stage, frame, shown);
 }
 
-void print_errors(const TurnErrors& errors) {
-  std::printf(
-      "FLIP %.4f (to %.4f), of the object's pixels %.4f; outline %.3f px (to %.3f), at most "
-      "%.1f px\n",
-      mean_of(errors.flip), sorted_at(errors.flip, 1.0), mean_of(errors.object_flip),
-      mean_of(errors.outline_px), sorted_at(errors.outline_px, 1.0), errors.most_outline_px);
-  std::printf("of %zu pixels %zu lost, %zu gained\n", errors.seen, errors.lost, errors.gained);
+void add_errors(const TurnErrors& errors, Findings& found) {
+  found.add({{"flip", mean_of(errors.flip)},
+             {"most_flip", sorted_at(errors.flip, 1.0)},
+             {"object_flip", mean_of(errors.object_flip)},
+             {"outline_px", mean_of(errors.outline_px)},
+             {"most_mean_outline_px", sorted_at(errors.outline_px, 1.0)},
+             {"most_outline_px", errors.most_outline_px},
+             {"seen_pixels", errors.seen},
+             {"lost_pixels", errors.lost},
+             {"gained_pixels", errors.gained}},
+            "errors");
 }
 
 }  // namespace softfocus

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/draw/draw_scene.h"
+#include "tools/files/findings.h"
 #include "tools/relief/relief_options.h"
 #include "tools/sequence/frame_names.h"
 
@@ -55,6 +56,6 @@ struct TurnErrors {
 
 /// Compares a frame with the redrawn one, and writes both, side by side, if there is -o.
 void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& errors);
-void print_errors(const TurnErrors& errors);
+void add_errors(const TurnErrors& errors, Findings& found);
 
 }  // namespace softfocus
