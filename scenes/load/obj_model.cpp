@@ -14,7 +14,7 @@
 #include "scenes/load/mtl_file.h"
 #include "scenes/load/obj_faces.h"
 #include "scenes/load/obj_text.h"
-#include "scenes/make/shapes.h"
+#include "scenes/make/polygon.h"
 
 namespace softfocus {
 namespace {
@@ -265,13 +265,13 @@ std::string whole_text(glm::dvec3 v) {
   return text.append(")");
 }
 
-// A model of which nothing would show: d and Tr are taken for each other by exporters.
+// Makes a model opaque of which nothing would show. Exporters take d and Tr for each other.
 void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjModel& model) {
   const auto is_shown = [&](const ObjFace& face) {
     return face.material < 0 ||
            model.materials[static_cast<std::size_t>(face.material)].opacity > 0;
   };
-  if (std::ranges::any_of(obj.faces, is_shown)) return;
+  if (std::any_of(obj.faces.begin(), obj.faces.end(), is_shown)) return;
   for (Material& material : model.materials) {
     if (material.opacity > 0.0f) continue;
     material.opacity = 1.0f;
