@@ -123,7 +123,7 @@ TEST_CASE("laboratory: with again nothing kept is taken over") {
     std::string picture;
     lab.settle(record, "truth", "",
                {.name = "picture",
-                .make = [] { return Json{"BBBB"}; },
+                .make = [] { return Json("BBBB"); },
                 .take = [&](const Json& json) { picture = json.text(); },
                 .is_result = false});
     CHECK(picture == (again ? "BBBB" : "AAAA"));

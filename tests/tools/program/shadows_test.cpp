@@ -101,7 +101,7 @@ TEST_CASE("shadows: what it says without --json has the same names") {
 
 TEST_CASE("shadows --map-table: each setting has a row, and sweeps have their numbers") {
   const json found = measured({"cube-room", "--shadows", "map", "--map", "size=64", "--map-table"});
-  CHECK(found.at("settings").size() == 31);
+  CHECK(found.at("settings").size() == 33);
   const json& first = found.at("settings")[0];
   CHECK(first.at("name") == "size=256");
   CHECK(first.at("setting") == "size");
