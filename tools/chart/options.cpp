@@ -104,15 +104,15 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
   begin_group(parser, "Output");
   add_results_option(parser, options, "the chart");
   begin_group(parser, "What is measured");
-  add_value(parser, "--of", "SUBJECT",
-            "What the pictures are to show: " + names_of(chart_subjects()) +
-                " (default: depth-of-field)",
-            [&options](const std::string& text) {
-              options.subject = find_chart_subject(text);
-              if (options.subject == nullptr) {
-                refuse_name("--of", text, names_in(chart_subjects()));
-              }
-            });
+  add_value(
+      parser, "--of", "SUBJECT",
+      "What the pictures are to show: " + names_of(chart_subjects()) + " (default: depth-of-field)",
+      [&options](const std::string& text) {
+        options.subject = find_chart_subject(text);
+        if (options.subject == nullptr) {
+          refuse_name("--of", text, names_in(chart_subjects()));
+        }
+      });
   offer(parser, "--of", [] { return names_in(chart_subjects()); });
   add_value(parser, "--scenes", "A,B,...",
             "Scenes or files, as render takes them, and ranges such as random:64..127 (default: "

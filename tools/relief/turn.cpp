@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -101,8 +102,8 @@ struct TurnSums {
   TurnErrors errors;
   std::vector<double> predicted, bound;  ///< divided by the largest error
   std::size_t most_bytes = 0;
-  int renewals = 0, updates = 0, stalls = 0, stale = 0;
-  std::vector<double> late_frames;
+  int renewals = 0, refreshes = 0, stalls = 0, stale = 0;
+  std::vector<double> latency_frames;
 };
 
 /// Adds a frame's time and what was done in it.
@@ -114,10 +115,10 @@ void add_frame(const ScheduledFrame& frame, double ms, TurnSums& sums) {
                                         : sums.sprite_ms)
       .push_back(ms);
   sums.renewals += frame.renewals;
-  sums.updates += frame.takes ? 1 : 0;
+  sums.refreshes += frame.takes ? 1 : 0;
   sums.stalls += frame.stalls ? 1 : 0;
   sums.stale += frame.is_stale ? 1 : 0;
-  sums.late_frames.push_back(frame.late_frames);
+  sums.latency_frames.push_back(frame.late_frames);
 }
 
 /// Least, median and largest.
@@ -133,6 +134,21 @@ void add_scene(const TurnStage& stage, int frames, Findings& found) {
              {"triangles", triangle_count(stage.scene)},
              {"frames", frames},
              {"size", size_text(stage.options.size)}});
+}
+
+/// What a frame's time is for.
+std::string cause_of(const TurnSums& sums) {
+  const auto total = [](const std::vector<double>& ms) {
+    return std::accumulate(ms.begin(), ms.end(), 0.0);
+  };
+  const double renewing = total(sums.renew_ms), of_all = total(sums.impostor_ms);
+  const std::string frames = " of " + std::to_string(sums.impostor_ms.size()) + " frames";
+  if (renewing > of_all / 2.0) {
+    return std::to_string(sums.renew_ms.size()) + frames + " draw and warp the relief anew, " +
+           std::to_string(std::lround(100.0 * renewing / of_all)) + " % of the time";
+  }
+  return std::to_string(sums.warp_ms.size()) + frames + " warp the relief, " +
+         std::to_string(std::lround(100.0 * total(sums.warp_ms) / of_all)) + " % of the time";
 }
 
 void add_sums(const TurnSums& sums, Findings& found) {
@@ -157,13 +173,14 @@ void add_sums(const TurnSums& sums, Findings& found) {
              {"below_in_99_of_100", sorted_at(after_first, 0.99)},
              {"worst_redrawn", sorted_at(sums.redrawn_ms, 1.0)}},
             "frame_ms");
-  found.add({{"frames_a_second", 1e3 / impostor},
-             {"updates_a_second", 1e3 * sums.updates / (impostor * static_cast<double>(frames))},
-             {"late_frames", mean_of(sums.late_frames)},
-             {"most_late_frames", sorted_at(sums.late_frames, 1.0)},
-             {"stale", sums.stale},
-             {"stalls", sums.stalls}},
-            "updates");
+  found.add(
+      {{"frames_per_second", 1e3 / impostor},
+       {"refreshes_per_second", 1e3 * sums.refreshes / (impostor * static_cast<double>(frames))},
+       {"mean_latency_frames", mean_of(sums.latency_frames)},
+       {"largest_latency_frames", sorted_at(sums.latency_frames, 1.0)},
+       {"stale_frames", sums.stale},
+       {"stalled_frames", sums.stalls}},
+      "schedule");
   add_errors(sums.errors, found);
   found.add(ends_of(sums.predicted), "error_at_critical_point_by_largest");
   found.add(ends_of(sums.bound), "bound_by_largest");
@@ -238,6 +255,7 @@ int turn_impostor(const ReliefOptions& options) {
   std::vector<KeptFrame> kept;
   const int frames = options.turns * options.frames;
   for (int frame = 0; frame < frames; ++frame) {
+    show_frame(stage, frame, frames);
     const CameraMatrices matrices = matrices_at(stage, frame);
     move_lights(frame);
     // An own thread must not get the time that redrawing takes: that comes after the turn.
@@ -268,7 +286,9 @@ int turn_impostor(const ReliefOptions& options) {
     }
   }
   finish_update(impostor);
+  stage.progress.clear();
   for (int frame = 0; has_own_thread && frame < frames; ++frame) {
+    show_frame(stage, frame, frames);
     move_lights(frame);
     sums.redrawn_ms.push_back(redrawn_ms(frame));
     if (!is_measured(frame)) continue;
@@ -276,6 +296,8 @@ int turn_impostor(const ReliefOptions& options) {
     measure_frame(stage, frame, whole_of(part, stage.blank), sums.errors);
   }
   Findings found{options.json};
+  add_verdict("impostor", mean_of(sums.impostor_ms), mean_of(sums.redrawn_ms), cause_of(sums),
+              sums.errors, found);
   add_scene(stage, frames, found);
   found.add({{"turns", options.turns}, {"tolerance_texels", options.tolerance}});
   add_sums(sums, found);
@@ -301,6 +323,7 @@ void turn_drawn_once(TurnStage& stage, const std::string& what, Findings& found,
   Rectangle changed{0, 0, 0, 0};
   redraw(stage, turned_camera(stage, 0.0), stage.scene.lights);  // warms up
   for (int frame = 0; frame < stage.options.frames; ++frame) {
+    show_frame(stage, frame, stage.options.frames);
     const CameraMatrices camera = turned_camera(stage, frame);
     redrawn_ms.push_back(milliseconds_of([&] { redraw(stage, camera, stage.scene.lights); }));
     shown_ms.push_back(milliseconds_of([&] {
@@ -311,7 +334,10 @@ void turn_drawn_once(TurnStage& stage, const std::string& what, Findings& found,
     measure_frame(stage, frame, stage.shown, errors);
     if (measured) measured(camera);
   }
+  stage.progress.clear();
   const double redrawn_mean = mean_of(redrawn_ms), shown_mean = mean_of(shown_ms);
+  add_verdict(what, shown_mean, redrawn_mean, "", errors, found);
+  add_scene(stage, stage.options.frames, found);
   found.add({{"redrawn", redrawn_mean},
              {what.c_str(), shown_mean},
              {"ratio", redrawn_mean / shown_mean},
@@ -332,8 +358,6 @@ int turn_box(const ReliefOptions& options) {
   BoxMemory memory;
   std::size_t unseen = 0, unhad = 0, most_bytes = 0;
   Findings found{options.json};
-  add_scene(stage, options.frames, found);
-  found.add({{"texels", form.texels}, {"drawn_ms", made_ms}}, "six_faces");
   turn_drawn_once(
       stage, "box", found,
       [&](const CameraMatrices& camera) {
@@ -348,7 +372,9 @@ int turn_box(const ReliefOptions& options) {
           unhad += had == FacePoint::by_none ? 1 : 0;
         }
       });
-  found.add({{"most_megabytes", static_cast<double>(most_bytes) / 1e6},
+  found.add({{"texels", form.texels},
+             {"drawn_ms", made_ms},
+             {"most_megabytes", static_cast<double>(most_bytes) / 1e6},
              {"pixels_that_no_seen_face_has", unseen},
              {"pixels_that_no_face_has", unhad}},
             "six_faces");
@@ -377,7 +403,10 @@ int turn_octahedral(const ReliefOptions& options) {
       milliseconds_of([&] { atlas = make_octahedral_atlas(stage.maker, form, stage.pool); });
   const int width = options.size.width, height = options.size.height;
   Findings found{options.json};
-  add_scene(stage, options.frames, found);
+  turn_drawn_once(stage, "atlas", found, [&](const CameraMatrices& camera) {
+    draw_octahedral(*atlas, camera, options.parallax, stage.shown, stage.pool);
+    return octahedral_area(*atlas, camera, width, height);
+  });
   found.add({{"views", size_text({options.views, options.views})},
              {"of", options.hemisphere ? "hemisphere" : "sphere"},
              {"texels", size_text({texels, texels})},
@@ -385,10 +414,6 @@ int turn_octahedral(const ReliefOptions& options) {
              {"megabytes", static_cast<double>(bytes_of(*atlas)) / 1e6},
              {"drawn_ms", made_ms}},
             "octahedral_atlas");
-  turn_drawn_once(stage, "atlas", found, [&](const CameraMatrices& camera) {
-    draw_octahedral(*atlas, camera, options.parallax, stage.shown, stage.pool);
-    return octahedral_area(*atlas, camera, width, height);
-  });
   found.finish();
   return kDone;
 }

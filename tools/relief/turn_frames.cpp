@@ -1,7 +1,9 @@
 #include "tools/relief/turn_frames.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "dof/measure/measures.h"
@@ -129,6 +131,40 @@ void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& 
   errors.object_flip.push_back(
       outline.seen == 0 ? 0.0 : measured.whole.flip * pixels / static_cast<double>(outline.seen));
   if (stage.name) write_pair(stage, frame, shown);
+}
+
+void show_frame(TurnStage& stage, int frame, int frames) {
+  constexpr double kEverySeconds = 0.5;
+  if (frame == 0) {
+    stage.left.plan("frames", frames, 1.0);
+    stage.left.start();
+  } else {
+    stage.left.done("frames", 1.0);
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (std::chrono::duration<double>(now - stage.shown_at).count() < kEverySeconds) return;
+  stage.shown_at = now;
+  const double seconds = stage.left.seconds();
+  stage.progress.show("frame " + std::to_string(frame + 1) + " of " + std::to_string(frames) +
+                      (seconds > 0.0 ? "; " + time_left_text(seconds) : ""));
+}
+
+void add_verdict(const std::string& what, double shown_ms, double redrawn_ms,
+                 const std::string& why, const TurnErrors& errors, Findings& found) {
+  const auto number = [](double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g", value);
+    return std::string{text.data()};
+  };
+  const bool pays = shown_ms < redrawn_ms;
+  std::string text = pays ? "pays: " : "does not pay: ";
+  text += number(shown_ms) + " ms a frame, redrawn " + number(redrawn_ms) + " ms (" +
+          number(pays ? redrawn_ms / shown_ms : shown_ms / redrawn_ms) +
+          (pays ? " times as fast)" : " times as slow)");
+  if (!why.empty()) text += ", for " + why;
+  text += "; the object's FLIP error is " + number(mean_of(errors.object_flip)) +
+          ", its outline is off by " + number(mean_of(errors.outline_px)) + " pixels";
+  found.add({{what.c_str(), text}}, "verdict");
 }
 
 void add_errors(const TurnErrors& errors, Findings& found) {

@@ -80,6 +80,8 @@ TEST_CASE("relief bench and turn say what they measured") {
   const ProgramRun turn = run_program(turning);
   CHECK(turn.err == "");
   REQUIRE(turn.status == 0);
+  CHECK(turn.out.starts_with("verdict: impostor "));
+  CHECK(contains(turn.out, "times as "));
   CHECK(contains(turn.out, "renewals "));
   CHECK(contains(turn.out, "errors: flip "));
   Words turning_json = turning;
@@ -87,7 +89,7 @@ TEST_CASE("relief bench and turn say what they measured") {
   const json turned = json::parse(run_program(turning_json).out);
   CHECK(turned.at("frames") == 12);
   CHECK(turned.at("steps").at("renewals") > 0);
-  for (const char* part : {"frame_ms", "updates", "errors", "bound_by_largest"}) {
+  for (const char* part : {"frame_ms", "schedule", "errors", "bound_by_largest"}) {
     CHECK(turned.at(part).is_object());
   }
   const Image pair = read_image_file(folder.file("t_06.npy")).image;
