@@ -125,11 +125,9 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
                         ThreadPool& pool) {
   progress.show("reading");
   PictureSources sources = open_sources(options.colour, options.depth, options.reading);
-  // The file, its colour as planes and as a picture; then the picture, its depth, the result, and
-  // what the method keeps.
   const bool keeps_little = options.method.name() == "two-pass";
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
-               keeps_little ? 40 : 64);
+               keeps_little ? 40 : kWholeBytesPerPixel);
   PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
   source.opacity = take_opacity(sources, source.picture);
   const bool loses_alpha = is_transparent(source.opacity) && !keeps_alpha(options.format);
