@@ -147,11 +147,44 @@ bool begins_as_picture(std::span<const std::byte> bytes) {
                      [&](const PictureFileReader* reader) { return reader->is(bytes); });
 }
 
+namespace {
+
+/// Reads what stands before the values.
+void list(PictureFile& file) {
+  file.reader->list(file);
+  file.shown = {0, 0, file.width, file.height};
+  if (file.data.width == 0) file.data = file.shown;
+}
+
+}  // namespace
+
+void take_data_window(PictureFile& file) {
+  file.left = file.data.x;
+  file.top = file.data.y;
+  file.width = file.data.width;
+  file.height = file.data.height;
+}
+
+PlaneValues moved(const PlaneValues& values, const PictureBox& from, const PictureBox& to,
+                  float outside) {
+  PlaneValues result(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height),
+                     outside);
+  const int left = std::max(from.x, to.x);
+  const int right = std::min(from.x + from.width, to.x + to.width);
+  for (int y = std::max(from.y, to.y);
+       left < right && y < std::min(from.y + from.height, to.y + to.height); ++y) {
+    const auto first = values.begin() + std::ptrdiff_t{y - from.y} * from.width + (left - from.x);
+    std::copy(first, first + (right - left),
+              result.begin() + std::ptrdiff_t{y - to.y} * to.width + (left - to.x));
+  }
+  return result;
+}
+
 PictureFile open_picture_file(Bytes bytes, const std::filesystem::path& path) {
   PictureFile file{.path = path, .bytes = std::move(bytes)};
   try {
     file.reader = &reader_of(file.bytes);
-    file.reader->list(file);
+    list(file);
   } catch (const FileError& error) {
     refuse(file, error);
   }
@@ -175,7 +208,7 @@ bool list_on_disk(PictureFile& file) {
             file.bytes);
   file.reader = &reader_of(file.bytes);
   if (file.reader->rows == nullptr) return false;
-  file.reader->list(file);
+  list(file);
   return file.has_rows;
 }
 

@@ -46,6 +46,13 @@ struct PlaneInfo {
   NumberType type = NumberType::single;
   int part = 0;           ///< of an EXR
   std::string channel{};  ///< its name in that part
+  std::string view{};     ///< "left", "right"; empty if the EXR has none, or it is of no view
+};
+
+/// Pixels of a picture, from the upper left corner of what is shown.
+struct PictureBox {
+  int x = 0, y = 0, width = 0, height = 0;
+  friend bool operator==(const PictureBox&, const PictureBox&) = default;
 };
 
 struct PictureFileReader;
@@ -58,6 +65,12 @@ struct PictureFile {
   const PictureFileReader* reader = nullptr;
   int width = 0;   ///< 1 to kMaxImageSize
   int height = 0;  ///< likewise, or to kMostRows of a file that stays on the disk
+  /// The place of the first pixel: of an EXR that is read to its data window, beside what is shown.
+  int left = 0, top = 0;
+  PictureBox shown{};                ///< the size that is shown; of an EXR its display window
+  PictureBox data{};                 ///< the pixels that are there: an EXR's data windows
+  double pixel_aspect = 1.0;         ///< a pixel's width over its height
+  std::vector<std::string> views{};  ///< of an EXR that has two or more, the first the default
   std::vector<PlaneInfo> planes{};
   /// Whether 0..1 stands for the sRGB curve and not for light. Alpha and depth have none.
   bool is_srgb = false;
@@ -103,6 +116,18 @@ extern const PictureFileReader kPngReader, kJpegReader, kHdrReader, kPfmReader, 
 
 /// Whether there is a reader for what begins so.
 bool begins_as_picture(std::span<const std::byte> bytes);
+
+/// Planes hold what is there in place of what is shown.
+void take_data_window(PictureFile& file);
+
+/// Values of planes that lie on pixels `from` for pixels `to`; where there are none, `outside`.
+PlaneValues moved(const PlaneValues& values, const PictureBox& from, const PictureBox& to,
+                  float outside);
+
+/// The pixels of a file's planes.
+inline PictureBox box_of(const PictureFile& file) {
+  return {file.left, file.top, file.width, file.height};
+}
 
 /// Reads the header. Throws FileError that names the file: for what is no picture, is damaged, has
 /// a side beyond kMaxImageSize, or claims more values than so few bytes can hold. For other kinds

@@ -9,13 +9,6 @@
 namespace softfocus {
 namespace {
 
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 /// The part of a name before its last dot.

@@ -9,6 +9,9 @@ float way_at(int i, float jittered, float way_step) {
   return way;
 }
 
+// 65504 at most: of raster/numbers/half.h.
+float compared_depth(float depth) { return depth < 65504.0 ? depth : 65504.0; }
+
 float cut_to_1(float x) { return x > 0.0 ? (x < 1.0 ? x : 1.0) : 0.0; }
 
 float finite_or_0(float px) { return abs(px) <= 65504.0 ? px : 0.0; }
