@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "raster/images/image.h"
 #include "raster/images/texel.h"
@@ -23,6 +24,7 @@
 #include "tools/pictures/picture_notes.h"
 #include "tools/refocus/picture_with_depth.h"
 #include "tools/refocus/refocused.h"
+#include "tools/refocus/report.h"
 
 namespace softfocus {
 namespace {
@@ -152,25 +154,25 @@ std::string_view name_of(VelocityEncoding encoding) {
   return kVelocityEncodings[static_cast<std::size_t>(encoding)].name;
 }
 
-std::string velocity_size(int width, int height) {
-  return std::to_string(width) + 'x' + std::to_string(height);
-}
-
 /// RG16F of that size. Numbers beyond the largest half are cut to it. What is believed is told.
 /// Throws FileError for a file that cannot be read, UsageError for one of another shape.
-Image read_velocity(const VelocityOptions& options, int width, int height) {
-  const PictureFile file = open_picture_file(*options.file);
+Image read_velocity(const VelocityOptions& options, const PictureFile& picture) {
+  PictureFile file = open_picture_file(*options.file);
   const std::string where = "--velocity '" + *options.file + "' ";
   const std::optional<VelocityPlanes> found = find_velocity(file, options);
   if (!found || full_scale(file.planes[found->planes[0]].type) != 1.0) {
     throw UsageError(where + "holds no motions; " + kVelocityFiles +
                      ", in pixels a frame, would be right");
   }
-  if (file.width != width || file.height != height) {
-    throw UsageError(where + "is " + velocity_size(file.width, file.height) +
-                     "; the picture's size, " + velocity_size(width, height) + ", would be right");
+  if (file.shown != picture.shown) {
+    throw UsageError(where + "is " + size_text({file.width, file.height}) +
+                     "; the picture's size, " +
+                     size_text({picture.shown.width, picture.shown.height}) + ", would be right");
   }
-  const std::vector<PlaneValues> values = read_planes(file, found->planes, 0.0f);
+  take_data_window(file);
+  std::vector<PlaneValues> values = read_planes(file, found->planes, 0.0f);
+  for (PlaneValues& plane : values) plane = moved(plane, box_of(file), box_of(picture), 0.0f);
+  const int width = picture.width, height = picture.height;
   Image velocity = make_image(Format::rg16f, width, height);
   float longest = 0.0f;
   for (int y = 0; y < height; ++y) {
@@ -197,56 +199,94 @@ struct ApplyOptions {
   FileFormat format = FileFormat::png;
   std::optional<std::string> layer;
   VelocityOptions velocity;
+  bool flips = false;
   EffectOptions effects;
   Profile profile{};
   std::string profile_name = "ieee";
   PoolOptions pool;
 };
 
-/// A picture with what its file has beside the colour.
-struct OpenedPicture {
-  PictureSources sources;
+/// A colour with its depth and its opacity.
+struct OpenedLayer {
   std::optional<PlaneValues> depth{};  ///< as its codes stand in the file
   PlaneValues opacity{};
   Image colour{};
 };
 
+/// A picture with what its file has beside the colour.
+struct OpenedPicture {
+  PictureSources sources;
+  OpenedLayer layer{};
+  std::vector<ReplacedPlane> views{};  ///< the other views, with their effects
+};
+
+constexpr std::size_t kNoPlane = ~std::size_t{0};
+
+OpenedLayer read_layer(const PictureSources& sources) {
+  const PictureFile& file = sources.colour_file;
+  OpenedLayer layer;
+  Picture read = read_colour(file, sources.colour, false);
+  if (read.cut > 0) warn(cut_light_warning(file.path.string(), read.cut, read.brightest));
+  layer.colour = std::move(read.image);
+  layer.opacity = take_opacity(sources, layer.colour);
+  if (sources.depth_plane != kNoPlane) {
+    layer.depth = std::move(read_planes(file, {&sources.depth_plane, 1}, 0.0f)[0]);
+    put_in_alpha(*layer.depth, layer.colour);
+  }
+  return layer;
+}
+
 OpenedPicture read_picture(const ApplyOptions& options) {
-  constexpr std::size_t kNoPlane = ~std::size_t{0};
   OpenedPicture opened{{.colour_file = open_picture_file(options.picture)}};
   PictureSources& sources = opened.sources;
   const PictureFile& file = sources.colour_file;
+  take_data_window(sources.colour_file);
+  flip_if(options.flips, sources.colour_file);
   check_memory(options.picture, {file.width, file.height}, 64);
   sources.colour = choose_colour(file, options.layer, "--layer");
   sources.notes = find_notes(file.path, file.bytes).notes;
-  const std::optional<std::size_t> depth = find_depth_beside_colour(file);
-  sources.depth_plane = depth.value_or(kNoPlane);
-  opened.colour = read_colour(file, sources.colour, false).image;
-  opened.opacity = take_opacity(sources, opened.colour);
-  if (depth) {
-    opened.depth = std::move(read_planes(file, {&*depth, 1}, 0.0f)[0]);
-    put_in_alpha(*opened.depth, opened.colour);
-  }
+  sources.depth_plane = find_depth_beside_colour(file).value_or(kNoPlane);
+  if (!options.layer) find_views(sources);
+  opened.layer = read_layer(sources);
   return opened;
 }
 
 /// Opacity goes where light goes.
-void apply_effects(const ApplyOptions& options, OpenedPicture& opened, ThreadPool& pool) {
-  Image velocity;
-  if (options.velocity.file) {
-    velocity = read_velocity(options.velocity, opened.colour.width, opened.colour.height);
-  }
+void apply_effects(const ApplyOptions& options, const Image& velocity, OpenedLayer& layer,
+                   ThreadPool& pool) {
   const auto make_velocity = [&](const ChosenEffect&, const Image&) { return velocity; };
   std::vector<ChosenEffect> spreading;
   for (const ChosenEffect& chosen : all_effects(options.effects)) {
     if (chosen.effect->spreads) spreading.push_back(chosen);
   }
-  if (is_transparent(opened.opacity)) {
-    opened.opacity = opacity_of(with_effects(opacity_picture(opened.opacity, opened.colour),
-                                             spreading, make_velocity, options.profile, pool));
+  if (is_transparent(layer.opacity)) {
+    layer.opacity = opacity_of(with_effects(opacity_picture(layer.opacity, layer.colour), spreading,
+                                            make_velocity, options.profile, pool));
   }
-  opened.colour = with_effects(std::move(opened.colour), all_effects(options.effects),
-                               make_velocity, options.profile, pool);
+  layer.colour = with_effects(std::move(layer.colour), all_effects(options.effects), make_velocity,
+                              options.profile, pool);
+}
+
+/// Of all views.
+void apply_effects(const ApplyOptions& options, OpenedPicture& opened, ThreadPool& pool) {
+  PictureSources& sources = opened.sources;
+  Image velocity;
+  if (options.velocity.file) velocity = read_velocity(options.velocity, sources.colour_file);
+  apply_effects(options, velocity, opened.layer, pool);
+  if (!is_of_exr(options.format)) return;
+  for (const OtherView& view : sources.views) {
+    const ColourLayer own_colour = std::exchange(sources.colour, view.colour);
+    const std::size_t own_depth =
+        std::exchange(sources.depth_plane, view.depth_plane.value_or(kNoPlane));
+    OpenedLayer layer = read_layer(sources);
+    apply_effects(options, velocity, layer, pool);
+    for (ReplacedPlane& plane :
+         planes_of({std::move(layer.colour), std::move(layer.opacity)}, view.colour)) {
+      opened.views.push_back(std::move(plane));
+    }
+    sources.colour = own_colour;
+    sources.depth_plane = own_depth;
+  }
 }
 
 PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) {
@@ -257,26 +297,36 @@ PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) 
     notes.scene = opened.sources.colour_file.path.filename().string();
     notes.show = "image";
   }
-  notes.width = opened.colour.width;
-  notes.height = opened.colour.height;
-  notes.picture_hash = hash_image(opened.colour);
+  const Image& colour = opened.layer.colour;
+  notes.width = colour.width;
+  notes.height = colour.height;
+  notes.picture_hash = hash_image(colour);
   for (const ChosenEffect& chosen : all_effects(options.effects)) {
     notes.effects.push_back(effect_text(chosen));
   }
   return notes;
 }
 
+bool keeps_windows(const ApplyOptions& options, const OpenedPicture& opened) {
+  return is_of_exr(options.format) && opened.sources.colour_file.reader == &kExrReader;
+}
+
 Bytes picture_file(const ApplyOptions& options, const OpenedPicture& opened,
                    const PictureNotes& notes) {
-  PictureExtras extras{.alpha = opened.opacity, .has_depth = opened.depth.has_value()};
+  const OpenedLayer& layer = opened.layer;
+  PictureExtras extras{.alpha = layer.opacity,
+                       .has_depth = layer.depth.has_value(),
+                       .icc = opened.sources.colour_file.icc};
   std::vector<std::size_t> kept;
-  if (opened.depth) extras.depth_m = *opened.depth;
-  if (is_of_exr(options.format) && opened.sources.colour_file.reader == &kExrReader) {
+  if (layer.depth) extras.depth_m = *layer.depth;
+  if (keeps_windows(options, opened)) {
     kept = other_planes(opened.sources);
     extras.source = &opened.sources.colour_file;
     extras.kept = kept;
+    extras.replaced = opened.views;
+    extras.view = opened.sources.view;
   }
-  return encode_with_notes(opened.colour, options.format, notes, extras);
+  return encode_with_notes(layer.colour, options.format, notes, extras);
 }
 
 int apply_to_file(const ApplyOptions& options) {
@@ -293,9 +343,19 @@ int apply_to_file(const ApplyOptions& options) {
   }
   ThreadPool pool{options.pool.threads, options.pool.isa};
   OpenedPicture opened = read_picture(options);
-  const bool loses_alpha = is_transparent(opened.opacity) && !keeps_alpha(options.format);
+  const bool loses_alpha = is_transparent(opened.layer.opacity) && !keeps_alpha(options.format);
   apply_effects(options, opened, pool);
-  if (loses_alpha) opened.opacity.clear();
+  if (loses_alpha) opened.layer.opacity.clear();
+  if (!keeps_windows(options, opened)) {
+    PictureOnItsWay picture{std::move(opened.layer.colour), std::move(opened.layer.opacity)};
+    cut_to_shown(opened.sources.colour_file, picture,
+                 opened.layer.depth ? &*opened.layer.depth : nullptr);
+    opened.layer.colour = std::move(picture.picture);
+    opened.layer.opacity = std::move(picture.opacity);
+    for (const OtherView& view : opened.sources.views) {
+      warn(lost_view_warning(options.picture, view));
+    }
+  }
   const PictureNotes notes = notes_of(options, opened);
   const Bytes bytes = picture_file(options, opened, notes);
   const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
@@ -313,6 +373,8 @@ int apply_to_file(const ApplyOptions& options) {
     warn("'" + sidecar->string() +
          "' is no sidecar of a picture and stays as it is: what was done is written nowhere");
   }
+  const std::string lost = lost_profile_warning(opened.sources.colour_file, options.format);
+  if (!lost.empty()) warn(lost);
   const std::string order = order_warning(all_effects(options.effects));
   if (!order.empty()) warn(order);
   if (loses_alpha) {
@@ -348,6 +410,7 @@ Command add_apply_command(CLI::App& program) {
   begin_group(*parser, "Effects");
   add_effect_options(*parser, options->effects);
   add_text(*parser, "--layer", "NAME", "The colour's layer of an EXR", options->layer);
+  add_flip_option(*parser, options->flips);
   add_text(*parser, "--velocity", "FILE",
            std::string{"How each pixel moves, for motion blur: "} + kVelocityFiles +
                "; pixels a frame, to the right and down",

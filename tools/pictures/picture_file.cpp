@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <system_error>
@@ -103,11 +104,13 @@ std::vector<std::uint16_t> half_table(NumberType type, bool is_srgb) {
   return table;
 }
 
+/// The largest half.
+constexpr float kMostLight = 65504.0f;
+
 std::uint16_t light_half(NumberType type, float value) {
   if (value != value) return 0;
   if (type == NumberType::unsigned32) value = static_cast<float>(value / full_scale(type));
-  constexpr float kMost = 65504.0f;
-  return float_to_half(std::clamp(value, -kMost, kMost), HalfRounding::nearest_even);
+  return float_to_half(std::clamp(value, -kMostLight, kMostLight), HalfRounding::nearest_even);
 }
 
 }  // namespace
@@ -310,11 +313,13 @@ std::vector<ColourLayer> colour_layers(const PictureFile& file) {
   return layers;
 }
 
-ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
+ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+                           float light) {
   const auto add = [&](std::size_t plane, std::size_t first, std::size_t last) {
     planes_.push_back(plane);
     const NumberType type = file.planes[plane].type;
-    channels_.push_back({first, last, type, half_table(type, file.is_srgb && first < 3)});
+    channels_.push_back(
+        {first, last, type, half_table(type, file.is_srgb && first < 3), first < 3 ? light : 1.0f});
   };
   const bool is_grey = layer.green == layer.red;
   add(layer.red, 0, is_grey ? 2 : 0);
@@ -331,20 +336,67 @@ void ColourHalves::put(std::size_t i, const PlaneValues& values, Image& picture)
     for (std::size_t x = 0; x < to.size(); x += 4) {
       const float value = values[next++];
       const std::uint16_t half = channel.table.empty()
-                                     ? light_half(channel.type, value)
+                                     ? light_half(channel.type, value * channel.light)
                                      : channel.table[static_cast<std::size_t>(value)];
       for (std::size_t c = channel.first; c <= channel.last; ++c) to[x + c] = half;
     }
   }
 }
 
-Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
-  const ColourHalves halves{file, layer, with_alpha};
+BrightColours bright_colours(std::span<const float> values, float most) {
+  BrightColours found;
+  for (const float value : values) {
+    const float size = std::fabs(value);
+    found.beyond += size > most;
+    if (size > found.brightest && size <= std::numeric_limits<float>::max()) found.brightest = size;
+  }
+  return found;
+}
+
+bool may_be_bright(const PictureFile& file, const ColourLayer& layer) {
+  const NumberType type = file.planes[layer.red].type;
+  return type == NumberType::single || type == NumberType::double_precision;
+}
+
+Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+                    int most_power) {
+  const std::vector<std::size_t> all = ColourHalves{file, layer, with_alpha}.planes();
+  const std::span planes{all};
+  const std::size_t colours = layer.green == layer.red ? 1 : 3;
   Picture picture{make_image(Format::rgba16f, file.width, file.height), with_alpha && layer.alpha};
-  const std::span planes{halves.planes()};
   const std::size_t at_once = file.reader->reads_apart ? 1 : planes.size();
+  std::vector<PlaneValues> values;
+  const auto read = [&](std::size_t first) {
+    if (first > 0 || at_once < planes.size() || values.empty()) {
+      values = read_planes(file, planes.subspan(first, at_once), 0.0f);
+    }
+  };
+  const auto look = [&](float most) {
+    BrightColours found;
+    for (std::size_t i = 0; i < planes.size(); i += at_once) {
+      read(i);
+      for (std::size_t p = i; p < std::min(i + at_once, colours); ++p) {
+        const BrightColours more = bright_colours(values[p - i], most);
+        found.brightest = std::max(found.brightest, more.brightest);
+        found.beyond += more.beyond;
+      }
+    }
+    return found;
+  };
+  if (may_be_bright(file, layer)) {
+    const float brightest = look(kMostLight).brightest;
+    while (picture.light_power < most_power &&
+           brightest > std::ldexp(kMostLight, picture.light_power)) {
+      ++picture.light_power;
+    }
+    if (brightest > kMostLight) {
+      picture.brightest = static_cast<double>(brightest);
+      picture.cut = look(std::ldexp(kMostLight, picture.light_power)).beyond;
+    }
+  }
+  const ColourHalves halves{file, layer, with_alpha, std::ldexp(1.0f, -picture.light_power)};
   for (std::size_t i = 0; i < planes.size(); i += at_once) {
-    const std::vector<PlaneValues> values = read_planes(file, planes.subspan(i, at_once), 0.0f);
+    read(i);
     for (std::size_t p = i; p < i + at_once; ++p) halves.put(p, values[p - i], picture.image);
   }
   return picture;

@@ -74,7 +74,10 @@ struct PictureFile {
   std::vector<PlaneInfo> planes{};
   /// Whether 0..1 stands for the sRGB curve and not for light. Alpha and depth have none.
   bool is_srgb = false;
-  bool has_rows = true;  ///< whether a row's values lie together, as `rows` of its reader needs
+  bool top_first = false;  ///< of a PFM: rows run from the top down
+  Bytes icc{};             ///< an ICC profile of red, green and blue that stands in the file
+  std::string icc_name{};  ///< its name, or that of another profile
+  bool has_rows = true;    ///< whether a row's values lie together, as `rows` of its reader needs
   int exif_orientation =
       1;                 ///< 1 if the pixels stand upright, else 2 to 8; planes are turned by it
   std::string remark{};  ///< what else there is to tell: "3 parts, data window 10,10..99,99"
@@ -175,8 +178,9 @@ std::vector<ColourLayer> colour_layers(const PictureFile& file);
 /// it, NaN becomes 0.
 class ColourHalves {
  public:
-  /// `with_alpha`: and its alpha, if it has one.
-  ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha);
+  /// `with_alpha`: and its alpha, if it has one. `light`: colours are multiplied by it.
+  ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+               float light = 1.0f);
 
   /// The planes to read: one if it is grey.
   const std::vector<std::size_t>& planes() const { return planes_; }
@@ -188,13 +192,26 @@ class ColourHalves {
     std::size_t first, last;  // of the picture
     NumberType type;
     std::vector<std::uint16_t> table;  // of whole numbers up to 16 bits; else empty
+    float light;
   };
   std::vector<std::size_t> planes_{};
   std::vector<Channel> channels_{};
 };
 
-/// A colour and, if `with_alpha`, its alpha as RGBA16F in linear light; else alpha is 0.
-Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha);
+/// The largest finite number, and how many are beyond `most` or infinite.
+struct BrightColours {
+  float brightest = 0.0f;
+  std::size_t beyond = 0;
+};
+BrightColours bright_colours(std::span<const float> values, float most);
+
+/// Whether the colour's numbers may be beyond the largest half.
+bool may_be_bright(const PictureFile& file, const ColourLayer& layer);
+
+/// A colour and, if `with_alpha`, its alpha as RGBA16F in linear light; else alpha is 0. Bright
+/// colours are divided by 2^most_power at the most.
+Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+                    int most_power = 0);
 
 /// Values, one a pixel, as the nearest halves of an RGBA16F picture's alpha.
 void put_in_alpha(const PlaneValues& values, Image& picture);

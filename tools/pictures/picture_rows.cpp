@@ -16,7 +16,7 @@ void write_pfm(const PictureToWrite& picture, const WriteAt& write) {
   for (int y = 0; y < picture.height; y += kBandRows) {
     const int rows = std::min(kBandRows, picture.height - y);
     bytes.clear();
-    append_pfm_rows(bytes, picture.make({y, rows}).picture);
+    append_pfm_rows(bytes, picture.make({y, rows}).picture, 1.0f);
     const std::uint64_t row_bytes = bytes.size() / static_cast<std::size_t>(rows);
     write(start.size() + static_cast<std::uint64_t>(picture.height - y - rows) * row_bytes, bytes);
   }
@@ -51,8 +51,9 @@ void write_picture_rows(const PictureToWrite& picture, FileFormat format,
                     picture.height),
           write, append_npy_rows);
     case FileFormat::hdr:
-      return write_in_order(picture, hdr_start(picture.width, picture.height), write,
-                            append_hdr_rows);
+      return write_in_order(
+          picture, hdr_start(picture.width, picture.height), write,
+          [](Bytes& bytes, const ConstImageView& image) { append_hdr_rows(bytes, image); });
     default:
       return write_exr(picture, format == FileFormat::exr ? ExrNumbers::half : ExrNumbers::single,
                        extras, write);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "scenes/files/scene_error.h"
@@ -121,6 +122,32 @@ void check_outputs(const RefocusOptions& options) {
     check_not_read("the sidecar of -o", *sidecar, inputs);
 }
 
+/// With the light that halves can hold, and what that does.
+PictureOnItsWay colour_of(const PictureSources& sources, const RefocusOptions& options,
+                          UsedRefocus& used) {
+  // fixed-8 knows white as 1.
+  const int most_power = options.arithmetic == Arithmetic::floats ? kMostLightPower : 0;
+  Picture read = read_colour(sources.colour_file, sources.colour, false, most_power);
+  used.brightest = read.brightest;
+  used.light_power = read.light_power;
+  used.cut = read.cut;
+  return {std::move(read.image), {}, read.light_power};
+}
+
+/// Another view of a picture, filtered as the first was: the planes of its colour.
+std::vector<ReplacedPlane> refocused_view(PictureSources& sources, const OtherView& view,
+                                          const RefocusOptions& options, const PhotoLens& photo,
+                                          UsedRefocus used, ThreadPool& pool) {
+  const ColourLayer own_colour = std::exchange(sources.colour, view.colour);
+  const std::size_t own_depth = std::exchange(sources.depth_plane, *view.depth_plane);
+  PictureOnItsWay source = colour_of(sources, options, used);
+  source.opacity = take_opacity(sources, source.picture);
+  const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
+  sources.colour = own_colour;
+  sources.depth_plane = own_depth;
+  return planes_of(refocused(std::move(source), depth.map, options, used, pool), view.colour);
+}
+
 /// In memory.
 Refocused refocus_whole(const RefocusOptions& options, const std::string& why, Progress& progress,
                         ThreadPool& pool) {
@@ -131,28 +158,46 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
   const bool keeps_little = options.method.name() == "two-pass";
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
                keeps_little ? 40 : 64);
-  PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
+  UsedRefocus used{.why_whole = why};
+  PictureOnItsWay source = colour_of(sources, options, used);
   source.opacity = take_opacity(sources, source.picture);
   const bool loses_alpha = is_transparent(source.opacity) && !keeps_alpha(options.format);
   if (loses_alpha) source.opacity.clear();
-  PhotoLens photo = options.photo;
-  photo.of_file = sources.lens;
-  const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
+  PhotoLens photo = with_sources(options.photo, sources);
+  ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
   // The bytes read are not needed again, but for an EXR's other layers. `= {}` would keep the
   // memory.
-  if (sources.depth_file) sources.depth_file->bytes = Bytes{};
+  if (sources.depth_file && sources.views.empty()) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
-  UsedRefocus used{.why_whole = why};
   if (options.has_circles) photo.circles = coc_of_circles(depth.numbers);
   used.lens = settle_lens(photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
-  const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
+  PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
+  Refocused made;
+  std::vector<ReplacedPlane> views;
+  for (const OtherView& view : sources.views) {
+    if (!keeps_data_window(options, sources) || !options.keep_layers) {
+      made.warnings.push_back(lost_view_warning(options.colour, view));
+    } else if (!view.depth_plane) {
+      made.warnings.push_back("'" + options.colour + "': its view " + view.name +
+                              " has no depth of its own and stays as it is");
+    } else {
+      progress.show("filtering " + view.name);
+      for (ReplacedPlane& plane : refocused_view(sources, view, options, photo, used, pool)) {
+        views.push_back(std::move(plane));
+      }
+    }
+  }
+  if (!keeps_data_window(options, sources)) {
+    cut_to_shown(sources.colour_file, result, &depth.map.metres);
+    depth.map.width = result.picture.width;
+    depth.map.height = result.picture.height;
+  }
 
   progress.show("writing");
   const PictureNotes notes = refocus_notes(options, used, result.picture.width,
                                            result.picture.height, hash_image(result.picture));
-  Refocused made;
-  Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes);
+  Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes, views);
   auto sidecar = sidecar_place(options.output, options.format);
   const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
   std::optional<WholeFile> picture_file, sidecar_file;

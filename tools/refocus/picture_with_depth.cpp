@@ -35,16 +35,18 @@ void add_mending_options(CLI::App& parser, Mending& mending) {
 }
 
 /// A file whose values hide depths, as a mask of the map's size.
-PlaneValues read_mask(const std::string& name, const PictureFile& depth) {
-  const PictureFile file = open_picture_file(name);
-  if (file.width != depth.width || file.height != depth.height) {
+PlaneValues read_mask(const std::string& name, const PictureFile& depth, bool flips) {
+  PictureFile file = open_picture_file(name);
+  flip_if(flips, file);
+  const PictureBox& size = depth.shown;
+  if (file.width != size.width || file.height != size.height) {
     throw UsageError("--mask '" + name + "' is " + size_text({file.width, file.height}) +
-                     " pixels and the depth " + size_text({depth.width, depth.height}) +
+                     " pixels and the depth " + size_text({size.width, size.height}) +
                      "; give one of that size");
   }
   // An EXR's first channel would be its alpha.
   const std::size_t plane = file.planes.size() == 1 ? 0 : choose_colour(file, {}, "--mask").red;
-  return read_planes(file, {&plane, 1}, 0.0f)[0];
+  return moved(read_planes(file, {&plane, 1}, 0.0f)[0], file.shown, box_of(depth), 1.0f);
 }
 
 /// How much wider or higher than a depth's the colour's shape is: 1 of the same.
@@ -151,8 +153,18 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
              "A depth of another shape than the picture is stretched, or its middle is taken "
              "(default: stretched by up to 2 %, else refused)",
              kFits, options.fit);
+  add_flip_option(parser, options.flips);
   add_mending_options(parser, options.mending);
 }
+
+void add_flip_option(CLI::App& parser, bool& flips) {
+  add_flag(parser, "--flip",
+           "Rows of PFM files run from the top down, or of those that bear Photoshop's mark, whose "
+           "do, from the bottom up",
+           flips);
+}
+
+void flip_if(bool flips, PictureFile& file) { file.top_first = file.top_first != flips; }
 
 namespace {
 
@@ -165,11 +177,24 @@ bool is_photo_panorama(const PictureFile& file) {
   return text.find("GPano:ProjectionType") != text.npos;
 }
 
+/// Whether the colour and its depth show as many pixels.
+bool show_alike(const PictureSources& sources) {
+  return sources.of_depth().shown == sources.colour_file.shown;
+}
+
+/// Pixels beside those that are shown are filtered, too.
+void take_windows(PictureSources& sources) {
+  if (!show_alike(sources)) return;
+  take_data_window(sources.colour_file);
+  if (sources.depth_file) take_data_window(*sources.depth_file);
+}
+
 void choose_planes(PictureSources& sources, const DepthOptions& options) {
   sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
   const bool has_circles = options.encoding == &circles_encoding();
   sources.depth_plane =
       choose_depth(sources.of_depth(), options.depth_layer, !sources.depth_file, has_circles);
+  if (!options.layer) find_views(sources);
   sources.notes = find_notes(sources.colour_file.path, source_of(sources.colour_file)).notes;
   if (!sources.notes) sources.lens = find_exr_lens(source_of(sources.colour_file));
   if (is_photo_panorama(sources.colour_file)) sources.lens.camera = "panoramic";
@@ -185,11 +210,29 @@ void open_phone_depth(PictureSources& sources) {
   if (depth.exif_orientation == 1) {
     depth.exif_orientation = colour.exif_orientation;
     if (depth.exif_orientation >= 5) std::swap(depth.width, depth.height);
+    depth.shown = depth.data = {0, 0, depth.width, depth.height};
   }
   sources.depth_file = std::move(depth);
 }
 
 }  // namespace
+
+void find_views(PictureSources& sources) {
+  const std::string own = sources.colour_file.planes[sources.colour.red].view;
+  if (sources.colour_file.views.size() < 2 || own.empty()) return;
+  sources.view = own;
+  const bool has_depth = sources.depth_plane < sources.of_depth().planes.size();
+  const auto depth_of = [&](const std::string& view) {
+    return has_depth ? plane_in_view(sources.of_depth(), sources.depth_plane, view) : std::nullopt;
+  };
+  sources.depth_plane = depth_of(own).value_or(sources.depth_plane);
+  for (const std::string& name : sources.colour_file.views) {
+    if (name == own) continue;
+    if (const auto colour = layer_in_view(sources.colour_file, sources.colour, name)) {
+      sources.views.push_back({name, *colour, depth_of(name)});
+    }
+  }
+}
 
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options) {
@@ -199,7 +242,12 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
   } else if (sources.colour_file.reader == &kJpegReader) {
     open_phone_depth(sources);
   }
-  if (sources.depth_file) check_shape(sources.colour_file, *sources.depth_file, options);
+  flip_if(options.flips, sources.colour_file);
+  if (sources.depth_file) {
+    flip_if(options.flips, *sources.depth_file);
+    check_shape(sources.colour_file, *sources.depth_file, options);
+  }
+  take_windows(sources);
   choose_planes(sources, options);
   return sources;
 }
@@ -212,10 +260,17 @@ std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
   PictureSources sources{.colour_file = std::move(*colour_file)};
   if (!depth.empty()) sources.depth_file = open_on_disk(depth, why);
   if (!depth.empty() && !sources.depth_file) return std::nullopt;
+  flip_if(options.flips, sources.colour_file);
+  if (sources.depth_file) flip_if(options.flips, *sources.depth_file);
   const PictureFile& of_depth = sources.of_depth();
   if (of_depth.width != sources.colour_file.width ||
       of_depth.height != sources.colour_file.height) {
     why = "the depth has another size than the colour";
+    return std::nullopt;
+  }
+  take_windows(sources);
+  if (box_of(sources.of_depth()) != box_of(sources.colour_file)) {
+    why = "the depth has another data window than the colour";
     return std::nullopt;
   }
   choose_planes(sources, options);
@@ -274,9 +329,20 @@ DepthReading depth_reading(const PictureSources& sources, const DepthOptions& op
   // A smaller map has a smaller focal length in pixels.
   const PictureFile& colour = sources.colour_file;
   reading.pixels_per_tangent = pixels_per_tangent(photo, sources.notes, options.numbers.focal_px,
-                                                  colour.width, colour.height) *
+                                                  colour.shown.width, colour.shown.height) *
                                read.height / colour.height;
+  const double scale = static_cast<double>(read.height) / colour.height;
+  reading.axis_x = (colour.shown.width / 2.0 - colour.left - colour.width / 2.0) * scale;
+  reading.axis_y = (colour.shown.height / 2.0 - colour.top - colour.height / 2.0) * scale;
+  reading.pixel_aspect = colour.pixel_aspect;
   return reading;
+}
+
+PhotoLens with_sources(PhotoLens photo, const PictureSources& sources) {
+  const PictureFile& file = sources.colour_file;
+  photo.of_file = sources.lens;
+  photo.film = {{-file.left, -file.top, file.shown.width, file.shown.height}, file.pixel_aspect};
+  return photo;
 }
 
 ReadDepth read_depth(const PictureSources& sources, const Image& colour,
@@ -284,12 +350,18 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
   const PictureFile& file = sources.of_depth();
   const NumberType type = file.planes[sources.depth_plane].type;
   PlaneValues codes = depth_codes(file, sources.depth_plane);
-  PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
-  const Part part = part_on(sources.colour_file, file, options);
+  PlaneValues mask = options.mask ? read_mask(*options.mask, file, options.flips) : PlaneValues{};
+  const PictureBox box = box_of(sources.colour_file);
+  const bool is_beside = show_alike(sources) && box != box_of(file);
+  const Part part =
+      is_beside ? Part{0, 0, box.width, box.height} : part_on(sources.colour_file, file, options);
   const int width = part.width, height = part.height;
 
   ReadDepth read{.seen = numbers_seen(codes, type), .width = width, .height = height};
-  if (width < file.width || height < file.height) {
+  if (is_beside) {
+    codes = moved(codes, box_of(file), box, kNoDepthThere);
+    if (!mask.empty()) mask = moved(mask, box_of(file), box, 1.0f);
+  } else if (width < file.width || height < file.height) {
     cut(codes, file.width, part);
     cut(mask, file.width, part);
     read.fit = "the middle " + size_text({width, height}) + " of " +

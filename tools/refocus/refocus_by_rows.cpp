@@ -34,9 +34,10 @@ class SourceRows {
   /// Throws FileError; UsageError for a depth of three channels that differ.
   void read(Rows rows);
 
-  Image colour{};       ///< RGBA16F, of light; alpha is 0
-  PlaneValues alpha{};  ///< as they are in the file
-  PlaneValues codes{};  ///< of the depth
+  Image colour{};          ///< RGBA16F, of light; alpha is 0
+  BrightColours bright{};  ///< of all rows, beyond the largest half
+  PlaneValues alpha{};     ///< as they are in the file
+  PlaneValues codes{};     ///< of the depth
 
  private:
   /// Planes of one file, read together: they may lie in the same compressed blocks.
@@ -103,7 +104,13 @@ void SourceRows::read(Rows rows) {
   }
   if (!colour_.empty()) {
     if (colour.height != rows.count) colour = make_image(Format::rgba16f, width, rows.count);
-    for (std::size_t i = 0; i < colour_.size(); ++i) halves_.put(i, values_of(colour_[i]), colour);
+    for (std::size_t i = 0; i < colour_.size(); ++i) {
+      const PlaneValues& values = values_of(colour_[i]);
+      const BrightColours more = bright_colours(values, kFarthestDepth);
+      bright.brightest = std::max(bright.brightest, more.brightest);
+      bright.beyond += more.beyond;
+      halves_.put(i, values, colour);
+    }
   }
   if (!alpha_.empty()) alpha.swap(values_of(alpha_[0]));
   if (depth_.empty()) return;
@@ -132,6 +139,7 @@ struct Survey {
   std::vector<bool> halves = std::vector<bool>(65536);  ///< the depths that the filter sees
   float nearest_m = std::numeric_limits<float>::infinity(), farthest_m = 0.0f;  ///< of these
   bool has_opacity = false, is_opaque = true;
+  BrightColours bright{};   ///< if there are any
   float full_alpha = 1.0f;  ///< the file's number for what is opaque
 };
 
@@ -194,7 +202,8 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
     survey.full_alpha = static_cast<float>(full_scale(file.planes[*sources.colour.alpha].type));
   }
   AlphaSeen alpha;
-  SourceRows rows{sources, {.alpha = has_alpha, .depth = true}};
+  const bool has_floats = may_be_bright(file, sources.colour);
+  SourceRows rows{sources, {.colour = has_floats, .alpha = has_alpha, .depth = true}};
   for_each_band(file.height, [&](Rows band) {
     rows.read(band);
     alpha.add(rows.alpha, survey.full_alpha);
@@ -211,6 +220,13 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
   });
   survey.has_opacity = has_alpha && (alpha.is_alpha || is_sure_of_alpha(file));
   survey.is_opaque = !survey.has_opacity || alpha.is_opaque;
+  if (rows.bright.beyond > 0) {
+    survey.bright = rows.bright;
+    if (file.height <= kMaxImageSize) {
+      why = "it has colours beyond the largest half";
+      return false;
+    }
+  }
   if (survey.depth.filled == 0) return true;
   why = std::to_string(survey.depth.filled) +
         " pixels have no depth, and are filled from around them";
@@ -367,6 +383,7 @@ void write_files(const RefocusOptions& options, const PictureSources& sources, c
     if (survey.has_opacity) extras.alpha = kSome;
     if (sources.colour_file.reader == &kExrReader) extras.source = &sources.colour_file;
     extras.kept = kept;
+    if (options.keep_layers) extras.view = sources.view;
     if (notes.lens) extras.lens = notes.lens->lens;
     picture.notes = json_text(notes_json(notes));
     picture.notes_after = [&] {
@@ -423,9 +440,14 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
       open_sources_on_disk(options.colour, options.depth, options.reading, why);
   if (!sources) return std::nullopt;
   const PictureFile& file = sources->colour_file;
+  if (!sources->views.empty()) why = "it has several views";
+  if (file.pixel_aspect != 1.0) why = "its pixels are not square";
+  if (box_of(file) != file.shown && !keeps_data_window(options, *sources)) {
+    why = "its data window is cut";
+  }
+  if (!why.empty()) return std::nullopt;
   progress.show("reading the depth");
-  PhotoLens photo = options.photo;
-  photo.of_file = sources->lens;
+  PhotoLens photo = with_sources(options.photo, *sources);
   Survey survey{.photo = photo, .focus = {photo, file.width, file.height}};
   survey.depth.width = survey.depth.map.width = file.width;
   survey.depth.height = survey.depth.map.height = file.height;
@@ -440,6 +462,8 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
   UsedRefocus used{.by_rows = true};
   used.lens =
       settle_lens(photo, sources->notes, options.reading.numbers.focal_px, std::move(survey.focus));
+  used.brightest = static_cast<double>(survey.bright.brightest);
+  used.cut = survey.bright.beyond;
   begin_settings(options, used);
   settle_largest_circle(picture_of_depths(survey.halves), options, used, pool);
   if (is_larger_by_rows(file, used.settings, pool.isa())) {
