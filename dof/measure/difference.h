@@ -43,6 +43,7 @@ inline double mean(const PixelMap& map) {
 }
 
 struct Difference {
+  std::uint64_t pixels = 0;     ///< width * height
   std::uint64_t values = 0;     ///< compared: width * height * 4
   std::uint64_t differing = 0;  ///< of them, with other bits (+0 and -0 are equal)
   int max_ulp = 0;              ///< largest distance in half-ULPs (half_ulps_between)
@@ -62,6 +63,19 @@ struct Difference {
 
 /// Both RGBA16F and of one size.
 Difference compare_images(const Image& a, const Image& b);
+
+/// When two pixels differ: by more than `most` in red, green, blue or, if it is an opacity, alpha,
+/// from every pixel of the other picture that lies within `search_px` of the same place.
+struct PixelLimit {
+  double most = 0.0;
+  bool of_codes = false;  ///< of sRGB, 0 to 255; else of linear light. Alpha's are 0 to 255 then
+  bool has_opacity = false;
+  int search_px = 0;
+};
+
+/// How many pixels of either picture differ. Both RGBA16F and of one size. NaN and infinity differ
+/// from all that has other bits.
+std::uint64_t pixels_beyond(const Image& a, const Image& b, const PixelLimit& limit);
 
 /// Black where the pictures are equal. Else the pixel's largest difference on a logarithmic
 /// scale: blue for 1 half-ULP, then green and yellow, to red for 2^15.

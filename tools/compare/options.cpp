@@ -12,11 +12,13 @@
 namespace softfocus {
 
 bool has_limits(const Tolerance& tolerance) {
-  return tolerance.max_half_ulps || tolerance.max_flip || tolerance.max_error;
+  return tolerance.max_half_ulps || tolerance.max_flip || tolerance.max_error ||
+         tolerance.max_pixels;
 }
 
 std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Difference& difference,
-                                       std::optional<double> flip) {
+                                       std::optional<double> flip,
+                                       std::optional<std::uint64_t> pixels_beyond) {
   std::vector<LimitFinding> findings;
   if (tolerance.max_half_ulps) {
     findings.push_back({"--max-ulps", " half-ULPs", static_cast<double>(*tolerance.max_half_ulps),
@@ -25,6 +27,13 @@ std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Differe
   if (tolerance.max_flip) findings.push_back({"--max-flip", "", *tolerance.max_flip, flip.value()});
   if (tolerance.max_error) {
     findings.push_back({"--max-error", "", *tolerance.max_error, difference.max_error});
+  }
+  if (tolerance.max_pixels) {
+    const double all = static_cast<double>(difference.pixels);
+    findings.push_back({"--max-pixels", " pixels",
+                        tolerance.is_percent ? std::floor(*tolerance.max_pixels * all / 100.0)
+                                             : *tolerance.max_pixels,
+                        static_cast<double>(pixels_beyond.value())});
   }
   return findings;
 }
@@ -48,7 +57,7 @@ constexpr Parameter
     kMaxUlps{"max-ulps", "Tolerance: status 0 up to so many half-ULPs between any two values",
         0, 65535, 0, "half-ULPs", "N", "", 1},
     kMaxFlip{"max-flip", "Tolerance: status 0 up to this mean FLIP", 0.0, 1.0, 0.0, "", "E"},
-    kMaxDifference{"max-error",
+    kMaxError{"max-error",
         "Tolerance: status 0 up to this difference of any red, green or blue, in linear light",
         0.0, 1e6, 0.0, "", "E"},
     kPoint{"point",
@@ -66,6 +75,45 @@ void add_map(CLI::App& parser, const std::string& name, const std::string& help,
     }
     file = text;
   });
+}
+
+/// N or N%.
+void read_max_pixels(const std::string& text, Tolerance& tolerance) {
+  constexpr const char* kWanted = "a number of pixels, or of percent as 0.1%";
+  tolerance.is_percent = text.ends_with('%');
+  tolerance.max_pixels =
+      tolerance.is_percent
+          ? parse_number("--max-pixels", text.substr(0, text.size() - 1), 0.0, 100.0, kWanted)
+          : parse_whole("--max-pixels", text, 0, 1 << 30, kWanted);
+}
+
+/// D in linear light or D/255 in steps of sRGB.
+void read_max_difference(const std::string& text, PixelLimit& pixels) {
+  constexpr std::string_view kOfCodes = "/255";
+  constexpr const char* kWanted = "a number of linear light, or of sRGB's steps as 8/255";
+  pixels.of_codes = text.ends_with(kOfCodes);
+  const std::string number = pixels.of_codes ? text.substr(0, text.size() - kOfCodes.size()) : text;
+  pixels.most = parse_number("--max-difference", number, 0.0, 1e6, kWanted);
+}
+
+void add_pixel_limits(CLI::App& parser, Tolerance& tolerance) {
+  add_value(parser, "--max-pixels", "N[%]",
+            "Tolerance: status 0 up to so many pixels that differ by more than --max-difference",
+            [&tolerance](const std::string& text) { read_max_pixels(text, tolerance); });
+  add_value(parser, "--max-difference", "D[/255]",
+            "Of --max-pixels: in any red, green or blue, in linear light, or as D/255 in steps of "
+            "sRGB (default: 0)",
+            [&tolerance](const std::string& text) {
+              read_max_difference(text, tolerance.pixels);
+              if (!tolerance.max_pixels) tolerance.max_pixels = 0.0;
+            });
+  add_value(parser, "--search", "PIXELS",
+            "Of --max-pixels: a pixel is as good that lies so near in the other picture, 0 to 8: "
+            "for edges that moved (default: 0)",
+            [&tolerance](const std::string& text) {
+              tolerance.pixels.search_px = parse_whole("--search", text, 0, 8, "0 to 8 pixels");
+              if (!tolerance.max_pixels) tolerance.max_pixels = 0.0;
+            });
 }
 
 void add_frames(CLI::App& parser, const std::string& name, const std::string& help,
@@ -97,7 +145,7 @@ void check_sequences(const CompareOptions& options) {
       has_limits(options.tolerance)) {
     throw UsageError(
         "--flicker compares two sequences; leave out A, B, --diff, --diff-ulps, --regions, "
-        "--hdr, --point, --max-ulps, --max-flip and --max-error");
+        "--hdr, --point, --max-ulps, --max-flip, --max-error and --max-pixels");
   }
   if (options.frames.size() != options.truth.size()) {
     throw UsageError("--flicker has " + std::to_string(options.frames.size()) +
@@ -159,7 +207,8 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   begin_group(parser, "Tolerance");
   add_parameter(parser, kMaxUlps, "", options.tolerance.max_half_ulps);
   add_parameter(parser, kMaxFlip, "", options.tolerance.max_flip);
-  add_parameter(parser, kMaxDifference, "", options.tolerance.max_error);
+  add_parameter(parser, kMaxError, "", options.tolerance.max_error);
+  add_pixel_limits(parser, options.tolerance);
   begin_group(parser, "Measures");
   add_parameter(parser, kPoint, "", options.point_radius_px);
   add_frames(parser, "--flicker", "Frames of a sequence, in order, instead of A and B",

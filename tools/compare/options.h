@@ -20,6 +20,9 @@ struct Tolerance {
   std::optional<int> max_half_ulps;  ///< of any value, alpha too
   std::optional<double> max_flip;    ///< mean over the picture
   std::optional<double> max_error;   ///< of a colour's value (Difference::max_error)
+  std::optional<double> max_pixels;  ///< that differ by more than `pixels`
+  bool is_percent = false;           ///< max_pixels is of all pixels
+  PixelLimit pixels;
 };
 
 bool has_limits(const Tolerance& tolerance);
@@ -34,9 +37,10 @@ struct LimitFinding {
 
 inline bool is_kept(const LimitFinding& finding) { return finding.value <= finding.limit; }
 
-/// A finding for each limit. `flip` is needed with max_flip alone.
+/// A finding for each limit. `flip` is needed with max_flip alone, `pixels_beyond` with max_pixels.
 std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Difference& difference,
-                                       std::optional<double> flip);
+                                       std::optional<double> flip,
+                                       std::optional<std::uint64_t> pixels_beyond);
 
 /// "--max-ulps 4: broken by 1, 5 half-ULPs".
 std::string limit_text(const LimitFinding& finding);
