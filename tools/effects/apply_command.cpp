@@ -199,7 +199,7 @@ struct ApplyOptions {
   FileFormat format = FileFormat::png;
   std::optional<std::string> layer;
   VelocityOptions velocity;
-  bool flips = false;
+  FileReading files;
   EffectOptions effects;
   Profile profile{};
   std::string profile_name = "ieee";
@@ -241,7 +241,7 @@ OpenedPicture read_picture(const ApplyOptions& options) {
   PictureSources& sources = opened.sources;
   const PictureFile& file = sources.colour_file;
   take_data_window(sources.colour_file);
-  flip_if(options.flips, sources.colour_file);
+  take(options.files, sources.colour_file);
   check_memory(options.picture, {file.width, file.height}, 64);
   sources.colour = choose_colour(file, options.layer, "--layer");
   sources.notes = find_notes(file.path, file.bytes).notes;
@@ -316,7 +316,7 @@ Bytes picture_file(const ApplyOptions& options, const OpenedPicture& opened,
   const OpenedLayer& layer = opened.layer;
   PictureExtras extras{.alpha = layer.opacity,
                        .has_depth = layer.depth.has_value(),
-                       .icc = opened.sources.colour_file.icc};
+                       .icc = kept_profile(opened.sources.colour_file)};
   std::vector<std::size_t> kept;
   if (layer.depth) extras.depth_m = *layer.depth;
   if (keeps_windows(options, opened)) {
@@ -410,7 +410,7 @@ Command add_apply_command(CLI::App& program) {
   begin_group(*parser, "Effects");
   add_effect_options(*parser, options->effects);
   add_text(*parser, "--layer", "NAME", "The colour's layer of an EXR", options->layer);
-  add_flip_option(*parser, options->flips);
+  add_file_options(*parser, options->files);
   add_text(*parser, "--velocity", "FILE",
            std::string{"How each pixel moves, for motion blur: "} + kVelocityFiles +
                "; pixels a frame, to the right and down",

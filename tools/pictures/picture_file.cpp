@@ -317,7 +317,8 @@ ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bo
                            float light) {
   const auto add = [&](std::size_t plane, std::size_t first, std::size_t last) {
     planes_.push_back(plane);
-    const NumberType type = file.planes[plane].type;
+    const bool is_light = file.to_srgb && first < 3;
+    const NumberType type = is_light ? NumberType::single : file.planes[plane].type;
     channels_.push_back(
         {first, last, type, half_table(type, file.is_srgb && first < 3), first < 3 ? light : 1.0f});
   };
@@ -352,6 +353,21 @@ BrightColours bright_colours(std::span<const float> values, float most) {
   }
   return found;
 }
+
+namespace {
+
+/// Red, green and blue, the first of `values`, which are read together.
+void convert(const PictureFile& file, const ColourLayer& layer, std::vector<PlaneValues>& values) {
+  if (layer.green == layer.red || values.size() < 3) return;
+  try {
+    profile_to_light(file, full_scale(file.planes[layer.red].type),
+                     {&values[0], &values[1], &values[2]});
+  } catch (const FileError& error) {
+    refuse(file, error);
+  }
+}
+
+}  // namespace
 
 bool may_be_bright(const PictureFile& file, const ColourLayer& layer) {
   const NumberType type = file.planes[layer.red].type;
@@ -397,6 +413,7 @@ Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with
   const ColourHalves halves{file, layer, with_alpha, std::ldexp(1.0f, -picture.light_power)};
   for (std::size_t i = 0; i < planes.size(); i += at_once) {
     read(i);
+    if (file.to_srgb) convert(file, layer, values);
     for (std::size_t p = i; p < i + at_once; ++p) halves.put(p, values[p - i], picture.image);
   }
   return picture;

@@ -10,6 +10,7 @@
 //               (height, width, 1 to 4): Y, YA, RGB, RGBA
 //   EXR         its channels, "layer.R"; of a file with several parts "part.layer.R"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -77,6 +78,7 @@ struct PictureFile {
   bool top_first = false;  ///< of a PFM: rows run from the top down
   Bytes icc{};             ///< an ICC profile of red, green and blue that stands in the file
   std::string icc_name{};  ///< its name, or that of another profile
+  bool to_srgb = false;    ///< colours are converted from the profile to sRGB's light
   bool has_rows = true;    ///< whether a row's values lie together, as `rows` of its reader needs
   int exif_orientation =
       1;                 ///< 1 if the pixels stand upright, else 2 to 8; planes are turned by it
@@ -197,6 +199,13 @@ class ColourHalves {
   std::vector<std::size_t> planes_{};
   std::vector<Channel> channels_{};
 };
+
+/// Why this build converts no profiles, as a sentence; empty if it does.
+std::string_view missing_lcms();
+
+/// Turns numbers of 0 to `full` along the file's profile into light of sRGB's primaries, which may
+/// be below 0. Throws FileError, the file unnamed, for a profile that cannot be used.
+void profile_to_light(const PictureFile& file, double full, const std::array<PlaneValues*, 3>& rgb);
 
 /// The largest finite number, and how many are beyond `most` or infinite.
 struct BrightColours {

@@ -329,7 +329,7 @@ void write_circles(const InspectOptions& options) {
 std::vector<InspectedFile> inspected(const std::string& name, const DepthOptions& reading) {
   std::vector<InspectedFile> all;
   PictureFile file = open_picture_file(name);
-  flip_if(reading.flips, file);
+  take(reading.files, file);
   std::optional<PhoneDepth> phone;
   if (file.reader == &kJpegReader) phone = find_phone_depth(file.bytes);
   all.push_back(inspected(std::move(file), reading));

@@ -20,6 +20,7 @@ constexpr std::array kHoles{
     Choice<Holes>{"background", Holes::background}, Choice<Holes>{"near", Holes::near_side},
     Choice<Holes>{"far", Holes::far_side}, Choice<Holes>{"infinity", Holes::infinity},
     Choice<Holes>{"refuse", Holes::refused}};
+constexpr std::array kIccs{Choice<bool>{"keep", false}, Choice<bool>{"srgb", true}};
 constexpr std::array kFits{Choice<DepthFit>{"stretch", DepthFit::stretch},
                            Choice<DepthFit>{"crop", DepthFit::crop}};
 
@@ -37,7 +38,7 @@ void add_mending_options(CLI::App& parser, Mending& mending) {
 /// A file whose values hide depths, as a mask of the map's size.
 PlaneValues read_mask(const std::string& name, const PictureFile& depth, bool flips) {
   PictureFile file = open_picture_file(name);
-  flip_if(flips, file);
+  take({flips}, file);
   const PictureBox& size = depth.shown;
   if (file.width != size.width || file.height != size.height) {
     throw UsageError("--mask '" + name + "' is " + size_text({file.width, file.height}) +
@@ -153,18 +154,28 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
              "A depth of another shape than the picture is stretched, or its middle is taken "
              "(default: stretched by up to 2 %, else refused)",
              kFits, options.fit);
-  add_flip_option(parser, options.flips);
+  add_file_options(parser, options.files);
   add_mending_options(parser, options.mending);
 }
 
-void add_flip_option(CLI::App& parser, bool& flips) {
+void add_file_options(CLI::App& parser, FileReading& files) {
   add_flag(parser, "--flip",
            "Rows of PFM files run from the top down, or of those that bear Photoshop's mark, whose "
            "do, from the bottom up",
-           flips);
+           files.flips);
+  add_choice(
+      parser, "--icc",
+      "Colours of an ICC profile stay its own, which a .png gets, or become sRGB's (default: "
+      "keep)",
+      kIccs, files.to_srgb);
 }
 
-void flip_if(bool flips, PictureFile& file) { file.top_first = file.top_first != flips; }
+void take(const FileReading& files, PictureFile& file) {
+  file.top_first = file.top_first != files.flips;
+  if (!files.to_srgb || file.icc.empty()) return;
+  if (!missing_lcms().empty()) throw UsageError("--icc srgb: " + std::string{missing_lcms()});
+  file.to_srgb = true;
+}
 
 namespace {
 
@@ -242,9 +253,9 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
   } else if (sources.colour_file.reader == &kJpegReader) {
     open_phone_depth(sources);
   }
-  flip_if(options.flips, sources.colour_file);
+  take(options.files, sources.colour_file);
   if (sources.depth_file) {
-    flip_if(options.flips, *sources.depth_file);
+    take({options.files.flips}, *sources.depth_file);
     check_shape(sources.colour_file, *sources.depth_file, options);
   }
   take_windows(sources);
@@ -260,8 +271,8 @@ std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
   PictureSources sources{.colour_file = std::move(*colour_file)};
   if (!depth.empty()) sources.depth_file = open_on_disk(depth, why);
   if (!depth.empty() && !sources.depth_file) return std::nullopt;
-  flip_if(options.flips, sources.colour_file);
-  if (sources.depth_file) flip_if(options.flips, *sources.depth_file);
+  take(options.files, sources.colour_file);
+  if (sources.depth_file) take({options.files.flips}, *sources.depth_file);
   const PictureFile& of_depth = sources.of_depth();
   if (of_depth.width != sources.colour_file.width ||
       of_depth.height != sources.colour_file.height) {
@@ -350,7 +361,8 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
   const PictureFile& file = sources.of_depth();
   const NumberType type = file.planes[sources.depth_plane].type;
   PlaneValues codes = depth_codes(file, sources.depth_plane);
-  PlaneValues mask = options.mask ? read_mask(*options.mask, file, options.flips) : PlaneValues{};
+  PlaneValues mask =
+      options.mask ? read_mask(*options.mask, file, options.files.flips) : PlaneValues{};
   const PictureBox box = box_of(sources.colour_file);
   const bool is_beside = show_alike(sources) && box != box_of(file);
   const Part part =

@@ -20,6 +20,17 @@ namespace softfocus {
 /// middle, of the picture's shape.
 enum class DepthFit : std::uint8_t { stretch, crop };
 
+/// How files are taken, whatever is in them.
+struct FileReading {
+  bool flips = false;    ///< rows of PFM files run the other way
+  bool to_srgb = false;  ///< colours of an ICC profile are converted
+};
+
+/// Adds --flip and --icc.
+void add_file_options(CLI::App& parser, FileReading& files);
+/// For a file of colours or a depth.
+void take(const FileReading& files, PictureFile& file);
+
 struct DepthOptions {
   std::optional<std::string> layer;  ///< of the colour
   std::optional<std::string> depth_layer;
@@ -30,7 +41,7 @@ struct DepthOptions {
   std::vector<double> missing_codes;
   Holes holes = Holes::background;
   std::optional<DepthFit> fit;  ///< none: stretched by up to 2 %
-  bool flips = false;           ///< rows of PFM files run the other way
+  FileReading files;
   Mending mending;
 };
 
@@ -61,10 +72,6 @@ struct PictureSources {
 
   const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
 };
-
-/// --flip, and what it does to a file.
-void add_flip_option(CLI::App& parser, bool& flips);
-void flip_if(bool flips, PictureFile& file);
 
 /// Finds the views beside that of the chosen colour; its depth is of the same.
 void find_views(PictureSources& sources);

@@ -323,6 +323,11 @@ std::vector<std::size_t> other_planes(const PictureSources& sources) {
   return others;
 }
 
+std::span<const std::byte> kept_profile(const PictureFile& file) {
+  if (file.to_srgb) return {};
+  return file.icc;
+}
+
 bool keeps_profile(FileFormat format) {
   return format == FileFormat::png || format == FileFormat::png_16;
 }
@@ -337,7 +342,7 @@ Bytes refocused_file(const RefocusOptions& options, const PictureSources& source
   PictureExtras extras{.alpha = result.opacity,
                        .replaced = views,
                        .light_power = result.light_power,
-                       .icc = sources.colour_file.icc};
+                       .icc = kept_profile(sources.colour_file)};
   PlaneValues radii_px;
   std::vector<std::size_t> kept;
   if (is_of_exr(options.format) && options.show == RefocusShow::image) {

@@ -59,6 +59,9 @@ PlaneValues circle_radii(const DepthMap& depth, const UsedRefocus& used);
 /// Whether a file of this format is an EXR.
 bool is_of_exr(FileFormat format);
 
+/// The file's profile, unless colours were converted from it.
+std::span<const std::byte> kept_profile(const PictureFile& file);
+
 /// Whether a file of that format has a place for a profile of its colours.
 bool keeps_profile(FileFormat format);
 

@@ -69,7 +69,11 @@ std::string depth_line(const RefocusOptions& options, const PictureSources& sour
   const int orientation = sources.colour_file.exif_orientation;
   if (orientation != 1) line += "; EXIF turns the picture, " + std::to_string(orientation);
   const std::string& icc = sources.colour_file.icc_name;
-  if (!icc.empty()) line += "; the colours are of the profile " + icc;
+  if (!icc.empty()) {
+    line += sources.colour_file.to_srgb ? "; the colours are converted to sRGB from the profile "
+                                        : "; the colours are of the profile ";
+    line += icc;
+  }
   if (used.light_power > 0) {
     line += "; colours up to " + short_number(used.brightest) + " are filtered at 1/" +
             std::to_string(1 << used.light_power) + " of their light";
@@ -255,10 +259,12 @@ std::string cut_light_warning(const std::string& colour, std::size_t cut, double
 }
 
 std::string lost_profile_warning(const PictureFile& file, FileFormat format) {
-  if (file.icc_name.empty() || (keeps_profile(format) && !file.icc.empty())) return {};
+  const bool is_kept = keeps_profile(format) && !file.icc.empty();
+  if (file.icc_name.empty() || file.to_srgb || is_kept) return {};
   return "'" + file.path.string() + "' has colours of the profile " + file.icc_name +
          ", which the result has no place for: programs will take them for sRGB; " +
-         (file.icc.empty() ? "it is no profile of red, green and blue" : ".png keeps it");
+         (file.icc.empty() ? "it is no profile of red, green and blue"
+                           : ".png keeps it, and --icc srgb converts the colours");
 }
 
 std::string lost_view_warning(const std::string& colour, const OtherView& view) {

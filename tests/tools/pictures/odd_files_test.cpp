@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -71,6 +72,41 @@ Bytes profile(std::string_view space, std::string_view name, bool is_wide) {
   }
   text += number(1) + "desc" + number(144) + number(data.size()) + data;
   return bytes_of(text.replace(0, 4, number(text.size())));
+}
+
+/// Display P3's red, green and blue, adapted to D50, with a line for a curve (ICC.1:2001-04).
+Bytes linear_p3_profile() {
+  std::string text(128, '\0');
+  const auto number = [](double value) {
+    std::string bytes;
+    const auto bits = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(bits >> shift & 0xFF);
+    return bytes;
+  };
+  const auto xyz = [&](double x, double y, double z) {
+    return "XYZ " + number(0) + number(65536 * x) + number(65536 * y) + number(65536 * z);
+  };
+  const std::string line = "curv" + number(0) + number(0);
+  const std::vector<std::pair<std::string, std::string>> tags{
+      {"wtpt", xyz(0.9642, 1.0, 0.8249)},
+      {"rXYZ", xyz(0.51512, 0.24120, -0.00105)},
+      {"gXYZ", xyz(0.29198, 0.69225, 0.04189)},
+      {"bXYZ", xyz(0.15710, 0.06657, 0.78407)},
+      {"rTRC", line},
+      {"gTRC", line},
+      {"bTRC", line}};
+  text.replace(8, 4, number(0x02100000)).replace(12, 12, "mntrRGB XYZ ").replace(36, 4, "acsp");
+  text.replace(68, 12, xyz(0.9642, 1.0, 0.8249).substr(8));
+  std::string data;
+  text += number(static_cast<double>(tags.size()));
+  const std::size_t first = 132 + 12 * tags.size();
+  for (const auto& [name, value] : tags) {
+    text += name + number(static_cast<double>(first + data.size())) +
+            number(static_cast<double>(value.size()));
+    data += value;
+  }
+  text += data;
+  return bytes_of(text.replace(0, 4, number(static_cast<double>(text.size()))));
 }
 
 Bytes grey_png() {
@@ -207,6 +243,32 @@ TEST_CASE("ICC profiles: PNG and JPEG keep theirs in a PNG, and are told where t
   CHECK(run.status == 0);
   CHECK(contains(run.err, "the profile Display P3"));
   CHECK(open_picture_file(out).icc == p3);
+}
+
+TEST_CASE("--icc srgb: a colour's light is that of sRGB's primaries, and the profile goes") {
+  const TemporaryDirectory directory;
+  const std::string from = directory.file("a.png"), to = directory.file("o.exr");
+  const auto applied = [&](const std::string& out) {
+    return run_program({"apply", from, "-o", out, "--effect", "gaussian:sigma=0", "--icc", "srgb"});
+  };
+  write(from, with_png_profile(grey_png(), linear_p3_profile()));
+  const ProgramRun run = applied(directory.file("o.npy"));
+  if (!missing_lcms().empty()) {
+    CHECK(run.status == 2);
+    CHECK(contains(run.err, "liblcms2-dev"));
+    return;
+  }
+  CAPTURE(run.err);
+  REQUIRE(run.status == 0);
+  // Of Display P3 to sRGB, by the matrices of both (CSS Color 4).
+  const std::array<float, 3> p3{137.0f / 255.0f, 188.0f / 255.0f, 225.0f / 255.0f};
+  const glm::vec4 colour = load_texel(read_image_file(directory.file("o.npy")).image, 3, 3);
+  CHECK(colour.x == doctest::Approx(1.2249f * p3[0] - 0.2247f * p3[1]).epsilon(0.01));
+  CHECK(colour.y == doctest::Approx(-0.0420f * p3[0] + 1.0419f * p3[1]).epsilon(0.01));
+  CHECK(colour.z ==
+        doctest::Approx(-0.0197f * p3[0] - 0.0786f * p3[1] + 1.0979f * p3[2]).epsilon(0.01));
+  REQUIRE(applied(directory.file("o.png")).status == 0);
+  CHECK(open_picture_file(directory.file("o.png")).icc_name.empty());
 }
 
 TEST_CASE("refocus: colours beyond the largest half keep their light") {
