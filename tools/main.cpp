@@ -7,6 +7,7 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/interrupts.h"
 #include "tools/cli/platform.h"
+#include "tools/gl/driver/driver.h"
 #include "tools/render/options.h"
 
 namespace softfocus {
@@ -33,6 +34,8 @@ int run_command(const Command& command) {
   try {
     return finish(command.work(), failed);
   } catch (const UsageError& error) {
+    return report(error.what(), kWrongUsage);
+  } catch (const DriverError& error) {  // it cannot run here
     return report(error.what(), kWrongUsage);
   } catch (const std::bad_alloc&) {
     return report(

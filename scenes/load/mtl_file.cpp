@@ -206,7 +206,8 @@ Map read_map(MtlText& mtl, const std::string& key, std::string_view line) {
     } else {
       constexpr std::array<std::string_view, 9> kOthers = {
           "-blendu", "-blendv", "-boost", "-mm", "-texres", "-bm", "-imfchan", "-type", "-cc"};
-      if (std::ranges::find(kOthers, option) == kOthers.end()) break;  // a file's name
+      if (std::find(kOthers.begin(), kOthers.end(), option) == kOthers.end())
+        break;  // a file's name
       next_word(rest);
       if (option == "-mm") next_word(rest);
       if (mtl.told.insert(option).second) {
@@ -338,7 +339,8 @@ void load_mtl(const std::filesystem::path& library, MtlMaterials& materials) {
   tinyobj::LoadMtl(&index_of_name, &read, &numbers, &warning, &error);
   for (const tinyobj::material_t& from : read) {
     if (from.name.empty() || materials.by_name.contains(from.name)) continue;
-    const Maps& maps = mtl.maps.at(from.name);
+    const auto found = mtl.maps.find(from.name);  // tinyobjloader ends a name at a zero
+    const Maps maps = found != mtl.maps.end() ? found->second : Maps{};
     materials.by_name.emplace(from.name, make_material(library, from, maps, materials));
     const Map& placed = maps.diffuse.file.empty() ? maps.opacity : maps.diffuse;
     materials.placements.emplace(from.name, placed.placement);

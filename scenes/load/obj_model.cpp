@@ -271,7 +271,7 @@ void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjMo
     return face.material < 0 ||
            model.materials[static_cast<std::size_t>(face.material)].opacity > 0;
   };
-  if (std::ranges::any_of(obj.faces, is_shown)) return;
+  if (std::any_of(obj.faces.begin(), obj.faces.end(), is_shown)) return;
   for (Material& material : model.materials) {
     if (material.opacity > 0.0f) continue;
     material.opacity = 1.0f;

@@ -97,13 +97,13 @@ std::vector<std::uint32_t> with_holes_turned(const std::vector<glm::dvec2>& flat
   std::vector<std::uint32_t> order(flat.size());
   std::iota(order.begin(), order.end(), 0u);
   std::vector<std::uint32_t> by_place = order;
-  std::ranges::sort(by_place, [&](std::uint32_t a, std::uint32_t b) {
+  std::sort(by_place.begin(), by_place.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::tie(flat[a].x, flat[a].y, a) < std::tie(flat[b].x, flat[b].y, b);
   });
   for (std::size_t i = 0; i + 1 < by_place.size(); ++i) {
     if (flat[by_place[i]] != flat[by_place[i + 1]]) continue;
-    const auto one = std::ranges::find(order, by_place[i]);
-    const auto other = std::ranges::find(order, by_place[i + 1]);
+    const auto one = std::find(order.begin(), order.end(), by_place[i]);
+    const auto other = std::find(order.begin(), order.end(), by_place[i + 1]);
     const auto first = std::min(one, other);
     const auto back = std::max(one, other);
     const std::vector<std::uint32_t> loop(first, back);
@@ -112,7 +112,7 @@ std::vector<std::uint32_t> with_holes_turned(const std::vector<glm::dvec2>& flat
     if (twice_area(flat, loop) * twice_area(flat, rest) <= 0.0) continue;
     if (is_nested(flat, loop, rest) || is_nested(flat, rest, loop)) std::reverse(first + 1, back);
   }
-  if (twice_area(flat, order) < 0.0) std::ranges::reverse(order);
+  if (twice_area(flat, order) < 0.0) std::reverse(order.begin(), order.end());
   return order;
 }
 

@@ -143,9 +143,10 @@ TEST_CASE("colours are one number or three; what is none is told") {
 TEST_CASE("Ns 0 is no highlight") {
   for (const auto& [written, shines] :
        {std::pair{"Ns 0\n", false}, {"Ns nan\n", true}, {"Ns 0.5\n", true}, {"", true}}) {
-    CAPTURE(written);
-    const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                             std::string("newmtl a\nKs 1 1 1\n") + written);
+    const std::string text = std::string("newmtl a\nKs 1 1 1\n") + written;
+    CAPTURE(text);
+    const ObjModel model =
+        load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"), text);
     CHECK((model.materials[0].specular != glm::vec3{0.0f}) == shines);
   }
 }
@@ -173,6 +174,13 @@ TEST_CASE("options of maps place the texture, or are told once") {
   CHECK(turbulent.y == 0.5f);
   CHECK(std::fabs(turbulent.x - 0.25f) <= 0.1f);
   CHECK(turbulent.x != 0.25f);
+}
+
+TEST_CASE("a material whose name has a zero in it is no failure") {
+  const std::string name("a\0b", 3);
+  const ObjModel model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                           "newmtl " + name + "\nKd 1 0 0\nmap_Kd wood.png\n");
+  CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
 }
 
 TEST_CASE("a library with a byte order mark is read") {

@@ -8,10 +8,14 @@ height x width, metres in float16 or float32. RESULT.npy is height x width x 4, 
 the depth in the last channel: what `softfocus refocus -o RESULT.npy` writes. SETTING is a field of
 softfocus_settings, such as focus_m=2.5 or method=disc-layers.
 
-The library is the installed one, or the file that SOFTFOCUS_LIBRARY names. Needs NumPy.
+The library is the file that SOFTFOCUS_LIBRARY names, or the installed one, or that of build/ in the
+checkout that this file stands in. Needs NumPy.
 """
 
 import ctypes
+import ctypes.util
+import difflib
+import glob
 import os
 import sys
 
@@ -88,8 +92,17 @@ class Settings(ctypes.Structure):
     ]
 
 
+def find_library():
+    named = os.environ.get("SOFTFOCUS_LIBRARY") or ctypes.util.find_library("softfocus")
+    if named:
+        return named
+    checkout = os.path.join(os.path.dirname(os.path.abspath(__file__)), *[".."] * 3)
+    built = glob.glob(os.path.join(checkout, "build*", "**", "libsoftfocus.so.*"), recursive=True)
+    return min(built, key=len) if built else "libsoftfocus.so.0"
+
+
 def load_library():
-    library = ctypes.CDLL(os.environ.get("SOFTFOCUS_LIBRARY", "libsoftfocus.so.0"))
+    library = ctypes.CDLL(find_library())
     library.softfocus_open.argtypes = [ctypes.c_void_p, ctypes.c_int]
     library.softfocus_close.argtypes = [ctypes.c_void_p]
     library.softfocus_message.argtypes = [ctypes.c_void_p]
@@ -112,8 +125,20 @@ def place(pixels, colour, depth):
     return pixels
 
 
+def set_one(settings, name, value):
+    names = [field for field, _ in Settings._fields_ if field != "struct_size"]
+    if name not in names:
+        near = difflib.get_close_matches(name, names, 1)
+        meant = f"; did you mean '{near[0]}'?" if near else f"; there are {', '.join(names)}"
+        raise ValueError(f"there is no setting '{name}'{meant}")
+    setattr(settings, name, value.encode() if isinstance(value, str) else value)
+
+
 def refocus(colour, depth, **chosen):
-    """The picture as a lens makes it, float16 with the depth in its last channel."""
+    """The picture as a lens makes it, float16 with the depth in its last channel.
+
+    `chosen` are fields of softfocus_settings; method and profile are strings. Raises ValueError.
+    """
     if colour.ndim != 3 or colour.shape[2] < 3 or depth.shape != colour.shape[:2]:
         raise ValueError(f"shapes {colour.shape} and {depth.shape}; give (h, w, 3) and (h, w)")
     for name, array in (("colour", colour), ("depth", depth)):
@@ -127,7 +152,7 @@ def refocus(colour, depth, **chosen):
         settings = Settings()
         library.softfocus_init_settings(ctypes.byref(settings), ctypes.sizeof(settings))
         for name, value in chosen.items():
-            setattr(settings, name, value)
+            set_one(settings, name, value)
         picture = place(Picture(), colour, depth)
         picture.height, picture.width = depth.shape
         result = numpy.empty(depth.shape + (4,), numpy.float16)
@@ -140,15 +165,20 @@ def refocus(colour, depth, **chosen):
         library.softfocus_close(context)
 
 
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        sys.exit(f"'{text}' is no number")
+
+
 def main(arguments):
     if len(arguments) < 3:
         sys.exit(__doc__)
     chosen = {}
     for argument in arguments[3:]:
         name, _, value = argument.partition("=")
-        if name not in dict(Settings._fields_):
-            sys.exit(f"there is no setting {name}")
-        chosen[name] = value.encode() if name in ("method", "profile") else float(value)
+        chosen[name] = value if name in ("method", "profile") else number(value)
     try:
         result = refocus(numpy.load(arguments[0]), numpy.load(arguments[1]), **chosen)
     except ValueError as error:

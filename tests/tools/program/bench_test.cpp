@@ -317,11 +317,11 @@ TEST_CASE("bench: --copy times a frame whose pictures are copied, here and on a 
   }
 }
 
-TEST_CASE("bench: a driver that is not there is told in one line, with status 1") {
+TEST_CASE("bench: a driver that is not there is told in one line, with status 2") {
   if (!has_driver("llvmpipe")) return;
   const EnvironmentVariable none{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json"};
   const ProgramRun run = run_program({"bench", "--image", "64x64", "--vs", "llvmpipe"});
-  CHECK(run.status == 1);
+  CHECK(run.status == 2);
   CHECK(run.out == "");
   CHECK(is_one_line(run.err));
   CHECK(contains(run.err, "driver llvmpipe: "));

@@ -71,7 +71,7 @@ TEST_CASE("refocus.py gives what the program writes, to the bit") {
                                    "--depth-encoding", "metres"};
     words.insert(words.end(), pair.options.begin(), pair.options.end());
     const ProgramRun run = run_program(words);
-    CHECK(run.err == "");
+    CHECK(tells_depth_alone(run.err));
     REQUIRE(run.status == 0);
     words = {colour, depth, ours};
     words.insert(words.end(), pair.settings.begin(), pair.settings.end());
@@ -80,6 +80,16 @@ TEST_CASE("refocus.py gives what the program writes, to the bit") {
   }
   CHECK(!done(library, script, {colour, depth, ours, "method=none", "2>/dev/null"}));
   CHECK(!done(library, script, {depth, depth, ours, "2>/dev/null"}));
+  CHECK(!done(library, script, {colour, depth, ours, "focus=2", "2>/dev/null"}));
+  const std::string call =
+      "import sys; sys.path.insert(0, sys.argv[1]); import numpy as n, refocus as r; "
+      "c = n.ones((8, 9, 3), 'f4'); d = n.ones((8, 9), 'f4'); ";
+  const std::vector<std::string> at{SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding"};
+  CHECK(done(library + " -B -c", call + "r.refocus(c, d, method='disc-layers')", at));
+  CHECK(done(library + " -B -c",
+             call + "\ntry: r.refocus(c, d, fnumber=2)\n"
+                    "except ValueError as e: assert 'f_number' in str(e)\nelse: sys.exit(1)",
+             at));
 #else
   skip("", "a build without the shared library");
 #endif

@@ -34,8 +34,9 @@ Image squares(int width, int height) {
 
 /// Numbers of a map: the left half is one thing, the right half another.
 std::vector<float> halves(float left, float right, int width = kAcross, int height = kDown) {
-  std::vector<float> values;
-  for (int i = 0; i < width * height; ++i) values.push_back(i % width < width / 2 ? left : right);
+  std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  int i = 0;
+  for (float& value : values) value = i++ % width < width / 2 ? left : right;
   return values;
 }
 
@@ -190,8 +191,9 @@ TEST_CASE("refocus: a depth of nearly the picture's shape is stretched, and told
 TEST_CASE("refocus: --depth-fit crop takes the middle of the depth, as a picture of it shows it") {
   const TemporaryDirectory directory;
   put(directory, "c.npy", encode_npy(squares(kAcross, kDown)));
-  std::vector<float> wide;
-  for (int i = 0; i < 80 * kDown; ++i) wide.push_back(1.0f + static_cast<float>(i % 80));
+  std::vector<float> wide(std::size_t{80} * kDown);
+  int i = 0;
+  for (float& value : wide) value = 1.0f + static_cast<float>(i++ % 80);
   put(directory, "d.pfm", encode_grey_pfm(wide, 80, kDown));
   refocused(directory, {"c.npy", "d.pfm"}, {"--depth-fit", "crop", "--depth-encoding", "metres"});
   for (const int x : {0, 31, 63}) CHECK(depth_in_result(directory, x, 7) == 1.0 + 8 + x);
@@ -208,6 +210,7 @@ TEST_CASE("refocus: --circles has the circles of a lens that has them") {
               {"--focus", "2", "--blur-at-infinity", "5", "--depth-encoding", "metres"});
   refocused(directory, {"c.npy", "sky.pfm"}, lens);
   std::vector<float> expected;
+  expected.reserve(kAcross);
   for (int x = 0; x < kAcross; ++x) expected.push_back(red_in_result(directory, x, 20));
   Words circles = method;
   circles.insert(circles.end(), {"--circles", directory.file("r.pfm")});

@@ -50,8 +50,9 @@ std::string grey_jpeg(const std::string& segments) {
 
 /// A map of 16x8 codes, left and right, as the text of a PNG in base64.
 std::string map_text(std::uint16_t left, std::uint16_t right) {
-  std::vector<std::uint16_t> codes;
-  for (int i = 0; i < 128; ++i) codes.push_back(i % 16 < 8 ? left : right);
+  std::vector<std::uint16_t> codes(128);
+  int i = 0;
+  for (std::uint16_t& code : codes) code = i++ % 16 < 8 ? left : right;
   return base64(encode_grey_png_16(codes, 16, 8));
 }
 
