@@ -182,7 +182,7 @@ void bilateral_row(const BilateralRow& row) {
     const float* centre = row.rows[row.reach] + row.reach + x;
     const Floats own_r = load(centre), own_g = load(centre + plane);
     const Floats own_b = load(centre + 2 * plane);
-    const Floats own_a = smaller(load(centre + 3 * plane), splat(kFarthestDepth));
+    const Floats own_a = smaller(splat(kFarthestDepth), load(centre + 3 * plane));
     const Floats depth_scale = row.depth_tolerance * own_a;
     Floats r = splat(0.0f), g = r, b = r, sum_of_weights = r;
     for (int j = 0; j <= 2 * row.reach; ++j) {
@@ -196,7 +196,7 @@ void bilateral_row(const BilateralRow& row) {
           weight *=
               likeness_lanes((off_r * off_r + off_g * off_g + off_b * off_b) * row.colour_factor);
           if (row.depth_tolerance > 0.0f) {
-            const Floats depth = smaller(load(other + 3 * plane), splat(kFarthestDepth));
+            const Floats depth = smaller(splat(kFarthestDepth), load(other + 3 * plane));
             const Floats ratio = (depth - own_a) / depth_scale;
             weight *= likeness_lanes(ratio * ratio);
           }

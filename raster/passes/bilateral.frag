@@ -18,7 +18,9 @@ int tap_count() { return textureSize(weights, 0).x; }
 float gaussian(int i) { return texelFetch(weights, ivec2(i, 0), 0).r; }
 #endif
 
-float compared_depth(float depth) { return depth < 65504.0 ? depth : 65504.0; }
+float compared_depth(float depth) {
+  return floatBitsToUint(depth) == 0x7F800000u ? 65504.0 : depth;
+}
 
 float likeness(float square) {
   precise float rest = 1.0 - square;

@@ -285,7 +285,7 @@ void put_depths(const ConstImageView& drawn, const ImageView& found, const Profi
 namespace {
 
 SOFTFOCUS_INLINE Floats compared_depths(Floats depth) {
-  return smaller(depth, splat(kFarthestDepth));
+  return smaller(splat(kFarthestDepth), depth);
 }
 
 struct TapSums {

@@ -19,7 +19,9 @@ vec4 cubic_weights(float s) {
   return vec4(before_it, first, second, behind_it);
 }
 
-float compared_depth(float depth) { return depth < 65504.0 ? depth : 65504.0; }
+float compared_depth(float depth) {
+  return floatBitsToUint(depth) == 0x7F800000u ? 65504.0 : depth;
+}
 
 // In bits: drivers turn comparisons around, which is wrong for NaN.
 bool is_finite(vec2 v) {

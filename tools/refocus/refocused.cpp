@@ -68,6 +68,7 @@ PictureOnItsWay both_filtered(PictureOnItsWay source, const KeptPart& kept,
 /// The pixel of `few` that is repeated at each of `many`.
 std::vector<int> repeated(int few, int many) {
   std::vector<int> from;
+  from.reserve(static_cast<std::size_t>(many));
   for (int i = 0; i < many; ++i) {
     from.push_back(static_cast<int>((2 * std::int64_t{i} + 1) * few / (2 * std::int64_t{many})));
   }

@@ -9,8 +9,10 @@ float way_at(int i, float jittered, float way_step) {
   return way;
 }
 
-// 65504 at most: of raster/numbers/half.h.
-float compared_depth(float depth) { return depth < 65504.0 ? depth : 65504.0; }
+// Infinity is 65504: of raster/numbers/half.h. In bits, for NaN stays.
+float compared_depth(float depth) {
+  return floatBitsToUint(depth) == 0x7F800000u ? 65504.0 : depth;
+}
 
 float cut_to_1(float x) { return x > 0.0 ? (x < 1.0 ? x : 1.0) : 0.0; }
 
