@@ -14,7 +14,7 @@
 #include "scenes/load/mtl_file.h"
 #include "scenes/load/obj_faces.h"
 #include "scenes/load/obj_text.h"
-#include "scenes/make/shapes.h"
+#include "scenes/make/polygon.h"
 
 namespace softfocus {
 namespace {
@@ -265,7 +265,7 @@ std::string whole_text(glm::dvec3 v) {
   return text.append(")");
 }
 
-// A model of which nothing would show: d and Tr are taken for each other by exporters.
+// Makes a model opaque of which nothing would show. Exporters take d and Tr for each other.
 void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjModel& model) {
   const auto is_shown = [&](const ObjFace& face) {
     return face.material < 0 ||

@@ -8,23 +8,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "scenes/scene.h"
 
 namespace softfocus {
-
-// Polygons to triangles.
-
-/// Triangles over the corners (indices into them), wound as the polygon is: always
-/// corners - 2 of them. A quadrilateral is cut along the shorter diagonal that lies
-/// inside it; a polygon of more corners loses one ear after the other (Meisters 1975),
-/// seen along the axis in which it is largest. They cover what the even-odd rule counts as
-/// inside, of outlines that touch themselves too: with doubled corners, spikes, and holes
-/// joined by bridges, whichever way they run. One that crosses itself, or has no area, is
-/// cut anyhow. Time grows with the square of the corners. Needs 3 corners or more.
-std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(std::span<const glm::dvec3> corners);
 
 /// About the origin. `segments` >= 3 around the y axis, `rings` >= 2 from pole to pole:
 /// 2 segments (rings - 1) triangles. u runs around eastwards from +z, v from the

@@ -1,9 +1,10 @@
-#include "scenes/make/shapes.h"
+#include "scenes/make/polygon.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/random_bits.h"
@@ -97,9 +98,9 @@ bool is_even_odd_inside(const Polygon& polygon, double x, double y) {
   return inside;
 }
 
-// Outlines such as exporters make: concave, with doubled and straight corners, spikes, and holes
-// joined by bridges, some of which run along an edge. Coordinates are multiples of 2^-12, so that
-// what lies on an edge does so exactly.
+// An outline such as exporters make: concave, with doubled and straight corners and spikes, perhaps
+// with a hole that a bridge joins. The bridge may run along an edge. Coordinates are multiples of
+// 2^-12: what lies on an edge lies on it exactly.
 Polygon random_outline(std::uint64_t seed) {
   std::uint64_t draws = 0;
   const auto random = [&](double low, double high) {
@@ -256,6 +257,67 @@ TEST_CASE("outlines that touch themselves have the area of the even-odd rule") {
     }
   }
   CHECK(holes > 10000);
+}
+
+namespace {
+
+double side_of(glm::dvec3 a, glm::dvec3 b, glm::dvec3 p) { return cross(b - a, p - a).z; }
+
+bool cross_each_other(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d) {
+  return side_of(a, b, c) * side_of(a, b, d) < 0.0 && side_of(c, d, a) * side_of(c, d, b) < 0.0;
+}
+
+int winding_number(const Polygon& polygon, glm::dvec3 p) {
+  int number = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    if ((a.y < p.y) == (b.y < p.y)) continue;
+    if ((side_of(a, b, p) > 0.0) == (a.y < p.y)) number += a.y < p.y ? 1 : -1;
+  }
+  return number;
+}
+
+// Whether an outline on whole numbers touches itself at most: no place is wound around twice, or
+// the other way.
+bool is_sound(const Polygon& polygon) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (cross_each_other(polygon[i], polygon[(i + 1) % polygon.size()], polygon[k],
+                           polygon[k + 1])) {
+        return false;
+      }
+    }
+  }
+  std::set<int> numbers{0};
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      numbers.insert(winding_number(polygon, {x / 10.0 + 0.037, y / 10.0 + 0.0413, 0.0}));
+    }
+  }
+  return numbers.size() == 2 && (numbers.contains(1) || numbers.contains(-1));
+}
+
+}  // namespace
+
+TEST_CASE("outlines on a grid of 5x5 places, which touch themselves often, are covered") {
+  int sound = 0;
+  for (std::uint64_t seed = 0; seed < 60000; ++seed) {
+    CAPTURE(seed);
+    Polygon outline;
+    const std::uint64_t count = 5 + seed % 5;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint64_t place = mix_bits(seed * 16 + i) % 25;
+      outline.emplace_back(place % 5, place / 5, 0.0);
+    }
+    if (!is_sound(outline)) continue;
+    ++sound;
+    double sum = 0.0;
+    for (const auto& [a, b, c] : triangulate_polygon(outline)) {
+      sum += std::fabs(side_of(outline[a], outline[b], outline[c])) / 2.0;
+    }
+    CHECK(sum == doctest::Approx(even_odd_area(outline)));
+  }
+  CHECK(sound > 2000);
 }
 
 TEST_CASE("what crosses itself or has no area still gives corners - 2 triangles") {

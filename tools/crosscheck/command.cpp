@@ -212,7 +212,7 @@ int crosscheck(const CrosscheckOptions& options) {
     complete = false;
     entries.push_back(json_of(work, error));
     std::cout.flush();
-    std::cerr << "softfocus: driver " << work.driver->name << ": " << printable(error) << '\n';
+    tell("driver " + std::string{work.driver->name} + ": " + error);
   }
   if (options.json) {
     // A file's name need not be UTF-8, but JSON must be.

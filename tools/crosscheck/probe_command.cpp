@@ -31,12 +31,7 @@ struct ProbeOptions {
 int probe(const ProbeOptions& options) {
   const Driver& driver = options.driver != nullptr ? *options.driver : drivers().front();
   if (!options.output.empty()) check_writable(options.output);
-  Probe probed;
-  try {
-    probed = probe_driver(driver);
-  } catch (const DriverError& error) {
-    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
-  }
+  const Probe probed = naming(driver, [&] { return probe_driver(driver); });
   const std::string text = probe_text(probed);
   if (options.output.empty()) {
     std::cout << text;

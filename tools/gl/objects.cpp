@@ -169,7 +169,7 @@ GLuint compile(GLenum stage, const std::string& source, const std::vector<std::s
   std::array<char, 4096> log{};
   glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
   glDeleteShader(shader);
-  throw DriverError(first_error(log.data(), files));
+  throw ShaderError(first_error(log.data(), files));
 }
 
 GLint location(const GlProgram& program, const char* name) {
@@ -290,7 +290,7 @@ GlProgram link_program(const GlContext& context, const Shaders& shaders, std::st
     std::array<char, 512> log{};
     glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
     const std::string complaint = log.data();
-    throw DriverError("linking " + std::string(vertex) + " and " + std::string(fragment) + ": " +
+    throw ShaderError("linking " + std::string(vertex) + " and " + std::string(fragment) + ": " +
                       complaint.substr(0, complaint.find('\n')));
   }
   known = program;

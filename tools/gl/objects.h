@@ -87,7 +87,7 @@ void wait_for(const GlTarget& target);
 
 /// Compiles and links two of the project's shaders (tools/gl/shaders.h). `defines` come
 /// after the version line. A context has one program of one text: its uniforms are as the last user
-/// left them. Throws DriverError with the driver's first message.
+/// left them. Throws ShaderError with the driver's first message.
 GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
                        std::string_view fragment, const std::string& defines = {});
 

@@ -44,7 +44,7 @@ std::string shown_name(const Shaders& shaders, std::string_view name) {
 
 void expand(const Shaders& shaders, std::string_view name, int depth, ShaderSource& source) {
   if (depth > kDeepestInclude) {
-    throw DriverError(shown_name(shaders, name) + ": includes itself, or one that does");
+    throw ShaderError(shown_name(shaders, name) + ": includes itself, or one that does");
   }
   const std::string file = std::to_string(source.files.size());
   source.files.push_back(shown_name(shaders, name));

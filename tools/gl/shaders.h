@@ -40,7 +40,7 @@ struct ShaderSource {
 
 /// A shader's text with every line `#include "NAME"` replaced by that shader's, and #line
 /// directives, so that a compiler's message has the file's own line. Throws DriverError if there
-/// is no such name, or if a shader includes itself.
+/// is no such name, ShaderError if a shader includes itself.
 ShaderSource shader_source(const Shaders& shaders, std::string_view name);
 
 /// The first error in a compiler's log, with its file's name for the number: "1:12(3): error: no"

@@ -69,11 +69,11 @@ void add_talk_options(CLI::App& parser, bool& verbose, bool& quiet);
 /// Throws UsageError if both were given.
 void check_talk(const CLI::App& parser);
 
-/// A line each. A model may lack a hundred textures: three at most, unless `all`.
 /// Throws UsageError if this machine has less memory than a scene's shadow maps and, where there
 /// are shadows, its triangles in the world.
 void check_shadow_memory(const Scene& scene);
 
+/// A line each. A model may lack a hundred textures: three at most, unless `all`.
 void print_scene_warnings(const std::vector<std::string>& warnings, bool all);
 
 }  // namespace softfocus

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "scenes/files/scene_error.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -77,7 +76,7 @@ std::uint64_t bytes_of_a_frame(const std::vector<FrameWork>& frames) {
 std::vector<FrameFiles> frame_files(const RefocusOptions& options) {
   std::vector<FrameFiles> files{{"COLOUR", options.colour}};
   if (!options.depth.empty()) {
-    files.emplace_back(options.has_circles ? "--circles" : "DEPTH", options.depth);
+    files.emplace_back(options.circles ? "--circles" : "DEPTH", options.depth);
   }
   if (options.reading.mask) files.emplace_back("--mask", *options.reading.mask);
   return files;
@@ -115,7 +114,7 @@ void check_outputs(const RefocusOptions& options) {
   check_writable(options.output);
   std::vector<ReadFile> inputs{{options.colour, "the picture"}};
   if (!options.depth.empty())
-    inputs.push_back({options.depth, options.has_circles ? "the circles" : "its depth"});
+    inputs.push_back({options.depth, options.circles ? "the circles" : "its depth"});
   if (options.reading.mask) inputs.push_back({*options.reading.mask, "the mask"});
   check_not_read("-o", options.output, inputs);
   if (const auto sidecar = sidecar_place(options.output, options.format))
@@ -169,7 +168,7 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
   // memory.
   if (sources.depth_file && sources.views.empty()) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
-  if (options.has_circles) photo.circles = coc_of_circles(depth.numbers);
+  if (options.circles) photo.circles = coc_of_circles(depth.numbers);
   used.lens = settle_lens(photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
   PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
@@ -230,10 +229,8 @@ int refocus(const RefocusOptions& options) {
   const Refocused made = make_refocused(options, progress, pool);
   if (options.output == "-") write_to_standard_output(made.picture);
   progress.clear();
-  if (!options.quiet) std::cerr << "softfocus: " << printable(made.depth) << '\n';
-  for (const std::string& warning : made.warnings) {
-    warn(warning);
-  }
+  if (!options.quiet) tell(made.depth);
+  for (const std::string& warning : made.warnings) warn(warning);
   if (options.json) std::cout << made.json;
   if (options.verbose) std::cerr << made.report;
   return kDone;

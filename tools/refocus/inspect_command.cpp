@@ -73,7 +73,7 @@ void look_at_depth(InspectedFile& found, PlaneValues values, const DepthOptions&
   const std::size_t plane = *found.depth_plane;
   const NumberType type = file.planes[plane].type;
   found.believed = reading.encoding != nullptr
-                       ? BelievedEncoding{reading.encoding, "it is said"}
+                       ? BelievedEncoding{reading.encoding, "--depth-encoding or the file says so"}
                        : believed_encoding(found.planes[plane].seen, type, found.notes.has_value(),
                                            file.planes[plane].name);
   const DepthEncoding* encoding = found.believed.encoding;

@@ -222,7 +222,6 @@ void take_circles(RefocusOptions& options, const CLI::App& parser) {
     check_one_of(parser, {"--circles", option});
   }
   options.depth = *options.circles;
-  options.has_circles = true;
   options.reading.encoding = &circles_encoding();
   if (options.reading.holes == Holes::background) options.reading.holes = Holes::far_side;
 }

@@ -62,11 +62,10 @@ enum class RefocusShow : std::uint8_t { image, coc, depth };
 
 struct RefocusOptions {
   std::string colour;
-  std::string depth;         ///< empty: COLOUR has it
-  bool has_circles = false;  ///< `depth` has radii in pixels, and `reading` reads them
-  std::string output;        ///< "-" for standard output
+  std::string depth;   ///< empty: COLOUR has it
+  std::string output;  ///< "-" for standard output
   FileFormat format = FileFormat::png;
-  std::optional<std::string> circles;
+  std::optional<std::string> circles;  ///< `depth` is this file, and `reading` reads its radii
   DepthOptions reading;
   PhotoLens photo;
   MethodChoice method{.filter = find_method("two-pass")};

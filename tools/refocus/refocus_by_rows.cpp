@@ -379,7 +379,7 @@ void write_files(const RefocusOptions& options, const PictureSources& sources, c
   constexpr std::array kSome{0.0f};
   if (is_of_exr(options.format)) {
     extras.depth_m = extras.radii_px = kSome;
-    extras.has_depth = !options.has_circles;
+    extras.has_depth = !options.circles;
     if (survey.has_opacity) extras.alpha = kSome;
     if (sources.colour_file.reader == &kExrReader) extras.source = &sources.colour_file;
     extras.kept = kept;
@@ -458,7 +458,7 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
                      " pixels, and more than " + std::to_string(kMaxImageSize) +
                      " rows are read in bands alone; but " + why);
   }
-  if (options.has_circles) photo.circles = coc_of_circles(survey.depth.numbers);
+  if (options.circles) photo.circles = coc_of_circles(survey.depth.numbers);
   UsedRefocus used{.by_rows = true};
   used.lens =
       settle_lens(photo, sources->notes, options.reading.numbers.focal_px, std::move(survey.focus));

@@ -214,7 +214,7 @@ void settle_largest_circle(const ConstImageView& picture, const RefocusOptions& 
 }
 
 void put_depth_in_alpha(const RefocusOptions& options, const PlaneValues& metres, Image& picture) {
-  put_in_alpha(options.has_circles ? PlaneValues(metres.size(), 0.0f) : metres, picture);
+  put_in_alpha(options.circles ? PlaneValues(metres.size(), 0.0f) : metres, picture);
 }
 
 PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
@@ -350,7 +350,7 @@ Bytes refocused_file(const RefocusOptions& options, const PictureSources& source
     radii_px = circle_radii(depth, used);
     extras.radii_px = radii_px;
     extras.depth_m = depth.metres;
-    extras.has_depth = !options.has_circles;
+    extras.has_depth = !options.circles;
     if (sources.colour_file.reader == &kExrReader) {
       kept = kept_planes(options, sources);
       extras.source = &sources.colour_file;

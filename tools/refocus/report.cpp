@@ -58,7 +58,7 @@ std::string holes_text(const ReadDepth& depth, Holes holes) {
 
 std::string depth_line(const RefocusOptions& options, const PictureSources& sources,
                        const ReadDepth& depth, const UsedRefocus& used) {
-  std::string line = options.has_circles
+  std::string line = options.circles
                          ? "the circles are " + circles_text(depth)
                          : "the depth is " + std::string{depth.encoding->name} +
                                (depth.along == DepthAlong::ray ? " along the ray, " : ", ") +
@@ -113,7 +113,7 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
                      std::string{depth.encoding->name} + " along the " +
                      std::string{name_of(depth.along)} +
                      (depth.why.empty() ? "" : " (believed: " + depth.why + ")") + "\n";
-  if (!options.has_circles) text += "                 " + depth_range_text(depth.ends) + "\n";
+  if (!options.circles) text += "                 " + depth_range_text(depth.ends) + "\n";
   if (depth.filled > 0) {
     text += "                 " + holes_text(depth, options.reading.holes) + "\n";
   }
@@ -128,8 +128,8 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
     text += "                 " + std::to_string(depth.mended.edge_pixels) +
             " pixels between two surfaces given to one\n";
   }
-  text += options.has_circles ? "circles          " + circles_text(depth) + "\n"
-                              : lines_of_lens(used.lens);
+  text +=
+      options.circles ? "circles          " + circles_text(depth) + "\n" : lines_of_lens(used.lens);
   if (used.choice)
     text += "chosen           " + setting_text(*used.choice) + ": " + used.choice->reason + "\n";
   if (options.show == RefocusShow::image) {
@@ -173,7 +173,7 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
   if (!depth.why.empty()) json["depth_believed"] = depth.why;
   if (!used.why_whole.empty()) json["why_whole"] = used.why_whole;
   if (options.show == RefocusShow::image) json["method"] = used.method->name;
-  if (options.has_circles) {
+  if (options.circles) {
     for (const char* key : {"nearest_m", "farthest_m", "focus_m", "radius_at_infinity_px"}) {
       json[key] = nullptr;
     }
@@ -225,7 +225,7 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
   for (const std::string& fault : sources.lens.faults) {
     made.warnings.push_back("'" + options.colour + "': " + fault + "; it is ignored");
   }
-  if (const std::string& camera = sources.lens.camera; !camera.empty() && !options.has_circles) {
+  if (const std::string& camera = sources.lens.camera; !camera.empty() && !options.circles) {
     made.warnings.push_back("'" + options.colour + "' says that its camera is " + camera +
                             ", and a lens's circles are a perspective's; --circles FILE takes "
                             "those of any camera");

@@ -270,8 +270,7 @@ Scene relief_scene(const ReliefOptions& options) {
     throw UsageError("'" + options.input + "' has no triangles; a relief needs some");
   }
   if (has_transparent(scene)) {
-    std::cerr << "softfocus: warning: a relief has one surface a texel: transparent ones are left "
-                 "out\n";
+    warn("a relief has one surface a texel: transparent ones are left out");
   }
   return scene;
 }

@@ -108,9 +108,8 @@ void write_picture(const Image& picture, const PictureNotes& notes, const Render
   file.commit();
   if (sidecar_file) sidecar_file->commit();
   if (sidecar && !has_room) {
-    std::cerr << "softfocus: warning: " << in_quotes(*sidecar)
-              << " is no sidecar of a picture and stays as it is: the picture's lens is written "
-                 "nowhere\n";
+    warn(in_quotes(*sidecar) +
+         " is no sidecar of a picture and stays as it is: the picture's lens is written nowhere");
   }
 }
 

@@ -92,7 +92,7 @@ class Run {
   void make_all() {
     const std::size_t there = frames_.size() - todo_.size();
     if (there > 0 && !options_.quiet) {
-      std::cerr << "softfocus: " << there << " of " << frames_.size() << " frames are there\n";
+      tell(std::to_string(there) + " of " + std::to_string(frames_.size()) + " frames are there");
     }
     show_progress();
     const int at_once = std::max(1, std::min(options_.at_once, static_cast<int>(todo_.size())));
@@ -242,18 +242,17 @@ class Run {
     unwritten_ = unwritten ? unwritten_ + 1 : 0;
     if (unwritten_ < kMostUnwritten || stopped_) return;
     stopped_ = true;
-    std::cerr << "softfocus: stopped, for " << kMostUnwritten
-              << " frames in a row could not be written\n";
+    tell("stopped, for " + std::to_string(kMostUnwritten) +
+         " frames in a row could not be written");
   }
 
   void say(const FrameWork& frame, const FrameRun& run) {
     if (!std::exchange(has_note_, true) && !run.note.empty() && !options_.quiet) {
-      std::cerr << "softfocus: frame " << frame.number << ": " << printable(run.note) << '\n';
+      tell("frame " + std::to_string(frame.number) + ": " + run.note);
     }
     for (const std::string& warning : run.warnings) {
       if (++warnings_ > kMostWarnings && !options_.verbose) continue;
-      std::cerr << "softfocus: warning: frame " << frame.number << ": " << printable(warning)
-                << '\n';
+      warn("frame " + std::to_string(frame.number) + ": " + warning);
     }
     if (options_.verbose && !run.report.empty()) {
       std::cerr << "frame " << frame.number << '\n' << run.report;

@@ -1,4 +1,7 @@
+#include "scenes/scene.h"
 #include "tests/support/cli_refused.h"
+#include "tools/cli/errors.h"
+#include "tools/options/run_options.h"
 
 using namespace softfocus;
 
@@ -145,4 +148,33 @@ TEST_CASE("bad input: a PNG that claims to be 100,000 x 100,000 names its file")
   std::string png = some_png();
   png.replace(16, 8, std::string("\x00\x01\x86\xA0\x00\x01\x86\xA0", 8));
   check_scene_refused({textured("t.png"), {"t.png", png}}, {"t.png"});
+}
+
+TEST_CASE("bad scene: shadows that need more memory than there is, and what of them is large") {
+  Scene scene;
+  scene.lights.resize(4096);
+  for (Light& light : scene.lights) {
+    light.shadows = ShadowKind::map;
+    light.map.size = kMostMapSize;
+    light.map.cascades = kMostCascades;
+  }
+  const auto refusal = [&] {
+    try {
+      check_shadow_memory(scene);
+    } catch (const UsageError& error) {
+      return std::string{error.what()};
+    }
+    return std::string{};
+  };
+  CHECK(contains(refusal(), "4398.05 GB for maps"));
+  CHECK(contains(refusal(), "--map size=N"));
+  scene.lights.resize(1);
+  CHECK(refusal() == "");
+  scene.meshes.resize(1);
+  scene.meshes[0].indices.resize(3'000'000);
+  scene.objects.resize(100'000);
+  CHECK(contains(refusal(), "100000000000 triangles"));
+  CHECK(contains(refusal(), "coarser meshes"));
+  scene.lights[0].shadows = ShadowKind::none;
+  CHECK(refusal() == "");
 }

@@ -13,6 +13,11 @@ struct DriverError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A shader's text is at fault, in one line.
+struct ShaderError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 struct Driver {
   std::string_view name;
   std::string_view summary;
@@ -31,13 +36,16 @@ struct Driver {
 
 inline bool is_software(const Driver& driver) { return !driver.gallium_driver.empty(); }
 
-/// Returns work(), and puts the driver's name in front of its DriverError.
+/// Returns work(), and puts the driver's name in front of its DriverError or ShaderError.
 template <class Work>
 auto naming(const Driver& driver, const Work& work) {
+  const std::string name = "driver " + std::string(driver.name) + ": ";
   try {
     return work();
   } catch (const DriverError& error) {
-    throw DriverError("driver " + std::string(driver.name) + ": " + error.what());
+    throw DriverError(name + error.what());
+  } catch (const ShaderError& error) {
+    throw ShaderError(name + error.what());
   }
 }
 

@@ -311,8 +311,8 @@ BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, boo
       }
       if (seen.different > kManyNumbers && seen.eighths == seen.different) {
         return {nullptr,
-                "16 bits of which all are multiples of 8 may be sun-rgb-d, or millimetres "
-                "in such steps"};
+                "16 bits that are all multiples of 8 may be sun-rgb-d, or millimetres in steps "
+                "of 8"};
       }
       return {find_depth_encoding("millimetres"),
               "16 bits that stay below 60000: millimetres, as most depth cameras write, but not "

@@ -164,7 +164,7 @@ void fill_from_side(DepthMap& map, Holes side) {
   }
 }
 
-/// Neighbours, beside or above each other, of which all have a depth or none has.
+/// A part of the map that hangs together by the sides of pixels. Either each has a depth or none.
 struct Piece {
   bool is_hole = false;
   std::size_t size = 0, at_border = 0;  ///< pixels
