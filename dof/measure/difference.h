@@ -43,7 +43,6 @@ inline double mean(const PixelMap& map) {
 }
 
 struct Difference {
-  std::uint64_t pixels = 0;     ///< width * height
   std::uint64_t values = 0;     ///< compared: width * height * 4
   std::uint64_t differing = 0;  ///< of them, with other bits (+0 and -0 are equal)
   int max_ulp = 0;              ///< largest distance in half-ULPs (half_ulps_between)
@@ -68,7 +67,6 @@ Difference compare_images(const Image& a, const Image& b);
 /// from every pixel of the other picture that lies within `search_px` of the same place.
 struct PixelLimit {
   double most = 0.0;
-  bool of_codes = false;  ///< of sRGB, 0 to 255; else of linear light. Alpha's are 0 to 255 then
   bool has_opacity = false;
   int search_px = 0;
 };

@@ -187,10 +187,10 @@ int compare_pictures(const CompareOptions& options) {
     write_map(options.flip_map_file, heat_picture(findings.measured->flip));
   if (options.ulp_map_file) write_map(options.ulp_map_file, difference_picture(image_a, image_b));
   std::optional<std::uint64_t> beyond;
-  if (options.tolerance.max_pixels) {
-    PixelLimit limit = options.tolerance.pixels;
-    limit.has_opacity = have_opacity(a, b);
-    beyond = pixels_beyond(image_a, image_b, limit);
+  if (const Tolerance& tolerance = options.tolerance; counts_pixels(tolerance)) {
+    beyond = pixels_beyond(image_a, image_b,
+                           {tolerance.max_difference.value_or(0.0), have_opacity(a, b),
+                            tolerance.search_px.value_or(0)});
   }
   findings.limits = check_limits(
       options.tolerance, difference,

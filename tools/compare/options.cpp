@@ -11,9 +11,13 @@
 
 namespace softfocus {
 
+bool counts_pixels(const Tolerance& tolerance) {
+  return tolerance.max_pixels || tolerance.max_difference || tolerance.search_px;
+}
+
 bool has_limits(const Tolerance& tolerance) {
   return tolerance.max_half_ulps || tolerance.max_flip || tolerance.max_error ||
-         tolerance.max_pixels;
+         counts_pixels(tolerance);
 }
 
 std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Difference& difference,
@@ -28,11 +32,11 @@ std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Differe
   if (tolerance.max_error) {
     findings.push_back({"--max-error", "", *tolerance.max_error, difference.max_error});
   }
-  if (tolerance.max_pixels) {
-    const double all = static_cast<double>(difference.pixels);
+  if (counts_pixels(tolerance)) {
+    const double most = tolerance.max_pixels.value_or(0.0);
+    const double all = static_cast<double>(difference.values / 4);
     findings.push_back({"--max-pixels", " pixels",
-                        tolerance.is_percent ? std::floor(*tolerance.max_pixels * all / 100.0)
-                                             : *tolerance.max_pixels,
+                        tolerance.is_percent ? std::floor(most * all / 100.0) : most,
                         static_cast<double>(pixels_beyond.value())});
   }
   return findings;
@@ -60,6 +64,13 @@ constexpr Parameter
     kMaxError{"max-error",
         "Tolerance: status 0 up to this difference of any red, green or blue, in linear light",
         0.0, 1e6, 0.0, "", "E"},
+    kMaxDifference{"max-difference",
+        "Of --max-pixels: of any red, green or blue, in linear light (default: 0)",
+        0.0, 1e6, 0.0, "", "D"},
+    kSearch{"search",
+        "Of --max-pixels: how near a pixel may lie in the other picture, for edges that moved "
+        "(default: 0)",
+        0, 8, 0, "px", "PIXELS", "", 1},
     kPoint{"point",
         "The pictures are of one bright point on black: compare light and shape with the disc of "
         "this radius",
@@ -85,35 +96,6 @@ void read_max_pixels(const std::string& text, Tolerance& tolerance) {
       tolerance.is_percent
           ? parse_number("--max-pixels", text.substr(0, text.size() - 1), 0.0, 100.0, kWanted)
           : parse_whole("--max-pixels", text, 0, 1 << 30, kWanted);
-}
-
-/// D in linear light or D/255 in steps of sRGB.
-void read_max_difference(const std::string& text, PixelLimit& pixels) {
-  constexpr std::string_view kOfCodes = "/255";
-  constexpr const char* kWanted = "a number of linear light, or of sRGB's steps as 8/255";
-  pixels.of_codes = text.ends_with(kOfCodes);
-  const std::string number = pixels.of_codes ? text.substr(0, text.size() - kOfCodes.size()) : text;
-  pixels.most = parse_number("--max-difference", number, 0.0, 1e6, kWanted);
-}
-
-void add_pixel_limits(CLI::App& parser, Tolerance& tolerance) {
-  add_value(parser, "--max-pixels", "N[%]",
-            "Tolerance: status 0 up to so many pixels that differ by more than --max-difference",
-            [&tolerance](const std::string& text) { read_max_pixels(text, tolerance); });
-  add_value(parser, "--max-difference", "D[/255]",
-            "Of --max-pixels: in any red, green or blue, in linear light, or as D/255 in steps of "
-            "sRGB (default: 0)",
-            [&tolerance](const std::string& text) {
-              read_max_difference(text, tolerance.pixels);
-              if (!tolerance.max_pixels) tolerance.max_pixels = 0.0;
-            });
-  add_value(parser, "--search", "PIXELS",
-            "Of --max-pixels: a pixel is as good that lies so near in the other picture, 0 to 8: "
-            "for edges that moved (default: 0)",
-            [&tolerance](const std::string& text) {
-              tolerance.pixels.search_px = parse_whole("--search", text, 0, 8, "0 to 8 pixels");
-              if (!tolerance.max_pixels) tolerance.max_pixels = 0.0;
-            });
 }
 
 void add_frames(CLI::App& parser, const std::string& name, const std::string& help,
@@ -208,7 +190,11 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_parameter(parser, kMaxUlps, "", options.tolerance.max_half_ulps);
   add_parameter(parser, kMaxFlip, "", options.tolerance.max_flip);
   add_parameter(parser, kMaxError, "", options.tolerance.max_error);
-  add_pixel_limits(parser, options.tolerance);
+  add_value(parser, "--max-pixels", "N[%]",
+            "Tolerance: status 0 up to so many pixels that differ by more than --max-difference",
+            [&options](const std::string& text) { read_max_pixels(text, options.tolerance); });
+  add_parameter(parser, kMaxDifference, "", options.tolerance.max_difference);
+  add_parameter(parser, kSearch, "", options.tolerance.search_px);
   begin_group(parser, "Measures");
   add_parameter(parser, kPoint, "", options.point_radius_px);
   add_frames(parser, "--flicker", "Frames of a sequence, in order, instead of A and B",

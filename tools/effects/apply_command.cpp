@@ -220,13 +220,11 @@ struct OpenedPicture {
   std::vector<ReplacedPlane> views{};  ///< the other views, with their effects
 };
 
-constexpr std::size_t kNoPlane = ~std::size_t{0};
-
 OpenedLayer read_layer(const PictureSources& sources) {
   const PictureFile& file = sources.colour_file;
   OpenedLayer layer;
   Picture read = read_colour(file, sources.colour, false);
-  if (read.cut > 0) warn(cut_light_warning(file.path.string(), read.cut, read.brightest));
+  if (read.cut > 0) warn(cut_light_warning(file.path.string(), read.cut, 0));
   layer.colour = std::move(read.image);
   layer.opacity = take_opacity(sources, layer.colour);
   if (sources.depth_plane != kNoPlane) {
@@ -274,18 +272,12 @@ void apply_effects(const ApplyOptions& options, OpenedPicture& opened, ThreadPoo
   if (options.velocity.file) velocity = read_velocity(options.velocity, sources.colour_file);
   apply_effects(options, velocity, opened.layer, pool);
   if (!is_of_exr(options.format)) return;
-  for (const OtherView& view : sources.views) {
-    const ColourLayer own_colour = std::exchange(sources.colour, view.colour);
-    const std::size_t own_depth =
-        std::exchange(sources.depth_plane, view.depth_plane.value_or(kNoPlane));
+  for (OtherView& view : sources.views) {
+    exchange(sources, view);
     OpenedLayer layer = read_layer(sources);
     apply_effects(options, velocity, layer, pool);
-    for (ReplacedPlane& plane :
-         planes_of({std::move(layer.colour), std::move(layer.opacity)}, view.colour)) {
-      opened.views.push_back(std::move(plane));
-    }
-    sources.colour = own_colour;
-    sources.depth_plane = own_depth;
+    add_planes({std::move(layer.colour), std::move(layer.opacity)}, sources.colour, opened.views);
+    exchange(sources, view);
   }
 }
 

@@ -151,7 +151,7 @@ class SourcePlanes {
       for (const ReplacedPlane& replaced : extras.replaced) {
         if (replaced.plane != extras.kept[i]) continue;
         kept_.back().values = replaced.values.data();
-        if (bright_colours(replaced.values, 65504.0f).beyond > 0) kept_.back().type = Imf::FLOAT;
+        if (brightest_of(replaced.values) > 65504.0f) kept_.back().type = Imf::FLOAT;
       }
     }
   }

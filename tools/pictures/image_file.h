@@ -41,8 +41,8 @@ struct Picture {
   Image image;  ///< RGBA16F
   bool has_alpha = false;
   int light_power = 0;     ///< colours are to be multiplied by 2^light_power
-  double brightest = 0.0;  ///< in the file, if it is beyond a half
-  std::size_t cut = 0;     ///< colours that even so are cut to the largest half
+  double brightest = 0.0;  ///< finite colour of the file, if it has floats
+  std::size_t cut = 0;     ///< values that even so are cut to the largest half
 };
 
 /// Colours beyond 65504, the largest half, are divided by a power of two before they become halves

@@ -107,10 +107,9 @@ std::vector<std::uint16_t> half_table(NumberType type, bool is_srgb) {
 /// The largest half.
 constexpr float kMostLight = 65504.0f;
 
-std::uint16_t light_half(NumberType type, float value) {
-  if (value != value) return 0;
-  if (type == NumberType::unsigned32) value = static_cast<float>(value / full_scale(type));
-  return float_to_half(std::clamp(value, -kMostLight, kMostLight), HalfRounding::nearest_even);
+float light_of(NumberType type, float value) {
+  if (value != value) return 0.0f;
+  return type == NumberType::unsigned32 ? static_cast<float>(value / full_scale(type)) : value;
 }
 
 }  // namespace
@@ -329,29 +328,33 @@ ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bo
   if (with_alpha && layer.alpha) add(*layer.alpha, 3, 3);
 }
 
-void ColourHalves::put(std::size_t i, const PlaneValues& values, Image& picture) const {
+void ColourHalves::put(std::size_t i, const PlaneValues& values, Image& picture) {
   const Channel& channel = channels_[i];
   std::size_t next = 0;
   for (int y = 0; y < picture.height; ++y) {
     const auto to = row<std::uint16_t>(picture, y);
     for (std::size_t x = 0; x < to.size(); x += 4) {
-      const float value = values[next++];
-      const std::uint16_t half = channel.table.empty()
-                                     ? light_half(channel.type, value * channel.light)
-                                     : channel.table[static_cast<std::size_t>(value)];
+      std::uint16_t half = 0;
+      if (channel.table.empty()) {
+        const float value = light_of(channel.type, values[next++]) * channel.light;
+        const float kept = std::clamp(value, -kMostLight, kMostLight);
+        half = float_to_half(kept, HalfRounding::nearest_even);
+        cut_ += kept != value && channel.first < 3;
+      } else {
+        half = channel.table[static_cast<std::size_t>(values[next++])];
+      }
       for (std::size_t c = channel.first; c <= channel.last; ++c) to[x + c] = half;
     }
   }
 }
 
-BrightColours bright_colours(std::span<const float> values, float most) {
-  BrightColours found;
+float brightest_of(std::span<const float> values) {
+  float brightest = 0.0f;
   for (const float value : values) {
     const float size = std::fabs(value);
-    found.beyond += size > most;
-    if (size > found.brightest && size <= std::numeric_limits<float>::max()) found.brightest = size;
+    if (size > brightest && size <= std::numeric_limits<float>::max()) brightest = size;
   }
-  return found;
+  return brightest;
 }
 
 namespace {
@@ -387,35 +390,27 @@ Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with
       values = read_planes(file, planes.subspan(first, at_once), 0.0f);
     }
   };
-  const auto look = [&](float most) {
-    BrightColours found;
+  if (may_be_bright(file, layer)) {
+    float brightest = 0.0f;
     for (std::size_t i = 0; i < planes.size(); i += at_once) {
       read(i);
       for (std::size_t p = i; p < std::min(i + at_once, colours); ++p) {
-        const BrightColours more = bright_colours(values[p - i], most);
-        found.brightest = std::max(found.brightest, more.brightest);
-        found.beyond += more.beyond;
+        brightest = std::max(brightest, brightest_of(values[p - i]));
       }
     }
-    return found;
-  };
-  if (may_be_bright(file, layer)) {
-    const float brightest = look(kMostLight).brightest;
     while (picture.light_power < most_power &&
            brightest > std::ldexp(kMostLight, picture.light_power)) {
       ++picture.light_power;
     }
-    if (brightest > kMostLight) {
-      picture.brightest = static_cast<double>(brightest);
-      picture.cut = look(std::ldexp(kMostLight, picture.light_power)).beyond;
-    }
+    picture.brightest = static_cast<double>(brightest);
   }
-  const ColourHalves halves{file, layer, with_alpha, std::ldexp(1.0f, -picture.light_power)};
+  ColourHalves halves{file, layer, with_alpha, std::ldexp(1.0f, -picture.light_power)};
   for (std::size_t i = 0; i < planes.size(); i += at_once) {
     read(i);
     if (file.to_srgb) convert(file, layer, values);
     for (std::size_t p = i; p < i + at_once; ++p) halves.put(p, values[p - i], picture.image);
   }
+  picture.cut = halves.cut();
   return picture;
 }
 

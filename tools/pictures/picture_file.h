@@ -187,7 +187,10 @@ class ColourHalves {
   /// The planes to read: one if it is grey.
   const std::vector<std::size_t>& planes() const { return planes_; }
   /// Puts the values of planes()[i] into as many pixels of RGBA16F.
-  void put(std::size_t i, const PlaneValues& values, Image& picture) const;
+  void put(std::size_t i, const PlaneValues& values, Image& picture);
+
+  /// How many colours were cut to the largest half so far.
+  std::size_t cut() const { return cut_; }
 
  private:
   struct Channel {
@@ -198,6 +201,7 @@ class ColourHalves {
   };
   std::vector<std::size_t> planes_{};
   std::vector<Channel> channels_{};
+  std::size_t cut_ = 0;
 };
 
 /// Why this build converts no profiles, as a sentence; empty if it does.
@@ -207,14 +211,10 @@ std::string_view missing_lcms();
 /// be below 0. Throws FileError, the file unnamed, for a profile that cannot be used.
 void profile_to_light(const PictureFile& file, double full, const std::array<PlaneValues*, 3>& rgb);
 
-/// The largest finite number, and how many are beyond `most` or infinite.
-struct BrightColours {
-  float brightest = 0.0f;
-  std::size_t beyond = 0;
-};
-BrightColours bright_colours(std::span<const float> values, float most);
+/// The largest finite number, without its sign.
+float brightest_of(std::span<const float> values);
 
-/// Whether the colour's numbers may be beyond the largest half.
+/// Whether finite colours may be beyond the largest half.
 bool may_be_bright(const PictureFile& file, const ColourLayer& layer);
 
 /// A colour and, if `with_alpha`, its alpha as RGBA16F in linear light; else alpha is 0. Bright

@@ -133,18 +133,21 @@ PictureOnItsWay colour_of(const PictureSources& sources, const RefocusOptions& o
   return {std::move(read.image), {}, read.light_power};
 }
 
-/// Another view of a picture, filtered as the first was: the planes of its colour.
-std::vector<ReplacedPlane> refocused_view(PictureSources& sources, const OtherView& view,
-                                          const RefocusOptions& options, const PhotoLens& photo,
-                                          UsedRefocus used, ThreadPool& pool) {
-  const ColourLayer own_colour = std::exchange(sources.colour, view.colour);
-  const std::size_t own_depth = std::exchange(sources.depth_plane, *view.depth_plane);
-  PictureOnItsWay source = colour_of(sources, options, used);
+/// Filters another view of a picture as the first was, and adds the planes of its colour.
+void refocus_view(PictureSources& sources, OtherView& view, const RefocusOptions& options,
+                  const PhotoLens& photo, UsedRefocus& used, ThreadPool& pool,
+                  std::vector<ReplacedPlane>& planes) {
+  exchange(sources, view);
+  UsedRefocus of_view = used;
+  PictureOnItsWay source = colour_of(sources, options, of_view);
+  used.brightest = std::max(used.brightest, of_view.brightest);
+  used.light_power = std::max(used.light_power, of_view.light_power);
+  used.cut += of_view.cut;
   source.opacity = take_opacity(sources, source.picture);
   const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
-  sources.colour = own_colour;
-  sources.depth_plane = own_depth;
-  return planes_of(refocused(std::move(source), depth.map, options, used, pool), view.colour);
+  add_planes(refocused(std::move(source), depth.map, options, of_view, pool), sources.colour,
+             planes);
+  exchange(sources, view);
 }
 
 /// In memory.
@@ -174,17 +177,15 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
   PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
   Refocused made;
   std::vector<ReplacedPlane> views;
-  for (const OtherView& view : sources.views) {
+  for (OtherView& view : sources.views) {
     if (!keeps_data_window(options, sources) || !options.keep_layers) {
       made.warnings.push_back(lost_view_warning(options.colour, view));
-    } else if (!view.depth_plane) {
+    } else if (view.depth_plane == kNoPlane) {
       made.warnings.push_back("'" + options.colour + "': its view " + view.name +
                               " has no depth of its own and stays as it is");
     } else {
       progress.show("filtering " + view.name);
-      for (ReplacedPlane& plane : refocused_view(sources, view, options, photo, used, pool)) {
-        views.push_back(std::move(plane));
-      }
+      refocus_view(sources, view, options, photo, used, pool, views);
     }
   }
   if (!keeps_data_window(options, sources)) {

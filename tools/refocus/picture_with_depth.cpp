@@ -232,17 +232,22 @@ void find_views(PictureSources& sources) {
   const std::string own = sources.colour_file.planes[sources.colour.red].view;
   if (sources.colour_file.views.size() < 2 || own.empty()) return;
   sources.view = own;
-  const bool has_depth = sources.depth_plane < sources.of_depth().planes.size();
+  const std::size_t depth = sources.depth_plane;
   const auto depth_of = [&](const std::string& view) {
-    return has_depth ? plane_in_view(sources.of_depth(), sources.depth_plane, view) : std::nullopt;
+    return depth == kNoPlane ? std::nullopt : plane_in_view(sources.of_depth(), depth, view);
   };
-  sources.depth_plane = depth_of(own).value_or(sources.depth_plane);
+  sources.depth_plane = depth_of(own).value_or(depth);
   for (const std::string& name : sources.colour_file.views) {
     if (name == own) continue;
     if (const auto colour = layer_in_view(sources.colour_file, sources.colour, name)) {
-      sources.views.push_back({name, *colour, depth_of(name)});
+      sources.views.push_back({name, *colour, depth_of(name).value_or(kNoPlane)});
     }
   }
+}
+
+void exchange(PictureSources& sources, OtherView& view) {
+  std::swap(sources.colour, view.colour);
+  std::swap(sources.depth_plane, view.depth_plane);
 }
 
 PictureSources open_sources(const std::string& colour, const std::string& depth,

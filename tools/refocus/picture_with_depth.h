@@ -49,11 +49,13 @@ struct DepthOptions {
 /// --holes, --depth-fit and the three ways of mending.
 void add_depth_options(CLI::App& parser, DepthOptions& options);
 
+inline constexpr std::size_t kNoPlane = ~std::size_t{0};
+
 /// Another view of a picture, as a right eye's.
 struct OtherView {
   std::string name;
   ColourLayer colour{};
-  std::optional<std::size_t> depth_plane{};  ///< if it has one
+  std::size_t depth_plane = kNoPlane;
 };
 
 /// Files whose headers were read. The colour's has all pixels that are there, beside those that are
@@ -75,6 +77,8 @@ struct PictureSources {
 
 /// Finds the views beside that of the chosen colour; its depth is of the same.
 void find_views(PictureSources& sources);
+/// Exchanges the colour and its depth with another view's.
+void exchange(PictureSources& sources, OtherView& view);
 
 /// Opens COLOUR and, unless it is empty, DEPTH, else a depth inside of a JPEG, and chooses layers.
 /// Throws FileError; UsageError for layers that are not there and a depth of another shape than the

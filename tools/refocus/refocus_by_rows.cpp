@@ -34,10 +34,12 @@ class SourceRows {
   /// Throws FileError; UsageError for a depth of three channels that differ.
   void read(Rows rows);
 
-  Image colour{};          ///< RGBA16F, of light; alpha is 0
-  BrightColours bright{};  ///< of all rows, beyond the largest half
-  PlaneValues alpha{};     ///< as they are in the file
-  PlaneValues codes{};     ///< of the depth
+  /// How many values of colours were cut so far.
+  std::size_t cut() const { return halves_.cut(); }
+
+  Image colour{};       ///< RGBA16F, of light; alpha is 0
+  PlaneValues alpha{};  ///< as they are in the file
+  PlaneValues codes{};  ///< of the depth
 
  private:
   /// Planes of one file, read together: they may lie in the same compressed blocks.
@@ -104,13 +106,7 @@ void SourceRows::read(Rows rows) {
   }
   if (!colour_.empty()) {
     if (colour.height != rows.count) colour = make_image(Format::rgba16f, width, rows.count);
-    for (std::size_t i = 0; i < colour_.size(); ++i) {
-      const PlaneValues& values = values_of(colour_[i]);
-      const BrightColours more = bright_colours(values, kFarthestDepth);
-      bright.brightest = std::max(bright.brightest, more.brightest);
-      bright.beyond += more.beyond;
-      halves_.put(i, values, colour);
-    }
+    for (std::size_t i = 0; i < colour_.size(); ++i) halves_.put(i, values_of(colour_[i]), colour);
   }
   if (!alpha_.empty()) alpha.swap(values_of(alpha_[0]));
   if (depth_.empty()) return;
@@ -139,7 +135,6 @@ struct Survey {
   std::vector<bool> halves = std::vector<bool>(65536);  ///< the depths that the filter sees
   float nearest_m = std::numeric_limits<float>::infinity(), farthest_m = 0.0f;  ///< of these
   bool has_opacity = false, is_opaque = true;
-  BrightColours bright{};   ///< if there are any
   float full_alpha = 1.0f;  ///< the file's number for what is opaque
 };
 
@@ -202,8 +197,8 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
     survey.full_alpha = static_cast<float>(full_scale(file.planes[*sources.colour.alpha].type));
   }
   AlphaSeen alpha;
-  const bool has_floats = may_be_bright(file, sources.colour);
-  SourceRows rows{sources, {.colour = has_floats, .alpha = has_alpha, .depth = true}};
+  const bool may_be_whole = file.height <= kMaxImageSize && may_be_bright(file, sources.colour);
+  SourceRows rows{sources, {.colour = may_be_whole, .alpha = has_alpha, .depth = true}};
   for_each_band(file.height, [&](Rows band) {
     rows.read(band);
     alpha.add(rows.alpha, survey.full_alpha);
@@ -220,12 +215,9 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
   });
   survey.has_opacity = has_alpha && (alpha.is_alpha || is_sure_of_alpha(file));
   survey.is_opaque = !survey.has_opacity || alpha.is_opaque;
-  if (rows.bright.beyond > 0) {
-    survey.bright = rows.bright;
-    if (file.height <= kMaxImageSize) {
-      why = "it has colours beyond the largest half";
-      return false;
-    }
+  if (rows.cut() > 0) {
+    why = "it has colours beyond the largest half";
+    return false;
   }
   if (survey.depth.filled == 0) return true;
   why = std::to_string(survey.depth.filled) +
@@ -303,6 +295,7 @@ class FilteredRows {
   }
 
   std::uint64_t hash() const { return hash_.value; }
+  std::size_t cut() const { return rows_.cut(); }
 
  private:
   using FinishedRows = std::deque<std::vector<std::uint16_t>>;
@@ -462,8 +455,6 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
   UsedRefocus used{.by_rows = true};
   used.lens =
       settle_lens(photo, sources->notes, options.reading.numbers.focal_px, std::move(survey.focus));
-  used.brightest = static_cast<double>(survey.bright.brightest);
-  used.cut = survey.bright.beyond;
   begin_settings(options, used);
   settle_largest_circle(picture_of_depths(survey.halves), options, used, pool);
   if (is_larger_by_rows(file, used.settings, pool.isa())) {
@@ -480,6 +471,7 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
   Refocused made;
   std::uint64_t hash = 0;
   write_files(options, *sources, survey, used, rows, made, hash);
+  used.cut = rows.cut();
   tell(options, *sources, survey.depth, used, hash, made);
   return made;
 }

@@ -254,19 +254,20 @@ PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
   return result;
 }
 
-std::vector<ReplacedPlane> planes_of(const PictureOnItsWay& picture, const ColourLayer& colour) {
-  std::vector<ReplacedPlane> planes{{colour.red}, {colour.green}, {colour.blue}};
+void add_planes(const PictureOnItsWay& picture, const ColourLayer& colour,
+                std::vector<ReplacedPlane>& planes) {
+  const std::size_t first = planes.size();
+  for (const std::size_t plane : {colour.red, colour.green, colour.blue}) planes.push_back({plane});
   const float light = std::ldexp(1.0f, picture.light_power);
   for (int y = 0; y < picture.picture.height; ++y) {
     const auto halves = row<std::uint16_t>(picture.picture, y);
     for (std::size_t i = 0; i < halves.size(); i += 4) {
       for (std::size_t c = 0; c < 3; ++c) {
-        planes[c].values.push_back(half_to_float(halves[i + c]) * light);
+        planes[first + c].values.push_back(half_to_float(halves[i + c]) * light);
       }
     }
   }
   if (colour.alpha && !picture.opacity.empty()) planes.push_back({*colour.alpha, picture.opacity});
-  return planes;
 }
 
 PlaneValues circle_radii(const DepthMap& depth, const UsedRefocus& used) {

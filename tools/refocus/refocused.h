@@ -16,9 +16,9 @@ struct UsedRefocus {
   const Method* method = nullptr;
   std::optional<AutoMethod> choice{};  ///< of auto
   float largest_circle_px = 0.0f;
-  double brightest = 0.0;   ///< of the file's colours, if it is beyond a half
+  double brightest = 0.0;   ///< of the file's colours
   int light_power = 0;      ///< they are filtered divided by 2^light_power
-  std::size_t cut = 0;      ///< and so many cut to the largest half
+  std::size_t cut = 0;      ///< and so many values cut to the largest half
   bool by_rows = false;     ///< read, filtered and written a band of rows at a time
   std::string why_whole{};  ///< why not
 };
@@ -49,7 +49,8 @@ PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
                           const RefocusOptions& options, UsedRefocus& used, ThreadPool& pool);
 
 /// The colour, and the alpha if there is one, as planes of a file.
-std::vector<ReplacedPlane> planes_of(const PictureOnItsWay& picture, const ColourLayer& colour);
+void add_planes(const PictureOnItsWay& picture, const ColourLayer& colour,
+                std::vector<ReplacedPlane>& planes);
 
 /// The circles that were used, in pixels, negative nearer than the focus.
 PlaneValues circle_radii(const DepthMap& depth, const UsedRefocus& used);

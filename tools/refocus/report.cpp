@@ -236,8 +236,9 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
                             std::to_string(static_cast<int>(kLargestMaxCoc)) +
                             " pixels are cut to that; a larger --f-number has smaller ones");
   }
-  if (used.cut > 0)
-    made.warnings.push_back(cut_light_warning(options.colour, used.cut, used.brightest));
+  if (used.cut > 0) {
+    made.warnings.push_back(cut_light_warning(options.colour, used.cut, used.light_power));
+  }
   if (const std::string lost = lost_profile_warning(sources.colour_file, options.format);
       !lost.empty()) {
     made.warnings.push_back(lost);
@@ -252,10 +253,10 @@ std::string busy_sidecar_warning(const std::filesystem::path& sidecar) {
          "' is no sidecar of a picture and stays as it is: the picture's lens is written nowhere";
 }
 
-std::string cut_light_warning(const std::string& colour, std::size_t cut, double brightest) {
-  return "'" + colour + "': " + std::to_string(cut) + " colours are brighter than what is " +
-         "computed with, up to " + short_number(brightest) +
-         ", and are cut; divide all by a power " + "of two before, multiply after";
+std::string cut_light_warning(const std::string& colour, std::size_t cut, int light_power) {
+  const std::string most = short_number(std::ldexp(65504.0, light_power));
+  return "'" + colour + "': " + std::to_string(cut) + " values of colours are beyond " + most +
+         " or infinite, and are cut to that; divide all by a power of two before, multiply after";
 }
 
 std::string lost_profile_warning(const PictureFile& file, FileFormat format) {

@@ -18,16 +18,6 @@ using namespace softfocus;
 
 namespace {
 
-Bytes bytes_of(std::string_view text) {
-  Bytes bytes;
-  for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
-}
-
-std::string text_of(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// 1 2 3 and 4 5 6, in the order of the file.
 Bytes pfm_of(std::string_view header) {
   Bytes bytes = bytes_of(header);
@@ -115,8 +105,6 @@ Bytes grey_png() {
   return encode_png(image);
 }
 
-void write(const std::string& name, const Bytes& bytes) { write_file(name, text_of(bytes)); }
-
 }  // namespace
 
 TEST_CASE("PFM: a header with comments, blanks, tabs or CR LF has the same values") {
@@ -152,8 +140,8 @@ TEST_CASE("PFM: Photoshop's, with width and height on lines of their own, begin 
 TEST_CASE("refocus, apply: --flip turns the rows of PFM files") {
   const TemporaryDirectory directory;
   const std::string up = directory.file("up.pfm"), down = directory.file("down.pfm");
-  write(up, pfm_of("Pf\n3 2\n-1.0\n"));
-  write(down, pfm_of("Pf\n3\n2\n-1.0\n"));
+  write_file(up, pfm_of("Pf\n3 2\n-1.0\n"));
+  write_file(down, pfm_of("Pf\n3\n2\n-1.0\n"));
   const auto rows = [&](const std::string& name, const std::vector<std::string>& more) {
     std::vector<std::string> words{
         "apply", name, "-o", directory.file("o.npy"), "--effect", "gaussian:sigma=0"};
@@ -201,7 +189,7 @@ TEST_CASE("ICC profiles: PNG and JPEG keep theirs in a PNG, and are told where t
   const Bytes p3 = profile("RGB ", "Display P3", true);
   const Bytes adobe = profile("RGB ", "Adobe RGB (1998)", false);
   const std::string png = directory.file("a.png"), jpeg = directory.file("a.jpg");
-  write(png, with_png_profile(grey_png(), p3));
+  write_file(png, with_png_profile(grey_png(), p3));
   Bytes file = read_picture_bytes(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg");
   // In two segments, as of a profile above 64 kB.
   std::string segments;
@@ -214,7 +202,7 @@ TEST_CASE("ICC profiles: PNG and JPEG keep theirs in a PNG, and are told where t
   }
   const Bytes inserted = bytes_of(segments);
   file.insert(file.begin() + 2, inserted.begin(), inserted.end());
-  write(jpeg, file);
+  write_file(jpeg, file);
   CHECK(open_picture_file(png).icc == p3);
   CHECK(open_picture_file(jpeg).icc == adobe);
   CHECK(contains(run_program({"inspect", png}).out, "ICC profile Display P3"));
@@ -233,12 +221,12 @@ TEST_CASE("ICC profiles: PNG and JPEG keep theirs in a PNG, and are told where t
   CHECK(open_picture_file(out).icc == adobe);
   CHECK(
       contains(made(png, directory.file("o.npy")), "profile Display P3, which the result has no"));
-  write(png, with_png_profile(grey_png(), profile("GRAY", "Dot Gain 20%", true)));
+  write_file(png, with_png_profile(grey_png(), profile("GRAY", "Dot Gain 20%", true)));
   CHECK(contains(made(png, out), "Dot Gain 20%"));
   CHECK(open_picture_file(out).icc.empty());
-  write(png, with_png_profile(grey_png(), p3));
+  write_file(png, with_png_profile(grey_png(), p3));
   const std::string depth = directory.file("d.npy");
-  write(depth, encode_grey_npy(PlaneValues(24 * 16, 2.0f), 24, 16));
+  write_file(depth, encode_grey_npy(PlaneValues(24 * 16, 2.0f), 24, 16));
   const ProgramRun run = run_program({"refocus", png, depth, "-o", out});
   CHECK(run.status == 0);
   CHECK(contains(run.err, "the profile Display P3"));
@@ -251,7 +239,7 @@ TEST_CASE("--icc srgb: a colour's light is that of sRGB's primaries, and the pro
   const auto applied = [&](const std::string& out) {
     return run_program({"apply", from, "-o", out, "--effect", "gaussian:sigma=0", "--icc", "srgb"});
   };
-  write(from, with_png_profile(grey_png(), linear_p3_profile()));
+  write_file(from, with_png_profile(grey_png(), linear_p3_profile()));
   const ProgramRun run = applied(directory.file("o.npy"));
   if (!missing_lcms().empty()) {
     CHECK(run.status == 2);
@@ -281,9 +269,9 @@ TEST_CASE("refocus: colours beyond the largest half keep their light") {
       const bool is_lamp = i / 3 == kSide * (kSide / 2) + kSide / 2;
       append_little_endian(bytes, std::bit_cast<std::uint32_t>(is_lamp ? light : 0.25f));
     }
-    write(from, bytes);
+    write_file(from, bytes);
   };
-  write(depth, encode_grey_npy(PlaneValues(kSide * kSide, 1e10f), kSide, kSide));
+  write_file(depth, encode_grey_npy(PlaneValues(kSide * kSide, 1e10f), kSide, kSide));
   const auto sum = [&](const std::string& out, const char* method) {
     const ProgramRun run =
         run_program({"refocus", from, depth, "-o", out, "--focus", "2", "--blur-at-infinity", "7",

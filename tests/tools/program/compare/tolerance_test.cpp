@@ -25,7 +25,7 @@ struct TwoPictures {
   }
   static void write(const std::string& name, const Image& image) {
     const Bytes bytes = encode_npy(image);
-    write_file(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(name, bytes);
   }
   ProgramRun compared(const Words& more) const {
     Words words{"compare", a, b};
@@ -116,11 +116,9 @@ TEST_CASE("compare --max-pixels: so many pixels may differ by more than --max-di
   CHECK(files.compared({"--max-pixels", "1"}).status == 0);
   CHECK(files.compared({"--max-pixels", "1.6%"}).status == 0);
   CHECK(files.compared({"--max-pixels", "1.5%"}).status == 1);
-  // 3 half-ULPs from 0.5 are 0.00146484, and of sRGB a third of a step.
+  // 3 half-ULPs from 0.5 are 0.00146484.
   CHECK(files.compared({"--max-difference", "0.00146485"}).status == 0);
   CHECK(files.compared({"--max-difference", "0.00146484"}).status == 1);
-  CHECK(files.compared({"--max-difference", "0.4/255"}).status == 0);
-  CHECK(files.compared({"--max-difference", "0.1/255"}).status == 1);
   const ProgramRun run = files.compared({"--max-pixels", "0"});
   CHECK(contains(run.out, "limit               --max-pixels 0: broken by 1, at 1 pixels"));
   for (const auto& [option, value] : {std::pair{"--max-pixels", "-1"},
@@ -173,7 +171,7 @@ TEST_CASE("compare: colours under an alpha of 0 do not count, and alpha does") {
     }
     if (alpha == 0.0f) std::fill_n(opacity.begin(), 32, 1e-7f);
     bytes = encode_png(image, opacity);
-    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(directory.file(name), bytes);
     return directory.file(name);
   };
   const std::string a = write_png("a.png", 0.2f, 0.0f), b = write_png("b.png", 0.9f, 0.0f);
