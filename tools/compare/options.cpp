@@ -65,11 +65,10 @@ constexpr Parameter
         "Tolerance: status 0 up to this difference of any red, green or blue, in linear light",
         0.0, 1e6, 0.0, "", "E"},
     kMaxDifference{"max-difference",
-        "Of --max-pixels: of any red, green or blue, in linear light (default: 0)",
+        "Of --max-pixels: of any red, green or blue, in linear light",
         0.0, 1e6, 0.0, "", "D"},
     kSearch{"search",
-        "Of --max-pixels: how near a pixel may lie in the other picture, for edges that moved "
-        "(default: 0)",
+        "Of --max-pixels: how near a pixel may lie in the other picture, for edges that moved",
         0, 8, 0, "px", "PIXELS", "", 1},
     kPoint{"point",
         "The pictures are of one bright point on black: compare light and shape with the disc of "
@@ -193,8 +192,8 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   add_value(parser, "--max-pixels", "N[%]",
             "Tolerance: status 0 up to so many pixels that differ by more than --max-difference",
             [&options](const std::string& text) { read_max_pixels(text, options.tolerance); });
-  add_parameter(parser, kMaxDifference, "", options.tolerance.max_difference);
-  add_parameter(parser, kSearch, "", options.tolerance.search_px);
+  add_parameter(parser, kMaxDifference, "0", options.tolerance.max_difference);
+  add_parameter(parser, kSearch, "0", options.tolerance.search_px);
   begin_group(parser, "Measures");
   add_parameter(parser, kPoint, "", options.point_radius_px);
   add_frames(parser, "--flicker", "Frames of a sequence, in order, instead of A and B",

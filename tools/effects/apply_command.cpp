@@ -188,7 +188,7 @@ Image read_velocity(const VelocityOptions& options, const PictureFile& picture) 
   }
   tell("the velocity is " + file.planes[found->planes[0]].name + " and " +
        file.planes[found->planes[1]].name + " as " + std::string{name_of(found->encoding)} +
-       " writes them" + (options.encoding ? "" : " (believed: by their names)") + ", up to " +
+       (options.encoding ? "" : " (believed: by their names)") + ", up to " +
        short_number(std::round(10.0 * static_cast<double>(longest)) / 10.0) + " pixels a frame");
   return velocity;
 }

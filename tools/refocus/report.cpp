@@ -255,8 +255,8 @@ std::string busy_sidecar_warning(const std::filesystem::path& sidecar) {
 
 std::string cut_light_warning(const std::string& colour, std::size_t cut, int light_power) {
   const std::string most = short_number(std::ldexp(65504.0, light_power));
-  return "'" + colour + "': " + std::to_string(cut) + " values of colours are beyond " + most +
-         " or infinite, and are cut to that; divide all by a power of two before, multiply after";
+  return "'" + colour + "': colours beyond " + most + " or infinite are cut to that, in " +
+         std::to_string(cut) + " values; divide all by a power of two before, multiply after";
 }
 
 std::string lost_profile_warning(const PictureFile& file, FileFormat format) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "raster/images/texel.h"
 #include "tests/support/run_program.h"
@@ -296,8 +297,15 @@ TEST_CASE("refocus: colours beyond the largest half keep their light") {
   write_lamp(1e9f);
   const ProgramRun run =
       run_program({"refocus", from, depth, "-o", directory.file("o.pfm"), "--focus", "2"});
-  CHECK(contains(run.err, "3 colours are brighter than what is computed with, up to 1e+09"));
+  CHECK(contains(run.err, "colours beyond 6.70761e+07 or infinite are cut to that, in 3 values"));
   CHECK(
       contains(run_program({"apply", from, "-o", directory.file("o.pfm"), "--effect", "box-3"}).err,
-               "3 colours are brighter"));
+               "colours beyond 65504 or infinite"));
+  write_lamp(std::numeric_limits<float>::infinity());
+  for (const char* method : {"disc-layers", "two-pass"}) {
+    CHECK(contains(run_program({"refocus", from, depth, "-o", directory.file("o.pfm"), "--method",
+                                method, "--focus", "2"})
+                       .err,
+                   "colours beyond 65504 or infinite are cut to that, in 3 values"));
+  }
 }
