@@ -1,8 +1,6 @@
 #include "tools/bench/effect_bench.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -11,9 +9,9 @@
 #include "scenes/draw/velocity.h"
 #include "scenes/temporal/frame_history.h"
 #include "tools/bench/repeated_on_gl.h"
+#include "tools/bench/report.h"
 #include "tools/bench/work.h"
 #include "tools/cli/option_values.h"
-#include "tools/cli/platform.h"
 #include "tools/cli/timing.h"
 #include "tools/files/json.h"
 #include "tools/options/effect_options.h"
@@ -57,22 +55,6 @@ RepeatedFrame make_repeated_frame(const ChosenEffect& chosen, const BenchWork& w
 void run(RepeatedFrame& frame, Image& picture, const Profile& profile, ThreadPool& pool) {
   make_frame(frame.effect, sources_of(frame.effect, frame.history),
              {picture, frame.frames, frame.between}, profile, pool);
-}
-
-std::string fixed(double value, int decimals) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
-
-/// "5.71 [5.52, 6.03]".
-std::string spread_text(const Spread& spread, int decimals) {
-  return fixed(spread.median, decimals) + " [" + fixed(spread.min, decimals) + ", " +
-         fixed(spread.max, decimals) + "]";
-}
-
-std::string column(const std::string& text, std::size_t width) {
-  return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
 }
 
 Json spread_json(const Spread& spread) {
@@ -158,32 +140,29 @@ EffectBench bench_effects(const BenchOptions& options, const BenchWork& work, Th
 
 std::string effect_bench_text(const BenchOptions& options, const BenchWork& work,
                               const EffectBench& bench) {
-  const PoolOptions& pool = options.pool;
   std::string text = work.name + ", " + size_text(work.size) + ", effects on the sharp picture\n" +
-                     "profile " + work.profile_name + ", " + count_text(pool.threads, "thread") +
-                     ", " + std::string{isa_name(pool.isa)} + ", " + std::to_string(options.runs) +
-                     " runs, " + cpu_name().value_or("a CPU without a name") + "\n";
+                     run_text(options, work);
   const bool has_peer = !bench.renderer.empty();
   if (has_peer) text += "against " + bench.renderer + "\n";
   std::size_t widest = 8;
   for (const EffectTimes& times : bench.effects) widest = std::max(widest, times.name.size() + 2);
   constexpr std::size_t kTimes = 26, kRatio = 22;
-  text += "\n" + column("effect", widest);
+  text += "\n" + padded("effect", widest);
   if (!has_peer) {
     text += "ms [min, max]\n";
     for (const EffectTimes& times : bench.effects) {
-      text += column(times.name, widest) + spread_text(spread_of(times.ours_ms), 2) + "\n";
+      text += padded(times.name, widest) + spread_text(spread_of(times.ours_ms), 2) + "\n";
     }
     return text;
   }
   const std::string driver{options.versus->name};
-  text += column("ours, ms [min, max]", kTimes) + column(driver + ", ms [min, max]", kTimes) +
-          column(driver + " / ours", kRatio) + column("quad / triangle", kRatio) + "bits\n";
+  text += padded("ours, ms [min, max]", kTimes) + padded(driver + ", ms [min, max]", kTimes) +
+          padded(driver + " / ours", kRatio) + padded("quad / triangle", kRatio) + "bits\n";
   for (const EffectTimes& times : bench.effects) {
-    text += column(times.name, widest) + column(spread_text(spread_of(times.ours_ms), 2), kTimes) +
-            column(spread_text(spread_of(times.peers_ms), 2), kTimes) +
-            column(spread_text(spread_of(pair_ratios(times.ours_ms, times.peers_ms)), 1), kRatio) +
-            column(spread_text(spread_of(pair_ratios(times.peers_ms, times.quads_ms)), 2), kRatio) +
+    text += padded(times.name, widest) + padded(spread_text(spread_of(times.ours_ms), 2), kTimes) +
+            padded(spread_text(spread_of(times.peers_ms), 2), kTimes) +
+            padded(spread_text(spread_of(pair_ratios(times.ours_ms, times.peers_ms)), 1), kRatio) +
+            padded(spread_text(spread_of(pair_ratios(times.peers_ms, times.quads_ms)), 2), kRatio) +
             (times.equal ? "equal" : "differ") + "\n";
   }
   return text;
@@ -191,14 +170,8 @@ std::string effect_bench_text(const BenchOptions& options, const BenchWork& work
 
 std::string effect_bench_json(const BenchOptions& options, const BenchWork& work,
                               const EffectBench& bench) {
-  const PoolOptions& pool = options.pool;
-  Json json{{"softfocus", SOFTFOCUS_VERSION}, {"scene", work.name},
-            {"size", size_text(work.size)},   {"profile", work.profile_name},
-            {"threads", pool.threads},        {"isa", isa_name(pool.isa)},
-            {"runs", options.runs},           {"cpu", nullptr},
-            {"compiler", compiler_name()},    {"peer", nullptr},
-            {"effects", Json::array()}};
-  if (const auto cpu = cpu_name()) json["cpu"] = *cpu;
+  Json json = run_json(options, work);
+  json["effects"] = Json::array();
   if (!bench.renderer.empty()) {
     json["peer"] = {{"driver", options.versus->name}, {"renderer", bench.renderer}};
   }

@@ -12,28 +12,16 @@
 namespace softfocus {
 namespace {
 
+std::string decimals(double value, int places) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", places, value);
+  return text.data();
+}
+
 // Two decimals, or three where there is one digit before them.
-std::string milliseconds_text(double ms) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), ms < 10.0 ? "%.3f" : "%.2f", ms);
-  return text.data();
-}
+std::string milliseconds_text(double ms) { return decimals(ms, ms < 10.0 ? 3 : 2); }
 
-std::string ratio_text(double ratio) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f", ratio);
-  return text.data();
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-  return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
-}
-
-std::string times_text(const StageSamples& stage) {
-  const Spread ms = spread_of(stage.ms);
-  return milliseconds_text(ms.median) + " [" + milliseconds_text(ms.min) + ", " +
-         milliseconds_text(ms.max) + "]";
-}
+std::string times_text(const StageSamples& stage) { return spread_text(spread_of(stage.ms)); }
 
 Spread ratio_of(const BenchRecord& record, std::size_t stage) {
   return spread_of(pair_ratios(record.samples.ours[stage].ms, record.samples.peers[stage].ms));
@@ -60,7 +48,6 @@ std::string shaders_text(const BenchPeer& peer) {
 
 std::string heading(const BenchRecord& record) {
   const BenchWork& work = record.work;
-  const PoolOptions& pool = record.options.pool;
   std::string text = work.name + ", ";
   if (work.scene) text += std::to_string(triangle_count(*work.scene)) + " triangles, ";
   text += size_text(work.size) + ", " + std::string{work.method.name()} +
@@ -68,10 +55,7 @@ std::string heading(const BenchRecord& record) {
                ? ""
                : " " + std::string{arithmetic_name(record.options.arithmetic)}) +
           setting_of(record) + "\n";
-  text += "profile " + work.profile_name + ", " + std::to_string(pool.threads) +
-          (pool.threads == 1 ? " thread, " : " threads, ") + std::string{isa_name(pool.isa)} +
-          ", " + std::to_string(record.options.runs) + " runs, " +
-          cpu_name().value_or("a CPU without a name") + "\n";
+  text += run_text(record.options, work);
   if (record.peer) {
     const BenchPeer& peer = *record.peer;
     text += "against " + peer.renderer + ": the pictures " +
@@ -121,6 +105,38 @@ Json ratio_json(const BenchRecord& record, double Spread::*value) {
 
 }  // namespace
 
+std::string spread_text(const Spread& spread, std::optional<int> places) {
+  const auto text = [&](double value) {
+    return places ? decimals(value, *places) : milliseconds_text(value);
+  };
+  return text(spread.median) + " [" + text(spread.min) + ", " + text(spread.max) + "]";
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
+}
+
+std::string run_text(const BenchOptions& options, const BenchWork& work) {
+  return "profile " + work.profile_name + ", " + count_text(options.pool.threads, "thread") + ", " +
+         std::string{isa_name(options.pool.isa)} + ", " + std::to_string(options.runs) + " runs, " +
+         cpu_name().value_or("a CPU without a name") + "\n";
+}
+
+Json run_json(const BenchOptions& options, const BenchWork& work) {
+  Json json{{"softfocus", SOFTFOCUS_VERSION},
+            {"scene", work.name},
+            {"size", size_text(work.size)},
+            {"profile", work.profile_name},
+            {"threads", options.pool.threads},
+            {"isa", isa_name(options.pool.isa)},
+            {"runs", options.runs},
+            {"cpu", nullptr},
+            {"compiler", compiler_name()},
+            {"peer", nullptr}};
+  if (const auto cpu = cpu_name()) json["cpu"] = *cpu;
+  return json;
+}
+
 std::string bench_text(const BenchRecord& record) {
   constexpr std::size_t kStageWidth = 8, kTimesWidth = 30;
   std::string text = heading(record) + "\n" + padded("stage", kStageWidth);
@@ -138,8 +154,7 @@ std::string bench_text(const BenchRecord& record) {
     const StageSamples& ours = record.samples.ours[i];
     const Spread ratio = ratio_of(record, i);
     text += padded(ours.name, kStageWidth) + padded(times_text(ours), kTimesWidth) +
-            padded(times_text(record.samples.peers[i]), kTimesWidth) + ratio_text(ratio.median) +
-            " [" + ratio_text(ratio.min) + ", " + ratio_text(ratio.max) + "]\n";
+            padded(times_text(record.samples.peers[i]), kTimesWidth) + spread_text(ratio, 2) + "\n";
   }
   return text + copies_text("ours", record.samples.ours) +
          copies_text(driver, record.samples.peers);
@@ -147,34 +162,18 @@ std::string bench_text(const BenchRecord& record) {
 
 std::string bench_json(const BenchRecord& record) {
   const BenchWork& work = record.work;
-  const PoolOptions& pool = record.options.pool;
-  Json json{{"softfocus", SOFTFOCUS_VERSION},
-            {"scene", work.name},
-            {"triangles", nullptr},
-            {"size", size_text(work.size)},
-            {"method", work.method.name()},
-            {"arithmetic", arithmetic_name(record.options.arithmetic)},
-            {"max_coc", nullptr},
-            {"samples", nullptr},
-            {"chosen", nullptr},
-            {"profile", work.profile_name},
-            {"threads", pool.threads},
-            {"isa", isa_name(pool.isa)},
-            {"runs", record.options.runs},
-            {"cpu", nullptr},
-            {"compiler", compiler_name()},
-            {"stages", stages_json(record.samples.ours)},
-            {"peer", nullptr},
-            {"ratio", nullptr},
-            {"ratio_min", nullptr},
-            {"ratio_max", nullptr},
-            {"equal", nullptr},
-            {"difference", nullptr}};
+  Json json = run_json(record.options, work);
+  json["method"] = work.method.name();
+  json["arithmetic"] = arithmetic_name(record.options.arithmetic);
+  json["stages"] = stages_json(record.samples.ours);
+  for (const char* name : {"triangles", "max_coc", "samples", "chosen", "ratio", "ratio_min",
+                           "ratio_max", "equal", "difference"}) {
+    json[name] = nullptr;
+  }
   if (work.method.filter != nullptr) json["max_coc"] = work.settings.max_coc_px;
   if (record.samples_taken > 0) json["samples"] = record.samples_taken;
   if (record.choice) json["chosen"] = setting_text(*record.choice);
   if (work.scene) json["triangles"] = triangle_count(*work.scene);
-  if (const auto cpu = cpu_name()) json["cpu"] = *cpu;
   if (record.peer) {
     json["peer"] = {{"driver", record.peer->driver},
                     {"renderer", record.peer->renderer},

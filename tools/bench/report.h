@@ -8,6 +8,8 @@
 #include "dof/auto/auto_method.h"
 #include "tools/bench/paired_runs.h"
 #include "tools/bench/work.h"
+#include "tools/cli/timing.h"
+#include "tools/files/json.h"
 
 namespace softfocus {
 
@@ -37,5 +39,19 @@ struct BenchRecord {
 
 std::string bench_text(const BenchRecord& record);
 std::string bench_json(const BenchRecord& record);
+
+// What every bench says.
+
+/// "5.71 [5.52, 6.03]"; milliseconds without `places` have two, or three below 10.
+std::string spread_text(const Spread& spread, std::optional<int> places = {});
+
+/// With blanks up to the width, one at least.
+std::string padded(const std::string& text, std::size_t width);
+
+/// A line of profile, machine and runs.
+std::string run_text(const BenchOptions& options, const BenchWork& work);
+
+/// Version, work, profile, machine and runs; no peer yet.
+Json run_json(const BenchOptions& options, const BenchWork& work);
 
 }  // namespace softfocus

@@ -21,19 +21,13 @@
 #include "tools/chart/scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
-#include "tools/cli/progress.h"
 #include "tools/files/whole_file.h"
 #include "tools/golden/hashes.h"
+#include "tools/report/laboratory.h"
 #include "tools/report/report.h"
 
 namespace softfocus {
 namespace {
-
-struct ChartFindings {
-  std::vector<ChartPanel> panels;
-  int kept = 0;  ///< results that an earlier run left: truths, errors and times
-  int all = 0;   ///< results
-};
 
 /// Slower contenders are timed less often.
 constexpr double kLongMs = 1000.0;
@@ -51,6 +45,8 @@ double run_guess(const ChartEntry& entry) {
   return entry.filter != nullptr ? kFilterGuess : static_cast<double>(entry.samples);
 }
 
+/// A point's name in its record.
+constexpr const char* kPoint = "point";
 constexpr const char *kLoad = "load", *kTruth = "truth", *kMeasure = "measure",
                      *kPictures = "pictures";
 std::string run_kind(const ChartEntry& entry) { return "run " + entry_id(entry); }
@@ -62,16 +58,14 @@ struct Work {
   ThreadPool& pool;
   std::vector<ChartEntry> entries;
   std::uint64_t measures;  ///< measures_hash()
-  ChartFindings findings{};
-  Progress progress{options.quiet};
-  TimeLeft left{};
+  std::vector<ChartPanel> panels{};
+  Laboratory lab{options.quiet, options.again};
 
-  void show(const std::string& stage) {
-    const double seconds = left.seconds();
-    progress.show(seconds > 0.0 ? stage + "; " + time_left_text(seconds) : stage);
-  }
   std::filesystem::path folder_of(const std::string& scene) const {
     return options.directory / "cache" / name_for_files(scene);
+  }
+  KeptResults record_of(const ChartPanel& panel, const ChartEntry& entry) const {
+    return {folder_of(panel.scene) / (entry_id(entry) + ".json"), panel.key};
   }
 };
 
@@ -88,16 +82,16 @@ std::vector<ChartEntry> wanted_entries(const ChartOptions& options) {
 void plan(Work& work) {
   const ChartOptions& options = work.options;
   const auto scenes = static_cast<double>(options.scenes.size());
-  work.left.plan(kLoad, scenes, kLoadGuess);
-  work.left.plan(kTruth, scenes * options.truth_samples, 1.0);
+  work.lab.left.plan(kLoad, scenes, kLoadGuess);
+  work.lab.left.plan(kTruth, scenes * options.truth_samples, 1.0);
   for (const ChartEntry& entry : work.entries) {
-    work.left.plan(run_kind(entry), scenes, run_guess(entry));
-    work.left.plan(kMeasure, scenes, kMeasureGuess);
-    work.left.plan(time_kind(entry), scenes * options.rounds, 2.0 * run_guess(entry));
+    work.lab.left.plan(run_kind(entry), scenes, run_guess(entry));
+    work.lab.left.plan(kMeasure, scenes, kMeasureGuess);
+    work.lab.left.plan(time_kind(entry), scenes * options.rounds, 2.0 * run_guess(entry));
   }
   const std::size_t pictures =
       expected_pictures(options.scenes.size(), work.entries.size(), options.methods.size());
-  work.left.plan(kPictures, static_cast<double>(pictures), kPicturesGuess);
+  work.lab.left.plan(kPictures, static_cast<double>(pictures), kPicturesGuess);
 }
 
 struct FoundTruth {
@@ -114,14 +108,14 @@ FoundTruth truth_of(Work& work, const ChartScene& scene, const std::string& key,
     if (auto kept = load_truth(key, file)) return {std::move(*kept), true};
   }
   int before = 0;
-  work.left.start();
+  work.lab.left.start();
   ChartTruth truth = make_truth(
       scene, samples,
       [&](int done) {
-        work.left.done(kTruth, done - before);
+        work.lab.left.done(kTruth, done - before);
         before = done;
-        work.show(scene.scene.name + ": ground truth, " + std::to_string(done) + " of " +
-                  std::to_string(samples) + " samples");
+        work.lab.show(scene.scene.name + ": ground truth, " + std::to_string(done) + " of " +
+                      std::to_string(samples) + " samples");
       },
       work.pool);
   save_truth(truth, key, file);
@@ -139,41 +133,56 @@ const ChartPoint* same_picture(const ChartPoint& point, const std::vector<ChartP
   return same == before.end() ? nullptr : &*same;
 }
 
+LabContender contender(Work& work, const ChartScene& scene, const ChartTruth& truth,
+                       ChartRunner& runner, ChartPoint& point,
+                       const std::vector<ChartPoint>& before) {
+  const ChartEntry& entry = point.entry;
+  return {.name = kPoint,
+          .stage = scene.scene.name + ": error of " + entry.method + ", " + settings_text(entry),
+          .kind = run_kind(entry),
+          .run =
+              [&] {
+                runner.run(entry);
+                if (entry.max_error) point.entry.chosen = runner.chosen();
+                point.picture_hash = hash_image(runner.result());
+                return std::optional{hash_text(point.picture_hash)};
+              },
+          .measures =
+              [&](const std::string&) {
+                const ChartPoint* const same = same_picture(point, before);
+                const auto errors = [&, same] {
+                  if (same != nullptr) return errors_json(same->errors);
+                  ChartErrors found =
+                      measure_picture(runner.result(), truth.picture, scene.labels, work.pool);
+                  found.wrong_pixels = runner.wrong_pixels(entry);
+                  runner.add_turn_errors(truth.picture, found);
+                  return errors_json(found);
+                };
+                if (same != nullptr) work.lab.left.drop(kMeasure, 1);
+                return std::vector<LabMeasure>{
+                    {.name = "errors",
+                     .make = errors,
+                     .take = [&](const Json& json) { point.errors = errors_of(json); },
+                     .kind = kMeasure,
+                     .units = same != nullptr ? 0.0 : 1.0}};
+              }};
+}
+
 /// Draws each contender's picture once, and measures those that are not kept.
 void measure_errors(Work& work, const ChartScene& scene, const ChartTruth& truth,
-                    const std::string& key, ChartRunner& runner, std::vector<ChartPoint>& points) {
+                    ChartRunner& runner, ChartPanel& panel) {
   for (const ChartEntry& entry : work.entries) {
     if (!can_run(scene, entry)) {
-      work.left.drop(run_kind(entry), 1);
-      work.left.drop(kMeasure, 1);
-      work.left.drop(time_kind(entry), work.options.rounds);
+      work.lab.left.drop(run_kind(entry), 1);
+      work.lab.left.drop(kMeasure, 1);
+      work.lab.left.drop(time_kind(entry), work.options.rounds);
       continue;
     }
-    work.show(scene.scene.name + ": error of " + entry.method + ", " + settings_text(entry));
     ChartPoint point{.entry = entry};
-    work.left.start();
-    runner.run(entry);
-    if (entry.max_error) point.entry.chosen = runner.chosen();
-    point.picture_hash = hash_image(runner.result());
-    work.left.done(run_kind(entry), 1);
-    ++work.findings.all;
-    const std::filesystem::path file =
-        work.folder_of(scene.scene.name) / (entry_id(entry) + ".json");
-    if (!work.options.again && load_errors(point, key, file)) {
-      ++work.findings.kept;
-      work.left.drop(kMeasure, 1);
-    } else if (const ChartPoint* same = same_picture(point, points)) {
-      point.errors = same->errors;
-      save_errors(point, key, file);
-      work.left.drop(kMeasure, 1);
-    } else {
-      point.errors = measure_picture(runner.result(), truth.picture, scene.labels, work.pool);
-      point.errors.wrong_pixels = runner.wrong_pixels(entry);
-      runner.add_turn_errors(truth.picture, point.errors);
-      save_errors(point, key, file);
-      work.left.done(kMeasure, 1);
-    }
-    points.push_back(std::move(point));
+    KeptResults record = work.record_of(panel, entry);
+    work.lab.run(record, contender(work, scene, truth, runner, point, panel.points));
+    record.save();
+    panel.points.push_back(std::move(point));
   }
 }
 
@@ -185,7 +194,7 @@ std::size_t wanted_rounds(const ChartPoint& point, std::size_t rounds) {
 
 /// Takes out the rounds that are not to be run.
 void drop_rounds(Work& work, const ChartPoint& point, std::size_t count) {
-  work.left.drop(time_kind(point.entry), static_cast<double>(count));
+  work.lab.left.drop(time_kind(point.entry), static_cast<double>(count));
 }
 
 /// Round by round over all contenders, so that what disturbs the machine disturbs all.
@@ -200,8 +209,8 @@ void measure_times(Work& work, const std::string& scene, ChartRunner& runner,
     const std::size_t there = std::min(point.times.frame_ms.size(), rounds);
     const std::size_t wanted = wanted_rounds(point, rounds);
     drop_rounds(work, point, rounds - (wanted - std::min(there, wanted)));
-    ++work.findings.all;
-    work.findings.kept += there >= wanted ? 1 : 0;
+    ++work.lab.all;
+    work.lab.kept += there >= wanted ? 1 : 0;
   }
   for (std::size_t round = 0; round < rounds; ++round) {
     bool timed = false;
@@ -209,11 +218,11 @@ void measure_times(Work& work, const std::string& scene, ChartRunner& runner,
       ChartTimes& times = point.times;
       const std::size_t wanted = wanted_rounds(point, rounds);
       if (times.frame_ms.size() > round || times.frame_ms.size() >= wanted) continue;
-      work.show(scene + ": time of " + point.entry.method + ", round " + std::to_string(round + 1) +
-                " of " + std::to_string(wanted));
-      work.left.start();
+      work.lab.show(scene + ": time of " + point.entry.method + ", round " +
+                    std::to_string(round + 1) + " of " + std::to_string(wanted));
+      work.lab.left.start();
       const RunTime time = runner.run_warm(point.entry);
-      work.left.done(time_kind(point.entry), 1);
+      work.lab.left.done(time_kind(point.entry), 1);
       times.frame_ms.push_back(time.frame_ms);
       if (time.filter_ms) times.filter_ms.push_back(*time.filter_ms);
       if (times.frame_ms.size() == 1) {
@@ -232,18 +241,18 @@ std::string key_of(Work& work, const ChartScene& scene, const std::string& given
 
 ChartPanel measure_scene(Work& work, const std::string& given_name) {
   const ChartOptions& options = work.options;
-  work.show(given_name + ": loading");
-  work.left.start();
+  work.lab.show(given_name + ": loading");
+  work.lab.left.start();
   const ChartScene scene = load_chart_scene(given_name, options, work.pool);
   const std::string& name = scene.scene.name;
   const std::string key = key_of(work, scene, given_name);
   make_directory(work.folder_of(name));
-  work.left.done(kLoad, 1);
-  ++work.findings.all;
+  work.lab.left.done(kLoad, 1);
+  ++work.lab.all;
   const auto [truth, kept] = truth_of(work, scene, key, options.again);
   if (kept) {
-    ++work.findings.kept;
-    work.left.drop(kTruth, options.truth_samples);
+    ++work.lab.kept;
+    work.lab.left.drop(kTruth, options.truth_samples);
   }
 
   ChartRunner runner{scene, work.pool};
@@ -254,56 +263,60 @@ ChartPanel measure_scene(Work& work, const std::string& given_name) {
                    .given_name = given_name,
                    .key = point_key(key, truth.picture),
                    .ranked = options.subject->ranked};
-  measure_errors(work, scene, truth, panel.key, runner, panel.points);
+  measure_errors(work, scene, truth, runner, panel);
   measure_times(work, name, runner, panel.points);
   settle_points(panel);
   return panel;
 }
 
-/// The points of a scene that have no pictures in the cache.
-std::vector<ChartPoint*> without_pictures(Work& work, ChartPanel& panel,
-                                          const std::vector<ChartPoint*>& wanted) {
-  std::vector<ChartPoint*> missing;
-  const std::filesystem::path folder = work.folder_of(panel.scene);
-  for (ChartPoint* point : wanted) {
-    const std::filesystem::path file = folder / (entry_id(point->entry) + ".json");
-    if (work.options.again || !load_pictures(*point, panel.key, file)) {
-      missing.push_back(point);
-    } else {
-      work.left.drop(kPictures, 1);
-    }
-  }
-  return missing;
-}
-
+/// Loads the scene again if pictures are not kept.
 void add_pictures(Work& work, ChartPanel& panel, const std::vector<ChartPoint*>& wanted) {
-  const std::filesystem::path folder = work.folder_of(panel.scene);
-  const std::vector<ChartPoint*> missing = without_pictures(work, panel, wanted);
-  const std::filesystem::path truth_file = folder / "truth.picture.json";
-  if (!work.options.again) panel.truth_picture = load_truth_picture(panel.key, truth_file);
-  if (missing.empty() && !panel.truth_picture.empty()) return;
-
-  const ChartScene scene = load_chart_scene(panel.given_name, work.options, work.pool);
-  const ChartTruth truth =
-      truth_of(work, scene, key_of(work, scene, panel.given_name), false).truth;
-  panel.truth_picture = page_picture(truth.picture);
-  save_truth_picture(panel.truth_picture, panel.key, truth_file);
-  ChartRunner runner{scene, work.pool};
-  work.left.start();
-  for (ChartPoint* point : missing) {
-    work.show(panel.scene + ": pictures of " + point->entry.method);
-    runner.run(point->entry);
-    add_point_pictures(*point, runner.result(), truth.picture, work.pool);
-    save_pictures(*point, panel.key, folder / (entry_id(point->entry) + ".json"));
-    work.left.done(kPictures, 1);
+  struct Drawn {
+    ChartScene scene;
+    ChartTruth truth;
+    ChartRunner runner;
+    Drawn(ChartScene of, ChartTruth right, ThreadPool& pool)
+        : scene(std::move(of)), truth(std::move(right)), runner(scene, pool) {}
+  };
+  std::unique_ptr<Drawn> drawn;
+  const auto draw = [&]() -> Drawn& {
+    if (drawn != nullptr) return *drawn;
+    ChartScene scene = load_chart_scene(panel.given_name, work.options, work.pool);
+    ChartTruth truth = truth_of(work, scene, key_of(work, scene, panel.given_name), false).truth;
+    work.lab.left.start();
+    drawn = std::make_unique<Drawn>(std::move(scene), std::move(truth), work.pool);
+    return *drawn;
+  };
+  KeptResults of_truth{work.folder_of(panel.scene) / "truth.picture.json", panel.key};
+  work.lab.settle(of_truth, "truth", "",
+                  {.name = "picture",
+                   .make = [&] { return page_picture(draw().truth.picture); },
+                   .take = [&](const Json& json) { panel.truth_picture = json.text(); },
+                   .is_result = false});
+  of_truth.save();
+  for (ChartPoint* point : wanted) {
+    const auto pictures = [&] {
+      work.lab.show(panel.scene + ": pictures of " + point->entry.method);
+      draw().runner.run(point->entry);
+      add_point_pictures(*point, drawn->runner.result(), drawn->truth.picture, work.pool);
+      return pictures_json(*point);
+    };
+    KeptResults record = work.record_of(panel, point->entry);
+    work.lab.settle(record, kPoint, hash_text(point->picture_hash),
+                    {.name = "pictures",
+                     .make = pictures,
+                     .take = [&](const Json& json) { take_pictures(json, *point); },
+                     .is_result = false,
+                     .kind = kPictures});
+    record.save();
   }
 }
 
 void add_all_pictures(Work& work) {
-  std::vector<ChartPanel>& panels = work.findings.panels;
+  std::vector<ChartPanel>& panels = work.panels;
   const std::vector<PicturedPoint> chosen = pictured_points(panels);
-  work.left.drop(kPictures, work.left.units_left(kPictures));
-  work.left.plan(kPictures, static_cast<double>(chosen.size()), kPicturesGuess);
+  work.lab.left.drop(kPictures, work.lab.left.units_left(kPictures));
+  work.lab.left.plan(kPictures, static_cast<double>(chosen.size()), kPicturesGuess);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     std::vector<ChartPoint*> wanted;
     for (const PicturedPoint& of : chosen) {
@@ -315,14 +328,15 @@ void add_all_pictures(Work& work) {
 
 /// Settled panels with pictures. Measures what is not kept already, with a line on the terminal
 /// that says how long it takes. Needs the directory, with "cache" in it.
-ChartFindings measure_chart(const ChartOptions& options, ThreadPool& pool) {
+std::vector<ChartPanel> measure_chart(const ChartOptions& options, ThreadPool& pool) {
   Work work{options, pool, wanted_entries(options), measures_hash(pool)};
   plan(work);
   for (const std::string& name : options.scenes) {
-    work.findings.panels.push_back(measure_scene(work, name));
+    work.panels.push_back(measure_scene(work, name));
   }
   add_all_pictures(work);
-  return std::move(work.findings);
+  work.lab.print_kept("results");
+  return std::move(work.panels);
 }
 
 void write_list(const Json& list, const std::string& name, const ChartOptions& options) {
@@ -416,14 +430,10 @@ int chart(const ChartOptions& options) {
   for (const auto& file : outputs) check_not_read("-o", file, inputs);
   prepare_results(options.directory, outputs);
   ThreadPool pool{options.pool.threads, options.pool.isa};
-  const ChartFindings findings = measure_chart(options, pool);
-  write_chart(findings.panels, options);
-  if (findings.kept > 0) {
-    std::cout << "went on: " << findings.kept << " of " << findings.all
-              << " results were there already\n";
-  }
-  if (options.rounds > 0 && findings.panels.size() <= kMostPanels) print_fronts(findings.panels);
-  if (findings.panels.size() > 1) print_summary(findings.panels);
+  const std::vector<ChartPanel> panels = measure_chart(options, pool);
+  write_chart(panels, options);
+  if (options.rounds > 0 && panels.size() <= kMostPanels) print_fronts(panels);
+  if (panels.size() > 1) print_summary(panels);
   std::cout << "written to " << (options.directory / "index.html").string() << '\n';
   return kDone;
 }

@@ -102,18 +102,17 @@ std::string name_for_files(std::string_view scene) {
 
 void add_chart_options(CLI::App& parser, ChartOptions& options) {
   begin_group(parser, "Output");
-  add_value(parser, "-o,--output", "DIR", "Where the chart and what was measured go; required",
-            [&options](const std::string& text) { options.directory = text; });
+  add_results_option(parser, options, "the chart");
   begin_group(parser, "What is measured");
-  add_value(parser, "--of", "SUBJECT",
-            "What the pictures are to show: depth-of-field, motion-blur, anti-aliasing, bloom, "
-            "shadows or impostors (default: depth-of-field)",
-            [&options](const std::string& text) {
-              options.subject = find_chart_subject(text);
-              if (options.subject == nullptr) {
-                refuse_name("--of", text, names_in(chart_subjects()));
-              }
-            });
+  add_value(
+      parser, "--of", "SUBJECT",
+      "What the pictures are to show: " + names_of(chart_subjects()) + " (default: depth-of-field)",
+      [&options](const std::string& text) {
+        options.subject = find_chart_subject(text);
+        if (options.subject == nullptr) {
+          refuse_name("--of", text, names_in(chart_subjects()));
+        }
+      });
   offer(parser, "--of", [] { return names_in(chart_subjects()); });
   add_value(parser, "--scenes", "A,B,...",
             "Scenes or files, as render takes them, and ranges such as random:64..127 (default: "
@@ -159,9 +158,7 @@ void add_chart_options(CLI::App& parser, ChartOptions& options) {
 }
 
 void complete(ChartOptions& options) {
-  if (options.directory.empty()) {
-    throw UsageError("-o is missing; give a directory for the chart, such as -o chart");
-  }
+  check_results_option(options, "the chart", "chart");
   const int side = options.quick ? 256 : 1024;
   options.size = options.given_size.value_or(PictureSize{side, side});
   if (options.given_samples && options.subject->truth_of != nullptr) {

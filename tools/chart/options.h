@@ -10,24 +10,20 @@
 #include "tools/chart/subject.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/parser.h"
-#include "tools/options/run_options.h"
+#include "tools/report/laboratory.h"
 
 namespace softfocus {
 
-struct ChartOptions {
+/// The pinhole is always among the methods.
+struct ChartOptions : LabOptions {
   const ChartSubject* subject = &chart_subjects().front();
-  std::filesystem::path directory;
-  std::vector<std::string> scenes;   ///< as `render` takes them; none given: the subject's
-  std::vector<std::string> methods;  ///< none given: all; the pinhole is always there
+  std::vector<std::string> scenes;  ///< as `render` takes them; none given: the subject's
   std::vector<std::filesystem::path> scene_path;
   std::optional<PictureSize> given_size;
   std::optional<int> given_samples;
   std::optional<int> given_rounds;
   double frame = 0.0;
-  bool quick = false;
   bool again = false;
-  bool quiet = false;
-  PoolOptions pool;
 
   // Settled by complete().
   PictureSize size;

@@ -1,7 +1,6 @@
 #include "tools/chart/record.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "scenes/files/file_bytes.h"
@@ -13,7 +12,7 @@
 #include "tools/files/whole_file.h"
 #include "tools/golden/hashes.h"
 #include "tools/pictures/image_file.h"
-#include "tools/report/kept_results.h"
+#include "tools/report/laboratory.h"
 #include "tools/report/worst_crop.h"
 
 namespace softfocus {
@@ -30,9 +29,6 @@ std::uint64_t hash_bytes(std::string_view bytes) {
   return hash.value;
 }
 
-/// A point's key in its file.
-constexpr const char* kPoint = "point";
-
 /// The part of an entry that is kept under a hash, if `read` can read it.
 template <class Read>
 bool read_kept(const KeptResults& kept, const char* entry, const ChartPoint& point,
@@ -44,13 +40,6 @@ bool read_kept(const KeptResults& kept, const char* entry, const ChartPoint& poi
   } catch (const JsonError&) {
     return false;  // damaged: it is measured again
   }
-}
-
-void keep_one(const ChartPoint& point, const char* name, Json value, const std::string& key,
-              const std::filesystem::path& file) {
-  KeptResults kept{file, key};
-  kept.keep(kPoint, hash_text(point.picture_hash), name, std::move(value));
-  kept.save();
 }
 
 }  // namespace
@@ -115,34 +104,21 @@ ChartErrors errors_of(const Json& json) {
   return errors;
 }
 
-void save_errors(const ChartPoint& point, const std::string& key,
-                 const std::filesystem::path& file) {
-  keep_one(point, "errors", errors_json(point.errors), key, file);
-}
-
-bool load_errors(ChartPoint& point, const std::string& key, const std::filesystem::path& file) {
-  return read_kept(KeptResults{file, key}, kPoint, point, "errors",
-                   [&](const Json& json) { point.errors = errors_of(json); });
-}
-
-void save_pictures(const ChartPoint& point, const std::string& key,
-                   const std::filesystem::path& file) {
+Json pictures_json(const ChartPoint& point) {
   Json json = Json::object();
   json["place"] = {point.worst.x, point.worst.y, point.worst.side};
   for (const KeptPicture& of : kKeptPictures) json[of.name] = point.pictures.*of.picture;
-  keep_one(point, "pictures", std::move(json), key, file);
+  return json;
 }
 
-bool load_pictures(ChartPoint& point, const std::string& key, const std::filesystem::path& file) {
-  return read_kept(KeptResults{file, key}, kPoint, point, "pictures", [&](const Json& json) {
-    const Json& place = json.at("place");
-    const auto whole = [&](std::size_t i) { return static_cast<int>(place.at(i).integer()); };
-    const Crop crop{whole(0), whole(1), whole(2)};
-    ChartPictures pictures;
-    for (const KeptPicture& of : kKeptPictures) pictures.*of.picture = json.at(of.name).text();
-    point.worst = crop;
-    point.pictures = std::move(pictures);
-  });
+void take_pictures(const Json& json, ChartPoint& point) {
+  const Json& place = json.at("place");
+  const auto whole = [&](std::size_t i) { return static_cast<int>(place.at(i).integer()); };
+  const Crop crop{whole(0), whole(1), whole(2)};
+  ChartPictures pictures;
+  for (const KeptPicture& of : kKeptPictures) pictures.*of.picture = json.at(of.name).text();
+  point.worst = crop;
+  point.pictures = std::move(pictures);
 }
 
 void save_times(const std::vector<ChartPoint>& points, const std::string& key,
@@ -188,28 +164,11 @@ ChartTruth make_truth(const ChartScene& scene, int samples,
   if (scene.subject->truth_of != nullptr) {
     return {scene.subject->truth_of(scene, pool), {}};
   }
-  // Half of the samples must end a group, or the bits would differ from accumulation()'s with
-  // `until`.
-  assert(samples % kTruthSampleStep == 0);
-  const LensViewInput input = accumulation_input(scene, samples);
-  AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
-  SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
-  const auto add_until = [&](int last) {
-    while (sums.count < last) {
-      add_lens_views(buffer, input, sums.count, std::min(sums.count + kLensViewGroup, last), sums,
-                     pool);
-      on_samples(sums.count);
-    }
-  };
-  add_until(samples / 2);
-  const SampleSums first = sums;
-  add_until(samples);
-  const auto mean = [&](const SampleSums& of) {
-    return mean_picture(of, input.pinhole, input.profile, pool);
-  };
-  const MeasuredPictures halves = measure_pictures(mean(first), mean(later_samples(first, sums)),
+  const HalvedViews views =
+      halved_views(accumulation_input(scene, samples), 0, samples, on_samples, pool);
+  const MeasuredPictures halves = measure_pictures(views.first_half, views.second_half,
                                                    &scene.labels, {.hdr_flip = true}, pool);
-  return {mean(sums), chart_errors(halves)};
+  return {views.all, chart_errors(halves)};
 }
 
 void save_truth(const ChartTruth& truth, const std::string& key,
@@ -235,17 +194,6 @@ std::optional<ChartTruth> load_truth(const std::string& key, const std::filesyst
   } catch (const JsonError&) {
   }
   return std::nullopt;  // damaged: it is made again
-}
-
-void save_truth_picture(const std::string& picture, const std::string& key,
-                        const std::filesystem::path& file) {
-  KeptResults kept{file, key};
-  kept.keep(kTruthEntry, "", "picture", picture);
-  kept.save();
-}
-
-std::string load_truth_picture(const std::string& key, const std::filesystem::path& file) {
-  return KeptResults{file, key}.text(kTruthEntry, "", "picture").value_or("");
 }
 
 }  // namespace softfocus

@@ -36,17 +36,10 @@ std::string scene_file_bytes(const std::string& scene,
 Json errors_json(const ChartErrors& errors);
 ChartErrors errors_of(const Json& json);
 
-/// A point's errors, under a key. Few points have pictures.
-void save_errors(const ChartPoint& point, const std::string& key,
-                 const std::filesystem::path& file);
-
-/// Fills in what save_errors() kept under that key, if the picture's hash is the point's.
-bool load_errors(ChartPoint& point, const std::string& key, const std::filesystem::path& file);
-
-/// Pictures and the worst place, kept in the same file.
-void save_pictures(const ChartPoint& point, const std::string& key,
-                   const std::filesystem::path& file);
-bool load_pictures(ChartPoint& point, const std::string& key, const std::filesystem::path& file);
+/// A point's pictures and its worst place.
+Json pictures_json(const ChartPoint& point);
+/// Throws JsonError, and leaves the point as it is.
+void take_pictures(const Json& json, ChartPoint& point);
 
 /// The times of all points that have some, under a key.
 void save_times(const std::vector<ChartPoint>& points, const std::string& key,
@@ -77,10 +70,5 @@ void save_truth(const ChartTruth& truth, const std::string& key, const std::file
 
 /// The truth that was kept, if it was under that key and is whole.
 std::optional<ChartTruth> load_truth(const std::string& key, const std::filesystem::path& file);
-
-/// The truth reduced for the page, under the key of its scene's points; empty if none is kept.
-void save_truth_picture(const std::string& picture, const std::string& key,
-                        const std::filesystem::path& file);
-std::string load_truth_picture(const std::string& key, const std::filesystem::path& file);
 
 }  // namespace softfocus

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdio>
 
 namespace softfocus {
 
@@ -32,20 +31,6 @@ double sorted_at(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-void print_times(const std::vector<Milliseconds>& all) {
-  for (const Milliseconds& of : all) {
-    const Spread ms = spread_of(of.ms);
-    std::printf("%-26s %9.2f ms  (%.2f to %.2f; %.2f of CPU)\n", of.name.c_str(), ms.median, ms.min,
-                ms.max, spread_of(of.cpu_ms).median);
-  }
-}
-
-void print_ratio(const std::vector<Milliseconds>& times, const std::string& more) {
-  const Spread ratio = spread_of(pair_ratios(times[0].ms, times[1].ms));
-  std::printf("%-26s %9.2f     (%.2f to %.2f); %s\n", "ratio", ratio.median, ratio.min, ratio.max,
-              more.c_str());
 }
 
 }  // namespace softfocus

@@ -56,10 +56,4 @@ void time_in_turn(std::vector<Milliseconds>& all, int runs, const Work&... work)
   }
 }
 
-/// Prints medians and ends.
-void print_times(const std::vector<Milliseconds>& all);
-
-/// Prints how many times as long as the first the second took, pair by pair, and `more`.
-void print_ratio(const std::vector<Milliseconds>& times, const std::string& more);
-
 }  // namespace softfocus

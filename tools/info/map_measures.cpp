@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -74,6 +73,8 @@ std::size_t bytes_of(const SceneShadows& shadows) {
 
 struct TableRow {
   std::string name;
+  std::string setting;  ///< that is changed alone; empty: several are, or one without a number
+  double value;
   ShadowMapSettings settings;
 };
 
@@ -82,25 +83,32 @@ std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
   const auto add = [&](std::string name, const std::function<void(ShadowMapSettings&)>& change) {
     ShadowMapSettings settings = usual;
     change(settings);
-    rows.push_back({std::move(name), settings});
+    rows.push_back({std::move(name), "", 0.0, settings});
   };
-  for (int size = 256; size <= 4096; size *= 2) {
-    add("size=" + std::to_string(size), [&](ShadowMapSettings& map) { map.size = size; });
-  }
-  for (const double bias : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0}) {
-    add("bias=" + short_number(bias), [&](ShadowMapSettings& map) { map.bias = bias; });
-  }
-  for (const double bias : {0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0}) {
-    add("slope-bias=" + short_number(bias), [&](ShadowMapSettings& map) { map.slope_bias = bias; });
-  }
+  const auto sweep = [&](const char* setting, const std::vector<double>& values,
+                         const std::function<void(ShadowMapSettings&, double)>& change) {
+    for (const double value : values) {
+      add(std::string{setting} + "=" + short_number(value),
+          [&](ShadowMapSettings& map) { change(map, value); });
+      rows.back().setting = setting;
+      rows.back().value = value;
+    }
+  };
+  const auto whole = [](double value) { return static_cast<int>(value); };
+  sweep("size", {256, 512, 1024, 2048, 4096},
+        [&](ShadowMapSettings& map, double size) { map.size = whole(size); });
+  sweep("bias", {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0},
+        [](ShadowMapSettings& map, double bias) { map.bias = bias; });
+  sweep("slope-bias", {0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0},
+        [](ShadowMapSettings& map, double bias) { map.slope_bias = bias; });
   add("no-bias", [](ShadowMapSettings& map) { map.bias = map.slope_bias = 0.0; });
-  for (int kernel = 1; kernel <= kMostMapKernel; kernel += 2) {
-    add("kernel=" + std::to_string(kernel), [&](ShadowMapSettings& map) { map.kernel = kernel; });
-  }
-  for (int cascades = 1; cascades <= kMostCascades; ++cascades) {
-    add("cascades=" + std::to_string(cascades),
-        [&](ShadowMapSettings& map) { map.cascades = cascades; });
-  }
+  std::vector<double> kernels, cascades;
+  for (int kernel = 1; kernel <= kMostMapKernel; kernel += 2) kernels.push_back(kernel);
+  for (int count = 1; count <= kMostCascades; ++count) cascades.push_back(count);
+  sweep("kernel", kernels,
+        [&](ShadowMapSettings& map, double kernel) { map.kernel = whole(kernel); });
+  sweep("cascades", cascades,
+        [&](ShadowMapSettings& map, double count) { map.cascades = whole(count); });
   add("fit=scene", [](ShadowMapSettings& map) {
     map.fits_camera = false;
     map.cascades = 1;
@@ -114,8 +122,19 @@ std::vector<TableRow> table_rows(const ShadowMapSettings& usual) {
   return rows;
 }
 
+Json map_errors_json(const MapErrors& errors) {
+  return {{"seen", errors.seen},
+          {"in_shadow", errors.in_shadow},
+          {"near_edge", errors.near_edge},
+          {"wrong", errors.wrong()},
+          {"aliasing", errors.aliasing},
+          {"acne", errors.acne},
+          {"peter_panning", errors.peter_panning},
+          {"missed_shares", errors.missed_share}};
+}
+
 // The sides of all maps, from casters that are cut already.
-void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int runs,
+void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int runs, Findings& found,
                       ThreadPool& pool) {
   // A GPU's has to be probed first; its bits are not expected to be ours.
   const Profile profile = find_profile(driver.profile).value_or(Profile{});
@@ -166,23 +185,23 @@ void time_maps_beside(const Driver& driver, const SceneShadows& shadows, int run
       }
     }
   }
-  print_times(times);
-  print_ratio(times, std::to_string(differ) + " of " + std::to_string(texels) + " texels differ; " +
-                         on_gl.renderer());
+  found.add_times(times);
+  found.add_ratio(times, {{"differ", differ}, {"texels", texels}, {"renderer", on_gl.renderer()}});
 }
 
 }  // namespace
 
-void measure_maps(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
+void measure_maps(const ShadowMeasure& measure, bool check, Findings& found, ThreadPool& pool) {
   ThreadPool one{1, pool.isa()};
   RepeatedShadows mapped{measure.scene, measure, pool};
   RepeatedShadows projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
   RepeatedShadows plain{with_shadows(measure.scene, ShadowKind::none), measure, pool};
   for (RepeatedShadows* of : {&mapped, &projected, &plain}) of->draw();
   SceneShadows& shadows = mapped.shadows();
-  std::printf("%s: %zu triangles, %zu lights with shadow maps (%.1f MB)\n",
-              measure.scene.name.c_str(), shadows.facets.facets.size(), shadows.lights.size(),
-              static_cast<double>(bytes_of(shadows)) / 1e6);
+  found.add({{"scene", measure.scene.name},
+             {"triangles", shadows.facets.facets.size()},
+             {"map_lights", shadows.lights.size()},
+             {"map_megabytes", static_cast<double>(bytes_of(shadows)) / 1e6}});
   const MapCamera camera = map_camera(mapped.scene, mapped.camera);
   const ShadowView view{camera.world_to_clip, measure.size.width, measure.size.height, Profile{}};
   const auto maps_by = [&](ThreadPool& by) {
@@ -201,36 +220,44 @@ void measure_maps(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
       },
       [&] { mapped.draw_anew(); }, [&] { mapped.draw(); }, [&] { projected.draw_anew(); },
       [&] { projected.draw(); }, [&] { plain.draw(); });
-  print_times(times);
-  if (measure.versus != nullptr) time_maps_beside(*measure.versus, shadows, measure.runs, pool);
+  found.add_times(times);
+  if (measure.versus != nullptr) {
+    time_maps_beside(*measure.versus, shadows, measure.runs, found, pool);
+  }
   if (!check) return;
-  const MapErrors errors = LightTruths{mapped, pool}.errors(mapped, pool);
-  std::printf(
-      "pixels times lights: %zu seen, %zu in shadow, %zu within 1/256 pixel of an edge, %zu wrong: "
-      "%zu aliasing, %zu acne, %zu peter-panning; missed shares %.0f\n",
-      errors.seen, errors.in_shadow, errors.near_edge, errors.wrong(), errors.aliasing, errors.acne,
-      errors.peter_panning, errors.missed_share);
+  found.add(map_errors_json(LightTruths{mapped, pool}.errors(mapped, pool)), "check");
 }
 
-void print_map_table(const ShadowMeasure& measure, ThreadPool& pool) {
+void find_map_table(const ShadowMeasure& measure, Findings& found, ThreadPool& pool) {
   RepeatedShadows projected{with_shadows(measure.scene, ShadowKind::projected), measure, pool};
   projected.draw();
   const LightTruths truths{projected, pool};
-  std::printf("%-22s %9s %9s %9s %9s %9s %9s %9s\n", measure.scene.name.c_str(), "ms", "wrong",
-              "aliasing", "acne", "peter-pan", "near-edge", "missed");
-  const ShadowMapSettings usual = measure.scene.lights[0].map;
-  for (const TableRow& row : table_rows(usual)) {
+  found.add({{"scene", measure.scene.name}, {"runs", measure.runs}});
+  found.begin_table("settings", {{"name", 22},
+                                 {"ms", 9, 1},
+                                 {"wrong", 9},
+                                 {"aliasing", 9},
+                                 {"acne", 9},
+                                 {"peter_panning", 13},
+                                 {"near_edge", 9},
+                                 {"missed_shares", 13},
+                                 {"projected_ms", 12, 1}});
+  for (const TableRow& row : table_rows(measure.scene.lights[0].map)) {
     RepeatedShadows mapped{with_settings(measure.scene, row.settings), measure, pool};
     mapped.draw();
     std::vector<Milliseconds> times{{"mapped"}, {"projected"}};
     time_in_turn(
         times, measure.runs, [&] { mapped.draw_anew(); }, [&] { projected.draw_anew(); });
-    const MapErrors errors = truths.errors(mapped, pool);
-    std::printf("%-22s %9.1f %9zu %9zu %9zu %9zu %9zu %9.0f   projected %.1f ms\n",
-                row.name.c_str(), spread_of(times[0].ms).median, errors.wrong(), errors.aliasing,
-                errors.acne, errors.peter_panning, errors.near_edge, errors.missed_share,
-                spread_of(times[1].ms).median);
-    std::fflush(stdout);
+    Json record{{"name", row.name},
+                {"ms", spread_of(times[0].ms).median},
+                {"projected_ms", spread_of(times[1].ms).median}};
+    const Json errors = map_errors_json(truths.errors(mapped, pool));
+    for (const std::string& key : errors.names()) record[key] = errors.at(key);
+    if (!row.setting.empty()) {
+      record["setting"] = row.setting;
+      record["value"] = row.value;
+    }
+    found.add_row(record);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "scenes/scene.h"
 #include "scenes/shadows/shadow_truth.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/findings.h"
 #include "tools/gl/driver/driver.h"
 
 namespace softfocus {
@@ -55,32 +56,32 @@ struct RepeatedShadows {
   PreparedScene prepared;
 };
 
-/// "pixels times lights: 9 seen, ..."; `pixels` names them.
-void print_shadow_errors(const char* pixels, const ShadowErrors& errors);
+/// Of pixels times lights.
+void add_shadow_errors(const ShadowErrors& errors, Findings& found);
 
 // --- shadow maps: what they cost and how wrong they are, beside projected ones, which are right
 
-/// Prints times, each in turn, and the driver's if there is one. All lights have a map. Throws
+/// Finds times, each in turn, and the driver's if there is one. All lights have a map. Throws
 /// DriverError. With `check` every pixel against a ray.
-void measure_maps(const ShadowMeasure& measure, bool check, ThreadPool& pool);
+void measure_maps(const ShadowMeasure& measure, bool check, Findings& found, ThreadPool& pool);
 
-/// Prints a table: time and wrong pixels by size, bias, slope bias, kernel and cascades, one of
+/// Finds a table: time and wrong pixels by size, bias, slope bias, kernel and cascades, one of
 /// them at a time changed from the scene's settings.
-void print_map_table(const ShadowMeasure& measure, ThreadPool& pool);
+void find_map_table(const ShadowMeasure& measure, Findings& found, ThreadPool& pool);
 
 // --- soft shadows: each point of a light against rays, and how far few points are from many
 
-/// Prints the time of a frame. With `check`, every pixel's stencil of every point against a ray.
-void measure_soft(const ShadowMeasure& measure, bool check, ThreadPool& pool);
+/// Finds the time of a frame. With `check`, every pixel's stencil of every point against a ray.
+void measure_soft(const ShadowMeasure& measure, bool check, Findings& found, ThreadPool& pool);
 
-/// Prints a table: how far the shares of N points are from those of 1,024 others, by rays; and
+/// Finds a table: how far the shares of N points are from those of 1,024 others, by rays; and
 /// the time of N points.
-void print_soft_table(const ShadowMeasure& measure, ThreadPool& pool);
+void find_soft_table(const ShadowMeasure& measure, Findings& found, ThreadPool& pool);
 
 // --- where light ends on curves of few facets, by each rule of scenes/shadows/terminators.h
 
-/// Prints a table: a sphere, a torus and a teapot of few facets over a floor, and FLIP against the
+/// Finds a table: a sphere, a torus and a teapot of few facets over a floor, and FLIP against the
 /// shape of many, by region.
-void print_terminator_table(PictureSize size, ThreadPool& pool);
+void find_terminator_table(PictureSize size, Findings& found, ThreadPool& pool);
 
 }  // namespace softfocus

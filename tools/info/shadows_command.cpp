@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -56,6 +54,7 @@ struct ShadowsOptions {
   LightOptions lights;
   bool soft_table = false;
   bool terminator_table = false;
+  bool json = false;
   VolumeCount volume_count = VolumeCount::z_fail;
   PoolOptions pool;
 };
@@ -78,35 +77,36 @@ std::size_t bytes_kept(const SceneShadows& shadows) {
   return bytes;
 }
 
-void print_volumes(const SceneShadows& shadows) {
+void add_volumes(const SceneShadows& shadows, Findings& found) {
   std::size_t edges = 0, faces = 0;
   for (const ShadowVolumes& volumes : shadows.volumes) {
     edges += volumes.silhouette_edges;
     faces += volumes.faces.size();
   }
   if (faces == 0) return;
-  std::printf("volumes: %zu silhouette edges, %zu faces; %zu pixels by rays\n", edges, faces,
-              shadows.volume_rays);
+  found.add({{"silhouette_edges", edges}, {"faces", faces}, {"ray_pixels", shadows.volume_rays}},
+            "volumes");
 }
 
+/// Embree's rays, in binary32, beside ours, in binary64.
 void check_embree(const SceneShadows& shadows, const std::vector<ShadowLight>& lights,
-                  const ShadowView& view, glm::dvec3 eye, ThreadPool& pool) {
-  const EmbreeDifferences found =
+                  const ShadowView& view, glm::dvec3 eye, Findings& found, ThreadPool& pool) {
+  const EmbreeDifferences differences =
       embree_differences(shadows.facets, lights, shadows.seen[0], view, eye, pool);
   std::size_t all = 0;
-  for (const std::size_t of : found.differ) all += of;
-  std::printf("Embree's rays, in binary32: %zu of %zu differ from ours, in binary64:", all,
-              found.seen);
+  for (const std::size_t of : differences.differ) all += of;
+  Json members{{"seen", differences.seen}, {"differ", all}};
   for (std::size_t i = 0; i < kDifferenceReaches.size(); ++i) {
-    std::printf(" %zu within 1/%.0f pixel of an edge,", found.differ[i],
-                1.0 / kDifferenceReaches[i]);
+    members["within_1/" + short_number(1.0 / kDifferenceReaches[i]) + "_pixel_of_an_edge"] =
+        differences.differ[i];
   }
-  std::printf(" %zu farther\n", found.differ.back());
+  members["farther"] = differences.differ.back();
+  found.add(members, "embree");
 }
 
 // The stencil of the first layer, by both.
 void time_beside(const Driver& driver, const SceneShadows& shadows, const ShadowsOptions& options,
-                 const CameraMatrices& camera, ThreadPool& pool) {
+                 const CameraMatrices& camera, Findings& found, ThreadPool& pool) {
   const int width = options.size.width, height = options.size.height;
   MaskDraws draws = cut_shadows(shadows, camera, width, height, pool);
   ShadowsRepeatedOnGl on_gl{driver, draws,  static_cast<int>(shadows.lights.size()),
@@ -123,13 +123,13 @@ void time_beside(const Driver& driver, const SceneShadows& shadows, const Shadow
   const std::vector<std::uint8_t> theirs = on_gl.mask(draws.dark);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) differ += mask[i] != theirs[i];
-  print_times(times);
-  print_ratio(times, std::to_string(differ) + " of " + std::to_string(mask.size()) +
-                         " pixels differ; " + on_gl.renderer());
+  found.add_times(times);
+  found.add_ratio(times,
+                  {{"differ", differ}, {"pixels", mask.size()}, {"renderer", on_gl.renderer()}});
 }
 
 void time_projection(const Facets& facets, const std::vector<ShadowLight>& lights, int runs,
-                     ThreadPool& pool) {
+                     Findings& found, ThreadPool& pool) {
   ThreadPool one{1, pool.isa()};
   const auto all_lights = [&](const auto& project) {
     for (const ShadowLight& light : lights) project(light);
@@ -144,7 +144,7 @@ void time_projection(const Facets& facets, const std::vector<ShadowLight>& light
         times, runs,
         [&] { all_lights([&](const ShadowLight& light) { project_in_sequence(facets, light); }); },
         [&] { in_parallel(one); }, [&] { in_parallel(pool); });
-    print_times(times);
+    found.add_times(times);
   }
   std::vector<Milliseconds> times{{"project by grid, 1"}, {"project by grid, all"}};
   const auto by_grid = [&](ThreadPool& by) {
@@ -152,17 +152,17 @@ void time_projection(const Facets& facets, const std::vector<ShadowLight>& light
   };
   time_in_turn(
       times, runs, [&] { by_grid(one); }, [&] { by_grid(pool); });
-  print_times(times);
+  found.add_times(times);
 }
 
-int measure_shadows(const ShadowsOptions& options) {
+void measure_shadows(const ShadowsOptions& options, Findings& found) {
   if (options.terminator_table) {
     if (!options.scene.empty() || options.triangles) {
       throw UsageError("--terminator-table: has shapes of its own; give no SCENE or --triangles");
     }
     ThreadPool pool{options.pool.threads, options.pool.isa};
-    print_terminator_table(options.size, pool);
-    return kDone;
+    find_terminator_table(options.size, found, pool);
+    return;
   }
   if (options.check_embree && !embree_shadows_missing().empty()) {
     throw UsageError("--check-embree: " + std::string{embree_shadows_missing()});
@@ -214,20 +214,20 @@ int measure_shadows(const ShadowsOptions& options) {
   const ShadowMeasure measure{scene, options.size, options.frame, options.runs, options.versus};
   if (has_soft_shadows(scene)) {
     if (options.soft_table) {
-      print_soft_table(measure, pool);
+      find_soft_table(measure, found, pool);
     } else {
-      measure_soft(measure, options.check, pool);
+      measure_soft(measure, options.check, found, pool);
     }
-    return kDone;
+    return;
   }
   if (options.map_table && !has_map) throw UsageError("--map-table: give --shadows map too");
   if (has_map) {
     if (options.map_table) {
-      print_map_table(measure, pool);
+      find_map_table(measure, found, pool);
     } else {
-      measure_maps(measure, options.check, pool);
+      measure_maps(measure, options.check, found, pool);
     }
-    return kDone;
+    return;
   }
   // A GPU's has to be probed first; its bits are not expected to be ours.
   const Profile profile = options.versus == nullptr
@@ -245,14 +245,15 @@ int measure_shadows(const ShadowsOptions& options) {
     lights.push_back(shadow_light(scene.lights[shadows.lights[i]]));
     projected += shadows.projected[i].triangles.size();
   }
-  std::printf(
-      "%s: %zu triangles, %zu receivers, %zu lights with shadows, %zu projected triangles "
-      "(%.1f MB)\n",
-      scene.name.c_str(), shadows.facets.facets.size(), shadows.facets.receivers.size(),
-      lights.size(), projected, static_cast<double>(bytes_kept(shadows)) / 1e6);
-  print_volumes(shadows);
+  found.add({{"scene", scene.name},
+             {"triangles", shadows.facets.facets.size()},
+             {"receivers", shadows.facets.receivers.size()},
+             {"lights", lights.size()},
+             {"projected_triangles", projected},
+             {"projected_megabytes", static_cast<double>(bytes_kept(shadows)) / 1e6}});
+  add_volumes(shadows, found);
 
-  if (projected > 0) time_projection(shadows.facets, lights, options.runs, pool);
+  if (projected > 0) time_projection(shadows.facets, lights, options.runs, found, pool);
   if (!shadows.joined.facets.empty()) {
     std::vector<Milliseconds> times{{"join facets"}, {"make volumes"}};
     time_in_turn(
@@ -262,7 +263,7 @@ int measure_shadows(const ShadowsOptions& options) {
             make_shadow_volumes(shadows.facets, shadows.joined, light);
           }
         });
-    print_times(times);
+    found.add_times(times);
   }
   std::vector<Milliseconds> times{{"facets and receivers"},
                                   {"frame, nothing kept"},
@@ -271,25 +272,27 @@ int measure_shadows(const ShadowsOptions& options) {
   time_in_turn(
       times, options.runs, [&] { scene_facets(scene, options.frame); },
       [&] { shadowed.draw_anew(); }, [&] { shadowed.draw(); }, [&] { plain.draw(); });
-  print_times(times);
+  found.add_times(times);
   const glm::dvec3 eye = shadowed.camera.eye;
   if (options.versus != nullptr) {
-    time_beside(*options.versus, shadows, options, shadowed.camera, pool);
+    time_beside(*options.versus, shadows, options, shadowed.camera, found, pool);
   }
   if (options.check) {
-    print_shadow_errors("pixels times lights",
-                        shadow_errors(shadows.facets, lights, shadows.seen[0], shadows.masks[0],
-                                      shadowed.view(), eye, true, pool));
+    add_shadow_errors(shadow_errors(shadows.facets, lights, shadows.seen[0], shadows.masks[0],
+                                    shadowed.view(), eye, true, pool),
+                      found);
   }
-  if (options.check_embree) check_embree(shadows, lights, shadowed.view(), eye, pool);
-  return kDone;
+  if (options.check_embree) check_embree(shadows, lights, shadowed.view(), eye, found, pool);
 }
 
 }  // namespace
 
-void print_shadow_errors(const char* pixels, const ShadowErrors& errors) {
-  std::printf("%s: %zu seen, %zu in shadow, %zu within 1/256 pixel of an edge, %zu wrong\n", pixels,
-              errors.seen, errors.in_shadow, errors.near_edge, errors.wrong);
+void add_shadow_errors(const ShadowErrors& errors, Findings& found) {
+  found.add({{"seen", errors.seen},
+             {"in_shadow", errors.in_shadow},
+             {"near_edge", errors.near_edge},
+             {"wrong", errors.wrong}},
+            "check");
 }
 
 Command add_shadows_command(CLI::App& program) {
@@ -342,8 +345,14 @@ Command add_shadows_command(CLI::App& program) {
   add_flag(*parser, "--terminator-table",
            "In place of a scene: curves of few facets, by each rule of --soften-terminators",
            options->terminator_table);
+  add_json_option(*parser, options->json);
   add_pool_options(*parser, options->pool, "the shadows are the same");
-  return {parser, [options] { return measure_shadows(*options); }};
+  return {parser, [options] {
+            Findings found{options->json};
+            measure_shadows(*options, found);
+            found.finish();
+            return kDone;
+          }};
 }
 
 }  // namespace softfocus

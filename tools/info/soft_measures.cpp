@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -100,7 +99,7 @@ ShareErrors share_errors(const DarkCounts& counts, int points, const DarkCounts&
 
 }  // namespace
 
-void measure_soft(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
+void measure_soft(const ShadowMeasure& measure, bool check, Findings& found, ThreadPool& pool) {
   const int points = measure.scene.light_points;
   PreparedScene soft = prepare_scene(measure.scene, Profile{}, pool);
   PointFrames frames{measure, pool};
@@ -110,7 +109,7 @@ void measure_soft(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
   time_in_turn(
       times, measure.runs, [&] { draw_scene(soft, frames.camera, measure.frame, picture, pool); },
       [&] { frames.draw_point(0); });
-  print_times(times);
+  found.add_times(times);
   if (!check) return;
   const SceneShadows& shadows = frames.shadows();
   ShadowErrors sum;
@@ -128,18 +127,23 @@ void measure_soft(const ShadowMeasure& measure, bool check, ThreadPool& pool) {
     sum.near_edge += errors.near_edge;
     sum.wrong += errors.wrong;
   }
-  print_shadow_errors("pixels times lights times points", sum);
+  add_shadow_errors(sum, found);
 }
 
-void print_soft_table(const ShadowMeasure& measure, ThreadPool& pool) {
+void find_soft_table(const ShadowMeasure& measure, Findings& found, ThreadPool& pool) {
   PointFrames frames{measure, pool};
   const std::vector<std::size_t> soft = soft_numbers(frames);
   DarkCounts truth;
   const double truth_ms = milliseconds_of([&] { truth = counts_by_rays(frames, soft); });
-  std::printf("%s: %d points by rays in %.0f s\n", measure.scene.name.c_str(), kPointsOfTruth,
-              truth_ms / 1e3);
-  std::printf("%8s %12s %14s %12s %10s %12s\n", "points", "rms", "penumbra rms", "largest", "ms",
-              "penumbra");
+  found.add({{"scene", measure.scene.name},
+             {"points_by_rays", kPointsOfTruth},
+             {"rays_seconds", truth_ms / 1e3}});
+  found.begin_table("points", {{"points", 8},
+                               {"rms", 12, 5},
+                               {"penumbra_rms", 14, 5},
+                               {"largest", 12, 3},
+                               {"ms", 10},
+                               {"penumbra", 12}});
   const std::size_t pixels = frames.shadows().seen[0].size();
   DarkCounts counts(soft.size(), std::vector<std::uint16_t>(pixels));
   double all_ms = 0.0;
@@ -155,9 +159,12 @@ void print_soft_table(const ShadowMeasure& measure, ThreadPool& pool) {
       }
     }
     const ShareErrors errors = share_errors(counts, points, truth, frames.shadows().seen[0]);
-    std::printf("%8d %12.5f %14.5f %12.3f %10.0f %12zu\n", points, errors.rms, errors.penumbra_rms,
-                errors.largest, all_ms, errors.penumbra);
-    std::fflush(stdout);
+    found.add_row({{"points", points},
+                   {"rms", errors.rms},
+                   {"penumbra_rms", errors.penumbra_rms},
+                   {"largest", errors.largest},
+                   {"ms", all_ms},
+                   {"penumbra", errors.penumbra}});
   }
 }
 

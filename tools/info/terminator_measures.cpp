@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -112,40 +111,51 @@ std::vector<ShapeRegion> regions_of(const ShapePicture& drawn, const Scene& scen
   return regions;
 }
 
-void print_row(std::string_view name, const PixelMap& flip,
-               const std::vector<ShapeRegion>& regions) {
+/// FLIP of the picture and of each region; how many pixels the band has.
+Json record_of(const PixelMap& flip, const std::vector<ShapeRegion>& regions) {
   std::array<double, kShapeRegions> sums{};
   std::array<std::size_t, kShapeRegions> counts{};
   for (std::size_t i = 0; i < regions.size(); ++i) {
     sums[regions[i]] += flip.values[i];
     ++counts[regions[i]];
   }
-  std::printf("  %-12s %9.4f", std::string{name}.c_str(), mean(flip));
-  for (const ShapeRegion region : {in_band, on_shape, on_floor}) {
-    std::printf(" %9.4f",
-                counts[region] == 0 ? 0.0 : sums[region] / static_cast<double>(counts[region]));
-  }
-  std::printf(" %9zu\n", counts[in_band]);
+  const auto of = [&](ShapeRegion region) {
+    return counts[region] == 0 ? 0.0 : sums[region] / static_cast<double>(counts[region]);
+  };
+  return {{"flip", mean(flip)},
+          {"flip_band", of(in_band)},
+          {"flip_shape", of(on_shape)},
+          {"flip_floor", of(on_floor)},
+          {"band_pixels", counts[in_band]}};
 }
 
 }  // namespace
 
-void print_terminator_table(PictureSize size, ThreadPool& pool) {
+void find_terminator_table(PictureSize size, Findings& found, ThreadPool& pool) {
+  found.begin_table("terminators", {{"shape", 8},
+                                    {"triangles", 10},
+                                    {"against", 8},
+                                    {"rule", 12},
+                                    {"flip", 9, 4},
+                                    {"flip_band", 10, 4},
+                                    {"flip_shape", 10, 4},
+                                    {"flip_floor", 10, 4},
+                                    {"band_pixels", 11}});
   for (const CurvedShape& shape : kCurvedShapes) {
     const Image truth = draw_shape(shape_scene(shape, shape.many), kRules[1], size, pool).picture;
     for (const int few : shape.few) {
       const Scene scene = shape_scene(shape, few);
-      std::printf("%s, %zu triangles, against %zu\n", std::string{shape.name}.c_str(),
-                  scene.meshes[0].indices.size() / 3, shape.make(shape.many).indices.size() / 3);
-      std::printf("  %-12s %9s %9s %9s %9s %9s\n", "FLIP", "picture", "band", "shape", "floor",
-                  "of band");
       const std::vector<ShapeRegion> regions =
           regions_of(draw_shape(scene, kRules[1], size, pool), scene);
       for (const RuleName& rule : kRules) {
         const Image picture = draw_shape(scene, rule, size, pool).picture;
-        print_row(rule.name, flip_map(truth, picture, clamped_tone(), pool), regions);
+        Json record = record_of(flip_map(truth, picture, clamped_tone(), pool), regions);
+        record["shape"] = shape.name;
+        record["triangles"] = scene.meshes[0].indices.size() / 3;
+        record["against"] = shape.make(shape.many).indices.size() / 3;
+        record["rule"] = rule.name;
+        found.add_row(record);
       }
-      std::fflush(stdout);
     }
   }
 }

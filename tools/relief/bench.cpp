@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/timing.h"
+#include "tools/files/findings.h"
 #include "tools/relief/relief_file.h"
 #include "tools/relief/relief_options.h"
 
@@ -30,11 +30,24 @@ int bench_relief(const ReliefOptions& options) {
   ThreadPool pool{options.pool.threads, options.pool.isa}, one{1, options.pool.isa};
   WarpedRelief warped;
   const double texels = static_cast<double>(relief.width) * relief.height;
-  std::printf("%dx%d texels, %lld of them filled, warped to %dx%d; %d threads, %s\n", relief.width,
-              relief.height, static_cast<long long>(extent.filled), place->width, place->height,
-              pool.threads(), std::string{isa_name(pool.isa())}.c_str());
-  std::printf("%-16s %18s %18s %18s %10s %8s %6s %9s %9s\n", "median, least ms", "1 thread", "all",
-              "fixed, all", "Mtexels/s", "2004 ms", "ratio", "overlaps", "stretched");
+  Findings found{options.json};
+  found.add({{"texels", size_text({relief.width, relief.height})},
+             {"filled_texels", extent.filled},
+             {"warped_to", size_text({place->width, place->height})},
+             {"threads", pool.threads()},
+             {"isa", isa_name(pool.isa())}});
+  found.begin_table("resamplings", {{"name", 16},
+                                    {"one_thread_ms", 13, 3},
+                                    {"one_thread_least_ms", 19, 3},
+                                    {"ms", 9, 3},
+                                    {"least_ms", 9, 3},
+                                    {"fixed_ms", 9, 3},
+                                    {"fixed_least_ms", 14, 3},
+                                    {"megatexels_a_second", 19},
+                                    {"ms_in_2004", 10, 1},
+                                    {"ratio", 6},
+                                    {"overlaps", 9},
+                                    {"stretched", 9}});
   for (const NamedResampling& choice : kResamplings) {
     const auto by = [&](ThreadPool& threads, PlaceNumbers numbers) {
       return [&, numbers] {
@@ -50,11 +63,18 @@ int bench_relief(const ReliefOptions& options) {
                  by(pool, PlaceNumbers::fixed));
     const Spread by_one = spread_of(times[0].ms), by_all = spread_of(times[1].ms),
                  fixed = spread_of(times[2].ms);
-    std::printf("%-16s %9.3f %8.3f %9.3f %8.3f %9.3f %8.3f %10.0f %8.1f %6.0f %9lld %9lld\n",
-                std::string{choice.name}.c_str(), by_one.median, by_one.min, by_all.median,
-                by_all.min, fixed.median, fixed.min, texels / by_all.median / 1e3, choice.source_ms,
-                choice.source_ms / by_all.median, static_cast<long long>(counts.overlaps),
-                static_cast<long long>(counts.stretched));
+    found.add_row({{"name", choice.name},
+                   {"one_thread_ms", by_one.median},
+                   {"one_thread_least_ms", by_one.min},
+                   {"ms", by_all.median},
+                   {"least_ms", by_all.min},
+                   {"fixed_ms", fixed.median},
+                   {"fixed_least_ms", fixed.min},
+                   {"megatexels_a_second", texels / by_all.median / 1e3},
+                   {"ms_in_2004", choice.source_ms},
+                   {"ratio", choice.source_ms / by_all.median},
+                   {"overlaps", counts.overlaps},
+                   {"stretched", counts.stretched}});
   }
   Image picture = make_image(Format::rgba16f, width, height);
   clear_image(picture, {0.0f, 0.0f, 0.0f, 65504.0f}, Profile{});
@@ -73,12 +93,15 @@ int bench_relief(const ReliefOptions& options) {
   };
   std::vector<Milliseconds> times{{"mapping, 1 thread"}, {"mapping, all threads"}};
   time_in_turn(times, options.runs, map_by(one), map_by(pool));
-  print_times(times);
+  found.add_times(times);
 
   // 8 to 128 slices: frames a second of Clua, table 6.1.
   constexpr std::array kSlices{std::pair{8, 17.0}, std::pair{16, 7.0}, std::pair{32, 3.0},
                                std::pair{64, 1.0}, std::pair{128, 0.4}};
   const MarchMapping march = march_mapping(relief, extent, camera, width, height);
+  found.begin_table(
+      "slices",
+      {{"slices", 6}, {"ms", 9, 2}, {"bisected_ms", 11, 2}, {"frames_a_second_in_2004", 23, 1}});
   for (const std::pair<int, double>& of : kSlices) {
     std::vector<Milliseconds> marched{{"slices"}, {"bisected"}};
     const auto by = [&](int bisections) {
@@ -88,10 +111,12 @@ int bench_relief(const ReliefOptions& options) {
       };
     };
     time_in_turn(marched, std::min(options.runs, 10), by(0), by(6));
-    std::printf("%3d slices %9.2f ms, with 6 bisections %9.2f ms; in 2004 %.1f frames a second\n",
-                of.first, spread_of(marched[0].ms).median, spread_of(marched[1].ms).median,
-                of.second);
+    found.add_row({{"slices", of.first},
+                   {"ms", spread_of(marched[0].ms).median},
+                   {"bisected_ms", spread_of(marched[1].ms).median},
+                   {"frames_a_second_in_2004", of.second}});
   }
+  found.finish();
   return kDone;
 }
 

@@ -73,7 +73,7 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 32> options;
+  std::array<std::string_view, 33> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
@@ -94,8 +94,10 @@ constexpr std::array kReliefActions{
                  {"-o", "--format", "--scene-path", "--frame", "--size", "--texels", "--depth-bits",
                   "--normals", "--yaw", "--pitch", "--distance", "--show", "--resampling",
                   "--fixed", "--join"}},
-    ReliefAction{
-        "bench", bench_relief, false, {"--size", "--yaw", "--pitch", "--distance", "--runs"}},
+    ReliefAction{"bench",
+                 bench_relief,
+                 false,
+                 {"--size", "--yaw", "--pitch", "--distance", "--runs", "--json"}},
     ReliefAction{"turn",
                  turn_impostor,
                  false,
@@ -130,7 +132,8 @@ constexpr std::array kReliefActions{
                   "--parallax",
                   "--projection",
                   "--box",
-                  "--texels"}}};
+                  "--texels",
+                  "--json"}}};
 
 /// An option that another action reads and this one does not.
 void check_read(const CLI::App& parser, const ReliefAction& action) {

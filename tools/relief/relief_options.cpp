@@ -16,6 +16,7 @@
 #include "scenes/relief/height_relief.h"
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "tools/cli/errors.h"
+#include "tools/files/findings.h"
 #include "tools/options/parameter_options.h"
 #include "tools/pictures/picture_file.h"
 
@@ -196,6 +197,7 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
          kMostParallaxSteps, options->parallax);
   begin_group(parser, "Run");
   number("runs", "N", "bench times each N times", 1, 1000, options->runs);
+  add_json_option(parser, options->json);
   add_pool_options(parser, options->pool, "the pictures are the same");
 }
 

@@ -68,6 +68,7 @@ struct ReliefOptions {
   int levels = 1;
   bool box = false;  ///< a turn of six faces
   int runs = 20;
+  bool json = false;
   PoolOptions pool;
 };
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -102,8 +102,8 @@ struct TurnSums {
   TurnErrors errors;
   std::vector<double> predicted, bound;  ///< divided by the largest error
   std::size_t most_bytes = 0;
-  int renewals = 0, updates = 0, stalls = 0, stale = 0;
-  std::vector<double> late_frames;
+  int renewals = 0, refreshes = 0, stalls = 0, stale = 0;
+  std::vector<double> latency_frames;
 };
 
 /// Adds a frame's time and what was done in it.
@@ -115,44 +115,75 @@ void add_frame(const ScheduledFrame& frame, double ms, TurnSums& sums) {
                                         : sums.sprite_ms)
       .push_back(ms);
   sums.renewals += frame.renewals;
-  sums.updates += frame.takes ? 1 : 0;
+  sums.refreshes += frame.takes ? 1 : 0;
   sums.stalls += frame.stalls ? 1 : 0;
   sums.stale += frame.is_stale ? 1 : 0;
-  sums.late_frames.push_back(frame.late_frames);
+  sums.latency_frames.push_back(frame.late_frames);
 }
 
-void print_sums(const Scene& scene, const ReliefOptions& options, const TurnSums& sums) {
-  std::printf("%s: %zu triangles, %zu frames of %dx%d, tolerance %g texels\n", scene.name.c_str(),
-              triangle_count(scene), sums.impostor_ms.size(), options.size.width,
-              options.size.height, options.tolerance);
-  std::printf(
-      "renewals %d, recalls %zu, warps %zu, sprites %zu; reliefs and warp at most %.2f MB\n",
-      sums.renewals, sums.recall_ms.size(), sums.warp_ms.size(), sums.sprite_ms.size(),
-      static_cast<double>(sums.most_bytes) / 1e6);
+/// Least, median and largest.
+Json ends_of(const std::vector<double>& values) {
+  return {{"least", sorted_at(values, 0.0)},
+          {"median", sorted_at(values, 0.5)},
+          {"largest", sorted_at(values, 1.0)}};
+}
+
+/// The scene and the frames.
+void add_scene(const TurnStage& stage, int frames, Findings& found) {
+  found.add({{"scene", stage.scene.name},
+             {"triangles", triangle_count(stage.scene)},
+             {"frames", frames},
+             {"size", size_text(stage.options.size)}});
+}
+
+/// What a frame's time is for.
+std::string cause_of(const TurnSums& sums) {
+  const auto total = [](const std::vector<double>& ms) {
+    return std::accumulate(ms.begin(), ms.end(), 0.0);
+  };
+  const double renewing = total(sums.renew_ms), of_all = total(sums.impostor_ms);
+  const std::string frames = " of " + std::to_string(sums.impostor_ms.size()) + " frames";
+  if (renewing > of_all / 2.0) {
+    return std::to_string(sums.renew_ms.size()) + frames + " draw and warp the relief anew, " +
+           std::to_string(std::lround(100.0 * renewing / of_all)) + " % of the time";
+  }
+  return std::to_string(sums.warp_ms.size()) + frames + " warp the relief, " +
+         std::to_string(std::lround(100.0 * total(sums.warp_ms) / of_all)) + " % of the time";
+}
+
+void add_sums(const TurnSums& sums, Findings& found) {
+  const std::size_t frames = sums.impostor_ms.size();
+  found.add({{"renewals", sums.renewals},
+             {"recalls", sums.recall_ms.size()},
+             {"warps", sums.warp_ms.size()},
+             {"sprites", sums.sprite_ms.size()},
+             {"most_megabytes", static_cast<double>(sums.most_bytes) / 1e6}},
+            "steps");
   const double redrawn = mean_of(sums.redrawn_ms), impostor = mean_of(sums.impostor_ms);
-  std::printf(
-      "ms a frame: redrawn %.3f, impostor %.3f, ratio %.2f; medians: redrawn %.3f, renew "
-      "%.3f, warp %.3f, sprite %.3f\n",
-      redrawn, impostor, redrawn / impostor, sorted_at(sums.redrawn_ms, 0.5),
-      sorted_at(sums.renew_ms, 0.5), sorted_at(sums.warp_ms, 0.5), sorted_at(sums.sprite_ms, 0.5));
   // The first frame has nothing to show before it has drawn.
   const std::vector<double> after_first(sums.impostor_ms.begin() + 1, sums.impostor_ms.end());
-  std::printf(
-      "frames a second %.1f, worst frame after the first %.2f ms, 99 of 100 below %.2f; worst "
-      "redrawn %.2f\n",
-      1e3 / impostor, sorted_at(after_first, 1.0), sorted_at(after_first, 0.99),
-      sorted_at(sums.redrawn_ms, 1.0));
-  std::printf("updates a second %.1f; late frames %.2f (to %.0f), stale %d, stalls %d of %zu\n",
-              1e3 * sums.updates / (impostor * static_cast<double>(sums.impostor_ms.size())),
-              mean_of(sums.late_frames), sorted_at(sums.late_frames, 1.0), sums.stale, sums.stalls,
-              sums.impostor_ms.size());
-  print_errors(sums.errors);
-  std::printf(
-      "error at the critical point / largest error: %.2f to %.2f, median %.2f; bound / "
-      "largest error: %.2f to %.2f, median %.2f\n",
-      sorted_at(sums.predicted, 0.0), sorted_at(sums.predicted, 1.0),
-      sorted_at(sums.predicted, 0.5), sorted_at(sums.bound, 0.0), sorted_at(sums.bound, 1.0),
-      sorted_at(sums.bound, 0.5));
+  found.add({{"redrawn", redrawn},
+             {"impostor", impostor},
+             {"ratio", redrawn / impostor},
+             {"median_redrawn", sorted_at(sums.redrawn_ms, 0.5)},
+             {"median_renew", sorted_at(sums.renew_ms, 0.5)},
+             {"median_warp", sorted_at(sums.warp_ms, 0.5)},
+             {"median_sprite", sorted_at(sums.sprite_ms, 0.5)},
+             {"worst_after_first", sorted_at(after_first, 1.0)},
+             {"below_in_99_of_100", sorted_at(after_first, 0.99)},
+             {"worst_redrawn", sorted_at(sums.redrawn_ms, 1.0)}},
+            "frame_ms");
+  found.add(
+      {{"frames_per_second", 1e3 / impostor},
+       {"refreshes_per_second", 1e3 * sums.refreshes / (impostor * static_cast<double>(frames))},
+       {"mean_latency_frames", mean_of(sums.latency_frames)},
+       {"largest_latency_frames", sorted_at(sums.latency_frames, 1.0)},
+       {"stale_frames", sums.stale},
+       {"stalled_frames", sums.stalls}},
+      "schedule");
+  add_errors(sums.errors, found);
+  found.add(ends_of(sums.predicted), "error_at_critical_point_by_largest");
+  found.add(ends_of(sums.bound), "bound_by_largest");
 }
 
 // --- errors that are foreseen ---
@@ -224,6 +255,7 @@ int turn_impostor(const ReliefOptions& options) {
   std::vector<KeptFrame> kept;
   const int frames = options.turns * options.frames;
   for (int frame = 0; frame < frames; ++frame) {
+    show_frame(stage, frame, frames);
     const CameraMatrices matrices = matrices_at(stage, frame);
     move_lights(frame);
     // An own thread must not get the time that redrawing takes: that comes after the turn.
@@ -254,14 +286,22 @@ int turn_impostor(const ReliefOptions& options) {
     }
   }
   finish_update(impostor);
+  stage.progress.clear();
   for (int frame = 0; has_own_thread && frame < frames; ++frame) {
+    show_frame(stage, frame, frames);
     move_lights(frame);
     sums.redrawn_ms.push_back(redrawn_ms(frame));
     if (!is_measured(frame)) continue;
     const KeptFrame& part = kept[static_cast<std::size_t>(frame / options.every)];
     measure_frame(stage, frame, whole_of(part, stage.blank), sums.errors);
   }
-  print_sums(scene, options, sums);
+  Findings found{options.json};
+  add_verdict("impostor", mean_of(sums.impostor_ms), mean_of(sums.redrawn_ms), cause_of(sums),
+              sums.errors, found);
+  add_scene(stage, frames, found);
+  found.add({{"turns", options.turns}, {"tolerance_texels", options.tolerance}});
+  add_sums(sums, found);
+  found.finish();
   return kDone;
 }
 
@@ -273,15 +313,17 @@ namespace {
 /// Lays something over the stage's blank picture, and returns the part that it may have changed.
 using DrawTurned = std::function<Rectangle(const CameraMatrices&)>;
 
-/// A turn of something that was drawn once, beside redrawing; prints times, named by `what`, and
+/// A turn of something that was drawn once, beside redrawing; finds times, named by `what`, and
 /// errors. `measured` is called at each measured frame.
-void turn_drawn_once(TurnStage& stage, const char* what, const DrawTurned& draw,
+void turn_drawn_once(TurnStage& stage, const std::string& what, Findings& found,
+                     const DrawTurned& draw,
                      const std::function<void(const CameraMatrices&)>& measured = {}) {
   TurnErrors errors;
   std::vector<double> redrawn_ms, shown_ms;
   Rectangle changed{0, 0, 0, 0};
   redraw(stage, turned_camera(stage, 0.0), stage.scene.lights);  // warms up
   for (int frame = 0; frame < stage.options.frames; ++frame) {
+    show_frame(stage, frame, stage.options.frames);
     const CameraMatrices camera = turned_camera(stage, frame);
     redrawn_ms.push_back(milliseconds_of([&] { redraw(stage, camera, stage.scene.lights); }));
     shown_ms.push_back(milliseconds_of([&] {
@@ -292,11 +334,17 @@ void turn_drawn_once(TurnStage& stage, const char* what, const DrawTurned& draw,
     measure_frame(stage, frame, stage.shown, errors);
     if (measured) measured(camera);
   }
+  stage.progress.clear();
   const double redrawn_mean = mean_of(redrawn_ms), shown_mean = mean_of(shown_ms);
-  std::printf("ms a frame: redrawn %.3f, %s %.3f, ratio %.2f; medians: redrawn %.3f, %s %.3f\n",
-              redrawn_mean, what, shown_mean, redrawn_mean / shown_mean, sorted_at(redrawn_ms, 0.5),
-              what, sorted_at(shown_ms, 0.5));
-  print_errors(errors);
+  add_verdict(what, shown_mean, redrawn_mean, "", errors, found);
+  add_scene(stage, stage.options.frames, found);
+  found.add({{"redrawn", redrawn_mean},
+             {what.c_str(), shown_mean},
+             {"ratio", redrawn_mean / shown_mean},
+             {"median_redrawn", sorted_at(redrawn_ms, 0.5)},
+             {("median_" + what).c_str(), sorted_at(shown_ms, 0.5)}},
+            "frame_ms");
+  add_errors(errors, found);
 }
 
 }  // namespace
@@ -309,12 +357,9 @@ int turn_box(const ReliefOptions& options) {
       milliseconds_of([&] { box = draw_relief_box(stage.maker, form, stage.pool); });
   BoxMemory memory;
   std::size_t unseen = 0, unhad = 0, most_bytes = 0;
-  const auto [width, height] = options.size;
-  std::printf("%s: %zu triangles, %d frames of %dx%d; six faces, drawn in %.1f ms\n",
-              stage.scene.name.c_str(), triangle_count(stage.scene), options.frames, width, height,
-              made_ms);
+  Findings found{options.json};
   turn_drawn_once(
-      stage, "box",
+      stage, "box", found,
       [&](const CameraMatrices& camera) {
         draw_box(box, camera, warp_rule(options), memory, stage.shown, stage.pool);
         return Rectangle{0, 0, options.size.width, options.size.height};
@@ -327,8 +372,13 @@ int turn_box(const ReliefOptions& options) {
           unhad += had == FacePoint::by_none ? 1 : 0;
         }
       });
-  std::printf("%.2f MB; %zu show what no seen face has, %zu what no face has\n",
-              static_cast<double>(most_bytes) / 1e6, unseen, unhad);
+  found.add({{"texels", form.texels},
+             {"drawn_ms", made_ms},
+             {"most_megabytes", static_cast<double>(most_bytes) / 1e6},
+             {"pixels_that_no_seen_face_has", unseen},
+             {"pixels_that_no_face_has", unhad}},
+            "six_faces");
+  found.finish();
   return kDone;
 }
 
@@ -352,16 +402,19 @@ int turn_octahedral(const ReliefOptions& options) {
   const double made_ms =
       milliseconds_of([&] { atlas = make_octahedral_atlas(stage.maker, form, stage.pool); });
   const int width = options.size.width, height = options.size.height;
-  std::printf("%s: %zu triangles, %d frames of %dx%d; octahedral atlas, parallax %d\n",
-              stage.scene.name.c_str(), triangle_count(stage.scene), options.frames, width, height,
-              options.parallax);
-  std::printf("%dx%d views of a %s, %dx%d texels each: %.2f MB, drawn in %.1f ms\n", options.views,
-              options.views, options.hemisphere ? "hemisphere" : "sphere", texels, texels,
-              static_cast<double>(bytes_of(*atlas)) / 1e6, made_ms);
-  turn_drawn_once(stage, "atlas", [&](const CameraMatrices& camera) {
+  Findings found{options.json};
+  turn_drawn_once(stage, "atlas", found, [&](const CameraMatrices& camera) {
     draw_octahedral(*atlas, camera, options.parallax, stage.shown, stage.pool);
     return octahedral_area(*atlas, camera, width, height);
   });
+  found.add({{"views", size_text({options.views, options.views})},
+             {"of", options.hemisphere ? "hemisphere" : "sphere"},
+             {"texels", size_text({texels, texels})},
+             {"parallax", options.parallax},
+             {"megabytes", static_cast<double>(bytes_of(*atlas)) / 1e6},
+             {"drawn_ms", made_ms}},
+            "octahedral_atlas");
+  found.finish();
   return kDone;
 }
 

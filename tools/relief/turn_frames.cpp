@@ -1,6 +1,7 @@
 #include "tools/relief/turn_frames.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -132,13 +133,51 @@ void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& 
   if (stage.name) write_pair(stage, frame, shown);
 }
 
-void print_errors(const TurnErrors& errors) {
-  std::printf(
-      "FLIP %.4f (to %.4f), of the object's pixels %.4f; outline %.3f px (to %.3f), at most "
-      "%.1f px\n",
-      mean_of(errors.flip), sorted_at(errors.flip, 1.0), mean_of(errors.object_flip),
-      mean_of(errors.outline_px), sorted_at(errors.outline_px, 1.0), errors.most_outline_px);
-  std::printf("of %zu pixels %zu lost, %zu gained\n", errors.seen, errors.lost, errors.gained);
+void show_frame(TurnStage& stage, int frame, int frames) {
+  constexpr double kEverySeconds = 0.5;
+  if (frame == 0) {
+    stage.left.plan("frames", frames, 1.0);
+    stage.left.start();
+  } else {
+    stage.left.done("frames", 1.0);
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (std::chrono::duration<double>(now - stage.shown_at).count() < kEverySeconds) return;
+  stage.shown_at = now;
+  const double seconds = stage.left.seconds();
+  stage.progress.show("frame " + std::to_string(frame + 1) + " of " + std::to_string(frames) +
+                      (seconds > 0.0 ? "; " + time_left_text(seconds) : ""));
+}
+
+void add_verdict(const std::string& what, double shown_ms, double redrawn_ms,
+                 const std::string& why, const TurnErrors& errors, Findings& found) {
+  const auto number = [](double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g", value);
+    return std::string{text.data()};
+  };
+  const bool pays = shown_ms < redrawn_ms;
+  std::string text = pays ? "pays: " : "does not pay: ";
+  text += number(shown_ms) + " ms a frame, redrawn " + number(redrawn_ms) + " ms (" +
+          number(pays ? redrawn_ms / shown_ms : shown_ms / redrawn_ms) +
+          (pays ? " times as fast)" : " times as slow)");
+  if (!why.empty()) text += ", for " + why;
+  text += "; the object's FLIP error is " + number(mean_of(errors.object_flip)) +
+          ", its outline is off by " + number(mean_of(errors.outline_px)) + " pixels";
+  found.add({{what.c_str(), text}}, "verdict");
+}
+
+void add_errors(const TurnErrors& errors, Findings& found) {
+  found.add({{"flip", mean_of(errors.flip)},
+             {"most_flip", sorted_at(errors.flip, 1.0)},
+             {"object_flip", mean_of(errors.object_flip)},
+             {"outline_px", mean_of(errors.outline_px)},
+             {"most_mean_outline_px", sorted_at(errors.outline_px, 1.0)},
+             {"most_outline_px", errors.most_outline_px},
+             {"seen_pixels", errors.seen},
+             {"lost_pixels", errors.lost},
+             {"gained_pixels", errors.gained}},
+            "errors");
 }
 
 }  // namespace softfocus

@@ -1,12 +1,16 @@
 #pragma once
 // Frames that `relief turn` draws, measures and writes, whichever contender it turns.
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scenes/draw/draw_scene.h"
+#include "tools/cli/progress.h"
+#include "tools/files/findings.h"
 #include "tools/relief/relief_options.h"
 #include "tools/sequence/frame_names.h"
 
@@ -32,7 +36,13 @@ struct TurnStage {
   glm::vec4 clear;                 ///< the scene's background at the camera's far distance
   std::uint16_t background_depth;  ///< its alpha, a half
   Image redrawn, shown, blank;     ///< RGBA16F; `shown` is blank at first
+  Progress progress{};
+  TimeLeft left{};
+  std::chrono::steady_clock::time_point shown_at{};
 };
+
+/// Says, twice a second, which of the frames comes next. Call it where nothing is timed.
+void show_frame(TurnStage& stage, int frame, int frames);
 
 /// The scene's background at the camera's far distance.
 glm::vec4 turn_background(const Scene& scene, const Camera& camera);
@@ -55,6 +65,11 @@ struct TurnErrors {
 
 /// Compares a frame with the redrawn one, and writes both, side by side, if there is -o.
 void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& errors);
-void print_errors(const TurnErrors& errors);
+void add_errors(const TurnErrors& errors, Findings& found);
+
+/// The report's first line: whether frames take less time by `what` than redrawn, and how far off
+/// they are. `why` says what the time is for.
+void add_verdict(const std::string& what, double shown_ms, double redrawn_ms,
+                 const std::string& why, const TurnErrors& errors, Findings& found);
 
 }  // namespace softfocus

@@ -392,16 +392,81 @@ function show_report(report) {
   document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }
 
-/** Where the page has no results: draws those of a report's page, or of JSON. */
+// --- what --json prints ---
+
+const is_list = (value) => Array.isArray(value) && value.some((of) => of !== null && typeof of === "object");
+
+/** Members in members as "ratio frame"; a list of records as it is. */
+function flat(json, before = "") {
+  return Object.entries(json).flatMap(([key, value]) => {
+    const name = before + key.replaceAll("_", " ");
+    const has_members = value !== null && typeof value === "object" && !Array.isArray(value);
+    return has_members ? flat(value, `${name} `) : [[name, value]];
+  });
+}
+
+/** Rows that are alike but for their names: a column for each name that any of them has. */
+function table_of_rows(rows) {
+  const names = [...new Set(rows.flatMap((row) => Object.keys(row)))];
+  const cell = (value) => (Array.isArray(value) || typeof value === "boolean" ? JSON.stringify(value) : value ?? null);
+  const is_word = (name) => rows.every((row) => typeof (row[name] ?? "") !== "number");
+  return { columns: names.map((name) => ({ name, word: is_word(name) })),
+           rows: rows.map((row) => ({ cells: names.map((name) => cell(row[name])) })) };
+}
+
+/** A panel for each setting that rows sweep, a line for each scene: wrong pixels, where they are counted. */
+function sweeps_of(rows, title) {
+  const settings = [...new Set(rows.map((row) => row.setting).filter(Boolean))];
+  const panels = settings.map((setting) => {
+    const swept = rows.filter((row) => row.setting === setting);
+    const line = (scene, key, kind, name) => ({ name, kind,
+      points: swept.filter((row) => row.scene === scene).map((row) => ({ x: row.value, y: Math.max(row[key], 1) })) });
+    const scenes = [...new Set(swept.map((row) => row.scene))];
+    const values = [...new Set(swept.map((row) => row.value))];
+    return { title: setting, about: `wrong pixels by ${setting}`, y: { title: "wrong pixels", log: true },
+             x: { title: setting, ticks: values, log: Math.min(...values) > 0 && Math.max(...values) > 8 },
+             series: scenes.flatMap((scene) => [line(scene, "wrong", "line", scene ?? title),
+                                                line(scene, "peter panning", "thin", "of these peter-panning")]) };
+  });
+  return panels.length > 0 ? { name: title, panels } : undefined;
+}
+
+/** What several runs printed, as a report: a row a run, and lists of one name as one table. */
+function report_of(runs) {
+  const report = runs.find((run) => run.parts);
+  if (report) return report;
+  const lists = new Map(), heads = [];
+  for (const run of runs) {
+    const members = Array.isArray(run) ? [["results", run]] : flat(run);
+    const head = Object.fromEntries(members.filter(([, value]) => !is_list(value)));
+    heads.push(head);
+    for (const [name, list] of members.filter(([, value]) => is_list(value))) {
+      const rows = list.map((row) => Object.fromEntries(flat(row)));
+      const own = runs.length > 1 || rows.some((row) => row.setting) ? { scene: head.scene } : {};
+      lists.set(name, [...(lists.get(name) ?? []), ...rows.map((row) => ({ ...own, ...row }))]);
+    }
+  }
+  const head_table = runs.length > 1 ? table_of_rows(heads)
+    : table_of_rows(Object.entries(heads[0]).map(([name, value]) => ({ name, value })));
+  return { title: heads[0].scene ?? "Results", text: [], pictures: {},
+           parts: [...(Object.keys(heads[0]).length > 0 ? [{ id: "run", title: "Run", table: head_table }] : []),
+                   ...[...lists].map(([name, rows]) => ({ id: name, title: name, table: table_of_rows(rows),
+                                                          plots: sweeps_of(rows, name) }))] };
+}
+
+/** Where the page has no results: draws those of a report's page, or of what --json printed. */
 function ask_for_report() {
-  const input = html("input", { type: "file", accept: ".html,.json" });
+  const input = html("input", { type: "file", accept: ".html,.json", multiple: true });
   input.addEventListener("change", async () => {
-    const text = await input.files[0].text();
-    const page = new DOMParser().parseFromString(text, "text/html").getElementById("results");
-    show_report(JSON.parse(page === null ? text : page.textContent));
+    const texts = await Promise.all([...input.files].map((file) => file.text()));
+    show_report(report_of(texts.map((text) => {
+      const page = new DOMParser().parseFromString(text, "text/html").getElementById("results");
+      return JSON.parse(page === null ? text : page.textContent);
+    })));
   });
   document.querySelector("main").append(html("h1", {}, "Report"), html("p", {},
-    "This page has no results of its own. Choose one that has, such as chart/index.html: ", input));
+    "This page has no results of its own. Choose a page that has, such as chart/index.html, or files of what " +
+    "--json printed: ", input));
 }
 
 const tip = html("div", { class: "tip", hidden: true });
@@ -417,4 +482,4 @@ document.addEventListener("pointerover", ({ target }) => {
 
 const results = JSON.parse(document.getElementById("results").textContent);
 if (results === null) ask_for_report();
-else show_report(results);
+else show_report(report_of([results]));

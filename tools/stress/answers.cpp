@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "scenes/relief/impostors/impostor.h"
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "scenes/relief/warp/march_relief.h"
+#include "tools/report/laboratory.h"
 #include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
@@ -291,26 +291,12 @@ StressTruth make_stress_truth(const StressTrial& trial, int views, ThreadPool& p
       truth.pictures.push_back(frame.truth);
       continue;
     }
-    assert(views % (2 * kSampleGroup) == 0);
     const StressShot made = shot_of(frame, kViewsMethod, kFirstTruthView + views);
-    const LensViewInput input = lens_views_of(made.shot, made.drawn, made.lens);
-    AccumulationBuffer buffer = make_accumulation_buffer(input, pool);
-    SampleSums sums = make_sample_sums(frame.sharp.width, frame.sharp.height);
-    const auto add = [&](int begin, int end) {
-      for (int i = begin; i < end; i += kLensViewGroup) {
-        add_lens_views(buffer, input, kFirstTruthView + i,
-                       kFirstTruthView + std::min(i + kLensViewGroup, end), sums, pool);
-      }
-    };
-    const auto mean_of = [&](const SampleSums& of) {
-      return mean_picture(of, frame.sharp, Profile{}, pool);
-    };
-    add(0, views / 2);
-    const SampleSums first = sums;
-    add(views / 2, views);
-    truth.first_half.push_back(mean_of(first));
-    truth.second_half.push_back(mean_of(later_samples(first, sums)));
-    truth.pictures.push_back(mean_of(sums));
+    HalvedViews found = halved_views(lens_views_of(made.shot, made.drawn, made.lens),
+                                     kFirstTruthView, views, {}, pool);
+    truth.first_half.push_back(std::move(found.first_half));
+    truth.second_half.push_back(std::move(found.second_half));
+    truth.pictures.push_back(std::move(found.all));
   }
   return truth;
 }

@@ -85,16 +85,16 @@ Json atlas_cell(const StressResult& result, const StressCurve& curve) {
                                          : "no limit holds"}};
 }
 
-Json atlas_table(const StressFindings& findings) {
+Json atlas_table(const std::vector<StressResult>& results) {
   std::vector<Json> columns{{{"name", "case"}, {"word", true}},
                             {{"name", "fails by"}, {"word", true}}};
-  for (const StressCurve& curve : findings.results.front().curves) {
+  for (const StressCurve& curve : results.front().curves) {
     Json column = Json::object();
     column["name"] = curve.method;
     columns.push_back(std::move(column));
   }
   Json rows = Json::array();
-  for (const StressResult& result : findings.results) {
+  for (const StressResult& result : results) {
     const std::string name{result.of.name};
     std::vector<Json> cells{{{"value", name}, {"to", name}}, parameter_text(result.of)};
     for (const StressCurve& curve : result.curves) cells.push_back(atlas_cell(result, curve));
@@ -208,9 +208,9 @@ Json case_part(const StressResult& result, Json& pictures) {
 
 /// [{method, case, parameter: {name, value, unit}, value, unit, limit, holds}]: one a method that
 /// can run, a case and a severity. A value that is not finite is null.
-Json stress_json(const StressFindings& findings) {
+Json stress_json(const std::vector<StressResult>& results) {
   Json list = Json::array();
-  for (const StressResult& result : findings.results) {
+  for (const StressResult& result : results) {
     const StressCase& of = result.of;
     for (const StressCurve& curve : result.curves) {
       for (std::size_t i = 0; i < curve.values.size(); ++i) {
@@ -251,13 +251,13 @@ std::string stress_csv(const Json& list) {
 }
 
 /// A line a method: how many cases hold throughout, and from where on the others do not.
-std::string stress_summary(const StressFindings& findings) {
+std::string stress_summary(const std::vector<StressResult>& results) {
   std::string text;
-  const std::size_t methods = findings.results.empty() ? 0 : findings.results[0].curves.size();
+  const std::size_t methods = results.empty() ? 0 : results[0].curves.size();
   for (std::size_t m = 0; m < methods; ++m) {
     int all = 0, held = 0;
     std::string failing;
-    for (const StressResult& result : findings.results) {
+    for (const StressResult& result : results) {
       const StressCurve& curve = result.curves[m];
       if (!curve.can_run) continue;
       ++all;
@@ -268,7 +268,7 @@ std::string stress_summary(const StressFindings& findings) {
       failing += (failing.empty() ? "; fails " : ", ") + std::string{result.of.name} + " (" +
                  failing_text(result, curve) + ")";
     }
-    text += findings.results[0].curves[m].method + ": holds " + std::to_string(held) + " of " +
+    text += results[0].curves[m].method + ": holds " + std::to_string(held) + " of " +
             std::to_string(all) + failing + "\n";
   }
   return text;
@@ -276,9 +276,9 @@ std::string stress_summary(const StressFindings& findings) {
 
 /// The table, case by method, coloured by the worst value over the limit; and for each case its
 /// curves, its truth, and each method's picture and error.
-Json stress_report(const StressFindings& findings, const StressOptions& options) {
+Json stress_report(const std::vector<StressResult>& results, const StressOptions& options) {
   Json pictures = Json::object(), parts = Json::array();
-  parts.push_back({{"id", "atlas"}, {"title", "All cases"}, {"table", atlas_table(findings)}});
+  parts.push_back({{"id", "atlas"}, {"title", "All cases"}, {"table", atlas_table(results)}});
   parts.push_back(
       {{"id", "cases"},
        {"title", "Case by case"},
@@ -287,7 +287,7 @@ Json stress_report(const StressFindings& findings, const StressOptions& options)
                    "own curve is before the grey ones of the others. In the maps of errors black "
                    "is right and pale yellow is wrong (FLIP). Dark pictures are brightened, with "
                    "their truth."})}});
-  for (const StressResult& result : findings.results) parts.push_back(case_part(result, pictures));
+  for (const StressResult& result : results) parts.push_back(case_part(result, pictures));
   std::vector<std::string> command{"softfocus", "stress", "--size",
                                    std::to_string(options.size_px)};
   if (options.cases.size() < stress_cases().size()) {
@@ -316,20 +316,16 @@ int stress(const StressOptions& options) {
              page = directory / "index.html";
   prepare_results(directory, {csv, list, page});
   ThreadPool pool{options.pool.threads, options.pool.isa};
-  const StressFindings findings = measure_stress(options, pool);
-  const Json json = stress_json(findings);
+  const std::vector<StressResult> results = measure_stress(options, pool);
+  const Json json = stress_json(results);
   write_json(list, json);
   write_text(csv, stress_csv(json));
-  write_text(page, report_page(stress_report(findings, options)));
+  write_text(page, report_page(stress_report(results, options)));
   if (options.json) {
     std::cout << json_text(json, 1) << '\n';
     return kDone;
   }
-  if (findings.kept > 0) {
-    std::cout << "went on: " << findings.kept << " of " << findings.all
-              << " values were there already\n";
-  }
-  std::cout << stress_summary(findings) << "written to " << page.string() << '\n';
+  std::cout << stress_summary(results) << "written to " << page.string() << '\n';
   return kDone;
 }
 

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <limits>
 
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
-#include "tools/cli/progress.h"
-#include "tools/report/kept_results.h"
+#include "tools/report/laboratory.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/trial_record.h"
 
@@ -30,8 +31,7 @@ std::vector<std::string> case_names() {
 void add_stress_options(CLI::App& parser, StressOptions& options) {
   begin_group(parser, "Output");
   add_flag(parser, "--json", "Print what stress.json holds, and nothing else", options.json);
-  add_value(parser, "-o,--output", "DIR", "Where the atlas and what was measured go; required",
-            [&options](const std::string& text) { options.directory = text; });
+  add_results_option(parser, options, "the atlas");
   begin_group(parser, "What is measured");
   add_value(parser, "--methods", "A,B,...",
             "Methods (default: all; each case takes those that it is for)",
@@ -63,9 +63,7 @@ void add_stress_options(CLI::App& parser, StressOptions& options) {
 }
 
 void complete(StressOptions& options) {
-  if (options.directory.empty()) {
-    throw UsageError("-o is missing; give a directory for the atlas, such as -o atlas");
-  }
+  check_results_option(options, "the atlas", "atlas");
   if (options.size_px == 0) options.size_px = options.quick ? kQuickStressPx : kUsualStressPx;
   if (options.methods.empty()) options.methods = stress_methods();
   if (options.cases.empty()) options.cases = case_names();
@@ -90,16 +88,8 @@ double of_six_digits(double value) {
 struct StressWork {
   const StressOptions& options;
   ThreadPool& pool;
-  StressFindings findings;
-  Progress progress{options.quiet};
-  TimeLeft left{};
-
-  void show(const StressResult& result, double severity, const std::string& method) {
-    const double seconds = left.seconds();
-    progress.show(std::string{result.of.name} + ", " + std::string{result.of.parameter.name} + " " +
-                  short_number(severity) + ": " + method +
-                  (seconds > 0.0 ? "; " + time_left_text(seconds) : ""));
-  }
+  std::vector<StressResult> results;
+  Laboratory lab{options.quiet};
 };
 
 /// A trial at one severity, and what is kept of it. The truth is made when it is asked for.
@@ -116,95 +106,106 @@ class TrialWork {
                 trial_key(first().of, severity_, trial_, first().views, work.pool)) {}
 
   void run() {
-    for (const std::string& method : work_.options.methods) {
-      work_.show(first(), severity_, method);
-      if (const auto pictures = method_pictures(method, trial_, work_.pool)) {
-        measure_method(method, *pictures);
-      }
-      work_.left.done(method, 1.0);
-    }
-    if (first().views > 0) measure_noise();
-    if (severity_ == first().shown) keep_truth_pictures();
+    for (const std::string& method : work_.options.methods) work_.lab.run(record_, answer(method));
+    for (const LabMeasure& measure : of_truth()) work_.lab.settle(record_, "truth", "", measure);
     record_.save();
   }
 
  private:
-  StressResult& first() { return work_.findings.results[group_.front()]; }
+  StressResult& first() { return work_.results[group_.front()]; }
+  bool is_shown() { return severity_ == first().shown; }
 
   const StressTruth& truth() {
     if (!truth_) truth_ = make_stress_truth(trial_, first().views, work_.pool);
     return *truth_;
   }
+  const Image& last_truth() { return truth().pictures.back(); }
+  double gain() { return display_gain(last_truth()); }
 
-  double measured(const StressCase& of, const std::vector<Image>& truth,
-                  const std::vector<Image>& result) {
-    return of_six_digits(of.measure({trial_, severity_, truth, result, work_.pool}));
+  /// A value of a case, which goes to `values`.
+  LabMeasure value_of(const StressCase& of, std::function<double()> make,
+                      std::vector<double>& values) {
+    return {.name = "value of " + std::string{of.name},
+            .make = [make = std::move(make)] { return number_or_null(of_six_digits(make())); },
+            .take =
+                [&values](const Json& json) {
+                  values.push_back(json.is_null() ? std::numeric_limits<double>::infinity()
+                                                  : json.number());
+                }};
   }
 
-  /// The kept number, or what `make` gives, which is kept.
-  template <class Make>
-  double number(const std::string& entry, const std::string& hash, std::string_view case_name,
-                const Make& make) {
-    const std::string name = "value of " + std::string{case_name};
-    ++work_.findings.all;
-    if (const auto kept = record_.number(entry, hash, name)) {
-      ++work_.findings.kept;
-      return *kept;
-    }
-    const double value = make();
-    record_.keep(entry, hash, name, number_or_null(value));
-    return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+  static LabMeasure picture_of(const char* name, std::function<Json()> make, std::string& place) {
+    return {.name = name,
+            .make = std::move(make),
+            .take = [&place](const Json& json) { place = json.text(); },
+            .is_result = false};
   }
 
-  template <class Make>
-  std::string text(const std::string& entry, const std::string& hash, const std::string& name,
-                   const Make& make) {
-    if (const auto kept = record_.text(entry, hash, name)) return *kept;
-    std::string made = make();
-    record_.keep(entry, hash, name, made);
-    return made;
+  LabContender answer(const std::string& method) {
+    return {.name = method,
+            .stage = std::string{first().of.name} + ", " + std::string{first().of.parameter.name} +
+                     " " + short_number(severity_) + ": " + method,
+            .kind = method,
+            .run = [this, method]() -> std::optional<std::string> {
+              pictures_ = method_pictures(method, trial_, work_.pool);
+              if (!pictures_) return std::nullopt;
+              return hashes_of(*pictures_);
+            },
+            .measures = [this, method](const std::string&) { return of_answer(method); }};
   }
 
-  void measure_method(const std::string& method, const std::vector<Image>& pictures) {
-    const std::string hash = hashes_of(pictures);
+  std::vector<LabMeasure> of_answer(const std::string& method) {
+    std::vector<LabMeasure> measures;
     for (const std::size_t i : group_) {
-      StressResult& result = work_.findings.results[i];
-      const auto curve = std::find_if(result.curves.begin(), result.curves.end(),
-                                      [&](const StressCurve& of) { return of.method == method; });
-      curve->can_run = true;
-      curve->values.push_back(number(method, hash, result.of.name, [&] {
-        return measured(result.of, truth().pictures, pictures);
-      }));
+      StressResult& result = work_.results[i];
+      StressCurve& curve =
+          *std::find_if(result.curves.begin(), result.curves.end(),
+                        [&](const StressCurve& of) { return of.method == method; });
+      curve.can_run = true;
+      measures.push_back(value_of(
+          result.of,
+          [this, &result] {
+            return result.of.measure({trial_, severity_, truth().pictures, *pictures_, work_.pool});
+          },
+          curve.values));
       if (severity_ != result.shown) continue;
-      const auto gain = [&] { return display_gain(truth().pictures.back()); };
-      curve->pictures.picture =
-          text(method, hash, "picture", [&] { return stress_picture(pictures.back(), gain()); });
-      curve->pictures.error = text(method, hash, "error", [&] {
-        return stress_error_picture(truth().pictures.back(), pictures.back(), gain(), work_.pool);
-      });
+      measures.push_back(picture_of(
+          "picture", [this] { return stress_picture(pictures_->back(), gain()); },
+          curve.pictures.picture));
+      measures.push_back(picture_of(
+          "error",
+          [this] {
+            return stress_error_picture(last_truth(), pictures_->back(), gain(), work_.pool);
+          },
+          curve.pictures.error));
     }
+    // The time of measures is their method's: no unit of its own.
+    for (LabMeasure& measure : measures) measure.kind = method, measure.units = 0.0;
+    return measures;
   }
 
-  // The truth's pictures are kept under no hash: the record's key decides.
-  void measure_noise() {
+  /// The truth's are kept under no hash: the record's key decides.
+  std::vector<LabMeasure> of_truth() {
+    std::vector<LabMeasure> measures;
     for (const std::size_t i : group_) {
-      StressResult& result = work_.findings.results[i];
-      result.noise_floor.push_back(number("truth", "", result.of.name, [&] {
-        return measured(result.of, truth().first_half, truth().second_half);
-      }));
+      StressResult& result = work_.results[i];
+      if (first().views > 0) {
+        measures.push_back(value_of(
+            result.of,
+            [this, &result] {
+              return result.of.measure(
+                  {trial_, severity_, truth().first_half, truth().second_half, work_.pool});
+            },
+            result.noise_floor));
+      }
+      if (!is_shown()) continue;
+      measures.push_back(picture_of(
+          "sharp", [this] { return stress_picture(trial_.frames.back().sharp, gain()); },
+          result.sharp));
+      measures.push_back(picture_of(
+          "picture", [this] { return stress_picture(last_truth(), gain()); }, result.truth));
     }
-  }
-
-  void keep_truth_pictures() {
-    const auto gain = [&] { return display_gain(truth().pictures.back()); };
-    const std::string sharp = text(
-        "truth", "", "sharp", [&] { return stress_picture(trial_.frames.back().sharp, gain()); });
-    const std::string right = text("truth", "", "picture",
-                                   [&] { return stress_picture(truth().pictures.back(), gain()); });
-    for (const std::size_t i : group_) {
-      work_.findings.results[i].sharp = sharp;
-      work_.findings.results[i].truth = right;
-    }
+    return measures;
   }
 
   StressWork& work_;
@@ -213,6 +214,7 @@ class TrialWork {
   StressTrial trial_;
   KeptResults record_;
   std::optional<StressTruth> truth_;
+  std::optional<std::vector<Image>> pictures_;  ///< of the answer under way
 };
 
 std::vector<StressResult> empty_results(const StressOptions& options) {
@@ -254,22 +256,23 @@ std::optional<std::size_t> first_failure(const StressResult& result, const Stres
   return std::nullopt;
 }
 
-StressFindings measure_stress(const StressOptions& options, ThreadPool& pool) {
+std::vector<StressResult> measure_stress(const StressOptions& options, ThreadPool& pool) {
   std::vector<StressResult> results = empty_results(options);
   const std::vector<CaseGroup> groups = case_groups(results);
   std::size_t trials = 0;
   for (const CaseGroup& group : groups) trials += results[group.front()].severities.size();
-  StressWork work{options, pool, {std::move(results), 0, 0}};
+  StressWork work{options, pool, std::move(results)};
   // Views of the lens take about as long as fifty filters.
   for (const std::string& method : options.methods) {
-    work.left.plan(method, static_cast<double>(trials),
-                   find_method(method) != nullptr ? 1.0 : 50.0);
+    work.lab.left.plan(method, static_cast<double>(trials),
+                       find_method(method) != nullptr ? 1.0 : 50.0);
   }
   for (const CaseGroup& group : groups) {
-    const std::size_t count = work.findings.results[group.front()].severities.size();
+    const std::size_t count = work.results[group.front()].severities.size();
     for (std::size_t i = 0; i < count; ++i) TrialWork{work, group, i}.run();
   }
-  return std::move(work.findings);
+  if (!options.json) work.lab.print_kept("values");
+  return std::move(work.results);
 }
 
 }  // namespace softfocus

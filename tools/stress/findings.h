@@ -1,28 +1,22 @@
 #pragma once
 // `stress`'s findings: values by case, method and severity, and pictures to look at.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/cli/parser.h"
-#include "tools/options/run_options.h"
+#include "tools/report/laboratory.h"
 #include "tools/stress/cases/stress_case.h"
 
 namespace softfocus {
 
 // Everything that `stress` is told.
 
-struct StressOptions {
-  std::filesystem::path directory;
-  std::vector<std::string> methods;  ///< none given: all
-  std::vector<std::string> cases;    ///< likewise
-  int size_px = 0;                   ///< 0: 256, or 128 with `quick`
-  bool quick = false;
+struct StressOptions : LabOptions {
+  std::vector<std::string> cases;  ///< none given: all
+  int size_px = 0;                 ///< 0: 256, or 128 with `quick`
   bool json = false;
-  bool quiet = false;
-  PoolOptions pool;
 };
 
 void add_stress_options(CLI::App& parser, StressOptions& options);
@@ -55,18 +49,13 @@ struct StressResult {
   std::vector<StressCurve> curves;
 };
 
-struct StressFindings {
-  std::vector<StressResult> results;  ///< in the order of stress_cases()
-  int kept = 0;                       ///< values that were there already
-  int all = 0;
-};
-
 inline bool holds(const StressCase& of, double value) { return value <= of.limit; }
 
 /// The index of the mildest severity that does not hold.
 std::optional<std::size_t> first_failure(const StressResult& result, const StressCurve& curve);
 
-/// Measures what `options.directory` does not hold yet, and keeps it there.
-StressFindings measure_stress(const StressOptions& options, ThreadPool& pool);
+/// Measures what `options.directory` does not hold yet, and keeps it there: in the order of
+/// stress_cases().
+std::vector<StressResult> measure_stress(const StressOptions& options, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "raster/images/texel.h"
 #include "tests/support/cli_refused.h"
 #include "tools/pictures/image_file.h"
@@ -10,6 +12,7 @@ using namespace softfocus;
 
 namespace {
 
+using nlohmann::json;
 using Words = std::vector<std::string>;
 
 std::string relief_by(const TemporaryDirectory& folder, const Words& more = {}) {
@@ -57,12 +60,38 @@ TEST_CASE("relief bench and turn say what they measured") {
   for (const char* part : {"two-pass", "asymmetric", "compensated", "intertwined", "49.6"}) {
     CHECK(contains(bench.out, part));
   }
-  const ProgramRun turn = run_program({"relief", "turn", "figures", "--frames", "12", "--every",
-                                       "6", "--size", "96x96", "-o", folder.file("t_%02d.npy")});
+  const Words by_json{"relief", "bench", relief, "--runs", "2", "--yaw", "15", "--json"};
+  const json timed = json::parse(run_program(by_json).out);
+  CHECK(timed.at("resamplings").size() == 4);
+  CHECK(timed.at("resamplings")[0].at("name") == "two-pass");
+  CHECK(timed.at("slices").size() == 5);
+  CHECK(timed.at("times").size() == 2);
+  const Words turning{"relief",
+                      "turn",
+                      "figures",
+                      "--frames",
+                      "12",
+                      "--every",
+                      "6",
+                      "--size",
+                      "96x96",
+                      "-o",
+                      folder.file("t_%02d.npy")};
+  const ProgramRun turn = run_program(turning);
   CHECK(turn.err == "");
   REQUIRE(turn.status == 0);
+  CHECK(turn.out.starts_with("verdict: impostor "));
+  CHECK(contains(turn.out, "times as "));
   CHECK(contains(turn.out, "renewals "));
-  CHECK(contains(turn.out, "FLIP "));
+  CHECK(contains(turn.out, "errors: flip "));
+  Words turning_json = turning;
+  turning_json.emplace_back("--json");
+  const json turned = json::parse(run_program(turning_json).out);
+  CHECK(turned.at("frames") == 12);
+  CHECK(turned.at("steps").at("renewals") > 0);
+  for (const char* part : {"frame_ms", "schedule", "errors", "bound_by_largest"}) {
+    CHECK(turned.at(part).is_object());
+  }
   const Image pair = read_image_file(folder.file("t_06.npy")).image;
   CHECK(pair.width == 192);
   CHECK(pair.height == 96);
@@ -191,9 +220,9 @@ TEST_CASE("relief turn: an octahedral atlas goes the same turn, and says what it
                    "6", "--every", "3", "--size", "64x64", "-o", folder.file("t_%02d.npy")});
   CHECK(turn.err == "");
   REQUIRE(turn.status == 0);
-  CHECK(contains(turn.out, "3x3 views of a sphere, "));
-  CHECK(contains(turn.out, " MB, drawn in "));
-  CHECK(contains(turn.out, "FLIP "));
+  CHECK(contains(turn.out, "octahedral atlas: views 3x3, of sphere, texels "));
+  CHECK(contains(turn.out, ", megabytes "));
+  CHECK(contains(turn.out, "errors: flip "));
   const Image pair = read_image_file(folder.file("t_03.npy")).image;
   CHECK(pair.width == 128);
   check_refused(folder, {"relief", "turn", "figures", "--rival", "cube"}, 2,

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/gl_drivers.h"
@@ -12,15 +13,23 @@ using namespace softfocus;
 
 namespace {
 
+using nlohmann::json;
 using Words = std::vector<std::string>;
 
-std::string measured(const Words& more) {
-  Words words{"shadows", "--size", "64x48", "--runs", "1"};
+json measured(const Words& more) {
+  Words words{"shadows", "--size", "64x48", "--runs", "1", "--json"};
   words.insert(words.end(), more.begin(), more.end());
   const ProgramRun run = run_program(words);
   CHECK(run.status == 0);
   CHECK(run.err == "");
-  return run.out;
+  return json::parse(run.out);
+}
+
+void check_none_wrong(const json& found, int seen) {
+  const json& check = found.at("check");
+  CHECK(check.at("seen") == seen);
+  CHECK(check.at("in_shadow") > 0);
+  CHECK(check.at("wrong") == 0);
 }
 
 std::uint64_t drawn(const TemporaryDirectory& folder, const Words& more) {
@@ -41,41 +50,76 @@ TEST_CASE("shadows --check: no pixel of projected shadows and of volumes is wron
     CAPTURE(kind.back());
     Words words = kind;
     words.insert(words.end(), {"cube-room", "--check"});
-    const std::string out = measured(words);
-    CHECK(out.find("6144 seen") != std::string::npos);
-    CHECK(out.find(" 0 in shadow") == std::string::npos);
-    CHECK(out.find(" 0 wrong\n") != std::string::npos);
+    const json found = measured(words);
+    check_none_wrong(found, 6144);
+    CHECK(found.at("scene") == "cube-room");
+    CHECK(found.at("times").back().at("name") == "frame without shadows");
+    CHECK(found.at("times").back().at("median_ms") > 0.0);
   }
 }
 
 TEST_CASE("shadows --check: a map without a bias shades itself, and says so") {
   const Words map{"cube-room", "--shadows", "map", "--check"};
-  CHECK(measured(map).find(" 0 acne") != std::string::npos);
+  CHECK(measured(map).at("check").at("acne") == 0);
   Words biased = map;
   biased.insert(biased.end(), {"--map", "bias=0,slope-bias=0"});
-  CHECK(measured(biased).find(" 0 acne") == std::string::npos);
+  CHECK(measured(biased).at("check").at("acne") > 0);
 }
 
 TEST_CASE("shadows --soft --check: no pixel of a light's points is wrong") {
-  const std::string out = measured(
-      {"cube-room", "--soft", "2", "--light-radius", ".3", "--light-angle", "2", "--check"});
-  CHECK(out.find("12288 seen") != std::string::npos);
-  CHECK(out.find(" 0 in shadow") == std::string::npos);
-  CHECK(out.find(" 0 wrong\n") != std::string::npos);
+  check_none_wrong(measured({"cube-room", "--soft", "2", "--light-radius", ".3", "--light-angle",
+                             "2", "--check"}),
+                   12288);
 }
 
 TEST_CASE("shadows --vs: a driver draws the same stencil") {
   if (!has_driver("llvmpipe")) return;
-  const std::string out = measured({"cube-room", "--vs", "llvmpipe"});
-  CHECK(out.find("; 0 of 3072 pixels differ; llvmpipe") != std::string::npos);
+  const json ratio = measured({"cube-room", "--vs", "llvmpipe"}).at("ratio");
+  CHECK(ratio.at("differ") == 0);
+  CHECK(ratio.at("pixels") == 3072);
+  CHECK(ratio.at("renderer").get<std::string>().starts_with("llvmpipe"));
 }
 
 TEST_CASE("shadows --vs: a driver draws the same maps") {
   if (!has_driver("llvmpipe")) return;
-  const std::string out =
-      measured({"near-fence", "--shadows", "map", "--map", "size=64", "--vs", "llvmpipe"});
-  CHECK(out.find("; 0 of ") != std::string::npos);
-  CHECK(out.find(" texels differ; llvmpipe") != std::string::npos);
+  const json ratio =
+      measured({"near-fence", "--shadows", "map", "--map", "size=64", "--vs", "llvmpipe"})
+          .at("ratio");
+  CHECK(ratio.at("differ") == 0);
+  CHECK(ratio.at("texels") > 0);
+  CHECK(ratio.at("renderer").get<std::string>().starts_with("llvmpipe"));
+}
+
+TEST_CASE("shadows: what it says without --json has the same names") {
+  const ProgramRun run =
+      run_program({"shadows", "cube-room", "--size", "64x48", "--runs", "1", "--check"});
+  CHECK(run.status == 0);
+  CHECK(run.out.starts_with("scene cube-room, triangles "));
+  CHECK(run.out.find("\ncheck: seen 6144, in shadow ") != std::string::npos);
+  CHECK(run.out.find(", wrong 0\n") != std::string::npos);
+}
+
+TEST_CASE("shadows --map-table: each setting has a row, and sweeps have their numbers") {
+  const json found = measured({"cube-room", "--shadows", "map", "--map", "size=64", "--map-table"});
+  CHECK(found.at("settings").size() == 33);
+  const json& first = found.at("settings")[0];
+  CHECK(first.at("name") == "size=256");
+  CHECK(first.at("setting") == "size");
+  CHECK(first.at("value") == 256);
+  for (const char* key : {"ms", "wrong", "aliasing", "acne", "peter_panning", "near_edge",
+                          "missed_shares", "projected_ms"}) {
+    CAPTURE(key);
+    CHECK(first.at(key).is_number());
+  }
+}
+
+TEST_CASE("shadows --terminator-table: each shape, detail and rule has a row") {
+  const json curves = measured({"--terminator-table"}).at("terminators");
+  CHECK(curves.size() == 36);
+  CHECK(curves[0].at("shape") == "sphere");
+  for (const char* key : {"flip", "flip_band", "flip_shape", "flip_floor", "band_pixels"}) {
+    CHECK(curves[0].at(key).is_number());
+  }
 }
 
 TEST_CASE("render --shadows overrules a scene file's lights, and none is the scene without") {
