@@ -164,13 +164,13 @@ void turn_by_exif(PictureFile& file, int orientation) {
 /// on, a list of texts in UTF-16. "without a name" if it cannot be read.
 std::string profile_name(std::span<const std::byte> icc) {
   constexpr std::size_t kTagTable = 128, kTag = 12;
+  const auto has = [&](std::size_t at) { return at < icc.size() && icc.size() - at >= 4; };
   const auto number = [&](std::size_t at) -> std::size_t {
-    return at + 4 <= icc.size() ? big_endian<std::uint32_t>(icc.subspan(at)) : 0;
+    return has(at) ? big_endian<std::uint32_t>(icc.subspan(at)) : 0;
   };
   const auto word = [&](std::size_t at) {
-    return at + 4 <= icc.size()
-               ? std::string_view{reinterpret_cast<const char*>(icc.data()) + at, 4}
-               : std::string_view{};
+    return has(at) ? std::string_view{reinterpret_cast<const char*>(icc.data()) + at, 4}
+                   : std::string_view{};
   };
   std::string name;
   for (std::size_t i = 0; i < std::min<std::size_t>(number(kTagTable), 100); ++i) {

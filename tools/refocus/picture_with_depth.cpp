@@ -39,15 +39,16 @@ void add_mending_options(CLI::App& parser, Mending& mending) {
 PlaneValues read_mask(const std::string& name, const PictureFile& depth, bool flips) {
   PictureFile file = open_picture_file(name);
   take({flips}, file);
-  const PictureBox& size = depth.shown;
-  if (file.width != size.width || file.height != size.height) {
+  const bool is_on_all = file.width == depth.width && file.height == depth.height;
+  const PictureBox place = is_on_all ? box_of(depth) : depth.shown;
+  if (file.width != place.width || file.height != place.height) {
     throw UsageError("--mask '" + name + "' is " + size_text({file.width, file.height}) +
-                     " pixels and the depth " + size_text({size.width, size.height}) +
+                     " pixels and the depth " + size_text({place.width, place.height}) +
                      "; give one of that size");
   }
   // An EXR's first channel would be its alpha.
   const std::size_t plane = file.planes.size() == 1 ? 0 : choose_colour(file, {}, "--mask").red;
-  return moved(read_planes(file, {&plane, 1}, 0.0f)[0], file.shown, box_of(depth), 1.0f);
+  return moved(read_planes(file, {&plane, 1}, 0.0f)[0], place, box_of(depth), 1.0f);
 }
 
 /// How much wider or higher than a depth's the colour's shape is: 1 of the same.
@@ -193,10 +194,19 @@ bool show_alike(const PictureSources& sources) {
   return sources.of_depth().shown == sources.colour_file.shown;
 }
 
-/// Pixels beside those that are shown are filtered, too.
+/// Pixels beside those that are shown are filtered, too. A depth without windows lies on the
+/// colour's data window if it has its size.
 void take_windows(PictureSources& sources) {
+  PictureFile& colour = sources.colour_file;
+  if (sources.depth_file && sources.depth_file->reader != &kExrReader && !show_alike(sources)) {
+    PictureFile& depth = *sources.depth_file;
+    if (depth.width == colour.data.width && depth.height == colour.data.height) {
+      depth.data = colour.data;
+      depth.shown = colour.shown;
+    }
+  }
   if (!show_alike(sources)) return;
-  take_data_window(sources.colour_file);
+  take_data_window(colour);
   if (sources.depth_file) take_data_window(*sources.depth_file);
 }
 
@@ -261,9 +271,9 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
   take(options.files, sources.colour_file);
   if (sources.depth_file) {
     take({options.files.flips}, *sources.depth_file);
-    check_shape(sources.colour_file, *sources.depth_file, options);
   }
   take_windows(sources);
+  if (!show_alike(sources)) check_shape(sources.colour_file, *sources.depth_file, options);
   choose_planes(sources, options);
   return sources;
 }
@@ -361,6 +371,24 @@ PhotoLens with_sources(PhotoLens photo, const PictureSources& sources) {
   return photo;
 }
 
+namespace {
+
+/// Values of pixels `from` for pixels `to`, of the nearest where there are none.
+PlaneValues nearest_on(const PlaneValues& values, const PictureBox& from, const PictureBox& to) {
+  PlaneValues result;
+  for (int y = to.y; y < to.y + to.height; ++y) {
+    const int row = std::clamp(y - from.y, 0, from.height - 1);
+    for (int x = to.x; x < to.x + to.width; ++x) {
+      const int column = std::clamp(x - from.x, 0, from.width - 1);
+      result.push_back(values[static_cast<std::size_t>(row) * static_cast<std::size_t>(from.width) +
+                              static_cast<std::size_t>(column)]);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 ReadDepth read_depth(const PictureSources& sources, const Image& colour,
                      const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool) {
   const PictureFile& file = sources.of_depth();
@@ -376,8 +404,8 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
 
   ReadDepth read{.seen = numbers_seen(codes, type), .width = width, .height = height};
   if (is_beside) {
-    codes = moved(codes, box_of(file), box, kNoDepthThere);
-    if (!mask.empty()) mask = moved(mask, box_of(file), box, 1.0f);
+    codes = nearest_on(codes, box_of(file), box);
+    if (!mask.empty()) mask = nearest_on(mask, box_of(file), box);
   } else if (width < file.width || height < file.height) {
     cut(codes, file.width, part);
     cut(mask, file.width, part);
@@ -388,6 +416,10 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
         size_text({width, height}) + " pixels are stretched to the picture's shape, by " +
         short_number(std::round(1000.0 * stretching(sources.colour_file, file) - 1000.0) / 10.0) +
         " %";
+  }
+  if (!show_alike(sources) && sources.colour_file.data != sources.colour_file.shown) {
+    read.fit += read.fit.empty() ? "" : "; ";
+    read.fit += "the display window alone is filtered, for the depth has another size";
   }
   settle_encoding(sources, options, read);
   DepthReading reading = depth_reading(sources, options, photo, read);

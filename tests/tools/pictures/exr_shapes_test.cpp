@@ -130,6 +130,20 @@ TEST_CASE("refocus: pixels beside the display window are filtered, and both wind
       CHECK(values_of(over_out, plane) == values_of(full_out, plane));
     }
   }
+  // A depth without windows has the size of one of them; beside it its border repeats.
+  for (const Imath::Box2i& window : {data, display}) {
+    const std::string of_depth = directory.file("d.npy");
+    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+    PlaneValues metres;
+    for (int i = 0; i < width * height; ++i) {
+      metres.push_back(depth(window.min.x + i % width, 0));
+    }
+    write_file(of_depth, encode_grey_npy(metres, width, height));
+    std::vector<std::string> words = kLens;
+    words.insert(words.begin(), of_depth);
+    run_refocus(over, over_out, words);
+    CHECK(values_of(over_out, "R") == values_of(full_out, "R"));
+  }
   // Other formats have what is shown.
   const std::string npy = directory.file("o.npy");
   run_refocus(over, npy);

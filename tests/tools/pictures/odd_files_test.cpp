@@ -44,60 +44,58 @@ std::string error_of(const Bytes& bytes) {
   return {};
 }
 
-/// A profile of that colour space with that description, of version 2 or 4.
-Bytes profile(std::string_view space, std::string_view name, bool is_wide) {
-  const auto number = [](std::size_t value) {
-    std::string text;
-    for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift & 0xFF);
-    return text;
-  };
-  std::string text(128, '\0');
-  text.replace(16, 4, space);
-  std::string data;
-  if (is_wide) {
-    data =
-        "mluc" + number(0) + number(1) + number(12) + "enUS" + number(2 * name.size()) + number(28);
-    for (const char c : name) data += {'\0', c};
-  } else {
-    data = "desc" + number(0) + number(name.size() + 1) + std::string{name} + '\0';
-  }
-  text += number(1) + "desc" + number(144) + number(data.size()) + data;
-  return bytes_of(text.replace(0, 4, number(text.size())));
+/// The high byte first.
+std::string number(std::size_t value) {
+  std::string text;
+  for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift & 0xFF);
+  return text;
 }
 
-/// Display P3's red, green and blue, adapted to D50, with a line for a curve (ICC.1:2001-04).
-Bytes linear_p3_profile() {
+std::string xyz(double x, double y, double z) {
+  std::string text = "XYZ " + number(0);
+  for (const double value : {x, y, z})
+    text += number(static_cast<std::uint32_t>(std::lround(65536 * value)));
+  return text;
+}
+
+using Tags = std::vector<std::pair<std::string, std::string>>;
+
+/// An ICC profile of a colour space (ICC.1:2001-04).
+Bytes profile(std::string_view space, const Tags& tags) {
   std::string text(128, '\0');
-  const auto number = [](double value) {
-    std::string bytes;
-    const auto bits = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
-    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(bits >> shift & 0xFF);
-    return bytes;
-  };
-  const auto xyz = [&](double x, double y, double z) {
-    return "XYZ " + number(0) + number(65536 * x) + number(65536 * y) + number(65536 * z);
-  };
-  const std::string line = "curv" + number(0) + number(0);
-  const std::vector<std::pair<std::string, std::string>> tags{
-      {"wtpt", xyz(0.9642, 1.0, 0.8249)},
-      {"rXYZ", xyz(0.51512, 0.24120, -0.00105)},
-      {"gXYZ", xyz(0.29198, 0.69225, 0.04189)},
-      {"bXYZ", xyz(0.15710, 0.06657, 0.78407)},
-      {"rTRC", line},
-      {"gTRC", line},
-      {"bTRC", line}};
-  text.replace(8, 4, number(0x02100000)).replace(12, 12, "mntrRGB XYZ ").replace(36, 4, "acsp");
-  text.replace(68, 12, xyz(0.9642, 1.0, 0.8249).substr(8));
+  text.replace(8, 4, number(0x02100000)).replace(12, 4, "mntr").replace(16, 4, space);
+  text.replace(20, 4, "XYZ ").replace(36, 4, "acsp").replace(68, 12, xyz(0.9642, 1.0, 0.8249), 8);
+  text += number(tags.size());
   std::string data;
-  text += number(static_cast<double>(tags.size()));
-  const std::size_t first = 132 + 12 * tags.size();
   for (const auto& [name, value] : tags) {
-    text += name + number(static_cast<double>(first + data.size())) +
-            number(static_cast<double>(value.size()));
+    text += name + number(132 + 12 * tags.size() + data.size()) + number(value.size());
     data += value;
   }
   text += data;
-  return bytes_of(text.replace(0, 4, number(static_cast<double>(text.size()))));
+  return bytes_of(text.replace(0, 4, number(text.size())));
+}
+
+/// With that description alone, of version 2 or 4.
+Bytes profile(std::string_view space, std::string_view name, bool is_wide) {
+  std::string text = "desc" + number(0) + number(name.size() + 1) + std::string{name} + '\0';
+  if (is_wide) {
+    text =
+        "mluc" + number(0) + number(1) + number(12) + "enUS" + number(2 * name.size()) + number(28);
+    for (const char c : name) text += {'\0', c};
+  }
+  return profile(space, {{"desc", text}});
+}
+
+/// Display P3's red, green and blue, adapted to D50, with a line for a curve.
+Bytes linear_p3_profile() {
+  const std::string line = "curv" + number(0) + number(0);
+  return profile("RGB ", {{"wtpt", xyz(0.9642, 1.0, 0.8249)},
+                          {"rXYZ", xyz(0.51512, 0.24120, -0.00105)},
+                          {"gXYZ", xyz(0.29198, 0.69225, 0.04189)},
+                          {"bXYZ", xyz(0.15710, 0.06657, 0.78407)},
+                          {"rTRC", line},
+                          {"gTRC", line},
+                          {"bTRC", line}});
 }
 
 Bytes grey_png() {
