@@ -16,7 +16,7 @@ void write_pfm(const PictureToWrite& picture, const WriteAt& write) {
   for (int y = 0; y < picture.height; y += kBandRows) {
     const int rows = std::min(kBandRows, picture.height - y);
     bytes.clear();
-    append_pfm_rows(bytes, picture.make({y, rows}).picture, 1.0f);
+    append_pfm_rows(bytes, picture.make({y, rows}).picture);
     const std::uint64_t row_bytes = bytes.size() / static_cast<std::size_t>(rows);
     write(start.size() + static_cast<std::uint64_t>(picture.height - y - rows) * row_bytes, bytes);
   }

@@ -143,7 +143,7 @@ namespace {
 
 /// Turns before the camera, so that most of it moves.
 std::string turning_scene(const TemporaryDirectory& directory, const std::string& effect = {}) {
-  const std::string scene = directory.file("turning.toml");
+  std::string scene = directory.file("turning.toml");
   write_file(scene, R"(
 [camera]
 position = [0, 0.3, 2]
