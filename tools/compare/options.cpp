@@ -34,10 +34,11 @@ std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Differe
   }
   if (counts_pixels(tolerance)) {
     const double most = tolerance.max_pixels.value_or(0.0);
-    const double all = static_cast<double>(difference.values / 4);
-    findings.push_back({"--max-pixels", " pixels",
-                        tolerance.is_percent ? std::floor(most * all / 100.0) : most,
-                        static_cast<double>(pixels_beyond.value())});
+    const std::uint64_t all = difference.values / 4;
+    findings.push_back(
+        {"--max-pixels", " pixels",
+         tolerance.is_percent ? std::floor(most * static_cast<double>(all) / 100.0) : most,
+         static_cast<double>(pixels_beyond.value())});
   }
   return findings;
 }
