@@ -336,6 +336,7 @@ void draw_lit(PreparedScene& prepared, const CameraMatrices& camera, double fram
     const std::vector<Light> lights = lights_at_point(scene.lights, static_cast<std::uint32_t>(i));
     draw_lit_by(prepared, camera, frame, lights, layers, pool);
     add_layers(layers, sums, pool);
+    if (prepared.on_light_points) prepared.on_light_points(i + 1);
   }
   store_means(sums, layers, prepared.pass.profile, pool);
 }

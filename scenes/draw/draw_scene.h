@@ -2,6 +2,7 @@
 // A scene's frame: its list of draws, the draws, and the parts that methods work from.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -70,6 +71,8 @@ struct PreparedScene {
   TransparentTargets transparent;
   /// If a light of the scene has shadows.
   std::shared_ptr<SceneShadows> shadows;
+  /// Told how many points of soft lights have been drawn by; may be empty.
+  std::function<void(int points)> on_light_points = {};
 };
 
 /// The scene must outlive the result. `pool` is the one that will draw.

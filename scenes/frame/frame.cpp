@@ -202,10 +202,12 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
     return;
   }
   if (!memory.prepared) memory.prepared = prepare_scene(*shot.scene, shot.profile, pool);
+  memory.prepared->on_light_points = hooks.on_light_points;
   const bool is_after_others = !shot.effects.empty() && is_of_frames(*shot.effects.front().effect);
   if (!is_after_others || drawn.layers > 1) {
     draw_parts(*memory.prepared, drawn.view, shot.frame, width, height, drawn.layers, drawn.parts,
                pool, sharp_depth(shot));
+    memory.prepared->on_light_points = {};
     if (shot.blends) blend(drawn.parts, shot.profile, pool);
   }
   if (is_after_others) {

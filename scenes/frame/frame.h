@@ -146,6 +146,7 @@ enum class FrameStage : std::uint8_t {
 struct FrameHooks {
   std::function<void(FrameStage)> on_stage;  ///< told as each begins
   std::function<void(int samples)> on_samples;
+  std::function<void(int points)> on_light_points;  ///< of soft shadows
   /// Told of what was drawn, before the method.
   std::function<void(const DrawnFrame&, const std::optional<UsedLens>&)> on_drawn;
   /// A driver that draws and filters in place of the emulation.

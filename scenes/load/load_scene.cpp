@@ -141,11 +141,10 @@ ChosenEffect read_effect(Section& section) {
   const std::string name = read_text(section, "name", "");
   const Effect* const effect = find_effect(name);
   if (effect == nullptr) {
-    std::string there;
-    for (const Effect& known : effects()) {
-      there += (there.empty() ? "" : ", ") + std::string{known.name};
-    }
-    fail_at(section, "name", "is no effect; there are " + there);
+    std::vector<std::string> there;
+    for (const Effect& known : effects()) there.emplace_back(known.name);
+    fail_at(section, "name",
+            "is no effect; there are " + list_words(there) + did_you_mean(name, there));
   }
   ChosenEffect chosen{effect, {}};
   for (const Parameter& parameter : effect->parameters) {

@@ -97,16 +97,22 @@ std::optional<Texture> read_texture(Section& section, const std::filesystem::pat
   return load_texture(scene.files.back());
 }
 
+/// What `key` names among the tables [kind.NAME].
+template <class Value>
+Value named(const Section& section, std::string_view key, const std::string& kind,
+            const std::string& name, const std::map<std::string, Value>& there) {
+  const auto found = there.find(name);
+  if (found != there.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [known, value] : there) names.push_back(known);
+  fail_at(section, key,
+          "there is no " + kind + " \"" + name + "\"; a table [" + kind + "." + name +
+              "] would be right" + did_you_mean(name, names));
+}
+
 NamedSurfaces::NamedTexture texture_named(Section& section, std::string_view key,
                                           const NamedSurfaces& surfaces) {
-  const std::string texture = read_text(section, key, "");
-  const auto found = surfaces.textures.find(texture);
-  if (found == surfaces.textures.end()) {
-    fail_at(section, key,
-            "there is no texture \"" + texture + "\"; a table [texture." + texture +
-                "] would be right");
-  }
-  return found->second;
+  return named(section, key, "texture", read_text(section, key, ""), surfaces.textures);
 }
 
 void read_opacity(Section& section, NamedSurfaces& surfaces, Scene& scene, Material& material) {
@@ -190,13 +196,7 @@ NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory
 
 std::uint32_t material_named(const Section& section, std::string_view key, const std::string& name,
                              const NamedSurfaces& surfaces) {
-  const auto found = surfaces.materials.find(name);
-  if (found == surfaces.materials.end()) {
-    fail_at(
-        section, key,
-        "there is no material \"" + name + "\"; a table [material." + name + "] would be right");
-  }
-  return found->second;
+  return named(section, key, "material", name, surfaces.materials);
 }
 
 glm::vec3 read_colour(Section& section, std::string_view key, glm::vec3 fallback, double largest) {

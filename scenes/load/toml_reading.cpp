@@ -273,7 +273,9 @@ std::size_t read_choice(Section& section, std::string_view key, std::size_t fall
   const auto found = std::find(choices.begin(), choices.end(), text);
   if (found == choices.end()) {
     const std::vector<std::string> words(choices.begin(), choices.end());
-    fail_at(section, key, "there is no \"" + text + "\"; there are " + list_words(words));
+    fail_at(
+        section, key,
+        "there is no \"" + text + "\"; there are " + list_words(words) + did_you_mean(text, words));
   }
   return static_cast<std::size_t>(found - choices.begin());
 }
@@ -330,7 +332,8 @@ void finish_section(const Section& section) {
   }
   if (unknown != nullptr) {
     fail_at_line(section, unknown->source().begin.line, unknown->str(),
-                 "there is no such key; here are " + list_words(section.known_keys));
+                 "there is no such key; here are " + list_words(section.known_keys) +
+                     did_you_mean(unknown->str(), section.known_keys));
   }
 }
 

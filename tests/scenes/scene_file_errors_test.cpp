@@ -30,11 +30,12 @@ TEST_CASE("a key of too many parts is an error with its line, and dots in texts 
 TEST_CASE("every unknown key is an error that names the line and the keys there are") {
   CHECK(complaint("title = \"x\"\ntitel = \"y\"\n") ==
         "a.toml:2: titel: there is no such key; here are title, background, ambient_light, "
-        "camera, lens, light_points, light, effect, texture, material, object and scatter");
+        "camera, lens, light_points, light, effect, texture, material, object and scatter; did you "
+        "mean 'title'?");
   CHECK(contains(complaint("mm = 1\nzz = 2\naa = 3\n"), "a.toml:1: mm: there is no such key"));
   CHECK(complaint("[lens]\nfocus_m = 2\nfocus = 3\n") ==
         "a.toml:3: lens.focus: there is no such key; here are focus_m, focal_length_mm, "
-        "f_number, keyframes, coc_scale and max_coc_px");
+        "f_number, keyframes, coc_scale and max_coc_px; did you mean 'focus_m'?");
   for (const std::string& text :
        {std::string("[camera]\nxyz = 1\n"), std::string("[material.m]\nxyz = 1\n"),
         std::string("[texture.t]\nkind = \"dots\"\nxyz = 1\ncolours = [[0, 0, 0], [1, 1, 1]]\n"),

@@ -49,6 +49,7 @@ struct RunSetting {
   std::string err_to{};              ///< likewise standard error
   /// Stands for a full disk: a file's bytes past it cannot be written.
   std::optional<rlim_t> file_size_limit{};
+  std::optional<rlim_t> memory_limit{};  ///< bytes of address space
   /// As this user, where it may be changed.
   std::optional<uid_t> user{};
 };
@@ -73,10 +74,13 @@ inline pid_t start_program(const std::vector<std::string>& arguments, const RunS
     };
     connect(STDOUT_FILENO, setting.out_to, out);
     connect(STDERR_FILENO, setting.err_to, err);
-    if (setting.file_size_limit) {
-      const rlimit limit{*setting.file_size_limit, *setting.file_size_limit};
-      ::setrlimit(RLIMIT_FSIZE, &limit);
-    }
+    const auto limit = [](int resource, const std::optional<rlim_t>& most) {
+      if (!most) return;
+      const rlimit both{*most, *most};
+      ::setrlimit(resource, &both);
+    };
+    limit(RLIMIT_FSIZE, setting.file_size_limit);
+    limit(RLIMIT_AS, setting.memory_limit);
     if (setting.user && ::setuid(*setting.user) != 0) ::_exit(125);
     ::execv(SOFTFOCUS_PROGRAM, argv.data());
     ::_exit(126);

@@ -3,7 +3,10 @@
 
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "scenes/files/scene_error.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/files/json.h"
@@ -62,8 +65,13 @@ int selftest(const SelftestOptions& options) {
   const std::vector<NamedHash> computed = golden_hashes(pool, options.set, options.branch);
   const std::vector<HashGroup> expected = expected_groups(options.set, options.branch);
   if (computed.empty() && expected.empty()) {
+    std::vector<std::string> names;
+    for (const HashGroup& group : expected_groups(options.set)) {
+      names.push_back(group.name.substr(0, group.name.find(' ')));
+    }
     throw UsageError("no golden hashes are below '" + options.branch +
-                     "'; 'softfocus selftest --print' lists their groups");
+                     "'; 'softfocus selftest --print' lists their groups" +
+                     did_you_mean(options.branch, names));
   }
   if (options.print) {
     if (!computed.empty()) print(computed, options.branch);

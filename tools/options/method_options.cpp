@@ -76,7 +76,10 @@ void add_method_option(CLI::App& parser, const Method*& method) {
 
 void add_method_option(CLI::App& parser, MethodChoice& method) {
   add_value(parser, "--method", "NAME",
-            "Depth-of-field method (default: " + std::string{method.name()} + ")",
+            "Depth-of-field method (default: " + std::string{method.name()} +
+                (method.name() == kDefaultMethod
+                     ? "; two-pass with --gl, a driver's --profile, --arithmetic or --leak)"
+                     : ")"),
             [&method](const std::string& text) {
               method = find_method_choice(text);
               if (method.filter != nullptr || text == kAutoMethod) return;
@@ -86,6 +89,13 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
               }
             });
   offer(parser, "--method", all_methods);
+}
+
+MethodChoice default_method(const CLI::App& parser, const Profile& profile) {
+  const bool has_shaders = is_given(parser, "--gl") || is_given(parser, "--shaders");
+  const bool has_own = is_given(parser, "--arithmetic") || is_given(parser, "--leak");
+  return find_method_choice(has_shaders || has_own || profile != Profile{} ? "two-pass"
+                                                                           : kDefaultMethod);
 }
 
 void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px,

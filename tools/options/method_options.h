@@ -42,6 +42,13 @@ void add_method_option(CLI::App& parser, const Method*& method);
 void add_method_option(CLI::App& parser, MethodChoice& method);
 
 /// Adds --max-coc. `standard` is the help's text for the default.
+/// What filters where no --method is named: the best of its price, for circles of any size.
+inline constexpr std::string_view kDefaultMethod = "disc-layers";
+
+/// two-pass if options ask for what it has alone: shaders, a driver's profile, integers, a leak.
+/// Otherwise kDefaultMethod.
+MethodChoice default_method(const CLI::App& parser, const Profile& profile);
+
 void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px,
                         const std::string& standard = "the scene's, by height");
 

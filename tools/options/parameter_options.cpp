@@ -4,7 +4,9 @@
 #include <array>
 #include <limits>
 
+#include "scenes/files/scene_error.h"
 #include "tools/cli/errors.h"
+#include "tools/cli/option_values.h"
 
 namespace softfocus {
 namespace {
@@ -94,12 +96,17 @@ namespace {
 
 [[noreturn]] void refuse_part(const std::string& where, const std::string& part,
                               const std::vector<std::string>& keys) {
-  std::string list;
-  for (const std::string& known : keys) {
-    list.append(list.empty() ? "there are " : ", ").append(known);
+  const std::size_t equals = part.find('=');
+  if (equals == part.npos) {
+    std::string list;
+    for (const std::string& known : keys) {
+      list.append(list.empty() ? "there are " : ", ").append(known);
+    }
+    throw UsageError(where + ": '" + part + "' is no key=value; " +
+                     (list.empty() ? "it takes none" : list) + did_you_mean(part, keys));
   }
-  throw UsageError(where + ": '" + part + "' is no key=value; " +
-                   (list.empty() ? "it takes none" : list));
+  if (keys.empty()) throw UsageError(where + ": '" + part + "': it takes none");
+  refuse_name(where + ": the key", part.substr(0, equals), keys);
 }
 
 [[noreturn]] void refuse_twice(const std::string& where, const std::string& key) {

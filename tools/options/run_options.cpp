@@ -126,6 +126,17 @@ void add_profile_option(CLI::App& parser, Profile& profile, std::string& name) {
                      });
 }
 
+namespace {
+
+std::vector<std::string> names_of_formats() {
+  std::vector<std::string> names;
+  std::istringstream words{format_names(" ")};
+  for (std::string name; words >> name;) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
 void add_format_option(CLI::App& parser, FileFormat& format) {
   add_value(parser, "--format", "FORMAT",
             "Format of FILE, whatever its name: " + format_names() +
@@ -133,15 +144,10 @@ void add_format_option(CLI::App& parser, FileFormat& format) {
                 "EXR in halves or floats (linear, depth as Z) (default: by the name, png for -)",
             [&format](const std::string& text) {
               const auto chosen = format_by_name(text);
-              if (!chosen) throw UsageError("--format '" + text + "': there are " + format_names());
+              if (!chosen) refuse_name("--format", text, names_of_formats());
               format = *chosen;
             });
-  offer(parser, "--format", [] {
-    std::vector<std::string> names;
-    std::istringstream words{format_names(" ")};
-    for (std::string name; words >> name;) names.push_back(name);
-    return names;
-  });
+  offer(parser, "--format", names_of_formats);
 }
 
 void settle_format(const CLI::App& parser, const std::string& output, FileFormat& format) {

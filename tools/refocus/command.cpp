@@ -155,11 +155,9 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
                         ThreadPool& pool) {
   progress.show("reading");
   PictureSources sources = open_sources(options.colour, options.depth, options.reading);
-  // The file, its colour as planes and as a picture; then the picture, its depth, the result, and
-  // what the method keeps.
   const bool keeps_little = options.method.name() == "two-pass";
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
-               keeps_little ? 40 : 64);
+               keeps_little ? 40 : kWholeBytesPerPixel);
   UsedRefocus used{.why_whole = why};
   PictureOnItsWay source = colour_of(sources, options, used);
   source.opacity = take_opacity(sources, source.picture);

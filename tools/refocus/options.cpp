@@ -241,6 +241,10 @@ void complete(RefocusOptions& options, const CLI::App& parser) {
     throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
   }
   check_photo_lens(parser);
+  if (!is_given(parser, "--method")) {
+    options.method = default_method(parser, options.profile);
+    options.method_by_size = options.method.name() == kDefaultMethod;
+  }
   check_method(options);
   check_aperture(parser, options.method.name(), {});
   check_budget(parser, options.method.name());

@@ -68,7 +68,8 @@ struct RefocusOptions {
   std::optional<std::string> circles;  ///< `depth` is this file, and `reading` reads its radii
   DepthOptions reading;
   PhotoLens photo;
-  MethodChoice method{.filter = find_method("two-pass")};
+  MethodChoice method = find_method_choice(kDefaultMethod);
+  bool method_by_size = false;  ///< two-pass, by rows, where the memory is too small for `method`
   Arithmetic arithmetic = Arithmetic::floats;
   AutoGoal goal;                    ///< of auto
   std::optional<float> max_coc_px;  ///< none: the picture's largest circle

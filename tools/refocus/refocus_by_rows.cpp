@@ -12,6 +12,7 @@
 #include "raster/numbers/half.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/cli/platform.h"
 #include "tools/files/whole_file.h"
 #include "tools/pictures/picture_rows.h"
 #include "tools/refocus/depth/mend_depth.h"
@@ -410,7 +411,7 @@ std::string reason_for_whole(const RefocusOptions& options) {
   std::error_code error;
   const auto output = std::filesystem::status(options.output, error);
   if (options.method.is_auto()) return "--method auto looks at all of it";
-  if (options.method.name() != "two-pass") {
+  if (options.method.name() != "two-pass" && !options.method_by_size) {
     return "--method " + std::string{options.method.name()} + " has no other form";
   }
   if (options.arithmetic != Arithmetic::floats) return "--arithmetic has no other form";
@@ -433,6 +434,19 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
       open_sources_on_disk(options.colour, options.depth, options.reading, why);
   if (!sources) return std::nullopt;
   const PictureFile& file = sources->colour_file;
+  if (options.method_by_size) {
+    const std::uint64_t pixels =
+        static_cast<std::uint64_t>(file.width) * static_cast<std::uint64_t>(file.height);
+    if (pixels * kWholeBytesPerPixel <= memory_bytes().value_or(~std::uint64_t{0}) &&
+        file.height <= kMaxImageSize) {
+      why = "--method " + std::string{options.method.name()} + " has no other form";
+      return std::nullopt;
+    }
+    RefocusOptions by_rows = options;
+    by_rows.method = find_method_choice("two-pass");
+    by_rows.method_by_size = false;
+    return refocus_by_rows(by_rows, progress, pool, why);
+  }
   if (!sources->views.empty()) why = "it has several views";
   if (file.pixel_aspect != 1.0) why = "its pixels are not square";
   if (box_of(file) != file.shown && !keeps_data_window(options, *sources)) {

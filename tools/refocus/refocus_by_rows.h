@@ -6,11 +6,17 @@
 //   2  the depths, from which the lens is settled and the largest circle follows
 //   3  colour and depth, through the filter and into the file
 
+#include <cstdint>
+
 #include "raster/threads/parallel.h"
 #include "tools/cli/progress.h"
 #include "tools/refocus/report.h"
 
 namespace softfocus {
+
+/// The whole form with any other method than two-pass: the file, its colour as planes and as a
+/// picture; then the picture, its depth, the result, and what the method keeps.
+inline constexpr std::uint64_t kWholeBytesPerPixel = 64;
 
 /// Why these options need the whole picture; empty if they do not.
 std::string reason_for_whole(const RefocusOptions& options);

@@ -162,6 +162,10 @@ Frame watched_frame(const Shot& shot, const RenderOptions& options, RenderRecord
   StageWatch watch{progress, record.ms};
   FrameHooks hooks;
   hooks.on_stage = [&](FrameStage stage) { watch.begin(stage); };
+  hooks.on_light_points = [&progress, points = shot.scene->light_points](int point) {
+    progress.show("drawing, " + std::to_string(point) + " of " + std::to_string(points) +
+                  " points of the lights");
+  };
   if (!shot.method.is_auto()) {
     hooks.on_samples = [&progress, of_all = samples_text(shot)](int samples) {
       progress.show("sampling the lens, " + std::to_string(samples) + of_all);

@@ -337,6 +337,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (to_standard_output && is_terminal(kStandardOutput)) {
     throw UsageError("-o -: standard output is a terminal; send it to a file or a program");
   }
+  if (!is_given(parser, "--method")) options.method = default_method(parser, options.profile);
   check_gl_options(options, parser);
   if (options.report && options.report->empty()) {
     throw UsageError("--report '': give the name of a file");

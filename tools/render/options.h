@@ -46,7 +46,7 @@ struct RenderOptions {
   const Driver* gl = nullptr;          ///< renders the frame instead of the emulation
   Shaders shaders;                     ///< of --gl
   PoolOptions pool;
-  MethodChoice method{.filter = find_method("two-pass")};
+  MethodChoice method = find_method_choice(kDefaultMethod);
   Arithmetic arithmetic = Arithmetic::floats;
   Sampling sampling;           ///< of a method that draws the scene
   std::optional<Shard> shard;  ///< of the samples, whose sums `output` gets

@@ -144,6 +144,20 @@ TEST_CASE("bad input: a JPEG that is cut short after its headers names its file"
   check_scene_refused({textured("t.jpg"), {"t.jpg", jpeg}}, {"t.jpg"});
 }
 
+TEST_CASE("bad scene: what is nearly a name is told with the nearest that exists") {
+  const std::string material = "[material.wood]\ndiffuse = [1, 1, 1]\n";
+  const std::vector<SceneFile> slips{
+      {"[camera]\npositon = [0, 0, 1]\n", "'position'"},
+      {"[[light]]\nkind = \"pont\"\n", "'point'"},
+      {"[[effect]]\nname = \"blom\"\n", "'bloom'"},
+      {"[[effect]]\nname = \"bloom\"\nstrenght = 1\n", "'strength'"},
+      {material + "[[object]]\nshape = \"sphere\"\nmaterial = \"wod\"\n", "'wood'"},
+      {material + "[[object]]\nshape = \"spere\"\nmaterial = \"wood\"\n", "'sphere'"}};
+  for (const auto& [scene, nearest] : slips) {
+    check_scene_refused({{"s.toml", scene}}, {"; did you mean " + nearest + "?"});
+  }
+}
+
 TEST_CASE("bad input: a PNG that claims to be 100,000 x 100,000 names its file") {
   std::string png = some_png();
   png.replace(16, 8, std::string("\x00\x01\x86\xA0\x00\x01\x86\xA0", 8));

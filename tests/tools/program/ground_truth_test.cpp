@@ -129,7 +129,7 @@ TEST_CASE("ground truth: bad input") {
   }
   for (const Words& option : {Words{"--samples", "4"}, Words{"--jitter"}, Words{"--until", "0.1"},
                               Words{"--aperture-blades", "5"}}) {
-    check_refused_render(option, {option[0], "two-pass", "accumulation"});
+    check_refused_render(option, {option[0], "disc-layers", "accumulation"});
   }
   check_refused_render(accumulation_with({"--gl", "llvmpipe"}), {"--gl", "accumulation"});
   check_refused_render({"--method", "raytraced"},

@@ -93,14 +93,22 @@ TEST_CASE("render: --scene-path is looked through first, in the order given") {
   CHECK(rendered_json("figures", {})["title"] == "Figures");
 }
 
-TEST_CASE("render: the methods give different pictures, and two-pass is the usual one") {
+TEST_CASE(
+    "render: the methods give different pictures, and without one the best of its price is taken") {
   const auto by_method = [](const std::string& method) {
     return rendered("figures", {"--max-coc", "6", "--method", method});
   };
   CHECK(by_method("pinhole") != by_method("two-pass"));
   CHECK(by_method("two-pass") != by_method("one-pass"));
   CHECK(by_method("one-pass") != by_method("pinhole"));
-  CHECK(rendered("figures", {"--max-coc", "6"}) == by_method("two-pass"));
+  const std::string best = by_method("disc-layers"), shaders = by_method("two-pass");
+  CHECK(rendered("figures", {"--max-coc", "6"}) == best);
+  CHECK(rendered("figures", {"--max-coc", "6", "--profile", "ieee"}) == best);
+  CHECK(rendered("figures", {"--max-coc", "6", "--leak", "1"}) == shaders);
+  const Words direct{"--max-coc", "6", "--profile", "d3d11"};
+  Words with_shaders = direct;
+  with_shaders.insert(with_shaders.end(), {"--method", "two-pass"});
+  CHECK(rendered("figures", direct) == rendered("figures", with_shaders));
 }
 
 TEST_CASE("render: the pinhole method gives the picture before any filter") {
@@ -147,7 +155,7 @@ TEST_CASE("render: every lens and filter option changes the picture") {
     return rendered("figures", words);
   };
   // Larger circles than so small a picture has by itself, and some past the limit.
-  const Options usual{{"--coc-scale", "2"}, {"--max-coc", "4"}};
+  const Options usual{{"--coc-scale", "2"}, {"--max-coc", "4"}, {"--method", "two-pass"}};
   const std::string before = rendered_with(usual);
   const Options other{{"--focus", "0.9"},     {"--focal-length", "60"}, {"--f-number", "4"},
                       {"--coc-scale", "3"},   {"--max-coc", "2"},       {"--leak", "0"},
@@ -163,8 +171,8 @@ TEST_CASE("render: every lens and filter option changes the picture") {
 TEST_CASE("render: the filter size follows the picture's height if it is not given") {
   const TemporaryDirectory directory;
   const auto max_coc = [&](const char* size) {
-    const ProgramRun run =
-        run_program({"render", "figures", "--size", size, "-o", directory.file("a.png"), "--json"});
+    const ProgramRun run = run_program({"render", "figures", "--size", size, "--method", "two-pass",
+                                        "-o", directory.file("a.png"), "--json"});
     return nlohmann::json::parse(run.out)["lens"]["max_coc_px"].get<double>();
   };
   CHECK(max_coc("48x32") == 16.0 * 32 / 1024);

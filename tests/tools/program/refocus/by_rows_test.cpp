@@ -89,7 +89,8 @@ struct SceneFiles {
   Words command(const Words& inputs, const Words& more) const {
     Words words{"refocus"};
     for (const std::string& name : inputs) words.push_back(file(name));
-    return joined(words, more);
+    const bool names_method = std::find(more.begin(), more.end(), "--method") != more.end();
+    return joined(words, names_method ? more : joined({"--method", "two-pass"}, more));
   }
 
   /// --json's report of a run, by rows or not. Its picture is in `out`.
@@ -203,7 +204,8 @@ TEST_CASE("by rows: an EXR keeps its layers, attributes and an opaque alpha") {
   CHECK(files.run({"lens.exr"}, "o.exr", {})["focus_from"] == "the file's focus");
   files.check_same({"a.exr", "d.pfm"}, "o.npy", "npy", kBlur);
   const std::string blender = SOFTFOCUS_TEST_DATA "/blender-cubes/cubes.exr";
-  const Words lens{"--focus", "1.6m", "--focal-length", "85mm", "--f-number", "1.8"};
+  const Words lens{"--method",       "two-pass", "--focus",    "1.6m",
+                   "--focal-length", "85mm",     "--f-number", "1.8"};
   const ProgramRun rows =
       run_program(joined({"refocus", blender, "-o", files.file("o.exr"), "--json"}, lens));
   REQUIRE(rows.status == 0);
@@ -341,12 +343,22 @@ TEST_CASE("by rows: memory does not grow with the picture's height") {
   const std::string colour = sparse("c.npy", "4096, 4096, 3", 3 * kSide * kSide);
   const std::string depth = sparse("d.npy", "4096, 4096", kSide * kSide);
   const std::string out = directory.file("o.npy");
-  const ProgramRun run =
-      run_program({"refocus", colour, depth, "-o", out, "--depth-encoding", "white-far", "--near",
-                   "1", "--far", "9", "--focus", "2", "--blur-at-infinity", "2"});
+  const Words command{
+      "refocus", colour,  depth, "-o",      out, "--depth-encoding",   "white-far", "--near",
+      "1",       "--far", "9",   "--focus", "2", "--blur-at-infinity", "2",         "--json"};
+  const ProgramRun run = run_program(joined(command, {"--method", "two-pass"}));
   CHECK(run.status == 0);
   CHECK(std::filesystem::file_size(out) == 128 + 8 * kSide * kSide);
   CHECK(run.peak_kib < 100 * 1024);
+  // Without --method so it is where the usual method finds no room.
+  const ProgramRun low = run_program(command, {.memory_limit = 60 * kSide * kSide});
+  REQUIRE(low.status == 0);
+  CHECK(low.peak_kib < 100 * 1024);
+  CHECK(json::parse(low.out)["by_rows"] == true);
+  CHECK(json::parse(low.out)["method"] == "two-pass");
+  const json high = json::parse(run_program(command).out);
+  CHECK(high["by_rows"] == false);
+  CHECK(high["method"] == "disc-layers");
 }
 
 TEST_CASE("bad input: by rows, a file cut short and a full disk leave nothing") {

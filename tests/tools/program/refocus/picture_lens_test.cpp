@@ -36,7 +36,8 @@ TEST_CASE("render: PNG in itself, PFM and NPY beside them have lens, view, metho
   const TemporaryDirectory directory;
   for (const std::string name : {"a.png", "a.pfm", "a.npy"}) {
     CAPTURE(name);
-    const std::string file = render_into(directory, name, "figures", {"--focus", "1.25"});
+    const std::string file =
+        render_into(directory, name, "figures", {"--focus", "1.25", "--method", "two-pass"});
     const std::string bytes = read_file(file);
     const auto text = name == "a.png" ? find_png_text(std::as_bytes(std::span{bytes}), "softfocus")
                                       : std::optional{read_file(file + ".json")};
@@ -205,16 +206,21 @@ TEST_CASE("render: circles that the default cuts are told, with what cuts none")
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words).err;
   };
-  const std::string line = warned({"--f-number", "0.7"});
+  CHECK(warned({"--f-number", "0.7"}) == "");
+  const std::string line = warned({"--f-number", "0.7", "--method", "two-pass"});
   CHECK(is_one_line(line));
   CHECK(contains(line, "--max-coc, 1.5 by default, cuts the circles of "));
   const std::size_t place = line.find("; --max-coc ");
   REQUIRE(place != line.npos);
   const std::string enough = line.substr(place + 12, line.find(" cuts none") - place - 12);
   CHECK(std::stoi(enough) > 4);
-  CHECK(warned({"--f-number", "0.7", "--max-coc", enough}) == "");
-  CHECK(warned({"--f-number", "0.7", "--max-coc", "1"}) == "");  // given, so meant
-  CHECK(warned({"--f-number", "16"}) == "");
+  for (const Words& more : {Words{"--f-number", "0.7", "--max-coc", enough},
+                            Words{"--f-number", "0.7", "--max-coc", "1"},  // given, so meant
+                            Words{"--f-number", "16"}}) {
+    Words words = more;
+    words.insert(words.end(), {"--method", "two-pass"});
+    CHECK(warned(words) == "");
+  }
   for (const char* method :
        {"pinhole", "disc-layers", "diffusion", "generalised-diffusion", "auto", "accumulation"}) {
     CAPTURE(method);

@@ -358,7 +358,7 @@ TEST_CASE("refocus: an aperture's blades, turn and stretch are drawn, or refused
   const std::string out = directory.file("out.npy");
   for (const std::string option : {"--aperture-blades", "--aperture-turn", "--anamorphic"}) {
     check_refused(directory, {"refocus", a, d, "-o", out, option, "3"}, 2,
-                  {option, "two-pass", "round", "--method scatter-aperture"});
+                  {option, "disc-layers", "round", "--method scatter-aperture"});
   }
   check_refused(directory, {"refocus", a, d, "-o", out, "--aperture-blades", "2"}, 2,
                 {"--aperture-blades", "3 to 64"});

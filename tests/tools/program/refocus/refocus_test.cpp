@@ -118,7 +118,7 @@ TEST_CASE("render: apertures are refused with who has them") {
     check_refused(directory, render("figures", directory.file("a.npy"), options), 2, named);
   };
   for (const std::string option : {"--aperture-blades", "--aperture-turn", "--anamorphic"}) {
-    check_refused_render({option, "3"}, {option, "two-pass has a round aperture alone",
+    check_refused_render({option, "3"}, {option, "disc-layers has a round aperture alone",
                                          "--method scatter-aperture"});
   }
   check_refused_render({"--method", "accumulation", "--anamorphic", "2"},
