@@ -155,9 +155,11 @@ Refocused refocus_whole(const RefocusOptions& options, const std::string& why, P
                         ThreadPool& pool) {
   progress.show("reading");
   PictureSources sources = open_sources(options.colour, options.depth, options.reading);
-  const bool keeps_little = options.method.name() == "two-pass";
+  const std::uint64_t kept = options.method.name() == "two-pass" ? 40 : kWholeBytesPerPixel;
+  const double aspect = sources.colour_file.pixel_aspect;
+  const double repeated = std::max(aspect, 1.0 / aspect);  // until pixels are square
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
-               keeps_little ? 40 : kWholeBytesPerPixel);
+               static_cast<std::uint64_t>(repeated * static_cast<double>(kept)));
   UsedRefocus used{.why_whole = why};
   PictureOnItsWay source = colour_of(sources, options, used);
   source.opacity = take_opacity(sources, source.picture);
