@@ -104,7 +104,7 @@ TEST_CASE("relief: a picture of heights becomes a relief, with holes where it sa
   for (int i = 0; i < 200; ++i) heights.push_back(static_cast<std::uint16_t>(300 * (i % 20)));
   const auto put = [&](const char* name, const Bytes& bytes) {
     std::string file = folder.file(name);
-    write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(file, bytes);
     return file;
   };
   const std::string grey = put("h.png", encode_grey_png_16(heights, 20, 10));
