@@ -3,9 +3,13 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "scenes/files/scene_error.h"
 #include "scenes/files/texture_file.h"
 #include "scenes/make/procedural_texture.h"
 
