@@ -108,6 +108,7 @@ Value named(const Section& section, std::string_view key, const std::string& kin
   const auto found = there.find(name);
   if (found != there.end()) return found->second;
   std::vector<std::string> names;
+  names.reserve(there.size());
   for (const auto& [known, value] : there) names.push_back(known);
   fail_at(section, key,
           "there is no " + kind + " \"" + name + "\"; a table [" + kind + "." + name +
