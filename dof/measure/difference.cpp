@@ -76,6 +76,36 @@ Difference compare_images(const Image& a, const Image& b) {
   return difference;
 }
 
+std::uint64_t pixels_beyond(const Image& a, const Image& b, const PixelLimit& limit) {
+  assert(a.format == Format::rgba16f && b.format == Format::rgba16f);
+  assert(a.width == b.width && a.height == b.height);
+  const std::size_t channels = limit.has_opacity ? 4 : 3;
+  const auto is_like = [&](const Image& one, int x, int y, const Image& other, int i, int j) {
+    const auto* const p = row<std::uint16_t>(one, y).data() + 4 * x;
+    const auto* const q = row<std::uint16_t>(other, j).data() + 4 * i;
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (half_ulps_between(p[c], q[c]) != 0 && error_between(p[c], q[c]) > limit.most)
+        return false;
+    }
+    return true;
+  };
+  const auto is_found = [&](const Image& one, int x, int y, const Image& other) {
+    if (is_like(one, x, y, other, x, y)) return true;
+    const int reach = limit.search_px;
+    for (int j = std::max(y - reach, 0); j <= std::min(y + reach, one.height - 1); ++j) {
+      for (int i = std::max(x - reach, 0); i <= std::min(x + reach, one.width - 1); ++i) {
+        if (is_like(one, x, y, other, i, j)) return true;
+      }
+    }
+    return false;
+  };
+  std::uint64_t count = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) count += !(is_found(a, x, y, b) && is_found(b, x, y, a));
+  }
+  return count;
+}
+
 Image difference_picture(const Image& a, const Image& b) {
   Image picture = make_image(Format::rgba16f, a.width, a.height);
   for (int y = 0; y < a.height; ++y) {

@@ -63,6 +63,18 @@ struct Difference {
 /// Both RGBA16F and of one size.
 Difference compare_images(const Image& a, const Image& b);
 
+/// When two pixels differ: by more than `most` in red, green, blue or, if it is an opacity, alpha,
+/// from every pixel of the other picture that lies within `search_px` of the same place.
+struct PixelLimit {
+  double most = 0.0;
+  bool has_opacity = false;
+  int search_px = 0;
+};
+
+/// How many pixels of either picture differ. Both RGBA16F and of one size. NaN and infinity differ
+/// from all that has other bits.
+std::uint64_t pixels_beyond(const Image& a, const Image& b, const PixelLimit& limit);
+
 /// Black where the pictures are equal. Else the pixel's largest difference on a logarithmic
 /// scale: blue for 1 half-ULP, then green and yellow, to red for 2^15.
 Image difference_picture(const Image& a, const Image& b);

@@ -158,8 +158,8 @@ class Band {
   bool full_ = false;  ///< one disc covers everything, and no other needs to be drawn
 };
 
-Region region_of(float radius) {
-  if (std::fabs(radius) <= kFocusRadiusPx) return Region::focus;
+Region region_of(float radius, float focus_px) {
+  if (std::fabs(radius) <= focus_px) return Region::focus;
   return radius < 0.0f ? Region::near_field : Region::far_field;
 }
 
@@ -175,7 +175,23 @@ std::string_view region_name(Region region) {
   return "";
 }
 
-Image label_regions(const Image& scene, const PixelCoc& coc) {
+float fitting_focus_px(const Image& scene, const PixelCoc& coc, const Image& labels) {
+  const Floats radii = signed_radii(scene, coc);
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  float least = kNone;
+  for (int y = 0; y < scene.height; ++y) {
+    const auto of_row = row<std::uint8_t>(labels, y);
+    for (int x = 0; x < scene.width; ++x) {
+      const auto region = static_cast<Region>(of_row[static_cast<std::size_t>(x)]);
+      if (region == Region::silhouette) continue;
+      const std::size_t here = index_of({scene.width, scene.height}, x, y);
+      least = std::min(least, std::fabs(radii[here]));
+    }
+  }
+  return least > kFocusRadiusPx && least < kNone ? least + kFocusRadiusPx : kFocusRadiusPx;
+}
+
+Image label_regions(const Image& scene, const PixelCoc& coc, float focus_px) {
   assert(scene.format == Format::rgba16f);
   const Size size{scene.width, scene.height};
   Image labels = make_image(Format::r8, scene.width, scene.height);
@@ -188,7 +204,7 @@ Image label_regions(const Image& scene, const PixelCoc& coc) {
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
       const std::size_t here = index_of(size, x, y);
-      label(x, y, region_of(radii[here]));
+      label(x, y, region_of(radii[here], focus_px));
       if (reaches[here] > 0.0f) band.add_disc(x, y, reaches[here]);
     }
   }

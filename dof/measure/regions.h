@@ -61,8 +61,13 @@ inline bool is_depth(float depth_m) { return depth_m > 0.0f; }
 /// A label, of Region, for each pixel of an RGBA16F picture with depths in alpha: an image
 /// of r8. Every pixel nearer to an edge in depth than the larger radius on its two sides,
 /// at least 1, is of its silhouette band, measured from the centres of the pixels beside the
-/// edge. The rest is in focus, near or far by its own radius. Needs is_depth() everywhere.
-Image label_regions(const Image& scene, const PixelCoc& coc);
+/// edge. The rest is in focus, near or far by its own radius, in focus up to `focus_px`. Needs
+/// is_depth() everywhere.
+Image label_regions(const Image& scene, const PixelCoc& coc, float focus_px = kFocusRadiusPx);
+
+/// kFocusRadiusPx, or, of a picture whose labels have nothing so sharp, as much more than the
+/// smallest radius beside silhouettes.
+float fitting_focus_px(const Image& scene, const PixelCoc& coc, const Image& labels);
 
 /// The mean of a map over a region, and the number of its pixels.
 struct RegionMean {

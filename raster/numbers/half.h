@@ -26,6 +26,10 @@ enum class HalfRounding : std::uint8_t {
 };
 
 inline constexpr std::uint16_t kHalfLargest = 0x7BFF;  // 65504
+
+/// Passes compare depths by this one: infinity is as far as a half can be.
+inline constexpr float kFarthestDepth = 65504.0f;
+inline float compared_depth(float depth) { return depth > kFarthestDepth ? kFarthestDepth : depth; }
 inline constexpr std::uint16_t kHalfInfinity = 0x7C00;
 inline constexpr std::uint16_t kHalfNan = 0x7E00;
 inline constexpr std::uint16_t kHalfOne = 0x3C00;

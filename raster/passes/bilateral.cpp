@@ -122,7 +122,8 @@ void bilateral_oracle(const BilateralSettings& settings, const ConstImageView& s
   const float factor = bilateral_colour_factor(settings);
   fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
     const glm::vec4 own = load_texel<Format::rgba16f>(source, x, y);
-    const float depth_scale = settings.depth_tolerance * own.w;
+    const float own_depth = compared_depth(own.w);
+    const float depth_scale = settings.depth_tolerance * own_depth;
     glm::vec4 sum{0.0f};
     float sum_of_weights = 0.0f;
     for (int j = -reach; j <= reach; ++j) {
@@ -136,7 +137,7 @@ void bilateral_oracle(const BilateralSettings& settings, const ConstImageView& s
           const glm::vec4 off = other - own;
           weight *= likeness((off.x * off.x + off.y * off.y + off.z * off.z) * factor);
           if (settings.depth_tolerance > 0.0f) {
-            const float ratio = off.w / depth_scale;
+            const float ratio = (compared_depth(other.w) - own_depth) / depth_scale;
             weight *= likeness(ratio * ratio);
           }
         }
@@ -177,7 +178,8 @@ void bilateral_row(const BilateralRow& row) {
   for (int x = 0; x < row.width; x += kLanes) {
     const float* centre = row.rows[row.reach] + row.reach + x;
     const Floats own_r = load(centre), own_g = load(centre + plane);
-    const Floats own_b = load(centre + 2 * plane), own_a = load(centre + 3 * plane);
+    const Floats own_b = load(centre + 2 * plane);
+    const Floats own_a = smaller(splat(kFarthestDepth), load(centre + 3 * plane));
     const Floats depth_scale = row.depth_tolerance * own_a;
     Floats r = splat(0.0f), g = r, b = r, sum_of_weights = r;
     for (int j = 0; j <= 2 * row.reach; ++j) {
@@ -191,7 +193,8 @@ void bilateral_row(const BilateralRow& row) {
           weight *=
               likeness_lanes((off_r * off_r + off_g * off_g + off_b * off_b) * row.colour_factor);
           if (row.depth_tolerance > 0.0f) {
-            const Floats ratio = (load(other + 3 * plane) - own_a) / depth_scale;
+            const Floats depth = smaller(splat(kFarthestDepth), load(other + 3 * plane));
+            const Floats ratio = (depth - own_a) / depth_scale;
             weight *= likeness_lanes(ratio * ratio);
           }
         }

@@ -18,6 +18,10 @@ int tap_count() { return textureSize(weights, 0).x; }
 float gaussian(int i) { return texelFetch(weights, ivec2(i, 0), 0).r; }
 #endif
 
+float compared_depth(float depth) {
+  return floatBitsToUint(depth) == 0x7F800000u ? 65504.0 : depth;
+}
+
 float likeness(float square) {
   precise float rest = 1.0 - square;
   return rest > 0.0 ? rest * rest : 0.0;
@@ -28,7 +32,8 @@ void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   int reach = tap_count() / 2;
   vec4 own = texelFetch(source, here, 0);
-  precise float depth_scale = depth_tolerance * own.a;
+  float own_depth = compared_depth(own.a);
+  precise float depth_scale = depth_tolerance * own_depth;
   precise vec3 sum = vec3(0.0);
   precise float sum_of_weights = 0.0;
   for (int j = -reach; j <= reach; ++j) {
@@ -41,7 +46,7 @@ void main() {
         precise float square = off.r * off.r + off.g * off.g + off.b * off.b;
         weight = weight * likeness(square * colour_factor);
         if (depth_tolerance > 0.0) {
-          precise float ratio = (other.a - own.a) / depth_scale;
+          precise float ratio = (compared_depth(other.a) - own_depth) / depth_scale;
           weight = weight * likeness(ratio * ratio);
         }
       }

@@ -24,8 +24,8 @@ struct BilateralSettings {
 ///   g(dx) g(dy) l(|c_q - c_p|^2 / colour_tolerance^2) l((z_q - z_p)^2 / (depth_tolerance z_p)^2)
 ///
 /// with g of gaussian_weights(), l(s) = (1 - s)^2 up to s = 1 and then 0 (Tukey's biweight, which
-/// needs no exponential), and 1 for the pixel itself. z is alpha, which stays. `result` has the
-/// source's size and shares no memory with it.
+/// needs no exponential), and 1 for the pixel itself. z is alpha, up to 65504, which stays.
+/// `result` has the source's size and shares no memory with it.
 ///
 /// Order, in binary32, row by row from the top left:
 ///   s_c = ((r r + g g) + b b) f with the differences r, g, b and f = 1 / colour_tolerance^2

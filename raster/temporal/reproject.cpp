@@ -65,7 +65,7 @@ DepthRange depths_around(const ConstImageView& depths, int x, int y) {
                       std::clamp(y + j, 0, depths.height - 1)};
   };
   const auto depth_at = [&](glm::ivec2 place) {
-    return load_texel<Format::rgba16f>(depths, place.x, place.y).w;
+    return compared_depth(load_texel<Format::rgba16f>(depths, place.x, place.y).w);
   };
   const glm::ivec2 first = place_at(-1, -1);
   DepthRange range{first, depth_at(first), depth_at(first)};
@@ -98,7 +98,8 @@ std::optional<glm::vec4> cubic_colour(const ConstImageView& before, int column, 
       const int x = column + i - 1, y = line + j - 1;
       if (x < 0 || x >= before.width || y < 0 || y >= before.height) return {};
       const glm::vec4 texel = load_texel<Format::rgba16f>(before, x, y);
-      if (!(texel.w >= low && texel.w <= high)) return {};
+      const float depth = compared_depth(texel.w);
+      if (!(depth >= low && depth <= high)) return {};
       const auto of_column = of_columns[static_cast<std::size_t>(i)];
       sum += (of_column * of_rows[static_cast<std::size_t>(j)]) * texel;
     }
@@ -130,7 +131,8 @@ glm::vec4 found_before(const ReprojectSettings& settings, const ReprojectInput& 
       const int at_x = static_cast<int>(column) + i, at_y = static_cast<int>(line) + j;
       if (at_x < 0 || at_x >= width || at_y < 0 || at_y >= height || !(weight > 0.0f)) continue;
       glm::vec4 texel = load_texel<Format::rgba16f>(input.before, at_x, at_y);
-      if (!(texel.w >= low && texel.w <= high)) continue;
+      const float depth = compared_depth(texel.w);
+      if (!(depth >= low && depth <= high)) continue;
       texel.w = load_texel<Format::r32f>(input.frames, at_x, at_y).x;
       sum += weight * texel;
       sum_of_weights += weight;
@@ -215,7 +217,7 @@ void reverse_reproject_oracle(const ReprojectSettings& settings, const Reproject
                               const ImageView& result, const Profile& profile, ThreadPool& pool) {
   assert(fit_together(input, result));
   fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    const float own = load_texel<Format::rgba16f>(input.depths, x, y).w;
+    const float own = compared_depth(load_texel<Format::rgba16f>(input.depths, x, y).w);
     const DepthRange range = settings.takes_neighbours ? depths_around(input.depths, x, y)
                                                        : DepthRange{{x, y}, own, own};
     return found_before(settings, input, x, y, range);
@@ -277,6 +279,10 @@ void put_depths(const ConstImageView& drawn, const ImageView& found, const Profi
 
 namespace {
 
+SOFTFOCUS_INLINE Floats compared_depths(Floats depth) {
+  return smaller(splat(kFarthestDepth), depth);
+}
+
 struct TapSums {
   Floats r, g, b, frames, weights;
 };
@@ -302,7 +308,7 @@ SOFTFOCUS_INLINE TexelLanes load_before(const ReprojectRow& row, Ints column, In
 #else
   const HalfTexels texel{first & 0xFFFFu, first >> 16, second & 0xFFFFu, second >> 16};
 #endif
-  const Floats depth = half_to_float(texel.a);
+  const Floats depth = compared_depths(half_to_float(texel.a));
   const Mask counts = (x == column) & (y == line) & (depth >= limits.low) & (depth <= limits.high);
   return {half_to_float(texel.r), half_to_float(texel.g), half_to_float(texel.b), counts, x, y};
 }
@@ -356,16 +362,16 @@ SOFTFOCUS_INLINE void take_curve(const ReprojectRow& row, Ints column, Ints line
 
 void reproject_row(const ReprojectRow& row) {
   for (int x = 0; x < row.width; x += kLanes) {
-    const Floats own = load(row.depths[1] + x + 1);
+    const Floats own = compared_depths(load(row.depths[1] + x + 1));
     Floats least = own, most = own;
     Floats motion_x = load(row.motions_x[1] + x + 1), motion_y = load(row.motions_y[1] + x + 1);
     if (row.depths[0] != nullptr) {
-      least = most = load(row.depths[0] + x);
+      least = most = compared_depths(load(row.depths[0] + x));
       motion_x = load(row.motions_x[0] + x);
       motion_y = load(row.motions_y[0] + x);
       for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 3; ++i) {
-          const Floats depth = load(row.depths[j] + x + i);
+          const Floats depth = compared_depths(load(row.depths[j] + x + i));
           const Mask nearer = depth < least;
           least = select(nearer, depth, least);
           motion_x = select(nearer, load(row.motions_x[j] + x + i), motion_x);

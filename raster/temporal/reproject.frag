@@ -19,6 +19,10 @@ vec4 cubic_weights(float s) {
   return vec4(before_it, first, second, behind_it);
 }
 
+float compared_depth(float depth) {
+  return floatBitsToUint(depth) == 0x7F800000u ? 65504.0 : depth;
+}
+
 // In bits: drivers turn comparisons around, which is wrong for NaN.
 bool is_finite(vec2 v) {
   uvec2 size = floatBitsToUint(v) & 0x7FFFFFFFu;
@@ -28,19 +32,19 @@ bool is_finite(vec2 v) {
 void main() {
   ivec2 last = textureSize(depths, 0) - 1;
   ivec2 here = ivec2(gl_FragCoord.xy);
-  float own = texelFetch(depths, here, 0).a;
+  float own = compared_depth(texelFetch(depths, here, 0).a);
   float nearest = own, least = own, most = own;
   ivec2 of_motion = here;
   if (reach > 0) {
     ivec2 first = clamp(here - 1, ivec2(0), last);
     of_motion = first;
-    nearest = texelFetch(depths, first, 0).a;
+    nearest = compared_depth(texelFetch(depths, first, 0).a);
     least = nearest;
     most = nearest;
     for (int j = -1; j <= 1; ++j) {
       for (int i = -1; i <= 1; ++i) {
         ivec2 place = clamp(here + ivec2(i, j), ivec2(0), last);
-        float depth = texelFetch(depths, place, 0).a;
+        float depth = compared_depth(texelFetch(depths, place, 0).a);
         if (depth < least) {
           least = depth;
           of_motion = place;
@@ -70,7 +74,8 @@ void main() {
     ivec2 place = ivec2(int(column) + i, int(line) + j);
     ivec2 inside = clamp(place, ivec2(0), last);
     vec4 texel = texelFetch(before, inside, 0);
-    if (place == inside && weight > 0.0 && texel.a >= low && texel.a <= high) {
+    float depth = compared_depth(texel.a);
+    if (place == inside && weight > 0.0 && depth >= low && depth <= high) {
       sum = sum + weight * vec4(texel.rgb, texelFetch(frames, inside, 0).r);
       sum_of_weights = sum_of_weights + weight;
     }
@@ -83,7 +88,8 @@ void main() {
     for (int i = 0; i < 4; ++i) {
       ivec2 place = ivec2(int(column) + i - 1, int(line) + j - 1);
       vec4 texel = texelFetch(before, clamp(place, ivec2(0), last), 0);
-      bool fits = texel.a >= low && texel.a <= high;
+      float depth = compared_depth(texel.a);
+      bool fits = depth >= low && depth <= high;
       if (place != clamp(place, ivec2(0), last) || !fits) return;
       precise float weight = of_columns[i] * of_rows[j];
       curve = curve + weight * texel.rgb;

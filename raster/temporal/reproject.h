@@ -21,7 +21,7 @@ struct ReprojectSettings {
 
 /// All of one size.
 struct ReprojectInput {
-  ConstImageView depths;  ///< RGBA16F: the frame's depth in alpha, a number
+  ConstImageView depths;  ///< RGBA16F: the frame's depth in alpha, above 65504 m as 65504 m
   /// RG16F: the position now less that before (raster/effects/motion/velocity.h).
   ConstImageView velocity;
   ConstImageView before;  ///< RGBA16F: the frame before, its depth in alpha; rows as an Image's

@@ -60,6 +60,11 @@ void read_all(const Bytes& bytes) {
 
 }  // namespace
 
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  return softfocus::mutate_in_place(data, size, most, seed);
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto* start = reinterpret_cast<const std::byte*>(data);
   Bytes bytes{start, start + size};
@@ -67,7 +72,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (is_png(bytes)) bytes = with_checksums(bytes);
   try {
     read_all(bytes);
+    return counted(true, data, size);
   } catch (const FileError&) {
+    return counted(false, data, size);
   }
-  return 0;
 }

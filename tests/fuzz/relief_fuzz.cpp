@@ -46,6 +46,11 @@ void warp_it(const ReliefTexture& relief) {
 
 }  // namespace
 
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  return softfocus::mutate_in_place(data, size, most, seed);
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     const ReliefTexture relief = decode_relief(with_sum(data, size), "fuzz");
@@ -56,6 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     demand(encode_relief(relief).size() == size);
     if (std::int64_t{relief.width} * relief.height <= kMostTexels) warp_it(relief);
   } catch (const FileError&) {
+    return counted(false, data, size);
   }
-  return 0;
+  return counted(true, data, size);
 }

@@ -11,6 +11,7 @@
 #include "raster/images/texel.h"
 #include "tools/files/profile_file.h"
 #include "tools/pictures/exr_file.h"
+#include "tools/pictures/png_text.h"
 #include "tools/pictures/sums_file.h"
 #include "tools/relief/relief_file.h"
 #include "tools/sequence/journal.h"
@@ -77,6 +78,43 @@ PictureNotes small_notes() {
           .method = {{"name", "two-pass"}, {"max_coc_px", 12.0}}};
 }
 
+/// A PNG whose pixels are not compressed, so that any change of them is one of the picture: of 8 or
+/// 16 bits, grey (0), colour (2), by a palette (3), with alpha (4, 6).
+Bytes stored_png(unsigned bits, unsigned kind) {
+  constexpr unsigned kSide = 9;
+  const unsigned channels = kind == 2 ? 3 : kind == 4 ? 2 : kind == 6 ? 4 : 1;
+  const auto word = [](unsigned value) {
+    return std::string{char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+  };
+  std::string lines;
+  for (unsigned y = 0; y < kSide; ++y) {
+    lines += static_cast<char>(y % 5);  // each of the filters
+    for (unsigned x = 0; x < kSide * channels * bits / 8; ++x)
+      lines += static_cast<char>(x * y % 4);
+  }
+  const auto length = static_cast<unsigned>(lines.size());
+  std::string stored{"\x78\x01\x01", 3};
+  for (const unsigned value : {length, ~length}) {
+    stored += {static_cast<char>(value), static_cast<char>(value >> 8)};
+  }
+  unsigned low = 1, high = 0;
+  for (const char byte : lines) {
+    low = (low + static_cast<unsigned char>(byte)) % 65521;
+    high = (high + low) % 65521;
+  }
+  Bytes png;
+  for (const char letter : kPngSignature) png.push_back(static_cast<std::byte>(letter));
+  append_png_chunk(png, "IHDR",
+                   word(kSide) + word(kSide) + char(bits) + char(kind) + word(0).substr(1));
+  if (kind == 3) {
+    append_png_chunk(png, "PLTE", std::string(12, 'p'));
+    append_png_chunk(png, "tRNS", "abcd");
+  }
+  append_png_chunk(png, "IDAT", stored + lines + word(high << 16 | low));
+  append_png_chunk(png, "IEND", "");
+  return png;
+}
+
 void put_pictures(const fs::path& all, const fs::path& data) {
   const Image image = small_picture();
   const std::vector<float> plane(kWidth * kHeight, 0.75f);
@@ -84,6 +122,10 @@ void put_pictures(const fs::path& all, const fs::path& data) {
   png.put("8", encode_with_notes(image, FileFormat::png, small_notes()));
   png.put("16-alpha", encode_png_16(image, plane));
   png.put("grey-16", encode_depth(plane, kWidth, kHeight, FileFormat::png_16));
+  for (const unsigned kind : {0u, 2u, 3u, 4u, 6u}) {
+    png.put("stored-8-" + std::to_string(kind), stored_png(8, kind));
+    if (kind != 3) png.put("stored-16-" + std::to_string(kind), stored_png(16, kind));
+  }
   jpeg.copy(data / "red-blue-16x8.jpg");
   hdr.put("colour", encode_hdr(image));
   pfm.put("colour", encode_pfm(image));
@@ -186,27 +228,24 @@ void put_reliefs(const fs::path& all) {
   const Seeds reliefs{all, "relief"};
   for (const int bits : {8, 16}) {
     ReliefTexture relief;
-    relief.width = 4;
-    relief.height = 3;
+    relief.width = 20;
+    relief.height = 12;
     relief.depth_bits = bits;
-    for (std::uint16_t i = 0; i < 12; ++i) {
-      relief.depths.push_back(i % 5 == 0 ? empty_depth(bits) : static_cast<std::uint16_t>(20 * i));
+    for (std::uint16_t i = 0; i < 240; ++i) {
+      relief.depths.push_back(i % 5 == 0 ? empty_depth(bits) : static_cast<std::uint16_t>(i));
       relief.colours.push_back(i % 5 == 0 ? 0 : 0xFF102030u * i | 0xFF000000u);
     }
     reliefs.put("plain-" + std::to_string(bits), encode_relief(relief));
-    relief.normals.assign(12, 0x00FF8080u);
+    relief.normals.assign(240, 0x00FF8080u);
     relief.camera.eye = glm::dvec3{0.5, -0.5, 3.0};
     reliefs.put("eye-" + std::to_string(bits), encode_relief(relief));
   }
 }
 
 void put_sums(const fs::path& all) {
-  const SampleSums sums = make_sample_sums(4, 3);
-  PictureNotes notes = small_notes();
-  notes.width = 4;
-  notes.height = 3;
-  write_sums_file(Seeds{all, "sums"}.file("small"), {1, 2}, {.picture = notes, .samples = 64}, sums,
-                  make_image(Format::rgba16f, 4, 3));
+  write_sums_file(Seeds{all, "sums"}.file("small"), {1, 2},
+                  {.picture = small_notes(), .samples = 64}, make_sample_sums(kWidth, kHeight),
+                  make_image(Format::rgba16f, kWidth, kHeight));
 }
 
 }  // namespace

@@ -8,6 +8,11 @@
 #include "tools/files/byte_order.h"
 #include "tools/pictures/sums_file.h"
 
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  return softfocus::mutate_in_place(data, size, most, seed);
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softfocus;
   constexpr std::int64_t kMostPixels = 1 << 16;
@@ -26,11 +31,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_sums_file(file);
     demand(difference(file, file).empty());
     const int width = file.origin.picture.width, height = file.origin.picture.height;
-    if (std::int64_t{width} * height > kMostPixels) return 0;
+    if (std::int64_t{width} * height > kMostPixels) return counted(true, data, size);
     SampleSums sums = make_sample_sums(width, height);
     Image depth = make_image(Format::rgba16f, width, height);
     add_sums_file(file, sums, depth);
   } catch (const FileError&) {
+    return counted(false, data, size);
   }
-  return 0;
+  return counted(true, data, size);
 }

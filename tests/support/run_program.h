@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include <future>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -163,6 +165,15 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
+inline std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+inline std::vector<std::byte> bytes_of(std::string_view text) {
+  const auto bytes = std::as_bytes(std::span{text});
+  return {bytes.begin(), bytes.end()};
+}
+
 inline std::string read_file(const std::string& name) {
   std::ifstream file{name, std::ios::binary};
   return {std::istreambuf_iterator<char>{file}, {}};
@@ -171,6 +182,10 @@ inline std::string read_file(const std::string& name) {
 inline void write_file(const std::string& name, std::string_view text) {
   std::ofstream{name, std::ios::binary}.write(text.data(),
                                               static_cast<std::streamsize>(text.size()));
+}
+
+inline void write_file(const std::string& name, std::span<const std::byte> bytes) {
+  write_file(name, text_of(bytes));
 }
 
 inline bool contains(std::string_view text, std::string_view part) {

@@ -57,6 +57,9 @@ int parse_whole(std::string_view option, const std::string& text, int least, int
 /// WIDTHxHEIGHT, each 1 to kMaxImageSize.
 PictureSize parse_size(std::string_view option, const std::string& text);
 
+/// A to Z as a to z.
+std::string lower_case(std::string text);
+
 /// "1024x768".
 std::string size_text(PictureSize size);
 

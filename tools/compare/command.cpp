@@ -1,6 +1,7 @@
 // softfocus compare: how two pictures differ, counted, measured and shown.
 
 #include <memory>
+#include <utility>
 
 #include "dof/measure/flicker.h"
 #include "dof/measure/heat_map.h"
@@ -12,6 +13,7 @@
 #include "tools/compare/report.h"
 #include "tools/files/whole_file.h"
 #include "tools/pictures/image_file.h"
+#include "tools/pictures/png_text.h"
 
 namespace softfocus {
 namespace {
@@ -25,11 +27,12 @@ struct NamedPicture {
   std::string name;
   Picture picture;
   FoundNotes notes;
+  bool is_straight = false;  ///< its colours are not multiplied by alpha, an opacity
 };
 
 NamedPicture read_named(const std::string& name) {
   const Bytes bytes = read_picture_bytes(name);
-  return {name, decode_picture(bytes, name), find_notes(name, bytes)};
+  return {name, decode_picture(bytes, name), find_notes(name, bytes), is_png(bytes)};
 }
 
 void check_same_size(const NamedPicture& a, const NamedPicture& b) {
@@ -63,15 +66,20 @@ void check_depths(const NamedPicture& of) {
   }
 }
 
-Image regions_of(const NamedPicture& depths, const NotedLens& lens) {
+/// Labels, and up to which circle pixels are in focus.
+std::pair<Image, float> regions_of(const NamedPicture& depths, const NotedLens& lens) {
   if (!depths.picture.has_alpha) {
     throw UsageError("--regions: '" + depths.name +
                      "' has no depth in alpha; give --depth with a .npy that has");
   }
   check_depths(depths);
-  return label_regions(depths.picture.image,
-                       checked_pixel_coc(lens.lens, lens.fov_y_degrees, depths.picture.image.height,
-                                         lens.coc_scale));
+  const Image& image = depths.picture.image;
+  const PixelCoc coc =
+      checked_pixel_coc(lens.lens, lens.fov_y_degrees, image.height, lens.coc_scale);
+  Image labels = label_regions(image, coc);
+  const float focus_px = fitting_focus_px(image, coc, labels);
+  if (focus_px > kFocusRadiusPx) labels = label_regions(image, coc, focus_px);
+  return {std::move(labels), focus_px};
 }
 
 /// Labels the regions if they are wanted, and finds the lens that they are of.
@@ -91,13 +99,30 @@ std::optional<Image> regions_wanted(const NamedPicture& a, const NamedPicture& b
   for (const auto& file : findings.lens->files) inputs.push_back({file, "a file of --scene"});
   check_maps(options, inputs);
   const NamedPicture& own = b.picture.has_alpha || !a.picture.has_alpha ? b : a;
-  return regions_of(deep ? *deep : own, findings.lens->lens);
+  auto [labels, focus_px] = regions_of(deep ? *deep : own, findings.lens->lens);
+  findings.focus_px = focus_px;
+  return std::move(labels);
 }
 
 void write_map(const std::optional<std::string>& name, const Image& map) {
   WholeFile file{*name};
   file.write(encode(map, *format_by_extension(*name)));
   file.commit();
+}
+
+/// Of what nobody sees the colour does not count.
+void clear_unseen(Image& a, Image& b) {
+  for (int y = 0; y < a.height; ++y) {
+    const auto of_a = row<std::uint16_t>(a, y), of_b = row<std::uint16_t>(b, y);
+    for (std::size_t i = 0; i < of_a.size(); i += 4) {
+      if (of_a[i + 3] != 0 || of_b[i + 3] != 0) continue;
+      for (std::size_t c = i; c < i + 3; ++c) of_a[c] = of_b[c] = 0;
+    }
+  }
+}
+
+bool have_opacity(const NamedPicture& a, const NamedPicture& b) {
+  return a.is_straight && b.is_straight && a.picture.has_alpha && b.picture.has_alpha;
 }
 
 /// If only one has alpha, both are cleared: there is nothing to compare it with.
@@ -116,6 +141,18 @@ Difference counted(Picture& a, Picture& b) {
   return difference;
 }
 
+/// Where the difference is drawn, and how the new picture takes the place of what it should be.
+std::string way_on(const CompareOptions& options) {
+  const std::optional<std::string>& map =
+      options.flip_map_file ? options.flip_map_file : options.ulp_map_file;
+  std::string text = map ? "the difference is drawn in '" + *map + "'"
+                         : std::string{"--diff OUT.png draws the difference"};
+  if (options.first != "-" && options.second != "-") {
+    text += "; cp '" + options.first + "' '" + options.second + "' accepts the new picture";
+  }
+  return text;
+}
+
 int compare_pictures(const CompareOptions& options) {
   NamedPicture a = read_named(options.first);
   NamedPicture b = read_named(options.second);
@@ -126,6 +163,7 @@ int compare_pictures(const CompareOptions& options) {
   CompareFindings findings;
   const std::optional<Image> regions = regions_wanted(a, b, options, findings);
   Difference& difference = findings.difference;
+  if (have_opacity(a, b)) clear_unseen(a.picture.image, b.picture.image);
   difference = counted(a.picture, b.picture);
   if (difference.differing != 0) {
     const auto index = static_cast<std::size_t>(4 * difference.first_x + difference.first_channel);
@@ -148,12 +186,20 @@ int compare_pictures(const CompareOptions& options) {
   if (options.flip_map_file)
     write_map(options.flip_map_file, heat_picture(findings.measured->flip));
   if (options.ulp_map_file) write_map(options.ulp_map_file, difference_picture(image_a, image_b));
-  findings.limits =
-      check_limits(options.tolerance, difference,
-                   findings.measured ? std::optional{findings.measured->whole.flip} : std::nullopt);
+  std::optional<std::uint64_t> beyond;
+  if (const Tolerance& tolerance = options.tolerance; counts_pixels(tolerance)) {
+    beyond = pixels_beyond(image_a, image_b,
+                           {tolerance.max_difference.value_or(0.0), have_opacity(a, b),
+                            tolerance.search_px.value_or(0)});
+  }
+  findings.limits = check_limits(
+      options.tolerance, difference,
+      findings.measured ? std::optional{findings.measured->whole.flip} : std::nullopt, beyond);
+  const bool is_good =
+      findings.limits.empty() ? difference.differing == 0 : within_limits(findings);
+  if (!is_good) findings.go_on = way_on(options);
   (options.json ? print_compare_json : print_compare_text)(findings);
-  if (findings.limits.empty()) return difference.differing == 0 ? kEqual : kDifferent;
-  return within_limits(findings) ? kEqual : kDifferent;
+  return is_good ? kEqual : kDifferent;
 }
 
 /// Two frames of each sequence are in memory at a time.

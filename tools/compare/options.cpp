@@ -11,12 +11,18 @@
 
 namespace softfocus {
 
+bool counts_pixels(const Tolerance& tolerance) {
+  return tolerance.max_pixels || tolerance.max_difference || tolerance.search_px;
+}
+
 bool has_limits(const Tolerance& tolerance) {
-  return tolerance.max_half_ulps || tolerance.max_flip || tolerance.max_error;
+  return tolerance.max_half_ulps || tolerance.max_flip || tolerance.max_error ||
+         counts_pixels(tolerance);
 }
 
 std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Difference& difference,
-                                       std::optional<double> flip) {
+                                       std::optional<double> flip,
+                                       std::optional<std::uint64_t> pixels_beyond) {
   std::vector<LimitFinding> findings;
   if (tolerance.max_half_ulps) {
     findings.push_back({"--max-ulps", " half-ULPs", static_cast<double>(*tolerance.max_half_ulps),
@@ -25,6 +31,14 @@ std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Differe
   if (tolerance.max_flip) findings.push_back({"--max-flip", "", *tolerance.max_flip, flip.value()});
   if (tolerance.max_error) {
     findings.push_back({"--max-error", "", *tolerance.max_error, difference.max_error});
+  }
+  if (counts_pixels(tolerance)) {
+    const double most = tolerance.max_pixels.value_or(0.0);
+    const std::uint64_t all = difference.values / 4;
+    findings.push_back(
+        {"--max-pixels", " pixels",
+         tolerance.is_percent ? std::floor(most * static_cast<double>(all) / 100.0) : most,
+         static_cast<double>(pixels_beyond.value())});
   }
   return findings;
 }
@@ -48,9 +62,15 @@ constexpr Parameter
     kMaxUlps{"max-ulps", "Tolerance: status 0 up to so many half-ULPs between any two values",
         0, 65535, 0, "half-ULPs", "N", "", 1},
     kMaxFlip{"max-flip", "Tolerance: status 0 up to this mean FLIP", 0.0, 1.0, 0.0, "", "E"},
-    kMaxDifference{"max-error",
+    kMaxError{"max-error",
         "Tolerance: status 0 up to this difference of any red, green or blue, in linear light",
         0.0, 1e6, 0.0, "", "E"},
+    kMaxDifference{"max-difference",
+        "Of --max-pixels: of any red, green or blue, in linear light",
+        0.0, 1e6, 0.0, "", "D"},
+    kSearch{"search",
+        "Of --max-pixels: how near a pixel may lie in the other picture, for edges that moved",
+        0, 8, 0, "px", "PIXELS", "", 1},
     kPoint{"point",
         "The pictures are of one bright point on black: compare light and shape with the disc of "
         "this radius",
@@ -66,6 +86,16 @@ void add_map(CLI::App& parser, const std::string& name, const std::string& help,
     }
     file = text;
   });
+}
+
+/// N or N%.
+void read_max_pixels(const std::string& text, Tolerance& tolerance) {
+  constexpr const char* kWanted = "a number of pixels, or of percent as 0.1%";
+  tolerance.is_percent = text.ends_with('%');
+  tolerance.max_pixels =
+      tolerance.is_percent
+          ? parse_number("--max-pixels", text.substr(0, text.size() - 1), 0.0, 100.0, kWanted)
+          : parse_whole("--max-pixels", text, 0, 1 << 30, kWanted);
 }
 
 void add_frames(CLI::App& parser, const std::string& name, const std::string& help,
@@ -97,7 +127,7 @@ void check_sequences(const CompareOptions& options) {
       has_limits(options.tolerance)) {
     throw UsageError(
         "--flicker compares two sequences; leave out A, B, --diff, --diff-ulps, --regions, "
-        "--hdr, --point, --max-ulps, --max-flip and --max-error");
+        "--hdr, --point, --max-ulps, --max-flip, --max-error and --max-pixels");
   }
   if (options.frames.size() != options.truth.size()) {
     throw UsageError("--flicker has " + std::to_string(options.frames.size()) +
@@ -159,7 +189,12 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
   begin_group(parser, "Tolerance");
   add_parameter(parser, kMaxUlps, "", options.tolerance.max_half_ulps);
   add_parameter(parser, kMaxFlip, "", options.tolerance.max_flip);
-  add_parameter(parser, kMaxDifference, "", options.tolerance.max_error);
+  add_parameter(parser, kMaxError, "", options.tolerance.max_error);
+  add_value(parser, "--max-pixels", "N[%]",
+            "Tolerance: status 0 up to so many pixels that differ by more than --max-difference",
+            [&options](const std::string& text) { read_max_pixels(text, options.tolerance); });
+  add_parameter(parser, kMaxDifference, "0", options.tolerance.max_difference);
+  add_parameter(parser, kSearch, "0", options.tolerance.search_px);
   begin_group(parser, "Measures");
   add_parameter(parser, kPoint, "", options.point_radius_px);
   add_frames(parser, "--flicker", "Frames of a sequence, in order, instead of A and B",

@@ -20,8 +20,13 @@ struct Tolerance {
   std::optional<int> max_half_ulps;  ///< of any value, alpha too
   std::optional<double> max_flip;    ///< mean over the picture
   std::optional<double> max_error;   ///< of a colour's value (Difference::max_error)
+  std::optional<double> max_pixels;  ///< that differ (PixelLimit); 0 if what follows is given
+  bool is_percent = false;           ///< max_pixels is of all pixels
+  std::optional<double> max_difference;
+  std::optional<int> search_px;
 };
 
+bool counts_pixels(const Tolerance& tolerance);
 bool has_limits(const Tolerance& tolerance);
 
 /// A limit, what was found, and the names of both.
@@ -34,9 +39,10 @@ struct LimitFinding {
 
 inline bool is_kept(const LimitFinding& finding) { return finding.value <= finding.limit; }
 
-/// A finding for each limit. `flip` is needed with max_flip alone.
+/// A finding for each limit. `flip` is needed with max_flip alone, `pixels_beyond` if pixels count.
 std::vector<LimitFinding> check_limits(const Tolerance& tolerance, const Difference& difference,
-                                       std::optional<double> flip);
+                                       std::optional<double> flip,
+                                       std::optional<std::uint64_t> pixels_beyond);
 
 /// "--max-ulps 4: broken by 1, 5 half-ULPs".
 std::string limit_text(const LimitFinding& finding);

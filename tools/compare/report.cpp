@@ -136,6 +136,11 @@ void print_regions(const MeasuredPictures& measured) {
   for (const Region region : kAllRegions) {
     const Measures& m = measured.by_region[static_cast<std::size_t>(region)];
     std::vector<std::string> cells{std::to_string(m.pixels)};
+    if (m.pixels == 0) {
+      cells.emplace_back("   no pixel of the picture lies there");
+      print_row(std::string{region_name(region)}, cells);
+      continue;
+    }
     for (const double value : {m.mse, m.psnr_db, m.toned_mse, m.toned_psnr_db, m.ssim, m.flip}) {
       cells.push_back(number_or_dash(value));
     }
@@ -249,9 +254,15 @@ void print_compare_text(const CompareFindings& findings) {
     print_line("", source_text(*findings.lens));
   }
   for (const std::string& doubt : findings.doubts) print_line("note", doubt);
+  if (findings.focus_px > kFocusRadiusPx) {
+    print_line("focus", "nothing is within " + short_number(static_cast<double>(kFocusRadiusPx)) +
+                            " px of it beside silhouettes: here up to a radius of " +
+                            short_number(static_cast<double>(findings.focus_px)) + " px");
+  }
   if (findings.lens) print_regions(*findings.measured);
   if (findings.point) print_point(*findings.point);
   for (const LimitFinding& limit : findings.limits) print_line("limit", limit_text(limit));
+  if (!findings.go_on.empty()) print_line("to go on", findings.go_on);
 }
 
 void print_compare_json(const CompareFindings& findings) {
@@ -279,6 +290,7 @@ void print_compare_json(const CompareFindings& findings) {
   add_measures(json, findings.measured->whole);
   if (findings.lens) {
     json["lens"] = lens_json(*findings.lens);
+    json["focus_up_to_px"] = findings.focus_px;
     json["regions"] = regions_json(*findings.measured);
   }
   if (!findings.doubts.empty()) json["notes"] = texts_json(findings.doubts);

@@ -8,6 +8,7 @@
 #include "dof/measure/difference.h"
 #include "dof/measure/measures.h"
 #include "dof/measure/point_image.h"
+#include "dof/measure/regions.h"
 #include "tools/compare/options.h"
 #include "tools/pictures/picture_notes.h"
 
@@ -61,6 +62,8 @@ struct CompareFindings {
   std::vector<std::string> doubts;           ///< lens_doubts()
   std::vector<LimitFinding> limits;
   std::optional<PointFindings> point;
+  float focus_px = kFocusRadiusPx;  ///< the largest circle of the region in focus
+  std::string go_on;                ///< for those to whom the pictures are not equal enough
 };
 
 /// Whether all limits were kept.

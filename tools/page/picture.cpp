@@ -154,7 +154,7 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
   options.reading = read_reading(request);
   PictureSources& sources = picture->sources;
   sources = open_sources(options.colour, options.depth, options.reading);
-  options.photo.of_file = sources.lens;
+  options.photo = with_sources(options.photo, sources);
   const PictureFile& depth_file = sources.of_depth();
   PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
   source.opacity = take_opacity(sources, source.picture);

@@ -7,6 +7,7 @@
 #include <ImfInputPart.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfMultiView.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
@@ -34,6 +35,8 @@ constexpr const char* kNotes = "softfocus";
 constexpr std::size_t kMostChannels = 4096;
 /// Flat colour in DWAB and PIZ shrinks to about a ten-thousandth. Beyond this no file is one.
 constexpr std::uint64_t kMostOfCompression = 50000;
+/// Anamorphic lenses have 2; none needs more. Others count as 1.
+constexpr float kMostOfAspect = 16.0f;
 
 NumberType type_of(Imf::PixelType type) {
   switch (type) {
@@ -70,6 +73,47 @@ std::string full_name(const Imf::Header& header, int parts, const std::string& c
   return part.empty() || channel.starts_with(part + ".") ? channel : part + "." + channel;
 }
 
+/// The union of the parts' data windows.
+void add_data_window(PictureFile& file, const Imath::Box2i& data, const Imath::Box2i& display,
+                     int part) {
+  const std::int64_t left = std::int64_t{data.min.x} - display.min.x;
+  const std::int64_t top = std::int64_t{data.min.y} - display.min.y;
+  constexpr std::int64_t kFar = std::int64_t{1} << 29;
+  if (std::abs(left) > kFar || std::abs(top) > kFar) {
+    throw FileError("the EXR's data window lies far from its display window");
+  }
+  PictureBox box{static_cast<int>(left), static_cast<int>(top), static_cast<int>(width_of(data)),
+                 static_cast<int>(height_of(data))};
+  if (part > 0) {
+    const int right = std::max(box.x + box.width, file.data.x + file.data.width);
+    const int bottom = std::max(box.y + box.height, file.data.y + file.data.height);
+    box.x = std::min(box.x, file.data.x);
+    box.y = std::min(box.y, file.data.y);
+    box.width = right - box.x;
+    box.height = bottom - box.y;
+    check_picture_size("the union of the EXR's data windows", box.width, box.height,
+                       most_rows_of(file));
+  }
+  file.data = box;
+}
+
+/// Of a file of one part; those of several say their view each.
+std::vector<std::string> views_of(const Imf::Header& header) {
+  return Imf::hasMultiView(header) ? Imf::multiView(header) : std::vector<std::string>{};
+}
+
+/// The view that a channel is of, by the part's or, if there is a list of views, by its name.
+std::string view_of(PictureFile& file, const Imf::Header& header, const std::string& channel) {
+  if (!header.hasView()) {
+    // The library looks for the first of the list.
+    return file.views.empty() ? "" : Imf::viewFromChannelName(channel, file.views);
+  }
+  if (std::find(file.views.begin(), file.views.end(), header.view()) == file.views.end()) {
+    file.views.push_back(header.view());
+  }
+  return header.view();
+}
+
 void list_part(PictureFile& file, const Imf::Header& header, int part, int parts) {
   const std::string type = header.hasType() ? header.type() : std::string{};
   if (type == Imf::DEEPSCANLINE || type == Imf::DEEPTILE) {
@@ -82,13 +126,21 @@ void list_part(PictureFile& file, const Imf::Header& header, int part, int parts
   const int most_rows = most_rows_of(file);
   check_picture_size("the EXR", width_of(display), height_of(display), most_rows);
   check_picture_size("the EXR's data window", width_of(data), height_of(data), most_rows);
+  add_data_window(file, data, display, part);
   if (part == 0) {
     file.width = static_cast<int>(width_of(display));
     file.height = static_cast<int>(height_of(display));
-    file.remark = std::string{compression_name(header.compression())} +
-                  (header.hasTileDescription() ? ", tiles" : "") +
-                  (data != display ? ", data window " + window_text(data) : "") +
-                  (parts > 1 ? ", " + std::to_string(parts) + " parts" : "");
+    file.views = views_of(header);
+    const float aspect = header.pixelAspectRatio();
+    if (aspect >= 1.0f / kMostOfAspect && aspect <= kMostOfAspect) {
+      file.pixel_aspect = static_cast<double>(aspect);
+    }
+    file.remark =
+        std::string{compression_name(header.compression())} +
+        (header.hasTileDescription() ? ", tiles" : "") +
+        (data != display ? ", data window " + window_text(data) : "") +
+        (aspect != 1.0f ? ", pixel aspect " + short_number(static_cast<double>(aspect)) : "") +
+        (parts > 1 ? ", " + std::to_string(parts) + " parts" : "");
   } else if (width_of(display) != file.width || height_of(display) != file.height) {
     throw FileError("the EXR's parts have different sizes; one size would do");
   }
@@ -110,7 +162,8 @@ void list_part(PictureFile& file, const Imf::Header& header, int part, int parts
     file.planes.push_back({.name = full_name(header, parts, channel.name()),
                            .type = type_of(channel.channel().type),
                            .part = part,
-                           .channel = channel.name()});
+                           .channel = channel.name(),
+                           .view = view_of(file, header, channel.name())});
   }
 }
 
@@ -122,8 +175,9 @@ void list_exr(PictureFile& file) {
       list_part(file, exr.header(part), part, exr.parts());
     }
   });
-  const auto pixels =
-      static_cast<std::uint64_t>(file.width) * static_cast<std::uint64_t>(file.height);
+  const auto pixels = std::max(
+      static_cast<std::uint64_t>(file.width) * static_cast<std::uint64_t>(file.height),
+      static_cast<std::uint64_t>(file.data.width) * static_cast<std::uint64_t>(file.data.height));
   if (pixels * file.planes.size() / kMostOfCompression > source_of(file).size()) {
     throw FileError("the EXR is too small a file for the size that it claims");
   }
@@ -152,7 +206,9 @@ class ExrRows {
     if (wanted.empty()) return;
     Imf::InputPart input{exr_, part};
     const Imath::Box2i data = input.header().dataWindow();
-    const Imath::Box2i display = input.header().displayWindow();
+    Imath::Box2i display = input.header().displayWindow();  // moved to the planes' pixels
+    display.min += Imath::V2i{file_.left, file_.top};
+    display.max = display.min + Imath::V2i{file_.width - 1, file_.height - 1};
     const auto width = static_cast<std::size_t>(width_of(data));
     constexpr int kBand = 256;  // rows: those of the largest block
     const std::int64_t top = std::int64_t{display.min.y} + rows.first;
@@ -229,13 +285,6 @@ void take_lens_attribute(const Imf::Header& header, const LensAttribute& attribu
   } else {
     lens.faults.push_back(name + " is " + short_number(value) + ", which no lens has");
   }
-}
-
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
 }
 
 /// A camera that is no perspective's: an environment map is panoramic, a matrix onto the screen

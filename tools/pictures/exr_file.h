@@ -21,6 +21,12 @@ enum class ExrNumbers : std::uint8_t { half, single };
 
 struct PictureFile;
 
+/// A plane of another EXR that gets other values.
+struct ReplacedPlane {
+  std::size_t plane = 0;
+  std::vector<float> values{};  ///< a number a pixel
+};
+
 /// Data to write beside a picture, and its depth in alpha. Each may be empty; the planes have a
 /// number a pixel. PNG takes the alpha alone, EXR all, other formats nothing.
 struct PictureExtras {
@@ -29,8 +35,12 @@ struct PictureExtras {
   bool has_depth = true;                ///< whether there is a channel Z at all
   std::span<const float> radii_px{};    ///< channel coc, negative nearer than the focus
   std::optional<ThinLens> lens{};       ///< attributes focus, aperture, nominalFocalLength
-  const PictureFile* source = nullptr;  ///< an EXR: its attributes, and of its planes
+  const PictureFile* source = nullptr;  ///< an EXR: its attributes, windows, and of its planes
   std::span<const std::size_t> kept{};  ///< these, as they are, unless a name above is theirs
+  std::span<const ReplacedPlane> replaced{};  ///< or so
+  std::string view{};                         ///< of the picture, if the planes are of others
+  int light_power = 0;  ///< colours are multiplied by 2^light_power: of an EXR in floats then
+  std::span<const std::byte> icc{};  ///< a profile of the colours, for a PNG
 };
 
 /// An RGBA16F picture: R, G, B in halves or floats, and alpha, the depth in metres, as the float

@@ -6,12 +6,14 @@
 #include <ImfHeader.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfMultiView.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -70,8 +72,9 @@ void write_planes(const std::vector<ExrPlane>& planes, const PictureToWrite& pic
         planes[i].fill(y, rows, bands[i].data());
         const std::size_t size = bytes_of(planes[i].type);
         buffer.insert(planes[i].name,
-                      Imf::Slice::Make(planes[i].type, bands[i].data(), Imath::V2i{0, y}, width,
-                                       rows, size, size * static_cast<std::size_t>(width)));
+                      Imf::Slice::Make(planes[i].type, bands[i].data(),
+                                       header.dataWindow().min + Imath::V2i{0, y}, width, rows,
+                                       size, size * static_cast<std::size_t>(width)));
       }
       exr.setFrameBuffer(buffer);
       exr.writePixels(rows);
@@ -89,13 +92,13 @@ ExrPlane plane_of(std::string name, const std::span<const float>& band) {
 }
 
 ExrPlane plane_of(std::string name, const ConstImageView& band, std::size_t channel,
-                  Imf::PixelType type) {
-  return {std::move(name), type, [&band, channel, type](int, int rows, std::byte* to) {
+                  Imf::PixelType type, float light = 1.0f) {
+  return {std::move(name), type, [&band, channel, type, light](int, int rows, std::byte* to) {
             const std::size_t size = bytes_of(type);
             for (int y = 0; y < rows; ++y) {
               const auto from = row<std::uint16_t>(band, y);
               for (std::size_t i = channel; i < from.size(); i += 4, to += size) {
-                const float value = half_to_float(from[i]);
+                const float value = half_to_float(from[i]) * light;
                 std::memcpy(to, type == Imf::HALF ? static_cast<const void*>(&from[i]) : &value,
                             size);
               }
@@ -103,15 +106,53 @@ ExrPlane plane_of(std::string name, const ConstImageView& band, std::size_t chan
           }};
 }
 
+/// The header of a file with the windows of another.
+Imf::Header header_of(const PictureToWrite& picture, const PictureExtras& extras) {
+  if (extras.source == nullptr) return {picture.width, picture.height};
+  const PictureFile& source = *extras.source;
+  ExrInput stream{source_of(source)};
+  const Imf::MultiPartInputFile exr{stream, 1, false};
+  const Imath::Box2i& display = exr.header(0).displayWindow();
+  const Imath::V2i first = display.min + Imath::V2i{source.left, source.top};
+  return {display, {first, first + Imath::V2i{picture.width - 1, picture.height - 1}}};
+}
+
+/// Names as OpenEXR has them in one part: those of the default view without it, and others with it
+/// before the channel. Parts of the same view may have the same channels: the first has the name.
+std::vector<std::string> names_in_one_part(const PictureFile& file,
+                                           std::span<const std::size_t> kept,
+                                           const std::string& view) {
+  std::vector<std::string> names;
+  for (const std::size_t index : kept) {
+    const PlaneInfo& plane = file.planes[index];
+    const bool has_parts = plane.name != plane.channel;
+    std::string name = plane.name;
+    if (!view.empty() && has_parts && !plane.view.empty()) {
+      name = plane.channel;
+      if (plane.view != view) name.insert(name.rfind('.') + 1, plane.view + ".");
+      if (std::find(names.begin(), names.end(), name) != names.end()) name = plane.name;
+    }
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
 /// Channels of another EXR, in their own type. A band of all of them is read at once: they lie in
 /// the same compressed blocks.
 class SourcePlanes {
  public:
-  SourcePlanes(const PictureFile& file, std::span<const std::size_t> kept)
+  SourcePlanes(const PictureFile& file, const PictureExtras& extras)
       : file_(file), stream_(source_of(file)), exr_(stream_, 1, false) {
-    for (const std::size_t index : kept) {
-      const PlaneInfo& info = file.planes[index];
-      kept_.push_back({&info, exr_.header(info.part).channels()[info.channel.c_str()].type, {}});
+    const std::vector<std::string> names = names_in_one_part(file, extras.kept, extras.view);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const PlaneInfo& info = file.planes[extras.kept[i]];
+      const Imf::PixelType type = exr_.header(info.part).channels()[info.channel.c_str()].type;
+      kept_.push_back({&info, names[i], type, {}, nullptr});
+      for (const ReplacedPlane& replaced : extras.replaced) {
+        if (replaced.plane != extras.kept[i]) continue;
+        kept_.back().values = replaced.values.data();
+        if (brightest_of(replaced.values) > 65504.0f) kept_.back().type = Imf::FLOAT;
+      }
     }
   }
 
@@ -121,11 +162,11 @@ class SourcePlanes {
   std::vector<ExrPlane> planes() {
     std::vector<ExrPlane> planes;
     for (std::size_t i = 0; i < kept_.size(); ++i) {
-      planes.push_back(
-          {kept_[i].info->name, kept_[i].type, [this, i](int y, int rows, std::byte* to) {
-             if (y != loaded_y_) load_or_refuse(y, rows);
-             copy(kept_[i], y, rows, to);
-           }});
+      planes.push_back({kept_[i].name, kept_[i].type, [this, i](int y, int rows, std::byte* to) {
+                          if (kept_[i].values != nullptr) return put_values(kept_[i], y, rows, to);
+                          if (y != loaded_y_) load_or_refuse(y, rows);
+                          copy(kept_[i], y, rows, to);
+                        }});
     }
     return planes;
   }
@@ -133,9 +174,22 @@ class SourcePlanes {
  private:
   struct Kept {
     const PlaneInfo* info;
+    std::string name;
     Imf::PixelType type;
     std::vector<std::byte> band;  // as wide as the data window
+    const float* values;          // in place of the file's
   };
+
+  void put_values(const Kept& kept, int y, int rows, std::byte* to) const {
+    const auto width = static_cast<std::size_t>(file_.width);
+    const float* from = kept.values + static_cast<std::size_t>(y) * width;
+    for (std::size_t i = 0; i < width * static_cast<std::size_t>(rows); ++i) {
+      const std::uint16_t half = float_to_half(from[i], HalfRounding::nearest_even);
+      const std::size_t size = bytes_of(kept.type);
+      std::memcpy(to + size * i,
+                  kept.type == Imf::HALF ? static_cast<const void*>(&half) : from + i, size);
+    }
+  }
 
   /// The rows of the picture from `y` on that a part has.
   struct Window {
@@ -145,7 +199,8 @@ class SourcePlanes {
   };
   Window window_of(int part, int y, int rows) const {
     const Imath::Box2i data = exr_.header(part).dataWindow();
-    const Imath::V2i display = exr_.header(part).displayWindow().min;
+    const Imath::V2i display =  // of the planes' pixels
+        exr_.header(part).displayWindow().min + Imath::V2i{file_.left, file_.top};
     return {std::max(display.x, data.min.x),
             std::min(display.x + file_.width - 1, data.max.x),
             std::max(display.y + y, data.min.y),
@@ -173,7 +228,7 @@ class SourcePlanes {
       const int count = window.last - window.first + 1;
       Imf::FrameBuffer buffer;
       for (Kept& kept : kept_) {
-        if (kept.info->part != part) continue;
+        if (kept.info->part != part || kept.values != nullptr) continue;
         const std::size_t size = bytes_of(kept.type);
         kept.band.resize(size * window.data_width * static_cast<std::size_t>(count));
         buffer.insert(
@@ -250,6 +305,19 @@ void copy_attributes(const Imf::Header& from, Imf::Header& to, bool keeps_lens) 
   }
 }
 
+/// The picture's view comes first: it is the one whose channels have no name.
+void add_views(const PictureExtras& extras, Imf::Header& header) {
+  if (extras.source != nullptr && extras.source->views.size() == 1) {
+    header.setView(extras.source->views.front());
+  }
+  if (extras.view.empty()) return;
+  std::vector<std::string> views{extras.view};
+  for (const std::string& view : extras.source->views) {
+    if (view != extras.view) views.push_back(view);
+  }
+  Imf::addMultiView(header, views);
+}
+
 void add_lens(const ThinLens& lens, Imf::Header& header) {
   Imf::addFocus(header, static_cast<float>(lens.focus_m));
   Imf::addAperture(header, static_cast<float>(lens.f_number));
@@ -263,13 +331,15 @@ void add_lens(const ThinLens& lens, Imf::Header& header) {
 void write_exr(const PictureToWrite& picture, ExrNumbers numbers, const PictureExtras& extras,
                const WriteAt& write) {
   guarded_exr([&] {
-    Imf::Header header{picture.width, picture.height};
+    Imf::Header header = header_of(picture, extras);
     PictureBand band;
     std::vector<ExrPlane> planes;
-    const Imf::PixelType type = numbers == ExrNumbers::half ? Imf::HALF : Imf::FLOAT;
+    const bool is_half = numbers == ExrNumbers::half && extras.light_power == 0;
+    const Imf::PixelType type = is_half ? Imf::HALF : Imf::FLOAT;
+    const float light = std::ldexp(1.0f, extras.light_power);
     constexpr std::array kNames{"R", "G", "B"};
     for (std::size_t c = 0; c < 3; ++c) {
-      planes.push_back(plane_of(kNames[c], band.picture, c, type));
+      planes.push_back(plane_of(kNames[c], band.picture, c, type, light));
     }
     if (!extras.alpha.empty()) planes.push_back(plane_of("A", band.alpha));
     if (extras.has_depth) {
@@ -279,7 +349,7 @@ void write_exr(const PictureToWrite& picture, ExrNumbers numbers, const PictureE
     if (!extras.radii_px.empty()) planes.push_back(plane_of("coc", band.radii_px));
     std::optional<SourcePlanes> source;
     if (extras.source != nullptr) {
-      source.emplace(*extras.source, extras.kept);
+      source.emplace(*extras.source, extras);
       copy_attributes(source->header(), header, !extras.lens);
       const std::vector<ExrPlane> own = planes;
       for (ExrPlane& plane : source->planes()) {
@@ -288,6 +358,7 @@ void write_exr(const PictureToWrite& picture, ExrNumbers numbers, const PictureE
       }
     }
     if (extras.lens) add_lens(*extras.lens, header);
+    add_views(extras, header);
     write_planes(
         planes, picture, std::move(header), [&](Rows rows) { band = picture.make(rows); }, write);
   });

@@ -97,9 +97,10 @@ void list_hdr(PictureFile& file) {
   for (const char* name : {"R", "G", "B"}) {
     file.planes.push_back({.name = name, .type = NumberType::single});
   }
-  // A run covers 127 bytes at most and takes two.
-  const auto least = static_cast<std::uint64_t>(header.height) *
-                     (4 + 8 * ((static_cast<std::uint64_t>(header.width) + 126) / 127));
+  // A run covers 127 bytes at most and takes two; old ones, of a pixel, 8 bytes or more a row.
+  const auto least =
+      static_cast<std::uint64_t>(header.height) *
+      std::min<std::uint64_t>(8, 4 + 8 * ((static_cast<std::uint64_t>(header.width) + 126) / 127));
   const auto flat =
       static_cast<std::uint64_t>(header.height) * static_cast<std::uint64_t>(header.width) * 4;
   if (file.bytes.size() - header.length < std::min(least, flat)) {
@@ -114,16 +115,31 @@ std::uint8_t take_byte(std::span<const std::byte>& rest) {
   return byte;
 }
 
+/// Pixels one after the other. In files of before 1991, 1 1 1 and a count repeat the last pixel; of
+/// several behind each other each counts 256 times as much as the one before.
+void read_flat_row(std::span<const std::byte>& rest, std::vector<Rgbe>& row) {
+  int shift = 0;
+  for (std::size_t x = 0; x < row.size();) {
+    Rgbe pixel{};
+    for (std::uint8_t& byte : pixel) byte = take_byte(rest);
+    if (x == 0 || pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
+      row[x++] = pixel;
+      shift = 0;
+      continue;
+    }
+    const std::size_t count = std::size_t{pixel[3]} << shift;
+    shift += 8;
+    if (shift > 24 || count > row.size() - x) refuse_as_damaged("old runs");
+    std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(x), count, row[x - 1]);
+    x += count;
+  }
+}
+
 void read_row(std::span<const std::byte>& rest, std::vector<Rgbe>& row) {
   const std::size_t width = row.size();
   const bool in_runs = rest.size() >= 4 && rest[0] == std::byte{2} && rest[1] == std::byte{2} &&
                        std::to_integer<int>(rest[2]) < 128 && width >= 8 && width < 32768;
-  if (!in_runs) {
-    for (Rgbe& pixel : row) {
-      for (std::uint8_t& byte : pixel) byte = take_byte(rest);
-    }
-    return;
-  }
+  if (!in_runs) return read_flat_row(rest, row);
   if (static_cast<std::size_t>(std::to_integer<int>(rest[2]) << 8 |
                                std::to_integer<int>(rest[3])) != width) {
     refuse_as_damaged("rows: one has another width");
@@ -165,9 +181,9 @@ void read_hdr(const PictureFile& file, std::span<const std::size_t> planes,
 }
 
 /// Mantissas rounded to nearest. Values below 0 and NaN become 0.
-Rgbe rgbe_of(glm::vec4 colour) {
-  const auto light = [](float value) {
-    return value > 0.0f ? static_cast<double>(std::min(value, 65504.0f)) : 0.0;
+Rgbe rgbe_of(glm::vec4 colour, float times) {
+  const auto light = [times](float value) {
+    return value > 0.0f ? static_cast<double>(std::min(value, 65504.0f) * times) : 0.0;
   };
   const std::array values{light(colour.x), light(colour.y), light(colour.z)};
   const double most = std::max({values[0], values[1], values[2]});
@@ -216,12 +232,13 @@ Bytes hdr_start(int width, int height) {
   return bytes;
 }
 
-void append_hdr_rows(Bytes& bytes, const ConstImageView& image) {
+void append_hdr_rows(Bytes& bytes, const ConstImageView& image, float light) {
   const bool in_runs = image.width >= 8;  // fewer have no such form
   std::vector<Rgbe> pixels(static_cast<std::size_t>(image.width));
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
-      pixels[static_cast<std::size_t>(x)] = rgbe_of(load_texel<Format::rgba16f>(image, x, y));
+      pixels[static_cast<std::size_t>(x)] =
+          rgbe_of(load_texel<Format::rgba16f>(image, x, y), light);
     }
     if (!in_runs) {
       for (const Rgbe& pixel : pixels) {
@@ -236,9 +253,9 @@ void append_hdr_rows(Bytes& bytes, const ConstImageView& image) {
   }
 }
 
-Bytes encode_hdr(const Image& image) {
+Bytes encode_hdr(const Image& image, float light) {
   Bytes bytes = hdr_start(image.width, image.height);
-  append_hdr_rows(bytes, image);
+  append_hdr_rows(bytes, image, light);
   return bytes;
 }
 

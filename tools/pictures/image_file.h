@@ -40,7 +40,15 @@ std::optional<FileFormat> format_by_extension(const std::filesystem::path& file)
 struct Picture {
   Image image;  ///< RGBA16F
   bool has_alpha = false;
+  int light_power = 0;     ///< colours are to be multiplied by 2^light_power
+  double brightest = 0.0;  ///< finite colour of the file, if it has floats
+  std::size_t cut = 0;     ///< values that even so are cut to the largest half
 };
+
+/// Colours beyond 65504, the largest half, are divided by a power of two before they become halves
+/// and multiplied again when they are written. That keeps all bits of those from 2^(power - 14) on;
+/// darker ones are known to 2^(power - 25), which with the largest power is 3e-5.
+inline constexpr int kMostLightPower = 10;
 
 /// An RGBA16F image as the bytes of a file, the same on every machine.
 Bytes encode(const Image& image, FileFormat format);
@@ -51,8 +59,9 @@ Bytes encode_png_16(const Image& image, std::span<const float> alpha = {});
 Bytes encode_rgb24(const Image& image);
 /// Each number's low byte first.
 Bytes encode_rgb48le(const Image& image);
-Bytes encode_hdr(const Image& image);
-Bytes encode_pfm(const Image& image);
+/// `light`: colours are multiplied by it.
+Bytes encode_hdr(const Image& image, float light = 1.0f);
+Bytes encode_pfm(const Image& image, float light = 1.0f);
 /// Takes every format, value by value as it is: (height, width, channels) of bytes, halves or
 /// binary32. decode_npy() reads halves and binary32 of 3 or 4 channels.
 Bytes encode_npy(const Image& image);

@@ -41,6 +41,12 @@ class HeaderReader {
       const std::string key = quoted();
       expect(':');
       if (key == "descr") {
+        if (take('[')) {
+          throw FileError(
+              "the NumPy array is structured, with names for its values; save one of plain "
+              "numbers, "
+              "as numpy.stack([a[n] for n in a.dtype.names], -1) makes");
+        }
         header.type = quoted();
         has_type = true;
       } else if (key == "fortran_order") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <system_error>
@@ -103,11 +104,12 @@ std::vector<std::uint16_t> half_table(NumberType type, bool is_srgb) {
   return table;
 }
 
-std::uint16_t light_half(NumberType type, float value) {
-  if (value != value) return 0;
-  if (type == NumberType::unsigned32) value = static_cast<float>(value / full_scale(type));
-  constexpr float kMost = 65504.0f;
-  return float_to_half(std::clamp(value, -kMost, kMost), HalfRounding::nearest_even);
+/// The largest half.
+constexpr float kMostLight = 65504.0f;
+
+float light_of(NumberType type, float value) {
+  if (value != value) return 0.0f;
+  return type == NumberType::unsigned32 ? static_cast<float>(value / full_scale(type)) : value;
 }
 
 }  // namespace
@@ -147,11 +149,44 @@ bool begins_as_picture(std::span<const std::byte> bytes) {
                      [&](const PictureFileReader* reader) { return reader->is(bytes); });
 }
 
+namespace {
+
+/// Reads what stands before the values.
+void list(PictureFile& file) {
+  file.reader->list(file);
+  file.shown = {0, 0, file.width, file.height};
+  if (file.data.width == 0) file.data = file.shown;
+}
+
+}  // namespace
+
+void take_data_window(PictureFile& file) {
+  file.left = file.data.x;
+  file.top = file.data.y;
+  file.width = file.data.width;
+  file.height = file.data.height;
+}
+
+PlaneValues moved(const PlaneValues& values, const PictureBox& from, const PictureBox& to,
+                  float outside) {
+  PlaneValues result(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height),
+                     outside);
+  const int left = std::max(from.x, to.x);
+  const int right = std::min(from.x + from.width, to.x + to.width);
+  for (int y = std::max(from.y, to.y);
+       left < right && y < std::min(from.y + from.height, to.y + to.height); ++y) {
+    const auto first = values.begin() + std::ptrdiff_t{y - from.y} * from.width + (left - from.x);
+    std::copy(first, first + (right - left),
+              result.begin() + std::ptrdiff_t{y - to.y} * to.width + (left - to.x));
+  }
+  return result;
+}
+
 PictureFile open_picture_file(Bytes bytes, const std::filesystem::path& path) {
   PictureFile file{.path = path, .bytes = std::move(bytes)};
   try {
     file.reader = &reader_of(file.bytes);
-    file.reader->list(file);
+    list(file);
   } catch (const FileError& error) {
     refuse(file, error);
   }
@@ -175,7 +210,7 @@ bool list_on_disk(PictureFile& file) {
             file.bytes);
   file.reader = &reader_of(file.bytes);
   if (file.reader->rows == nullptr) return false;
-  file.reader->list(file);
+  list(file);
   return file.has_rows;
 }
 
@@ -277,11 +312,14 @@ std::vector<ColourLayer> colour_layers(const PictureFile& file) {
   return layers;
 }
 
-ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
+ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+                           float light) {
   const auto add = [&](std::size_t plane, std::size_t first, std::size_t last) {
     planes_.push_back(plane);
-    const NumberType type = file.planes[plane].type;
-    channels_.push_back({first, last, type, half_table(type, file.is_srgb && first < 3)});
+    const bool is_light = file.to_srgb && first < 3;
+    const NumberType type = is_light ? NumberType::single : file.planes[plane].type;
+    channels_.push_back(
+        {first, last, type, half_table(type, file.is_srgb && first < 3), first < 3 ? light : 1.0f});
   };
   const bool is_grey = layer.green == layer.red;
   add(layer.red, 0, is_grey ? 2 : 0);
@@ -290,30 +328,89 @@ ColourHalves::ColourHalves(const PictureFile& file, const ColourLayer& layer, bo
   if (with_alpha && layer.alpha) add(*layer.alpha, 3, 3);
 }
 
-void ColourHalves::put(std::size_t i, const PlaneValues& values, Image& picture) const {
+void ColourHalves::put(std::size_t i, const PlaneValues& values, Image& picture) {
   const Channel& channel = channels_[i];
   std::size_t next = 0;
   for (int y = 0; y < picture.height; ++y) {
     const auto to = row<std::uint16_t>(picture, y);
     for (std::size_t x = 0; x < to.size(); x += 4) {
-      const float value = values[next++];
-      const std::uint16_t half = channel.table.empty()
-                                     ? light_half(channel.type, value)
-                                     : channel.table[static_cast<std::size_t>(value)];
+      std::uint16_t half = 0;
+      if (channel.table.empty()) {
+        const float value = light_of(channel.type, values[next++]) * channel.light;
+        const float kept = std::clamp(value, -kMostLight, kMostLight);
+        half = float_to_half(kept, HalfRounding::nearest_even);
+        cut_ += kept != value && channel.first < 3;
+      } else {
+        half = channel.table[static_cast<std::size_t>(values[next++])];
+      }
       for (std::size_t c = channel.first; c <= channel.last; ++c) to[x + c] = half;
     }
   }
 }
 
-Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha) {
-  const ColourHalves halves{file, layer, with_alpha};
+float brightest_of(std::span<const float> values) {
+  float brightest = 0.0f;
+  for (const float value : values) {
+    const float size = std::fabs(value);
+    if (size > brightest && size <= std::numeric_limits<float>::max()) brightest = size;
+  }
+  return brightest;
+}
+
+namespace {
+
+/// Red, green and blue, the first of `values`, which are read together.
+void convert(const PictureFile& file, const ColourLayer& layer, std::vector<PlaneValues>& values) {
+  if (layer.green == layer.red || values.size() < 3) return;
+  try {
+    profile_to_light(file, full_scale(file.planes[layer.red].type),
+                     {&values[0], &values[1], &values[2]});
+  } catch (const FileError& error) {
+    refuse(file, error);
+  }
+}
+
+}  // namespace
+
+bool may_be_bright(const PictureFile& file, const ColourLayer& layer) {
+  const NumberType type = file.planes[layer.red].type;
+  return type == NumberType::single || type == NumberType::double_precision;
+}
+
+Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+                    int most_power) {
+  const std::vector<std::size_t> all = ColourHalves{file, layer, with_alpha}.planes();
+  const std::span planes{all};
+  const std::size_t colours = layer.green == layer.red ? 1 : 3;
   Picture picture{make_image(Format::rgba16f, file.width, file.height), with_alpha && layer.alpha};
-  const std::span planes{halves.planes()};
   const std::size_t at_once = file.reader->reads_apart ? 1 : planes.size();
+  std::vector<PlaneValues> values;
+  const auto read = [&](std::size_t first) {
+    if (first > 0 || at_once < planes.size() || values.empty()) {
+      values = read_planes(file, planes.subspan(first, at_once), 0.0f);
+    }
+  };
+  if (may_be_bright(file, layer)) {
+    float brightest = 0.0f;
+    for (std::size_t i = 0; i < planes.size(); i += at_once) {
+      read(i);
+      for (std::size_t p = i; p < std::min(i + at_once, colours); ++p) {
+        brightest = std::max(brightest, brightest_of(values[p - i]));
+      }
+    }
+    while (picture.light_power < most_power &&
+           brightest > std::ldexp(kMostLight, picture.light_power)) {
+      ++picture.light_power;
+    }
+    picture.brightest = static_cast<double>(brightest);
+  }
+  ColourHalves halves{file, layer, with_alpha, std::ldexp(1.0f, -picture.light_power)};
   for (std::size_t i = 0; i < planes.size(); i += at_once) {
-    const std::vector<PlaneValues> values = read_planes(file, planes.subspan(i, at_once), 0.0f);
+    read(i);
+    if (file.to_srgb) convert(file, layer, values);
     for (std::size_t p = i; p < i + at_once; ++p) halves.put(p, values[p - i], picture.image);
   }
+  picture.cut = halves.cut();
   return picture;
 }
 

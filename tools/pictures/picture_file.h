@@ -10,6 +10,7 @@
 //               (height, width, 1 to 4): Y, YA, RGB, RGBA
 //   EXR         its channels, "layer.R"; of a file with several parts "part.layer.R"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -46,6 +47,13 @@ struct PlaneInfo {
   NumberType type = NumberType::single;
   int part = 0;           ///< of an EXR
   std::string channel{};  ///< its name in that part
+  std::string view{};     ///< "left", "right"; empty if the EXR has none, or it is of no view
+};
+
+/// Pixels of a picture, from the upper left corner of what is shown.
+struct PictureBox {
+  int x = 0, y = 0, width = 0, height = 0;
+  friend bool operator==(const PictureBox&, const PictureBox&) = default;
 };
 
 struct PictureFileReader;
@@ -58,10 +66,20 @@ struct PictureFile {
   const PictureFileReader* reader = nullptr;
   int width = 0;   ///< 1 to kMaxImageSize
   int height = 0;  ///< likewise, or to kMostRows of a file that stays on the disk
+  /// The place of the first pixel: of an EXR that is read to its data window, beside what is shown.
+  int left = 0, top = 0;
+  PictureBox shown{};                ///< the size that is shown; of an EXR its display window
+  PictureBox data{};                 ///< the pixels that are there: an EXR's data windows
+  double pixel_aspect = 1.0;         ///< a pixel's width over its height
+  std::vector<std::string> views{};  ///< of an EXR that has two or more, the first the default
   std::vector<PlaneInfo> planes{};
   /// Whether 0..1 stands for the sRGB curve and not for light. Alpha and depth have none.
   bool is_srgb = false;
-  bool has_rows = true;  ///< whether a row's values lie together, as `rows` of its reader needs
+  bool top_first = false;  ///< of a PFM: rows run from the top down
+  Bytes icc{};             ///< an ICC profile of red, green and blue that stands in the file
+  std::string icc_name{};  ///< its name, or that of another profile
+  bool to_srgb = false;    ///< colours are converted from the profile to sRGB's light
+  bool has_rows = true;    ///< whether a row's values lie together, as `rows` of its reader needs
   int exif_orientation =
       1;                 ///< 1 if the pixels stand upright, else 2 to 8; planes are turned by it
   std::string remark{};  ///< what else there is to tell: "3 parts, data window 10,10..99,99"
@@ -103,6 +121,18 @@ extern const PictureFileReader kPngReader, kJpegReader, kHdrReader, kPfmReader, 
 
 /// Whether there is a reader for what begins so.
 bool begins_as_picture(std::span<const std::byte> bytes);
+
+/// Planes hold what is there in place of what is shown.
+void take_data_window(PictureFile& file);
+
+/// Values of planes that lie on pixels `from` for pixels `to`; where there are none, `outside`.
+PlaneValues moved(const PlaneValues& values, const PictureBox& from, const PictureBox& to,
+                  float outside);
+
+/// The pixels of a file's planes.
+inline PictureBox box_of(const PictureFile& file) {
+  return {file.left, file.top, file.width, file.height};
+}
 
 /// Reads the header. Throws FileError that names the file: for what is no picture, is damaged, has
 /// a side beyond kMaxImageSize, or claims more values than so few bytes can hold. For other kinds
@@ -150,26 +180,47 @@ std::vector<ColourLayer> colour_layers(const PictureFile& file);
 /// it, NaN becomes 0.
 class ColourHalves {
  public:
-  /// `with_alpha`: and its alpha, if it has one.
-  ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha);
+  /// `with_alpha`: and its alpha, if it has one. `light`: colours are multiplied by it.
+  ColourHalves(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+               float light = 1.0f);
 
   /// The planes to read: one if it is grey.
   const std::vector<std::size_t>& planes() const { return planes_; }
   /// Puts the values of planes()[i] into as many pixels of RGBA16F.
-  void put(std::size_t i, const PlaneValues& values, Image& picture) const;
+  void put(std::size_t i, const PlaneValues& values, Image& picture);
+
+  /// How many colours were cut to the largest half so far.
+  std::size_t cut() const { return cut_; }
 
  private:
   struct Channel {
     std::size_t first, last;  // of the picture
     NumberType type;
     std::vector<std::uint16_t> table;  // of whole numbers up to 16 bits; else empty
+    float light;
   };
   std::vector<std::size_t> planes_{};
   std::vector<Channel> channels_{};
+  std::size_t cut_ = 0;
 };
 
-/// A colour and, if `with_alpha`, its alpha as RGBA16F in linear light; else alpha is 0.
-Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha);
+/// Why this build converts no profiles, as a sentence; empty if it does.
+std::string_view missing_lcms();
+
+/// Turns numbers of 0 to `full` along the file's profile into light of sRGB's primaries, which may
+/// be below 0. Throws FileError, the file unnamed, for a profile that cannot be used.
+void profile_to_light(const PictureFile& file, double full, const std::array<PlaneValues*, 3>& rgb);
+
+/// The largest finite number, without its sign.
+float brightest_of(std::span<const float> values);
+
+/// Whether finite colours may be beyond the largest half.
+bool may_be_bright(const PictureFile& file, const ColourLayer& layer);
+
+/// A colour and, if `with_alpha`, its alpha as RGBA16F in linear light; else alpha is 0. Bright
+/// colours are divided by 2^most_power at the most.
+Picture read_colour(const PictureFile& file, const ColourLayer& layer, bool with_alpha,
+                    int most_power = 0);
 
 /// Values, one a pixel, as the nearest halves of an RGBA16F picture's alpha.
 void put_in_alpha(const PlaneValues& values, Image& picture);

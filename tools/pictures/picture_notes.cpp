@@ -1,9 +1,11 @@
 #include "tools/pictures/picture_notes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
+#include "raster/numbers/half.h"
 #include "raster/numbers/hash.h"
 #include "tools/files/hash_text.h"
 #include "tools/pictures/png_text.h"
@@ -72,6 +74,19 @@ bool is_usable(const PictureNotes& notes) {
                                   notes.lens->coc_scale >= 0.0 && notes.lens->coc_scale <= 1e6));
 }
 
+/// Of halves, which are cut to the largest.
+Image brightened(Image image, float light) {
+  for (int y = 0; y < image.height; ++y) {
+    const auto halves = row<std::uint16_t>(image, y);
+    for (std::size_t i = 0; i < halves.size(); ++i) {
+      if (i % 4 == 3) continue;
+      const float value = std::clamp(half_to_float(halves[i]) * light, -65504.0f, 65504.0f);
+      halves[i] = float_to_half(value, HalfRounding::nearest_even);
+    }
+  }
+  return image;
+}
+
 }  // namespace
 
 void add_lens(Json& json, const ThinLens& lens, double coc_scale) {
@@ -123,9 +138,18 @@ Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNote
     return encode_exr(image, format == FileFormat::exr ? ExrNumbers::half : ExrNumbers::single,
                       json_text(notes_json(notes)), all);
   }
+  if (extras.light_power > 0) {
+    const float light = std::ldexp(1.0f, extras.light_power);
+    if (format == FileFormat::pfm) return encode_pfm(image, light);
+    if (format == FileFormat::hdr) return encode_hdr(image, light);
+    PictureExtras lit = extras;
+    lit.light_power = 0;
+    return encode_with_notes(brightened(image, light), format, notes, lit);
+  }
   if (format != FileFormat::png && format != FileFormat::png_16) return encode(image, format);
-  const Bytes bytes = format == FileFormat::png ? encode_png(image, extras.alpha)
-                                                : encode_png_16(image, extras.alpha);
+  Bytes bytes = format == FileFormat::png ? encode_png(image, extras.alpha)
+                                          : encode_png_16(image, extras.alpha);
+  if (!extras.icc.empty()) bytes = with_png_profile(bytes, extras.icc);
   return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION},
                                 {kKeyword, json_text(notes_json(notes))}});
 }

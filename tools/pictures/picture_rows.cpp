@@ -51,8 +51,9 @@ void write_picture_rows(const PictureToWrite& picture, FileFormat format,
                     picture.height),
           write, append_npy_rows);
     case FileFormat::hdr:
-      return write_in_order(picture, hdr_start(picture.width, picture.height), write,
-                            append_hdr_rows);
+      return write_in_order(
+          picture, hdr_start(picture.width, picture.height), write,
+          [](Bytes& bytes, const ConstImageView& image) { append_hdr_rows(bytes, image); });
     default:
       return write_exr(picture, format == FileFormat::exr ? ExrNumbers::half : ExrNumbers::single,
                        extras, write);

@@ -44,9 +44,10 @@ void write_picture_rows(const PictureToWrite& picture, FileFormat format,
 Bytes npy_start(const ConstImageView& image, int height);
 void append_npy_rows(Bytes& bytes, const ConstImageView& image);
 Bytes pfm_start(int width, int height);
-void append_pfm_rows(Bytes& bytes, const ConstImageView& image);  ///< the lowest first
+/// The lowest first; colours times `light`.
+void append_pfm_rows(Bytes& bytes, const ConstImageView& image, float light = 1.0f);
 Bytes hdr_start(int width, int height);
-void append_hdr_rows(Bytes& bytes, const ConstImageView& image);
+void append_hdr_rows(Bytes& bytes, const ConstImageView& image, float light = 1.0f);
 
 /// Throws FileError.
 void write_exr(const PictureToWrite& picture, ExrNumbers numbers, const PictureExtras& extras,

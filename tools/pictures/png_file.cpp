@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <string>
@@ -131,6 +132,24 @@ Bytes png_of_wide_rows(std::span<const std::uint16_t> values, int width, int hei
 }
 
 }  // namespace
+
+Bytes with_png_profile(std::span<const std::byte> png, std::span<const std::byte> icc) {
+  constexpr int kQuality = 8;  // stb's own for PNG
+  constexpr std::ptrdiff_t kHeaderEnd = 8 + 25;
+  std::vector<std::uint8_t> plain(icc.size());
+  std::memcpy(plain.data(), icc.data(), icc.size());
+  int size = 0;
+  const std::unique_ptr<unsigned char, decltype(&std::free)> packed{
+      stbi_zlib_compress(plain.data(), static_cast<int>(plain.size()), &size, kQuality), std::free};
+  if (!packed) throw std::bad_alloc{};
+  std::string data = "ICC profile";
+  data.append(2, '\0');  // ends the name; the one compression
+  data.append(reinterpret_cast<const char*>(packed.get()), static_cast<std::size_t>(size));
+  Bytes bytes{png.begin(), png.begin() + kHeaderEnd};
+  append_png_chunk(bytes, "iCCP", data);
+  bytes.insert(bytes.end(), png.begin() + kHeaderEnd, png.end());
+  return bytes;
+}
 
 Bytes encode_png_16(const Image& image, std::span<const float> alpha) {
   const std::vector<std::uint16_t> encoded = srgb16_of_halves();

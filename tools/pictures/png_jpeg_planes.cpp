@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "scenes/files/picture_check.h"
 #include "tools/cli/errors.h"
@@ -137,6 +138,21 @@ int exif_orientation(std::span<const std::byte> tiff) {
   return 1;
 }
 
+/// The data of a JPEG's segments of that marker before the first scan.
+std::vector<std::span<const std::byte>> jpeg_segments(std::span<const std::byte> jpeg,
+                                                      std::uint32_t wanted) {
+  constexpr std::uint32_t kStartOfScan = 0xFFDA;
+  std::vector<std::span<const std::byte>> segments;
+  for (std::size_t at = 2; at + 4 <= jpeg.size();) {
+    const auto marker = big_endian<std::uint16_t>(jpeg.subspan(at));
+    const std::size_t length = big_endian<std::uint16_t>(jpeg.subspan(at + 2));
+    if (marker == kStartOfScan || length < 2 || at + 2 + length > jpeg.size()) break;
+    if (marker == wanted) segments.push_back(jpeg.subspan(at + 4, length - 2));
+    at += 2 + length;
+  }
+  return segments;
+}
+
 void turn_by_exif(PictureFile& file, int orientation) {
   if (orientation == 1) return;
   file.exif_orientation = orientation;
@@ -144,17 +160,73 @@ void turn_by_exif(PictureFile& file, int orientation) {
   file.remark = "turned by its EXIF orientation, " + std::to_string(orientation);
 }
 
-/// A PNG's orientation: Exif data is a chunk. Needs sound chunks.
-int png_orientation(std::span<const std::byte> png) {
-  constexpr std::size_t kFrame = 12;  // of a chunk: length, type, CRC
-  for (auto rest = png.subspan(kPngSignature.size()); rest.size() >= kFrame;) {
-    const std::size_t length = big_endian<std::uint32_t>(rest);
-    if (std::memcmp(rest.data() + 4, "eXIf", 4) == 0) {
-      return exif_orientation(rest.subspan(8, length));
+/// The name in an ICC profile (ICC.1:2022, 7): its tag desc is a count and ASCII or, from version 4
+/// on, a list of texts in UTF-16. "without a name" if it cannot be read.
+std::string profile_name(std::span<const std::byte> icc) {
+  constexpr std::size_t kTagTable = 128, kTag = 12;
+  const auto has = [&](std::size_t at) { return at < icc.size() && icc.size() - at >= 4; };
+  const auto number = [&](std::size_t at) -> std::size_t {
+    return has(at) ? big_endian<std::uint32_t>(icc.subspan(at)) : 0;
+  };
+  const auto word = [&](std::size_t at) {
+    return has(at) ? std::string_view{reinterpret_cast<const char*>(icc.data()) + at, 4}
+                   : std::string_view{};
+  };
+  std::string name;
+  for (std::size_t i = 0; i < std::min<std::size_t>(number(kTagTable), 100); ++i) {
+    const std::size_t entry = kTagTable + 4 + i * kTag;
+    if (word(entry) != "desc") continue;
+    const std::size_t at = number(entry + 4);
+    const bool is_wide = word(at) == "mluc" && number(at + 8) > 0;
+    const std::size_t first = is_wide ? at + number(at + 24) : at + 12;
+    const std::size_t count = is_wide ? number(at + 20) : number(at + 8);
+    for (std::size_t c = is_wide ? 1 : 0; c < count && first + c < icc.size();
+         c += is_wide ? 2 : 1) {
+      const char letter = static_cast<char>(icc[first + c]);
+      if (letter == '\0') break;
+      if (letter >= ' ' && letter <= '~') name += letter;
     }
-    rest = rest.subspan(kFrame + length);
+    break;
   }
-  return 1;
+  return name.empty() ? "without a name" : name.substr(0, 80);
+}
+
+/// Of profiles of grey and of inks the name alone: what is written has red, green and blue.
+void take_profile(PictureFile& file, Bytes icc) {
+  constexpr std::size_t kHeader = 128, kSpaceAt = 16;
+  if (icc.size() < kHeader) return;
+  file.icc_name = profile_name(icc);
+  if (std::memcmp(icc.data() + kSpaceAt, "RGB ", 4) == 0) file.icc = std::move(icc);
+}
+
+/// A PNG's profile: a name, 0, 0 for deflate, and a stream. Larger ones than any that is known are
+/// left out.
+Bytes png_profile(std::span<const std::byte> png) {
+  constexpr std::size_t kMostOfProfile = std::size_t{1} << 22;
+  const auto chunk = find_png_chunk(png, "iCCP");
+  const auto end = std::find(chunk.begin(), chunk.end(), std::byte{0});
+  if (chunk.end() - end < 3) return {};
+  const auto packed = chunk.subspan(static_cast<std::size_t>(end - chunk.begin()) + 2);
+  Bytes icc(kMostOfProfile);
+  const int size = stbi_zlib_decode_buffer(
+      reinterpret_cast<char*>(icc.data()), static_cast<int>(icc.size()),
+      reinterpret_cast<const char*>(packed.data()), static_cast<int>(packed.size()));
+  icc.resize(static_cast<std::size_t>(std::max(size, 0)));
+  return icc;
+}
+
+/// A JPEG's profile: in segments APP2, each with its number and how many there are (ICC.1:2022,
+/// B.4).
+Bytes jpeg_profile(std::span<const std::byte> jpeg) {
+  constexpr std::string_view kProfileMark{"ICC_PROFILE\0", 12};
+  Bytes icc;
+  for (const std::span<const std::byte> data : jpeg_segments(jpeg, 0xFFE2)) {
+    if (data.size() > kProfileMark.size() + 2 &&
+        std::memcmp(data.data(), kProfileMark.data(), kProfileMark.size()) == 0) {
+      icc.insert(icc.end(), data.begin() + kProfileMark.size() + 2, data.end());
+    }
+  }
+  return icc;
 }
 
 void list_png(PictureFile& file) {
@@ -166,7 +238,9 @@ void list_png(PictureFile& file) {
   if (pixels_of(file) / 8 > kMostOfDeflate * file.bytes.size()) {
     refuse_as_damaged("the PNG", "it is too small a file for the size that it claims");
   }
-  turn_by_exif(file, png_orientation(file.bytes));
+  const auto exif = find_png_chunk(file.bytes, "eXIf");
+  turn_by_exif(file, exif.empty() ? 1 : exif_orientation(exif));
+  take_profile(file, png_profile(file.bytes));
 }
 
 void read_png(const PictureFile& file, std::span<const std::size_t> planes,
@@ -174,20 +248,14 @@ void read_png(const PictureFile& file, std::span<const std::size_t> planes,
   read_channels(file, "the PNG", planes, values);
 }
 
-/// A JPEG's orientation: Exif data is in a segment APP1 before the first scan.
+/// A JPEG's orientation: Exif data is in a segment APP1.
 int jpeg_orientation(std::span<const std::byte> jpeg) {
-  constexpr std::uint32_t kApp1 = 0xFFE1, kStartOfScan = 0xFFDA;
   constexpr std::string_view kExifMark{"Exif\0\0", 6};
-  for (std::size_t at = 2; at + 4 <= jpeg.size();) {
-    const auto marker = big_endian<std::uint16_t>(jpeg.subspan(at));
-    const std::size_t length = big_endian<std::uint16_t>(jpeg.subspan(at + 2));
-    if (marker == kStartOfScan || length < 2 || at + 2 + length > jpeg.size()) return 1;
-    const auto data = jpeg.subspan(at + 4, length - 2);
-    if (marker == kApp1 && data.size() > kExifMark.size() &&
+  for (const std::span<const std::byte> data : jpeg_segments(jpeg, 0xFFE1)) {
+    if (data.size() > kExifMark.size() &&
         std::memcmp(data.data(), kExifMark.data(), kExifMark.size()) == 0) {
       return exif_orientation(data.subspan(kExifMark.size()));
     }
-    at += 2 + length;
   }
   return 1;
 }
@@ -203,6 +271,7 @@ void list_jpeg(PictureFile& file) {
   if (is_cut_jpeg(text)) refuse_as_damaged("the JPEG", "its end is missing");
   list_channels(file, "the JPEG", NumberType::unsigned8);
   turn_by_exif(file, jpeg_orientation(file.bytes));
+  take_profile(file, jpeg_profile(file.bytes));
   if (pixels_of(file) > kMostPixelsOfJpegByte * file.bytes.size()) {
     refuse_as_damaged("the JPEG", "it is too small a file for the size that it claims");
   }

@@ -111,6 +111,15 @@ bool has_transparent_colour(std::span<const std::byte> png) {
   return false;
 }
 
+std::span<const std::byte> find_png_chunk(std::span<const std::byte> png, std::string_view type) {
+  for (auto rest = png.subspan(kPngSignature.size()); rest.size() >= kFrame;) {
+    const std::size_t length = big_endian<std::uint32_t>(rest);
+    if (text_of(rest.subspan(4, 4)) == type) return rest.subspan(8, length);
+    rest = rest.subspan(kFrame + length);
+  }
+  return {};
+}
+
 std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
                                       const std::vector<PngText>& texts) {
   std::vector<std::byte> result{png.begin(), png.begin() + kHeaderEnd};

@@ -26,6 +26,13 @@ void check_png_chunks(std::span<const std::byte> png);
 /// 11.3.2.1), so that stb gives it an alpha. Needs sound chunks (check_png_chunks()).
 bool has_transparent_colour(std::span<const std::byte> png);
 
+/// The first chunk of that type, or nothing. Needs sound chunks (check_png_chunks()).
+std::span<const std::byte> find_png_chunk(std::span<const std::byte> png, std::string_view type);
+
+/// A PNG with an ICC profile behind its header (iCCP, 11.3.2.3).
+std::vector<std::byte> with_png_profile(std::span<const std::byte> png,
+                                        std::span<const std::byte> icc);
+
 struct PngText {
   std::string_view keyword;  ///< 1 to 79 Latin letters, digits and single blanks
   std::string text;          ///< UTF-8

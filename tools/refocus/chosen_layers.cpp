@@ -9,13 +9,6 @@
 namespace softfocus {
 namespace {
 
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 /// The part of a name before its last dot.
@@ -47,7 +40,7 @@ constexpr int kLastRank = 5;
 
 /// How surely a plane is a depth by its name: 0 for certain, or nothing.
 std::optional<int> depth_rank(const PictureFile& file, std::size_t plane) {
-  const std::string name = lower_case(file.planes[plane].name);
+  const std::string name = lower_case(name_without_view(file.planes[plane]));
   const std::string channel = last_part(name), layer = last_part(before_last(name));
   if (name == "z" || name == "depth") return 0;
   if (any_of(layer, {"depth", "z", "zdepth"}) && any_of(channel, {"z", "v", "y", "r", "depth"})) {
@@ -64,8 +57,9 @@ std::optional<int> depth_rank(const PictureFile& file, std::size_t plane) {
   // X, Y, Z are a direction or a place.
   const bool is_of_three =
       std::any_of(file.planes.begin(), file.planes.end(), [&](const PlaneInfo& other) {
-        const std::string other_name = lower_case(other.name);
-        return before_last(other_name) == before_last(name) &&
+        const std::string other_name = lower_case(name_without_view(other));
+        return other.view == file.planes[plane].view &&
+               before_last(other_name) == before_last(name) &&
                any_of(last_part(other_name), {"x", "y"});
       });
   if (channel == "z" && !is_of_three) return kLastRank;
@@ -83,6 +77,37 @@ bool ends_in(const std::string& name, const std::string& wanted, bool is_whole) 
 }
 
 }  // namespace
+
+std::string name_without_view(const PlaneInfo& plane) {
+  std::string name = plane.name;
+  if (plane.view.empty()) return name;
+  // A part of its own between dots, else part of a word, "rgba_left.R".
+  for (const std::string& text : {plane.view + ".", plane.view}) {
+    for (auto at = name.find(text); at != name.npos; at = name.find(text, at + 1)) {
+      const bool is_whole = text.back() == '.' && (at == 0 || name[at - 1] == '.');
+      if (is_whole || text.back() != '.') return name.erase(at, text.size());
+    }
+  }
+  return name;
+}
+
+std::optional<std::size_t> plane_in_view(const PictureFile& file, std::size_t plane,
+                                         const std::string& view) {
+  const std::string name = name_without_view(file.planes[plane]);
+  for (std::size_t i = 0; i < file.planes.size(); ++i) {
+    if (file.planes[i].view == view && name_without_view(file.planes[i]) == name) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<ColourLayer> layer_in_view(const PictureFile& file, const ColourLayer& layer,
+                                         const std::string& view) {
+  const auto red = plane_in_view(file, layer.red, view);
+  for (ColourLayer& other : colour_layers(file)) {
+    if (red == other.red) return std::move(other);
+  }
+  return std::nullopt;
+}
 
 ColourLayer choose_colour(const PictureFile& file, const std::optional<std::string>& name,
                           const std::string& option) {
@@ -103,8 +128,7 @@ ColourLayer choose_colour(const PictureFile& file, const std::optional<std::stri
   }
   for (const std::string_view usual : {"", "combined", "rgba", "beauty"}) {
     for (const ColourLayer& layer : layers) {
-      const bool has_parts = layer.name.find('.') != std::string::npos;
-      const std::string last = has_parts ? last_part(layer.name) : layer.name;
+      const std::string last = last_part(before_last(name_without_view(file.planes[layer.red])));
       if (lower_case(last) == usual) return layer;
     }
   }

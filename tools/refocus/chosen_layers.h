@@ -17,6 +17,19 @@ namespace softfocus {
 ColourLayer choose_colour(const PictureFile& file, const std::optional<std::string>& name,
                           const std::string& option);
 
+// Views, as the eyes of a stereo picture.
+
+/// The plane's name without its view: "ViewLayer.Depth.Z" of "ViewLayer.Depth.right.Z".
+std::string name_without_view(const PlaneInfo& plane);
+
+/// The plane that has that name in another view.
+std::optional<std::size_t> plane_in_view(const PictureFile& file, std::size_t plane,
+                                         const std::string& view);
+
+/// The layer likewise.
+std::optional<ColourLayer> layer_in_view(const PictureFile& file, const ColourLayer& layer,
+                                         const std::string& view);
+
 /// Depth planes that the names of the channels tell, best first: Z, depth.Z, ViewLayer.Depth.V,
 /// VRayZDepth.R, FinalImageMovieRenderQueue_WorldDepth.R, a Z without X and Y, ...
 /// Not Position.Z or Normal.Z.

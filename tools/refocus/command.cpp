@@ -4,6 +4,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "tools/cli/commands.h"
@@ -120,36 +121,83 @@ void check_outputs(const RefocusOptions& options) {
     check_not_read("the sidecar of -o", *sidecar, inputs);
 }
 
+/// With the light that halves can hold, and what that does.
+PictureOnItsWay colour_of(const PictureSources& sources, const RefocusOptions& options,
+                          UsedRefocus& used) {
+  // fixed-8 knows white as 1.
+  const int most_power = options.arithmetic == Arithmetic::floats ? kMostLightPower : 0;
+  Picture read = read_colour(sources.colour_file, sources.colour, false, most_power);
+  used.brightest = read.brightest;
+  used.light_power = read.light_power;
+  used.cut = read.cut;
+  return {std::move(read.image), {}, read.light_power};
+}
+
+/// Filters another view of a picture as the first was, and adds the planes of its colour.
+void refocus_view(PictureSources& sources, OtherView& view, const RefocusOptions& options,
+                  const PhotoLens& photo, UsedRefocus& used, ThreadPool& pool,
+                  std::vector<ReplacedPlane>& planes) {
+  exchange(sources, view);
+  UsedRefocus of_view = used;
+  PictureOnItsWay source = colour_of(sources, options, of_view);
+  used.brightest = std::max(used.brightest, of_view.brightest);
+  used.light_power = std::max(used.light_power, of_view.light_power);
+  used.cut += of_view.cut;
+  source.opacity = take_opacity(sources, source.picture);
+  const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
+  add_planes(refocused(std::move(source), depth.map, options, of_view, pool), sources.colour,
+             planes);
+  exchange(sources, view);
+}
+
 /// In memory.
 Refocused refocus_whole(const RefocusOptions& options, const std::string& why, Progress& progress,
                         ThreadPool& pool) {
   progress.show("reading");
   PictureSources sources = open_sources(options.colour, options.depth, options.reading);
-  const bool keeps_little = options.method.name() == "two-pass";
+  const std::uint64_t kept = options.method.name() == "two-pass" ? 40 : kWholeBytesPerPixel;
+  const double aspect = sources.colour_file.pixel_aspect;
+  const double repeated = std::max(aspect, 1.0 / aspect);  // until pixels are square
   check_memory(options.colour, {sources.colour_file.width, sources.colour_file.height},
-               keeps_little ? 40 : kWholeBytesPerPixel);
-  PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
+               static_cast<std::uint64_t>(repeated * static_cast<double>(kept)));
+  UsedRefocus used{.why_whole = why};
+  PictureOnItsWay source = colour_of(sources, options, used);
   source.opacity = take_opacity(sources, source.picture);
   const bool loses_alpha = is_transparent(source.opacity) && !keeps_alpha(options.format);
   if (loses_alpha) source.opacity.clear();
-  PhotoLens photo = options.photo;
-  photo.of_file = sources.lens;
-  const ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
+  PhotoLens photo = with_sources(options.photo, sources);
+  ReadDepth depth = read_depth(sources, source.picture, options.reading, photo, pool);
   // The bytes read are not needed again, but for an EXR's other layers. `= {}` would keep the
   // memory.
-  if (sources.depth_file) sources.depth_file->bytes = Bytes{};
+  if (sources.depth_file && sources.views.empty()) sources.depth_file->bytes = Bytes{};
   if (sources.colour_file.reader != &kExrReader) sources.colour_file.bytes = Bytes{};
-  UsedRefocus used{.why_whole = why};
   if (options.circles) photo.circles = coc_of_circles(depth.numbers);
   used.lens = settle_lens(photo, sources.notes, options.reading.numbers.focal_px, depth.map);
   progress.show("filtering");
-  const PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
+  PictureOnItsWay result = refocused(std::move(source), depth.map, options, used, pool);
+  Refocused made;
+  std::vector<ReplacedPlane> views;
+  for (OtherView& view : sources.views) {
+    if (!keeps_data_window(options, sources) || !options.keep_layers) {
+      made.warnings.push_back(lost_view_warning(options.colour, view));
+    } else if (view.depth_plane == kNoPlane) {
+      made.warnings.push_back("'" + options.colour + "': its view " + view.name +
+                              " has no depth of its own and stays as it is");
+    } else {
+      progress.show("filtering " + view.name);
+      refocus_view(sources, view, options, photo, used, pool, views);
+    }
+  }
+  if (!keeps_data_window(options, sources)) {
+    cut_to_shown(sources.colour_file, result, &depth.map.metres);
+    depth.map.width = result.picture.width;
+    depth.map.height = result.picture.height;
+  }
 
   progress.show("writing");
   const PictureNotes notes = refocus_notes(options, used, result.picture.width,
                                            result.picture.height, hash_image(result.picture));
-  Refocused made;
-  Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes);
+  Bytes bytes = refocused_file(options, sources, depth.map, used, result, notes, views);
   auto sidecar = sidecar_place(options.output, options.format);
   const bool has_room = !sidecar || is_free_for_sidecar(*sidecar);
   std::optional<WholeFile> picture_file, sidecar_file;

@@ -213,12 +213,17 @@ std::string lens_text(const HeaderLens& lens) {
   return text;
 }
 
+/// What the numbers of a file's colours are.
+std::string colours_text(const PictureFile& file) {
+  if (!file.icc_name.empty()) return ", ICC profile " + file.icc_name;
+  return file.is_srgb ? ", sRGB" : ", linear";
+}
+
 std::string text_of(const InspectedFile& found) {
   const PictureFile& file = found.file;
   std::string text = file.path.string() + ": " + std::string{file.reader->name} + ", " +
                      size_text({file.width, file.height}) +
-                     (file.remark.empty() ? "" : ", " + file.remark) +
-                     (file.is_srgb ? ", sRGB" : ", linear") + "\n";
+                     (file.remark.empty() ? "" : ", " + file.remark) + colours_text(file) + "\n";
   std::size_t widest = 8;
   for (const InspectedPlane& plane : found.planes) {
     widest = std::max(widest, plane.info.name.size());
@@ -267,7 +272,8 @@ Json json_of(const InspectedFile& found) {
             {"width", file.width},
             {"height", file.height},
             {"remark", file.remark},
-            {"srgb", file.is_srgb},
+            {"srgb", file.is_srgb && file.icc_name.empty()},
+            {"icc_profile", file.icc_name.empty() ? Json(nullptr) : Json(file.icc_name)},
             {"planes", planes},
             {"colour_layers", layers},
             {"lens", nullptr},
@@ -303,14 +309,15 @@ void write_circles(const InspectOptions& options) {
   ThreadPool pool{preview.pool.threads, preview.pool.isa};
   const PictureSources sources = open_sources(preview.colour, preview.depth, preview.reading);
   Image colour = read_colour(sources.colour_file, sources.colour, false).image;
-  preview.photo.of_file = sources.lens;
+  preview.photo = with_sources(preview.photo, sources);
   const ReadDepth depth = read_depth(sources, colour, preview.reading, preview.photo, pool);
   UsedRefocus used;
   used.lens =
       settle_lens(preview.photo, sources.notes, preview.reading.numbers.focal_px, depth.map);
-  const Image circles = refocused({std::move(colour), {}}, depth.map, preview, used, pool).picture;
+  PictureOnItsWay circles = refocused({std::move(colour), {}}, depth.map, preview, used, pool);
+  cut_to_shown(sources.colour_file, circles, nullptr);
   WholeFile file{preview.output};
-  file.write(encode(circles, preview.format));
+  file.write(encode(circles.picture, preview.format));
   file.commit();
   if (options.quiet) return;
   std::cerr << "circles in " << preview.output << ": black is sharp, white a radius of "
@@ -322,6 +329,7 @@ void write_circles(const InspectOptions& options) {
 std::vector<InspectedFile> inspected(const std::string& name, const DepthOptions& reading) {
   std::vector<InspectedFile> all;
   PictureFile file = open_picture_file(name);
+  take(reading.files, file);
   std::optional<PhoneDepth> phone;
   if (file.reader == &kJpegReader) phone = find_phone_depth(file.bytes);
   all.push_back(inspected(std::move(file), reading));

@@ -157,11 +157,12 @@ double focus_of(const PhotoLens& photo, FocusDepths& depths, std::string& from) 
     from = "the file's focus";
     return *photo.of_file.focus_m;
   }
-  const Pixel pixel = depths.pixel;
-  if (pixel.x < 0 || pixel.x >= depths.width || pixel.y < 0 || pixel.y >= depths.height) {
+  const PictureBox& film = depths.film.box;
+  const Pixel pixel{depths.pixel.x - film.x, depths.pixel.y - film.y};
+  if (pixel.x < 0 || pixel.x >= film.width || pixel.y < 0 || pixel.y >= film.height) {
     throw UsageError("--focus-at " + pixel_text(pixel) +
                      ": the pixel must lie in the picture, 0,0 to " +
-                     pixel_text({depths.width - 1, depths.height - 1}));
+                     pixel_text({film.width - 1, film.height - 1}));
   }
   from = "the median around pixel " + pixel_text(pixel);
   if (depths.around.empty()) {
@@ -206,8 +207,18 @@ void check_photo_lens(const CLI::App& parser) {
   }
 }
 
+namespace {
+
+/// So many pixels across, in heights of a pixel.
+int in_heights(int width, double pixel_aspect) {
+  return std::max(1, static_cast<int>(std::floor(width * pixel_aspect + 0.5)));
+}
+
+}  // namespace
+
 double pixels_per_tangent(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                           std::optional<double> focal_px, int width, int height) {
+  width = in_heights(width, photo.film ? photo.film->pixel_aspect : 1.0);
   return pixels_per_tangent(camera_source(photo, notes, focal_px), photo, notes, focal_px,
                             focal_length_mm(photo, notes), width, height);
 }
@@ -215,7 +226,9 @@ double pixels_per_tangent(const PhotoLens& photo, const std::optional<PictureNot
 FocusDepths::FocusDepths(const PhotoLens& photo, int map_width, int map_height)
     : width(map_width),
       height(map_height),
-      pixel(photo.focus_at.value_or(Pixel{map_width / 2, map_height / 2})),
+      film(photo.film.value_or(Film{{0, 0, map_width, map_height}})),
+      pixel{film.box.x + photo.focus_at.value_or(Pixel{film.box.width / 2, 0}).x,
+            film.box.y + photo.focus_at.value_or(Pixel{0, film.box.height / 2}).y},
       most_nearest_(looks_at_nearest(photo) ? static_cast<std::size_t>(map_width) *
                                                       static_cast<std::size_t>(map_height) / 1000 +
                                                   1
@@ -255,6 +268,7 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
 SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes>& notes,
                         std::optional<double> focal_px, FocusDepths depths) {
   SettledLens settled;
+  settled.pixel_aspect = depths.film.pixel_aspect;
   if (notes && notes->lens) {
     settled.lens = notes->lens->lens;
     settled.coc_scale = notes->lens->coc_scale;
@@ -274,10 +288,12 @@ SettledLens settle_lens(const PhotoLens& photo, const std::optional<PictureNotes
   settled.camera_from = kSources[static_cast<std::size_t>(source)];
   if (source == CameraSource::sensor) settled.camera_from += photo.sensor->name;
   const auto camera = [&](double image_mm) {
+    const Film& film = depths.film;
     const double pixels =
-        pixels_per_tangent(source, photo, notes, focal_px, image_mm, depths.width, depths.height);
+        pixels_per_tangent(source, photo, notes, focal_px, image_mm,
+                           in_heights(film.box.width, film.pixel_aspect), film.box.height);
     const bool known = source == CameraSource::fov || source == CameraSource::notes;
-    settled.fov_y_degrees = !known                        ? shown_degrees(pixels, depths.height)
+    settled.fov_y_degrees = !known                        ? shown_degrees(pixels, film.box.height)
                             : source == CameraSource::fov ? *photo.fov_y_degrees
                                                           : notes->fov_y_degrees;
     return pixels;

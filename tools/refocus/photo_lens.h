@@ -11,6 +11,7 @@
 #include "dof/lens.h"
 #include "tools/cli/option_values.h"
 #include "tools/options/lens_options.h"
+#include "tools/pictures/picture_file.h"
 #include "tools/pictures/picture_notes.h"
 #include "tools/refocus/depth/depth_map.h"
 #include "tools/render/sharp_depths_option.h"
@@ -35,6 +36,12 @@ inline constexpr std::array kSensors{
     NamedSensor{"1/2.3-inch", 6.17, 4.55},  NamedSensor{"6x6cm", 56.0, 56.0},
     NamedSensor{"4x5-inch", 127.0, 102.0}};
 
+/// The part of a picture that lies on the sensor.
+struct Film {
+  PictureBox box{};           ///< from the picture's first pixel
+  double pixel_aspect = 1.0;  ///< a pixel's width over its height; circles are in heights
+};
+
 /// The lens as it was given.
 struct PhotoLens {
   LensOptions lens;
@@ -47,6 +54,7 @@ struct PhotoLens {
   std::optional<double> blur_at_infinity_px;  ///< a radius
   std::optional<PixelCoc> circles;            ///< in place of a lens: coc_of_circles()
   HeaderLens of_file;                         ///< where nothing above says it
+  std::optional<Film> film;                   ///< none: all of the picture
 };
 
 void add_photo_lens_options(CLI::App& parser, PhotoLens& photo);
@@ -59,6 +67,7 @@ struct SettledLens {
   ThinLens lens{};
   double coc_scale = 1.0;
   double fov_y_degrees = 0.0;
+  double pixel_aspect = 1.0;
   PixelCoc coc{};
   bool has_lens = true;  ///< false: --blur-at-infinity or --circles says how much is blurred
   std::optional<SharpDepthRange> range{};
@@ -81,6 +90,7 @@ class FocusDepths {
   void add(std::span<const float> metres, int first_row);
 
   int width, height;
+  Film film;
   Pixel pixel;                   ///< --focus-at, or the middle
   std::vector<float> around{};   ///< finite depths of the 5x5 pixels there
   std::size_t finite = 0;        ///< how many depths are, where the nearest are asked for

@@ -20,6 +20,7 @@ constexpr std::array kHoles{
     Choice<Holes>{"background", Holes::background}, Choice<Holes>{"near", Holes::near_side},
     Choice<Holes>{"far", Holes::far_side}, Choice<Holes>{"infinity", Holes::infinity},
     Choice<Holes>{"refuse", Holes::refused}};
+constexpr std::array kIccs{Choice<bool>{"keep", false}, Choice<bool>{"srgb", true}};
 constexpr std::array kFits{Choice<DepthFit>{"stretch", DepthFit::stretch},
                            Choice<DepthFit>{"crop", DepthFit::crop}};
 
@@ -35,16 +36,19 @@ void add_mending_options(CLI::App& parser, Mending& mending) {
 }
 
 /// A file whose values hide depths, as a mask of the map's size.
-PlaneValues read_mask(const std::string& name, const PictureFile& depth) {
-  const PictureFile file = open_picture_file(name);
-  if (file.width != depth.width || file.height != depth.height) {
+PlaneValues read_mask(const std::string& name, const PictureFile& depth, bool flips) {
+  PictureFile file = open_picture_file(name);
+  take({flips}, file);
+  const bool is_on_all = file.width == depth.width && file.height == depth.height;
+  const PictureBox place = is_on_all ? box_of(depth) : depth.shown;
+  if (file.width != place.width || file.height != place.height) {
     throw UsageError("--mask '" + name + "' is " + size_text({file.width, file.height}) +
-                     " pixels and the depth " + size_text({depth.width, depth.height}) +
+                     " pixels and the depth " + size_text({place.width, place.height}) +
                      "; give one of that size");
   }
   // An EXR's first channel would be its alpha.
   const std::size_t plane = file.planes.size() == 1 ? 0 : choose_colour(file, {}, "--mask").red;
-  return read_planes(file, {&plane, 1}, 0.0f)[0];
+  return moved(read_planes(file, {&plane, 1}, 0.0f)[0], place, box_of(depth), 1.0f);
 }
 
 /// How much wider or higher than a depth's the colour's shape is: 1 of the same.
@@ -151,7 +155,27 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
              "A depth of another shape than the picture is stretched, or its middle is taken "
              "(default: stretched by up to 2 %, else refused)",
              kFits, options.fit);
+  add_file_options(parser, options.files);
   add_mending_options(parser, options.mending);
+}
+
+void add_file_options(CLI::App& parser, FileReading& files) {
+  add_flag(parser, "--flip",
+           "Rows of PFM files run from the top down, or of those that bear Photoshop's mark, whose "
+           "do, from the bottom up",
+           files.flips);
+  add_choice(
+      parser, "--icc",
+      "Colours of an ICC profile stay its own, which a .png gets, or become sRGB's (default: "
+      "keep)",
+      kIccs, files.to_srgb);
+}
+
+void take(const FileReading& files, PictureFile& file) {
+  file.top_first = file.top_first != files.flips;
+  if (!files.to_srgb || file.icc.empty()) return;
+  if (!missing_lcms().empty()) throw UsageError("--icc srgb: " + std::string{missing_lcms()});
+  file.to_srgb = true;
 }
 
 namespace {
@@ -165,11 +189,33 @@ bool is_photo_panorama(const PictureFile& file) {
   return text.find("GPano:ProjectionType") != text.npos;
 }
 
+/// Whether the colour and its depth show as many pixels.
+bool show_alike(const PictureSources& sources) {
+  return sources.of_depth().shown == sources.colour_file.shown;
+}
+
+/// Pixels beside those that are shown are filtered, too. A depth without windows lies on the
+/// colour's data window if it has its size.
+void take_windows(PictureSources& sources) {
+  PictureFile& colour = sources.colour_file;
+  if (sources.depth_file && sources.depth_file->reader != &kExrReader && !show_alike(sources)) {
+    PictureFile& depth = *sources.depth_file;
+    if (depth.width == colour.data.width && depth.height == colour.data.height) {
+      depth.data = colour.data;
+      depth.shown = colour.shown;
+    }
+  }
+  if (!show_alike(sources)) return;
+  take_data_window(colour);
+  if (sources.depth_file) take_data_window(*sources.depth_file);
+}
+
 void choose_planes(PictureSources& sources, const DepthOptions& options) {
   sources.colour = choose_colour(sources.colour_file, options.layer, "--layer");
   const bool has_circles = options.encoding == &circles_encoding();
   sources.depth_plane =
       choose_depth(sources.of_depth(), options.depth_layer, !sources.depth_file, has_circles);
+  if (!options.layer) find_views(sources);
   sources.notes = find_notes(sources.colour_file.path, source_of(sources.colour_file)).notes;
   if (!sources.notes) sources.lens = find_exr_lens(source_of(sources.colour_file));
   if (is_photo_panorama(sources.colour_file)) sources.lens.camera = "panoramic";
@@ -185,11 +231,34 @@ void open_phone_depth(PictureSources& sources) {
   if (depth.exif_orientation == 1) {
     depth.exif_orientation = colour.exif_orientation;
     if (depth.exif_orientation >= 5) std::swap(depth.width, depth.height);
+    depth.shown = depth.data = {0, 0, depth.width, depth.height};
   }
   sources.depth_file = std::move(depth);
 }
 
 }  // namespace
+
+void find_views(PictureSources& sources) {
+  const std::string own = sources.colour_file.planes[sources.colour.red].view;
+  if (sources.colour_file.views.size() < 2 || own.empty()) return;
+  sources.view = own;
+  const std::size_t depth = sources.depth_plane;
+  const auto depth_of = [&](const std::string& view) {
+    return depth == kNoPlane ? std::nullopt : plane_in_view(sources.of_depth(), depth, view);
+  };
+  sources.depth_plane = depth_of(own).value_or(depth);
+  for (const std::string& name : sources.colour_file.views) {
+    if (name == own) continue;
+    if (const auto colour = layer_in_view(sources.colour_file, sources.colour, name)) {
+      sources.views.push_back({name, *colour, depth_of(name).value_or(kNoPlane)});
+    }
+  }
+}
+
+void exchange(PictureSources& sources, OtherView& view) {
+  std::swap(sources.colour, view.colour);
+  std::swap(sources.depth_plane, view.depth_plane);
+}
 
 PictureSources open_sources(const std::string& colour, const std::string& depth,
                             const DepthOptions& options) {
@@ -199,7 +268,12 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
   } else if (sources.colour_file.reader == &kJpegReader) {
     open_phone_depth(sources);
   }
-  if (sources.depth_file) check_shape(sources.colour_file, *sources.depth_file, options);
+  take(options.files, sources.colour_file);
+  if (sources.depth_file) {
+    take({options.files.flips}, *sources.depth_file);
+  }
+  take_windows(sources);
+  if (!show_alike(sources)) check_shape(sources.colour_file, *sources.depth_file, options);
   choose_planes(sources, options);
   return sources;
 }
@@ -212,10 +286,17 @@ std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
   PictureSources sources{.colour_file = std::move(*colour_file)};
   if (!depth.empty()) sources.depth_file = open_on_disk(depth, why);
   if (!depth.empty() && !sources.depth_file) return std::nullopt;
+  take(options.files, sources.colour_file);
+  if (sources.depth_file) take({options.files.flips}, *sources.depth_file);
   const PictureFile& of_depth = sources.of_depth();
   if (of_depth.width != sources.colour_file.width ||
       of_depth.height != sources.colour_file.height) {
     why = "the depth has another size than the colour";
+    return std::nullopt;
+  }
+  take_windows(sources);
+  if (box_of(sources.of_depth()) != box_of(sources.colour_file)) {
+    why = "the depth has another data window than the colour";
     return std::nullopt;
   }
   choose_planes(sources, options);
@@ -274,22 +355,58 @@ DepthReading depth_reading(const PictureSources& sources, const DepthOptions& op
   // A smaller map has a smaller focal length in pixels.
   const PictureFile& colour = sources.colour_file;
   reading.pixels_per_tangent = pixels_per_tangent(photo, sources.notes, options.numbers.focal_px,
-                                                  colour.width, colour.height) *
+                                                  colour.shown.width, colour.shown.height) *
                                read.height / colour.height;
+  const double scale = static_cast<double>(read.height) / colour.height;
+  reading.axis_x = (colour.shown.width / 2.0 - colour.left - colour.width / 2.0) * scale;
+  reading.axis_y = (colour.shown.height / 2.0 - colour.top - colour.height / 2.0) * scale;
+  reading.pixel_aspect = colour.pixel_aspect;
   return reading;
 }
+
+PhotoLens with_sources(PhotoLens photo, const PictureSources& sources) {
+  const PictureFile& file = sources.colour_file;
+  photo.of_file = sources.lens;
+  photo.film = {{-file.left, -file.top, file.shown.width, file.shown.height}, file.pixel_aspect};
+  return photo;
+}
+
+namespace {
+
+/// Values of pixels `from` for pixels `to`, of the nearest where there are none.
+PlaneValues nearest_on(const PlaneValues& values, const PictureBox& from, const PictureBox& to) {
+  PlaneValues result;
+  for (int y = to.y; y < to.y + to.height; ++y) {
+    const int row = std::clamp(y - from.y, 0, from.height - 1);
+    for (int x = to.x; x < to.x + to.width; ++x) {
+      const int column = std::clamp(x - from.x, 0, from.width - 1);
+      result.push_back(values[static_cast<std::size_t>(row) * static_cast<std::size_t>(from.width) +
+                              static_cast<std::size_t>(column)]);
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 ReadDepth read_depth(const PictureSources& sources, const Image& colour,
                      const DepthOptions& options, const PhotoLens& photo, ThreadPool& pool) {
   const PictureFile& file = sources.of_depth();
   const NumberType type = file.planes[sources.depth_plane].type;
   PlaneValues codes = depth_codes(file, sources.depth_plane);
-  PlaneValues mask = options.mask ? read_mask(*options.mask, file) : PlaneValues{};
-  const Part part = part_on(sources.colour_file, file, options);
+  PlaneValues mask =
+      options.mask ? read_mask(*options.mask, file, options.files.flips) : PlaneValues{};
+  const PictureBox box = box_of(sources.colour_file);
+  const bool is_beside = show_alike(sources) && box != box_of(file);
+  const Part part =
+      is_beside ? Part{0, 0, box.width, box.height} : part_on(sources.colour_file, file, options);
   const int width = part.width, height = part.height;
 
   ReadDepth read{.seen = numbers_seen(codes, type), .width = width, .height = height};
-  if (width < file.width || height < file.height) {
+  if (is_beside) {
+    codes = nearest_on(codes, box_of(file), box);
+    if (!mask.empty()) mask = nearest_on(mask, box_of(file), box);
+  } else if (width < file.width || height < file.height) {
     cut(codes, file.width, part);
     cut(mask, file.width, part);
     read.fit = "the middle " + size_text({width, height}) + " of " +
@@ -299,6 +416,10 @@ ReadDepth read_depth(const PictureSources& sources, const Image& colour,
         size_text({width, height}) + " pixels are stretched to the picture's shape, by " +
         short_number(std::round(1000.0 * stretching(sources.colour_file, file) - 1000.0) / 10.0) +
         " %";
+  }
+  if (!show_alike(sources) && sources.colour_file.data != sources.colour_file.shown) {
+    read.fit += read.fit.empty() ? "" : "; ";
+    read.fit += "the display window alone is filtered, for the depth has another size";
   }
   settle_encoding(sources, options, read);
   DepthReading reading = depth_reading(sources, options, photo, read);

@@ -20,6 +20,17 @@ namespace softfocus {
 /// middle, of the picture's shape.
 enum class DepthFit : std::uint8_t { stretch, crop };
 
+/// How files are taken, whatever is in them.
+struct FileReading {
+  bool flips = false;    ///< rows of PFM files run the other way
+  bool to_srgb = false;  ///< colours of an ICC profile are converted
+};
+
+/// Adds --flip and --icc.
+void add_file_options(CLI::App& parser, FileReading& files);
+/// For a file of colours or a depth.
+void take(const FileReading& files, PictureFile& file);
+
 struct DepthOptions {
   std::optional<std::string> layer;  ///< of the colour
   std::optional<std::string> depth_layer;
@@ -30,6 +41,7 @@ struct DepthOptions {
   std::vector<double> missing_codes;
   Holes holes = Holes::background;
   std::optional<DepthFit> fit;  ///< none: stretched by up to 2 %
+  FileReading files;
   Mending mending;
 };
 
@@ -37,7 +49,17 @@ struct DepthOptions {
 /// --holes, --depth-fit and the three ways of mending.
 void add_depth_options(CLI::App& parser, DepthOptions& options);
 
-/// Files whose headers were read.
+inline constexpr std::size_t kNoPlane = ~std::size_t{0};
+
+/// Another view of a picture, as a right eye's.
+struct OtherView {
+  std::string name;
+  ColourLayer colour{};
+  std::size_t depth_plane = kNoPlane;
+};
+
+/// Files whose headers were read. The colour's has all pixels that are there, beside those that are
+/// shown too, if the depth has the same size.
 struct PictureSources {
   PictureFile colour_file;
   std::optional<PictureFile> depth_file{};  ///< none: the colour's
@@ -47,8 +69,16 @@ struct PictureSources {
   std::optional<PictureNotes> notes{};  ///< of the colour's file
   HeaderLens lens{};                    ///< likewise, if there are no notes
 
+  std::string view{};              ///< the colour's, of several that are not chosen from
+  std::vector<OtherView> views{};  ///< the others that have a colour
+
   const PictureFile& of_depth() const { return depth_file ? *depth_file : colour_file; }
 };
+
+/// Finds the views beside that of the chosen colour; its depth is of the same.
+void find_views(PictureSources& sources);
+/// Exchanges the colour and its depth with another view's.
+void exchange(PictureSources& sources, OtherView& view);
 
 /// Opens COLOUR and, unless it is empty, DEPTH, else a depth inside of a JPEG, and chooses layers.
 /// Throws FileError; UsageError for layers that are not there and a depth of another shape than the
@@ -61,6 +91,9 @@ PictureSources open_sources(const std::string& colour, const std::string& depth,
 std::optional<PictureSources> open_sources_on_disk(const std::string& colour,
                                                    const std::string& depth,
                                                    const DepthOptions& options, std::string& why);
+
+/// The lens with what the colour's file says.
+PhotoLens with_sources(PhotoLens photo, const PictureSources& sources);
 
 /// A depth map and how it was read.
 struct ReadDepth {

@@ -35,6 +35,9 @@ class SourceRows {
   /// Throws FileError; UsageError for a depth of three channels that differ.
   void read(Rows rows);
 
+  /// How many values of colours were cut so far.
+  std::size_t cut() const { return halves_.cut(); }
+
   Image colour{};       ///< RGBA16F, of light; alpha is 0
   PlaneValues alpha{};  ///< as they are in the file
   PlaneValues codes{};  ///< of the depth
@@ -195,7 +198,8 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
     survey.full_alpha = static_cast<float>(full_scale(file.planes[*sources.colour.alpha].type));
   }
   AlphaSeen alpha;
-  SourceRows rows{sources, {.alpha = has_alpha, .depth = true}};
+  const bool may_be_whole = file.height <= kMaxImageSize && may_be_bright(file, sources.colour);
+  SourceRows rows{sources, {.colour = may_be_whole, .alpha = has_alpha, .depth = true}};
   for_each_band(file.height, [&](Rows band) {
     rows.read(band);
     alpha.add(rows.alpha, survey.full_alpha);
@@ -212,6 +216,10 @@ bool survey_depths(const PictureSources& sources, const RefocusOptions& options,
   });
   survey.has_opacity = has_alpha && (alpha.is_alpha || is_sure_of_alpha(file));
   survey.is_opaque = !survey.has_opacity || alpha.is_opaque;
+  if (rows.cut() > 0) {
+    why = "it has colours beyond the largest half";
+    return false;
+  }
   if (survey.depth.filled == 0) return true;
   why = std::to_string(survey.depth.filled) +
         " pixels have no depth, and are filled from around them";
@@ -288,6 +296,7 @@ class FilteredRows {
   }
 
   std::uint64_t hash() const { return hash_.value; }
+  std::size_t cut() const { return rows_.cut(); }
 
  private:
   using FinishedRows = std::deque<std::vector<std::uint16_t>>;
@@ -368,6 +377,7 @@ void write_files(const RefocusOptions& options, const PictureSources& sources, c
     if (survey.has_opacity) extras.alpha = kSome;
     if (sources.colour_file.reader == &kExrReader) extras.source = &sources.colour_file;
     extras.kept = kept;
+    if (options.keep_layers) extras.view = sources.view;
     if (notes.lens) extras.lens = notes.lens->lens;
     picture.notes = json_text(notes_json(notes));
     picture.notes_after = [&] {
@@ -437,9 +447,14 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
     by_rows.method_by_size = false;
     return refocus_by_rows(by_rows, progress, pool, why);
   }
+  if (!sources->views.empty()) why = "it has several views";
+  if (file.pixel_aspect != 1.0) why = "its pixels are not square";
+  if (box_of(file) != file.shown && !keeps_data_window(options, *sources)) {
+    why = "its data window is cut";
+  }
+  if (!why.empty()) return std::nullopt;
   progress.show("reading the depth");
-  PhotoLens photo = options.photo;
-  photo.of_file = sources->lens;
+  PhotoLens photo = with_sources(options.photo, *sources);
   Survey survey{.photo = photo, .focus = {photo, file.width, file.height}};
   survey.depth.width = survey.depth.map.width = file.width;
   survey.depth.height = survey.depth.map.height = file.height;
@@ -470,6 +485,7 @@ std::optional<Refocused> refocus_by_rows(const RefocusOptions& options, Progress
   Refocused made;
   std::uint64_t hash = 0;
   write_files(options, *sources, survey, used, rows, made, hash);
+  used.cut = rows.cut();
   tell(options, *sources, survey.depth, used, hash, made);
   return made;
 }

@@ -57,7 +57,7 @@ std::string holes_text(const ReadDepth& depth, Holes holes) {
 }
 
 std::string depth_line(const RefocusOptions& options, const PictureSources& sources,
-                       const ReadDepth& depth) {
+                       const ReadDepth& depth, const UsedRefocus& used) {
   std::string line = options.circles
                          ? "the circles are " + circles_text(depth)
                          : "the depth is " + std::string{depth.encoding->name} +
@@ -68,6 +68,16 @@ std::string depth_line(const RefocusOptions& options, const PictureSources& sour
   if (!depth.fit.empty()) line += "; " + depth.fit;
   const int orientation = sources.colour_file.exif_orientation;
   if (orientation != 1) line += "; EXIF turns the picture, " + std::to_string(orientation);
+  const std::string& icc = sources.colour_file.icc_name;
+  if (!icc.empty()) {
+    line += sources.colour_file.to_srgb ? "; the colours are converted to sRGB from the profile "
+                                        : "; the colours are of the profile ";
+    line += icc;
+  }
+  if (used.light_power > 0) {
+    line += "; colours up to " + short_number(used.brightest) + " are filtered at 1/" +
+            std::to_string(1 << used.light_power) + " of their light";
+  }
   return line;
 }
 
@@ -226,7 +236,14 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
                             std::to_string(static_cast<int>(kLargestMaxCoc)) +
                             " pixels are cut to that; a larger --f-number has smaller ones");
   }
-  made.depth = depth_line(options, sources, depth);
+  if (used.cut > 0) {
+    made.warnings.push_back(cut_light_warning(options.colour, used.cut, used.light_power));
+  }
+  if (const std::string lost = lost_profile_warning(sources.colour_file, options.format);
+      !lost.empty()) {
+    made.warnings.push_back(lost);
+  }
+  made.depth = depth_line(options, sources, depth, used);
   made.report = refocus_text(options, sources, depth, used);
   made.json = refocus_json(options, sources, depth, used, hash);
 }
@@ -234,6 +251,27 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
 std::string busy_sidecar_warning(const std::filesystem::path& sidecar) {
   return "'" + sidecar.string() +
          "' is no sidecar of a picture and stays as it is: the picture's lens is written nowhere";
+}
+
+std::string cut_light_warning(const std::string& colour, std::size_t cut, int light_power) {
+  const std::string most = short_number(std::ldexp(65504.0, light_power));
+  return "'" + colour + "': colours beyond " + most + " or infinite are cut to that, in " +
+         std::to_string(cut) + " values; divide all by a power of two before, multiply after";
+}
+
+std::string lost_profile_warning(const PictureFile& file, FileFormat format) {
+  const bool is_kept = keeps_profile(format) && !file.icc.empty();
+  if (file.icc_name.empty() || file.to_srgb || is_kept) return {};
+  return "'" + file.path.string() + "' has colours of the profile " + file.icc_name +
+         ", which the result has no place for: programs will take them for sRGB; " +
+         (file.icc.empty() ? "it is no profile of red, green and blue"
+                           : ".png keeps it, and --icc srgb converts the colours");
+}
+
+std::string lost_view_warning(const std::string& colour, const OtherView& view) {
+  return "'" + colour + "' has a view " + view.name +
+         ", which the result leaves out; an .exr with " + "its layers has it, and --layer '" +
+         view.colour.name + "' chooses it";
 }
 
 std::string lost_alpha_warning(const std::string& colour) {

@@ -30,6 +30,10 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
           const UsedRefocus& used, std::uint64_t hash, Refocused& made);
 
 std::string busy_sidecar_warning(const std::filesystem::path& sidecar);
+std::string cut_light_warning(const std::string& colour, std::size_t cut, int light_power);
+/// Empty if the format keeps the file's profile, or there is none.
+std::string lost_profile_warning(const PictureFile& file, FileFormat format);
+std::string lost_view_warning(const std::string& colour, const OtherView& view);
 std::string lost_alpha_warning(const std::string& colour);
 
 std::string_view name_of(DepthAlong along);

@@ -36,7 +36,7 @@ Pair pair_of(ivec2 at, ivec2 size, vec4 own, vec3 v, float per_depth, float t, v
   precise float far = abs(t) * length_px;
   precise float of_there = far * of.w.z;
   precise float of_own = far * v.z;
-  precise float gap = (of.there.a - own.a) * per_depth;
+  precise float gap = (compared_depth(of.there.a) - compared_depth(own.a)) * per_depth;
   of.of_there = of_there;
   of.of_own = of_own;
   of.gap = gap;
@@ -165,6 +165,6 @@ void main() {
   }
   float length = sqrt(square);
   vec3 v = texelFetch(spread, at, 0).xyz;
-  precise float per_depth = own.a > 0.0 ? inverse_depth / own.a : 0.0;
+  precise float per_depth = own.a > 0.0 ? inverse_depth / compared_depth(own.a) : 0.0;
   result = vec4(blurred(at, size, own, v, per_depth, n, length), own.a);
 }

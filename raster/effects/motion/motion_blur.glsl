@@ -9,6 +9,11 @@ float way_at(int i, float jittered, float way_step) {
   return way;
 }
 
+// Infinity is 65504: of raster/numbers/half.h. In bits, for NaN stays.
+float compared_depth(float depth) {
+  return floatBitsToUint(depth) == 0x7F800000u ? 65504.0 : depth;
+}
+
 float cut_to_1(float x) { return x > 0.0 ? (x < 1.0 ? x : 1.0) : 0.0; }
 
 float finite_or_0(float px) { return abs(px) <= 65504.0 ? px : 0.0; }

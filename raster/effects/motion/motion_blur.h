@@ -41,8 +41,8 @@ struct MotionBlurPass {
 MotionBlurPass pass_of(const MotionBlurSettings& settings);
 
 /// The picture, RGBA16F with depth in alpha, and its velocity, RG16F in pixels a frame. Alpha
-/// stays. Where nothing moves by more than half a pixel to either side, the picture stays, and
-/// costs next to nothing.
+/// stays; a depth of infinity is 65504 m. Where nothing moves by more than half a pixel to either
+/// side, the picture stays, and costs next to nothing.
 void motion_blur(const MotionBlurSettings& settings, const ConstImageView& picture,
                  const ConstImageView& velocity, const ImageView& result, const Profile& profile,
                  ThreadPool& pool);

@@ -35,20 +35,22 @@ struct Pair {
 };
 
 struct BlurredPixel {
-  glm::vec4 own;
-  glm::vec3 v;  ///< its motion, and in z 1 / its length
+  glm::vec4 own;  ///< with its compared_depth()
+  glm::vec3 v;    ///< its motion, and in z 1 / its length
   float per_depth;
 };
 
 inline BlurredPixel blurred_pixel(const BlurInput& input, int x, int y) {
-  const glm::vec4 own = load_texel<Format::rgba16f>(input.picture, x, y);
+  glm::vec4 own = load_texel<Format::rgba16f>(input.picture, x, y);
+  own.w = compared_depth(own.w);
   const glm::vec4 v = load_texel<Format::rgba16f>(input.spread, x, y);
   return {own, glm::vec3{v}, own.w > 0.0f ? input.pass.inverse_depth / own.w : 0.0f};
 }
 
 inline Pair pair_of(const BlurredPixel& pixel, const glm::vec4& there, const glm::vec4& w,
                     float distance) {
-  return {distance * w.z, distance * pixel.v.z, (there.w - pixel.own.w) * pixel.per_depth};
+  return {distance * w.z, distance * pixel.v.z,
+          (compared_depth(there.w) - pixel.own.w) * pixel.per_depth};
 }
 
 // A pixel near which n moves, of that length, above half a pixel: its colour.

@@ -57,7 +57,8 @@ SOFTFOCUS_INLINE SampleLanes sample_lanes(const BlurRow& row, const PixelLanes& 
   const Ints x = place_lanes(pixel.at_x, t * px.x, row.width);
   const Ints y = place_lanes(pixel.at_y, t * px.y, row.height);
   const FourFloats there = gather_texels(row.picture, x, y);
-  return {x, y, there, (there.a - pixel.own.a) * pixel.per_depth};
+  const Floats depth = smaller(splat(kFarthestDepth), there.a);
+  return {x, y, there, (depth - pixel.own.a) * pixel.per_depth};
 }
 
 /// Returns the first pixel that is not done.
@@ -83,7 +84,7 @@ SOFTFOCUS_INLINE int blur_vectors(const BlurRow& row, int begin, int end, std::u
     const Vec2Lanes n{select(moves, near.x, one), select(moves, near.y, zero)};
     const Floats length = square_root(select(moves, square, one));
     const HalfTexels v = load_half_texels(spread + 4 * at);
-    const Floats own_a = half_to_float(own.a);
+    const Floats own_a = smaller(splat(kFarthestDepth), half_to_float(own.a));
     const PixelLanes pixel{
         to_floats(x),
         splat(static_cast<float>(row.y)),

@@ -127,6 +127,31 @@ TEST_CASE("a bilateral filter keeps an edge that a Gaussian blurs") {
   CHECK_FALSE(equal(result, source));
 }
 
+TEST_CASE("a bilateral filter by depth takes all that is infinitely far for alike") {
+  for (const Isa isa : available_isas()) {
+    ThreadPool pool{1, isa};
+    Image far = random_picture(20, 5, 3), farther = far;
+    for (int x = 0; x < 20; ++x) {
+      for (int y = 0; y < 5; ++y) {
+        row<std::uint16_t>(far, y)[static_cast<std::size_t>(4 * x + 3)] = x < 7 ? 0x4000 : 0x7BFF;
+        row<std::uint16_t>(farther, y)[static_cast<std::size_t>(4 * x + 3)] =
+            x < 7 ? 0x4000 : 0x7C00;
+      }
+    }
+    Image expected = far, result = far;
+    bilateral({2.0, 0.0f, 0.2f}, far, expected, {}, pool);
+    bilateral({2.0, 0.0f, 0.2f}, farther, result, {}, pool);
+    for (int y = 0; y < 5; ++y) {
+      for (int x = 0; x < 20; ++x) {
+        const glm::vec4 a = load_texel(result, x, y), b = load_texel(expected, x, y);
+        CHECK(a.x == b.x);
+        CHECK((a.w == b.w) == (x < 7));
+      }
+    }
+    CHECK_FALSE(load_texel(result, 12, 2).x == load_texel(farther, 12, 2).x);
+  }
+}
+
 TEST_CASE("a bilateral filter in vectors has the oracle's bits, also of what is not finite") {
   for (const char* profile : {"ieee", "d3d11", "swiftshader"}) {
     for (const Isa isa : available_isas()) {

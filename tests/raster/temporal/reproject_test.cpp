@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "tests/support/raster_helpers.h"
 #include "tests/support/temporal_pictures.h"
@@ -139,6 +140,26 @@ TEST_CASE("a pixel beside a nearer surface takes its motion") {
   const Image found = reprojected({0.0f, true}, depths, velocity, before, frames);
   for (const int x : {3, 4, 5}) CHECK(load_texel(found, x, 0).x == static_cast<float>(x - 2));
   for (const int x : {2, 6}) CHECK(load_texel(found, x, 0).x == static_cast<float>(x));
+}
+
+TEST_CASE("what is infinitely far is found again where it was, and not where something stood") {
+  const float infinity = std::numeric_limits<float>::infinity();
+  Image before = make_image(Format::rgba16f, 16, 8), depths = before;
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      store_texel(before, x, y, {static_cast<float>(x), 0.0f, 0.0f, x == 4 ? 2.0f : infinity}, {});
+      store_texel(depths, x, y, {0.0f, 0.0f, 0.0f, infinity}, {});
+    }
+  }
+  for (const float tolerance : {0.1f, 0.0f}) {
+    for (const bool is_cubic : {false, true}) {
+      const Image found =
+          reprojected({tolerance, false, is_cubic}, depths, test::even_motion(16, 8, 1.0f, 0.0f),
+                      before, test::even_counts(16, 8, 1.0f));
+      CHECK(load_texel(found, 10, 4) == glm::vec4{9.0f, 0.0f, 0.0f, 1.0f});
+      CHECK(load_texel(found, 5, 4).w == (tolerance > 0.0f ? 0.0f : 1.0f));
+    }
+  }
 }
 
 TEST_CASE("reverse reprojection in vectors has the oracle's bits, also of what is not finite") {

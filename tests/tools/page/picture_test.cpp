@@ -71,8 +71,11 @@ TEST_CASE("a picture's frame has the bits of refocus, by every setting") {
   const std::vector<Case> cases{
       {pair,
        of_pair,
-       {{"do", "frame"}, {"focus", {{"at", {0.5, 0.5}}}}, {"coc_scale", 4.0}},
-       {"--coc-scale", "4", "--focus-at", "24,16"}},
+       {{"do", "frame"},
+        {"focus", {{"at", {0.5, 0.5}}}},
+        {"coc_scale", 4.0},
+        {"method", "two-pass"}},
+       {"--coc-scale", "4", "--method", "two-pass", "--focus-at", "24,16"}},
       {both,
        of_both,
        {{"do", "frame"},
@@ -87,8 +90,12 @@ TEST_CASE("a picture's frame has the bits of refocus, by every setting") {
        {"--focus-at", "0,31", "--show", "coc"}},
       {grey,
        of_grey,
-       {{"do", "frame"}, {"focus", {{"m", 2.0}}}, {"max_coc_px", 3.0}, {"coc_scale", 9.0}},
-       {"--focus", "2", "--max-coc", "3", "--coc-scale", "9"}},
+       {{"do", "frame"},
+        {"focus", {{"m", 2.0}}},
+        {"max_coc_px", 3.0},
+        {"coc_scale", 9.0},
+        {"method", "two-pass"}},
+       {"--focus", "2", "--max-coc", "3", "--method", "two-pass", "--coc-scale", "9"}},
       {pair,
        of_pair,
        {{"do", "frame"}, {"focus", {{"m", 1.0}}}, {"show", "depth"}},
@@ -112,14 +119,15 @@ TEST_CASE("a picture's file is the one that refocus writes") {
   Page page;
   ask_well(page, {{"do", "open"}, {"picture", files.a}, {"depth", files.d}});
   CHECK(error_of(page, {{"do", "save"}, {"format", "png"}}) != "");  // nothing is shown yet
-  ask_well(page, {{"do", "frame"}, {"focus", {{"m", 1.0}}}, {"coc_scale", 5.0}});
+  ask_well(page,
+           {{"do", "frame"}, {"focus", {{"m", 1.0}}}, {"coc_scale", 5.0}, {"method", "two-pass"}});
   for (const std::string format : {"png", "png-16", "npy", "pfm", "hdr"}) {
     CAPTURE(format);
     const Json reply = ask_well(page, {{"do", "save"}, {"format", format}});
     CHECK(reply.at("saved_bytes").integer() == static_cast<int>(page.saved.size()));
     const std::string out = files.directory.file("r." + format.substr(0, 3));
     CHECK(run_program({"refocus", files.a, files.d, "-o", out, "--format", format, "--focus", "1",
-                       "--coc-scale", "5"})
+                       "--coc-scale", "5", "--method", "two-pass"})
               .status == 0);
     CHECK(std::string{reinterpret_cast<const char*>(page.saved.data()), page.saved.size()} ==
           read_file(out));

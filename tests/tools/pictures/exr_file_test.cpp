@@ -138,7 +138,7 @@ TEST_CASE("EXR: the lens stands in attributes") {
   const TemporaryDirectory directory;
   const Bytes bytes = encode_exr(make_image(Format::rgba16f, 2, 2), ExrNumbers::half, "",
                                  {.lens = ThinLens{85.0, 1.5, 2.5}});
-  write_file(directory.file("a.exr"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(directory.file("a.exr"), bytes);
   const Imf::InputFile exr{directory.file("a.exr").c_str()};
   CHECK(Imf::focus(exr.header()) == 2.5f);
   CHECK(Imf::aperture(exr.header()) == 1.5f);
@@ -296,7 +296,7 @@ TEST_CASE("EXR: layers of another file are kept as they are, in their types") {
   const std::vector<std::size_t> kept{0, 1, 2};
   const Bytes bytes = encode_exr(make_image(Format::rgba16f, kColumns, kRows), ExrNumbers::half, "",
                                  {.lens = ThinLens{}, .source = &source, .kept = kept});
-  write_file(directory.file("b.exr"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(directory.file("b.exr"), bytes);
   Imf::InputFile exr{directory.file("b.exr").c_str()};
   CHECK(Imf::owner(exr.header()) == "a studio");
   CHECK(Imf::focus(exr.header()) == 2.0f);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
+#include "tests/support/run_program.h"
 #include "tools/cli/errors.h"
 
 using namespace softfocus;
@@ -34,12 +35,6 @@ Image small_picture() {
     }
   }
   return image;
-}
-
-Bytes bytes_of(std::string_view text) {
-  Bytes bytes;
-  for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
 }
 
 std::string text_of(const Bytes& bytes, std::size_t first, std::size_t count) {

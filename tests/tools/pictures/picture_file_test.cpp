@@ -22,12 +22,6 @@ using namespace softfocus;
 
 namespace {
 
-Bytes bytes_of(std::string_view text) {
-  Bytes bytes;
-  for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
-}
-
 /// A NumPy file of this dict, its values behind it.
 Bytes npy_of(std::string_view type, bool columns_first, std::string_view shape,
              const Bytes& values) {
@@ -211,7 +205,7 @@ TEST_CASE("a file that becomes shorter while it is read by rows is refused by it
   for (const std::string name : {"a.npy", "a.pfm"}) {
     CAPTURE(name);
     const Bytes bytes = name == "a.npy" ? encode_npy(picture) : encode_pfm(picture);
-    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(directory.file(name), bytes);
     std::string why;
     const auto file = open_on_disk(directory.file(name), why);
     REQUIRE(file);

@@ -143,7 +143,7 @@ namespace {
 
 /// Turns before the camera, so that most of it moves.
 std::string turning_scene(const TemporaryDirectory& directory, const std::string& effect = {}) {
-  const std::string scene = directory.file("turning.toml");
+  std::string scene = directory.file("turning.toml");
   write_file(scene, R"(
 [camera]
 position = [0, 0.3, 2]
@@ -265,7 +265,7 @@ TEST_CASE("apply: opacity goes where light goes, and stays where it does not") {
   }
   const Bytes bytes = encode_png(picture, opacity);
   const std::string from = directory.file("a.png"), to = directory.file("b.png");
-  write_file(from, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(from, bytes);
   const auto alphas = [&](const std::string& effect) {
     REQUIRE(run_program(applied(from, to, {"--effect", effect})).status == 0);
     const Image result = read_image_file(to).image;
@@ -309,6 +309,7 @@ TEST_CASE("effects: what is no effect or no number of it is refused") {
   refused({}, {"nothing to apply", "softfocus effects"});
   refused({"--effect", "gausian"}, {"--effect 'gausian'", "did you mean", "gaussian"});
   refused({"--effect", "gaussian:width=3"}, {"width=3", "there are sigma"});
+  refused({"--effect", "bloom:strenght=1"}, {"did you mean 'strength'?"});
   refused({"--effect", "gaussian:sigma"}, {"'sigma' is no key=value"});
   refused({"--effect", "gaussian:sigma=-1"}, {"sigma", "0 to 341"});
   refused({"--effect", "gaussian:sigma=nan"}, {"sigma", "0 to 341"});

@@ -89,6 +89,11 @@ TEST_CASE("relief bench and turn say what they measured") {
   const json turned = json::parse(run_program(turning_json).out);
   CHECK(turned.at("frames") == 12);
   CHECK(turned.at("steps").at("renewals") > 0);
+  const std::string verdict = turned.at("verdict").at("impostor");
+  const bool is_faster = turned.at("frame_ms").at("ratio") > 1.0;
+  CHECK(verdict.starts_with(is_faster ? "pays: " : "does not pay: "));
+  CHECK(contains(verdict, is_faster ? "times as fast" : "times as slow"));
+  CHECK(contains(verdict, " of 12 frames "));
   for (const char* part : {"frame_ms", "schedule", "errors", "bound_by_largest"}) {
     CHECK(turned.at(part).is_object());
   }
@@ -104,7 +109,7 @@ TEST_CASE("relief: a picture of heights becomes a relief, with holes where it sa
   for (int i = 0; i < 200; ++i) heights.push_back(static_cast<std::uint16_t>(300 * (i % 20)));
   const auto put = [&](const char* name, const Bytes& bytes) {
     std::string file = folder.file(name);
-    write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(file, bytes);
     return file;
   };
   const std::string grey = put("h.png", encode_grey_png_16(heights, 20, 10));

@@ -25,9 +25,10 @@ bool means_missing(double code, const DepthReading& reading) {
 }
 
 /// The distance along the ray of what lies at distance 1 along the axis.
-double ray_length(int x, int y, int width, int height, double pixels_per_tangent) {
-  const double right = (x + 0.5 - width / 2.0) / pixels_per_tangent;
-  const double down = (y + 0.5 - height / 2.0) / pixels_per_tangent;
+double ray_length(int x, int y, int width, int height, const DepthReading& reading) {
+  const double right =
+      (x + 0.5 - width / 2.0 - reading.axis_x) * reading.pixel_aspect / reading.pixels_per_tangent;
+  const double down = (y + 0.5 - height / 2.0 - reading.axis_y) / reading.pixels_per_tangent;
   return std::sqrt(1.0 + right * right + down * down);
 }
 
@@ -89,7 +90,7 @@ void codes_to_depths(std::span<float> codes, NumberType type, int first_row, int
       if (means_missing(raw, reading) || (!mask.empty() && mask[i] == 0.0f)) continue;
       double metres = encoding.distance_m(raw / largest, reading.numbers);
       if (reading.along == DepthAlong::ray) {
-        metres /= ray_length(x, y, width, height, reading.pixels_per_tangent);
+        metres /= ray_length(x, y, width, height, reading);
       }
       if (metres > 0.0) codes[i] = static_cast<float>(std::max(metres, kNearest));
     }
@@ -116,7 +117,7 @@ PlaneValues codes_of_depth(const DepthMap& map, NumberType type, const DepthRead
       if (is_missing(map.metres[i])) continue;
       double metres = static_cast<double>(map.metres[i]);
       if (reading.along == DepthAlong::ray) {
-        metres *= ray_length(x, y, map.width, map.height, reading.pixels_per_tangent);
+        metres *= ray_length(x, y, map.width, map.height, reading);
       }
       codes[i] = static_cast<float>(encoding.code(metres, reading.numbers) * largest);
     }

@@ -25,9 +25,11 @@ struct DepthReading {
   DepthNumbers numbers{};  ///< least_code and largest_code are found here
   DepthAlong along = DepthAlong::axis;
   std::vector<double> missing_codes{};  ///< beside those that the encoding knows
-  /// The map's height over the height at distance 1: half of it over the tangent of half the field
-  /// of view. For distances along the ray.
+  /// The picture's height over the height at distance 1: half of it over the tangent of half the
+  /// field of view. For distances along the ray.
   double pixels_per_tangent = 1.0;
+  double axis_x = 0.0, axis_y = 0.0;  ///< the camera's axis, in pixels from the map's middle
+  double pixel_aspect = 1.0;          ///< a pixel's width over its height
 };
 
 /// `codes` are width x height numbers of that type. `mask`, empty or as many, is 0 where the depth

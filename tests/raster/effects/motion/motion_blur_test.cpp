@@ -7,6 +7,7 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "raster/images/texel.h"
 #include "tests/support/raster_helpers.h"
@@ -342,6 +343,27 @@ TEST_CASE("what moves behind something still does not reach over it") {
         blurred({.shutter = 1.0f, .filter = filter}, scene.picture, scene.velocity, pool);
     for (int x = 0; x < 96; ++x) {
       if (std::abs(x - 48) >= 10) CHECK(red(result, x, 32) == 0.0f);
+    }
+  }
+}
+
+TEST_CASE("what moves before what is infinitely far blurs as before the farthest depth of a half") {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const Isa isa : available_isas()) {
+    ThreadPool pool{1, isa};
+    for (const MotionFilter filter : kFilters) {
+      const MotionBlurSettings settings{.shutter = 1.0f, .filter = filter};
+      for (const bool is_before : {true, false}) {
+        const auto scene = [&](float far_m) {
+          return moving_square({24.0f, 0.0f}, is_before ? 2.0f : far_m, is_before ? far_m : 2.0f);
+        };
+        const MovingSquare far = scene(65504.0f), farther = scene(infinity);
+        const Image expected = blurred(settings, far.picture, far.velocity, pool);
+        const Image result = blurred(settings, farther.picture, farther.velocity, pool);
+        CHECK((red(result, 48 + 13, 32) > 0.15f) == is_before);
+        for (int x = 0; x < 96; ++x) CHECK(red(result, x, 32) == red(expected, x, 32));
+        CHECK(load_texel(result, is_before ? 0 : 48, 32).w == infinity);
+      }
     }
   }
 }

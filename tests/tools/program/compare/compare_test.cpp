@@ -23,7 +23,7 @@ std::uint16_t& value_at(Image& image, int x, int y, int channel) {
 
 void write_picture(const std::string& name, const Image& image) {
   const Bytes bytes = encode(image, *format_by_extension(name));
-  write_file(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(name, bytes);
 }
 
 /// `grey()` and the same with two values changed: by 1 half-ULP in (2, 1) green, by 5 in

@@ -18,7 +18,7 @@ struct PictureFiles {
 
   std::string write(const std::string& name, const Image& image) const {
     const Bytes bytes = encode(image, *format_by_extension(name));
-    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(directory.file(name), bytes);
     return directory.file(name);
   }
 };

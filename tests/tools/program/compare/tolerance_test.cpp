@@ -25,7 +25,7 @@ struct TwoPictures {
   }
   static void write(const std::string& name, const Image& image) {
     const Bytes bytes = encode_npy(image);
-    write_file(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(name, bytes);
   }
   ProgramRun compared(const Words& more) const {
     Words words{"compare", a, b};
@@ -108,4 +108,97 @@ TEST_CASE("bad input: limits that are none, and with --flicker") {
       files.directory,
       {"compare", "--flicker", files.a, files.b, "--against", files.a, files.b, "--max-flip", "1"},
       2, {"--flicker", "--max-flip"});
+}
+
+TEST_CASE("compare --max-pixels: so many pixels may differ by more than --max-difference") {
+  const TwoPictures files;
+  CHECK(files.compared({"--max-pixels", "0"}).status == 1);
+  CHECK(files.compared({"--max-pixels", "1"}).status == 0);
+  CHECK(files.compared({"--max-pixels", "1.6%"}).status == 0);
+  CHECK(files.compared({"--max-pixels", "1.5%"}).status == 1);
+  // 3 half-ULPs from 0.5 are 0.00146484.
+  CHECK(files.compared({"--max-difference", "0.00146485"}).status == 0);
+  CHECK(files.compared({"--max-difference", "0.00146484"}).status == 1);
+  const ProgramRun run = files.compared({"--max-pixels", "0"});
+  CHECK(contains(run.out, "limit               --max-pixels 0: broken by 1, at 1 pixels"));
+  for (const auto& [option, value] : {std::pair{"--max-pixels", "-1"},
+                                      {"--max-pixels", "1.5"},
+                                      {"--max-difference", "-1"},
+                                      {"--search", "9"}}) {
+    check_refused(files.directory, {"compare", files.a, files.b, option, value}, 2,
+                  {option, value});
+  }
+}
+
+TEST_CASE("compare --search: an edge that moved by a pixel is found, one that is new is not") {
+  const TemporaryDirectory directory;
+  const auto write_edge = [&](const std::string& name, int at, bool has_spot) {
+    Image image = make_image(Format::rgba16f, 24, 16);
+    for (int y = 0; y < 16; ++y) {
+      for (int x = 0; x < 24; ++x) {
+        const float light = x >= at || (has_spot && x == 3 && y == 9) ? 1.0f : 0.0f;
+        store_texel(image, x, y, {light, light, light, 1.0f}, {});
+      }
+    }
+    TwoPictures::write(directory.file(name), image);
+    return directory.file(name);
+  };
+  const std::string a = write_edge("a.npy", 12, false), b = write_edge("b.npy", 13, false);
+  const std::string c = write_edge("c.npy", 12, true);
+  CHECK(run_program({"compare", a, b, "--max-pixels", "15"}).status == 1);
+  CHECK(run_program({"compare", a, b, "--max-pixels", "16"}).status == 0);
+  CHECK(run_program({"compare", a, b, "--search", "1"}).status == 0);
+  CHECK(run_program({"compare", a, c, "--search", "1"}).status == 1);
+  CHECK(run_program({"compare", c, a, "--search", "1"}).status == 1);
+  CHECK(run_program({"compare", c, a, "--search", "1", "--max-pixels", "1"}).status == 0);
+}
+
+TEST_CASE("compare: colours under an alpha of 0 do not count, and alpha does") {
+  const TemporaryDirectory directory;
+  const auto write_png = [&](const std::string& name, float hidden, float alpha) {
+    Image image = make_image(Format::rgba16f, 8, 8);
+    clear_image(image, {0.5f, 0.5f, 0.5f, 1.0f}, {});
+    // What is transparent keeps its colour only if it was not multiplied: 1e-7 is 0 in 8 bits.
+    const float part = alpha > 0.0f ? alpha : 1e-7f;
+    std::vector<float> opacity(64, 1.0f);
+    std::fill_n(opacity.begin(), 32, part);
+    for (int i = 0; i < 32; ++i) {
+      store_texel(image, i % 8, i / 8, {hidden * part, 0.0f, 0.0f, 1.0f}, {});
+    }
+    write_file(directory.file(name), encode_png(image, opacity));
+    return directory.file(name);
+  };
+  const std::string a = write_png("a.png", 0.2f, 0.0f), b = write_png("b.png", 0.9f, 0.0f);
+  REQUIRE(load_texel(read_image_file(a).image, 0, 0).x !=
+          load_texel(read_image_file(b).image, 0, 0).x);
+  CHECK(run_program({"compare", a, b}).status == 0);
+  CHECK(run_program({"compare", a, write_png("c.png", 0.2f, 1.0f), "--max-pixels", "31"}).status ==
+        1);
+}
+
+TEST_CASE("compare: the last line says how to go on where the pictures differ, and nowhere else") {
+  const TwoPictures files;
+  CHECK(contains(files.compared({}).out,
+                 "--diff OUT.png draws the difference; cp '" + files.a + "' '" + files.b + "'"));
+  const std::string map = files.directory.file("d.png");
+  CHECK(contains(files.compared({"--diff", map}).out, "the difference is drawn in '" + map + "'"));
+  CHECK_FALSE(contains(files.compared({"--max-pixels", "1"}).out, "to go on"));
+  CHECK_FALSE(contains(run_program({"compare", files.a, files.a}).out, "to go on"));
+}
+
+TEST_CASE("compare --regions: an empty region is said, and focus fits the picture") {
+  const TemporaryDirectory directory;
+  const std::string a = directory.file("a.npy");
+  Image image = make_image(Format::rgba16f, 32, 32);
+  clear_image(image, {0.5f, 0.5f, 0.5f, 2.0f}, {});
+  TwoPictures::write(a, image);
+  const Words lens{"compare", a, a, "--regions", "--f-number", "1", "--coc-scale", "50"};
+  Words far = lens, near = lens;
+  far.insert(far.end(), {"--focus", "2"});
+  near.insert(near.end(), {"--focus", "20"});
+  CHECK(contains(run_program(far).out, "no pixel of the picture lies there"));
+  CHECK_FALSE(contains(run_program(far).out, "here up to a radius of"));
+  const std::string text = run_program(near).out;
+  CHECK(contains(text, "here up to a radius of"));
+  CHECK(contains(text, "focus                1024"));
 }

@@ -18,10 +18,6 @@ using nlohmann::json;
 
 namespace {
 
-std::string text_of(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// A grey picture a.npy and its depth d.pfm, 8x6.
 struct SmallPair {
   TemporaryDirectory directory;
@@ -29,11 +25,11 @@ struct SmallPair {
   std::string out = directory.file("out.png");
 
   SmallPair() {
-    write_file(colour, text_of(encode_npy(make_image(Format::rgba16f, 8, 6))));
+    write_file(colour, encode_npy(make_image(Format::rgba16f, 8, 6)));
     put_depth(std::vector<float>(48, 2.0f));
   }
   void put_depth(const std::vector<float>& metres) const {
-    write_file(depth, text_of(encode_grey_pfm(metres, 8, 6)));
+    write_file(depth, encode_grey_pfm(metres, 8, 6));
   }
 };
 
@@ -170,7 +166,7 @@ TEST_CASE("bad input: depths of almost 0 stay numbers, in a smaller map too") {
   metres[0] = 2.4e-32f;
   metres[1] = 0.0f;
   metres[4] = 9e-40f;
-  write_file(files.depth, text_of(encode_grey_pfm(metres, 4, 3)));
+  write_file(files.depth, encode_grey_pfm(metres, 4, 3));
   const std::string out = files.directory.file("out.npy");
   const ProgramRun run = run_program(
       {"refocus", files.colour, files.depth, "-o", out, "--depth-encoding", "metres", "-q"});
@@ -187,7 +183,7 @@ TEST_CASE("bad input: a layer that is not there is answered with those that are"
   if (!missing_exr().empty()) return;
   const SmallPair files;
   const std::string file = files.directory.file("l.exr");
-  write_file(file, text_of(encode_exr(make_image(Format::rgba16f, 8, 6), ExrNumbers::half, "")));
+  write_file(file, encode_exr(make_image(Format::rgba16f, 8, 6), ExrNumbers::half, ""));
   check_refused(files.directory, {"refocus", file, "-o", files.out, "--depth-layer", "deep"}, 2,
                 {"--depth-layer 'deep'", "l.exr", "B, G, R, Z"});
   check_refused(files.directory, {"refocus", file, "-o", files.out, "--layer", "beauty"}, 2,

@@ -24,10 +24,6 @@ Words joined(Words words, const Words& more) {
   return words;
 }
 
-std::string text_of(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// Colours that differ from pixel to pixel, and surfaces at 1 to 8 m with steps between them.
 struct Scene {
   int width, height;
@@ -64,7 +60,7 @@ struct SceneFiles {
   }
 
   void put(const std::string& name, const Bytes& bytes) const {
-    write_file(directory.file(name), text_of(bytes));
+    write_file(directory.file(name), bytes);
   }
   std::string file(const std::string& name) const { return directory.file(name); }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr int kAcross = 64, kDown = 48;
 
 void put(const TemporaryDirectory& directory, const std::string& name, const Bytes& bytes) {
-  write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(directory.file(name), bytes);
 }
 
 /// A picture of black and white squares.

@@ -15,7 +15,7 @@ namespace {
 
 void write_pfm(const std::string& name, const std::vector<float>& values, int width, int height) {
   const Bytes bytes = encode_grey_pfm(values, width, height);
-  write_file(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(name, bytes);
 }
 
 json inspected_json(Words words) {
@@ -95,7 +95,7 @@ TEST_CASE("inspect: a depth in three equal channels is one, as refocus takes it"
     store_texel(grey, i % 4, i / 4, glm::vec4{0.1f * static_cast<float>(i % 4)}, {});
   const auto put = [&](const std::string& name) {
     const Bytes bytes = encode_png(grey);
-    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(directory.file(name), bytes);
     return inspected_json({directory.file(name)})[0]["depth"];
   };
   const json depth = put("grey.png");
@@ -115,6 +115,8 @@ TEST_CASE("inspect, refocus: a depth without a known number is said to be none")
                 {"d.pfm", "has no depth", "another file"});
   write_pfm(file, {INFINITY, NAN}, 2, 1);
   CHECK(contains(run_program({"inspect", file}).out, "no number is finite"));
+  write_pfm(file, {0.25f, 1.0f}, 2, 1);
+  CHECK(contains(run_program({"inspect", file}).out, "what a network gives (midas)"));
 }
 
 TEST_CASE("inspect: -o shows the circles, black where it is sharp") {

@@ -14,10 +14,6 @@ using nlohmann::json;
 
 namespace {
 
-std::string text_of(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 std::string segment(char marker, const std::string& data) {
   const std::size_t length = data.size() + 2;
   return std::string{'\xFF', marker, static_cast<char>(length >> 8), static_cast<char>(length)} +

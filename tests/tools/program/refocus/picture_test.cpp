@@ -29,7 +29,7 @@ Words with(Words words, const Words& more) {
 }
 
 void put(const TemporaryDirectory& directory, const std::string& name, const Bytes& bytes) {
-  write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(directory.file(name), bytes);
 }
 
 Image picture_of(const std::function<glm::vec3(int, int)>& colour_at) {

@@ -164,7 +164,7 @@ TEST_CASE("refocus: what is infinitely far has the horizon's circle, and stays i
       }
     }
     const Bytes bytes = encode_npy(picture);
-    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(directory.file(name), bytes);
   };
   set_sky(60000.0f, "far.npy");
   set_sky(std::numeric_limits<float>::infinity(), "infinite.npy");
@@ -291,7 +291,7 @@ TEST_CASE("refocus: what is transparent becomes black, with a warning") {
       store_texel(half_there, x, y, {1.0f, 1.0f, 1.0f, x < 4 ? 1.0f : 0.0f}, {});
   }
   const auto write = [&](const char* name, const Bytes& bytes) {
-    write_file(directory.file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(directory.file(name), bytes);
   };
   write("a.npy", encode_npy(half_there));
   write("d.pfm", encode_grey_pfm(std::vector<float>(64, 2.0f), 8, 8));
