@@ -128,6 +128,7 @@ struct SurfaceFragmentLanes {
   // As surface_layout() has them.
   static constexpr std::size_t kTextureU = SurfaceLayout::kTexture;
   static constexpr std::size_t kAfterBase = kTextureU + (uvs ? 2 : 0);
+  static constexpr std::size_t kUsualVaryings = kAfterBase + (specular ? 3 : 0);  // of one side
   // The colour that a texture is multiplied with, depth; and with a texture the place where it
   // is sampled, and the highlights, which are else in the colour.
   static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,

@@ -38,8 +38,8 @@ struct Weights {
   Floats linear1, linear2, perspective1, perspective2;
 };
 
-/// As BarycentricInterpolator.
-template <const auto& kinds>
+/// As BarycentricInterpolator. Draws with `usual` varyings are the quickest.
+template <const auto& kinds, std::size_t usual = kinds.size()>
 struct BarycentricLanes {
   using Point = Weights;
   static constexpr std::size_t N = kinds.size();
@@ -64,18 +64,14 @@ struct BarycentricLanes {
       }
       inverse_w[vertex] = spread<kVertexInverseW>(load_fours(rows_of[vertex].data(), 0));
     }
+    if (N == usual || job.varyings == usual) {
 #pragma GCC unroll 4
-    for (std::size_t i = 0; i < N; i += 4) {
-      if (i >= job.varyings) break;
-      load_four_varyings(rows_of[0], i, &first[i]);
-      load_four_varyings(rows_of[1], i, &to_second[i]);
-      load_four_varyings(rows_of[2], i, &to_third[i]);
+      for (std::size_t i = 0; i < usual; i += 4) load_four(rows_of, i, job.provoking);
+    } else {
 #pragma GCC unroll 4
-      for (std::size_t k = i; k < i + 4; ++k) {
-        if constexpr (!kAllPerspective<kinds>)
-          flat[k] = job.provoking == 0 ? first[k] : to_third[k];
-        to_second[k] -= first[k];
-        to_third[k] -= first[k];
+      for (std::size_t i = 0; i < N; i += 4) {
+        if (i >= job.varyings) break;
+        load_four(rows_of, i, job.provoking);
       }
     }
     std::array<const float*, kQuads> numbers;
@@ -172,6 +168,18 @@ struct BarycentricLanes {
   }
 
  private:
+  SOFTFOCUS_INLINE void load_four(const std::array<VertexRows, 3>& rows_of, std::size_t i,
+                                  std::size_t provoking) {
+    load_four_varyings(rows_of[0], i, &first[i]);
+    load_four_varyings(rows_of[1], i, &to_second[i]);
+    load_four_varyings(rows_of[2], i, &to_third[i]);
+#pragma GCC unroll 4
+    for (std::size_t k = i; k < i + 4; ++k) {
+      if constexpr (!kAllPerspective<kinds>) flat[k] = provoking == 0 ? first[k] : to_third[k];
+      to_second[k] -= first[k];
+      to_third[k] -= first[k];
+    }
+  }
   SOFTFOCUS_INLINE Floats blend(std::size_t varying, Floats weight1, Floats weight2) const {
     return (first[varying] + weight1 * to_second[varying]) + weight2 * to_third[varying];
   }

@@ -248,6 +248,12 @@ SOFTFOCUS_INLINE LoadJob load_job_of(const Stage& stage, const FragmentJob& job)
   return {job.provoking, varyings, job.profile->interpolation};
 }
 
+template <class Stage>
+constexpr std::size_t usual_varyings() {
+  if constexpr (requires { Stage::kUsualVaryings; }) return Stage::kUsualVaryings;
+  return Stage::kInterpolation.size();
+}
+
 template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
@@ -329,7 +335,8 @@ template <class Stage>
 void shade_fragments(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                      const VisibleRun& run) {
   if (job.profile->attributes == AttributeSetup::exact_barycentric) {
-    shade_seen<BarycentricLanes<Stage::kInterpolation>>(stage, job, tile, run);
+    shade_seen<BarycentricLanes<Stage::kInterpolation, usual_varyings<Stage>()>>(stage, job, tile,
+                                                                                 run);
   } else {
     shade_seen<PlaneLanes<Stage::kInterpolation>>(stage, job, tile, run);
   }

@@ -171,7 +171,8 @@ TEST_CASE("a command repeats the frame, or there is none") {
   CHECK(command_of(moved).is_null());
 }
 
-TEST_CASE("every scene's frame has the picture_hash of the page's command") {
+TEST_CASE("every scene's frame has the picture_hash of the page's command" *
+          doctest::test_suite("long")) {
   const TemporaryDirectory folder;
   Page page;
   const auto check = [&](const std::string& settings) {
