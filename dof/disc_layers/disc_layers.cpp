@@ -197,9 +197,10 @@ bool is_lit(const LitRung& rung, std::size_t level, const LevelRectangle& at) {
 }
 
 bool Frame::any_lit(std::size_t level, int side, const LevelRectangle& at) const {
-  return std::ranges::any_of(highlights.rungs, [&](const LitRung& rung) {
-    return rung.side == side && rung.level >= level && is_lit(rung, level, at);
-  });
+  for (const LitRung& rung : highlights.rungs) {
+    if (rung.side == side && rung.level >= level && is_lit(rung, level, at)) return true;
+  }
+  return false;
 }
 
 // A level's rungs that have highlights there, a bit each.

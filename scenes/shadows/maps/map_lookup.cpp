@@ -31,7 +31,7 @@ void look_up_maps(const Facets& facets, std::span<const MapLookup> lookups,
   unsigned all_bits = 0;
   for (const MapLookup& lookup : lookups) {
     all_bits |= 1u << lookup.bit;
-    std::ranges::fill(lookup.shares, std::uint8_t{0});
+    std::fill(lookup.shares.begin(), lookup.shares.end(), std::uint8_t{0});
   }
   const auto look_up = [&](std::size_t pixel, const Receiver& receiver, glm::dvec3 point) {
     for (const MapLookup& lookup : lookups) {
