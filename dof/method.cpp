@@ -8,7 +8,6 @@
 
 #include "dof/circular/circular.h"
 #include "dof/disc_layers/disc_layers.h"
-#include "dof/disc_layers/layered.h"
 #include "dof/methods/anisotropic_diffusion.h"
 #include "dof/methods/diffusion.h"
 #include "dof/methods/fields.h"

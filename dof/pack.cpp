@@ -9,6 +9,7 @@
 
 #include "raster/numbers/half.h"
 #include "raster/numbers/srgb.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -81,13 +82,6 @@ void unpack_channel(std::uint16_t half, ChannelType type, std::byte* to) {
   }
 }
 
-template <class RowWork>
-void for_each_row(int height, ThreadPool& pool, const RowWork& work) {
-  pool.for_each((height + kRows - 1) / kRows, [&](int block) {
-    for (int y = block * kRows; y < std::min((block + 1) * kRows, height); ++y) work(y);
-  });
-}
-
 }  // namespace
 
 void pack(const ColourSource& colour, const DepthSource& depth, HalfRounding rounding,
@@ -95,7 +89,7 @@ void pack(const ColourSource& colour, const DepthSource& depth, HalfRounding rou
   assert(picture.format == Format::rgba16f);
   std::array<std::uint16_t, 256> half_of_byte{};
   if (bytes_per_channel(colour.type) == 1) half_of_byte = halves_of_bytes(colour.type);
-  for_each_row(picture.height, pool, [&](int y) {
+  for_each_row(pool, picture.height, kRows, [&](int y) {
     const auto at = [y](const void* first, std::ptrdiff_t row_bytes) {
       return static_cast<const std::byte*>(first) + y * row_bytes;
     };
@@ -117,7 +111,7 @@ void pack(const ColourSource& colour, const DepthSource& depth, HalfRounding rou
 
 void unpack(const ConstImageView& picture, const ColourTarget& colour, ThreadPool& pool) {
   assert(picture.format == Format::rgba16f);
-  for_each_row(picture.height, pool, [&](int y) {
+  for_each_row(pool, picture.height, kRows, [&](int y) {
     const std::uint16_t* from = row<std::uint16_t>(picture, y).data();
     for (int channel = 0; channel < 3; ++channel) {
       void* const planes[] = {colour.red, colour.green, colour.blue};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "raster/numbers/half.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -70,17 +71,12 @@ MemoryRange range_of_texels(const void* first, std::ptrdiff_t row_bytes, int wid
   return range_of({"", first, kTexelBytes, row_bytes, kTexelBytes}, width, height);
 }
 
-template <class RowWork>
-void for_each_row(int height, ThreadPool& pool, const RowWork& work) {
-  constexpr int kRows = 16;
-  pool.for_each((height + kRows - 1) / kRows, [&](int block) {
-    for (int y = block * kRows; y < std::min((block + 1) * kRows, height); ++y) work(y);
-  });
-}
+// Rows that a thread takes at a time.
+constexpr int kRows = 16;
 
 /// Halves are the alphas as they are.
 void copy_half_depths(const softfocus_picture& picture, const ImageView& to, ThreadPool& pool) {
-  for_each_row(picture.height, pool, [&](int y) {
+  for_each_row(pool, picture.height, kRows, [&](int y) {
     const auto texels = row<std::uint16_t>(to, y);
     const std::byte* from = bytes_at(picture.depth) + y * picture.depth_row_bytes;
     for (std::size_t i = 3; i < texels.size(); i += 4, from += picture.depth_pixel_bytes) {
@@ -92,7 +88,7 @@ void copy_half_depths(const softfocus_picture& picture, const ImageView& to, Thr
 /// (z - focus) / z is NaN at infinity, and methods give NaN the largest circle. The horizon shall
 /// have its own.
 void bring_horizon_near(const ImageView& picture, ThreadPool& pool) {
-  for_each_row(picture.height, pool, [&](int y) {
+  for_each_row(pool, picture.height, kRows, [&](int y) {
     const auto texels = row<std::uint16_t>(picture, y);
     for (std::size_t i = 3; i < texels.size(); i += 4) {
       if (texels[i] == kHalfInfinity) texels[i] = kHalfLargest;
@@ -102,7 +98,7 @@ void bring_horizon_near(const ImageView& picture, ThreadPool& pool) {
 
 bool has_horizon(const ConstImageView& picture, ThreadPool& pool) {
   std::atomic<bool> found{false};
-  for_each_row(picture.height, pool, [&](int y) {
+  for_each_row(pool, picture.height, kRows, [&](int y) {
     const auto texels = row<std::uint16_t>(picture, y);
     for (std::size_t i = 3; i < texels.size(); i += 4) {
       if (texels[i] == kHalfInfinity) return found.store(true);
@@ -264,7 +260,7 @@ void ResultTarget::finish(const ConstImageView& result, ThreadPool& pool) const 
           target_.pixel_bytes, target_.row_bytes},
          pool);
   if (target_.depth == nullptr) return;
-  for_each_row(height_, pool, [&](int y) {
+  for_each_row(pool, height_, kRows, [&](int y) {
     const auto texels = row<std::uint16_t>(result, y);
     std::byte* to = static_cast<std::byte*>(target_.depth) + y * target_.depth_row_bytes;
     for (std::size_t i = 3; i < texels.size(); i += 4, to += target_.depth_pixel_bytes) {

@@ -14,7 +14,7 @@
 #include "dof/half_resolution/merge_fields.h"
 #include "dof/picture_planes.h"
 #include "raster/numbers/exact_math.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -197,15 +197,9 @@ void blur_down(const Circular& all, Field field, int y, RowScratch& scratch, Isa
 }
 
 void blur_field(const Circular& all, Field field, ThreadPool& pool) {
-  ScratchShelf<RowScratch> shelf;
-  const int tasks = (all.rows() + kTaskRows - 1) / kTaskRows;
   for (const auto blur : {blur_across, blur_down}) {
-    pool.for_each(tasks, [&](int task) {
-      RowScratch scratch = shelf.take();
-      for (int y = task * kTaskRows; y < std::min((task + 1) * kTaskRows, all.rows()); ++y) {
-        blur(all, field, y, scratch, pool.isa());
-      }
-      shelf.put_back(std::move(scratch));
+    for_each_row_with<RowScratch>(pool, all.rows(), kTaskRows, [&](int y, auto& scratch) {
+      blur(all, field, y, scratch, pool.isa());
     });
   }
 }

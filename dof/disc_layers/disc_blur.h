@@ -15,7 +15,7 @@ enum class DiscSide { near, focus, far };
 
 // A rung to blur in a tile.
 struct DiscBlur {
-  const DiscRow* rows;  // at the tile's first pixel; the first lies reach + 1 rows above the part
+  const LevelRow* rows;  // at the tile's first pixel; the first lies reach + 1 rows above the part
   DiscPart part;
   DiscSide side;
   float sign;  // of the squares of this side
@@ -25,7 +25,7 @@ struct DiscBlur {
   float area;  // the disc's sum where there is 1 everywhere
   // Of level 0: what near pixels hide, by the same rows, or nullptr. Where a square differs from
   // that of `rows`, something lies behind the pixel.
-  const DiscRow* hidden = nullptr;
+  const LevelRow* hidden = nullptr;
 };
 
 // Where a rung is blurred.
@@ -34,9 +34,9 @@ struct DiscScratch {
   float seen[kDiscTileRows][kDiscTileRow];    // the share of the rung and of all that it hides
   float hidden[kDiscTileRows][kDiscTileRow];  // the share of what pixels hide
   float product[kDiscTileRows][kDiscTileRow];
-  float columns[2][kDiscApron][kDiscTileRow];                  // of the last two rows
-  float sums[kDiscChannels][kDiscTileHeight][kDiscTileWidth];  // discs' sums; the last of `seen`
-  int seen_sums;  // which sums are those of `seen`: kDiscWeight where both are the same
+  float columns[2][kDiscApron][kDiscTileRow];                     // of the last two rows
+  float sums[kLevelChannels][kLevelTileHeight][kLevelTileWidth];  // discs' sums; the last of `seen`
+  int seen_sums;  // which sums are those of `seen`: kLevelWeight where both are the same
 };
 
 /// Sums over the rung's discs: of its colours, of its share and of `seen`, into scratch.sums, whose
@@ -44,32 +44,16 @@ struct DiscScratch {
 void blur_disc_tile(const DiscBlur& in, DiscScratch& scratch, Isa isa);
 
 /// Adds a rung behind what is seen of nearer ones.
-void add_disc_sums(const DiscScratch& in, const DiscPart& part, DiscTile& tile, Isa isa);
+void add_disc_sums(const DiscScratch& in, const DiscPart& part, SeenTile& tile, Isa isa);
 
 /// How much of a highlight's light is seen, if it belongs to the rung: the transmittance of all
 /// nearer rungs over the part of the rung's disc that they leave open, at most `most`. Needs the
 /// sums of blur_disc_tile() and the tile before add_disc_sums().
-void gain_of_disc(const DiscScratch& in, const DiscTile& tile, float area, float most, int width,
-                  int height, float (*gain)[kDiscTileWidth], Isa isa);
+void gain_of_disc(const DiscScratch& in, const SeenTile& tile, float area, float most, int width,
+                  int height, float (*gain)[kLevelTileWidth], Isa isa);
 
 /// Enlarges to a row of `count` pixels, an even number, from rows of pixels of twice the size:
 /// three quarters of the row `inside` which it lies, a quarter of the `other`; along x likewise.
 void enlarge_disc_row(const float* inside, const float* other, int count, float* to, Isa isa);
-
-/// Enlarges what is seen of the next level, in `rows` rows, to the tile at (x, y), in the same way:
-/// as the tile, or behind what is seen of it.
-void enlarge_disc_tile(const DiscPlanes& seen, int rows, int x, int y, int height, bool behind,
-                       DiscTile& tile, Isa isa);
-
-/// The light of highlights in a tile.
-struct LitTile {
-  alignas(kRowAlignment) float light[3][kDiscTileHeight][kDiscTileWidth];
-};
-
-/// Divides by the opacity reached, adds the highlights if there are any, and stores the tile with
-/// the scene's depth. Rows are `scene_row` and `row` halves apart.
-void store_disc_tile(const DiscTile& tile, const LitTile* lit, const std::uint16_t* scene,
-                     std::ptrdiff_t scene_row, int width, int height, HalfRounding rounding,
-                     std::uint16_t* to, std::ptrdiff_t row, Isa isa);
 
 }  // namespace softfocus

@@ -11,7 +11,7 @@
 #include "dof/weights.h"
 #include "raster/images/image.h"
 #include "raster/numbers/half.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -54,18 +54,9 @@ HiddenSearch make_search(const DofInput& input, SearchMemory& memory) {
 
 int bands_of(int height) { return (height + kBand - 1) / kBand; }
 
-template <class Body>
-void for_each_row(int height, ThreadPool& pool, const Body& body) {
-  pool.for_each(bands_of(height), [&](int band) {
-    for (int y = band * kBand; y < std::min((band + 1) * kBand, height); ++y) body(y);
-  });
-}
-
 void sweep_columns(const HiddenSearch& search, ThreadPool& pool) {
-  pool.for_each((search.strips + kSweptStrips - 1) / kSweptStrips, [&](int task) {
-    const int first = task * kSweptStrips;
-    sweep_columns(search, first, std::min(first + kSweptStrips, search.strips), pool.isa());
-  });
+  for_each_band(pool, search.strips, kSweptStrips,
+                [&](int first, int end) { sweep_columns(search, first, end, pool.isa()); });
 }
 
 struct RowDistances {
@@ -83,13 +74,10 @@ bool search_row(const HiddenSearch& search, int y, RowDistances& along, Isa isa)
 bool first_round(const HiddenSearch& search, const ImageView& made, HiddenPicture& hidden,
                  ThreadPool& pool) {
   sweep_columns(search, pool);
-  ScratchShelf<RowDistances> shelf;
-  for_each_row(search.height, pool, [&](int y) {
-    RowDistances along = shelf.take();
+  for_each_row_with<RowDistances>(pool, search.height, kBand, [&](int y, auto& along) {
     if (search_row(search, y, along, pool.isa())) {
       hide_row(search, y, along.left.data(), along.right.data(), made, hidden, pool.isa());
     }
-    shelf.put_back(std::move(along));
   });
   const auto any = [](std::uint8_t row) { return row != 0; };
   return std::any_of(hidden.rows.begin(), hidden.rows.end(), any);
@@ -118,14 +106,11 @@ void second_round(HiddenSearch& search, const ImageView& made, HiddenPicture& hi
   search.from = made;
   sweep_columns(search, pool);
   std::vector<std::vector<HiddenTexels>> found(static_cast<std::size_t>(bands_of(search.height)));
-  ScratchShelf<RowDistances> shelf;
-  for_each_row(search.height, pool, [&](int y) {
-    RowDistances along = shelf.take();
+  for_each_row_with<RowDistances>(pool, search.height, kBand, [&](int y, auto& along) {
     if (search_row(search, y, along, pool.isa())) {
       find_in_row(search, y, along.left.data(), along.right.data(),
                   found[static_cast<std::size_t>(y / kBand)], pool.isa());
     }
-    shelf.put_back(std::move(along));
   });
   pool.for_each(bands_of(search.height), [&](int band) {
     for (const HiddenTexels& at : found[static_cast<std::size_t>(band)]) {
@@ -188,7 +173,7 @@ HiddenPicture find_hidden(const DofInput& input, ThreadPool& pool) {
   SearchMemory memory;
   HiddenSearch search = make_search(input, memory);
   HiddenPicture hidden = nothing_hidden(width, height);
-  for_each_row(height, pool, [&](int y) { split_row(search, y, pool.isa()); });
+  for_each_row(pool, height, kBand, [&](int y) { split_row(search, y, pool.isa()); });
   const auto near = [](const HiddenStrip& strip) { return strip.near != 0; };
   if (std::none_of(memory.known.begin(), memory.known.end(), near)) return hidden;
   const ImageView made = make_hidden_picture(hidden, width, height);

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "dof/disc_layers/disc_ladder.h"
-#include "dof/disc_layers/exact_disc.h"
 #include "dof/dof.h"
 #include "raster/images/image.h"
 
@@ -43,6 +42,18 @@ struct LitRung {
 
 /// Light is counted in units of 2^-34, as in scatter.h: sums are exact, in any order.
 inline constexpr double kLightUnit = 0x1p-34;
+
+/// A disc of a radius, by the exact cover of each pixel, and the same in all four quarters.
+struct ExactDisc {
+  /// The row at |dy|: pixels up to |dx| = whole are covered wholly, up to `outer` in part.
+  struct Row {
+    int whole, outer;   ///< whole is -1 if there are none
+    std::size_t cover;  ///< in `covers`: of |dx| = whole + 1, ..., outer
+  };
+  std::vector<Row> rows;  ///< |dy| = 0, 1, ...
+  std::vector<double> covers;
+  double area = 0.0;  ///< the sum over all pixels
+};
 
 struct DiscHighlights {
   Image rest;  ///< the picture without highlights; 0 pixels wide if there are none

@@ -7,9 +7,6 @@
 namespace softfocus {
 namespace {
 
-constexpr RungStep kAlways{-1.0f, 1.0f};
-constexpr RungStep kNever{3e38f, 1.0f};
-
 // The areas of a disc in a column of pixels and in the column's middle pixel.
 struct ColumnArea {
   double all, middle;

@@ -7,23 +7,14 @@
 // Rungs below a radius of 8 pixels work on the picture itself, level 0. Each doubling of the
 // radius beyond works on pixels of twice the size.
 
-#include <algorithm>
 #include <vector>
+
+#include "dof/level_stack.h"
 
 namespace softfocus {
 
 inline constexpr int kFineRungs = 13;  ///< of level 0, including the one in focus
 inline constexpr int kLevelRungs = 4;  ///< of each other level
-
-/// Where a rung begins, in squares of radii.
-struct RungStep {
-  float begin, slope;
-};
-
-/// How much of a pixel belongs to a rung or to larger ones.
-inline float share_from(RungStep step, float square) {
-  return std::max(std::min((square - step.begin) * step.slope, 1.0f), 0.0f);
-}
 
 /// A column of a disc about y: pixels y - whole to y + whole weigh `centre`, the next on
 /// either side `end`.

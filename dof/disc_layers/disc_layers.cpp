@@ -1,28 +1,27 @@
 #include "dof/disc_layers/disc_layers.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <memory>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "dof/disc_layers/disc_blur.h"
 #include "dof/disc_layers/disc_highlights.h"
 #include "dof/disc_layers/disc_levels.h"
 #include "dof/disc_layers/lit_discs.h"
-#include "raster/threads/scratch_shelf.h"
+#include "dof/level_stack.h"
 
 namespace softfocus {
 namespace {
 
 struct Workspace {
-  DiscTile tile;
+  SeenTile tile;
   DiscScratch scratch;
   // Level 0: colours and signed squares of what is seen, then of what is hidden.
   alignas(kRowAlignment) float picture[kDiscTileRows][4][kDiscTileRow];
   float hidden[kDiscTileRows][4][kDiscTileRow];
-  float ones[kDiscTileRow];
-  float gain[kDiscTileHeight][kDiscTileWidth];
+  float gain[kLevelTileHeight][kLevelTileWidth];
   bool any_hidden;
   bool row_hidden[kDiscTileRows];  // whether `hidden` has a row; if not, it is that of `picture`
   LitTile lit;
@@ -33,15 +32,26 @@ struct Frame {
   const DofInput& input;
   const HiddenPicture& hidden;
   const std::vector<LevelRungs>& ladder;
-  std::vector<DiscLevel>& levels;
+  std::span<const DiscLevel> levels;
   const DiscHighlights& highlights;
   LitGains& gains;
   Isa isa;
+
+  bool any_near(std::size_t level, int side, const LevelRectangle& at) const {
+    return rungs_near(levels[level], side, at.x, at.y, at.width, at.height) != 0;
+  }
+  bool any_wanted(std::size_t level, int side, const LevelRectangle& at) const {
+    return any_seen(*this, level, side, at) || any_lit(level, side, at);
+  }
+  // Whether a level or a larger one has highlights there.
+  bool any_lit(std::size_t level, int side, const LevelRectangle& at) const;
 };
 
-struct Rectangle {
-  int x, y, width, height;
-};
+constexpr auto kOnes = [] {
+  std::array<float, kDiscTileRow> ones{};
+  ones.fill(1.0f);
+  return ones;
+}();
 
 // The reach of the largest of some rungs' discs.
 int reach_of(const LevelRungs& level, std::uint32_t rungs) {
@@ -61,7 +71,7 @@ int strip_at(const HiddenPicture& hidden, int tile_x, int x) {
 void split_hidden_strip(const DofInput& behind, int tile_x, int x, int y,
                         float (&to)[4][kDiscTileRow], Isa isa) {
   const int begin = std::max(x, -kDiscMargin);
-  const int end = std::min(x + kHiddenStrip, kDiscTileWidth + kDiscMargin);
+  const int end = std::min(x + kHiddenStrip, kLevelTileWidth + kDiscMargin);
   if (end - begin == kHiddenStrip) {
     split_disc_row(behind, tile_x + x, y, kHiddenStrip, to[0] + kDiscMargin + x, kDiscTileRow, isa);
     return;
@@ -78,9 +88,9 @@ void split_hidden_strip(const DofInput& behind, int tile_x, int x, int y,
 bool split_hidden_row(const DofInput& behind, const HiddenPicture& hidden, int tile_x, int y,
                       int y_ahead, const float (&picture)[4][kDiscTileRow],
                       float (&to)[4][kDiscTileRow], Isa isa) {
-  static_assert(kDiscMargin < kHiddenStrip && kDiscTileWidth % kHiddenStrip == 0);
+  static_assert(kDiscMargin < kHiddenStrip && kLevelTileWidth % kHiddenStrip == 0);
   bool any = false;
-  for (int x = -kHiddenStrip; x < kDiscTileWidth + kDiscMargin; x += kHiddenStrip) {
+  for (int x = -kHiddenStrip; x < kLevelTileWidth + kDiscMargin; x += kHiddenStrip) {
     const int strip = strip_at(hidden, tile_x, x);
     if (hidden.strip(strip, y_ahead)) {
       fetch_texels(hidden.picture, strip * kHiddenStrip, y_ahead, kHiddenStrip);
@@ -94,7 +104,7 @@ bool split_hidden_row(const DofInput& behind, const HiddenPicture& hidden, int t
 }
 
 // Splits a tile's part of the picture, with `apron` more rows above and below.
-void split_tile(const Frame& frame, const Rectangle& at, int apron, Workspace& work) {
+void split_tile(const Frame& frame, const LevelRectangle& at, int apron, Workspace& work) {
   constexpr int kAhead = 4;  // rows
   const int last = frame.levels[0].height - 1;
   DofInput behind = frame.input;
@@ -111,9 +121,9 @@ void split_tile(const Frame& frame, const Rectangle& at, int apron, Workspace& w
   }
 }
 
-DiscRow split_row(const float (&row)[4][kDiscTileRow], const Workspace& work) {
+LevelRow split_row(const float (&row)[4][kDiscTileRow]) {
   return {{row[0] + kDiscMargin, row[1] + kDiscMargin, row[2] + kDiscMargin,
-           work.ones + kDiscMargin, row[3] + kDiscMargin}};
+           kOnes.data() + kDiscMargin, row[3] + kDiscMargin}};
 }
 
 // The range of a tile that blocks with a rung reach, in pixels from the tile's first.
@@ -132,11 +142,11 @@ Reached reached_by(const std::uint32_t* blocks, int first, int count, std::size_
   return range;
 }
 
-DiscPart whole_of(const Rectangle& at) { return {0, at.height, 0, kWholeTile.columns}; }
+DiscPart whole_of(const LevelRectangle& at) { return {0, at.height, 0, kWholeTile.columns}; }
 
 // The part of a tile that a rung's discs reach.
 DiscPart part_reached(const Rung& rung, std::size_t number, const DiscRungBlocks& near,
-                      const Rectangle& at) {
+                      const LevelRectangle& at) {
   const int reach = rung.spans[0].whole + 1;
   const Reached rows = reached_by(near.of_row, near.row, near.rows, number, reach, at.y, at.height);
   const Reached columns =
@@ -148,20 +158,19 @@ DiscPart part_reached(const Rung& rung, std::size_t number, const DiscRungBlocks
 
 // Sums a rung's discs in a part of a tile.
 void blur_rung(const Frame& frame, std::size_t level, DiscSide side, std::size_t number,
-               const Rectangle& at, const DiscPart& part, Workspace& work) {
+               const LevelRectangle& at, const DiscPart& part, Workspace& work) {
   const LevelRungs& rungs = frame.ladder[level];
   const Rung& rung = rungs.rungs[number];
   const DiscLevel& picture = frame.levels[level];
   const int reach = static_cast<int>(rung.spans.size()) - 1;
   const bool hidden = level == 0 && work.any_hidden;
-  DiscRow rows[kDiscTileRows], hidden_rows[kDiscTileRows];
+  LevelRow rows[kDiscTileRows], hidden_rows[kDiscTileRows];
   for (int y = 0; y < part.rows + 2 * (reach + 1); ++y) {
     if (level == 0) {
       const int row = part.row + y + kDiscApron - reach - 1;
-      rows[y] = split_row(work.picture[row], work);
+      rows[y] = split_row(work.picture[row]);
       if (hidden) {
-        hidden_rows[y] =
-            split_row(work.row_hidden[row] ? work.hidden[row] : work.picture[row], work);
+        hidden_rows[y] = split_row(work.row_hidden[row] ? work.hidden[row] : work.picture[row]);
       }
     } else {
       rows[y] =
@@ -183,32 +192,18 @@ void blur_rung(const Frame& frame, std::size_t level, DiscSide side, std::size_t
   blur_disc_tile(blur, work.scratch, frame.isa);
 }
 
-// A tile's place in the next level, with the pixels around it that enlarging needs.
-Rectangle in_next_level(const Rectangle& at) {
-  return {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2};
-}
-
-bool is_lit(const LitRung& rung, std::size_t level, const Rectangle& at) {
+bool is_lit(const LitRung& rung, std::size_t level, const LevelRectangle& at) {
   return lit_near(rung, level, at.x, at.y, at.width, at.height);
 }
 
-// Whether a level or a larger one has anything of that side to show in a rectangle.
-bool any_seen(const Frame& frame, std::size_t level, int side, const Rectangle& at) {
-  if (level == frame.levels.size()) return false;
-  if (rungs_near(frame.levels[level], side, at.x, at.y, at.width, at.height) != 0) return true;
-  return any_seen(frame, level + 1, side, in_next_level(at));
-}
-
-// Whether it has any highlights there.
-bool any_lit(const Frame& frame, std::size_t level, int side, const Rectangle& at) {
-  for (const LitRung& rung : frame.highlights.rungs) {
-    if (rung.side == side && rung.level >= level && is_lit(rung, level, at)) return true;
-  }
-  return false;
+bool Frame::any_lit(std::size_t level, int side, const LevelRectangle& at) const {
+  return std::ranges::any_of(highlights.rungs, [&](const LitRung& rung) {
+    return rung.side == side && rung.level >= level && is_lit(rung, level, at);
+  });
 }
 
 // A level's rungs that have highlights there, a bit each.
-std::uint32_t lit_rungs(const Frame& frame, std::size_t level, int side, const Rectangle& at) {
+std::uint32_t lit_rungs(const Frame& frame, std::size_t level, int side, const LevelRectangle& at) {
   std::uint32_t rungs = 0;
   for (const LitRung& rung : frame.highlights.rungs) {
     if (rung.side != side || rung.level != level || !is_lit(rung, level, at)) continue;
@@ -217,58 +212,18 @@ std::uint32_t lit_rungs(const Frame& frame, std::size_t level, int side, const R
   return rungs;
 }
 
-// Enlarges a row of planes of the next level to a tile's pixels.
-void enlarge_row(const Frame& frame, const DiscPlanes& from, int plane, int rows,
-                 const Rectangle& at, int row, float* to) {
+// Enlarges a row of a plane of the next level to a tile's pixels.
+void enlarge_row(const LevelPlanes& from, int rows, const LevelRectangle& at, int row, float* to,
+                 Isa isa) {
   const int y = at.y + row;
   const int inside = y / 2;
   const int other = std::clamp(y % 2 == 0 ? inside - 1 : inside + 1, 0, rows - 1);
-  enlarge_disc_row(plane_row(from, plane, inside) + kDiscMargin + at.x / 2,
-                   plane_row(from, plane, other) + kDiscMargin + at.x / 2, at.width + at.width % 2,
-                   to, frame.isa);
-}
-
-// Enlarges what is seen of the next level's side.
-void enlarge(const Frame& frame, std::size_t level, int side, const Rectangle& at, bool behind,
-             DiscTile& tile) {
-  const DiscLevel& from = frame.levels[level + 1];
-  enlarge_disc_tile(from.seen[side], from.height, at.x, at.y, at.height, behind, tile, frame.isa);
-}
-
-void start_tile(const Frame& frame, std::size_t level, const Rectangle& at, bool before_focus,
-                Workspace& work) {
-  if (before_focus && any_seen(frame, level + 1, 0, in_next_level(at))) {
-    enlarge(frame, level, 0, at, false, work.tile);
-    return;
-  }
-  const int count = at.height * kDiscTileWidth;
-  for (int i = 0; i < 3; ++i) std::fill_n(work.tile.channel[i][0], count, 0.0f);
-  std::fill_n(work.tile.channel[kDiscTransmitted][0], count, 1.0f);
-}
-
-void add_larger_behind(const Frame& frame, std::size_t level, const Rectangle& at,
-                       Workspace& work) {
-  if (!any_seen(frame, level + 1, 1, in_next_level(at))) return;
-  enlarge(frame, level, 1, at, true, work.tile);
-}
-
-// Copies a tile's row into a plane, which repeats its ends outwards.
-void keep_row(const DiscLevel& level, const DiscPlanes& planes, int plane, const Rectangle& at,
-              int y, const float* from) {
-  float* to = plane_row(planes, plane, at.y + y) + kDiscMargin + at.x;
-  std::copy_n(from, at.width, to);
-  if (at.x == 0) to[-1] = to[0];
-  if (at.x + at.width == level.width) to[at.width] = to[at.width - 1];
-}
-
-void keep_tile(const DiscLevel& level, int side, const Rectangle& at, const DiscTile& tile) {
-  for (int y = 0; y < at.height; ++y) {
-    for (int i = 0; i < 4; ++i) keep_row(level, level.seen[side], i, at, y, tile.channel[i][y]);
-  }
+  enlarge_disc_row(plane_row(from, 0, inside) + at.x / 2, plane_row(from, 0, other) + at.x / 2,
+                   at.width + at.width % 2, to, isa);
 }
 
 // Draws a rung's highlights in level 0. In other levels keeps the gain for the level before.
-void use_gain(const Frame& frame, std::size_t level, std::size_t lit, const Rectangle& at,
+void use_gain(const Frame& frame, std::size_t level, std::size_t lit, const LevelRectangle& at,
               Workspace& work) {
   if (level == 0) {
     add_highlights(frame.highlights, frame.highlights.rungs[lit], at.x, at.y, at.width, at.height,
@@ -276,13 +231,13 @@ void use_gain(const Frame& frame, std::size_t level, std::size_t lit, const Rect
     return;
   }
   for (int y = 0; y < at.height; ++y) {
-    keep_row(frame.levels[level], frame.gains.planes[lit][level - 1], 0, at, y, work.gain[y]);
+    keep_row(frame.gains.planes[lit][level - 1], frame.levels[level].width, 0, at, y, work.gain[y]);
   }
 }
 
 // The gains of larger levels' highlights, as far as `around` has any.
-void add_larger_gains(const Frame& frame, std::size_t level, int side, const Rectangle& at,
-                      const Rectangle& around, Workspace& work) {
+void add_larger_gains(const Frame& frame, std::size_t level, int side, const LevelRectangle& at,
+                      const LevelRectangle& around, Workspace& work) {
   for (std::size_t i = 0; i < frame.highlights.rungs.size(); ++i) {
     const LitRung& rung = frame.highlights.rungs[i];
     if (rung.side != side || rung.level <= level || !is_lit(rung, level, around)) continue;
@@ -290,13 +245,13 @@ void add_larger_gains(const Frame& frame, std::size_t level, int side, const Rec
     for (int y = 0; y < at.height; ++y) {
       float* gain = work.gain[y];
       if (!any) {
-        std::fill_n(gain, kDiscTileWidth, 0.0f);
+        std::fill_n(gain, kLevelTileWidth, 0.0f);
         continue;
       }
-      enlarge_row(frame, frame.gains.planes[i][level], 0, frame.levels[level + 1].height, at, y,
-                  gain);
+      enlarge_row(frame.gains.planes[i][level], frame.levels[level + 1].height, at, y, gain,
+                  frame.isa);
       if (side == 0) continue;
-      const float* open = work.tile.channel[kDiscTransmitted][y];
+      const float* open = work.tile.channel[kTransmitted][y];
       for (int x = 0; x < at.width; ++x) {
         gain[x] = std::min(open[x] * gain[x], most_gain(level, side));
       }
@@ -307,7 +262,7 @@ void add_larger_gains(const Frame& frame, std::size_t level, int side, const Rec
 
 // The gain of a rung of this level. Needs its sums, not added yet.
 void add_own_gain(const Frame& frame, std::size_t level, int side, std::size_t number,
-                  const Rectangle& at, Workspace& work) {
+                  const LevelRectangle& at, Workspace& work) {
   for (std::size_t i = 0; i < frame.highlights.rungs.size(); ++i) {
     const LitRung& rung = frame.highlights.rungs[i];
     if (rung.side != side || rung.level != level || rung.number != number) continue;
@@ -318,7 +273,7 @@ void add_own_gain(const Frame& frame, std::size_t level, int side, std::size_t n
 }
 
 // Rungs of one side, from the nearest to the farthest.
-void blur_side(const Frame& frame, std::size_t level, DiscSide side, const Rectangle& at,
+void blur_side(const Frame& frame, std::size_t level, DiscSide side, const LevelRectangle& at,
                Workspace& work) {
   const int number = side == DiscSide::near ? 0 : 1;
   const DiscRungBlocks near =
@@ -337,58 +292,28 @@ void blur_side(const Frame& frame, std::size_t level, DiscSide side, const Recta
   }
 }
 
-template <class Body>
-void for_each_tile(const DiscLevel& level, ThreadPool& pool, const Body& body) {
-  const int columns = (level.width + kDiscTileWidth - 1) / kDiscTileWidth;
-  const int rows = (level.height + kDiscTileHeight - 1) / kDiscTileHeight;
-  ScratchShelf<std::unique_ptr<Workspace>> shelf;
-  pool.for_each(columns * rows, [&](int task) {
-    std::unique_ptr<Workspace> work = shelf.take();
-    if (!work) {
-      work = std::make_unique<Workspace>();
-      std::fill_n(work->ones, kDiscTileRow, 1.0f);
-    }
-    const int x = task % columns * kDiscTileWidth, y = task / columns * kDiscTileHeight;
-    body(Rectangle{x, y, std::min(kDiscTileWidth, level.width - x),
-                   std::min(kDiscTileHeight, level.height - y)},
-         *work);
-    shelf.put_back(std::move(work));
-  });
-}
-
 // Gains of 0 in a tile, for rungs that are lit around it but not in it.
-void clear_gains(const Frame& frame, std::size_t level, int side, const Rectangle& at,
-                 const Rectangle& around, Workspace& work) {
+void clear_gains(const Frame& frame, std::size_t level, int side, const LevelRectangle& at,
+                 const LevelRectangle& around, Workspace& work) {
   for (std::size_t i = 0; i < frame.highlights.rungs.size(); ++i) {
     const LitRung& rung = frame.highlights.rungs[i];
     if (rung.side != side || rung.level != level || !is_lit(rung, level, around)) continue;
-    for (int y = 0; y < at.height; ++y) std::fill_n(work.gain[y], kDiscTileWidth, 0.0f);
+    for (int y = 0; y < at.height; ++y) std::fill_n(work.gain[y], kLevelTileWidth, 0.0f);
     use_gain(frame, level, i, at, work);
   }
 }
 
-void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
-  const DiscLevel& level = frame.levels[number];
-  for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
-    // Leaves out tiles that the level before does not read: its tiles read half their size and
-    // two pixels more, if there is anything in them.
-    constexpr int kAcross = kDiscTileWidth / 2 + 2, kDown = kDiscTileHeight / 2 + 2;
-    const Rectangle around{at.x - kAcross, at.y - kDown, at.width + 2 * kAcross,
-                           at.height + 2 * kDown};
-    for (int side = 0; side < 2; ++side) {
-      if (!any_seen(frame, number, side, around) && !any_lit(frame, number, side, around)) continue;
-      start_tile(frame, number, at, side == 0, work);
-      clear_gains(frame, number, side, at, around, work);
-      if (side == 0) add_larger_gains(frame, number, side, at, around, work);
-      blur_side(frame, number, side == 0 ? DiscSide::near : DiscSide::far, at, work);
-      if (side == 1) add_larger_gains(frame, number, side, at, around, work);
-      if (side == 1) add_larger_behind(frame, number, at, work);
-      keep_tile(level, side, at, work.tile);
-    }
-  });
+// Lays a side's rungs behind what is seen of larger levels before the focus.
+void see_side(const Frame& frame, std::size_t level, int side, const LevelRectangle& at,
+              Workspace& work) {
+  const LevelRectangle around = around_tile(at);
+  clear_gains(frame, level, side, at, around, work);
+  if (side == 0) add_larger_gains(frame, level, side, at, around, work);
+  blur_side(frame, level, side == 0 ? DiscSide::near : DiscSide::far, at, work);
+  if (side == 1) add_larger_gains(frame, level, side, at, around, work);
 }
 
-void see_tile(const Frame& frame, const Rectangle& at, Workspace& work) {
+void see_tile(const Frame& frame, const LevelRectangle& at, Workspace& work) {
   const DiscLevel& level = frame.levels[0];
   const std::uint32_t near = rungs_near(level, 0, at.x, at.y, at.width, at.height);
   const std::uint32_t far = rungs_near(level, 1, at.x, at.y, at.width, at.height);
@@ -398,7 +323,7 @@ void see_tile(const Frame& frame, const Rectangle& at, Workspace& work) {
   if ((all & ((1u << frame.ladder[0].rungs.size()) - 1)) != 0) {
     split_tile(frame, at, reach_of(frame.ladder[0], all) + 1, work);
   }
-  start_tile(frame, 0, at, true, work);
+  start_tile(frame, 0, 0, at, work.tile);
   add_larger_gains(frame, 0, 0, at, at, work);
   blur_side(frame, 0, DiscSide::near, at, work);
   if (((near | far) & 1u) != 0) {
@@ -407,7 +332,7 @@ void see_tile(const Frame& frame, const Rectangle& at, Workspace& work) {
   }
   blur_side(frame, 0, DiscSide::far, at, work);
   add_larger_gains(frame, 0, 1, at, at, work);
-  add_larger_behind(frame, 0, at, work);
+  add_larger_behind(frame, 0, at, work.tile);
 }
 
 }  // namespace
@@ -427,20 +352,18 @@ void blur_discs(const DofInput& input, const ImageView& result, ThreadPool& pool
   DofInput rest = input;
   if (highlights.rest.width != 0) rest.scene = highlights.rest;
   const HiddenPicture hidden = find(rest, pool);
-  DiscLevels made = make_disc_levels(rest, hidden, ladder, pool);
-  std::vector<DiscLevel>& levels = made.levels;
-  LitGains gains = make_gains(highlights, levels);
-  const Frame frame{rest, hidden, ladder, levels, highlights, gains, pool.isa()};
-  for (std::size_t i = levels.size(); i-- > 1;) see_level(frame, i, pool);
-  for_each_tile(levels[0], pool, [&](const Rectangle& at, Workspace& work) {
-    const bool lit = any_lit(frame, 0, 0, at) || any_lit(frame, 0, 1, at);
+  const DiscLevels made = make_disc_levels(rest, hidden, ladder, pool);
+  LitGains gains = make_gains(highlights, made.levels);
+  const Frame frame{rest, hidden, ladder, made.levels, highlights, gains, pool.isa()};
+  see_levels<Workspace>(
+      frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, Workspace& work) {
+        see_side(frame, level, side, at, work);
+      });
+  for_each_tile<Workspace>(frame.levels[0], pool, [&](const LevelRectangle& at, Workspace& work) {
+    const bool lit = frame.any_lit(0, 0, at) || frame.any_lit(0, 1, at);
     if (lit) std::memset(&work.lit, 0, sizeof work.lit);
     see_tile(frame, at, work);
-    store_disc_tile(work.tile, lit ? &work.lit : nullptr,
-                    row<std::uint16_t>(input.scene, at.y).data() + 4 * at.x,
-                    input.scene.stride_bytes / 2, at.width, at.height, input.profile.half_store,
-                    row<std::uint16_t>(result, at.y).data() + 4 * at.x, result.stride_bytes / 2,
-                    frame.isa);
+    store_tile(input, result, at, work.tile, lit ? &work.lit : nullptr, frame.isa);
   });
 }
 

@@ -11,41 +11,33 @@
 #include "dof/disc_layers/disc_layers.h"
 #include "dof/disc_layers/disc_levels.h"
 #include "dof/disc_layers/lit_discs.h"
+#include "dof/level_oracle.h"
 #include "dof/picture_planes.h"
 
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kWeight = 3, kSquare = 4;
-using Pixel = std::array<float, 5>;  // colour times weight, weight, square
-using Seen = std::array<float, 4>;   // colour, transmittance
+using Pixel = SideGrid::Pixel;
+using Seen = SeenGrid::Pixel;
 
 enum class Side { near, far };
 
 struct Level {
   int width, height;
-  std::array<std::vector<Pixel>, 2> sides;  // before the focus, and behind it with what is hidden
-  std::array<std::vector<Seen>, 2> seen;
-  std::vector<std::vector<float>> gains;  // of each of DiscHighlights::rungs
-
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) *
-               static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(std::clamp(x, 0, width - 1));
-  }
+  std::array<SideGrid, 2> sides;  // before the focus, and behind it with what is hidden
+  std::array<SeenGrid, 2> seen;
+  std::vector<Grid<1>> gains;  // of each of DiscHighlights::rungs
 };
 
-std::vector<Pixel> picture_side(const DofInput& input, const ConstImageView& scene) {
+SideGrid picture_side(const DofInput& input, const ConstImageView& scene) {
   DofInput of = input;
   of.scene = scene;
-  std::vector<Pixel> side;
-  for (int y = 0; y < scene.height; ++y) {
-    for (int x = 0; x < scene.width; ++x) {
-      const SplitTexel texel = split_texel(of, x, y);
-      const float square = texel.radius_px * texel.radius_px;
-      side.push_back({texel.r, texel.g, texel.b, 1.0f, texel.radius_px < 0.0f ? -square : square});
-    }
-  }
+  SideGrid side(scene.width, scene.height);
+  for_each_pixel(scene.width, scene.height, [&](int x, int y) {
+    const SplitTexel texel = split_texel(of, x, y);
+    const float square = texel.radius_px * texel.radius_px;
+    side.at(x, y) = {texel.r, texel.g, texel.b, 1.0f, texel.radius_px < 0.0f ? -square : square};
+  });
   return side;
 }
 
@@ -56,38 +48,14 @@ Level picture_level(const DofInput& input, const HiddenPicture& hidden) {
   return level;
 }
 
-Pixel halved(const Level& from, std::size_t side, float sign, RungStep beyond, float least, int x,
-             int y) {
-  std::array<Pixel, 2> columns{};
-  for (int i = 0; i < 4; ++i) {
-    const Pixel& pixel = from.sides[side][from.at(2 * x + i / 2, 2 * y + i % 2)];
-    Pixel& sum = columns[static_cast<std::size_t>(i / 2)];
-    const float square = sign * pixel[kSquare];
-    const float share = share_from(beyond, square);
-    const float weight = pixel[kWeight] * share;
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += pixel[c] * share;
-    sum[kWeight] += weight;
-    sum[kSquare] += weight * std::max(square, least);
-  }
-  Pixel result;
-  for (std::size_t c = 0; c < 4; ++c) result[c] = 0.25f * (columns[0][c] + columns[1][c]);
-  const float weight = columns[0][kWeight] + columns[1][kWeight];
-  const float square = columns[0][kSquare] + columns[1][kSquare];
-  result[kSquare] = weight > 0.0f ? square / weight : 0.0f;
-  return result;
-}
-
 Level halve(const Level& from, bool whole, RungStep beyond, float least) {
-  Level level{(from.width + 1) / 2, (from.height + 1) / 2, {}, {}, {}};
-  for (std::size_t side = 0; side < 2; ++side) {
-    for (int y = 0; y < level.height; ++y) {
-      for (int x = 0; x < level.width; ++x) {
-        level.sides[side].push_back(
-            halved(from, side, whole && side == 0 ? -1.0f : 1.0f, beyond, least, x, y));
-      }
-    }
-  }
-  return level;
+  const float near = whole ? -1.0f : 1.0f;
+  return {(from.width + 1) / 2,
+          (from.height + 1) / 2,
+          {next_level(from.sides[0], near, beyond, least),
+           next_level(from.sides[1], 1.0f, beyond, least)},
+          {},
+          {}};
 }
 
 // The sum of value_at(pixel) over a disc.
@@ -125,40 +93,40 @@ struct Layers {
   Shares shares(std::size_t level, Side side, std::size_t rung, const Pixel& pixel) const {
     const RungStep end = step_after(level, rung);
     if (level == 0 && rung == 0) {
-      return {1.0f - share_from(end, std::fabs(pixel[kSquare])),
-              1.0f - share_from(end, -pixel[kSquare])};
+      return {1.0f - share_from(end, std::fabs(pixel[kLevelSquare])),
+              1.0f - share_from(end, -pixel[kLevelSquare])};
     }
     const float sign = level == 0 && side == Side::near ? -1.0f : 1.0f;
-    const float square = sign * pixel[kSquare];
+    const float square = sign * pixel[kLevelSquare];
     const float begun = share_from(ladder[level].rungs[rung].step, square);
     const float ended = share_from(end, square);
     return {begun - ended,
-            side == Side::near ? 1.0f - pixel[kWeight] * ended : pixel[kWeight] * begun};
+            side == Side::near ? 1.0f - pixel[kLevelWeight] * ended : pixel[kLevelWeight] * begun};
   }
 
   float sum_of(std::size_t number, Side side, std::size_t rung, int x, int y,
                std::size_t channel) const {
     const Level& level = levels[number];
-    const std::vector<Pixel>& pixels = level.sides[side == Side::near ? 0 : 1];
+    const SideGrid& pixels = level.sides[side == Side::near ? 0 : 1];
     return disc_sum(ladder[number].rungs[rung].spans, x, y, [&](int px, int py) {
-      const Pixel& pixel = pixels[level.at(px, py)];
+      const Pixel& pixel = pixels.at(px, py);
       const Shares of = shares(number, side, rung, pixel);
-      const Pixel& behind = level.sides[1][level.at(px, py)];
-      if (number == 0 && side == Side::near && behind[kSquare] != pixel[kSquare]) {
+      const Pixel& behind = level.sides[1].at(px, py);
+      if (number == 0 && side == Side::near && behind[kLevelSquare] != pixel[kLevelSquare]) {
         Pixel moved = behind;
-        moved[kSquare] = std::max(moved[kSquare], kLeastHidden);
+        moved[kLevelSquare] = std::max(moved[kLevelSquare], kLeastHidden);
         const Shares of_hidden = shares(number, side, rung, moved);
-        return channel == kSquare ? of.seen + of_hidden.own
-                                  : pixel[channel] * of.own + behind[channel] * of_hidden.own;
+        return channel == kLevelSquare ? of.seen + of_hidden.own
+                                       : pixel[channel] * of.own + behind[channel] * of_hidden.own;
       }
-      return channel == kSquare ? of.seen : pixel[channel] * of.own;
+      return channel == kLevelSquare ? of.seen : pixel[channel] * of.own;
     });
   }
 
   void add_rung(std::size_t number, Side side, std::size_t rung, int x, int y, Seen& seen) const {
-    const float own = sum_of(number, side, rung, x, y, kWeight);
+    const float own = sum_of(number, side, rung, x, y, kLevelWeight);
     if (own == 0.0f) return;
-    const float scale = seen[3] / sum_of(number, side, rung, x, y, kSquare);
+    const float scale = seen[3] / sum_of(number, side, rung, x, y, kLevelSquare);
     for (std::size_t c = 0; c < 3; ++c) {
       seen[c] += sum_of(number, side, rung, x, y, c) * scale;
     }
@@ -171,7 +139,7 @@ struct Layers {
     const float open = seen[3] * ladder[number].rungs[rung].area;
     if (!(open > 0.0f)) return 0.0f;
     const float most = most_gain(number, side == Side::near ? 0 : 1);
-    return open / std::max(sum_of(number, side, rung, x, y, kSquare), open * (1.0f / most));
+    return open / std::max(sum_of(number, side, rung, x, y, kLevelSquare), open * (1.0f / most));
   }
 
   void set_own_gains(std::size_t level, Side side, std::size_t rung, int x, int y,
@@ -181,7 +149,7 @@ struct Layers {
       if (lit.level != level || lit.number != rung || lit.side != (side == Side::near ? 0 : 1)) {
         continue;
       }
-      levels[level].gains[i][levels[level].at(x, y)] = gain_of(level, side, rung, x, y, seen);
+      levels[level].gains[i].at(x, y) = {gain_of(level, side, rung, x, y, seen)};
     }
   }
 
@@ -190,29 +158,10 @@ struct Layers {
     for (std::size_t i = 0; i < highlights.rungs.size(); ++i) {
       const LitRung& lit = highlights.rungs[i];
       if (lit.level <= number || lit.side != (side == Side::near ? 0 : 1)) continue;
-      const Level& next = levels[number + 1];
-      const float gain = enlarged(next, x, y, [&](std::size_t at) { return next.gains[i][at]; });
-      level.gains[i][level.at(x, y)] =
-          side == Side::near ? gain : std::min(open * gain, most_gain(number, 1));
+      const float gain = enlarged(levels[number + 1].gains[i], x, y)[0];
+      level.gains[i].at(
+          x, y) = {side == Side::near ? gain : std::min(open * gain, most_gain(number, 1))};
     }
-  }
-
-  // A value of a level at a pixel of the level before.
-  template <class ValueAt>
-  static float enlarged(const Level& level, int x, int y, const ValueAt& value_at) {
-    const int other_y = y / 2 + (y % 2 == 0 ? -1 : 1);
-    const auto row = [&](int at) {
-      return 0.75f * value_at(level.at(at, y / 2)) + 0.25f * value_at(level.at(at, other_y));
-    };
-    return 0.75f * row(x / 2) + 0.25f * row(x / 2 + (x % 2 == 0 ? -1 : 1));
-  }
-  Seen enlarged_seen(std::size_t number, std::size_t side, int x, int y) const {
-    const Level& level = levels[number];
-    Seen result;
-    for (std::size_t c = 0; c < 4; ++c) {
-      result[c] = enlarged(level, x, y, [&](std::size_t at) { return level.seen[side][at][c]; });
-    }
-    return result;
   }
 
   void add_near(std::size_t level, int x, int y, Seen& seen) {
@@ -229,19 +178,16 @@ struct Layers {
     }
     set_larger_gains(level, Side::far, x, y, seen[3]);
     if (level + 1 == levels.size()) return;
-    const Seen behind = enlarged_seen(level + 1, 1, x, y);
-    const float open = seen[3];
-    for (std::size_t c = 0; c < 3; ++c) seen[c] += open * behind[c];
-    seen[3] = open * behind[3];
+    add_behind(seen, enlarged(levels[level + 1].seen[1], x, y));
   }
   Seen nothing_before(std::size_t level, int x, int y) const {
-    return level + 1 < levels.size() ? enlarged_seen(level + 1, 0, x, y)
+    return level + 1 < levels.size() ? enlarged(levels[level + 1].seen[0], x, y)
                                      : Seen{0.0f, 0.0f, 0.0f, 1.0f};
   }
 
   void make_room_for_gains() {
     for (Level& level : levels) {
-      level.gains.assign(highlights.rungs.size(), std::vector<float>(level.sides[0].size()));
+      level.gains.assign(highlights.rungs.size(), Grid<1>(level.width, level.height));
     }
   }
 
@@ -253,7 +199,7 @@ struct Layers {
     for (std::size_t i = 0; i < highlights.rungs.size(); ++i) {
       float light[3];
       light_at(highlights, highlights.rungs[i], x, y, light);
-      sum += levels[0].gains[i][levels[0].at(x, y)] * light[channel];
+      sum += levels[0].gains[i].at(x, y)[0] * light[channel];
     }
     return sum;
   }
@@ -281,14 +227,14 @@ void blur_discs_oracle(const DofInput& input, const ImageView& result, ThreadPoo
   layers.make_room_for_gains();
   for (std::size_t i = layers.levels.size(); i-- > 1;) {
     Level& level = layers.levels[i];
-    const std::size_t pixels = level.sides[0].size();
-    std::array<std::vector<Seen>, 2> seen{std::vector<Seen>(pixels), std::vector<Seen>(pixels)};
+    std::array<SeenGrid, 2> seen;
+    seen.fill(SeenGrid(level.width, level.height));
     pool.for_each(level.height, [&](int y) {
       for (int x = 0; x < level.width; ++x) {
-        Seen& near = seen[0][level.at(x, y)];
+        Seen& near = seen[0].at(x, y);
         near = layers.nothing_before(i, x, y);
         layers.add_near(i, x, y, near);
-        Seen& far = seen[1][level.at(x, y)];
+        Seen& far = seen[1].at(x, y);
         far = {0.0f, 0.0f, 0.0f, 1.0f};
         layers.add_far(i, x, y, far);
       }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "raster/threads/loops.h"
+
 namespace softfocus {
 namespace {
 
@@ -21,27 +23,25 @@ BlockRange blocks_near(int begin, int count, int blocks) {
 
 }  // namespace
 
-DiscRow disc_row(const DiscLevel& level, int side, int x, int y) {
+LevelRow disc_row(const DiscLevel& level, int side, int x, int y) {
   const int inside = std::clamp(y, 0, level.height - 1);
-  DiscRow row;
+  LevelRow row;
   if (!row_filled(level, side, inside)) {
     for (const float*& channel : row.channel) channel = level.zeros.data() + kDiscMargin + x;
     return row;
   }
-  const DiscPlanes& planes = level.sides[side];
-  const float* at = plane_row(planes, 0, inside) + kDiscMargin + x;
-  for (int i = 0; i < kDiscChannels; ++i) row.channel[i] = at + i * planes.plane;
+  const LevelPlanes& planes = level.sides[side];
+  const float* at = plane_row(planes, 0, inside) + x;
+  for (int i = 0; i < kLevelChannels; ++i) row.channel[i] = at + i * planes.plane;
   return row;
 }
 
 Image copy_of(const ConstImageView& picture, ThreadPool& pool) {
   Image copy = make_image(picture.format, picture.width, picture.height);
   constexpr int kRows = 16;
-  pool.for_each((picture.height + kRows - 1) / kRows, [&](int task) {
-    for (int y = task * kRows; y < std::min((task + 1) * kRows, picture.height); ++y) {
-      const auto from = row<std::uint16_t>(picture, y);
-      std::copy(from.begin(), from.end(), row<std::uint16_t>(copy, y).begin());
-    }
+  for_each_row(pool, picture.height, kRows, [&](int y) {
+    const auto from = row<std::uint16_t>(picture, y);
+    std::copy(from.begin(), from.end(), row<std::uint16_t>(copy, y).begin());
   });
   return copy;
 }

@@ -8,23 +8,18 @@
 #include "dof/disc_layers/disc_hidden.h"
 #include "dof/disc_layers/disc_ladder.h"
 #include "dof/dof.h"
+#include "dof/level_stack.h"
 #include "raster/images/image.h"
 
 namespace softfocus {
 
-/// Pixels of RGBA16F in a line of the cache.
-inline constexpr int kTexelsOfLine = 8;
-
-/// Largest size of a tile in pixels.
-inline constexpr int kDiscTileWidth = 64;
-inline constexpr int kDiscTileHeight = 32;
 /// Pixels by which a level's rows go on at either end, repeating the last.
 inline constexpr int kDiscMargin = 8;
 /// Rows above and below a tile that any disc reaches, and one more.
 inline constexpr int kDiscApron = 8;
 /// A tile with all that discs reach around it.
-inline constexpr int kDiscTileRow = kDiscTileWidth + 2 * kDiscMargin;
-inline constexpr int kDiscTileRows = kDiscTileHeight + 2 * kDiscApron;
+inline constexpr int kDiscTileRow = kLevelTileWidth + 2 * kDiscMargin;
+inline constexpr int kDiscTileRows = kLevelTileHeight + 2 * kDiscApron;
 
 /// A part of a tile.
 inline constexpr int kDiscColumn = 16;
@@ -32,48 +27,24 @@ struct DiscPart {
   int row, rows;
   int column, columns;  ///< kDiscColumn pixels wide
 };
-inline constexpr DiscPart kWholeTile{0, kDiscTileHeight, 0, kDiscTileWidth / kDiscColumn};
-
-/// Channels of a pixel: red, green and blue times weight; weight, the share of the pixel that
-/// is there; the square of its radius. In level 0 the squares of radii before the focus are
-/// negative, in other levels all are positive.
-inline constexpr int kDiscWeight = 3, kDiscSquare = 4, kDiscChannels = 5;
-struct DiscRow {
-  const float* channel[kDiscChannels];
-};
-
-/// What is seen of a pixel: red, green, blue and the transmittance.
-inline constexpr int kDiscTransmitted = 3;
-/// What is seen of the layers so far in a tile.
-struct DiscTile {
-  alignas(kRowAlignment) float channel[4][kDiscTileHeight][kDiscTileWidth];
-};
-
-/// Planes of a level. A row has a margin at either end, and then room for a whole tile.
-struct DiscPlanes {
-  std::ptrdiff_t stride, plane;
-  float* values;  ///< in DiscLevels::memory
-};
-inline float* plane_row(const DiscPlanes& planes, int plane, int y) {
-  return planes.values + plane * planes.plane + y * planes.stride;
-}
+inline constexpr DiscPart kWholeTile{0, kLevelTileHeight, 0, kLevelTileWidth / kDiscColumn};
 
 struct DiscLevel {
   int width, height;
   int block_columns, block_rows;
   /// Arrays of two: before the focus, and behind it.
   std::vector<std::uint32_t> rungs[2];  ///< of a block: a bit for each of the level's rungs
-  /// The channels of DiscRow. Level 0 has none: it is the picture itself.
-  DiscPlanes sides[2];
+  /// The channels of LevelRow. Level 0 has none: it is the picture itself.
+  LevelPlanes sides[2];
   std::vector<std::uint8_t> filled[2];  ///< of a row: whether `sides` has it; if not, it is `zeros`
   std::vector<float> zeros;
   /// What is seen of this level and of larger ones: colour and transmittance.
-  DiscPlanes seen[2];
+  LevelPlanes seen[2];
 };
 
 /// A row of one side, from pixel x on. x may lie kDiscMargin outside; rows outside repeat the
 /// picture's first and last. Needs a level other than 0.
-DiscRow disc_row(const DiscLevel& level, int side, int x, int y);
+LevelRow disc_row(const DiscLevel& level, int side, int x, int y);
 
 /// Their memory is one piece, so that the allocator keeps it from frame to frame.
 struct DiscLevels {
@@ -113,8 +84,8 @@ std::uint32_t rungs_near(const DiscLevel& level, int side, int x, int y, int wid
 struct DiscRungBlocks {
   int row, rows;  ///< the first, and how many
   int column, columns;
-  std::uint32_t of_row[kDiscTileHeight / kDiscBlock + 2];
-  std::uint32_t of_column[kDiscTileWidth / kDiscBlock + 2];
+  std::uint32_t of_row[kLevelTileHeight / kDiscBlock + 2];
+  std::uint32_t of_column[kLevelTileWidth / kDiscBlock + 2];
 };
 DiscRungBlocks rung_blocks_near(const DiscLevel& level, int side, int x, int y, int width,
                                 int height);

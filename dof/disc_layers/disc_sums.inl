@@ -1,19 +1,7 @@
-// Sums over the discs of disc_ladder.h in tiles, and the way from large pixels to small ones: what
-// the kernels of disc-layers and of object-identification share. Needs disc_levels.h and lanes.
+// Sums over the discs of disc_ladder.h in tiles: what the kernels of disc-layers and of
+// object-identification share. Needs disc_levels.h and level_lanes.inl.
 
-// Lanes from `from` on, of `a` and `b` by turns.
-template <std::size_t from, std::size_t... lane>
-SOFTFOCUS_INLINE Floats by_turns(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(a, b, (from + lane / 2 + (lane & 1) * kLanes)...);
-}
-
-// Lanes 0, 2, 4, ... or 1, 3, 5, ... of two vectors.
-template <std::size_t first, std::size_t... lane>
-SOFTFOCUS_INLINE Floats every_other(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(a, b, (2 * lane + first)...);
-}
-
-static_assert(kDiscTileWidth == 4 * kDiscColumn && 2 * kDiscMargin == kDiscColumn &&
+static_assert(kLevelTileWidth == 4 * kDiscColumn && 2 * kDiscMargin == kDiscColumn &&
               kDiscColumn % kLanes == 0);
 
 // Sums of a disc's columns; columns[dx] is for the columns dx pixels from the middle. `at`
@@ -70,8 +58,8 @@ SOFTFOCUS_INLINE void sum_discs_of(const LadderSpan* spans, int reach, int heigh
     }
     if (y == 0) continue;
     for (int x = 0; x < width * kDiscColumn; x += width * kLanes) {
-      add_columns(columns[1 - y % 2][0] + kDiscMargin + x, reach, to + (y - 1) * kDiscTileWidth + x,
-                  Inside{});
+      add_columns(columns[1 - y % 2][0] + kDiscMargin + x, reach,
+                  to + (y - 1) * kLevelTileWidth + x, Inside{});
     }
   }
 }
@@ -80,7 +68,7 @@ SOFTFOCUS_INLINE void sum_discs_of(const LadderSpan* spans, int reach, int heigh
 SOFTFOCUS_INLINE void sum_discs(const LadderSpan* spans, int reach, int height, int column,
                                 int width, const float (*rows)[kDiscTileRow],
                                 float (*columns)[kDiscApron][kDiscTileRow],
-                                float (*to)[kDiscTileWidth]) {
+                                float (*to)[kLevelTileWidth]) {
   const float* from = rows[0] + column * kDiscColumn;
   float* sums = to[0] + column * kDiscColumn;
   switch (width) {
@@ -91,67 +79,15 @@ SOFTFOCUS_INLINE void sum_discs(const LadderSpan* spans, int reach, int height, 
   }
 }
 
-// Lanes from `from` on, of `a` and then `b`.
-template <std::size_t from, std::size_t... lane>
-SOFTFOCUS_INLINE Floats lanes_from(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(a, b, (from + lane)...);
-}
-
-struct TwoVectors {
-  Floats first, second;
-};
-// A vector of pixels as two of half the size.
-SOFTFOCUS_INLINE TwoVectors enlarge_vector(const float* inside, const float* other) {
-  using Lanes = std::make_index_sequence<SOFTFOCUS_LANES>;
-  const Floats own = 0.75f * (0.75f * load(inside) + 0.25f * load(other));
-  const Floats left = 0.75f * load(inside - 1) + 0.25f * load(other - 1);
-  const Floats right = 0.75f * load(inside + 1) + 0.25f * load(other + 1);
-  const Floats even = own + 0.25f * left, odd = own + 0.25f * right;
-  return {by_turns<0>(even, odd, Lanes{}), by_turns<kLanes / 2>(even, odd, Lanes{})};
-}
-
-/// Enlarges to a row of `count` pixels, an even number, from rows of pixels of twice the size:
-/// three quarters of the row `inside` which it lies, a quarter of the `other`; along x likewise.
-SOFTFOCUS_INLINE void enlarge_row(const float* inside, const float* other, int count, float* to) {
-  for (int x = 0; x < count / 2; x += kLanes) {
-    const TwoVectors large = enlarge_vector(inside + x, other + x);
-    store(to + 2 * x, large.first);
-    store(to + 2 * x + kLanes, large.second);
-  }
-}
-
 /// Adds a layer behind what is seen of nearer ones, in a part of the tile. `sums` are sums over its
 /// discs, from the part's first row on: colours and shares; `seen_sums` those of the shares of the
 /// layer and of all that it hides.
-SOFTFOCUS_INLINE void add_layer(const float (*sums)[kDiscTileHeight][kDiscTileWidth],
-                                const float (*seen_sums)[kDiscTileWidth], const DiscPart& part,
-                                DiscTile& tile) {
+SOFTFOCUS_INLINE void add_layer(const float (*sums)[kLevelTileHeight][kLevelTileWidth],
+                                const float (*seen_sums)[kLevelTileWidth], const DiscPart& part,
+                                SeenTile& tile) {
   const int begin = part.column * kDiscColumn, end = begin + part.columns * kDiscColumn;
   for (int y = 0; y < part.rows; ++y) {
-    for (int x = begin; x < end; x += kLanes) {
-      const Floats seen = load(seen_sums[y] + x);
-      float* through = tile.channel[kDiscTransmitted][part.row + y] + x;
-      const Floats transmitted = load(through);
-      const Mask any = seen > 0.0f;
-      const Floats scale = select(any, transmitted / select(any, seen, splat(1.0f)), splat(0.0f));
-      for (int i = 0; i < 3; ++i) {
-        float* to = tile.channel[i][part.row + y] + x;
-        store(to, load(to) + load(sums[i][y] + x) * scale);
-      }
-      store(through, larger(transmitted - load(sums[kDiscWeight][y] + x) * scale, splat(0.0f)));
-    }
-  }
-}
-
-/// Adds a row of colour and transmittance behind a row of the tile.
-SOFTFOCUS_INLINE void add_row_behind(const float (*from)[kDiscTileRow], int width, int y,
-                                     DiscTile& tile) {
-  for (int x = 0; x < width; x += kLanes) {
-    const Floats open = load(tile.channel[kDiscTransmitted][y] + x);
-    for (int i = 0; i < 3; ++i) {
-      float* to = tile.channel[i][y] + x;
-      store(to, load(to) + open * load(from[i] + x));
-    }
-    store(tile.channel[kDiscTransmitted][y] + x, open * load(from[kDiscTransmitted] + x));
+    add_layer_row(sums[0][y], sizeof *sums / sizeof(float), seen_sums[y], part.row + y, begin, end,
+                  tile);
   }
 }

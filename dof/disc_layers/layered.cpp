@@ -1,12 +1,12 @@
-#include "dof/disc_layers/layered.h"
+#include "dof/disc_layers/disc_layers.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "dof/disc_layers/disc_hidden.h"
 #include "dof/disc_layers/disc_hidden_search.h"
-#include "dof/disc_layers/disc_layers.h"
 #include "dof/picture_planes.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -69,10 +69,8 @@ HiddenPicture find_known(const DofInput& input, ThreadPool& pool) {
                        hidden.memory.get()};
   const std::uint32_t first_far = first_far_half(input.settings);
   // A task has whole blocks, in which it alone marks pixels.
-  pool.for_each((height + kDiscBlock - 1) / kDiscBlock, [&](int band) {
-    const int end = std::min((band + 1) * kDiscBlock, height);
-    for (int y = band * kDiscBlock; y < end; ++y) know_row(input, first_far, y, made, hidden);
-  });
+  for_each_row(pool, height, kDiscBlock,
+               [&](int y) { know_row(input, first_far, y, made, hidden); });
   const auto any = [](std::uint8_t row) { return row != 0; };
   if (std::any_of(hidden.rows.begin(), hidden.rows.end(), any)) return hidden;
   return nothing_hidden(width, height);

@@ -41,27 +41,24 @@ bool lit_near(const LitRung& rung, std::size_t level, int x, int y, int width, i
 
 LitGains make_gains(const DiscHighlights& highlights, const std::vector<DiscLevel>& levels) {
   LitGains gains;
-  std::size_t floats = 0;
-  for (const LitRung& rung : highlights.rungs) {
-    for (std::size_t i = 1; i <= rung.level; ++i) {
-      floats += static_cast<std::size_t>(levels[i].seen[0].plane);
+  // Counts floats first, then takes them.
+  for (const bool count : {true, false}) {
+    std::size_t used = 0;
+    gains.planes.clear();
+    for (const LitRung& rung : highlights.rungs) {
+      std::vector<LevelPlanes>& planes = gains.planes.emplace_back();
+      for (std::size_t i = 1; i <= rung.level; ++i) {
+        planes.push_back(
+            take_planes(1, levels[i].width, levels[i].height, gains.memory.get(), used));
+      }
     }
-  }
-  gains.memory = make_row_memory<float>(floats);
-  float* next = gains.memory.get();
-  for (const LitRung& rung : highlights.rungs) {
-    std::vector<DiscPlanes>& planes = gains.planes.emplace_back();
-    for (std::size_t i = 1; i <= rung.level; ++i) {
-      const DiscPlanes& seen = levels[i].seen[0];
-      planes.push_back({seen.stride, seen.plane, next});
-      next += seen.plane;
-    }
+    if (count) gains.memory = make_row_memory<float>(used);
   }
   return gains;
 }
 
 void add_highlights(const DiscHighlights& highlights, const LitRung& rung, int x, int y, int width,
-                    int height, const float (*gain)[kDiscTileWidth], LitSums& sums, LitTile& tile,
+                    int height, const float (*gain)[kLevelTileWidth], LitSums& sums, LitTile& tile,
                     Isa isa) {
   const int rows = static_cast<int>(rung.parts_above.size()) - 1;
   const auto first =
@@ -154,7 +151,7 @@ void add_disc_row(const double* units, int whole, int outer, const double* cover
 }
 
 /// Turns differences into light, and adds it times `gain`.
-void add_lit_sums(const LitSums& sums, int width, int height, const float (*gain)[kDiscTileWidth],
+void add_lit_sums(const LitSums& sums, int width, int height, const float (*gain)[kLevelTileWidth],
                   LitTile& tile) {
   for (int y = 0; y < height; ++y) {
     FourSums sum = {};

@@ -19,7 +19,7 @@ bool lit_near(const LitRung& rung, std::size_t level, int x, int y, int width, i
 /// How much of a rung's highlights is seen, at its own level and every finer one but level 0. A
 /// plane has the shape of the level's `seen`, and means something only where lit_near().
 struct LitGains {
-  std::vector<std::vector<DiscPlanes>> planes;  ///< of a lit rung: of level 1, 2, ...
+  std::vector<std::vector<LevelPlanes>> planes;  ///< of a lit rung: of level 1, 2, ...
   RowMemory<float> memory;
 };
 LitGains make_gains(const DiscHighlights& highlights, const std::vector<DiscLevel>& levels);
@@ -32,12 +32,12 @@ inline float most_gain(std::size_t level, int side) {
 
 /// Where a rung's discs are summed.
 struct LitSums {
-  std::uint64_t differences[kDiscTileHeight][kDiscTileWidth + 1][4];
+  std::uint64_t differences[kLevelTileHeight][kLevelTileWidth + 1][4];
 };
 
 /// Adds a rung's discs to the tile at (x, y), times `gain`.
 void add_highlights(const DiscHighlights& highlights, const LitRung& rung, int x, int y, int width,
-                    int height, const float (*gain)[kDiscTileWidth], LitSums& sums, LitTile& tile,
+                    int height, const float (*gain)[kLevelTileWidth], LitSums& sums, LitTile& tile,
                     Isa isa);
 
 /// The oracle of add_highlights(): the light of a rung at a pixel.

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "dof/picture_planes.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
 // Pixels of a row that are halved together, or left out together if none counts to a larger
 // level.
-constexpr int kChunk = kDiscTileWidth;
+constexpr int kChunk = kLevelTileWidth;
 static_assert(kChunk % kHiddenStrip == 0 && kChunk % kDiscBlock == 0);
 
 // Marks of a row of level 0.
@@ -32,7 +32,7 @@ struct HiddenRow {
 
 // Two rows of a level, to become one of the next.
 struct DiscHalving {
-  DiscRow rows[2];
+  LevelRow rows[2];
   float sign;  // of the squares that count
   RungStep beyond;
   float least_square;    // of the next level
@@ -92,38 +92,23 @@ void keep_marks(DiscLevel& level, int side, int y, std::vector<std::uint32_t>& m
   std::fill(marks.begin(), marks.end(), 0u);
 }
 
-void repeat_ends(const DiscLevel& level, float* row, std::ptrdiff_t stride) {
-  std::fill_n(row, kDiscMargin, row[kDiscMargin]);
-  std::fill(row + kDiscMargin + level.width, row + stride, row[kDiscMargin + level.width - 1]);
+int padded_width(const DiscLevel& level) {
+  return level.width + kSeenRoom.before + kSeenRoom.after;
 }
 
-int padded_width(const DiscLevel& level) { return level.width + 2 * kDiscMargin + kDiscTileWidth; }
-
-std::ptrdiff_t row_stride(const DiscLevel& level) { return plane_stride(padded_width(level)); }
-
-// Gives every level but the first its planes.
-RowMemory<float> share_memory(std::vector<DiscLevel>& levels) {
-  constexpr int kPlanes = 2 * (kDiscChannels + kDiscTransmitted + 1);
-  std::size_t floats = 0;
-  for (const DiscLevel& level : levels) {
-    if (&level == &levels[0]) continue;
-    floats += static_cast<std::size_t>(kPlanes * row_stride(level) * level.height);
-  }
-  auto memory = make_row_memory<float>(floats);
-  float* next = memory.get();
-  for (DiscLevel& level : levels) {
-    if (&level == &levels[0]) continue;
-    const std::ptrdiff_t plane = row_stride(level) * level.height;
+// Gives every level but the first its planes, or counts their floats.
+std::size_t take_level_planes(std::vector<DiscLevel>& levels, float* memory) {
+  std::size_t used = 0;
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    DiscLevel& level = levels[i];
     for (std::size_t side = 0; side < 2; ++side) {
-      level.sides[side] = {row_stride(level), plane, next};
-      next += kDiscChannels * plane;
-      level.seen[side] = {row_stride(level), plane, next};
-      next += (kDiscTransmitted + 1) * plane;
+      level.sides[side] = take_planes(kLevelChannels, level.width, level.height, memory, used);
+      level.seen[side] = take_planes(kSeenChannels, level.width, level.height, memory, used);
       level.filled[side].assign(static_cast<std::size_t>(level.height), 0);
     }
     level.zeros.assign(static_cast<std::size_t>(padded_width(level)), 0.0f);
   }
-  return memory;
+  return used;
 }
 
 // Rows below the picture repeat its last.
@@ -146,7 +131,7 @@ struct Halving {
 int chunks_of(const DiscLevel& level) { return (level.width + kChunk - 1) / kChunk; }
 
 // Channels of a row of level 0 from x on in a task's memory.
-DiscRow row_at(const Halving& halving, const FloatRow& memory, int x) {
+LevelRow row_at(const Halving& halving, const FloatRow& memory, int x) {
   const int padded = padded_width(halving.from);
   const float* row = memory.data() + x;
   return {{row, row + padded, row + 2 * padded, halving.ones, row + 3 * padded}};
@@ -197,14 +182,14 @@ void halve_rows(const Halving& halving, int side, int y, RowScratch& scratch, Is
   const std::vector<std::uint8_t>& larger = scratch.larger;
   const auto counts = [&](std::uint8_t sides) { return (sides >> side & 1) != 0; };
   if (std::none_of(larger.begin(), larger.end(), counts)) return;
-  const DiscPlanes& planes = to.sides[side];
+  const LevelPlanes& planes = to.sides[side];
   const float sign = halving.whole && side == 0 ? -1.0f : 1.0f;
   bool filled = false;
   for (int chunk = 0; chunk < chunks_of(halving.from); ++chunk) {
     const int x = chunk * kChunk / 2, count = std::min(kChunk / 2, to.width - x);
-    float* row = plane_row(planes, 0, y) + kDiscMargin + x;
+    float* row = plane_row(planes, 0, y) + x;
     if (!counts(larger[static_cast<std::size_t>(chunk)])) {
-      for (int i = 0; i < kDiscChannels; ++i) std::fill_n(row + i * planes.plane, count, 0.0f);
+      for (int i = 0; i < kLevelChannels; ++i) std::fill_n(row + i * planes.plane, count, 0.0f);
       continue;
     }
     const DiscHalving halves{{rows_at(chunk, 0), rows_at(chunk, 1)},
@@ -219,9 +204,7 @@ void halve_rows(const Halving& halving, int side, int y, RowScratch& scratch, Is
     filled |= SOFTFOCUS_KERNEL(isa, halve_disc_rows)(halves);
   }
   to.filled[side][static_cast<std::size_t>(y)] = filled;
-  for (int i = 0; i < kDiscChannels; ++i) {
-    repeat_ends(to, plane_row(planes, i, y), planes.stride);
-  }
+  repeat_ends(planes, kLevelChannels, to.width, y);
 }
 
 // Makes a row of level 1 from two rows of the picture.
@@ -303,19 +286,17 @@ DiscLevels make_disc_levels(const DofInput& input, const HiddenPicture& hidden,
   while (levels.size() < std::max(ladder.size(), std::size_t{2})) {
     levels.push_back(make_level((levels.back().width + 1) / 2, (levels.back().height + 1) / 2));
   }
-  result.memory = share_memory(levels);
+  result.memory = make_row_memory<float>(take_level_planes(levels, nullptr));
+  take_level_planes(levels, result.memory.get());
   const FloatRow ones(static_cast<std::size_t>(padded_width(levels[0])), 1.0f);
   int first_rung = kFineRungs;
   for (std::size_t i = 0; i + 1 < levels.size(); ++i, first_rung += kLevelRungs) {
     const float square = i + 1 < ladder.size() ? ladder[i + 1].rungs[0].square : 0.0f;
     const Halving halving{input,  hidden,     levels[i],  levels[i + 1], i == 0, ladder[i].beyond,
                           square, first_rung, ones.data()};
-    ScratchShelf<RowScratch> shelf;
-    pool.for_each((levels[i + 1].height + kDiscBlock - 1) / kDiscBlock, [&](int task) {
-      RowScratch scratch = shelf.take();
-      halve_task(halving, task, scratch, pool.isa());
-      shelf.put_back(std::move(scratch));
-    });
+    for_each_with<RowScratch>(
+        pool, (levels[i + 1].height + kDiscBlock - 1) / kDiscBlock,
+        [&](int task, auto& scratch) { halve_task(halving, task, scratch, pool.isa()); });
   }
   levels.resize(ladder.size());
   return result;
@@ -327,17 +308,7 @@ DiscLevels make_disc_levels(const DofInput& input, const HiddenPicture& hidden,
 
 namespace {
 
-#include "dof/picture_lanes.inl"
-
-// Lanes 0, 2, 4, ... or 1, 3, 5, ... of two vectors.
-template <std::size_t first, std::size_t... lane>
-SOFTFOCUS_INLINE Floats every_other(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(a, b, (2 * lane + first)...);
-}
-SOFTFOCUS_INLINE Floats add_pairs(Floats a, Floats b) {
-  using Lanes = std::make_index_sequence<SOFTFOCUS_LANES>;
-  return every_other<0>(a, b, Lanes{}) + every_other<1>(a, b, Lanes{});
-}
+#include "dof/level_lanes.inl"
 
 SOFTFOCUS_INLINE Floats signed_squares(const DofSettings& settings, const HalfTexels& texels) {
   const Floats radius = split_radius(settings, half_to_float(texels.a));
@@ -449,29 +420,10 @@ void split_disc_row(const DofSettings& settings, const std::uint16_t* from, int 
 bool halve_disc_rows(const DiscHalving& in) {
   Bits all = splat(0u);
   for (int x = 0; x < in.count; x += kLanes) {
-    Floats sums[kDiscChannels][2];
-    for (int half = 0; half < 2; ++half) {
-      const int at = 2 * x + half * kLanes;
-      for (int i = 0; i < kDiscChannels; ++i) sums[i][half] = splat(0.0f);
-      for (const DiscRow& row : in.rows) {
-        const Floats square = in.sign * load(row.channel[kDiscSquare] + at);
-        const Floats share = saturate((square - in.beyond.begin) * in.beyond.slope);
-        const Floats weight = load(row.channel[kDiscWeight] + at) * share;
-        for (int i = 0; i < 3; ++i) sums[i][half] += load(row.channel[i] + at) * share;
-        sums[kDiscWeight][half] += weight;
-        sums[kDiscSquare][half] += weight * larger(square, splat(in.least_square));
-      }
-    }
-    for (int i = 0; i < 3; ++i) {
-      store(in.to + i * in.plane + x, 0.25f * add_pairs(sums[i][0], sums[i][1]));
-    }
-    const Floats weight = add_pairs(sums[kDiscWeight][0], sums[kDiscWeight][1]);
-    const Floats square = add_pairs(sums[kDiscSquare][0], sums[kDiscSquare][1]);
-    const Floats mean = 0.25f * weight;
-    const Floats mean_square = select(weight > 0.0f, square / weight, splat(0.0f));
-    store(in.to + kDiscWeight * in.plane + x, mean);
-    store(in.to + kDiscSquare * in.plane + x, mean_square);
-    const Bits rungs = rungs_of(mean_square, mean > 0.0f, in.first_rung).far;
+    const Halved half = halve_rows(in.rows, 2 * x, in.sign, in.beyond, in.least_square);
+    for (int i = 0; i < kLevelChannels; ++i) store(in.to + i * in.plane + x, half.channel[i]);
+    const Bits rungs =
+        rungs_of(half.channel[kLevelSquare], half.channel[kLevelWeight] > 0.0f, in.first_rung).far;
     store(in.marks + x, load(in.marks + x) | rungs);
     all |= rungs;
   }

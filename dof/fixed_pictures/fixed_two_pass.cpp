@@ -11,7 +11,7 @@
 #include "dof/fixed_pictures/fixed_line.h"
 #include "dof/focus_map.h"
 #include "dof/two_pass/two_pass_strip.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "dof/fixed_pictures/fixed_two_pass.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -82,9 +82,8 @@ void fixed_two_pass_scalar(const ConstImageView& picture, softfocus_fixed_depth 
   // Strips much higher than the rows around them, and enough for all threads.
   const int rows =
       std::max(4 * reach + 16, (picture.height + 4 * pool.threads() - 1) / (4 * pool.threads()));
-  pool.for_each((picture.height + rows - 1) / rows, [&](int strip) {
-    filter_rows(filter, strip * rows, std::min((strip + 1) * rows, picture.height));
-  });
+  for_each_band(pool, picture.height, rows,
+                [&](int first, int end) { filter_rows(filter, first, end); });
 }
 
 // --- lanes: strips of columns, kLanes lines at once ---
@@ -140,9 +139,7 @@ void fixed_two_pass_lanes(const FixedStrip& whole, int reach, bool halves, Threa
   const int rows =
       std::max(rounded_up((whole.height + wanted - 1) / wanted, shape.lanes), kLeastRows);
   const int down = (whole.height + rows - 1) / rows;
-  ScratchShelf<StripMemory> shelf;
-  pool.for_each(across * down, [&](int part) {
-    StripMemory memory = shelf.take();
+  for_each_with<StripMemory>(pool, across * down, [&](int part, auto& memory) {
     FixedStrip strip = whole;
     strip.x_begin = part % across * columns;
     strip.x_end = std::min(strip.x_begin + columns, whole.width);
@@ -154,7 +151,6 @@ void fixed_two_pass_lanes(const FixedStrip& whole, int reach, bool halves, Threa
     } else {
       SOFTFOCUS_KERNEL(pool.isa(), filter_strip_of_bytes)(strip);
     }
-    shelf.put_back(std::move(memory));
   });
 }
 

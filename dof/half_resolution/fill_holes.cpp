@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -87,9 +87,7 @@ void halve_sums(const float* sums, int width, float* to) {
 
 void pull_level(const Puller& pull, ThreadPool& pool) {
   const int count = static_cast<int>(pull.channels.size());
-  ScratchShelf<std::vector<float>> shelf;
-  pool.for_each(pull.to.height, [&](int y) {
-    std::vector<float> sums = shelf.take();
+  for_each_with<std::vector<float>>(pool, pull.to.height, [&](int y, auto& sums) {
     sums.resize(static_cast<std::size_t>(pull.from.width));
     for (int c = 0; c <= count; ++c) {
       const int channel = c < count ? pull.channels[static_cast<std::size_t>(c)] : pull.weight;
@@ -103,7 +101,6 @@ void pull_level(const Puller& pull, ThreadPool& pool) {
       for (int c = 0; c < count; ++c) plane_row(pull.to, c, y)[x] *= scale;
       n[x] = 1.0f;
     }
-    shelf.put_back(std::move(sums));
   });
 }
 
@@ -112,11 +109,9 @@ void pull_level(const Puller& pull, ThreadPool& pool) {
 template <class Blend>
 void push_level(Planes& fine, std::span<const int> channels, int weight, float enough,
                 const Planes& coarse, const Blend& blend, ThreadPool& pool) {
-  ScratchShelf<std::vector<float>> shelf;
-  pool.for_each(fine.height, [&](int y) {
+  for_each_with<std::vector<float>>(pool, fine.height, [&](int y, auto& scratch) {
     const float* n = plane_row(fine, weight, y);
     if (*std::min_element(n, n + fine.width) >= enough) return;
-    std::vector<float> scratch = shelf.take();
     scratch.resize(static_cast<std::size_t>(coarse.width + 2 + fine.width + 1));
     float* along = scratch.data() + 1;
     float* around = along + coarse.width + 1;
@@ -134,7 +129,6 @@ void push_level(Planes& fine, std::span<const int> channels, int weight, float e
         values[x] = n[x] < enough ? blended : values[x];
       }
     }
-    shelf.put_back(std::move(scratch));
   });
 }
 

@@ -13,7 +13,7 @@
 
 #include "dof/half_resolution/fill_holes.h"
 #include "dof/half_resolution/polygon_spans.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -45,23 +45,17 @@ Planes split_cells(const DofInput& input, Planes& cells, ThreadPool& pool) {
   const int width = input.scene.width, height = input.scene.height;
   Planes light = make_planes(1, cells.width, cells.height);
   const std::ptrdiff_t padded = plane_stride(width) + 2 * kMostLanes;
-  ScratchShelf<std::vector<float>> shelf;
-  pool.for_each((cells.height + kTaskRows - 1) / kTaskRows, [&](int task) {
-    std::vector<float> scratch = shelf.take();
+  for_each_row_with<std::vector<float>>(pool, cells.height, kTaskRows, [&](int y, auto& scratch) {
     scratch.resize(static_cast<std::size_t>(8 * padded));
-    const int end = std::min((task + 1) * kTaskRows, cells.height);
-    for (int y = task * kTaskRows; y < end; ++y) {
-      HalfRow row{
-          {}, padded, cells.width, plane_row(cells, 0, y), cells.plane, plane_row(light, 0, y)};
-      for (int i = 0; i < 2; ++i) {
-        float* to = scratch.data() + i * 4 * padded;
-        split_picture_row(input, std::min(2 * y + i, height - 1), to, padded,
-                          static_cast<int>(padded), pool.isa());
-        row.rows[i] = to;
-      }
-      SOFTFOCUS_KERNEL(pool.isa(), halve_row)(row);
+    HalfRow row{
+        {}, padded, cells.width, plane_row(cells, 0, y), cells.plane, plane_row(light, 0, y)};
+    for (int i = 0; i < 2; ++i) {
+      float* to = scratch.data() + i * 4 * padded;
+      split_picture_row(input, std::min(2 * y + i, height - 1), to, padded,
+                        static_cast<int>(padded), pool.isa());
+      row.rows[i] = to;
     }
-    shelf.put_back(std::move(scratch));
+    SOFTFOCUS_KERNEL(pool.isa(), halve_row)(row);
   });
   return light;
 }
@@ -97,26 +91,20 @@ Highlights take_highlights(const DofInput& input, const Planes& light, Planes& c
                            ThreadPool& pool) {
   Highlights highlights;
   highlights.rows.resize(static_cast<std::size_t>(input.scene.height));
-  ScratchShelf<std::vector<float>> shelf;
-  pool.for_each((cells.height + kTaskRows - 1) / kTaskRows, [&](int task) {
-    std::vector<float> scratch = shelf.take();
+  for_each_row_with<std::vector<float>>(pool, cells.height, kTaskRows, [&](int y, auto& scratch) {
     const std::ptrdiff_t room = light.stride + 3 * kMostLanes;
     scratch.resize(static_cast<std::size_t>(3 * room));
     float* sums = scratch.data() + 2 * room;
-    const int end = std::min((task + 1) * kTaskRows, cells.height);
-    for (int y = task * kTaskRows; y < end; ++y) {
-      const float* rows[5];
-      for (int i = 0; i < 5; ++i)
-        rows[i] = plane_row(light, 0, in_range(y + kHighlightReach / 2 * (i - 2), light.height));
-      SOFTFOCUS_KERNEL(pool.isa(), surroundings_row)
-      (rows, cells.width, scratch.data() + kMostLanes, scratch.data() + room + kMostLanes, sums);
-      for (int x = 0; x < cells.width; ++x) {
-        if (rows[2][x] > kHighlightContrast * sums[x]) {
-          take_out(input, x, y, sums[x], cells, highlights);
-        }
+    const float* rows[5];
+    for (int i = 0; i < 5; ++i)
+      rows[i] = plane_row(light, 0, in_range(y + kHighlightReach / 2 * (i - 2), light.height));
+    SOFTFOCUS_KERNEL(pool.isa(), surroundings_row)
+    (rows, cells.width, scratch.data() + kMostLanes, scratch.data() + room + kMostLanes, sums);
+    for (int x = 0; x < cells.width; ++x) {
+      if (rows[2][x] > kHighlightContrast * sums[x]) {
+        take_out(input, x, y, sums[x], cells, highlights);
       }
     }
-    shelf.put_back(std::move(scratch));
   });
   std::vector<std::uint8_t> used;
   for (const std::vector<Highlight>& row : highlights.rows) {
@@ -267,14 +255,6 @@ SOFTFOCUS_INLINE Floats weighted_sum(const Floats* weights, const Floats* v) {
   return sum_of_four(products);
 }
 
-template <std::size_t... lane>
-SOFTFOCUS_INLINE void unzip(const float* from, Floats& even, Floats& odd,
-                            std::index_sequence<lane...>) {
-  const Floats lower = load(from), upper = load(from + kLanes);
-  even = __builtin_shufflevector(lower, upper, (2 * lane)...);
-  odd = __builtin_shufflevector(lower, upper, (2 * lane + 1)...);
-}
-
 }  // namespace
 
 void halve_row(const HalfRow& row) {
@@ -282,8 +262,9 @@ void halve_row(const HalfRow& row) {
     Floats v[4][4];  // channel, pixel
     for (int c = 0; c < 4; ++c) {
       for (int i = 0; i < 2; ++i) {
-        unzip(row.rows[i] + c * row.row_plane + 2 * x, v[c][2 * i], v[c][2 * i + 1],
-              std::make_index_sequence<kLanes>{});
+        const TwoVectors pixels = load_pairs(row.rows[i] + c * row.row_plane + 2 * x);
+        v[c][2 * i] = pixels.first;
+        v[c][2 * i + 1] = pixels.second;
       }
     }
     Floats near[4], behind[4], left[4], weight[4], depth[4], before[4], brightest = splat(0.0f);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -110,12 +110,9 @@ void merge_fields(const DofInput& input, const HalfFields& fields, const ImageVi
   const Highlights& highlights = fields.highlights;
   const std::ptrdiff_t padded = plane_stride(width) + 2 * kMostLanes;
   const std::ptrdiff_t half_padded = plane_stride(blurred.width) + 3 * kMostLanes;
-  ScratchShelf<Scratch> shelf;
-  pool.for_each((height + kMergeRows - 1) / kMergeRows, [&](int task) {
-    Scratch scratch = shelf.take();
+  for_each_band_with<Scratch>(pool, height, kMergeRows, [&](int first, int end, auto& scratch) {
     scratch.pixels.resize(static_cast<std::size_t>(5 * padded));
     scratch.blurred.resize(static_cast<std::size_t>(kAllMerged * half_padded));
-    const int first = task * kMergeRows, end = std::min(first + kMergeRows, height);
     const std::ptrdiff_t sharp_plane = padded + 2 * kMostLanes;
     scratch.sharp.resize(static_cast<std::size_t>((kMergeRows + 2) * 4 * sharp_plane));
     const auto sharp = [&](int y) {
@@ -143,7 +140,6 @@ void merge_fields(const DofInput& input, const HalfFields& fields, const ImageVi
       }
       store_row(input, result, y, pixels, pixels + padded, pixels + 2 * padded, pool.isa());
     }
-    shelf.put_back(std::move(scratch));
   });
 }
 
@@ -162,18 +158,9 @@ SOFTFOCUS_INLINE Floats neighbour_share(Floats k, Floats radius, Floats per_squa
 }
 
 // kLanes cells as 2 kLanes pixels.
-struct Enlarged {
-  Floats lower, upper;
-};
-template <std::size_t... lane>
-SOFTFOCUS_INLINE Enlarged zip(Floats even, Floats odd, std::index_sequence<lane...>) {
-  return {__builtin_shufflevector(even, odd, (lane % 2 * kLanes + lane / 2)...),
-          __builtin_shufflevector(even, odd, (lane % 2 * kLanes + lane / 2 + kLanes / 2)...)};
-}
-SOFTFOCUS_INLINE Enlarged enlarge(const float* cells) {
+SOFTFOCUS_INLINE TwoVectors enlarge(const float* cells) {
   const Floats own = load(cells);
-  return zip(own + (load(cells - 1) - own) * 0.25f, own + (load(cells + 1) - own) * 0.25f,
-             std::make_index_sequence<kLanes>{});
+  return zip(own + (load(cells - 1) - own) * 0.25f, own + (load(cells + 1) - own) * 0.25f);
 }
 
 }  // namespace
@@ -252,9 +239,9 @@ void merge_half_row(const MergeRow& row) {
   for (int x = 0; x < row.count; x += kLanes) {
     Floats lower[kAllMerged] = {}, upper[kAllMerged] = {};
     for (int c = 0; c < planes; ++c) {
-      const Enlarged both = enlarge(row.blurred + c * row.blurred_plane + x);
-      lower[c] = both.lower;
-      upper[c] = both.upper;
+      const TwoVectors both = enlarge(row.blurred + c * row.blurred_plane + x);
+      lower[c] = both.first;
+      upper[c] = both.second;
     }
     float* pixels = row.pixels + 2 * x;
     merge_vector(pixels, row.pixel_plane, lower, row.near_field, row.clear + 2 * x);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -215,7 +215,7 @@ void anisotropic_diffusion(const DofInput& input, const ImageView& result, Threa
   const int tasks = ((scene.width + kDiffusionTileWidth - 1) / kDiffusionTileWidth) *
                     ((scene.height + kDiffusionTileHeight - 1) / kDiffusionTileHeight);
   std::vector<char> blurred(static_cast<std::size_t>(tasks));
-  ScratchShelf<std::unique_ptr<DiffusionTile>> shelf;
+  ScratchShelf<DiffusionTile> shelf;
   int sweeps = 0;
   for (int first = 1; first <= stages; first += kDiffusionStages, ++sweeps) {
     auto& to = states[sweeps % 2];
@@ -236,7 +236,6 @@ void anisotropic_diffusion(const DofInput& input, const ImageView& result, Threa
         return;
       }
       std::unique_ptr<DiffusionTile> tile = shelf.take();
-      if (!tile) tile = std::make_unique<DiffusionTile>();
       sweep_tile(sweep, at, *tile);
       shelf.put_back(std::move(tile));
     });

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dof/picture_planes.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -187,11 +187,9 @@ void put_layer_lanes(Planes& picture, const LayerKernels& kernels, float* layer,
 
   ScratchShelf<std::vector<float>> shelf;
   const auto for_each_block = [&](int count, const auto& work) {
-    pool.for_each(count, [&](int i) {
-      std::vector<float> scratch = shelf.take();
+    for_each_with(shelf, pool, count, [&](int i, auto& scratch) {
       scratch.resize(static_cast<std::size_t>(std::max(padded, height) * (node + lanes)));
       work(i, scratch.data());
-      shelf.put_back(std::move(scratch));
     });
   };
   for_each_block(row_blocks, [&](int i, float* scratch) {

@@ -13,7 +13,7 @@
 #include "dof/picture_planes.h"
 #include "dof/scatter/layer_planes.h"
 #include "dof/scatter/scatter_discs.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "dof/methods/fields.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -21,7 +21,7 @@
 namespace softfocus {
 namespace {
 
-constexpr int kFieldTaskRows = 8;
+constexpr int kFieldRows = 8;
 constexpr float kSharpPx = 0.5f;
 
 enum class Field { near, far };
@@ -112,26 +112,20 @@ void blur_field(const Planes& scene, Field field, float field_px, ThreadPool& po
   const int reach = discs.reaches[disc];
   const FieldSums rows = sum_rows(scene, field, field_px, reach + 3, pool);
   const auto width = static_cast<std::size_t>(scene.width);
-  ScratchShelf<std::vector<double>> shelf;
-  pool.for_each((scene.height + kFieldTaskRows - 1) / kFieldTaskRows, [&](int task) {
-    std::vector<double> sums = shelf.take();
+  for_each_row_with<std::vector<double>>(pool, scene.height, kFieldRows, [&](int y, auto& sums) {
     sums.resize(4 * width);
-    const int end = std::min((task + 1) * kFieldTaskRows, scene.height);
-    for (int y = task * kFieldTaskRows; y < end; ++y) {
-      std::fill(sums.begin(), sums.end(), 0.0);
-      for (int dy = -reach; dy <= reach; ++dy) {
-        const int from = std::clamp(y + dy, 0, scene.height - 1);
-        if (rows.any[static_cast<std::size_t>(from)] == 0) continue;
-        const DiscSpan span =
-            discs.spans[static_cast<std::size_t>(std::abs(dy) * discs.count) + disc];
-        if (span.whole < -1) continue;
-        SOFTFOCUS_KERNEL(pool.isa(), add_field_row)
-        (rows.row(from) + rows.margin, rows.plane, scene.width, span.whole, 0.125 * span.eighths,
-         static_cast<double>(discs.weights[disc]), sums.data());
-      }
-      write(y, sums.data());
+    std::fill(sums.begin(), sums.end(), 0.0);
+    for (int dy = -reach; dy <= reach; ++dy) {
+      const int from = std::clamp(y + dy, 0, scene.height - 1);
+      if (rows.any[static_cast<std::size_t>(from)] == 0) continue;
+      const DiscSpan span =
+          discs.spans[static_cast<std::size_t>(std::abs(dy) * discs.count) + disc];
+      if (span.whole < -1) continue;
+      SOFTFOCUS_KERNEL(pool.isa(), add_field_row)
+      (rows.row(from) + rows.margin, rows.plane, scene.width, span.whole, 0.125 * span.eighths,
+       static_cast<double>(discs.weights[disc]), sums.data());
     }
-    shelf.put_back(std::move(sums));
+    write(y, sums.data());
   });
 }
 

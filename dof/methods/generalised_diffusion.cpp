@@ -11,7 +11,7 @@
 
 #include "dof/methods/diffusion.h"
 #include "dof/picture_planes.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "dof/methods/generalised_diffusion.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -89,8 +89,7 @@ void generalised_diffusion(const DofInput& input, const ImageView& result, Threa
   const int padded = (planes.width + lanes - 1) / lanes * lanes;
   const auto scratch = static_cast<std::size_t>(std::max(padded, planes.height) * 4 * lanes);
   ScratchShelf<std::vector<float>> shelf;
-  pool.for_each((planes.height + lanes - 1) / lanes, [&](int block) {
-    std::vector<float> nodes = shelf.take();
+  for_each_with(shelf, pool, (planes.height + lanes - 1) / lanes, [&](int block, auto& nodes) {
     nodes.resize(scratch);
     std::array<float*, kMostLanes> rows;
     for (int i = 0; i < kMostLanes; ++i) {
@@ -100,15 +99,12 @@ void generalised_diffusion(const DofInput& input, const ImageView& result, Threa
     SOFTFOCUS_KERNEL(pool.isa(), diffuse_rows)
     (rows.data(), std::min(lanes, planes.height - block * lanes), planes.plane, planes.width,
      padded, nodes.data());
-    shelf.put_back(std::move(nodes));
   });
-  pool.for_each(padded / lanes, [&](int block) {
-    std::vector<float> nodes = shelf.take();
+  for_each_with(shelf, pool, padded / lanes, [&](int block, auto& nodes) {
     nodes.resize(scratch);
     SOFTFOCUS_KERNEL(pool.isa(), diffuse_columns)
     (plane_row(planes, 0, 0) + block * lanes, planes.stride, planes.plane, planes.height,
      nodes.data());
-    shelf.put_back(std::move(nodes));
   });
   store_planes(input, result, planes, pool);
 }

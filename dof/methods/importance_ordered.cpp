@@ -13,7 +13,6 @@
 #include "raster/images/image.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/random_bits.h"
-#include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
 namespace {

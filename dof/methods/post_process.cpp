@@ -12,6 +12,7 @@
 
 #include "dof/picture_planes.h"
 #include "raster/numbers/exact_math.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -173,8 +174,7 @@ void blend(const DofInput& input, const ImageView& result, const Planes& full, c
   pattern.count = full.width;
   const std::ptrdiff_t length = full.stride + 2 * kMostLanes;
   pattern.sharp_plane = pattern.blurred_plane = pattern.result_plane = length;
-  pool.for_each((full.height + kTaskRows - 1) / kTaskRows, [&](int task) {
-    const int first = task * kTaskRows, end = std::min(first + kTaskRows, full.height);
+  for_each_band(pool, full.height, kTaskRows, [&](int first, int end) {
     std::vector<float> sharp(static_cast<std::size_t>((kTaskRows + 4) * 3 * length));
     std::vector<float> blurred(static_cast<std::size_t>(8 * length));
     std::vector<float> out(static_cast<std::size_t>(3 * length));

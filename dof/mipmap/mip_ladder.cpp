@@ -1,4 +1,4 @@
-#include "dof/mipmap/mip_ladder.h"
+#include "dof/mipmap/mip_levels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,6 @@
 namespace softfocus {
 namespace {
 
-constexpr MipStep kAlways{-1.0f, 1.0f};
-constexpr MipStep kNever{3e38f, 1.0f};
 // The square up to which a circle counts as none.
 constexpr double kSharpSquare = 0.25;
 
@@ -63,7 +61,7 @@ void set_filter(MipRung& rung, double square, int level) {
   }
 }
 
-MipStep step_to(int rung) {
+RungStep step_to(int rung) {
   const double begin = rung == 1 ? kSharpSquare : square_of(rung - 1);
   return {static_cast<float>(begin), static_cast<float>(1.0 / (square_of(rung) - begin))};
 }

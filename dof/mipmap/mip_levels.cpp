@@ -9,13 +9,14 @@
 
 #include "dof/disc_layers/disc_levels.h"
 #include "dof/picture_planes.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
-// Two rows of a side, to become one of the next level. Null: a weight of 1.
+// Two rows of a side, to become one of the next level.
 struct MipHalving {
-  const float* rows[2][kMipChannels];
-  MipStep beyond;
+  LevelRow rows[2];
+  RungStep beyond;
   float least_square;  // of the next level
   int count;           // pixels of the result
   float* to;           // its channels, `plane` floats apart
@@ -24,7 +25,7 @@ struct MipHalving {
 
 // The rungs of a level, and what lies beyond.
 struct MipSteps {
-  MipStep steps[kFineMipRungs + 1];
+  RungStep steps[kFineMipRungs + 1];
   int rungs;
 };
 
@@ -37,7 +38,7 @@ namespace softfocus {
 namespace {
 
 // Pixels of level 0 that are read at once while levels are made.
-constexpr int kPiece = kMipTileWidth;
+constexpr int kPiece = kLevelTileWidth;
 
 MipLevel make_level(int width, int height) {
   MipLevel level;
@@ -51,27 +52,8 @@ MipLevel make_level(int width, int height) {
   return level;
 }
 
-std::ptrdiff_t row_stride(const MipLevel& level) {
-  // Whole vectors begin anywhere in the right margin.
-  return plane_stride(level.width + 2 * kMipMargin + kMostLanes);
-}
-
-// Takes planes from a piece of memory, or counts their floats.
-void take_planes(MipPlanes& planes, int channels, const MipLevel& level, float* memory,
-                 std::size_t& used) {
-  planes.stride = row_stride(level);
-  planes.plane = planes.stride * level.height;
-  if (memory != nullptr) planes.values = memory + used;
-  used += static_cast<std::size_t>(channels * planes.plane);
-}
-
-void repeat_ends(const MipLevel& level, const MipPlanes& planes, int channels, int y) {
-  for (int i = 0; i < channels; ++i) {
-    float* row = plane_row(planes, i, y);
-    std::fill_n(row - kMipMargin, kMipMargin, row[0]);
-    std::fill(row + level.width, row - kMipMargin + planes.stride, row[level.width - 1]);
-  }
-}
+// Whole vectors begin anywhere in the right margin.
+constexpr RowRoom kMipRoom{kMipMargin, kMipMargin + kMostLanes};
 
 MipSteps steps_of(const MipLevelRungs& level) {
   MipSteps steps{};
@@ -97,19 +79,16 @@ struct Making {
   ThreadPool& pool;
 };
 
-// Calls body(y) for each row of a level, eight rows a task.
+// Rows of a block are a task.
 template <class Body>
 void for_each_row(const MipLevel& level, ThreadPool& pool, const Body& body) {
-  pool.for_each(level.block_rows, [&](int task) {
-    const int end = std::min((task + 1) * kMipBlockHeight, level.height);
-    for (int y = task * kMipBlockHeight; y < end; ++y) body(y);
-  });
+  for_each_row(pool, level.height, kMipBlockHeight, body);
 }
 
 MipHalving halving_to(const Making& making, int level, MipSide side, int x, int y) {
   const auto number = static_cast<std::size_t>(level);
   const MipLevel& to = making.pyramid.levels[number];
-  const MipPlanes& planes = to.sides[static_cast<int>(side)];
+  const LevelPlanes& planes = to.sides[static_cast<int>(side)];
   MipHalving halving{};
   halving.beyond = making.ladder[number - 1].beyond;
   halving.least_square = making.ladder[number].rungs[0].square;
@@ -147,13 +126,13 @@ void start_near(const Making& making) {
       if (!deeper) continue;
       MipHalving halving = halving_to(making, 1, MipSide::near, x / 2, y);
       for (int i = 0; i < 2; ++i) {
-        for (int c = 0; c < 3; ++c) halving.rows[i][c] = rows[i].near[c];
-        halving.rows[i][kMipSquare] = rows[i].near[3];
+        for (int c = 0; c < 3; ++c) halving.rows[i].channel[c] = rows[i].near[c];
+        halving.rows[i].channel[kLevelSquare] = rows[i].near[3];
       }
       SOFTFOCUS_KERNEL(making.pool.isa(), halve_mip_rows)(halving, -1.0f);
     }
-    if (deeper) repeat_ends(half, half.sides[0], kMipChannels, y);
-    repeat_ends(half, half.filled, kHoledChannels, y);
+    if (deeper) repeat_ends(half.sides[0], kLevelChannels, half.width, y);
+    repeat_ends(half.filled, kHoledChannels, half.width, y);
   });
   making.pyramid.any_near = any.load();
 }
@@ -168,7 +147,7 @@ void fill_holes(const Making& making) {
       SOFTFOCUS_KERNEL(making.pool.isa(), halve_holed_rows)
       (plane_row(from.filled, 0, 2 * y), plane_row(from.filled, 0, next), from.filled.plane,
        levels[i].width, plane_row(levels[i].filled, 0, y), levels[i].filled.plane);
-      repeat_ends(levels[i], levels[i].filled, kHoledChannels, y);
+      repeat_ends(levels[i].filled, kHoledChannels, levels[i].width, y);
     });
   }
   for (std::size_t i = levels.size(); i-- > 1;) {
@@ -184,7 +163,7 @@ void fill_holes(const Making& making) {
       SOFTFOCUS_KERNEL(making.pool.isa(), fill_mip_row)
       (rows[0], rows[1], last ? 0 : levels[i + 1].filled.plane, levels[i].width,
        plane_row(levels[i].filled, 0, y), levels[i].filled.plane);
-      repeat_ends(levels[i], levels[i].filled, kFilledChannels, y);
+      repeat_ends(levels[i].filled, kFilledChannels, levels[i].width, y);
     });
   }
 }
@@ -211,20 +190,20 @@ void start_far(const Making& making) {
       if (!deeper) continue;
       MipHalving halving = halving_to(making, 1, MipSide::far, x / 2, y);
       for (int i = 0; i < 2; ++i) {
-        for (int c = 0; c < 3; ++c) halving.rows[i][c] = rows[i].far[c];
-        halving.rows[i][kMipSquare] = rows[i].far[3];
+        for (int c = 0; c < 3; ++c) halving.rows[i].channel[c] = rows[i].far[c];
+        halving.rows[i].channel[kLevelSquare] = rows[i].far[3];
       }
       SOFTFOCUS_KERNEL(making.pool.isa(), halve_mip_rows)(halving, 1.0f);
     }
-    if (deeper) repeat_ends(half, half.sides[1], kMipChannels, y);
+    if (deeper) repeat_ends(half.sides[1], kLevelChannels, half.width, y);
   });
 }
 
 void mark_level(const Making& making, std::size_t number, MipSide side, int y) {
   MipLevel& level = making.pyramid.levels[number];
-  const MipPlanes& planes = level.sides[static_cast<int>(side)];
+  const LevelPlanes& planes = level.sides[static_cast<int>(side)];
   SOFTFOCUS_KERNEL(making.pool.isa(), mark_mip_row)
-  (plane_row(planes, kMipSquare, y), plane_row(planes, kMipWeight, y), 1.0f,
+  (plane_row(planes, kLevelSquare, y), plane_row(planes, kLevelWeight, y), 1.0f,
    level.block_columns * kMipBlockWidth, steps_of(making.ladder[number]),
    marks_of(level, side, 0, y));
 }
@@ -239,13 +218,13 @@ void make_side(const Making& making, MipSide side) {
         MipHalving halving = halving_to(making, static_cast<int>(i), side, 0, y);
         halving.count = levels[i].width;
         for (int row = 0; row < 2; ++row) {
-          for (int c = 0; c < kMipChannels; ++c) {
-            halving.rows[row][c] =
+          for (int c = 0; c < kLevelChannels; ++c) {
+            halving.rows[row].channel[c] =
                 plane_row(from.sides[number], c, std::min(2 * y + row, from.height - 1));
           }
         }
         SOFTFOCUS_KERNEL(making.pool.isa(), halve_mip_rows)(halving, 1.0f);
-        repeat_ends(levels[i], levels[i].sides[number], kMipChannels, y);
+        repeat_ends(levels[i].sides[number], kLevelChannels, levels[i].width, y);
       }
       mark_level(making, i, side, y);
     });
@@ -256,11 +235,16 @@ void make_side(const Making& making, MipSide side) {
 void share_memory(const Making& making, float* const (&memory)[2], std::size_t (&used)[2]) {
   std::vector<MipLevel>& levels = making.pyramid.levels;
   for (std::size_t i = 1; i < levels.size(); ++i) {
-    take_planes(levels[i].filled, kHoledChannels, levels[i], memory[0], used[0]);
+    MipLevel& level = levels[i];
+    const auto take = [&](int channels, int piece, RowRoom room) {
+      const auto number = static_cast<std::size_t>(piece);
+      return take_planes(channels, level.width, level.height, memory[number], used[number], room);
+    };
+    level.filled = take(kHoledChannels, 0, kMipRoom);
     if (i >= making.ladder.size()) continue;
     for (int side = 0; side < 2; ++side) {
-      take_planes(levels[i].seen[side], kSeenChannels, levels[i], memory[0], used[0]);
-      take_planes(levels[i].sides[side], kMipChannels, levels[i], memory[1], used[1]);
+      level.seen[side] = take(kSeenChannels, 0, kSeenRoom);
+      level.sides[side] = take(kLevelChannels, 1, kMipRoom);
     }
   }
 }
@@ -314,7 +298,7 @@ unsigned rungs_near(const MipLevel& level, MipSide side, int x, int y, int width
   return rungs;
 }
 
-void read_mip_row(const DofInput& input, const MipPyramid& pyramid, MipStep near, int x, int y,
+void read_mip_row(const DofInput& input, const MipPyramid& pyramid, RungStep near, int x, int y,
                   int count, bool fill, MipPictureRow& to, Isa isa) {
   if (!fill) {
     split_disc_row(input, x, y, count, to.far[0], kMipTileRow, isa);
@@ -342,7 +326,7 @@ void read_mip_row(const DofInput& input, const MipPyramid& pyramid, MipStep near
 
 namespace {
 
-#include "dof/mipmap/mip_lanes.inl"
+#include "dof/level_lanes.inl"
 
 }  // namespace
 
@@ -372,33 +356,15 @@ unsigned mark_mip_row(const float* square, const float* weight, float sign, int 
 /// A row of a side at half size, of what belongs beyond the level. Squares count times `sign`.
 void halve_mip_rows(const MipHalving& in, float sign) {
   for (int x = 0; x < in.count; x += kLanes) {
-    Floats sums[kMipChannels][2];
-    for (int half = 0; half < 2; ++half) {
-      const int at = 2 * x + half * kLanes;
-      for (int i = 0; i < kMipChannels; ++i) sums[i][half] = splat(0.0f);
-      for (const auto& row : in.rows) {
-        const Floats square = sign * load(row[kMipSquare] + at);
-        const Floats share = share_from(in.beyond, square);
-        const Floats weight =
-            row[kMipWeight] == nullptr ? share : load(row[kMipWeight] + at) * share;
-        for (int i = 0; i < 3; ++i) sums[i][half] += load(row[i] + at) * share;
-        sums[kMipWeight][half] += weight;
-        sums[kMipSquare][half] += weight * larger(square, splat(in.least_square));
-      }
-    }
-    for (int i = 0; i < 4; ++i) {
-      store(in.to + i * in.plane + x, 0.25f * add_pairs(sums[i][0], sums[i][1]));
-    }
-    const Floats weight = add_pairs(sums[kMipWeight][0], sums[kMipWeight][1]);
-    const Floats square = add_pairs(sums[kMipSquare][0], sums[kMipSquare][1]);
-    store(in.to + kMipSquare * in.plane + x, select(weight > 0.0f, square / weight, splat(0.0f)));
+    const Halved half = halve_rows(in.rows, 2 * x, sign, in.beyond, in.least_square);
+    for (int i = 0; i < kLevelChannels; ++i) store(in.to + i * in.plane + x, half.channel[i]);
   }
 }
 
 /// Two rows of the picture, colours and signed squares, at half size without what lies before
 /// the focus.
 void halve_holed_picture(const float* upper, const float* lower, std::ptrdiff_t channel,
-                         MipStep near, int count, float* to, std::ptrdiff_t plane) {
+                         RungStep near, int count, float* to, std::ptrdiff_t plane) {
   const float* const rows[2] = {upper, lower};
   for (int x = 0; x < count; x += kLanes) {
     Floats sums[kHoledChannels][2];
@@ -446,18 +412,18 @@ void fill_mip_row(const float* inside, const float* other, std::ptrdiff_t next_p
     }
     for (int i = 0; i < kFilledChannels; ++i) {
       float* at = row + i * plane + x;
-      const Enlarged next = inside == nullptr ? Enlarged{splat(0.0f), splat(0.0f)}
-                                              : enlarge(inside + i * next_plane + x / 2,
-                                                        other + i * next_plane + x / 2);
-      store(at, mix(next.lower, load(at) * inverse[0], share[0]));
-      store(at + kLanes, mix(next.upper, load(at + kLanes) * inverse[1], share[1]));
+      const TwoVectors next = inside == nullptr ? TwoVectors{splat(0.0f), splat(0.0f)}
+                                                : enlarge(inside + i * next_plane + x / 2,
+                                                          other + i * next_plane + x / 2);
+      store(at, mix(next.first, load(at) * inverse[0], share[0]));
+      store(at + kLanes, mix(next.second, load(at + kLanes) * inverse[1], share[1]));
     }
   }
 }
 
 /// A row of the picture, colours and signed squares, with what lies before the focus filled
 /// from rows of twice the size.
-void fill_picture_row(const float* inside, const float* other, std::ptrdiff_t plane, MipStep near,
+void fill_picture_row(const float* inside, const float* other, std::ptrdiff_t plane, RungStep near,
                       int count, float* from, float* to, std::ptrdiff_t channel) {
   for (int x = 0; x < count; x += 2 * kLanes) {
     Floats holes[2];
@@ -469,11 +435,11 @@ void fill_picture_row(const float* inside, const float* other, std::ptrdiff_t pl
       store(square, larger(-value, splat(0.0f)));
     }
     for (int i = 0; i < kFilledChannels; ++i) {
-      const Enlarged filled = enlarge(inside + i * plane + x / 2, other + i * plane + x / 2);
+      const TwoVectors filled = enlarge(inside + i * plane + x / 2, other + i * plane + x / 2);
       const float* own = (i == kFilledSquare ? to : from) + i * channel + x;
       const Floats lower = load(own), upper = load(own + kLanes);
-      store(to + i * channel + x, mix(lower, filled.lower, holes[0]));
-      store(to + i * channel + x + kLanes, mix(upper, filled.upper, holes[1]));
+      store(to + i * channel + x, mix(lower, filled.first, holes[0]));
+      store(to + i * channel + x + kLanes, mix(upper, filled.second, holes[1]));
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dof/object_layers/object_rungs.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -178,14 +179,6 @@ void fill_row(const Planes& visible, const PictureObjects& objects, const Distan
   }
 }
 
-template <class Body>
-void for_each_row(int height, ThreadPool& pool, const Body& body) {
-  pool.for_each((height + kTaskRows - 1) / kTaskRows, [&](int task) {
-    const int end = std::min((task + 1) * kTaskRows, height);
-    for (int y = task * kTaskRows; y < end; ++y) body(y);
-  });
-}
-
 }  // namespace
 
 Surfaces find_surfaces(const DofInput& input, ThreadPool& pool) {
@@ -195,10 +188,10 @@ Surfaces find_surfaces(const DofInput& input, ThreadPool& pool) {
   const PictureObjects objects = find_objects(visible, kVisibleRadius, input.objects, pool);
   Distances distances;
   for (auto& direction : distances) direction.resize(objects.numbers.size());
-  for_each_row(height, pool, [&](int y) { walk_row(visible, objects, y, distances); });
+  for_each_row(pool, height, kTaskRows, [&](int y) { walk_row(visible, objects, y, distances); });
   pool.for_each((width + kTaskColumns - 1) / kTaskColumns,
                 [&](int task) { walk_columns(visible, objects, task * kTaskColumns, distances); });
-  for_each_row(height, pool,
+  for_each_row(pool, height, kTaskRows,
                [&](int y) { fill_row(visible, objects, distances, y, surfaces.hidden); });
   return surfaces;
 }

@@ -5,15 +5,14 @@
 #include "dof/object_layers/object_layers.h"
 
 #include <algorithm>
-#include <array>
-#include <memory>
-#include <utility>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dof/disc_layers/disc_levels.h"
+#include "dof/level_stack.h"
 #include "dof/object_layers/hidden_parts.h"
 #include "dof/object_layers/object_rungs.h"
-#include "raster/threads/scratch_shelf.h"
 
 namespace softfocus {
 
@@ -23,13 +22,13 @@ struct SurfaceRow {
   const float* hidden[hidden_plane::kCount];
 };
 
-inline constexpr int kSeen = 4;  // beside red, green, blue and kDiscWeight
+inline constexpr int kSeen = 4;  // beside red, green, blue and kLevelWeight
 
 // A layer's channels in a tile and around it, and where they are summed over discs.
 struct ObjectScratch {
   float channel[kSeen + 1][kDiscTileRows][kDiscTileRow];
   float columns[2][kDiscApron][kDiscTileRow];
-  float sums[kSeen + 1][kDiscTileHeight][kDiscTileWidth];
+  float sums[kSeen + 1][kLevelTileHeight][kLevelTileWidth];
 };
 
 }  // namespace softfocus
@@ -40,22 +39,14 @@ struct ObjectScratch {
 namespace softfocus {
 namespace {
 
-struct Rectangle {
-  int x, y, width, height;
-};
-
-// A level's size in its pixels, and what is seen of it and of larger ones on either side of the
-// focus: colour and transmittance. A row has kDiscMargin more pixels at either end, and then room
-// for a whole tile.
 struct Level {
   int width, height;
-  Planes seen[2];
+  LevelPlanes seen[2];
 };
 
 struct Workspace {
-  DiscTile tile;
+  SeenTile tile;
   ObjectScratch scratch;
-  float enlarged[4][kDiscTileRow];
   // Rows of the picture that become one of a level, copies of those that leave the picture, and
   // the sums of its columns.
   std::vector<SurfaceRow> rows;
@@ -67,8 +58,25 @@ struct Frame {
   const Surfaces& surfaces;
   const ObjectLadder& ladder;
   const LayerMarks& marks;
-  std::vector<Level>& levels;
+  std::span<const Level> levels;
   Isa isa;
+
+  // The layers of a level that may reach into a rectangle: bits, the smallest rung's the lowest.
+  std::uint32_t layers_near(std::size_t level, int side, const LevelRectangle& at) const {
+    const int size = 1 << level;
+    const std::uint64_t rungs =
+        marks.rungs_in(side, (at.x - kDiscApron) * size, (at.y - kDiscApron) * size,
+                       (at.width + 2 * kDiscApron) * size, (at.height + 2 * kDiscApron) * size);
+    const auto count = static_cast<int>(ladder.levels[level].rungs.size());
+    return static_cast<std::uint32_t>(rungs >> first_rung(level) &
+                                      ((std::uint64_t{1} << count) - 1));
+  }
+  bool any_near(std::size_t level, int side, const LevelRectangle& at) const {
+    return layers_near(level, side, at) != 0;
+  }
+  bool any_wanted(std::size_t level, int side, const LevelRectangle& at) const {
+    return any_seen(*this, level, side, at);
+  }
 };
 
 // --- a layer's rows ---
@@ -131,8 +139,8 @@ void make_row(const Frame& frame, std::size_t level, const ObjectRung& layer, in
   }
 }
 
-void blur_layer(const Frame& frame, std::size_t level, const ObjectRung& layer, const Rectangle& at,
-                Workspace& work) {
+void blur_layer(const Frame& frame, std::size_t level, const ObjectRung& layer,
+                const LevelRectangle& at, Workspace& work) {
   const int reach = static_cast<int>(layer.rung->spans.size()) - 1;
   for (int y = 0; y < at.height + 2 * (reach + 1); ++y) {
     make_row(frame, level, layer, at.x - kDiscMargin, at.y + y - reach - 1, work, y);
@@ -143,142 +151,45 @@ void blur_layer(const Frame& frame, std::size_t level, const ObjectRung& layer, 
 
 // --- levels ---
 
-// A tile's place in the next level, with the pixels around it that enlarging needs.
-Rectangle in_next_level(const Rectangle& at) {
-  return {at.x / 2 - 1, at.y / 2 - 1, at.width / 2 + 2, at.height / 2 + 2};
-}
-
-// The layers of a level that may reach into a rectangle: bits, the smallest rung's the lowest.
-std::uint32_t layers_near(const Frame& frame, std::size_t level, int side, const Rectangle& at) {
-  const int size = 1 << level;
-  const std::uint64_t rungs =
-      frame.marks.rungs_in(side, (at.x - kDiscApron) * size, (at.y - kDiscApron) * size,
-                           (at.width + 2 * kDiscApron) * size, (at.height + 2 * kDiscApron) * size);
-  const auto count = static_cast<int>(frame.ladder.levels[level].rungs.size());
-  return static_cast<std::uint32_t>(rungs >> first_rung(level) & ((std::uint64_t{1} << count) - 1));
-}
-
-// Whether a level or a larger one has anything of that side to show in a rectangle.
-bool any_seen(const Frame& frame, std::size_t level, int side, const Rectangle& at) {
-  if (level == frame.levels.size()) return false;
-  if (layers_near(frame, level, side, at) != 0) return true;
-  return any_seen(frame, level + 1, side, in_next_level(at));
-}
-
-void enlarge(const Frame& frame, const Level& from, int side, const Rectangle& at, int row,
-             float* const (&to)[kDiscTransmitted + 1]) {
-  const int y = at.y + row;
-  const int inside = y / 2;
-  const int other = std::clamp(y % 2 == 0 ? inside - 1 : inside + 1, 0, from.height - 1);
-  for (int i = 0; i <= kDiscTransmitted; ++i) {
-    SOFTFOCUS_KERNEL(frame.isa, enlarge_object_row)
-    (plane_row(from.seen[side], i, inside) + kDiscMargin + at.x / 2,
-     plane_row(from.seen[side], i, other) + kDiscMargin + at.x / 2, at.width + at.width % 2, to[i]);
-  }
-}
-
-void start_tile(const Frame& frame, std::size_t level, const Rectangle& at, bool before_focus,
-                DiscTile& tile) {
-  const bool any = before_focus && any_seen(frame, level + 1, 0, in_next_level(at));
-  for (int y = 0; y < at.height; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y);
-    float* const to[] = {tile.channel[0][row], tile.channel[1][row], tile.channel[2][row],
-                         tile.channel[3][row]};
-    if (any) {
-      enlarge(frame, frame.levels[level + 1], 0, at, y, to);
-    } else {
-      for (int i = 0; i < 3; ++i) std::fill_n(to[i], kDiscTileWidth, 0.0f);
-      std::fill_n(to[kDiscTransmitted], kDiscTileWidth, 1.0f);
-    }
-  }
-}
-
-void add_near(const Frame& frame, std::size_t level, const Rectangle& at, Workspace& work) {
-  start_tile(frame, level, at, true, work.tile);
+void add_near(const Frame& frame, std::size_t level, const LevelRectangle& at, Workspace& work) {
   const std::vector<ObjectRung>& layers = frame.ladder.near[level];
-  const std::uint32_t marked = layers_near(frame, level, 0, at);
+  const std::uint32_t marked = frame.layers_near(level, 0, at);
   const std::size_t last = frame.ladder.levels[level].rungs.size() - 1;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     if ((marked >> (last - i) & 1u) != 0) blur_layer(frame, level, layers[i], at, work);
   }
 }
 
-void add_far(const Frame& frame, std::size_t level, const Rectangle& at, Workspace& work) {
+void add_far(const Frame& frame, std::size_t level, const LevelRectangle& at, Workspace& work) {
   const std::vector<ObjectRung>& layers = frame.ladder.far[level];
-  std::uint32_t marked = layers_near(frame, level, 1, at);
-  if (level == 0) marked |= layers_near(frame, level, 0, at) & 1u;  // the layer in focus
+  std::uint32_t marked = frame.layers_near(level, 1, at);
+  if (level == 0) marked |= frame.layers_near(level, 0, at) & 1u;  // the layer in focus
   for (std::size_t i = 0; i < layers.size(); ++i) {
     if ((marked >> i & 1u) != 0) blur_layer(frame, level, layers[i], at, work);
   }
-  if (!any_seen(frame, level + 1, 1, in_next_level(at))) return;
-  float* const to[] = {work.enlarged[0], work.enlarged[1], work.enlarged[2], work.enlarged[3]};
-  for (int y = 0; y < at.height; ++y) {
-    enlarge(frame, frame.levels[level + 1], 1, at, y, to);
-    SOFTFOCUS_KERNEL(frame.isa, add_object_row_behind)(work.enlarged, at.width, y, work.tile);
-  }
 }
 
-template <class Body>
-void for_each_tile(const Level& level, ThreadPool& pool, const Body& body) {
-  const int columns = (level.width + kDiscTileWidth - 1) / kDiscTileWidth;
-  const int rows = (level.height + kDiscTileHeight - 1) / kDiscTileHeight;
-  ScratchShelf<std::unique_ptr<Workspace>> shelf;
-  pool.for_each(columns * rows, [&](int task) {
-    std::unique_ptr<Workspace> work = shelf.take();
-    if (!work) work = std::make_unique<Workspace>();
-    const int x = task % columns * kDiscTileWidth, y = task / columns * kDiscTileHeight;
-    body(Rectangle{x, y, std::min(kDiscTileWidth, level.width - x),
-                   std::min(kDiscTileHeight, level.height - y)},
-         *work);
-    shelf.put_back(std::move(work));
-  });
-}
-
-void keep_tile(Level& level, int side, const Rectangle& at, const DiscTile& tile) {
-  for (int y = 0; y < at.height; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y);
-    for (int i = 0; i < 4; ++i) {
-      float* to = plane_row(level.seen[side], i, at.y + y) + kDiscMargin + at.x;
-      std::copy_n(tile.channel[i][row], at.width, to);
-      if (at.x == 0) to[-1] = to[0];
-      if (at.x + at.width == level.width) to[at.width] = to[at.width - 1];
-    }
-  }
-}
-
-void see_level(const Frame& frame, std::size_t number, ThreadPool& pool) {
-  Level& level = frame.levels[number];
-  for_each_tile(level, pool, [&](const Rectangle& at, Workspace& work) {
-    // Leaves out tiles that the level before does not read: its tiles read half their size and
-    // two pixels more, if there is anything in them.
-    constexpr int kBeside = kDiscTileWidth / 2 + 2, kBelow = kDiscTileHeight / 2 + 2;
-    const Rectangle around{at.x - kBeside, at.y - kBelow, at.width + 2 * kBeside,
-                           at.height + 2 * kBelow};
-    if (any_seen(frame, number, 0, around)) {
-      add_near(frame, number, at, work);
-      keep_tile(level, 0, at, work.tile);
-    }
-    if (any_seen(frame, number, 1, around)) {
-      start_tile(frame, number, at, false, work.tile);
-      add_far(frame, number, at, work);
-      keep_tile(level, 1, at, work.tile);
-    }
-  });
-}
-
-std::vector<Level> make_levels(int width, int height, std::size_t count) {
+struct Levels {
   std::vector<Level> levels;
-  for (std::size_t i = 0; i < count; ++i) {
-    Level& level = levels.emplace_back(Level{width, height, {}});
-    if (i > 0) {
-      for (Planes& seen : level.seen) {
-        seen = make_planes(kDiscTransmitted + 1, width + 2 * kDiscMargin + kDiscTileWidth, height);
+  RowMemory<float> memory;
+};
+Levels make_levels(int width, int height, std::size_t count) {
+  Levels made;
+  for (; made.levels.size() < count; width = (width + 1) / 2, height = (height + 1) / 2) {
+    made.levels.push_back({width, height, {}});
+  }
+  // Counts floats first, then takes them.
+  for (const bool counting : {true, false}) {
+    std::size_t used = 0;
+    for (Level& level : made.levels) {
+      if (&level == &made.levels[0]) continue;
+      for (LevelPlanes& seen : level.seen) {
+        seen = take_planes(kSeenChannels, level.width, level.height, made.memory.get(), used);
       }
     }
-    width = (width + 1) / 2;
-    height = (height + 1) / 2;
+    if (counting) made.memory = make_row_memory<float>(used);
   }
-  return levels;
+  return made;
 }
 
 }  // namespace
@@ -287,19 +198,18 @@ void object_layers(const DofInput& input, const ImageView& result, ThreadPool& p
   const Surfaces surfaces = find_surfaces(input, pool);
   const LayerMarks marks = mark_layers(surfaces, pool);
   const ObjectLadder ladder = make_object_ladder(input.settings.max_coc_px);
-  std::vector<Level> levels = make_levels(result.width, result.height, ladder.levels.size());
-  const Frame frame{surfaces, ladder, marks, levels, pool.isa()};
-  for (std::size_t i = levels.size(); i-- > 1;) see_level(frame, i, pool);
-  for_each_tile(levels[0], pool, [&](const Rectangle& at, Workspace& work) {
+  const Levels made = make_levels(result.width, result.height, ladder.levels.size());
+  const Frame frame{surfaces, ladder, marks, made.levels, pool.isa()};
+  see_levels<Workspace>(
+      frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, Workspace& work) {
+        (side == 0 ? add_near : add_far)(frame, level, at, work);
+      });
+  for_each_tile<Workspace>(frame.levels[0], pool, [&](const LevelRectangle& at, Workspace& work) {
+    start_tile(frame, 0, 0, at, work.tile);
     add_near(frame, 0, at, work);
     add_far(frame, 0, at, work);
-    SOFTFOCUS_KERNEL(pool.isa(), divide_by_opacity)(at.height, work.tile);
-    for (int y = 0; y < at.height; ++y) {
-      const auto row = static_cast<std::size_t>(y);
-      const auto& channel = work.tile.channel;
-      store_span(input, result, at.x, at.y + y, at.width, channel[0][row], channel[1][row],
-                 channel[2][row], pool.isa());
-    }
+    add_larger_behind(frame, 0, at, work.tile);
+    store_tile(input, result, at, work.tile, nullptr, frame.isa);
   });
 }
 
@@ -309,7 +219,7 @@ void object_layers(const DofInput& input, const ImageView& result, ThreadPool& p
 
 namespace {
 
-#include "dof/picture_lanes.inl"
+#include "dof/level_lanes.inl"
 
 #include "dof/disc_layers/disc_sums.inl"
 
@@ -327,7 +237,7 @@ SOFTFOCUS_INLINE void split_pixels(const SurfaceRow& row, const ObjectRung& laye
   const Floats behind = share_behind(layer.begin, visible);
   const Floats shown = behind - share_behind(layer.next, visible);
   for (int i = 0; i < 3; ++i) values[i] = shown * load(row.visible[i] + x);
-  values[kDiscWeight] = shown;
+  values[kLevelWeight] = shown;
   values[kSeen] = behind;
   const Floats share = load(row.hidden[hidden_plane::kShare] + x);
   if (all(share == none)) return;
@@ -337,9 +247,9 @@ SOFTFOCUS_INLINE void split_pixels(const SurfaceRow& row, const ObjectRung& laye
   const Floats covered = share * (hidden_behind - share_behind(layer.next, hidden)) * (one - shown);
   const Floats more = larger(share * hidden_behind - behind, none);
   for (int i = 0; i < 3; ++i) values[i] += covered * load(row.hidden[i] + x);
-  values[kDiscWeight] = shown + covered;
+  values[kLevelWeight] = shown + covered;
   values[kSeen] =
-      larger(values[kDiscWeight], behind + more * (one - share_behind(layer.before, farthest)));
+      larger(values[kLevelWeight], behind + more * (one - share_behind(layer.before, farthest)));
 }
 
 }  // namespace
@@ -361,18 +271,16 @@ void split_layer(const SurfaceRow* rows, int row_count, const ObjectRung& layer,
 
 /// Pixels of a level in place of sums of the picture's columns, `size` columns a pixel.
 void mean_of_pixels(float* columns, int count, int size, float scale) {
-  using Lanes = std::make_index_sequence<SOFTFOCUS_LANES>;
   for (int of_pixel = size; of_pixel > 1; of_pixel /= 2) {
     for (int x = 0; x < count * of_pixel / 2; x += kLanes) {
-      const Floats a = load(columns + 2 * x), b = load(columns + 2 * x + kLanes);
-      store(columns + x, every_other<0>(a, b, Lanes{}) + every_other<1>(a, b, Lanes{}));
+      store(columns + x, add_pairs(load(columns + 2 * x), load(columns + 2 * x + kLanes)));
     }
   }
   for (int x = 0; x < count; x += kLanes) store(columns + x, scale * load(columns + x));
 }
 
 /// Sums a layer's channels over discs, and adds it behind the nearer ones.
-void blur_object_layer(const Rung& rung, int height, ObjectScratch& scratch, DiscTile& tile) {
+void blur_object_layer(const Rung& rung, int height, ObjectScratch& scratch, SeenTile& tile) {
   const int reach = static_cast<int>(rung.spans.size()) - 1;
   const LadderSpan* spans = rung.spans.data();
   Mask all_ones = splat(-1), all_own = splat(-1);
@@ -380,10 +288,10 @@ void blur_object_layer(const Rung& rung, int height, ObjectScratch& scratch, Dis
     for (int x = 0; x < kDiscTileRow; x += kLanes) {
       const Floats seen = load(scratch.channel[kSeen][y] + x);
       all_ones &= seen == 1.0f;
-      all_own &= seen == load(scratch.channel[kDiscWeight][y] + x);
+      all_own &= seen == load(scratch.channel[kLevelWeight][y] + x);
     }
   }
-  int seen_sums = kDiscWeight;
+  int seen_sums = kLevelWeight;
   for (int i = 0; i < kSeen; ++i) {
     sum_discs(spans, reach, height, 0, kWholeTile.columns, scratch.channel[i], scratch.columns,
               scratch.sums[i]);
@@ -392,7 +300,7 @@ void blur_object_layer(const Rung& rung, int height, ObjectScratch& scratch, Dis
     seen_sums = kSeen;
     if (all(all_ones)) {
       for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < kDiscTileWidth; x += kLanes) {
+        for (int x = 0; x < kLevelTileWidth; x += kLanes) {
           store(scratch.sums[kSeen][y] + x, splat(rung.area));
         }
       }
@@ -402,28 +310,6 @@ void blur_object_layer(const Rung& rung, int height, ObjectScratch& scratch, Dis
     }
   }
   add_layer(scratch.sums, scratch.sums[seen_sums], {0, height, 0, kWholeTile.columns}, tile);
-}
-
-/// enlarge_row() of disc_sums.inl.
-void enlarge_object_row(const float* inside, const float* other, int count, float* to) {
-  enlarge_row(inside, other, count, to);
-}
-
-/// add_row_behind() of disc_sums.inl.
-void add_object_row_behind(const float (*from)[kDiscTileRow], int width, int y, DiscTile& tile) {
-  add_row_behind(from, width, y, tile);
-}
-
-void divide_by_opacity(int height, DiscTile& tile) {
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < kDiscTileWidth; x += kLanes) {
-      const Floats scale = 1.0f / (1.0f - load(tile.channel[kDiscTransmitted][y] + x));
-      for (int i = 0; i < 3; ++i) {
-        float* to = tile.channel[i][y] + x;
-        store(to, load(to) * scale);
-      }
-    }
-  }
 }
 
 #endif

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "dof/disc_layers/disc_levels.h"
+#include "dof/level_oracle.h"
 #include "dof/object_layers/hidden_parts.h"
 #include "dof/object_layers/object_layers.h"
 #include "dof/object_layers/object_rungs.h"
@@ -17,18 +17,12 @@ namespace {
 
 constexpr std::size_t kOwn = 3, kSeen = 4;
 using Channels = std::array<float, 5>;  // light, own, seen
-using Shown = std::array<float, 4>;     // colour, transmittance
+using Shown = SeenGrid::Pixel;
 
 // A level, and what is seen of it and of larger ones before the focus and behind it.
 struct SlowLevel {
   int width, height;
-  std::array<std::vector<Shown>, 2> shown;
-
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) *
-               static_cast<std::size_t>(width) +
-           static_cast<std::size_t>(std::clamp(x, 0, width - 1));
-  }
+  std::array<SeenGrid, 2> shown;
 };
 
 float signed_square(float radius) { return radius * std::fabs(radius); }
@@ -125,24 +119,9 @@ struct Layers {
     }
   }
 
-  // What is seen of one side of a level at a pixel of the level before.
-  Shown enlarged(std::size_t number, std::size_t side, int x, int y) const {
-    const SlowLevel& level = levels[number];
-    const std::vector<Shown>& shown = level.shown[side];
-    const int other_y = y / 2 + (y % 2 == 0 ? -1 : 1);
-    const auto row = [&](int at, std::size_t i) {
-      return 0.75f * shown[level.at(at, y / 2)][i] + 0.25f * shown[level.at(at, other_y)][i];
-    };
-    Shown result;
-    for (std::size_t i = 0; i < 4; ++i) {
-      result[i] = 0.75f * row(x / 2, i) + 0.25f * row(x / 2 + (x % 2 == 0 ? -1 : 1), i);
-    }
-    return result;
-  }
-
   Shown near(std::size_t level, int x, int y) const {
     Shown shown{0.0f, 0.0f, 0.0f, 1.0f};
-    if (level + 1 < levels.size()) shown = enlarged(level + 1, 0, x, y);
+    if (level + 1 < levels.size()) shown = enlarged(levels[level + 1].shown[0], x, y);
     add_layers(level, ladder.near[level], x, y, shown);
     return shown;
   }
@@ -150,10 +129,7 @@ struct Layers {
   void add_far(std::size_t level, int x, int y, Shown& shown) const {
     add_layers(level, ladder.far[level], x, y, shown);
     if (level + 1 == levels.size()) return;
-    const Shown behind = enlarged(level + 1, 1, x, y);
-    const float open = shown[3];
-    for (std::size_t i = 0; i < 3; ++i) shown[i] += open * behind[i];
-    shown[3] = open * behind[3];
+    add_behind(shown, enlarged(levels[level + 1].shown[1], x, y));
   }
 };
 
@@ -169,13 +145,12 @@ void object_layers_oracle(const DofInput& input, const ImageView& result, Thread
   }
   for (std::size_t i = layers.levels.size(); i-- > 1;) {
     SlowLevel& level = layers.levels[i];
-    const std::size_t pixels =
-        static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
-    std::array<std::vector<Shown>, 2> shown{std::vector<Shown>(pixels), std::vector<Shown>(pixels)};
+    std::array<SeenGrid, 2> shown;
+    shown.fill(SeenGrid(level.width, level.height));
     pool.for_each(level.height, [&](int y) {
       for (int x = 0; x < level.width; ++x) {
-        shown[0][level.at(x, y)] = layers.near(i, x, y);
-        Shown& far = shown[1][level.at(x, y)];
+        shown[0].at(x, y) = layers.near(i, x, y);
+        Shown& far = shown[1].at(x, y);
         far = {0.0f, 0.0f, 0.0f, 1.0f};
         layers.add_far(i, x, y, far);
       }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <mutex>
 
+#include "raster/threads/loops.h"
+
 namespace softfocus {
 namespace {
 
@@ -136,14 +138,13 @@ void connect(PictureObjects& objects, ThreadPool& pool) {
 // Runs of one object in a row are short work for a lock: its largest radius once a run.
 void measure_objects(const Planes& planes, int radii, PictureObjects& objects, ThreadPool& pool) {
   std::mutex mutex;
-  pool.for_each((objects.height + kBandRows - 1) / kBandRows, [&](int band) {
+  for_each_band(pool, objects.height, kBandRows, [&](int first, int end) {
     struct Largest {
       std::uint32_t object;
       float radius_px;
     };
     std::vector<Largest> runs;
-    const int end = std::min((band + 1) * kBandRows, objects.height);
-    for (int y = band * kBandRows; y < end; ++y) {
+    for (int y = first; y < end; ++y) {
       const float* radius = plane_row(planes, radii, y);
       const std::uint32_t* number = &objects.numbers[objects.at(0, y)];
       for (int x = 0; x < objects.width; ++x) {

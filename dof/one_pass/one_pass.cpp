@@ -11,7 +11,7 @@
 #include "dof/focus_map.h"
 #include "dof/weights.h"
 #include "raster/images/texel.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -331,11 +331,8 @@ void filter_tiles(const DofInput& input, const std::vector<TileTask>& tasks, int
   const int halo = (farthest + kRingExcess + lanes - 1) / lanes * lanes;
   const TileTaps taps = make_taps(farthest, halo + kTileWidth + halo + lanes);
   const TileFilter filter{input, pool.isa(), taps, halo};
-  ScratchShelf<Memory> shelf;
-  pool.for_each(static_cast<int>(tasks.size()), [&](int number) {
-    Memory memory = shelf.take();
+  for_each_with<Memory>(pool, static_cast<int>(tasks.size()), [&](int number, auto& memory) {
     filter_tile(filter, tasks[static_cast<std::size_t>(number)], result, memory);
-    shelf.put_back(std::move(memory));
   });
 }
 

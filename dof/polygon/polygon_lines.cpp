@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "raster/numbers/exact_math.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -38,7 +38,7 @@ namespace softfocus {
 namespace {
 
 // Up to here a size is none, as in half_fields.h.
-constexpr int kLineTaskRows = 8;
+constexpr int kLineRows = 8;
 
 struct Direction {
   double x, y;  // down
@@ -158,35 +158,30 @@ void blur_line(const PolygonLine& line, const LineField& from, LineField& to, Th
   std::vector<float> shares;
   shares.reserve(line.taps.size());
   for (const LineTap& tap : line.taps) shares.push_back(tap.share);
-  ScratchShelf<std::vector<const float*>> shelf;
-  pool.for_each((from.height + kLineTaskRows - 1) / kLineTaskRows, [&](int task) {
-    std::vector<const float*> taps = shelf.take();
-    taps.resize(line.taps.size());
-    const int end = std::min((task + 1) * kLineTaskRows, from.height);
-    for (int y = task * kLineTaskRows; y < end; ++y) {
-      for (int c = 0; c < kLineValues; ++c) std::fill_n(line_row(to, c, y), to.width, 0.0f);
-      for (const LineRun run : from.runs[static_cast<std::size_t>(y)]) {
-        for (std::size_t i = 0; i < taps.size(); ++i) {
-          const int row = std::clamp(y + line.taps[i].dy, 0, from.height - 1);
-          taps[i] = line_row(from, 0, row) + run.begin + line.taps[i].dx;
+  for_each_row_with<std::vector<const float*>>(
+      pool, from.height, kLineRows, [&](int y, auto& taps) {
+        taps.resize(line.taps.size());
+        for (int c = 0; c < kLineValues; ++c) std::fill_n(line_row(to, c, y), to.width, 0.0f);
+        for (const LineRun run : from.runs[static_cast<std::size_t>(y)]) {
+          for (std::size_t i = 0; i < taps.size(); ++i) {
+            const int row = std::clamp(y + line.taps[i].dy, 0, from.height - 1);
+            taps[i] = line_row(from, 0, row) + run.begin + line.taps[i].dx;
+          }
+          const PolygonRow pass{line_row(from, 0, y) + run.begin,
+                                taps.data(),
+                                shares.data(),
+                                from.planes.plane,
+                                line.reach,
+                                line.taps_a_step,
+                                run.end - run.begin,
+                                line.middle,
+                                line.half,
+                                line_row(to, 0, y) + run.begin,
+                                to.planes.plane};
+          SOFTFOCUS_KERNEL(pool.isa(), blur_along_line)(pass, from.near);
         }
-        const PolygonRow pass{line_row(from, 0, y) + run.begin,
-                              taps.data(),
-                              shares.data(),
-                              from.planes.plane,
-                              line.reach,
-                              line.taps_a_step,
-                              run.end - run.begin,
-                              line.middle,
-                              line.half,
-                              line_row(to, 0, y) + run.begin,
-                              to.planes.plane};
-        SOFTFOCUS_KERNEL(pool.isa(), blur_along_line)(pass, from.near);
-      }
-      repeat_line_ends(to, 0, kLineValues, y);
-    }
-    shelf.put_back(std::move(taps));
-  });
+        repeat_line_ends(to, 0, kLineValues, y);
+      });
 }
 
 void blur_polygon(const PolygonLines& lines, LineField& field, ThreadPool& pool) {

@@ -251,18 +251,7 @@ Behind guess_behind(const Planes& scene, ThreadPool& pool) {
 
 namespace {
 
-// The numbers at even and at odd places of two vectors side by side.
-struct Pairs {
-  Floats first, second;
-};
-template <std::size_t... lane>
-SOFTFOCUS_INLINE Pairs unzip(Floats lower, Floats upper, std::index_sequence<lane...>) {
-  return {__builtin_shufflevector(lower, upper, (2 * lane)...),
-          __builtin_shufflevector(lower, upper, (2 * lane + 1)...)};
-}
-SOFTFOCUS_INLINE Pairs load_pairs(const float* from) {
-  return unzip(load(from), load(from + kLanes), std::make_index_sequence<kLanes>{});
-}
+#include "dof/picture_lanes.inl"
 
 }  // namespace
 
@@ -270,8 +259,8 @@ SOFTFOCUS_INLINE Pairs load_pairs(const float* from) {
 void farthest_row(const float* top, const float* bottom, std::ptrdiff_t plane, float* to,
                   std::ptrdiff_t to_plane) {
   for (int x = 0; x < kMostLanes; x += kLanes) {
-    const Pairs above = load_pairs(top + 3 * plane + 2 * x);
-    const Pairs below = load_pairs(bottom + 3 * plane + 2 * x);
+    const TwoVectors above = load_pairs(top + 3 * plane + 2 * x);
+    const TwoVectors below = load_pairs(bottom + 3 * plane + 2 * x);
     const Floats least =
         larger(larger(above.first, above.second), larger(below.first, below.second)) - kSurfaceStep;
     const Floats one = splat(1.0f), none = splat(0.0f);
@@ -281,8 +270,8 @@ void farthest_row(const float* top, const float* bottom, std::ptrdiff_t plane, f
     const Floats share3 = select(below.second >= least, one, none);
     const Floats count = (share0 + share1) + (share2 + share3);
     for (int c = 0; c < 4; ++c) {
-      const Pairs upper = load_pairs(top + c * plane + 2 * x);
-      const Pairs lower = load_pairs(bottom + c * plane + 2 * x);
+      const TwoVectors upper = load_pairs(top + c * plane + 2 * x);
+      const TwoVectors lower = load_pairs(bottom + c * plane + 2 * x);
       const Floats sum = (share0 * upper.first + share1 * upper.second) +
                          (share2 * lower.first + share3 * lower.second);
       store(to + c * to_plane + x, sum / count);

@@ -10,7 +10,7 @@
 #include "dof/ray_distribution/behind.h"
 #include "dof/ray_distribution/patch.h"
 #include "raster/numbers/exact_math.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -67,9 +67,7 @@ void ray_distribution(const DofInput& input, const ImageView& result, ThreadPool
   const std::vector<LensPoint> points = distribution_points(largest);
   const int across = (scene.width + kPatchColumns - 1) / kPatchColumns;
   const int down = (scene.height + kPatchRows - 1) / kPatchRows;
-  ScratchShelf<Patch> shelf;
-  pool.for_each(across * down, [&](int task) {
-    Patch patch = shelf.take();
+  for_each_with<Patch>(pool, across * down, [&](int task, auto& patch) {
     const Blocks blocks = begin_patch(visible, hidden, task % across * kPatchColumns,
                                       task / across * kPatchRows, patch);
     if (blocks != 0) {
@@ -79,7 +77,6 @@ void ray_distribution(const DofInput& input, const ImageView& result, ThreadPool
       finish_patch(visible, patch, pool.isa());
     }
     store_patch(input, scene, patch, result, pool.isa());
-    shelf.put_back(std::move(patch));
   });
 }
 

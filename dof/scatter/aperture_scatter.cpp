@@ -15,7 +15,7 @@
 #include "dof/scatter/slabs.h"
 #include "raster/images/image.h"
 #include "raster/threads/float_environment.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "dof/scatter/aperture_scatter.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -126,60 +126,53 @@ void scatter_aperture(const DofInput& input, const ImageView& result, ThreadPool
   const std::ptrdiff_t slab_stride = 4 * (static_cast<std::ptrdiff_t>(width) + 2 * margin);
   const std::ptrdiff_t padded = plane_stride(width);
   const int most_reach = *std::max_element(sources.reach.begin(), sources.reach.end());
-  ScratchShelf<StampBuffers> shelf;
-  pool.for_each((height + kStampTaskRows - 1) / kStampTaskRows, [&](int task) {
-    StampBuffers buffers = shelf.take();
+  for_each_row_with<StampBuffers>(pool, height, kStampTaskRows, [&](int y, auto& buffers) {
     buffers.differences.resize(static_cast<std::size_t>(slab_stride * kSlabs));
     buffers.colour.resize(static_cast<std::size_t>(3 * padded));
     double* differences = buffers.differences.data();
     float* colour = buffers.colour.data();
-    const int end = std::min((task + 1) * kStampTaskRows, height);
-    for (int y = task * kStampTaskRows; y < end; ++y) {
-      std::uint32_t in_slab = 0;
-      for (int from = std::max(y - most_reach, 0); from <= std::min(y + most_reach, height - 1);
-           ++from) {
-        const auto row = static_cast<std::size_t>(from);
-        if (sources.reach[row] < std::max(y - from, from - y)) continue;
-        in_slab |= sources.in_slab[row];
-        const std::size_t at = sources.at(0, from);
-        SOFTFOCUS_KERNEL(pool.isa(), stamp_row)
-        (&sources.light[4 * at], &sources.stamp[at], &sources.slab[at], width, y - from,
-         sources.stamps.stamps.data(), sources.stamps.rows.data(),
-         sources.stamps.differences.data(), differences + std::ptrdiff_t{4} * margin, slab_stride);
-      }
-      const SlabList used = slabs_in(in_slab);
-      std::array<std::array<double, 4>, kSlabs> sums{};
-      for (int x = -margin; x < width; ++x) {
-        Over over;
-        int before = 0;
-        for (int i = 0; i < used.count; ++i) {
-          const int slab = used.slabs[static_cast<std::size_t>(i)];
-          const double* change =
-              differences + slab * slab_stride + std::ptrdiff_t{4} * (x + margin);
-          std::array<double, 4>& sum = sums[static_cast<std::size_t>(i)];
-          for (std::size_t j = 0; j < 4; ++j) sum[j] += change[j];
-          if (x < 0) continue;
-          if (slab != before + 1) over.previous = 0.0;
-          before = slab;
-          if (sum[3] < kNothing) {
-            over.previous = 0.0;
-          } else {
-            add_slab(over, sum, 1.0);
-          }
-        }
-        if (x < 0) continue;
-        const SlabColour out = resolve(over);
-        colour[x] = out.r;
-        colour[padded + x] = out.g;
-        colour[2 * padded + x] = out.b;
-      }
-      for (int i = 0; i < used.count; ++i) {
-        std::fill_n(differences + used.slabs[static_cast<std::size_t>(i)] * slab_stride,
-                    slab_stride, 0.0);
-      }
-      store_row(input, result, y, colour, colour + padded, colour + 2 * padded, pool.isa());
+    std::uint32_t in_slab = 0;
+    for (int from = std::max(y - most_reach, 0); from <= std::min(y + most_reach, height - 1);
+         ++from) {
+      const auto row = static_cast<std::size_t>(from);
+      if (sources.reach[row] < std::max(y - from, from - y)) continue;
+      in_slab |= sources.in_slab[row];
+      const std::size_t at = sources.at(0, from);
+      SOFTFOCUS_KERNEL(pool.isa(), stamp_row)
+      (&sources.light[4 * at], &sources.stamp[at], &sources.slab[at], width, y - from,
+       sources.stamps.stamps.data(), sources.stamps.rows.data(), sources.stamps.differences.data(),
+       differences + std::ptrdiff_t{4} * margin, slab_stride);
     }
-    shelf.put_back(std::move(buffers));
+    const SlabList used = slabs_in(in_slab);
+    std::array<std::array<double, 4>, kSlabs> sums{};
+    for (int x = -margin; x < width; ++x) {
+      Over over;
+      int before = 0;
+      for (int i = 0; i < used.count; ++i) {
+        const int slab = used.slabs[static_cast<std::size_t>(i)];
+        const double* change = differences + slab * slab_stride + std::ptrdiff_t{4} * (x + margin);
+        std::array<double, 4>& sum = sums[static_cast<std::size_t>(i)];
+        for (std::size_t j = 0; j < 4; ++j) sum[j] += change[j];
+        if (x < 0) continue;
+        if (slab != before + 1) over.previous = 0.0;
+        before = slab;
+        if (sum[3] < kNothing) {
+          over.previous = 0.0;
+        } else {
+          add_slab(over, sum, 1.0);
+        }
+      }
+      if (x < 0) continue;
+      const SlabColour out = resolve(over);
+      colour[x] = out.r;
+      colour[padded + x] = out.g;
+      colour[2 * padded + x] = out.b;
+    }
+    for (int i = 0; i < used.count; ++i) {
+      std::fill_n(differences + used.slabs[static_cast<std::size_t>(i)] * slab_stride, slab_stride,
+                  0.0);
+    }
+    store_row(input, result, y, colour, colour + padded, colour + 2 * padded, pool.isa());
   });
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dof/scatter/scatter_discs.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -148,15 +149,6 @@ namespace {
 
 constexpr int kTaskRows = 16;
 
-// Runs body(y) for all rows, some at a time.
-template <class Body>
-void for_rows(int rows, ThreadPool& pool, const Body& body) {
-  pool.for_each((rows + kTaskRows - 1) / kTaskRows, [&](int task) {
-    const int end = std::min((task + 1) * kTaskRows, rows);
-    for (int y = task * kTaskRows; y < end; ++y) body(y);
-  });
-}
-
 bool all_known(const Planes& level, int values) {
   for (int y = 0; y < level.height; ++y) {
     const float* known = plane_row(level, values, y);
@@ -235,7 +227,7 @@ void guess_hidden(Planes& sheet, int values, ThreadPool& pool) {
     const Planes& fine = level(top);
     if (fine.width == 1 && fine.height == 1) return;
     Planes coarse = make_planes(values + 1, (fine.width + 1) / 2, (fine.height + 1) / 2);
-    for_rows(coarse.height, pool, [&](int y) { pull_row(fine, values, y, coarse); });
+    for_each_row(pool, coarse.height, kTaskRows, [&](int y) { pull_row(fine, values, y, coarse); });
     coarser.push_back(std::move(coarse));
     ++top;
   }
@@ -244,7 +236,8 @@ void guess_hidden(Planes& sheet, int values, ThreadPool& pool) {
     std::vector<PushTap> taps(static_cast<std::size_t>(fine.width));
     for (int x = 0; x < fine.width; ++x)
       taps[static_cast<std::size_t>(x)] = push_tap(x, fine.width);
-    for_rows(fine.height, pool, [&](int y) { push_row(level(top), taps, values, y, fine); });
+    for_each_row(pool, fine.height, kTaskRows,
+                 [&](int y) { push_row(level(top), taps, values, y, fine); });
   }
 }
 

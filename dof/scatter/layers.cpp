@@ -15,7 +15,7 @@
 #include "dof/scatter/layer_planes.h"
 #include "dof/scatter/scatter_discs.h"
 #include "raster/images/image.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "dof/scatter/layers.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -250,41 +250,35 @@ void layers_lanes(const DofInput& input, const ImageView& result, ThreadPool& po
   const int margin = layers.discs.reach + 3;
   const auto length = static_cast<std::size_t>(4 * (width + 2 * margin));
   const std::ptrdiff_t padded = plane_stride(width);
-  ScratchShelf<SheetRows> shelf;
-  pool.for_each((height + kLayerRows - 1) / kLayerRows, [&](int task) {
-    SheetRows buffers = shelf.take();
+  for_each_row_with<SheetRows>(pool, height, kLayerRows, [&](int y, auto& buffers) {
     for (Differences& differences : buffers.differences) differences.resize(length);
     buffers.colour.resize(static_cast<std::size_t>(3 * padded));
     float* colour = buffers.colour.data();
-    const int end = std::min((task + 1) * kLayerRows, height);
-    for (int y = task * kLayerRows; y < end; ++y) {
-      if (!input.kept.has_row(y)) continue;
-      std::array<bool, kSheets> any;
-      for (std::size_t i = 0; i < kSheets; ++i) {
-        any[i] = add_spans(sheet(layers, i), layers.discs, y, pool.isa(),
-                           buffers.differences[i].data() + 4 * margin);
-      }
-      Meeting sums;
-      const std::array<Light*, kSheets> lights{&sums.near, &sums.near_clear, &sums.mid,
-                                               &sums.mid_clear, &sums.far};
-      for (int x = -margin; x < width; ++x) {
-        for (std::size_t i = 0; i < kSheets; ++i) {
-          if (!any[i]) continue;
-          const std::uint64_t* change = buffers.differences[i].data() + 4 * (x + margin);
-          for (std::size_t j = 0; j < 4; ++j) (*lights[i])[j] += change[j];
-        }
-        if (x < 0) continue;
-        const Colour out = composite(sums);
-        colour[x] = out.r;
-        colour[padded + x] = out.g;
-        colour[2 * padded + x] = out.b;
-      }
-      for (std::size_t i = 0; i < kSheets; ++i) {
-        if (any[i]) std::fill(buffers.differences[i].begin(), buffers.differences[i].end(), 0);
-      }
-      store_row(input, result, y, colour, colour + padded, colour + 2 * padded, pool.isa());
+    if (!input.kept.has_row(y)) return;
+    std::array<bool, kSheets> any;
+    for (std::size_t i = 0; i < kSheets; ++i) {
+      any[i] = add_spans(sheet(layers, i), layers.discs, y, pool.isa(),
+                         buffers.differences[i].data() + 4 * margin);
     }
-    shelf.put_back(std::move(buffers));
+    Meeting sums;
+    const std::array<Light*, kSheets> lights{&sums.near, &sums.near_clear, &sums.mid,
+                                             &sums.mid_clear, &sums.far};
+    for (int x = -margin; x < width; ++x) {
+      for (std::size_t i = 0; i < kSheets; ++i) {
+        if (!any[i]) continue;
+        const std::uint64_t* change = buffers.differences[i].data() + 4 * (x + margin);
+        for (std::size_t j = 0; j < 4; ++j) (*lights[i])[j] += change[j];
+      }
+      if (x < 0) continue;
+      const Colour out = composite(sums);
+      colour[x] = out.r;
+      colour[padded + x] = out.g;
+      colour[2 * padded + x] = out.b;
+    }
+    for (std::size_t i = 0; i < kSheets; ++i) {
+      if (any[i]) std::fill(buffers.differences[i].begin(), buffers.differences[i].end(), 0);
+    }
+    store_row(input, result, y, colour, colour + padded, colour + 2 * padded, pool.isa());
   });
 }
 

@@ -15,7 +15,7 @@
 #include "dof/scatter/scatter_discs.h"
 #include "dof/scatter/slabs.h"
 #include "raster/images/image.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "dof/scatter/scatter.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -166,61 +166,55 @@ void scatter_lanes(const DofInput& input, const ImageView& result, SlabRule rule
   const std::ptrdiff_t slab_stride = 4 * (static_cast<std::ptrdiff_t>(width) + 2 * margin);
   const std::ptrdiff_t padded = plane_stride(width);
   const auto discs = static_cast<std::size_t>(sources.discs.count);
-  ScratchShelf<SlabRows> shelf;
-  pool.for_each((height + kScatterRows - 1) / kScatterRows, [&](int task) {
-    SlabRows buffers = shelf.take();
+  for_each_row_with<SlabRows>(pool, height, kScatterRows, [&](int y, auto& buffers) {
     buffers.differences.resize(static_cast<std::size_t>(slab_stride) *
                                static_cast<std::size_t>(slab_count(rule)));
     buffers.colour.resize(static_cast<std::size_t>(3 * padded));
     std::uint64_t* differences = buffers.differences.data();
     float* colour = buffers.colour.data();
-    const int end = std::min((task + 1) * kScatterRows, height);
-    for (int y = task * kScatterRows; y < end; ++y) {
-      if (!input.kept.has_row(y)) continue;
-      std::uint32_t in_slab = 0;
-      for (int from = std::max(y - sources.discs.reach, 0);
-           from <= std::min(y + sources.discs.reach, height - 1); ++from) {
-        const int dy = std::abs(from - y);
-        if (sources.reach[static_cast<std::size_t>(from)] < dy) continue;
-        in_slab |= sources.in_slab[static_cast<std::size_t>(from)];
-        const std::size_t at = sources.at(0, from);
-        SOFTFOCUS_KERNEL(pool.isa(), scatter_row)
-        (&sources.light[4 * at], &sources.disc[at], &sources.slab[at], width,
-         &sources.discs.spans[static_cast<std::size_t>(dy) * discs], differences + 4 * margin,
-         slab_stride);
-      }
-      std::array<int, kSlabs> used;
-      std::array<Light, kSlabs> sums{};
-      int count = 0;
-      for (int slab = 0; slab < kSlabs; ++slab) {
-        if ((in_slab >> slab & 1u) != 0) used[static_cast<std::size_t>(count++)] = slab;
-      }
-      for (int x = -margin; x < width; ++x) {
-        Over over;
-        int before = 0;
-        for (int i = 0; i < count; ++i) {
-          const int slab = used[static_cast<std::size_t>(i)];
-          const std::uint64_t* change = differences + slab * slab_stride + 4 * (x + margin);
-          Light& sum = sums[static_cast<std::size_t>(i)];
-          for (std::size_t j = 0; j < 4; ++j) sum[j] += change[j];
-          if (x < 0) continue;
-          if (slab != before + 1) over.previous = 0.0;
-          before = slab;
-          add_slab(over, sum);
-        }
-        if (x < 0) continue;
-        const SlabColour out = resolve(over);
-        colour[x] = out.r;
-        colour[padded + x] = out.g;
-        colour[2 * padded + x] = out.b;
-      }
-      for (int i = 0; i < count; ++i) {
-        std::fill_n(differences + used[static_cast<std::size_t>(i)] * slab_stride, slab_stride,
-                    std::uint64_t{0});
-      }
-      store_row(input, result, y, colour, colour + padded, colour + 2 * padded, pool.isa());
+    if (!input.kept.has_row(y)) return;
+    std::uint32_t in_slab = 0;
+    for (int from = std::max(y - sources.discs.reach, 0);
+         from <= std::min(y + sources.discs.reach, height - 1); ++from) {
+      const int dy = std::abs(from - y);
+      if (sources.reach[static_cast<std::size_t>(from)] < dy) continue;
+      in_slab |= sources.in_slab[static_cast<std::size_t>(from)];
+      const std::size_t at = sources.at(0, from);
+      SOFTFOCUS_KERNEL(pool.isa(), scatter_row)
+      (&sources.light[4 * at], &sources.disc[at], &sources.slab[at], width,
+       &sources.discs.spans[static_cast<std::size_t>(dy) * discs], differences + 4 * margin,
+       slab_stride);
     }
-    shelf.put_back(std::move(buffers));
+    std::array<int, kSlabs> used;
+    std::array<Light, kSlabs> sums{};
+    int count = 0;
+    for (int slab = 0; slab < kSlabs; ++slab) {
+      if ((in_slab >> slab & 1u) != 0) used[static_cast<std::size_t>(count++)] = slab;
+    }
+    for (int x = -margin; x < width; ++x) {
+      Over over;
+      int before = 0;
+      for (int i = 0; i < count; ++i) {
+        const int slab = used[static_cast<std::size_t>(i)];
+        const std::uint64_t* change = differences + slab * slab_stride + 4 * (x + margin);
+        Light& sum = sums[static_cast<std::size_t>(i)];
+        for (std::size_t j = 0; j < 4; ++j) sum[j] += change[j];
+        if (x < 0) continue;
+        if (slab != before + 1) over.previous = 0.0;
+        before = slab;
+        add_slab(over, sum);
+      }
+      if (x < 0) continue;
+      const SlabColour out = resolve(over);
+      colour[x] = out.r;
+      colour[padded + x] = out.g;
+      colour[2 * padded + x] = out.b;
+    }
+    for (int i = 0; i < count; ++i) {
+      std::fill_n(differences + used[static_cast<std::size_t>(i)] * slab_stride, slab_stride,
+                  std::uint64_t{0});
+    }
+    store_row(input, result, y, colour, colour + padded, colour + 2 * padded, pool.isa());
   });
 }
 

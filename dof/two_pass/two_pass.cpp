@@ -8,7 +8,7 @@
 #include "dof/two_pass/two_pass_strip.h"
 #include "dof/weights.h"
 #include "raster/passes/fullscreen_pass.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -102,10 +102,9 @@ void two_pass_scalar(const DofInput& input, const ImageView& result, ThreadPool&
   const int taps = tap_count(largest_filter_radius(input, pool));
 
   Image between = make_image(between_format, scene.width, scene.height);
-  pool.for_each((scene.height + kLinesOfTask - 1) / kLinesOfTask, [&](int block) {
+  for_each_band(pool, scene.height, kLinesOfTask, [&](int first, int end) {
     Line line(scene.width, taps);
-    const int end = std::min((block + 1) * kLinesOfTask, scene.height);
-    for (int y = block * kLinesOfTask; y < end; ++y) {
+    for (int y = first; y < end; ++y) {
       fill_line(line, settings, [&](int x) { return load_texel<Format::rgba16f>(scene, x, y); });
       filter_line(line, settings.leak, [&](int x, glm::vec4 value) {
         store_texel<between_format>(between, x, y, value, input.profile);
@@ -113,10 +112,9 @@ void two_pass_scalar(const DofInput& input, const ImageView& result, ThreadPool&
     }
   });
 
-  pool.for_each((scene.width + kLinesOfTask - 1) / kLinesOfTask, [&](int block) {
+  for_each_band(pool, scene.width, kLinesOfTask, [&](int first, int end) {
     Line line(scene.height, taps);
-    const int end = std::min((block + 1) * kLinesOfTask, scene.width);
-    for (int x = block * kLinesOfTask; x < end; ++x) {
+    for (int x = first; x < end; ++x) {
       fill_line(line, settings, [&](int y) { return load_texel<between_format>(between, x, y); });
       filter_line(line, settings.leak, [&](int y, glm::vec4 value) {
         store_texel<Format::rgba16f>(result, x, y, value, input.profile);
@@ -293,11 +291,8 @@ void two_pass_lanes(const DofInput& input, Between between, const ImageView& res
   const std::vector<StripTask> tasks = plan_strips(map, input.scene.width, input.scene.height);
   const StripFilter filter{input.settings, input.profile.half_store, pool.isa(), between,
                            write_past_caches(result)};
-  ScratchShelf<Strip> shelf;
-  pool.for_each(static_cast<int>(tasks.size()), [&](int number) {
-    Strip strip = shelf.take();
+  for_each_with<Strip>(pool, static_cast<int>(tasks.size()), [&](int number, auto& strip) {
     filter_task(tasks[static_cast<std::size_t>(number)], filter, input.scene, result, strip);
-    shelf.put_back(std::move(strip));
   });
 }
 

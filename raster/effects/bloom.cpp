@@ -15,6 +15,7 @@
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/kernel.h"
 #include "raster/passes/pyramid.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -69,13 +70,10 @@ glm::vec4 combined(const BrightPass& pass, float strength, glm::vec4 picture, gl
 template <class Kernel, class Scalar>
 void for_rows(const ImageView& result, const Profile& profile, ThreadPool& pool,
               const Kernel& kernel, const Scalar& scalar) {
-  pool.for_each((result.height + kPassRows - 1) / kPassRows, [&](int band) {
-    const int end = std::min((band + 1) * kPassRows, result.height);
-    for (int y = band * kPassRows; y < end; ++y) {
-      int x = pool.isa() == Isa::scalar ? 0 : kernel(y);
-      for (; x < result.width; ++x) {
-        store_texel<Format::rgba16f>(result, x, y, scalar(x, y), profile);
-      }
+  for_each_row(pool, result.height, kPassRows, [&](int y) {
+    int x = pool.isa() == Isa::scalar ? 0 : kernel(y);
+    for (; x < result.width; ++x) {
+      store_texel<Format::rgba16f>(result, x, y, scalar(x, y), profile);
     }
   });
 }
@@ -139,9 +137,8 @@ void find_bright_light(const BrightPass& pass, const ConstImageView& picture,
 
 bool has_bright_light(const BrightPass& pass, const ConstImageView& picture, ThreadPool& pool) {
   std::atomic<bool> found = false;
-  pool.for_each((picture.height + kPassRows - 1) / kPassRows, [&](int band) {
-    const int end = std::min((band + 1) * kPassRows, picture.height);
-    for (int y = band * kPassRows; y < end && !found; ++y) {
+  for_each_band(pool, picture.height, kPassRows, [&](int first, int end) {
+    for (int y = first; y < end && !found; ++y) {
       int x = 0;
       if (pool.isa() != Isa::scalar) {
         x = SOFTFOCUS_KERNEL(pool.isa(), first_bright)(pass, row<std::uint16_t>(picture, y).data(),

@@ -13,7 +13,7 @@
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/row_sums.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -179,30 +179,25 @@ void scaled_copies(const CopiesPass& pass, const ConstImageView& source, const C
       &columns.shares[start], &columns.fades[start], line.share, line.fade, what.colour[channel],
       begin, end, sums});
   };
-  ScratchShelf<SumRows> shelf;
-  pool.for_each((height + kPassRows - 1) / kPassRows, [&](int band) {
-    SumRows rows = shelf.take();
+  for_each_row_with<SumRows>(pool, height, kPassRows, [&](int y, auto& rows) {
     const std::size_t stride = columns.stride;
     rows.sums.resize(3 * stride);
-    for (int y = band * kPassRows; y < std::min((band + 1) * kPassRows, height); ++y) {
-      const std::uint16_t* const from = row<std::uint16_t>(own, y).data();
-      for (int channel = 0; channel < 3; ++channel) {
-        float* const sums = &rows.sums[static_cast<std::size_t>(channel) * stride];
-        // A copy adds 0 where it is not seen, which makes 0 of -0.
-        const float nothing = pass.copies.empty() ? -0.0f : 0.0f;
-        for (int x = 0; x < width; ++x) sums[x] = half_to_float(from[4 * x + channel]) + nothing;
-        for (std::size_t k = 0; k < pass.copies.size(); ++k) add_row(y, k, channel, sums);
-      }
-      const float* const sums = rows.sums.data();
-      for (int x = 0; x < width; ++x) {
-        store_texel<Format::rgba16f>(
-            result, x, y,
-            {sums[x], sums[stride + static_cast<std::size_t>(x)],
-             sums[2 * stride + static_cast<std::size_t>(x)], half_to_float(from[4 * x + 3])},
-            profile);
-      }
+    const std::uint16_t* const from = row<std::uint16_t>(own, y).data();
+    for (int channel = 0; channel < 3; ++channel) {
+      float* const sums = &rows.sums[static_cast<std::size_t>(channel) * stride];
+      // A copy adds 0 where it is not seen, which makes 0 of -0.
+      const float nothing = pass.copies.empty() ? -0.0f : 0.0f;
+      for (int x = 0; x < width; ++x) sums[x] = half_to_float(from[4 * x + channel]) + nothing;
+      for (std::size_t k = 0; k < pass.copies.size(); ++k) add_row(y, k, channel, sums);
     }
-    shelf.put_back(std::move(rows));
+    const float* const sums = rows.sums.data();
+    for (int x = 0; x < width; ++x) {
+      store_texel<Format::rgba16f>(
+          result, x, y,
+          {sums[x], sums[stride + static_cast<std::size_t>(x)],
+           sums[2 * stride + static_cast<std::size_t>(x)], half_to_float(from[4 * x + 3])},
+          profile);
+    }
   });
 }
 

@@ -11,7 +11,7 @@
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/row_sums.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "raster/effects/tone_map.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -51,20 +51,14 @@ void tone_map(const ToneCurve& curve, float exposure, const ConstImageView& pict
     return;
   }
   const int values = 4 * result.width;
-  ScratchShelf<std::vector<float>> shelf;
-  pool.for_each((result.height + kPassRows - 1) / kPassRows, [&](int band) {
-    std::vector<float> rows = shelf.take();
+  for_each_row_with<std::vector<float>>(pool, result.height, kPassRows, [&](int y, auto& rows) {
     const auto length = static_cast<std::size_t>(values + kMostLanes);
     rows.resize(2 * length);
     float* const mapped_row = rows.data() + length;
-    const int end = std::min((band + 1) * kPassRows, result.height);
-    for (int y = band * kPassRows; y < end; ++y) {
-      decode_row(row<std::uint16_t>(picture, y), 0, result.width, rows.data(), pool.isa());
-      SOFTFOCUS_KERNEL(pool.isa(), map_row)(curve, exposure, rows.data(), values, mapped_row);
-      store_row(mapped_row, rows.data(), values, profile.half_store,
-                row<std::uint16_t>(result, y).data(), pool.isa());
-    }
-    shelf.put_back(std::move(rows));
+    decode_row(row<std::uint16_t>(picture, y), 0, result.width, rows.data(), pool.isa());
+    SOFTFOCUS_KERNEL(pool.isa(), map_row)(curve, exposure, rows.data(), values, mapped_row);
+    store_row(mapped_row, rows.data(), values, profile.half_store,
+              row<std::uint16_t>(result, y).data(), pool.isa());
   });
 }
 

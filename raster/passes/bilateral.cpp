@@ -11,7 +11,7 @@
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/kernel.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -155,12 +155,9 @@ void bilateral(const BilateralSettings& settings, const ConstImageView& source,
   if (pool.isa() == Isa::scalar) return bilateral_oracle(settings, source, result, profile, pool);
   const std::vector<float> weights = gaussian_weights(settings.sigma_px);
   const BilateralWork work{settings, weights, source, result, profile, pool.isa()};
-  ScratchShelf<SplitRows> shelf;
-  pool.for_each((result.height + kBandRows - 1) / kBandRows, [&](int band) {
-    SplitRows rows = shelf.take();
-    filter_band(work, band * kBandRows, std::min((band + 1) * kBandRows, result.height), rows);
-    shelf.put_back(std::move(rows));
-  });
+  for_each_band_with<SplitRows>(
+      pool, result.height, kBandRows,
+      [&](int first, int end, auto& rows) { filter_band(work, first, end, rows); });
 }
 
 }  // namespace softfocus

@@ -12,7 +12,7 @@
 #include "raster/numbers/exact_math.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/row_sums.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -174,13 +174,10 @@ void convolve(const Kernel& kernel, const ConstImageView& source, const ImageVie
               const Profile& profile, ThreadPool& pool) {
   assert(fit(kernel, source, result));
   if (pool.isa() == Isa::scalar) return convolve_oracle(kernel, source, result, profile, pool);
-  ScratchShelf<RowRing> rings;
-  pool.for_each((result.height + kKernelRows - 1) / kKernelRows, [&](int band) {
-    RowRing ring = rings.take();
-    convolve_band(kernel, source, result, profile, band * kKernelRows,
-                  std::min((band + 1) * kKernelRows, result.height), ring, pool.isa());
-    rings.put_back(std::move(ring));
-  });
+  for_each_band_with<RowRing>(
+      pool, result.height, kKernelRows, [&](int first, int end, auto& ring) {
+        convolve_band(kernel, source, result, profile, first, end, ring, pool.isa());
+      });
 }
 
 void box_in_four_reads(const Texture& source, const ImageView& result, const Profile& profile,

@@ -14,7 +14,7 @@
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/row_sums.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "raster/passes/pyramid.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -172,12 +172,7 @@ void upsample_band(const UpsampleWork& work, const RowOf& row_of, const Store& s
 /// Calls band(first, end, rows) for bands of a result's rows, on all threads.
 template <class Band>
 void for_bands(int height, ThreadPool& pool, const Band& band) {
-  ScratchShelf<PyramidRows> shelf;
-  pool.for_each((height + kPyramidRows - 1) / kPyramidRows, [&](int i) {
-    PyramidRows rows = shelf.take();
-    band(i * kPyramidRows, std::min((i + 1) * kPyramidRows, height), rows);
-    shelf.put_back(std::move(rows));
-  });
+  for_each_band_with<PyramidRows>(pool, height, kPyramidRows, band);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "raster/images/texel.h"
 #include "raster/pipeline/lanes/rasterize_lanes.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -209,12 +209,8 @@ void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, T
 void finish(RenderPass& pass, ThreadPool& pool) {
   TileLists lists;
   sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
-  ScratchShelf<TileMemory> shelf;
-  pool.for_each(tile_count(lists), [&](int tile) {
-    TileMemory memory = shelf.take();
-    draw_tile(pass, lists, tile, memory);
-    shelf.put_back(std::move(memory));
-  });
+  for_each_with<TileMemory>(pool, tile_count(lists),
+                            [&](int tile, auto& memory) { draw_tile(pass, lists, tile, memory); });
   pass.draws.clear();
 }
 

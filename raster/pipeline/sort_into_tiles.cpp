@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "raster/pipeline/render_pass.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -130,8 +130,8 @@ void place_all_vertices(std::span<RenderPass> passes, ThreadPool& pool) {
     unsigned& common = common_codes[static_cast<std::size_t>(i)];
     const DrawCall& draw = draw_of(part);
     if (is_small(draw)) {
-      SmallColumns columns = shelf.take();
-      common = place_and_shade(part, columns);
+      std::unique_ptr<SmallColumns> columns = shelf.take();
+      common = place_and_shade(part, *columns);
       shelf.put_back(std::move(columns));
     } else if (is_in_lanes(draw)) {
       common = draw.lane_steps->place_vertices(draw.recorded.get(), part.begin, part.end);

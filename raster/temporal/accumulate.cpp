@@ -14,7 +14,7 @@
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/temporal/split_texels.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -197,13 +197,9 @@ void accumulate(const AccumulateSettings& settings, const ConstImageView& now,
     return accumulate_oracle(settings, now, old, result, frames, profile, pool);
   }
   const AccumulateWork work{settings, now, old, result, frames, profile, pool.isa()};
-  ScratchShelf<AccumulateScratch> shelf;
-  pool.for_each((now.height + kAccumulateRows - 1) / kAccumulateRows, [&](int band) {
-    AccumulateScratch scratch = shelf.take();
-    const int first = band * kAccumulateRows;
-    accumulate_band(work, first, std::min(first + kAccumulateRows, now.height), scratch);
-    shelf.put_back(std::move(scratch));
-  });
+  for_each_band_with<AccumulateScratch>(
+      pool, now.height, kAccumulateRows,
+      [&](int first, int end, auto& scratch) { accumulate_band(work, first, end, scratch); });
 }
 
 }  // namespace softfocus

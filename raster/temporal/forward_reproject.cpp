@@ -16,6 +16,7 @@
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/temporal/split_texels.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -97,11 +98,10 @@ Targets find_targets(const ConstImageView& velocity, ThreadPool& pool) {
   targets.columns.resize(targets.pitch * static_cast<std::size_t>(height));
   targets.rows.resize(targets.columns.size());
   targets.reaches.resize(targets.spans * static_cast<std::size_t>(height));
-  pool.for_each((height + kPassRows - 1) / kPassRows, [&](int band) {
+  for_each_band(pool, height, kPassRows, [&](int first, int end) {
     const std::ptrdiff_t plane = plane_floats(width);
     std::vector<float> motions(static_cast<std::size_t>(2 * plane));
-    const int end = std::min((band + 1) * kPassRows, height);
-    for (int y = band * kPassRows; y < end; ++y) {
+    for (int y = first; y < end; ++y) {
       std::int32_t* columns = targets.columns.data() + static_cast<std::size_t>(y) * targets.pitch;
       std::int32_t* rows = targets.rows.data() + static_cast<std::size_t>(y) * targets.pitch;
       if (pool.isa() == Isa::scalar) {
@@ -228,10 +228,9 @@ std::int64_t fill_holes(const ConstImageView& scattered, const ImageView& result
                         const Profile& profile, ThreadPool& pool) {
   assert(scattered.format == Format::rgba16f && result.format == Format::rgba16f);
   std::vector<std::int64_t> left(static_cast<std::size_t>(scattered.height));
-  pool.for_each((scattered.height + kPassRows - 1) / kPassRows, [&](int band) {
+  for_each_band(pool, scattered.height, kPassRows, [&](int first, int end) {
     std::vector<float> planes;
-    const int end = std::min((band + 1) * kPassRows, scattered.height);
-    for (int y = band * kPassRows; y < end; ++y) {
+    for (int y = first; y < end; ++y) {
       const std::uint16_t* own = row<std::uint16_t>(scattered, y).data();
       std::uint16_t* to = row<std::uint16_t>(result, y).data();
       store_row(scattered, y, profile, pool.isa(), planes, to);

@@ -12,6 +12,7 @@
 
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -72,12 +73,11 @@ std::int64_t refresh(int groups, int turn, const ConstImageView& drawn, const Co
     return refresh_oracle(groups, turn, drawn, found, result, frames, profile, pool);
   }
   std::vector<std::int64_t> counts(static_cast<std::size_t>(drawn.height));
-  pool.for_each((drawn.height + kPassRows - 1) / kPassRows, [&](int band) {
+  for_each_band(pool, drawn.height, kPassRows, [&](int first, int end) {
     const int width = drawn.width, whole = width - width % kMostLanes;
     std::vector<std::int32_t> anew(static_cast<std::size_t>(width));
-    const int end = std::min((band + 1) * kPassRows, drawn.height);
-    for (int y = band * kPassRows; y < end; ++y) {
-      if (y % 2 == 0 || y == band * kPassRows) {
+    for (int y = first; y < end; ++y) {
+      if (y % 2 == 0 || y == first) {
         for (int x = 0; x < width; ++x) {
           anew[static_cast<std::size_t>(x)] = refresh_group(x, y, groups) == turn ? -1 : 0;
         }

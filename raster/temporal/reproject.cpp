@@ -16,7 +16,7 @@
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/temporal/split_texels.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -232,13 +232,9 @@ void reverse_reproject(const ReprojectSettings& settings, const ReprojectInput& 
     return reverse_reproject_oracle(settings, input, result, profile, pool);
   }
   const ReprojectWork work{settings, input, result, profile, pool.isa()};
-  ScratchShelf<ReprojectScratch> shelf;
-  pool.for_each((result.height + kReprojectRows - 1) / kReprojectRows, [&](int band) {
-    ReprojectScratch scratch = shelf.take();
-    const int first = band * kReprojectRows;
-    reproject_band(work, first, std::min(first + kReprojectRows, result.height), scratch);
-    shelf.put_back(std::move(scratch));
-  });
+  for_each_band_with<ReprojectScratch>(
+      pool, result.height, kReprojectRows,
+      [&](int first, int end, auto& scratch) { reproject_band(work, first, end, scratch); });
 }
 
 void put_depths_oracle(const ConstImageView& drawn, const ImageView& found, const Profile& profile,
@@ -258,7 +254,7 @@ void put_depths(const ConstImageView& drawn, const ImageView& found, const Profi
   if (pool.isa() == Isa::scalar) return put_depths_oracle(drawn, found, profile, pool);
   assert(drawn.format == Format::rgba16f && found.format == Format::rgba16f);
   assert(drawn.width == found.width && drawn.height == found.height);
-  pool.for_each((found.height + kPassRows - 1) / kPassRows, [&](int band) {
+  for_each_band(pool, found.height, kPassRows, [&](int first, int end) {
     const std::ptrdiff_t plane = plane_floats(found.width);
     std::vector<float> both(static_cast<std::size_t>(8 * plane));
     float* of_found = both.data();
@@ -267,8 +263,7 @@ void put_depths(const ConstImageView& drawn, const ImageView& found, const Profi
                                    of_found + 3 * plane + 1};
     const float* const depths = of_drawn + 3 * plane + 1;
     float* const counts = of_found + 3 * plane + 1;
-    const int end = std::min((band + 1) * kPassRows, found.height);
-    for (int y = band * kPassRows; y < end; ++y) {
+    for (int y = first; y < end; ++y) {
       split_texels(found, y, 4, of_found, pool.isa());
       split_texels(drawn, y, 4, of_drawn, pool.isa());
       for (int x = 0; x < found.width; ++x) counts[x] = counts[x] > 0.0f ? depths[x] : counts[x];

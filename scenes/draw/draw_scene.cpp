@@ -11,7 +11,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/vector_math.h"
 #include "raster/pipeline/draw.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/object_numbers.h"
 #include "scenes/draw/shadowed_layers.h"
@@ -293,13 +293,10 @@ void for_each_transparent_tile(PreparedScene& prepared, const CameraMatrices& ca
   record_transparent(prepared, camera, frame, pass);
   TileLists lists;
   sort_into_tiles({&pass, 1}, {&lists, 1}, pool);
-  ScratchShelf<TileMemory> shelf;
-  pool.for_each(tile_count(lists), [&](int tile) {
-    TileMemory memory = shelf.take();
+  for_each_with<TileMemory>(pool, tile_count(lists), [&](int tile, auto& memory) {
     const std::size_t layers =
         draw_transparent_tile(pass, lists, tile, prepared.depth, targets, memory);
     if (layers > 0 || every) with(tile_area(lists, tile), layers);
-    shelf.put_back(std::move(memory));
   });
   pass.draws.clear();
 }

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/light_points.h"
 #include "scenes/shadows/shadow_truth.h"
@@ -434,12 +434,10 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
     record_scene(prepared, camera, frame, shadows.pass, left);
     TileLists lists;
     sort_into_tiles({&shadows.pass, 1}, {&lists, 1}, pool);
-    ScratchShelf<TileMemory> shelf;
-    pool.for_each(static_cast<int>(of_tiles.size()), [&](int number) {
+    const auto count = static_cast<int>(of_tiles.size());
+    for_each_with<TileMemory>(pool, count, [&](int number, auto& memory) {
       const int tile = of_tiles[static_cast<std::size_t>(number)];
-      TileMemory memory = shelf.take();
       draw_tile(shadows.pass, lists, tile, memory);
-      shelf.put_back(std::move(memory));
       for (std::size_t i = 0; i < layers.size(); ++i) use(i, tile_area(lists, tile));
     });
     shadows.pass.draws.clear();

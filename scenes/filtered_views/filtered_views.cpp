@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 #include "scenes/lens_views/sample_sums.h"
 #include "scenes/lens_views/samples_by_tile.h"
 
@@ -84,14 +84,11 @@ void draw_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int beg
   while (buffer.pictures.size() < count) {
     buffer.pictures.push_back(make_view_tiles(input.pinhole.width, input.pinhole.height));
   }
-  ScratchShelf<TileMemory> shelf;
   const int drawn =
       tiles.empty() ? tile_count(buffer.views.tile_lists[0]) : static_cast<int>(tiles.size());
-  pool.for_each(drawn, [&](int number) {
-    TileMemory memory = shelf.take();
+  for_each_with<TileMemory>(pool, drawn, [&](int number, auto& memory) {
     const int tile = tiles.empty() ? number : tiles[static_cast<std::size_t>(number)];
     draw_tile_of_views(buffer, tile, count, memory, pool.isa());
-    shelf.put_back(std::move(memory));
   });
   clear_lens_views(buffer.views);
 }
@@ -104,17 +101,14 @@ void spread_views(const FilteredViewsBuffer& buffer, int begin, int end, std::sp
                                  buffer.cells.in_pixel[static_cast<std::size_t>(view)]));
   }
   const TileLists& lists = buffer.views.tile_lists[0];
-  ScratchShelf<SpreadMemory> shelf;
   const int spread = tiles.empty() ? tile_count(lists) : static_cast<int>(tiles.size());
-  pool.for_each(spread, [&](int number) {
-    SpreadMemory memory = shelf.take();
+  for_each_with<SpreadMemory>(pool, spread, [&](int number, auto& memory) {
     if (!memory.sums) memory = make_spread_memory();
     const int tile = tiles.empty() ? number : tiles[static_cast<std::size_t>(number)];
     for (std::size_t i = 0; i < steps.size(); ++i) {
       spread_tile(buffer.pictures[i], steps[i], tile, i == 0, memory, pool.isa());
     }
     add_tile_sums(memory, tile_area(lists, tile), sums);
-    shelf.put_back(std::move(memory));
   });
   sums.count += end - begin;
 }

@@ -207,12 +207,12 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   if (!is_after_others || drawn.layers > 1) {
     draw_parts(*memory.prepared, drawn.view, shot.frame, width, height, drawn.layers, drawn.parts,
                pool, sharp_depth(shot));
-    memory.prepared->on_light_points = {};
     if (shot.blends) blend(drawn.parts, shot.profile, pool);
   }
   if (is_after_others) {
     draw_after_others(shot, shot.effects.front(), *memory.prepared, width, height, drawn, pool);
   }
+  memory.prepared->on_light_points = {};
   if (is_filtered(shot) && drawn.layers > 0) {
     drawn.objects = object_numbers_for(*shot.method.filter, *shot.scene, drawn.view, shot.frame,
                                        width, height, shot.profile, pool);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 #include "scenes/lens_views/few_pixel_offsets.h"
 #include "scenes/lens_views/lens_points.h"
 #include "scenes/lens_views/samples_by_tile.h"
@@ -284,11 +284,9 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
   sort_lens_views(buffer, input, begin, end, pool);
   const auto count = static_cast<std::size_t>(end - begin);
   const std::vector<TileLists>& tile_lists = buffer.tile_lists;
-  ScratchShelf<TileSamples> shelf;
   const int drawn = tiles.empty() ? tile_count(tile_lists[0]) : static_cast<int>(tiles.size());
-  pool.for_each(drawn, [&](int number) {
+  for_each_with<TileSamples>(pool, drawn, [&](int number, auto& samples) {
     const int tile = tiles.empty() ? number : tiles[static_cast<std::size_t>(number)];
-    TileSamples samples = shelf.take();
     const Rectangle area = tile_area(tile_lists[0], tile);
     for (std::size_t i = 0; i < count; ++i) {
       draw_view_tile(buffer, i, tile, samples.memory,
@@ -304,7 +302,6 @@ void add_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int 
       add_tile(samples, first, std::min<std::size_t>(count - first, kSampleGroup), area, sums,
                pool.isa());
     }
-    shelf.put_back(std::move(samples));
   });
   clear_lens_views(buffer);
   sums.count += end - begin;

@@ -3,9 +3,13 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "scenes/files/scene_error.h"
 #include "scenes/files/texture_file.h"
 #include "scenes/make/procedural_texture.h"
 
@@ -104,6 +108,7 @@ Value named(const Section& section, std::string_view key, const std::string& kin
   const auto found = there.find(name);
   if (found != there.end()) return found->second;
   std::vector<std::string> names;
+  names.reserve(there.size());
   for (const auto& [known, value] : there) names.push_back(known);
   fail_at(section, key,
           "there is no " + kind + " \"" + name + "\"; a table [" + kind + "." + name +

@@ -11,6 +11,7 @@
 #include "raster/numbers/half.h"
 #include "raster/numbers/srgb.h"
 #include "raster/numbers/vector_math.h"
+#include "raster/threads/loops.h"
 #include "scenes/surfaces/lighting.h"
 
 namespace softfocus {
@@ -108,14 +109,14 @@ void light_relief(ReliefTexture& relief, const ReliefLights& lights, glm::dvec3 
   }
   const ReliefCamera& camera = relief.camera;
   constexpr int kRows = 8;
-  pool.for_each((relief.height + kRows - 1) / kRows, [&](int band) {
+  for_each_band(pool, relief.height, kRows, [&](int first, int end) {
     std::vector<std::int32_t> codes(static_cast<std::size_t>(relief.width));
-    for (int y = kRows * band; y < std::min(kRows * (band + 1), relief.height); ++y) {
-      const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(relief.width);
-      std::copy_n(relief.depths.data() + first, relief.width, codes.data());
+    for (int y = first; y < end; ++y) {
+      const auto begin = static_cast<std::size_t>(y) * static_cast<std::size_t>(relief.width);
+      std::copy_n(relief.depths.data() + begin, relief.width, codes.data());
       const LitRow row{codes.data(),
-                       relief.unlit.data() + first,
-                       relief.normals.data() + first,
+                       relief.unlit.data() + begin,
+                       relief.normals.data() + begin,
                        materials,
                        relief.materials,
                        &lights,
@@ -127,7 +128,7 @@ void light_relief(ReliefTexture& relief, const ReliefLights& lights, glm::dvec3 
                        glm::vec3{camera.eye.value_or(glm::dvec3{0.0})},
                        static_cast<float>(1.0 / source_distance(camera)),
                        empty_depth(relief.depth_bits)};
-      std::uint32_t* colours = relief.colours.data() + first;
+      std::uint32_t* colours = relief.colours.data() + begin;
       int x = 0;
       if (pool.isa() != Isa::scalar) {
         x = SOFTFOCUS_KERNEL(pool.isa(), light_texels)(row, relief.width, colours);

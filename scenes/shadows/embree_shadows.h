@@ -46,6 +46,8 @@ struct EmbreeDifferences {
   std::array<std::size_t, kDifferenceReaches.size() + 1> differ{};
 };
 
+EmbreeDifferences& operator+=(EmbreeDifferences& sum, const EmbreeDifferences& more);
+
 /// Embree's answers against those of point_in_shadow() at every pixel that shows a facet.
 EmbreeDifferences embree_differences(const Facets& facets, std::span<const ShadowLight> lights,
                                      std::span<const SeenFacet> seen, const ShadowView& view,

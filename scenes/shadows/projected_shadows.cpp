@@ -4,7 +4,7 @@
 #include <numeric>
 #include <span>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -226,11 +226,9 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
   const std::uint32_t a_task = receivers_a_task(receivers);
   const auto tasks = static_cast<int>((receivers + a_task - 1) / a_task);
   std::vector<FoundCasters> found(static_cast<std::size_t>(tasks));
-  ScratchShelf<std::vector<std::uint32_t>> shelf;
   made.begins.assign(receivers + std::size_t{1}, 0);
-  pool.for_each(tasks, [&](int task) {
+  for_each_with<std::vector<std::uint32_t>>(pool, tasks, [&](int task, auto& memory) {
     FoundCasters& of_task = found[static_cast<std::size_t>(task)];
-    std::vector<std::uint32_t> memory = shelf.take();
     const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
     for (std::uint32_t r = begin; r < std::min(begin + a_task, receivers); ++r) {
       if (is_lit(made.lit[r])) {
@@ -242,7 +240,6 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
       }
       of_task.ends.push_back(of_task.casters.size());
     }
-    shelf.put_back(std::move(memory));
   });
   std::partial_sum(made.begins.begin(), made.begins.end(), made.begins.begin());
   made.triangles.resize(made.begins.back());

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "scenes/shadows/embree_shadows.h"
 #include "scenes/shadows/light_grid.h"
 #include "scenes/shadows/projected_shadows.h"
 
@@ -125,47 +126,64 @@ bool ShadowTruth::is_near_edge(SeenFacet seen, glm::dvec2 window,
 std::vector<std::uint8_t> dark_pixels(const ShadowTruth& truth, std::span<const SeenFacet> seen,
                                       int width, int height, ThreadPool& pool) {
   std::vector<std::uint8_t> is_dark(seen.size());
-  pool.for_each(height, [&](int y) {
-    std::vector<std::uint32_t> memory;
-    for (int x = 0; x < width; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                static_cast<std::size_t>(x);
-      if (!shows_facet(seen[pixel])) continue;
-      is_dark[pixel] = truth.is_dark(seen[pixel], {x + 0.5, y + 0.5}, memory) ? 1 : 0;
-    }
+  for_each_seen(seen, width, height, pool, [&](const SeenPixel& at, auto& memory) {
+    is_dark[at.index] = truth.is_dark(at.seen, at.centre, memory) ? 1 : 0;
   });
   return is_dark;
+}
+
+ShadowErrors& operator+=(ShadowErrors& sum, const ShadowErrors& more) {
+  sum.seen += more.seen;
+  sum.in_shadow += more.in_shadow;
+  sum.near_edge += more.near_edge;
+  sum.wrong += more.wrong;
+  return sum;
 }
 
 ShadowErrors shadow_errors(const Facets& facets, std::span<const ShadowLight> lights,
                            std::span<const SeenFacet> seen, std::span<const std::uint8_t> mask,
                            const ShadowView& view, glm::dvec3 eye, bool by_grid, ThreadPool& pool) {
-  std::vector<ShadowErrors> of_rows(static_cast<std::size_t>(view.height));
+  ShadowErrors sum;
   for (std::size_t light = 0; light < lights.size(); ++light) {
     const ShadowTruth truth{facets, lights[light], view, eye, by_grid};
-    pool.for_each(view.height, [&](int y) {
-      ShadowErrors& errors = of_rows[static_cast<std::size_t>(y)];
-      std::vector<std::uint32_t> memory;
-      for (int x = 0; x < view.width; ++x) {
-        const std::size_t pixel =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) +
-            static_cast<std::size_t>(x);
-        if (!shows_facet(seen[pixel])) continue;
-        const bool answer = (mask[pixel] >> light & 1) != 0;
-        const glm::dvec2 centre{x + 0.5, y + 0.5};
-        ++errors.seen;
-        errors.in_shadow += answer ? 1 : 0;
-        if (truth.is_dark(seen[pixel], centre, memory) == answer) continue;
-        ++(truth.is_near_edge(seen[pixel], centre, memory) ? errors.near_edge : errors.wrong);
-      }
-    });
+    const auto judge = [&](const SeenPixel& at, auto& memory, ShadowErrors& errors) {
+      const bool answer = (mask[at.index] >> light & 1) != 0;
+      ++errors.seen;
+      errors.in_shadow += answer ? 1 : 0;
+      if (truth.is_dark(at.seen, at.centre, memory) == answer) return;
+      ++(truth.is_near_edge(at.seen, at.centre, memory) ? errors.near_edge : errors.wrong);
+    };
+    sum += sum_over_seen<ShadowErrors>(seen, view.width, view.height, pool, judge);
   }
-  ShadowErrors sum;
-  for (const ShadowErrors& errors : of_rows) {
-    sum.seen += errors.seen;
-    sum.in_shadow += errors.in_shadow;
-    sum.near_edge += errors.near_edge;
-    sum.wrong += errors.wrong;
+  return sum;
+}
+
+EmbreeDifferences& operator+=(EmbreeDifferences& sum, const EmbreeDifferences& more) {
+  sum.seen += more.seen;
+  for (std::size_t i = 0; i < sum.differ.size(); ++i) sum.differ[i] += more.differ[i];
+  return sum;
+}
+
+EmbreeDifferences embree_differences(const Facets& facets, std::span<const ShadowLight> lights,
+                                     std::span<const SeenFacet> seen, const ShadowView& view,
+                                     glm::dvec3 eye, ThreadPool& pool) {
+  const EmbreeShadows embree{facets};
+  EmbreeDifferences sum;
+  for (const ShadowLight& light : lights) {
+    const ShadowTruth truth{facets, light, view, eye, true};
+    const auto compare = [&](const SeenPixel& at, auto& memory, EmbreeDifferences& found) {
+      ++found.seen;
+      const glm::dvec3 point = truth.point(at.seen, at.centre);
+      const bool answer = embree.is_dark(facet_of(at.seen), seen_from_back(at.seen), point, light);
+      if (answer == truth.is_dark_at(at.seen, point, memory)) return;
+      std::size_t reach = 0;
+      while (reach < kDifferenceReaches.size() &&
+             !truth.is_near_edge(at.seen, at.centre, memory, kDifferenceReaches[reach])) {
+        ++reach;
+      }
+      ++found.differ[reach];
+    };
+    sum += sum_over_seen<EmbreeDifferences>(seen, view.width, view.height, pool, compare);
   }
   return sum;
 }

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "raster/threads/parallel.h"
+#include "raster/threads/loops.h"
 #include "scenes/shadows/facets.h"
 #include "scenes/shadows/light_grid.h"
 #include "scenes/shadows/shadow_mask.h"
@@ -32,6 +32,40 @@ bool point_in_shadow(const Facets& facets, std::uint32_t facet, bool seen_from_b
 /// left corner. `eye` is the camera's.
 glm::dvec3 seen_point(const FacetPlane& plane, const glm::dmat4& world_to_clip, glm::dvec3 eye,
                       glm::dvec2 window, int width, int height);
+
+/// A pixel that shows a facet.
+struct SeenPixel {
+  SeenFacet seen;
+  int y;
+  std::size_t index;  ///< in rows from the top, without gaps
+  glm::dvec2 centre;  ///< in the window
+};
+
+/// Runs body(pixel, memory) for each of them, on all threads. `memory` is for casters.
+template <class Body>
+void for_each_seen(std::span<const SeenFacet> seen, int width, int height, ThreadPool& pool,
+                   const Body& body) {
+  for_each_with<std::vector<std::uint32_t>>(pool, height, [&](int y, auto& memory) {
+    std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    for (int x = 0; x < width; ++x, ++index) {
+      if (!shows_facet(seen[index])) continue;
+      body(SeenPixel{seen[index], y, index, {x + 0.5, y + 0.5}}, memory);
+    }
+  });
+}
+
+/// body(pixel, memory, sum), a row's. Returns the sum of the rows' sums, in their order.
+template <class Sum, class Body>
+Sum sum_over_seen(std::span<const SeenFacet> seen, int width, int height, ThreadPool& pool,
+                  const Body& body) {
+  std::vector<Sum> of_rows(static_cast<std::size_t>(height));
+  for_each_seen(seen, width, height, pool, [&](const SeenPixel& at, auto& memory) {
+    body(at, memory, of_rows[static_cast<std::size_t>(at.y)]);
+  });
+  Sum sum;
+  for (const Sum& of_row : of_rows) sum += of_row;
+  return sum;
+}
 
 // What a pixel shows of one light's shadow, by the definition.
 
@@ -75,6 +109,8 @@ struct ShadowErrors {
   std::size_t near_edge = 0;  ///< answered otherwise than at the centre, but as 1/256 pixel from it
   std::size_t wrong = 0;      ///< answered otherwise than anywhere within 1/256 pixel
 };
+
+ShadowErrors& operator+=(ShadowErrors& sum, const ShadowErrors& more);
 
 /// `lights` are those of the mask's bits. With `by_grid` the rays ask the casters that a LightGrid
 /// finds; without, all.

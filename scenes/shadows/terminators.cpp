@@ -181,17 +181,11 @@ void soften_terminators(const Facets& facets, const CurvedSurfaces& surfaces,
                         const ShadowView& view, glm::dvec3 eye, std::span<std::uint8_t> mask,
                         ThreadPool& pool) {
   const std::vector<SoftenedLight> softened = softened_lights(facets, surfaces, lights, pool);
-  pool.for_each(view.height, [&](int y) {
-    std::vector<std::uint32_t> memory;
-    for (int x = 0; x < view.width; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) +
-                                static_cast<std::size_t>(x);
-      if (!shows_facet(seen[pixel])) continue;
-      const glm::dvec3 point = seen_point(facets.planes[facet_of(seen[pixel])], view.world_to_clip,
-                                          eye, {x + 0.5, y + 0.5}, view.width, view.height);
-      for (const SoftenedLight& light : softened) {
-        soften_pixel(facets, surfaces, light, seen[pixel], point, pixel, mask[pixel], memory);
-      }
+  for_each_seen(seen, view.width, view.height, pool, [&](const SeenPixel& at, auto& memory) {
+    const glm::dvec3 point = seen_point(facets.planes[facet_of(at.seen)], view.world_to_clip, eye,
+                                        at.centre, view.width, view.height);
+    for (const SoftenedLight& light : softened) {
+      soften_pixel(facets, surfaces, light, at.seen, point, at.index, mask[at.index], memory);
     }
   });
 }

@@ -11,7 +11,7 @@
 
 #include "dof/weights.h"
 #include "raster/images/texel.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -280,18 +280,15 @@ Image draw_splats(std::span<const Splat> splats, std::uint32_t surfaces, glm::ve
   pool.for_each(down, [&](int tile_y) {
     lists[static_cast<std::size_t>(tile_y)] = lists_of_row(splats, places, tile_y, across);
   });
-  ScratchShelf<SplatTile> shelf;
-  pool.for_each(across * down, [&](int tile) {
+  for_each_with<SplatTile>(pool, across * down, [&](int tile, auto& memory) {
     TileList& list =
         lists[static_cast<std::size_t>(tile / across)][static_cast<std::size_t>(tile % across)];
     std::sort(list.begin(), list.end());
-    SplatTile memory = shelf.take();
     clear(memory, surfaces);
     const int left = tile % across * kTile, top = tile / across * kTile;
     add_splats(splats, places, list, left, top, memory, pool.isa());
     store_tile(planes_of(memory), left, top, background, depth, profile, picture);
     TileList{}.swap(list);
-    shelf.put_back(std::move(memory));
   });
   return picture;
 }

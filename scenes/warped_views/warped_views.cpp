@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "dof/lens.h"
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/lens_views/lens_points.h"
@@ -283,9 +283,7 @@ WarpHoles add_warped_views(const WarpedViewsBuffer& buffer, SampleSums& sums, Th
   const int down = (sums.height + kWarpTileHeight - 1) / kWarpTileHeight;
   std::vector<WarpHoles> holes(static_cast<std::size_t>(across * down));
   const int margin = buffer.margin_px;
-  ScratchShelf<WarpMemory> shelf;
-  pool.for_each(across * down, [&](int number) {
-    WarpMemory memory = shelf.take();
+  for_each_with<WarpMemory>(pool, across * down, [&](int number, auto& memory) {
     const int x = number % across * kWarpTileWidth, y = number / across * kWarpTileHeight;
     const Rectangle area{x + margin, y + margin, std::min(x + kWarpTileWidth, sums.width) + margin,
                          std::min(y + kWarpTileHeight, sums.height) + margin};
@@ -308,7 +306,6 @@ WarpHoles add_warped_views(const WarpedViewsBuffer& buffer, SampleSums& sums, Th
       }
     }
     add_totals(memory, margin, sums);
-    shelf.put_back(std::move(memory));
   });
   sums.count += static_cast<int>(views.size());
   WarpHoles all;

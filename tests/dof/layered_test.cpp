@@ -1,5 +1,3 @@
-#include "dof/disc_layers/layered.h"
-
 #include <doctest/doctest.h>
 
 #include <glm/vec3.hpp>

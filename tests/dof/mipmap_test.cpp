@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "dof/mipmap/mip_ladder.h"
+#include "dof/mipmap/mip_levels.h"
 #include "dof/mipmap/mipmap.h"
 #include "raster/images/texel.h"
 #include "tests/support/method_checks.h"

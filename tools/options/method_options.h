@@ -41,7 +41,6 @@ void add_method_option(CLI::App& parser, const Method*& method);
 /// The same for both tables and for `auto`. What a build lacks is refused here, with how to get it.
 void add_method_option(CLI::App& parser, MethodChoice& method);
 
-/// Adds --max-coc. `standard` is the help's text for the default.
 /// What filters where no --method is named: the best of its price, for circles of any size.
 inline constexpr std::string_view kDefaultMethod = "disc-layers";
 
@@ -49,6 +48,7 @@ inline constexpr std::string_view kDefaultMethod = "disc-layers";
 /// Otherwise kDefaultMethod.
 MethodChoice default_method(const CLI::App& parser, const Profile& profile);
 
+/// Adds --max-coc. `standard` is the help's text for the default.
 void add_max_coc_option(CLI::App& parser, std::optional<float>& max_coc_px,
                         const std::string& standard = "the scene's, by height");
 

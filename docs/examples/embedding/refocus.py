@@ -5,8 +5,9 @@
 
 COLOUR.npy is height x width x 3, linear light in float16 or float32, or sRGB in uint8. DEPTH.npy is
 height x width, metres in float16 or float32. RESULT.npy is height x width x 4, float16, linear, with
-the depth in the last channel: what `softfocus refocus -o RESULT.npy` writes. SETTING is a field of
-softfocus_settings, such as focus_m=2.5 or method=disc-layers.
+the depth in the last channel: what `softfocus refocus -o RESULT.npy` writes by the same method, here
+two-pass if none is named. SETTING is a field of softfocus_settings, such as focus_m=2.5 or
+method=disc-layers.
 
 The library is the file that SOFTFOCUS_LIBRARY names, or the installed one, or that of build/ in the
 checkout that this file stands in. Needs NumPy.

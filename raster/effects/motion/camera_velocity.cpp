@@ -7,6 +7,7 @@
 #include "raster/effects/motion/velocity.h"
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "raster/effects/motion/camera_velocity.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -40,21 +41,18 @@ void camera_velocity(const CameraMotion& motion, const ConstImageView& picture,
   assert(picture.format == Format::rgba16f && velocity.format == Format::rg16f);
   assert(picture.width == velocity.width && picture.height == velocity.height);
   const glm::vec2 pixel = pixel_size(picture);
-  pool.for_each((picture.height + kPassRows - 1) / kPassRows, [&](int band) {
-    const int end = std::min((band + 1) * kPassRows, picture.height);
-    for (int y = band * kPassRows; y < end; ++y) {
-      const float at_y = (static_cast<float>(y) + 0.5f) * pixel.y - 1.0f;
-      int x = 0;
-      if (pool.isa() != Isa::scalar) {
-        x = SOFTFOCUS_KERNEL(pool.isa(), camera_velocity_row)(
-            motion, pixel.x, at_y, row<std::uint16_t>(picture, y).data(),
-            row<std::uint16_t>(velocity, y).data(), picture.width, profile.half_store);
-      }
-      for (; x < picture.width; ++x) {
-        const glm::vec2 at{(static_cast<float>(x) + 0.5f) * pixel.x - 1.0f, at_y};
-        const float depth_m = load_texel<Format::rgba16f>(picture, x, y).w;
-        store_texel<Format::rg16f>(velocity, x, y, velocity_of(motion, at, depth_m), profile);
-      }
+  for_each_row(pool, picture.height, kPassRows, [&](int y) {
+    const float at_y = (static_cast<float>(y) + 0.5f) * pixel.y - 1.0f;
+    int x = 0;
+    if (pool.isa() != Isa::scalar) {
+      x = SOFTFOCUS_KERNEL(pool.isa(), camera_velocity_row)(
+          motion, pixel.x, at_y, row<std::uint16_t>(picture, y).data(),
+          row<std::uint16_t>(velocity, y).data(), picture.width, profile.half_store);
+    }
+    for (; x < picture.width; ++x) {
+      const glm::vec2 at{(static_cast<float>(x) + 0.5f) * pixel.x - 1.0f, at_y};
+      const float depth_m = load_texel<Format::rgba16f>(picture, x, y).w;
+      store_texel<Format::rg16f>(velocity, x, y, velocity_of(motion, at, depth_m), profile);
     }
   });
 }

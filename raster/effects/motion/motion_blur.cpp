@@ -8,6 +8,7 @@
 
 #include "raster/effects/motion/motion_filters.h"
 #include "raster/passes/fullscreen_pass.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -79,33 +80,29 @@ void motion_blur(const MotionBlurSettings& settings, const ConstImageView& pictu
   const std::vector<bool> moves = moving_tiles(tiles, pass.filter);
   const ConstImageView spread_view = spread;
   const BlurInput input{pass, picture, spread_view, tiles};
-  pool.for_each((picture.height + kPassRows - 1) / kPassRows, [&](int band) {
-    const int end_y = std::min((band + 1) * kPassRows, picture.height);
-    for (int y = band * kPassRows; y < end_y; ++y) {
-      const BlurRow job{pass, source_of(picture), source_of(spread), width, picture.height, tiles,
-                        y};
-      const auto moves_at = [&](int tile) {
-        return moves[static_cast<std::size_t>(y / size * tiles.columns + tile)];
-      };
-      for (int tile = 0; tile < tiles.columns;) {
-        const int first = tile;
-        const bool is_moving = moves_at(first);
-        while (tile < tiles.columns && moves_at(tile) == is_moving) ++tile;
-        const int end = std::min(tile * size, width);
-        int x = first * size;
-        if (!is_moving) {
-          copy_texels(picture, result, y, x, end);
-          continue;
-        }
-        if (pool.isa() != Isa::scalar) {
-          const auto blur_row =
-              pass.filter == MotionFilter::two_ways ? blur_row_two_ways : blur_row_one_way;
-          x = blur_row(pool.isa(), job, x, end, row<std::uint16_t>(result, y).data(),
-                       profile.half_store);
-        }
-        for (; x < end; ++x) {
-          store_colour(picture, result, x, y, blurred(input, x, y), profile);
-        }
+  for_each_row(pool, picture.height, kPassRows, [&](int y) {
+    const BlurRow job{pass, source_of(picture), source_of(spread), width, picture.height, tiles, y};
+    const auto moves_at = [&](int tile) {
+      return moves[static_cast<std::size_t>(y / size * tiles.columns + tile)];
+    };
+    for (int tile = 0; tile < tiles.columns;) {
+      const int first = tile;
+      const bool is_moving = moves_at(first);
+      while (tile < tiles.columns && moves_at(tile) == is_moving) ++tile;
+      const int end = std::min(tile * size, width);
+      int x = first * size;
+      if (!is_moving) {
+        copy_texels(picture, result, y, x, end);
+        continue;
+      }
+      if (pool.isa() != Isa::scalar) {
+        const auto blur_row =
+            pass.filter == MotionFilter::two_ways ? blur_row_two_ways : blur_row_one_way;
+        x = blur_row(pool.isa(), job, x, end, row<std::uint16_t>(result, y).data(),
+                     profile.half_store);
+      }
+      for (; x < end; ++x) {
+        store_colour(picture, result, x, y, blurred(input, x, y), profile);
       }
     }
   });

@@ -6,6 +6,7 @@
 
 #include "raster/effects/motion/motion_samples.h"
 #include "raster/passes/fullscreen_pass.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -55,26 +56,23 @@ void motion_blur_along_own(float shutter, int samples, const ConstImageView& pic
     return motion_blur_along_own(shutter, samples, copy_of(picture), velocity, result, profile,
                                  pool);
   }
-  pool.for_each((picture.height + kPassRows - 1) / kPassRows, [&](int band) {
-    const int end_y = std::min((band + 1) * kPassRows, picture.height);
-    for (int y = band * kPassRows; y < end_y; ++y) {
-      const OwnRow job{samples,
-                       2.0f / static_cast<float>(samples),
-                       0.5f * shutter,
-                       source_of(picture),
-                       picture.width,
-                       picture.height,
-                       y,
-                       row<std::uint16_t>(velocity, y).data()};
-      int x = 0;
-      if (pool.isa() != Isa::scalar) {
-        x = SOFTFOCUS_KERNEL(pool.isa(), own_row)(job, row<std::uint16_t>(result, y).data(),
-                                                  profile.half_store);
-      }
-      for (; x < picture.width; ++x) {
-        const glm::vec2 v{load_texel<Format::rg16f>(velocity, x, y)};
-        store_colour(picture, result, x, y, blurred_along_own(job, picture, x, v), profile);
-      }
+  for_each_row(pool, picture.height, kPassRows, [&](int y) {
+    const OwnRow job{samples,
+                     2.0f / static_cast<float>(samples),
+                     0.5f * shutter,
+                     source_of(picture),
+                     picture.width,
+                     picture.height,
+                     y,
+                     row<std::uint16_t>(velocity, y).data()};
+    int x = 0;
+    if (pool.isa() != Isa::scalar) {
+      x = SOFTFOCUS_KERNEL(pool.isa(), own_row)(job, row<std::uint16_t>(result, y).data(),
+                                                profile.half_store);
+    }
+    for (; x < picture.width; ++x) {
+      const glm::vec2 v{load_texel<Format::rg16f>(velocity, x, y)};
+      store_colour(picture, result, x, y, blurred_along_own(job, picture, x, v), profile);
     }
   });
 }

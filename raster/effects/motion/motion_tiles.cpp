@@ -9,6 +9,7 @@
 #include "raster/effects/motion/motion_blur.h"
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
+#include "raster/threads/loops.h"
 
 #define SOFTFOCUS_KERNELS "raster/effects/motion/motion_tiles.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -56,19 +57,16 @@ MotionBlurPass pass_of(const MotionBlurSettings& settings) {
 void motion_to_either_side(const MotionBlurPass& pass, const ConstImageView& velocity,
                            const ImageView& spread, const Profile& profile, ThreadPool& pool) {
   assert(velocity.format == Format::rg16f && spread.format == Format::rgba16f);
-  pool.for_each((spread.height + kPassRows - 1) / kPassRows, [&](int band) {
-    const int end = std::min((band + 1) * kPassRows, spread.height);
-    for (int y = band * kPassRows; y < end; ++y) {
-      int x = 0;
-      if (pool.isa() != Isa::scalar) {
-        x = SOFTFOCUS_KERNEL(pool.isa(), spread_row)(pass, row<std::uint16_t>(velocity, y).data(),
-                                                     row<std::uint16_t>(spread, y).data(),
-                                                     spread.width, profile.half_store);
-      }
-      for (; x < spread.width; ++x) {
-        store_texel<Format::rgba16f>(
-            spread, x, y, to_either_side(pass, load_texel<Format::rg16f>(velocity, x, y)), profile);
-      }
+  for_each_row(pool, spread.height, kPassRows, [&](int y) {
+    int x = 0;
+    if (pool.isa() != Isa::scalar) {
+      x = SOFTFOCUS_KERNEL(pool.isa(), spread_row)(pass, row<std::uint16_t>(velocity, y).data(),
+                                                   row<std::uint16_t>(spread, y).data(),
+                                                   spread.width, profile.half_store);
+    }
+    for (; x < spread.width; ++x) {
+      store_texel<Format::rgba16f>(
+          spread, x, y, to_either_side(pass, load_texel<Format::rg16f>(velocity, x, y)), profile);
     }
   });
 }

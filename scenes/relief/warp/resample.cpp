@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "raster/threads/loops.h"
 #include "scenes/relief/warp/resample_columns.h"
 
 namespace softfocus {
@@ -99,9 +100,9 @@ WarpCounts warp_in_two_passes(const Numbers& numbers, const WarpWork& work, bool
   }
   std::vector<CountedPieces> counted(static_cast<std::size_t>(rows + bands), {{}, counting});
   constexpr int kRows = 8;
-  pool.for_each((rows + kRows - 1) / kRows, [&](int band) {
+  for_each_band(pool, rows, kRows, [&](int first, int end) {
     typename RowOf<Numbers>::Type memory{work.relief.width};
-    for (int row = kRows * band; row < std::min(kRows * (band + 1), rows); ++row) {
+    for (int row = first; row < end; ++row) {
       warp_rows(numbers, work, work.extent.y_begin + row, pool.isa(), memory,
                 counted[static_cast<std::size_t>(row)]);
     }

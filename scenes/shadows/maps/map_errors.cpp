@@ -64,35 +64,24 @@ MapErrors map_errors(const Facets& facets, const ShadowMap& map, const ShadowTru
                      std::span<const std::uint8_t> shares, int width, int height,
                      ThreadPool& pool) {
   const double whole = map.settings.kernel * map.settings.kernel;
-  std::vector<MapErrors> of_rows(static_cast<std::size_t>(height));
-  pool.for_each(height, [&](int y) {
-    MapErrors& errors = of_rows[static_cast<std::size_t>(y)];
-    std::vector<std::uint32_t> memory;
-    for (int x = 0; x < width; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                static_cast<std::size_t>(x);
-      if (!shows_facet(seen[pixel])) continue;
-      const bool dark = is_dark[pixel] != 0;
-      double share = (mask[pixel] >> bit & 1) != 0 ? 1.0 : 0.0;
-      if (share == 0.0 && !shares.empty()) share = shares[pixel] / whole;
-      ++errors.seen;
-      errors.in_shadow += dark ? 1 : 0;
-      errors.missed_share += std::fabs(share - (dark ? 1.0 : 0.0));
-      if ((share > 0.5) == dark) continue;
-      const glm::dvec2 centre{x + 0.5, y + 0.5};
-      if (truth.is_near_edge(seen[pixel], centre, memory)) {
-        ++errors.near_edge;
-      } else if (is_at_edge(facets, map, truth, seen[pixel], truth.point(seen[pixel], centre), dark,
-                            memory)) {
-        ++errors.aliasing;
-      } else {
-        ++(dark ? errors.peter_panning : errors.acne);
-      }
+  const auto judge = [&](const SeenPixel& at, auto& memory, MapErrors& errors) {
+    const bool dark = is_dark[at.index] != 0;
+    double share = (mask[at.index] >> bit & 1) != 0 ? 1.0 : 0.0;
+    if (share == 0.0 && !shares.empty()) share = shares[at.index] / whole;
+    ++errors.seen;
+    errors.in_shadow += dark ? 1 : 0;
+    errors.missed_share += std::fabs(share - (dark ? 1.0 : 0.0));
+    if ((share > 0.5) == dark) return;
+    if (truth.is_near_edge(at.seen, at.centre, memory)) {
+      ++errors.near_edge;
+    } else if (is_at_edge(facets, map, truth, at.seen, truth.point(at.seen, at.centre), dark,
+                          memory)) {
+      ++errors.aliasing;
+    } else {
+      ++(dark ? errors.peter_panning : errors.acne);
     }
-  });
-  MapErrors sum;
-  for (const MapErrors& errors : of_rows) sum += errors;
-  return sum;
+  };
+  return sum_over_seen<MapErrors>(seen, width, height, pool, judge);
 }
 
 }  // namespace softfocus

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "raster/threads/scratch_shelf.h"
+#include "raster/threads/loops.h"
 #include "scenes/shadows/volumes/volume_samples.h"
 
 namespace softfocus {
@@ -256,13 +256,11 @@ std::vector<std::vector<FarSample>> count_bands(const SeenFaces& faces, const Ba
                                                 ThreadPool& pool, const Use& use) {
   const Bands bands = sort_into_bands(faces, kCount, of.space, of.view, pool);
   std::vector<std::vector<FarSample>> far(bands.begins.size() - 1);
-  ScratchShelf<Band> shelf;
-  pool.for_each(static_cast<int>(far.size()), [&](int number) {
+  for_each_with<Band>(pool, static_cast<int>(far.size()), [&](int number, auto& band) {
     const auto i = static_cast<std::size_t>(number);
     MaskRows rows = of.rows;
     rows.y_begin = number * kBandRows;
     rows.y_end = std::min(rows.y_begin + kBandRows, of.view.height);
-    Band band = shelf.take();
     if (find_samples(of.scene, rows, of.view, of.space, band, far[i])) {
       BandCounter<kCount> counter{of.view, of.space, faces, rows.y_begin, pool.isa(), band};
       for (std::size_t k = bands.begins[i]; k < bands.begins[i + 1]; ++k) {
@@ -270,7 +268,6 @@ std::vector<std::vector<FarSample>> count_bands(const SeenFaces& faces, const Ba
       }
       use(rows, band);
     }
-    shelf.put_back(std::move(band));
   });
   return far;
 }

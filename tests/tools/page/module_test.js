@@ -41,7 +41,7 @@ function native_hash(words) {
 }
 
 const kFrames = [
-  { scene: "cube-room", settings: { size: [200, 120] }, words: ["--size", "200x120"] },
+  { scene: "cube-room", settings: { size: [200, 120] }, words: ["--size", "200x120", "--method", "two-pass"] },
   { scene: "figures", settings: { size: [128, 128], time: 7, method: "disc-layers", f_number: 1.4,
                                   focus: { at: [0.25, 0.5] } },
     words: ["--size", "128x128", "--frame", "7", "--method", "disc-layers", "--f-number", "1.4",
@@ -49,7 +49,7 @@ const kFrames = [
   { scene: "sphere-world", settings: { size: [96, 64], max_coc_px: 5, focus: { m: 0.9 },
                                        focal_length_mm: 35, coc_scale: 2 },
     words: ["--size", "96x64", "--max-coc", "5", "--focus", "0.9", "--focal-length", "35",
-            "--coc-scale", "2"] },
+            "--coc-scale", "2", "--method", "two-pass"] },
   { scene: "random:7", settings: { size: [64, 64], dof: false },
     words: ["--size", "64x64", "--show", "pinhole"] },
   { scene: "portrait", settings: { size: [64, 48], show: "coc" },

@@ -207,8 +207,8 @@ TEST_CASE("auto: bad input") {
                        {"--max-error", "--max-time", "exclude"});
   check_refused_render(auto_with({"--verify", "--no-verify"}), {"--verify", "exclude"});
   check_refused_render(auto_with({"--verify", "--max-time", "8"}), {"--verify", "--max-time"});
-  check_refused_render({"--verify"}, {"--verify", "two-pass", "--method auto"});
-  check_refused_render({"--max-error", "0.1"}, {"--max-error", "two-pass", "--method auto"});
+  check_refused_render({"--verify"}, {"--verify", "disc-layers", "--method auto"});
+  check_refused_render({"--max-error", "0.1"}, {"--max-error", "disc-layers", "--method auto"});
   check_refused_render({"--method", "pinhole", "--max-time", "8"}, {"--max-time", "pinhole"});
   check_refused_render(auto_with({"--gl", "llvmpipe"}), {"--gl", "auto", "exclude"});
   for (const Words& option : {Words{"--samples", "4"}, Words{"--jitter"}, Words{"--until", "0.1"},

@@ -79,6 +79,7 @@ TEST_CASE("bad input: an unknown name is answered with the names there are") {
   check_option_refused({"--profile", "voodoo"}, {"'voodoo'", "ieee, d3d11, llvmpipe"});
   check_option_refused({"--show", "me"}, {"'me'", "image, pinhole, coc, depth"});
   check_option_refused({"--format", "gif"}, {"'gif'", "png, png-16, pfm, npy"});
+  check_option_refused({"--format", "pgn"}, {"did you mean 'png'?"});
   const TemporaryDirectory directory;
   check_refused(directory, {"render", "figurines", "-o", directory.file("out.png")}, 1,
                 {"figurines", "clutter, crossing, cube-room, dunes, figures, foliage"});

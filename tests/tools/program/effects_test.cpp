@@ -309,6 +309,7 @@ TEST_CASE("effects: what is no effect or no number of it is refused") {
   refused({}, {"nothing to apply", "softfocus effects"});
   refused({"--effect", "gausian"}, {"--effect 'gausian'", "did you mean", "gaussian"});
   refused({"--effect", "gaussian:width=3"}, {"width=3", "there are sigma"});
+  refused({"--effect", "bloom:strenght=1"}, {"did you mean 'strength'?"});
   refused({"--effect", "gaussian:sigma"}, {"'sigma' is no key=value"});
   refused({"--effect", "gaussian:sigma=-1"}, {"sigma", "0 to 341"});
   refused({"--effect", "gaussian:sigma=nan"}, {"sigma", "0 to 341"});

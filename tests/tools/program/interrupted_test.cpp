@@ -131,9 +131,9 @@ void check_each_stage(const Words& words, int least_stages) {
   int compared = 0;
   for (const auto& entry : std::filesystem::directory_iterator{once}) {
     if (!entry.is_regular_file()) continue;
-    const std::string name = entry.path().filename().string();
-    CAPTURE(name);
-    CHECK(same_files(often + "/" + name, once + "/" + name));
+    CAPTURE(entry.path());
+    const std::filesystem::path other = std::filesystem::path{often} / entry.path().filename();
+    CHECK(same_files(other.string(), entry.path().string()));
     ++compared;
   }
   CHECK(compared > 0);

@@ -1,6 +1,10 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include "tests/support/cli_render.h"
 #include "tests/support/skip.h"
 
@@ -86,15 +90,14 @@ TEST_CASE("render: a named pipe is written to and stays a pipe") {
   CHECK(std::filesystem::is_fifo(pipe));
 }
 
-TEST_CASE("render: a terminal shows the stage, and nothing of it is left at the end") {
+namespace {
+
+/// What a run shows on a terminal; nothing if none can be made.
+std::optional<std::string> shown_on_terminal(const Words& words) {
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) {
-    return skip("terminal", "no terminal can be made");
-  }
+  if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) return std::nullopt;
   const std::string name = ::ptsname(terminal);
-  const TemporaryDirectory directory;
-  const ProgramRun run = run_program(render("figures", directory.file("a.png")), {.err_to = name});
-  CHECK(run.status == 0);
+  CHECK(run_program(words, {.err_to = name}).status == 0);
   // A read may give a part of what was written; the last one fails, as no writer is left.
   std::string shown;
   char text[4096];
@@ -102,6 +105,31 @@ TEST_CASE("render: a terminal shows the stage, and nothing of it is left at the 
     shown.append(text, static_cast<std::size_t>(count));
   }
   ::close(terminal);
-  CHECK(contains(shown, "drawing ..."));
-  CHECK(shown.ends_with("\r\x1b[K"));
+  return shown;
+}
+
+}  // namespace
+
+TEST_CASE("a terminal shows the stage, and nothing of it is left at the end") {
+  const TemporaryDirectory directory;
+  const Words plain = render("figures", directory.file("a.png"));
+  Words soft = plain;
+  soft.insert(soft.end(), {"--shadows", "volumes", "--light-angle", "1", "--soft", "3"});
+  Words frames = soft;
+  frames.insert(frames.end(), {"--effect", "temporal-aa"});
+  const Words turn{"relief", "turn", "figures", "--frames", "4", "--size", "32x32"};
+  struct Shown {
+    Words words;
+    std::string_view stage;
+  };
+  for (const Shown& run :
+       {Shown{plain, "drawing ..."}, Shown{soft, "drawing, 3 of 3 points of the lights ..."},
+        Shown{frames, "drawing, 2 of 3 points of the lights ..."},
+        Shown{turn, "frame 1 of 4 ..."}}) {
+    CAPTURE(run.stage);
+    const std::optional<std::string> shown = shown_on_terminal(run.words);
+    if (!shown) return skip("terminal", "no terminal can be made");
+    CHECK(contains(*shown, run.stage));
+    CHECK(shown->ends_with("\r\x1b[K"));
+  }
 }

@@ -89,6 +89,11 @@ TEST_CASE("relief bench and turn say what they measured") {
   const json turned = json::parse(run_program(turning_json).out);
   CHECK(turned.at("frames") == 12);
   CHECK(turned.at("steps").at("renewals") > 0);
+  const std::string verdict = turned.at("verdict").at("impostor");
+  const bool is_faster = turned.at("frame_ms").at("ratio") > 1.0;
+  CHECK(verdict.starts_with(is_faster ? "pays: " : "does not pay: "));
+  CHECK(contains(verdict, is_faster ? "times as fast" : "times as slow"));
+  CHECK(contains(verdict, " of 12 frames "));
   for (const char* part : {"frame_ms", "schedule", "errors", "bound_by_largest"}) {
     CHECK(turned.at(part).is_object());
   }

@@ -12,7 +12,7 @@ TEST_CASE("render: --report writes the times without and with depth of field, an
   const std::string report = read_file(directory.file("report.txt"));
   for (const std::string_view line :
        {"\nScene                   figures", "\nResolution              48 x 32 pixels\n",
-        "\nTriangles               ", "\nMethod                  two-pass\n",
+        "\nTriangles               ", "\nMethod                  disc-layers\n",
         "\nFocus distance          ", "\nFilter size             ", "milliseconds",
         "frames per second", "\nWithout depth of field", "\nWith depth of field",
         "\nCost of depth of field", "\nload ", "\ndraw ", "\nfocus ", "\nfilter ", "\nencode ",
@@ -47,6 +47,6 @@ TEST_CASE("render: -v says what was chosen on standard error, where nothing is s
   const TemporaryDirectory directory;
   const ProgramRun run = run_program(render("figures", directory.file("a.png"), {"-v"}));
   CHECK(run.out == "");
-  CHECK(contains(run.err, "two-pass"));
+  CHECK(contains(run.err, "disc-layers"));
   CHECK(contains(run.err, "Focus distance"));
 }

@@ -52,6 +52,9 @@ TEST_CASE("selftest of a branch checks its hashes alone") {
   const ProgramRun run = run_program({"selftest", "samplers ieee"});
   CHECK(run.status == 0);
   CHECK(run.out == "pass: 24 hashes are as expected\n");
+  const ProgramRun slip = run_program({"selftest", "figurse"});
+  CHECK(slip.status == 2);
+  CHECK(slip.err.ends_with("; did you mean 'figures'?\n"));
 }
 
 TEST_CASE("selftest --json lists what was expected, what was computed and whether it passes" *

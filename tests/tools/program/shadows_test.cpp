@@ -202,6 +202,8 @@ TEST_CASE("shadows and render --shadows: what does not go together is one clear 
   refused({"render", "figures", "-o", "a.png", "--map", "size=64"}, {"--map", "--shadows map"});
   refused({"render", "figures", "-o", "a.png", "--shadows", "map", "--map", "size=1"},
           {"'1'", "16 to 8192"});
+  refused({"render", "figures", "-o", "a.png", "--shadows", "map", "--map", "siz=64"},
+          {"'siz'", "did you mean 'size'?"});
   refused({"render", "figures", "-o", "a.png", "--shadows", "projected", "--method", "ray-traced"},
           {"ray-traced", "--shadows none"});
 }

@@ -337,7 +337,8 @@ BelievedEncoding believed_encoding(const NumbersSeen& seen, NumberType type, boo
   }
   if (seen.largest <= 1.0) {
     return {nullptr,
-            "all numbers are within 0 and 1: a depth buffer (device), a grey picture, or metres"};
+            "all numbers are within 0 and 1: what a network gives (midas), a depth buffer "
+            "(device), a grey picture (white-far, white-near), or metres"};
   }
   if (seen.largest > 1000.0 && seen.least > 100.0) {
     return {nullptr, "numbers from " + std::to_string(static_cast<long long>(seen.least)) +

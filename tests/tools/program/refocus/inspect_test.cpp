@@ -115,6 +115,8 @@ TEST_CASE("inspect, refocus: a depth without a known number is said to be none")
                 {"d.pfm", "has no depth", "another file"});
   write_pfm(file, {INFINITY, NAN}, 2, 1);
   CHECK(contains(run_program({"inspect", file}).out, "no number is finite"));
+  write_pfm(file, {0.25f, 1.0f}, 2, 1);
+  CHECK(contains(run_program({"inspect", file}).out, "what a network gives (midas)"));
 }
 
 TEST_CASE("inspect: -o shows the circles, black where it is sharp") {
