@@ -13,6 +13,7 @@
 #include <tiffio.h>
 
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -116,9 +117,13 @@ struct TiffForm {
   std::uint16_t bits = 0, samples = 0, format = 0, photometric = 0;
   bool apart = false;  ///< a plane for each sample
   bool tiled = false;
+  bool is_multiplied = false;  ///< colours by the sample behind them (associated alpha)
 };
 
 TiffForm form_of(TIFF* tiff) {
+  std::uint16_t others = 0;
+  const std::uint16_t* kinds = nullptr;
+  const bool has_others = TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &others, &kinds) == 1;
   return {tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
           tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH),
           tag_of<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
@@ -126,7 +131,8 @@ TiffForm form_of(TIFF* tiff) {
           tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT),
           tag_of<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC),
           tag_of<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE,
-          TIFFIsTiled(tiff) != 0};
+          TIFFIsTiled(tiff) != 0,
+          has_others && others > 0 && kinds[0] == EXTRASAMPLE_ASSOCALPHA};
 }
 
 std::optional<NumberType> number_type(const TiffForm& form) {
@@ -141,8 +147,9 @@ std::optional<NumberType> number_type(const TiffForm& form) {
   }
 }
 
-/// Palettes, inks, YCbCr and the like: libtiff makes colours of 8 bits of them.
+/// Others are palettes, inks, YCbCr, a few bits: libtiff makes colours of 8 bits of them.
 bool is_plain(const TiffForm& form) {
+  if (form.bits < 8) return false;
   return form.photometric == PHOTOMETRIC_MINISBLACK || form.photometric == PHOTOMETRIC_RGB ||
          (form.photometric == PHOTOMETRIC_MINISWHITE && form.format != SAMPLEFORMAT_IEEEFP);
 }
@@ -162,7 +169,9 @@ void list_tiff(PictureFile& file) {
   std::string names = "RGBA";
   if (is_plain(form)) {
     if (!type) {
-      throw FileError("the TIFF has numbers of " + std::to_string(form.bits) +
+      throw FileError("the TIFF has " +
+                      std::string{form.format == SAMPLEFORMAT_INT ? "signed " : ""} +
+                      "numbers of " + std::to_string(form.bits) +
                       " bits; whole ones of 8, 16 or 32 bits and floats would be right");
     }
     const bool is_grey = form.photometric != PHOTOMETRIC_RGB;
@@ -214,7 +223,12 @@ void read_plain(TIFF* tiff, const TiffMemory& memory, const TiffForm& form, Numb
                  : std::min(tag_of<std::uint32_t>(tiff, TIFFTAG_ROWSPERSTRIP), form.height);
   if (across == 0 || down == 0) refuse_tiff(memory, "its blocks have no size");
   const tmsize_t bytes = form.tiled ? TIFFTileSize(tiff) : TIFFStripSize(tiff);
-  if (bytes <= 0) refuse_tiff(memory, "its blocks have no size");
+  // A block may be larger than its picture, by less than a tile of the usual sizes.
+  constexpr std::uint64_t kMostBeyond = std::uint64_t{1} << 24;
+  const std::uint64_t all = std::uint64_t{form.width} * form.height * form.samples * form.bits / 8;
+  if (bytes <= 0 || static_cast<std::uint64_t>(bytes) > 4 * all + kMostBeyond) {
+    refuse_tiff(memory, "its blocks have no size that fits the picture");
+  }
   std::vector<std::byte> block(static_cast<std::size_t>(bytes));
   const std::size_t each = form.bits / 8u, samples = form.apart ? 1 : form.samples;
   const auto read_block = [&](std::uint32_t x, std::uint32_t y, std::uint16_t sample) {
@@ -247,6 +261,19 @@ void read_plain(TIFF* tiff, const TiffMemory& memory, const TiffForm& form, Numb
   }
 }
 
+/// Divides colours by their alpha, as PNG has them. Whole numbers stay whole.
+void divide_by_alpha(std::vector<PlaneValues>& planes, NumberType type, bool is_whole) {
+  const PlaneValues& alpha = planes.back();
+  const auto full = static_cast<float>(full_scale(type));
+  for (std::size_t c = 0; c + 1 < planes.size(); ++c) {
+    for (std::size_t i = 0; i < alpha.size(); ++i) {
+      if (!(alpha[i] > 0.0f)) continue;
+      const float straight = planes[c][i] * (full / alpha[i]);
+      planes[c][i] = is_whole ? std::min(std::floor(straight + 0.5f), full) : straight;
+    }
+  }
+}
+
 void read_tiff(const PictureFile& file, std::span<const std::size_t> planes,
                std::span<PlaneValues> values) {
   TiffMemory memory{.read = file.bytes};
@@ -264,6 +291,10 @@ void read_tiff(const PictureFile& file, std::span<const std::size_t> planes,
                  stored[sample][static_cast<std::size_t>(y) * form.width + x] =
                      is_inverse && sample == 0 ? full - value : value;
                });
+    const std::size_t colours = form.photometric == PHOTOMETRIC_RGB ? 3 : 1;
+    if (form.is_multiplied && stored.size() > colours) {
+      divide_by_alpha(stored, type, form.format != SAMPLEFORMAT_IEEEFP);
+    }
   } else {
     std::vector<std::uint32_t> packed(pixels);
     // As it is stored: the orientation is for the planes below.

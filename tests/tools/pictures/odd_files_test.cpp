@@ -316,7 +316,7 @@ namespace {
 struct TiffOf {
   bool high_byte_first = false;
   unsigned bits = 16, samples = 1, format = 1, photometric = 1, orientation = 1;
-  bool apart = false, tiled = false;
+  bool apart = false, tiled = false, is_multiplied = false;
 
   std::string number(std::uint64_t value, unsigned bytes) const {
     std::string text;
@@ -344,6 +344,7 @@ struct TiffOf {
     } else {
       entries.push_back({278, kLong, 2});
     }
+    if (is_multiplied) entries.push_back({338, kShort, 1});
     const auto count = static_cast<unsigned>(blocks.size());
     const unsigned places = tiled ? 324 : 273, lengths = tiled ? 325 : 279;
     const unsigned head = 8 + 2 + 12 * static_cast<unsigned>(entries.size() + 2) + 4;
@@ -432,6 +433,25 @@ TEST_CASE("TIFF: planes apart, tiles, white as 0 and an orientation") {
         PlaneValues{254, 253, 252, 251, 250, 249});
   TiffOf turned{.orientation = 6};
   CHECK(plane_of(turned.with({turned.counted(6)}), 0) == PlaneValues{4, 1, 5, 2, 6, 3});
+}
+
+TEST_CASE("TIFF: colours that are multiplied by their alpha are divided by it") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  const TiffOf whole{.bits = 8, .samples = 2, .is_multiplied = true};
+  const Bytes bytes = whole.with({std::string("\x32\x64\xFF\xFF\0\0\x05\0\x80\x80\x40\x80", 12)});
+  CHECK(plane_of(bytes, 0) == PlaneValues{128, 255, 0, 5, 255, 128});  // 50 255 / 100 = 127.5
+  CHECK(plane_of(bytes, 1) == PlaneValues{100, 255, 0, 0, 128, 128});
+  const TiffOf light{.bits = 32, .samples = 2, .format = 3, .is_multiplied = true};
+  CHECK(plane_of(light.with({light.counted(12)}), 0) ==
+        PlaneValues{0.5f, 3.0f * 0.25f, 5.0f * (1.0f / 6.0f), 7.0f * 0.125f, 9.0f * (1.0f / 10.0f),
+                    11.0f * (1.0f / 12.0f)});
+}
+
+TEST_CASE("TIFF: black and white, of a bit a pixel") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  const TiffOf bits{.bits = 1};
+  CHECK(plane_of(bits.with({std::string("\xA0\x40", 2)}), 1) ==
+        PlaneValues{255, 0, 255, 0, 255, 0});
 }
 
 TEST_CASE("TIFF: what is cut short, of odd numbers or too large for its bytes is refused") {
