@@ -126,6 +126,11 @@ void put_pictures(const fs::path& all, const fs::path& data) {
     png.put("stored-8-" + std::to_string(kind), stored_png(8, kind));
     if (kind != 3) png.put("stored-16-" + std::to_string(kind), stored_png(16, kind));
   }
+#ifdef SOFTFOCUS_TIFF_SEEDS
+  const Seeds tiff{all, "tiff"};
+  tiff.put("colour", encode_tiff(image));
+  tiff.put("alpha", encode_tiff(image, plane));
+#endif
   jpeg.copy(data / "red-blue-16x8.jpg");
   hdr.put("colour", encode_hdr(image));
   pfm.put("colour", encode_pfm(image));

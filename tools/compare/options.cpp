@@ -82,7 +82,7 @@ void add_map(CLI::App& parser, const std::string& name, const std::string& help,
   add_value(parser, name, "OUT", help, [name, &file](const std::string& text) {
     if (!format_by_extension(text)) {
       throw UsageError(name + " '" + text +
-                       "': the name must end in .png, .exr, .pfm, .hdr or .npy");
+                       "': the name must end in .png, .exr, .tiff, .pfm, .hdr or .npy");
     }
     file = text;
   });

@@ -415,7 +415,7 @@ Command add_apply_command(CLI::App& program) {
              kVelocityEncodings, options->velocity.encoding);
   begin_group(*parser, "Output");
   add_text(*parser, "-o,--output", "FILE",
-           "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
+           "The result: .png, .exr, .tiff, .pfm, .hdr or .npy; - for standard output (required)",
            options->output);
   add_format_option(*parser, options->format);
   begin_group(*parser, "Run");

@@ -151,7 +151,7 @@ void add_format_option(CLI::App& parser, FileFormat& format) {
 }
 
 void settle_format(const CLI::App& parser, const std::string& output, FileFormat& format) {
-  constexpr const char* kEndings = ".png, .exr, .pfm, .hdr or .npy";
+  constexpr const char* kEndings = ".png, .exr, .tiff, .pfm, .hdr or .npy";
   if (output.empty()) {
     throw UsageError(std::string{"-o is missing: give a "} + kEndings +
                      " file, or - for standard output");

@@ -37,6 +37,7 @@ constexpr std::array kFormats{NamedFormat{"png", FileFormat::png},
                               NamedFormat{"hdr", FileFormat::hdr},
                               NamedFormat{"exr", FileFormat::exr},
                               NamedFormat{"exr-float", FileFormat::exr_float},
+                              NamedFormat{"tiff", FileFormat::tiff},
                               NamedFormat{"rgb24", FileFormat::rgb24},
                               NamedFormat{"rgb48le", FileFormat::rgb48le}};
 
@@ -58,6 +59,7 @@ std::string format_names(std::string_view between) {
 }
 
 std::string_view missing_format(FileFormat format) {
+  if (format == FileFormat::tiff) return missing_tiff();
   return format == FileFormat::exr || format == FileFormat::exr_float ? missing_exr()
                                                                       : std::string_view{};
 }
@@ -73,7 +75,7 @@ std::optional<FileFormat> format_by_extension(const std::filesystem::path& file)
   for (char& c : extension) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
-  const auto format = format_by_name(extension);
+  const auto format = format_by_name(extension == "tif" ? "tiff" : extension);
   return format && is_raw_video(*format) ? std::nullopt : format;
 }
 
@@ -86,6 +88,7 @@ Bytes encode(const Image& image, FileFormat format) {
     case FileFormat::hdr: return encode_hdr(image);
     case FileFormat::exr: return encode_exr(image, ExrNumbers::half, "");
     case FileFormat::exr_float: return encode_exr(image, ExrNumbers::single, "");
+    case FileFormat::tiff: return encode_tiff(image);
     case FileFormat::rgb24: return encode_rgb24(image);
     case FileFormat::rgb48le: return encode_rgb48le(image);
   }

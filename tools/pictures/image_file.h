@@ -21,14 +21,26 @@
 
 namespace softfocus {
 
-enum class FileFormat : std::uint8_t { png, png_16, pfm, npy, hdr, exr, exr_float, rgb24, rgb48le };
+enum class FileFormat : std::uint8_t {
+  png,
+  png_16,
+  pfm,
+  npy,
+  hdr,
+  exr,
+  exr_float,
+  tiff,
+  rgb24,
+  rgb48le
+};
 
 using Bytes = std::vector<std::byte>;
 
 /// The format that a name asks for: one of format_names(). As an extension, in any case: png, pfm,
-/// npy, hdr or exr.
+/// npy, hdr, exr, tiff or tif.
 std::optional<FileFormat> format_by_name(std::string_view name);
-/// "png, png-16, pfm, npy, hdr, exr, exr-float, rgb24, rgb48le"; with another text between them.
+/// "png, png-16, pfm, npy, hdr, exr, exr-float, tiff, rgb24, rgb48le"; with another text between
+/// them.
 std::string format_names(std::string_view between = ", ");
 /// Why this build cannot write it, as a sentence; empty if it can.
 std::string_view missing_format(FileFormat format);
@@ -56,6 +68,12 @@ Bytes encode(const Image& image, FileFormat format);
 /// the file then has RGBA, with colours that are not.
 Bytes encode_png(const Image& image, std::span<const float> alpha = {});
 Bytes encode_png_16(const Image& image, std::span<const float> alpha = {});
+/// Whole numbers of 16 bits along the sRGB curve, red, green, blue of each pixel, and alpha if
+/// there is any, by which colours are divided.
+std::vector<std::uint16_t> srgb16_values(const Image& image, std::span<const float> alpha = {});
+/// Those in a TIFF that is not compressed, with a profile of the colours. Throws FileError.
+Bytes encode_tiff(const Image& image, std::span<const float> alpha = {},
+                  std::span<const std::byte> icc = {});
 Bytes encode_rgb24(const Image& image);
 /// Each number's low byte first.
 Bytes encode_rgb48le(const Image& image);

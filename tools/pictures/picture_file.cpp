@@ -34,9 +34,6 @@ constexpr std::string_view kByDjxl = "djxl IN OUT.png converts it";
 constexpr std::string_view kByHeif =
     "heif-convert IN OUT.png converts both parts, the picture and, as OUT-depth.png, its depth";
 constexpr std::array kForeignKinds{
-    ForeignKind{{"II*\0", 4}, 0, "a TIFF", kByOiiotool},
-    ForeignKind{{"MM\0*", 4}, 0, "a TIFF", kByOiiotool},
-    ForeignKind{{"II+\0", 4}, 0, "a TIFF", kByOiiotool},
     ForeignKind{"ftyphei", 4, "a HEIC", kByHeif},
     ForeignKind{"ftyphev", 4, "a HEIC", kByHeif},
     ForeignKind{"ftypmif1", 4, "a HEIC", kByHeif},
@@ -58,8 +55,8 @@ constexpr std::array kForeignKinds{
     ForeignKind{"jP  ", 4, "a JPEG 2000", kByOiiotool},
     ForeignKind{"BM", 0, "a BMP", kByOiiotool}};
 
-constexpr std::array kReaders{&kPngReader, &kJpegReader, &kHdrReader,
-                              &kPfmReader, &kNpyReader,  &kExrReader};
+constexpr std::array kReaders{&kPngReader, &kJpegReader, &kHdrReader, &kPfmReader,
+                              &kNpyReader, &kExrReader,  &kTiffReader};
 
 const PictureFileReader& reader_of(std::span<const std::byte> bytes) {
   for (const PictureFileReader* reader : kReaders) {
@@ -72,7 +69,7 @@ const PictureFileReader& reader_of(std::span<const std::byte> bytes) {
     }
   }
   if (bytes.empty()) throw FileError("it is empty");
-  throw FileError("it is none of PNG, JPEG, PFM, Radiance HDR, NumPy and OpenEXR");
+  throw FileError("it is none of PNG, JPEG, TIFF, PFM, Radiance HDR, NumPy and OpenEXR");
 }
 
 [[noreturn]] void refuse(const PictureFile& file, const FileError& error) {

@@ -117,7 +117,20 @@ struct PictureFileReader {
 };
 
 extern const PictureFileReader kPngReader, kJpegReader, kHdrReader, kPfmReader, kNpyReader,
-    kExrReader;
+    kExrReader, kTiffReader;
+
+/// Why this build reads and writes no TIFF, as a sentence; empty if it does.
+std::string_view missing_tiff();
+
+/// Takes an ICC profile; of grey and of inks the name alone: what is written has red, green, blue.
+void take_profile(PictureFile& file, Bytes icc);
+
+/// The file's planes are to stand upright, by an orientation of Exif and TIFF.
+void turn_by_exif(PictureFile& file, int orientation);
+
+/// The pixel as it is stored that the upright picture shows at (x, y): orientations 5 to 8 lie on
+/// their side (CIPA DC-008, 4.6.5).
+std::size_t stored_place(const PictureFile& file, int x, int y);
 
 /// Whether there is a reader for what begins so.
 bool begins_as_picture(std::span<const std::byte> bytes);

@@ -146,6 +146,7 @@ Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNote
     lit.light_power = 0;
     return encode_with_notes(brightened(image, light), format, notes, lit);
   }
+  if (format == FileFormat::tiff) return encode_tiff(image, extras.alpha, extras.icc);
   if (format != FileFormat::png && format != FileFormat::png_16) return encode(image, format);
   Bytes bytes = format == FileFormat::png ? encode_png(image, extras.alpha)
                                           : encode_png_16(image, extras.alpha);
@@ -155,7 +156,8 @@ Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNote
 }
 
 bool needs_sidecar(FileFormat format) {
-  return format == FileFormat::pfm || format == FileFormat::npy || format == FileFormat::hdr;
+  return format == FileFormat::pfm || format == FileFormat::npy || format == FileFormat::hdr ||
+         format == FileFormat::tiff;
 }
 
 std::filesystem::path sidecar_of(const std::filesystem::path& picture) {

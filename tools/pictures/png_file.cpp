@@ -151,7 +151,7 @@ Bytes with_png_profile(std::span<const std::byte> png, std::span<const std::byte
   return bytes;
 }
 
-Bytes encode_png_16(const Image& image, std::span<const float> alpha) {
+std::vector<std::uint16_t> srgb16_values(const Image& image, std::span<const float> alpha) {
   const std::vector<std::uint16_t> encoded = srgb16_of_halves();
   const std::size_t channels = alpha.empty() ? 3 : 4;
   std::vector<std::uint16_t> values;
@@ -173,7 +173,12 @@ Bytes encode_png_16(const Image& image, std::span<const float> alpha) {
       }
     }
   }
-  return png_of_wide_rows(values, image.width, image.height, channels);
+  return values;
+}
+
+Bytes encode_png_16(const Image& image, std::span<const float> alpha) {
+  return png_of_wide_rows(srgb16_values(image, alpha), image.width, image.height,
+                          alpha.empty() ? 3 : 4);
 }
 
 Bytes encode_grey_png_16(std::span<const std::uint16_t> values, int width, int height) {

@@ -52,22 +52,6 @@ void list_channels(PictureFile& file, std::string_view kind, NumberType type) {
   file.is_srgb = true;
 }
 
-/// The pixel as it is stored that the upright picture shows at (x, y): orientations 5 to 8 lie on
-/// their side (CIPA DC-008, 4.6.5).
-std::size_t stored_place(const PictureFile& file, int x, int y) {
-  const int orientation = file.exif_orientation;
-  const bool on_side = orientation >= 5;
-  const int width = on_side ? file.height : file.width;
-  const int height = on_side ? file.width : file.height;
-  if (on_side) std::swap(x, y);
-  if (orientation == 2 || orientation == 3 || orientation >= 7) x = width - 1 - x;
-  if (orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7) {
-    y = height - 1 - y;
-  }
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-         static_cast<std::size_t>(x);
-}
-
 /// The wanted channels of interleaved values.
 template <class Value>
 void take_channels(const PictureFile& file, const Value* from, std::span<const std::size_t> planes,
@@ -153,13 +137,6 @@ std::vector<std::span<const std::byte>> jpeg_segments(std::span<const std::byte>
   return segments;
 }
 
-void turn_by_exif(PictureFile& file, int orientation) {
-  if (orientation == 1) return;
-  file.exif_orientation = orientation;
-  if (orientation >= 5) std::swap(file.width, file.height);
-  file.remark = "turned by its EXIF orientation, " + std::to_string(orientation);
-}
-
 /// The name in an ICC profile (ICC.1:2022, 7): its tag desc is a count and ASCII or, from version 4
 /// on, a list of texts in UTF-16. "without a name" if it cannot be read.
 std::string profile_name(std::span<const std::byte> icc) {
@@ -189,14 +166,6 @@ std::string profile_name(std::span<const std::byte> icc) {
     break;
   }
   return name.empty() ? "without a name" : name.substr(0, 80);
-}
-
-/// Of profiles of grey and of inks the name alone: what is written has red, green and blue.
-void take_profile(PictureFile& file, Bytes icc) {
-  constexpr std::size_t kHeader = 128, kSpaceAt = 16;
-  if (icc.size() < kHeader) return;
-  file.icc_name = profile_name(icc);
-  if (std::memcmp(icc.data() + kSpaceAt, "RGB ", 4) == 0) file.icc = std::move(icc);
 }
 
 /// A PNG's profile: a name, 0, 0 for deflate, and a stream. Larger ones than any that is known are
@@ -283,6 +252,34 @@ void read_jpeg(const PictureFile& file, std::span<const std::size_t> planes,
 }
 
 }  // namespace
+
+std::size_t stored_place(const PictureFile& file, int x, int y) {
+  const int orientation = file.exif_orientation;
+  const bool on_side = orientation >= 5;
+  const int width = on_side ? file.height : file.width;
+  const int height = on_side ? file.width : file.height;
+  if (on_side) std::swap(x, y);
+  if (orientation == 2 || orientation == 3 || orientation >= 7) x = width - 1 - x;
+  if (orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7) {
+    y = height - 1 - y;
+  }
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(x);
+}
+
+void turn_by_exif(PictureFile& file, int orientation) {
+  if (orientation == 1) return;
+  file.exif_orientation = orientation;
+  if (orientation >= 5) std::swap(file.width, file.height);
+  file.remark = "turned by its EXIF orientation, " + std::to_string(orientation);
+}
+
+void take_profile(PictureFile& file, Bytes icc) {
+  constexpr std::size_t kHeader = 128, kSpaceAt = 16;
+  if (icc.size() < kHeader) return;
+  file.icc_name = profile_name(icc);
+  if (std::memcmp(icc.data() + kSpaceAt, "RGB ", 4) == 0) file.icc = std::move(icc);
+}
 
 const PictureFileReader kPngReader{"PNG", is_png, list_png, read_png};
 const PictureFileReader kJpegReader{"JPEG", begins_as_jpeg, list_jpeg, read_jpeg};

@@ -170,7 +170,7 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
                         options.depth);
   begin_group(parser, "Output");
   add_text(parser, "-o,--output", "FILE",
-           "The result: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
+           "The result: .png, .exr, .tiff, .pfm, .hdr or .npy; - for standard output (required)",
            options.output);
   add_format_option(parser, options.format);
   add_choice(parser, "--show", "The picture with depth of field, or a grey map (default: image)",

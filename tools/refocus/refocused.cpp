@@ -331,12 +331,10 @@ std::span<const std::byte> kept_profile(const PictureFile& file) {
 }
 
 bool keeps_profile(FileFormat format) {
-  return format == FileFormat::png || format == FileFormat::png_16;
+  return format == FileFormat::png || format == FileFormat::png_16 || format == FileFormat::tiff;
 }
 
-bool keeps_alpha(FileFormat format) {
-  return is_of_exr(format) || format == FileFormat::png || format == FileFormat::png_16;
-}
+bool keeps_alpha(FileFormat format) { return is_of_exr(format) || keeps_profile(format); }
 
 Bytes refocused_file(const RefocusOptions& options, const PictureSources& sources,
                      const DepthMap& depth, const UsedRefocus& used, const PictureOnItsWay& result,

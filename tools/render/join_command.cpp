@@ -163,7 +163,7 @@ Command add_join_command(CLI::App& program) {
   add_value_list(*parser, "PARTS", "", "The .sum files of all shards",
                  [options](const std::vector<std::string>& names) { options->parts = names; });
   add_text(*parser, "-o,--output", "FILE",
-           "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output",
+           "The picture: .png, .exr, .tiff, .pfm, .hdr or .npy; - for standard output",
            options->picture.output);
   add_format_option(*parser, options->picture.format);
   add_flag(*parser, "--check", "Only look whether the files are whole and of one picture",

@@ -24,7 +24,7 @@ namespace {
 void add_picture_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Output");
   add_text(parser, "-o,--output", "FILE",
-           "The picture: .png, .exr, .pfm, .hdr or .npy; - for standard output (required)",
+           "The picture: .png, .exr, .tiff, .pfm, .hdr or .npy; - for standard output (required)",
            options.output);
   add_format_option(parser, options.format);
   add_value(parser, "--depth-output", "FILE",

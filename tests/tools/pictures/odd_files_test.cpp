@@ -1,8 +1,9 @@
 // Pictures as some programs write them: PFM of Photoshop and netpbm, old runs of HDR, ICC profiles,
-// light beyond the largest half.
+// light beyond the largest half, TIFF.
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -10,6 +11,7 @@
 
 #include "raster/images/texel.h"
 #include "tests/support/run_program.h"
+#include "tests/support/skip.h"
 #include "tools/cli/errors.h"
 #include "tools/files/byte_order.h"
 #include "tools/pictures/picture_file.h"
@@ -306,4 +308,180 @@ TEST_CASE("refocus: colours beyond the largest half keep their light") {
                        .err,
                    "colours beyond 65504 or infinite are cut to that, in 3 values"));
   }
+}
+
+namespace {
+
+/// A TIFF of one strip, or of one tile a sample: 3 x 2 pixels in blocks of `across` x `down`.
+struct TiffOf {
+  bool high_byte_first = false;
+  unsigned bits = 16, samples = 1, format = 1, photometric = 1, orientation = 1;
+  bool apart = false, tiled = false, is_multiplied = false;
+
+  std::string number(std::uint64_t value, unsigned bytes) const {
+    std::string text;
+    for (unsigned i = 0; i < bytes; ++i) {
+      text += static_cast<char>(value >> (8 * (high_byte_first ? bytes - 1 - i : i)) & 0xFF);
+    }
+    return text;
+  }
+
+  /// The blocks' bytes stand behind the head.
+  Bytes with(const std::vector<std::string>& blocks) const {
+    constexpr unsigned kShort = 3, kLong = 4;
+    std::vector<std::array<unsigned, 3>> entries{{256, kLong, 3},
+                                                 {257, kLong, 2},
+                                                 {258, kShort, bits},
+                                                 {259, kShort, 1},
+                                                 {262, kShort, photometric},
+                                                 {274, kShort, orientation},
+                                                 {277, kShort, samples},
+                                                 {284, kShort, apart ? 2u : 1u},
+                                                 {339, kShort, format}};
+    if (tiled) {
+      entries.push_back({322, kLong, 16});
+      entries.push_back({323, kLong, 16});
+    } else {
+      entries.push_back({278, kLong, 2});
+    }
+    if (is_multiplied) entries.push_back({338, kShort, 1});
+    const auto count = static_cast<unsigned>(blocks.size());
+    const unsigned places = tiled ? 324 : 273, lengths = tiled ? 325 : 279;
+    const unsigned head = 8 + 2 + 12 * static_cast<unsigned>(entries.size() + 2) + 4;
+    const unsigned data = head + (count > 1 ? 8 * count : 0);
+    std::string text = (high_byte_first ? "MM" : "II") + number(42, 2) + number(8, 4);
+    std::string lists[2], all;
+    for (const std::string& block : blocks) {
+      lists[0] += number(data + all.size(), 4);
+      lists[1] += number(block.size(), 4);
+      all += block;
+    }
+    entries.push_back({places, kLong, 0});
+    entries.push_back({lengths, kLong, 0});
+    std::sort(entries.begin(), entries.end());
+    text += number(entries.size(), 2);
+    for (const auto& [tag, type, value] : entries) {
+      const bool is_list = tag == places || tag == lengths;
+      // Bits and forms are alike for all samples; readers take one for all.
+      text += number(tag, 2) + number(type, 2) + number(is_list ? count : 1, 4);
+      const std::string& list = lists[tag == lengths ? 1 : 0];
+      if (is_list && count > 1) {
+        text += number(head + (tag == lengths ? 4 * count : 0), 4);
+      } else {
+        text += is_list ? list
+                        : number(value, type == kShort ? 2 : 4) +
+                              std::string(type == kShort ? 2 : 0, '\0');
+      }
+    }
+    text += number(0, 4);
+    if (count > 1) text += lists[0] + lists[1];
+    return bytes_of(text + all);
+  }
+
+  /// The whole numbers or floats from 1 on, `of` of them.
+  std::string counted(unsigned of, unsigned first = 1) const {
+    std::string text;
+    for (unsigned i = first; i < first + of; ++i) {
+      const auto value = static_cast<float>(i);
+      text += number(format == 1  ? i
+                     : bits == 16 ? float_to_half(value, HalfRounding::nearest_even)
+                     : bits == 32 ? std::bit_cast<std::uint32_t>(value)
+                                  : std::bit_cast<std::uint64_t>(static_cast<double>(value)),
+                     bits / 8);
+    }
+    return text;
+  }
+};
+
+PlaneValues plane_of(const Bytes& bytes, std::size_t plane) {
+  return read_planes(open_picture_file(bytes, "a.tiff"), {&plane, 1}, 0.0f)[0];
+}
+
+}  // namespace
+
+TEST_CASE("TIFF: whole numbers and floats of each size, of both byte orders") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  for (const bool high : {false, true}) {
+    for (const auto& [bits, format] :
+         {std::pair{8u, 1u}, {16u, 1u}, {32u, 1u}, {16u, 3u}, {32u, 3u}, {64u, 3u}}) {
+      CAPTURE(bits);
+      CAPTURE(format);
+      const TiffOf tiff{.high_byte_first = high, .bits = bits, .format = format};
+      const Bytes bytes = tiff.with({tiff.counted(6)});
+      CHECK(plane_of(bytes, 0) == kDownward);
+      const PictureFile file = open_picture_file(bytes, "a.tiff");
+      CHECK(file.is_srgb == (format == 1));
+      CHECK(file.planes[0].name == "Y");
+    }
+  }
+}
+
+TEST_CASE("TIFF: planes apart, tiles, white as 0 and an orientation") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  TiffOf apart{.samples = 3, .photometric = 2, .apart = true};
+  const Bytes rgb = apart.with({apart.counted(6), apart.counted(6, 11), apart.counted(6, 21)});
+  CHECK(plane_of(rgb, 0) == kDownward);
+  CHECK(plane_of(rgb, 2) == PlaneValues{21, 22, 23, 24, 25, 26});
+  TiffOf together{.bits = 8, .samples = 3, .photometric = 2};
+  CHECK(plane_of(together.with({together.counted(18)}), 1) == PlaneValues{2, 5, 8, 11, 14, 17});
+  TiffOf tiles{.bits = 32, .format = 3, .tiled = true};
+  std::string tile;
+  for (unsigned y = 0; y < 16; ++y) tile += tiles.counted(16, 16 * y + 1);
+  CHECK(plane_of(tiles.with({tile}), 0) == PlaneValues{1, 2, 3, 17, 18, 19});
+  TiffOf inverse{.bits = 8, .photometric = 0};
+  CHECK(plane_of(inverse.with({inverse.counted(6)}), 0) ==
+        PlaneValues{254, 253, 252, 251, 250, 249});
+  TiffOf turned{.orientation = 6};
+  CHECK(plane_of(turned.with({turned.counted(6)}), 0) == PlaneValues{4, 1, 5, 2, 6, 3});
+}
+
+TEST_CASE("TIFF: colours that are multiplied by their alpha are divided by it") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  const TiffOf whole{.bits = 8, .samples = 2, .is_multiplied = true};
+  const Bytes bytes = whole.with({std::string("\x32\x64\xFF\xFF\0\0\x05\0\x80\x80\x40\x80", 12)});
+  CHECK(plane_of(bytes, 0) == PlaneValues{128, 255, 0, 5, 255, 128});  // 50 255 / 100 = 127.5
+  CHECK(plane_of(bytes, 1) == PlaneValues{100, 255, 0, 0, 128, 128});
+  const TiffOf light{.bits = 32, .samples = 2, .format = 3, .is_multiplied = true};
+  CHECK(plane_of(light.with({light.counted(12)}), 0) ==
+        PlaneValues{0.5f, 3.0f * 0.25f, 5.0f * (1.0f / 6.0f), 7.0f * 0.125f, 9.0f * (1.0f / 10.0f),
+                    11.0f * (1.0f / 12.0f)});
+}
+
+TEST_CASE("TIFF: black and white, of a bit a pixel") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  const TiffOf bits{.bits = 1};
+  CHECK(plane_of(bits.with({std::string("\xA0\x40", 2)}), 1) ==
+        PlaneValues{255, 0, 255, 0, 255, 0});
+}
+
+TEST_CASE("TIFF: what is cut short, of odd numbers or too large for its bytes is refused") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  const TiffOf tiff{};
+  Bytes bytes = tiff.with({tiff.counted(6)});
+  for (std::size_t size = 4; size < bytes.size(); ++size) {
+    CAPTURE(size);
+    CHECK(error_of(Bytes{bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)})
+              .find("the TIFF is damaged") != std::string::npos);
+  }
+  const TiffOf odd{.bits = 24, .format = 3};
+  CHECK(error_of(odd.with({std::string(18, 'x')})).find("floats would be right") !=
+        std::string::npos);
+}
+
+TEST_CASE("TIFF: what is written has a 16-bit PNG's numbers, with alpha and a profile") {
+  if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
+  Image image = make_image(Format::rgba16f, 5, 4);
+  for (int i = 0; i < 20; ++i) {
+    const auto light = static_cast<float>(i) / 20.0f;
+    store_texel(image, i % 5, i / 5, {light, light * light, 1.0f - light, 1.0f}, {});
+  }
+  std::vector<float> alpha(20, 0.75f);
+  const Bytes icc = linear_p3_profile();
+  const PictureFile file = open_picture_file(encode_tiff(image, alpha, icc), "a.tiff");
+  const PictureFile png = open_picture_file(encode_png_16(image, alpha), "a.png");
+  REQUIRE(file.planes.size() == 4);
+  for (std::size_t plane = 0; plane < 4; ++plane) {
+    CHECK(read_planes(file, {&plane, 1}, 0.0f)[0] == read_planes(png, {&plane, 1}, 0.0f)[0]);
+  }
+  CHECK(file.icc == icc);
 }

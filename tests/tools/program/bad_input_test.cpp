@@ -156,7 +156,7 @@ TEST_CASE("bad input: an output whose name has no format") {
   const TemporaryDirectory directory;
   for (const std::string name : {"out.jpg", "out", "png"}) {
     check_refused(directory, {"render", "figures", "-o", directory.file(name)}, 2,
-                  {"-o", name, ".png, .exr, .pfm, .hdr or .npy"});
+                  {"-o", name, ".png, .exr, .tiff, .pfm, .hdr or .npy"});
   }
 }
 
