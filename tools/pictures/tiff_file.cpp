@@ -301,7 +301,8 @@ void read_tiff(const PictureFile& file, std::span<const std::size_t> planes,
     TIFFSetField(tiff.get(), TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     if (TIFFReadRGBAImageOriented(tiff.get(), form.width, form.height, packed.data(),
                                   ORIENTATION_TOPLEFT, 1) != 1) {
-      refuse_tiff(memory, "its colours cannot be read");
+      throw FileError("libtiff does not make colours of the TIFF (" + memory.error +
+                      "); oiiotool IN -o OUT.png converts many more");
     }
     for (std::size_t i = 0; i < pixels; ++i) {
       for (std::size_t c = 0; c < 4; ++c) {
