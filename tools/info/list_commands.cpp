@@ -148,7 +148,8 @@ Command add_effects_command(CLI::App& program) {
 }
 
 Command add_profiles_command(CLI::App& program) {
-  CLI::App* parser = add_command(program, "profiles", "List the GPUs to agree with: name, summary");
+  CLI::App* parser =
+      add_command(program, "profiles", "List whose arithmetic can be repeated: name, summary");
   const auto json = add_json_flag(*parser);
   return {parser, [json] {
             std::vector<Row> rows;

@@ -119,11 +119,13 @@ void add_profile_option(CLI::App& parser, const std::string& help,
 }
 
 void add_profile_option(CLI::App& parser, Profile& profile, std::string& name) {
-  add_profile_option(parser, "GPU to agree with to the bit (default: " + name + ")",
-                     [&profile, &name](const ChosenProfile& chosen) {
-                       profile = chosen.profile;
-                       name = chosen.name;
-                     });
+  add_profile_option(
+      parser,
+      "Whose arithmetic to repeat to the bit: the standard's or a driver's (default: " + name + ")",
+      [&profile, &name](const ChosenProfile& chosen) {
+        profile = chosen.profile;
+        name = chosen.name;
+      });
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "tools/cli/errors.h"
 #include "tools/page/drawing.h"
 #include "tools/refocus/picture_with_depth.h"
+#include "tools/refocus/report.h"
 
 namespace softfocus {
 namespace {
@@ -96,20 +97,22 @@ Json reading_json(const OpenedPicture& opened, const BelievedEncoding& believed,
   const DepthEncoding* encoding = opened.options.reading.encoding != nullptr
                                       ? opened.options.reading.encoding
                                       : believed.encoding;
-  Json json{
-      {"width", opened.whole.drawn->picture().width},
-      {"height", opened.whole.drawn->picture().height},
-      {"depth_channel", plane.name},
-      {"type", name_of(plane.type)},
-      {"least", seen.least},
-      {"largest", seen.largest},
-      {"encoding", nullptr},
-      {"believed", nullptr},
-      {"why", believed.why},
-      {"lacks", opened.lacks},
-      {"filled_pixels", static_cast<std::int64_t>(opened.reading ? opened.reading->filled : 0)}};
+  Json json{{"width", opened.whole.drawn->picture().width},
+            {"height", opened.whole.drawn->picture().height},
+            {"depth_channel", plane.name},
+            {"type", name_of(plane.type)},
+            {"least", seen.least},
+            {"largest", seen.largest},
+            {"encoding", nullptr},
+            {"believed", nullptr},
+            {"why", believed.why},
+            {"lacks", opened.lacks},
+            {"line", nullptr}};
   if (encoding != nullptr) json["encoding"] = encoding->name;
   if (believed.encoding != nullptr) json["believed"] = believed.encoding->name;
+  if (opened.reading) {
+    json["line"] = depth_line(opened.options, opened.sources, *opened.reading, {});
+  }
   return json;
 }
 
@@ -187,6 +190,10 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
                 {"autofocus", true},
                 {"picture", reading_json(*picture, believed, seen)}};
   add_lens(made.reply["lens"], lens.lens, lens.coc_scale);
+  if (picture->reading) {
+    const std::string odd = odd_depth_warning(sources, *picture->reading);
+    if (!odd.empty()) made.reply["warnings"].push_back(odd);
+  }
   made.opened->picture = std::move(picture);
   return made;
 }

@@ -56,6 +56,15 @@ std::string holes_text(const ReadDepth& depth, Holes holes) {
   return depth.background == 0 ? filled : infinite + ", " + filled;
 }
 
+/// Whether a guess puts so much where few pictures have anything that it may be wrong.
+bool is_odd(const ReadDepth& depth) {
+  const DepthEnds& ends = depth.ends;
+  return depth.is_guess && ends.finite > 0 &&
+         2 * std::max(ends.beyond_100_m, ends.within_1_cm) >= ends.finite;
+}
+
+}  // namespace
+
 std::string depth_line(const RefocusOptions& options, const PictureSources& sources,
                        const ReadDepth& depth, const UsedRefocus& used) {
   std::string line = options.circles
@@ -81,14 +90,8 @@ std::string depth_line(const RefocusOptions& options, const PictureSources& sour
   return line;
 }
 
-/// Whether a guess puts so much where few pictures have anything that it may be wrong.
-bool is_odd(const ReadDepth& depth) {
-  const DepthEnds& ends = depth.ends;
-  return depth.is_guess && ends.finite > 0 &&
-         2 * std::max(ends.beyond_100_m, ends.within_1_cm) >= ends.finite;
-}
-
 std::string odd_depth_warning(const PictureSources& sources, const ReadDepth& depth) {
+  if (!is_odd(depth)) return {};
   const DepthEnds& ends = depth.ends;
   const bool is_far = ends.beyond_100_m >= ends.within_1_cm;
   return "'" + sources.of_depth().path.string() + "' is taken for " +
@@ -98,8 +101,6 @@ std::string odd_depth_warning(const PictureSources& sources, const ReadDepth& de
          "; give the --depth-encoding: midas or inverse if large numbers are near, millimetres, "
          "centimetres, metres with a --scale";
 }
-
-}  // namespace
 
 std::string_view name_of(DepthAlong along) { return along == DepthAlong::axis ? "axis" : "ray"; }
 
@@ -230,7 +231,9 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
                             ", and a lens's circles are a perspective's; --circles FILE takes "
                             "those of any camera");
   }
-  if (is_odd(depth)) made.warnings.push_back(odd_depth_warning(sources, depth));
+  if (std::string odd = odd_depth_warning(sources, depth); !odd.empty()) {
+    made.warnings.push_back(std::move(odd));
+  }
   if (options.show == RefocusShow::image && used.largest_circle_px >= kLargestMaxCoc) {
     made.warnings.push_back("circles of more than " +
                             std::to_string(static_cast<int>(kLargestMaxCoc)) +

@@ -16,6 +16,12 @@ struct Refocused {
   std::string report{}, json{};
 };
 
+/// What was believed of the depth, and how the colours are taken.
+std::string depth_line(const RefocusOptions& options, const PictureSources& sources,
+                       const ReadDepth& depth, const UsedRefocus& used);
+/// Empty unless a guess puts most of the picture where few pictures have anything.
+std::string odd_depth_warning(const PictureSources& sources, const ReadDepth& depth);
+
 std::string refocus_text(const RefocusOptions& options, const PictureSources& sources,
                          const ReadDepth& depth, const UsedRefocus& used);
 std::string refocus_json(const RefocusOptions& options, const PictureSources& sources,

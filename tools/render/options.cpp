@@ -111,12 +111,15 @@ void add_lens_and_method_options(CLI::App& parser, RenderOptions& options) {
 
 void add_run_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Run");
-  add_profile_option(parser, "GPU to agree with to the bit (default: " + options.profile_name + ")",
-                     [&options](const ChosenProfile& chosen) {
-                       options.profile = chosen.profile;
-                       options.profile_name = chosen.name;
-                       options.profile_file = chosen.file;
-                     });
+  add_profile_option(
+      parser,
+      "Whose arithmetic to repeat to the bit: the standard's or a driver's (default: " +
+          options.profile_name + ")",
+      [&options](const ChosenProfile& chosen) {
+        options.profile = chosen.profile;
+        options.profile_name = chosen.name;
+        options.profile_file = chosen.file;
+      });
   add_value(parser, "--gl", "DRIVER", "Render on this GL driver instead of the emulation",
             [&options](const std::string& text) { options.gl = &parse_driver("--gl", text); });
   offer(parser, "--gl", [] { return names_in(drivers()); });

@@ -132,7 +132,7 @@ TEST_CASE("a picture's file is the one that refocus writes") {
     CHECK(std::string{reinterpret_cast<const char*>(page.saved.data()), page.saved.size()} ==
           read_file(out));
   }
-  for (const std::string format : {"rgb24", "tiff", ""}) {
+  for (const std::string format : {"rgb24", "bmp", ""}) {
     CHECK(error_of(page, {{"do", "save"}, {"format", format}}) != "");
   }
 }
@@ -156,8 +156,24 @@ TEST_CASE("a depth that cannot be told is asked for, and the picture is there me
   CHECK(ask_well(page, open).at("picture").at("lacks").text().find("less than") !=
         std::string::npos);
   open["near_m"] = 0.5;
-  CHECK(ask_well(page, open).at("picture").at("lacks").text() == "");
+  about = ask_well(page, open).at("picture");
+  CHECK(about.at("lacks").text() == "");
+  CHECK(about.at("line").text().starts_with("the depth is white-near, 0."));
   CHECK(ask_well(page, {{"do", "frame"}}).find("focus_m") != nullptr);
+}
+
+TEST_CASE("a guess that puts the picture beyond 100 m warns, as refocus does") {
+  const TemporaryDirectory directory;
+  const std::string colour = directory.file("a.png"), depth = directory.file("d.pfm");
+  CHECK(run_program(render("figures", colour, {"--show", "pinhole"})).status == 0);
+  std::string far = "Pf\n48 32\n-1.0\n";
+  for (int i = 0; i < 48 * 32; ++i) far += std::string("\0\0\x7A\x43", 4);  // 250
+  write_file(depth, far);
+  Page page;
+  const Json reply = ask_well(page, {{"do", "open"}, {"picture", colour}, {"depth", depth}});
+  CHECK(reply.at("picture").at("line").text().starts_with("the depth is metres, 250 m"));
+  REQUIRE(reply.at("warnings").values().size() == 1);
+  CHECK(reply.at("warnings").at(std::size_t{0}).text().find("beyond 100 m") != std::string::npos);
 }
 
 TEST_CASE("a coarse picture has a part of its pixels, and of its circles") {

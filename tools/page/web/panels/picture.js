@@ -87,8 +87,7 @@ export function make_picture({ engine, encodings, change, stem }) {
     by_id("encoding-why").textContent = opened.lacks ||
         (state.encoding ? used?.summary : opened.why) || "";
     const range = `${opened.type}, ${opened.least} to ${opened.largest}`;
-    const filled = opened.filled_pixels ? `; ${opened.filled_pixels} pixels without a depth` : "";
-    by_id("depth-seen").textContent = `${range}${filled}`;
+    by_id("depth-seen").textContent = opened.line ? `${range}; ${opened.line}` : range;
     by_id("save-picture").disabled = Boolean(opened.lacks);
     const words = used ? words_of(used) : [];
     const there = [...numbers_part.querySelectorAll("input")].map(({ id }) => id.slice(9));
