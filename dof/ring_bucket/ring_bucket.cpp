@@ -31,7 +31,7 @@ struct CellRow {
 };
 
 // A row of a level from the level before.
-struct LevelRow {
+struct LevelledRow {
   const float* above;
   const float* here;
   const float* below;
@@ -112,17 +112,17 @@ void make_levels(const Planes& cells, bool near, const RingTaps& taps, TapLevels
                            std::clamp(row, 0, cells.height - 1)) +
                  margin;
         };
-        const LevelRow row{at(y - offset),
-                           at(y),
-                           at(y + offset),
-                           planes.plane,
-                           offset,
-                           level == 1,
-                           taps.least_size[static_cast<std::size_t>(level)],
-                           cells.width,
-                           taps.light.data(),
-                           to,
-                           planes.plane};
+        const LevelledRow row{at(y - offset),
+                              at(y),
+                              at(y + offset),
+                              planes.plane,
+                              offset,
+                              level == 1,
+                              taps.least_size[static_cast<std::size_t>(level)],
+                              cells.width,
+                              taps.light.data(),
+                              to,
+                              planes.plane};
         SOFTFOCUS_KERNEL(pool.isa(), level_row)(row, near);
       }
       for (int c = 0; c < count; ++c) {
@@ -240,7 +240,7 @@ SOFTFOCUS_INLINE Floats tent(const Floats* v, bool centre) {
 }
 
 template <bool near>
-SOFTFOCUS_INLINE void level_cells(const LevelRow& row) {
+SOFTFOCUS_INLINE void level_cells(const LevelledRow& row) {
   const float scale = row.centre ? 1.0f / 16.0f : 0.25f;
   for (int x = 0; x < row.count; x += kLanes) {
     const float* at[] = {row.above + x, row.here + x, row.below + x};
@@ -276,7 +276,7 @@ SOFTFOCUS_INLINE void level_cells(const LevelRow& row) {
 void light_row(const CellRow& row, bool near) {
   near ? light_cells<true>(row) : light_cells<false>(row);
 }
-void level_row(const LevelRow& row, bool near) {
+void level_row(const LevelledRow& row, bool near) {
   near ? level_cells<true>(row) : level_cells<false>(row);
 }
 
