@@ -12,6 +12,7 @@
 
 #include "raster/shaders/lower_spirv.h"
 #include "raster/shaders/shader_kernels.h"
+#include "raster/shaders/simplify_tree.h"
 
 namespace softfocus {
 
@@ -243,20 +244,31 @@ class Lowering {
     using enum Place::In;
     if (at.in == uniforms && is_known) return whole(uniforms_[place]);
     if (at.in == variables && is_known) return get(to, place);
-    ShaderInstruction* in = nullptr;
-    if (at.in == inputs) {
-      if (!is_known) refuse("inputs chosen by an index that is not constant are not supported");
-      in = &add(to, ShaderOp::input);
-      in->place = place;
-    } else {
-      in = &add(to, at.in == uniforms ? ShaderOp::load_constant : ShaderOp::load_indexed);
-      in->place = at.in == uniforms ? place + uniform_table() : place;
-      in->a = at.index;
-      in->count = at.count;
-      in->stride = at.stride;
+    if (at.in == inputs) return load_input(to, at, place);
+    ShaderInstruction& in =
+        add(to, at.in == uniforms ? ShaderOp::load_constant : ShaderOp::load_indexed);
+    in.place = at.in == uniforms ? place + uniform_table() : place;
+    in.a = at.index;
+    in.count = at.count;
+    in.stride = at.stride;
+    in.to = tree_.new_value();
+    return in.to;
+  }
+  /// By an index that is not known, all that it may mean are taken.
+  ShaderValue load_input(ShaderRegion& to, const Place& at, std::uint32_t place) {
+    const auto input = [&](std::uint32_t number) {
+      ShaderInstruction& in = add(to, ShaderOp::input);
+      in.place = number;
+      return in.to = tree_.new_value();
+    };
+    ShaderValue chosen = input(place);
+    if (at.index == kNoValue) return chosen;
+    const ShaderValue index = clamped(to, at.index, at.count);
+    for (std::uint32_t i = 1; i < at.count; ++i) {
+      const ShaderValue is = make(to, ShaderOp::equal_integers, index, whole(i));
+      chosen = make(to, ShaderOp::select, is, input(place + i * at.stride), chosen);
     }
-    in->to = tree_.new_value();
-    return in->to;
+    return chosen;
   }
   /// Where the uniforms lie among the tables.
   std::uint32_t uniform_table() {
@@ -581,7 +593,7 @@ class Lowering {
       go_on(w[2]);
     }
     if (in.op == SpirvOp::switch_) {
-      for (std::size_t i = 1; i < w.size(); i += i == 1 ? 2 : 2) go_on(w[i]);
+      for (std::size_t i = 1; i < w.size(); i += 2) go_on(w[i]);
     }
   }
 
@@ -612,12 +624,15 @@ class Lowering {
     }
     const std::uint32_t scope = tree_.scope_count++;
     targets_.push_back({block.merge, scope});
+    const std::map<SpirvId, ShaderVariable> outer = std::exchange(falls_, {});
     ShaderRegion body;
+    // Phis have what the switch hands them before a case falls into another, which has its own.
+    for (const SpirvId label : labels) hand_phis(call, block.label, label, body);
     for (const SpirvId label : in_order(call, labels, block.merge)) {
-      run_case(call, block, label, labels, chosen.at(label), scope, body);
+      run_case(call, label, labels, chosen.at(label), scope, body);
     }
     targets_.pop_back();
-    falls_.clear();
+    falls_ = outer;
     to.push_back(scope_node(scope, false, std::move(body)));
     return block.merge == natural || leave(block.merge, to) ? 0 : block.merge;
   }
@@ -652,9 +667,13 @@ class Lowering {
   std::map<SpirvId, ShaderVariable> falls_{};
 
   /// A case's body is a scope of its own, which is left to fall into the next.
-  void run_case(Call& call, const SpirvBlock& block, SpirvId label,
-                const std::vector<SpirvId>& labels, ShaderValue chosen, std::uint32_t scope,
-                ShaderRegion& to) {
+  void run_case(Call& call, SpirvId label, const std::vector<SpirvId>& labels, ShaderValue chosen,
+                std::uint32_t scope, ShaderRegion& to) {
+    const SpirvId merge = targets_.back().label;
+    if (ShaderRegion first; leave(label, first)) {  // a case that breaks or continues a loop
+      to.push_back(branch_node(chosen, std::move(first), {}));
+      return;
+    }
     const auto falls_in = falls_.find(label);
     if (falls_in != falls_.end()) {
       chosen = make(to, ShaderOp::bit_or, chosen, get(to, falls_in->second));
@@ -662,7 +681,7 @@ class Lowering {
     const std::uint32_t own = tree_.scope_count++;
     const std::size_t before = targets_.size();
     for (const SpirvId other : labels) {
-      if (other == label) continue;
+      if (other == label || other == merge) continue;
       const auto [at, is_new] = falls_.try_emplace(other, kNoValue);
       if (is_new) {
         at->second = new_variables(1);
@@ -672,11 +691,10 @@ class Lowering {
     }
     ShaderRegion body;
     if (falls_in != falls_.end()) set(body, falls_in->second, whole(0));
-    hand_phis(call, block.label, label, body);
-    walk(call, label, body, block.merge);
+    walk(call, label, body, merge);
     targets_.resize(before);
     // What ends naturally goes to the switch's end.
-    add_node(body, ShaderNodeKind::exit).scope = scope;
+    if (!always_leaves(body)) add_node(body, ShaderNodeKind::exit).scope = scope;
     ShaderRegion first;
     first.push_back(scope_node(own, false, std::move(body)));
     to.push_back(branch_node(chosen, std::move(first), {}));

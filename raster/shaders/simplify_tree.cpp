@@ -695,9 +695,11 @@ bool always_leaves(const ShaderRegion& region) {
   return last.kind == branch && always_leaves(*last.first) && always_leaves(*last.second);
 }
 
+void export_values(ShaderTree& tree) { Exports{tree}.run(); }
+
 void simplify(ShaderTree& tree) {
   settle_exits(tree.main, {}, 0);
-  Exports{tree}.run();
+  export_values(tree);
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     Forwarding{tree}.run();
