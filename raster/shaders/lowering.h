@@ -6,6 +6,7 @@
 #include <bit>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@ using Words = std::span<const std::uint32_t>;
 using Scalars = std::vector<ShaderValue>;
 
 inline constexpr std::size_t kMostNodes = std::size_t{1} << 20;
+inline constexpr std::size_t kMostWork = std::size_t{1} << 24;
 inline constexpr int kDeepestNodes = 200, kDeepestCalls = 64;
 
 inline bool is_uniform(SpirvStorage storage) {
@@ -91,7 +93,7 @@ class Lowering {
   std::vector<Target> targets_{};
   std::map<std::uint32_t, std::uint32_t> table_of_{};  ///< of uniforms from a number on
   std::map<SpirvId, std::uint32_t> constant_tables_{};
-  std::size_t nodes_ = 0;
+  std::size_t nodes_ = 0, work_ = 0;
   int depth_ = 0;
   std::uint32_t main_scope_ = 0;
   ShaderLine line_{};
@@ -139,6 +141,7 @@ class Lowering {
       }
       return;
     }
+    if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
     add_numbers(id, of, [&](int location, int component, int part) {
       tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear});
     });
@@ -186,6 +189,11 @@ class Lowering {
 
   // --- nodes ---
 
+  /// Counts what takes time or memory and makes no nodes.
+  void work(std::size_t amount) {
+    work_ += amount;
+    if (work_ > kMostWork) refuse("the shader is too long");
+  }
   ShaderNode& add_node(ShaderRegion& to, ShaderNodeKind kind) {
     if (++nodes_ > kMostNodes) {
       refuse("the shader is too long: more than " + std::to_string(kMostNodes) + " instructions");
@@ -251,6 +259,7 @@ class Lowering {
     in.a = at.index;
     in.count = at.count;
     in.stride = at.stride;
+    work(at.count);
     in.to = tree_.new_value();
     return in.to;
   }
@@ -296,6 +305,7 @@ class Lowering {
       in.b = values[i];
       in.count = at.count;
       in.stride = at.stride;
+      work(at.count);
     }
   }
 
@@ -348,10 +358,14 @@ class Lowering {
   // --- values and places of ids ---
 
   Scalars value(ShaderRegion&, Call& call, SpirvId id) {
-    if (const auto found = call.values.find(id); found != call.values.end()) return found->second;
+    if (const auto found = call.values.find(id); found != call.values.end()) {
+      work(found->second.size());
+      return found->second;
+    }
     if (const auto found = module_.constants.find(id); found != module_.constants.end()) {
       Scalars values;
       values.reserve(found->second.words.size());
+      work(found->second.words.size());
       for (const std::uint32_t word : found->second.words) values.push_back(whole(word));
       return values;
     }
@@ -386,6 +400,7 @@ class Lowering {
       call.places[variable.id] = at;
     }
     for (const SpirvBlock& block : call.function->blocks) {
+      work(block.instructions.size());
       for (const SpirvInstruction& in : block.instructions) {
         if (in.op != SpirvOp::phi) continue;
         call.phis[in.result] = new_variables(scalars(in.type));
@@ -413,9 +428,11 @@ class Lowering {
   void hand_phis(Call& call, SpirvId from, SpirvId label, ShaderRegion& to) {
     for (const SpirvInstruction& in : block_of(call, label).instructions) {
       if (in.op != SpirvOp::phi) break;
+      work(in.operands.size());
       for (std::size_t i = 0; i + 1 < in.operands.size(); i += 2) {
         if (in.operands[i + 1] != from) continue;
         const Scalars values = value(to, call, in.operands[i]);
+        if (values.size() != scalars(in.type)) damaged("a phi joins two types");
         for (std::uint32_t k = 0; k < values.size(); ++k) {
           set(to, call.phis.at(in.result) + k, values[k]);
         }
@@ -466,6 +483,7 @@ class Lowering {
     if (++depth_ > kDeepestNodes) refuse("the shader is nested too deeply");
     while (label != 0) {
       const SpirvBlock& block = block_of(call, label);
+      work(block.instructions.size());
       if (block.continues != 0) {
         loop(call, block, to);
         label = block.merge;
@@ -571,30 +589,35 @@ class Lowering {
 
   // --- switch ---
 
-  /// The labels that a case's blocks may go to, but for the switch's end.
-  void reach(const Call& call, SpirvId label, SpirvId merge, const std::vector<SpirvId>& cases,
-             std::vector<SpirvId>& seen, std::vector<SpirvId>& found) const {
-    if (label == merge || std::find(seen.begin(), seen.end(), label) != seen.end()) return;
-    if (target_of(label) != nullptr) return;
-    seen.push_back(label);
-    const SpirvBlock& block = block_of(call, label);
-    const auto go_on = [&](SpirvId next) {
-      if (std::find(cases.begin(), cases.end(), next) != cases.end()) {
-        if (std::find(found.begin(), found.end(), next) == found.end()) found.push_back(next);
-      } else {
-        reach(call, next, merge, cases, seen, found);
+  /// The cases that a case's blocks may go to.
+  std::set<SpirvId> reach(const Call& call, SpirvId begin, SpirvId merge,
+                          const std::vector<SpirvId>& cases) {
+    std::set<SpirvId> seen{begin}, found;
+    std::vector<SpirvId> next{begin};
+    while (!next.empty()) {
+      const SpirvId label = next.back();
+      next.pop_back();
+      if (label == merge || target_of(label) != nullptr) continue;
+      const SpirvInstruction& in = block_of(call, label).instructions.back();
+      const auto go_on = [&](SpirvId to) {
+        work(cases.size());
+        if (std::find(cases.begin(), cases.end(), to) != cases.end()) {
+          found.insert(to);
+        } else if (seen.insert(to).second) {
+          next.push_back(to);
+        }
+      };
+      const Words& w = in.operands;
+      if (in.op == SpirvOp::branch) go_on(w[0]);
+      if (in.op == SpirvOp::branch_conditional) {
+        go_on(w[1]);
+        go_on(w[2]);
       }
-    };
-    const SpirvInstruction& in = block.instructions.back();
-    const Words& w = in.operands;
-    if (in.op == SpirvOp::branch) go_on(w[0]);
-    if (in.op == SpirvOp::branch_conditional) {
-      go_on(w[1]);
-      go_on(w[2]);
+      if (in.op == SpirvOp::switch_) {
+        for (std::size_t i = 1; i < w.size(); i += 2) go_on(w[i]);
+      }
     }
-    if (in.op == SpirvOp::switch_) {
-      for (std::size_t i = 1; i < w.size(); i += 2) go_on(w[i]);
-    }
+    return found;
   }
 
   SpirvId run_switch(Call& call, const SpirvBlock& block, ShaderRegion& to, SpirvId natural) {
@@ -639,22 +662,19 @@ class Lowering {
 
   /// A case before the one that it falls into.
   std::vector<SpirvId> in_order(const Call& call, const std::vector<SpirvId>& labels,
-                                SpirvId merge) const {
+                                SpirvId merge) {
     std::vector<SpirvId> order;
-    std::map<SpirvId, std::vector<SpirvId>> falls;
+    std::map<SpirvId, std::set<SpirvId>> falls;
     for (const SpirvId label : labels) {
-      if (label == merge) continue;
-      std::vector<SpirvId> seen, found;
-      reach(call, label, merge, labels, seen, found);
-      falls[label] = found;
+      if (label != merge) falls[label] = reach(call, label, merge, labels);
     }
     std::vector<SpirvId> left = labels;
     left.erase(std::remove(left.begin(), left.end(), merge), left.end());
     while (!left.empty()) {
       const auto next = std::find_if(left.begin(), left.end(), [&](SpirvId label) {
         return std::none_of(left.begin(), left.end(), [&](SpirvId other) {
-          const auto& into = falls[other];
-          return other != label && std::find(into.begin(), into.end(), label) != into.end();
+          work(1);
+          return other != label && falls[other].contains(label);
         });
       });
       if (next == left.end()) refuse("control flow is not structured: cases fall in a circle");
@@ -680,6 +700,7 @@ class Lowering {
     }
     const std::uint32_t own = tree_.scope_count++;
     const std::size_t before = targets_.size();
+    work(labels.size());
     for (const SpirvId other : labels) {
       if (other == label || other == merge) continue;
       const auto [at, is_new] = falls_.try_emplace(other, kNoValue);

@@ -122,6 +122,7 @@ class Reader {
   SpirvFunction* function_ = nullptr;
   SpirvBlock* block_ = nullptr;
   ShaderLine line_{};
+  std::size_t constant_scalars_ = 0, members_ = 0;
 
   [[noreturn]] void refuse(const std::string& why) const {
     throw ShaderError(place_of(module_, line_) + why);
@@ -176,7 +177,7 @@ class Reader {
       line_ = {};
     } else if (function_ != nullptr) {
       take_in_function(in);
-    } else if (!take_type(in) && !take_constant(in)) {
+    } else if (!take_type(in) && (in.type == 0 || !take_constant(in))) {
       take_other(in);
     }
   }
@@ -186,6 +187,14 @@ class Reader {
     type.kind = kind;
     type.scalars = scalars;
     return type;
+  }
+
+  /// Checks what an array or structure consists of.
+  void nest(SpirvType& outer, SpirvId inner) const {
+    const SpirvType& of = module_.type(inner);
+    if (of.scalars == 0) damaged("an array or structure consists of what holds no numbers");
+    outer.depth = std::max(outer.depth, of.depth + 1);
+    if (outer.depth > kDeepestTypes) refuse("structures are nested too deeply");
   }
 
   std::uint32_t checked_scalars(std::uint64_t count) const {
@@ -255,6 +264,7 @@ class Reader {
             in, array, checked_scalars(std::uint64_t{count.words[0]} * scalars_of(element)));
         type.element = element;
         type.count = count.words[0];
+        nest(type, element);
         return true;
       }
       case type_runtime_array: refuse("arrays without a length, of buffers, are not supported");
@@ -265,7 +275,9 @@ class Reader {
           members.push_back(known_type(w, i));
           sum += scalars_of(members.back());
         }
-        add_type(in, structure, checked_scalars(sum)).members = std::move(members);
+        SpirvType& type = add_type(in, structure, checked_scalars(sum));
+        type.members = std::move(members);
+        for (const SpirvId member : type.members) nest(type, member);
         return true;
       }
       case type_pointer: {
@@ -292,6 +304,8 @@ class Reader {
   bool take_constant(const SpirvInstruction& in) {
     const auto is_kind = [&](SpirvKind kind) { return module_.type(in.type).kind == kind; };
     std::vector<std::uint32_t> words;
+    constant_scalars_ += scalars_of(in.type);
+    if (constant_scalars_ > kMostConstantScalars) refuse("constants have too many numbers");
     switch (in.op) {
       case constant_true:
       case spec_constant_true:
@@ -387,16 +401,20 @@ class Reader {
     return module_.decorations[id];
   }
   SpirvDecorations& member(Words w) {
-    constexpr std::uint32_t kMostMembers = 4096;
+    constexpr std::size_t kMostMembers = kMostScalars;
     SpirvDecorations& of = decorations(w);
     const std::uint32_t number = word(w, 1);
     if (number >= kMostMembers) damaged("a structure has too many members");
-    if (of.members.size() <= number) of.members.resize(number + 1);
+    if (of.members.size() <= number) {
+      members_ += number + 1 - of.members.size();
+      if (members_ > kMostMembers) damaged("structures have too many members");
+      of.members.resize(number + 1);
+    }
     return of.members[number];
   }
 
   static void add_decoration(SpirvDecorations& to, Words w) {
-    const auto number = [&] { return static_cast<int>(std::min(word(w, 1), 0x7FFFFFFFu)); };
+    const auto number = [&] { return static_cast<int>(std::min(word(w, 1), kMostScalars)); };
     switch (static_cast<SpirvDecoration>(word(w, 0))) {
       using enum SpirvDecoration;
       case spec_id: to.constant = number(); break;
@@ -461,10 +479,7 @@ class Reader {
         function_ = nullptr;
         return;
       case nop: return;
-      case undefined:
-        module_.constants[in.result] = {in.type,
-                                        std::vector<std::uint32_t>(scalars_of(in.type), 0)};
-        return;
+      case undefined: take_constant(in); return;
       default: break;
     }
     if (block_ == nullptr) damaged("an instruction stands outside of a block");
@@ -497,6 +512,7 @@ class Reader {
       if (block.continues != 0) check_label(block.continues);
       const SpirvInstruction& last = block.instructions.back();
       const Words& w = last.operands;
+      if (last.op == return_value) word(w, 0);
       if (last.op == branch) check_label(word(w, 0));
       if (last.op == branch_conditional) {
         check_label(word(w, 1));

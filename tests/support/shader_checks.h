@@ -1,20 +1,28 @@
-#include "tests/raster/shaders/shader_checks.h"
+#pragma once
+// A shader over lanes, in every way that lanes run, against the oracle's pixels.
 
 #include <array>
 #include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "raster/images/texel.h"
 #include "raster/shaders/shader.h"
 #include "raster/shaders/simplify_tree.h"
-#include "tests/raster/shaders/spirv_oracle.h"
 #include "tests/support/random.h"
+#include "tests/support/spirv_oracle.h"
 
 namespace softfocus::test {
-namespace {
 
-constexpr glm::vec4 kBefore{-7.0f, 2.0f, 0.0f, 1.0f};  ///< what killed pixels keep
+struct CheckResult {
+  bool is_stopped = false;   ///< the oracle ran too many blocks: nothing is compared
+  std::string difference{};  ///< the first, in words; empty if all bits are equal
+};
 
-Texture random_texture(Format format, int size, Random& random) {
+inline constexpr glm::vec4 kBeforeShader{-7.0f, 2.0f, 0.0f, 1.0f};  ///< what killed pixels keep
+
+inline Texture random_texture(Format format, int size, Random& random) {
   Image image = make_image(format, size, size);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -26,7 +34,7 @@ Texture random_texture(Format format, int size, Random& random) {
 }
 
 /// Small numbers, of a uniform's kind.
-std::vector<std::uint32_t> random_uniforms(const ShaderUniforms& uniforms, Random& random) {
+inline std::vector<std::uint32_t> random_uniforms(const ShaderUniforms& uniforms, Random& random) {
   std::vector<std::uint32_t> words = uniforms.words;
   for (const ShaderUniform& uniform : uniforms.all) {
     for (std::uint32_t i = uniform.first; i < uniform.first + uniform.words; ++i) {
@@ -48,8 +56,8 @@ struct Expected {
   bool is_stopped = false;
 };
 
-Expected expected_picture(const SpirvModule& module, OracleSettings& settings, int width,
-                          int height) {
+inline Expected expected_picture(const SpirvModule& module, OracleSettings& settings, int width,
+                                 int height) {
   Expected made{make_image(Format::rgba32f, width, height)};
   for (int y = 0; y < height && !made.is_stopped; ++y) {
     for (int x = 0; x < width && !made.is_stopped; ++x) {
@@ -62,7 +70,7 @@ Expected expected_picture(const SpirvModule& module, OracleSettings& settings, i
       };
       const OracleResult result = run_oracle(module, settings);
       made.is_stopped = result.is_stopped;
-      glm::vec4 texel = kBefore;
+      glm::vec4 texel = kBeforeShader;
       for (int i = 0; i < 4 && !result.is_killed; ++i) {
         texel[i] = std::bit_cast<float>(result.outputs[0][static_cast<std::size_t>(i)]);
       }
@@ -73,7 +81,7 @@ Expected expected_picture(const SpirvModule& module, OracleSettings& settings, i
 }
 
 /// "pixel 3, 1: 0.5 0.25 0 1, oracle: ...", or nothing.
-std::string first_difference(const Image& found, const Image& expected) {
+inline std::string first_difference(const Image& found, const Image& expected) {
   for (int y = 0; y < found.height; ++y) {
     for (int x = 0; x < found.width; ++x) {
       const glm::vec4 a = load_texel(found, x, y), b = load_texel(expected, x, y);
@@ -91,9 +99,9 @@ std::string first_difference(const Image& found, const Image& expected) {
   return {};
 }
 
-}  // namespace
-
-CheckResult check_shader(const std::vector<std::uint32_t>& words, std::uint64_t seed) {
+/// Compares a fragment shader's output 0: all vector units, several widths, sizes and numbers of
+/// threads, simplified or not. Uniforms and textures are chosen by `seed`. Throws ShaderError.
+inline CheckResult check_shader(const std::vector<std::uint32_t>& words, std::uint64_t seed) {
   Random random{seed};
   const Shader shader = make_shader(words);
   const std::vector<std::uint32_t> uniforms = random_uniforms(shader.uniforms, random);
@@ -118,13 +126,11 @@ CheckResult check_shader(const std::vector<std::uint32_t>& words, std::uint64_t 
           for (const int lanes : {32, 64, 128, 256}) {
             if (threads == 3 && lanes == 64) continue;
             Image found = make_image(Format::rgba32f, width, height);
-            clear_image(found, kBefore, {});
+            clear_image(found, kBeforeShader, {});
             const ImageView view = found;
             const std::array<PassVarying, 1> varyings{{{PassVarying::Is::u, 0, 0, 0.0f}}};
-            const ShaderPass pass{.textures = textures,
-                                  .targets = {&view, 1},
-                                  .varyings = varyings,
-                                  .lanes = lanes};
+            const ShaderPass pass{
+                .textures = textures, .targets = {&view, 1}, .varyings = varyings, .lanes = lanes};
             run_shader(is_plain ? plain : simplified, pass, pool);
             const std::string difference = first_difference(found, expected.image);
             if (difference.empty()) continue;
@@ -139,6 +145,21 @@ CheckResult check_shader(const std::vector<std::uint32_t>& words, std::uint64_t 
     }
   }
   return {};
+}
+
+/// Compiles and runs any words over a few pixels. Throws ShaderError.
+inline void run_any_shader(std::vector<std::uint32_t> words, Isa isa) {
+  const Shader shader = make_shader(std::move(words));
+  const ShaderProgram program = compile_shader(shader, shader.uniforms.words);
+  Random random;
+  const Texture texture = random_texture(Format::rgba16f, 4, random);
+  const std::vector<ShaderTexture> textures(std::min(shader.uniforms.texture_count, 4u),
+                                            {&texture, {}});
+  Image found = make_image(Format::rgba16f, 5, 3);
+  const ImageView view = found;
+  ThreadPool pool{1, isa};
+  run_shader(program, {.textures = textures, .targets = {&view, 1}, .budget = 500, .lanes = 32},
+             pool);
 }
 
 }  // namespace softfocus::test

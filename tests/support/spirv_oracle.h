@@ -1,17 +1,41 @@
-#include "tests/raster/shaders/spirv_oracle.h"
+#pragma once
+// SPIR-V for one pixel, as the specification reads: blocks one after the other, memory as numbers,
+// calls that call. No masks, no inlining, nothing known beforehand. Only the arithmetic of single
+// numbers is the shaders' own (fold_shader_op).
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "raster/images/texel.h"
 #include "raster/shaders/shader_kernels.h"
+#include "raster/shaders/shader_lanes.h"
+#include "raster/shaders/spirv_module.h"
 
 namespace softfocus::test {
-namespace {
+
+struct OracleSettings {
+  std::span<const std::uint32_t> uniforms{};  ///< as ShaderUniforms::words
+  std::span<const ShaderTexture> textures{};
+  Profile profile{};
+  /// The bits of a number of an input: its decorations, and which number of it.
+  std::function<std::uint32_t(const SpirvDecorations&, std::uint32_t)> input{};
+  std::uint64_t most_blocks = 20000;  ///< that a pixel may run
+};
+
+struct OracleResult {
+  bool is_killed = false, is_stopped = false;             ///< stopped: it ran too many blocks
+  std::array<std::array<std::uint32_t, 4>, 8> outputs{};  ///< by location
+};
+
+namespace spirv {
 
 using Numbers = std::vector<std::uint32_t>;
 using Words = std::span<const std::uint32_t>;
@@ -33,9 +57,9 @@ struct Frame {
   std::deque<Numbers> memory{};
 };
 
-std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
+inline std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
 
-std::uint32_t fold(ShaderOp op, std::uint32_t a, std::uint32_t b = 0, std::uint32_t c = 0) {
+inline std::uint32_t fold(ShaderOp op, std::uint32_t a, std::uint32_t b = 0, std::uint32_t c = 0) {
   return fold_shader_op(op, a, b, c);
 }
 
@@ -45,7 +69,7 @@ struct Each {
   bool swaps = false, turns = false;
 };
 
-const std::map<SpirvOp, Each>& each_number() {
+inline const std::map<SpirvOp, Each>& each_number() {
   using enum SpirvOp;
   static const std::map<SpirvOp, Each> kAll{
       {convert_float_to_unsigned, {To::to_unsigned}},
@@ -109,7 +133,7 @@ const std::map<SpirvOp, Each>& each_number() {
   return kAll;
 }
 
-const std::map<GlslOp, ShaderOp>& each_of_glsl() {
+inline const std::map<GlslOp, ShaderOp>& each_of_glsl() {
   using enum GlslOp;
   static const std::map<GlslOp, ShaderOp> kAll{
       {round, To::round_even},
@@ -151,21 +175,21 @@ const std::map<GlslOp, ShaderOp>& each_of_glsl() {
   return kAll;
 }
 
-std::uint32_t plus(std::uint32_t a, std::uint32_t b) { return fold(To::add, a, b); }
-std::uint32_t minus(std::uint32_t a, std::uint32_t b) { return fold(To::subtract, a, b); }
-std::uint32_t times(std::uint32_t a, std::uint32_t b) { return fold(To::multiply, a, b); }
-std::uint32_t less(std::uint32_t a, std::uint32_t b) { return fold(To::less, a, b); }
-std::uint32_t clamped(std::uint32_t x, std::uint32_t low, std::uint32_t high) {
+inline std::uint32_t plus(std::uint32_t a, std::uint32_t b) { return fold(To::add, a, b); }
+inline std::uint32_t minus(std::uint32_t a, std::uint32_t b) { return fold(To::subtract, a, b); }
+inline std::uint32_t times(std::uint32_t a, std::uint32_t b) { return fold(To::multiply, a, b); }
+inline std::uint32_t less(std::uint32_t a, std::uint32_t b) { return fold(To::less, a, b); }
+inline std::uint32_t clamped(std::uint32_t x, std::uint32_t low, std::uint32_t high) {
   return fold(To::minimum, fold(To::maximum, x, low), high);
 }
 
-std::uint32_t dot(Words a, Words b) {
+inline std::uint32_t dot(Words a, Words b) {
   std::uint32_t sum = times(a[0], b[0]);
   for (std::size_t i = 1; i < a.size(); ++i) sum = plus(sum, times(a[i], b[i]));
   return sum;
 }
 
-Numbers minor_of(const Numbers& m, std::size_t n, std::size_t column, std::size_t row) {
+inline Numbers minor_of(const Numbers& m, std::size_t n, std::size_t column, std::size_t row) {
   Numbers made;
   for (std::size_t c = 0; c < n; ++c) {
     for (std::size_t r = 0; r < n; ++r) {
@@ -174,7 +198,7 @@ Numbers minor_of(const Numbers& m, std::size_t n, std::size_t column, std::size_
   }
   return made;
 }
-std::uint32_t determinant(const Numbers& m, std::size_t n) {
+inline std::uint32_t determinant(const Numbers& m, std::size_t n) {
   if (n == 1) return m[0];
   std::uint32_t sum = 0;
   for (std::size_t row = 0; row < n; ++row) {
@@ -457,7 +481,7 @@ class Oracle {
         for (std::uint32_t& x : numbers) x = times(x, of(1)[0]);
         return numbers;
       }
-      case SpirvOp::dot: return {test::dot(of(0), of(1))};
+      case SpirvOp::dot: return {spirv::dot(of(0), of(1))};
       case transpose: return transposed(of(0), rows_of(w[0]));
       case outer_product: {
         Numbers numbers;
@@ -470,7 +494,7 @@ class Oracle {
         Numbers numbers;
         const std::size_t rows = of(0).size();
         for (std::size_t at = 0; at < of(1).size(); at += rows) {
-          numbers.push_back(test::dot(of(0), Words{of(1)}.subspan(at, rows)));
+          numbers.push_back(spirv::dot(of(0), Words{of(1)}.subspan(at, rows)));
         }
         return numbers;
       }
@@ -481,8 +505,8 @@ class Oracle {
         Numbers numbers;
         for (std::size_t at = 0; at < of(1).size(); at += inner) {
           for (std::size_t row = 0; row < rows; ++row) {
-            numbers.push_back(test::dot(Words{turned}.subspan(row * inner, inner),
-                                        Words{of(1)}.subspan(at, inner)));
+            numbers.push_back(spirv::dot(Words{turned}.subspan(row * inner, inner),
+                                         Words{of(1)}.subspan(at, inner)));
           }
         }
         return numbers;
@@ -514,9 +538,9 @@ class Oracle {
       case bit_field_u_extract: {
         Numbers numbers = of(0);
         for (std::uint32_t& x : numbers) {
-          x = fold(in.op == bit_field_s_extract ? To::extract_bits_signed
-                                                : To::extract_bits_unsigned,
-                   x, of(1)[0], of(2)[0]);
+          x = fold(
+              in.op == bit_field_s_extract ? To::extract_bits_signed : To::extract_bits_unsigned, x,
+              of(1)[0], of(2)[0]);
         }
         return numbers;
       }
@@ -526,8 +550,7 @@ class Oracle {
         const std::uint32_t ones = fold(To::extract_bits_unsigned, ~0u, 0, count);
         const std::uint32_t field = fold(To::shift_left, ones, first);
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-          numbers[i] =
-              (numbers[i] & ~field) | (fold(To::shift_left, of(1)[i], first) & field);
+          numbers[i] = (numbers[i] & ~field) | (fold(To::shift_left, of(1)[i], first) & field);
         }
         return numbers;
       }
@@ -539,8 +562,9 @@ class Oracle {
         const Image& level = settings_.textures[of(0)[0]].texture->levels.front();
         return {static_cast<std::uint32_t>(level.width), static_cast<std::uint32_t>(level.height)};
       }
-      default: throw ShaderError("the oracle has no instruction " +
-                                 std::to_string(static_cast<int>(in.op)));
+      default:
+        throw ShaderError("the oracle has no instruction " +
+                          std::to_string(static_cast<int>(in.op)));
     }
   }
 
@@ -562,8 +586,8 @@ class Oracle {
         at[1] >= static_cast<std::uint32_t>(image.height)) {
       return {0, 0, 0, 0};
     }
-    const glm::vec4 texel = fetch_texel(image, static_cast<int>(at[0]), static_cast<int>(at[1]),
-                                        settings_.profile);
+    const glm::vec4 texel =
+        fetch_texel(image, static_cast<int>(at[0]), static_cast<int>(at[1]), settings_.profile);
     return {bits_of(texel.x), bits_of(texel.y), bits_of(texel.z), bits_of(texel.w)};
   }
 
@@ -594,13 +618,11 @@ class Oracle {
         case signed_clamp:
           x = fold(To::minimum_signed, fold(To::maximum_signed, x, of(1)[i]), of(2)[i]);
           break;
-        case float_mix:
-          x = plus(times(x, minus(one, of(2)[i])), times(of(1)[i], of(2)[i]));
-          break;
+        case float_mix: x = plus(times(x, minus(one, of(2)[i])), times(of(1)[i], of(2)[i])); break;
         case step: x = less(of(1)[i], x) != 0 ? zero : one; break;
         case smooth_step: {
-          const std::uint32_t t = clamped(
-              fold(To::divide, minus(of(2)[i], x), minus(of(1)[i], x)), zero, one);
+          const std::uint32_t t =
+              clamped(fold(To::divide, minus(of(2)[i], x), minus(of(1)[i], x)), zero, one);
           x = times(times(t, t), minus(bits_of(3.0f), times(two, t)));
           break;
         }
@@ -625,13 +647,13 @@ class Oracle {
         }
         return first;
       }
-      case length: return {fold(To::square_root, test::dot(of(0), of(0)))};
+      case length: return {fold(To::square_root, spirv::dot(of(0), of(0)))};
       case distance: {
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = minus(of(0)[i], of(1)[i]);
-        return {fold(To::square_root, test::dot(numbers, numbers))};
+        return {fold(To::square_root, spirv::dot(numbers, numbers))};
       }
       case normalize: {
-        const std::uint32_t scale = fold(To::inverse_square_root, test::dot(of(0), of(0)));
+        const std::uint32_t scale = fold(To::inverse_square_root, spirv::dot(of(0), of(0)));
         for (std::uint32_t& x : numbers) x = times(x, scale);
         return numbers;
       }
@@ -642,37 +664,36 @@ class Oracle {
                 minus(times(a[0], b[1]), times(a[1], b[0]))};
       }
       case face_forward: {
-        const bool keeps = less(test::dot(of(2), of(1)), zero) != 0;
+        const bool keeps = less(spirv::dot(of(2), of(1)), zero) != 0;
         for (std::uint32_t& x : numbers) x = keeps ? x : fold(To::negate, x);
         return numbers;
       }
       case reflect: {
-        const std::uint32_t twice = times(two, test::dot(of(1), of(0)));
+        const std::uint32_t twice = times(two, spirv::dot(of(1), of(0)));
         for (std::size_t i = 0; i < numbers.size(); ++i) {
           numbers[i] = minus(numbers[i], times(twice, of(1)[i]));
         }
         return numbers;
       }
       case refract: {
-        const std::uint32_t eta = of(2)[0], cosine = test::dot(of(1), of(0));
+        const std::uint32_t eta = of(2)[0], cosine = spirv::dot(of(1), of(0));
         const std::uint32_t k =
             minus(one, times(times(eta, eta), minus(one, times(cosine, cosine))));
         const std::uint32_t along = plus(times(eta, cosine), fold(To::square_root, k));
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-          numbers[i] = less(k, zero) != 0
-                           ? zero
-                           : minus(times(eta, numbers[i]), times(along, of(1)[i]));
+          numbers[i] =
+              less(k, zero) != 0 ? zero : minus(times(eta, numbers[i]), times(along, of(1)[i]));
         }
         return numbers;
       }
-      case GlslOp::determinant: return {test::determinant(numbers, rows_of(w[0]))};
+      case GlslOp::determinant: return {spirv::determinant(numbers, rows_of(w[0]))};
       case matrix_inverse: {
         const std::size_t n = rows_of(w[0]);
-        const std::uint32_t all = test::determinant(numbers, n);
+        const std::uint32_t all = spirv::determinant(numbers, n);
         Numbers inverse;
         for (std::size_t column = 0; column < n; ++column) {
           for (std::size_t row = 0; row < n; ++row) {
-            std::uint32_t minor = test::determinant(minor_of(numbers, n, row, column), n - 1);
+            std::uint32_t minor = spirv::determinant(minor_of(numbers, n, row, column), n - 1);
             if ((column + row) % 2 == 1) minor = fold(To::negate, minor);
             inverse.push_back(fold(To::divide, minor, all));
           }
@@ -688,10 +709,11 @@ class Oracle {
   }
 };
 
-}  // namespace
+}  // namespace spirv
 
-OracleResult run_oracle(const SpirvModule& module, const OracleSettings& settings) {
-  return Oracle{module, settings}.run();
+/// Needs a valid module of a fragment shader without derivatives.
+inline OracleResult run_oracle(const SpirvModule& module, const OracleSettings& settings) {
+  return spirv::Oracle{module, settings}.run();
 }
 
 }  // namespace softfocus::test
