@@ -5,6 +5,7 @@
 #include <queue>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "raster/shaders/shader_program.h"
@@ -21,6 +22,7 @@ using enum ShaderNodeKind;
 /// others. Found again and again until nothing is added.
 struct Varying {
   std::vector<bool> values, variables, scopes;
+  std::unordered_set<const ShaderNode*> exits{};  ///< which only some pixels may take at a time
   bool grew = false;
 
   explicit Varying(const ShaderTree& tree)
@@ -37,6 +39,8 @@ struct Varying {
     } while (grew && ++times < kMostTimes);
     if (!grew) return;
     for (std::vector<bool>* all : {&values, &variables, &scopes}) all->assign(all->size(), true);
+    std::vector<std::uint32_t> left;
+    run(tree, tree.main, true, left);
   }
 
   void mark_indexed(const ShaderRegion& region) {
@@ -115,6 +119,7 @@ struct Varying {
         }
         case ShaderNodeKind::exit:
           if (apart) {
+            exits.insert(&node);
             mark(scopes, node.scope);
             left.push_back(node.scope);
           }
@@ -336,7 +341,7 @@ class Emitter {
   }
 
   void run_exit(const ShaderNode& node, ShaderRegister mask) {
-    if (!varying_.scopes[node.scope]) {
+    if (!varying_.exits.contains(&node)) {  // by all lanes that run
       for (Scope& of : scopes_) {
         if (of.number != node.scope) continue;
         of.jumps.push_back(here());

@@ -401,6 +401,9 @@ class RandomSpirv {
     }
     know(kInt, counter);
     for (int i = random_.whole(0, 3); i > 0; --i) chance(80) ? compute() : remember();
+    for (int i = random_.whole(0, 2); i > 0; --i) {  // of all pixels at once
+      know(kBool, made(SpirvOp::integer_equal, type_[kBool], {counter, some(kInt, constants_)}));
+    }
     Id most = constants_[kInt][static_cast<std::size_t>(random_.whole(1, 3))];
     if (chance(50)) {
       most = made(SpirvOp::bitwise_and, type_[kInt], {some(kInt), constants_[kInt][3]});
@@ -517,10 +520,22 @@ class RandomSpirv {
     returns_ = std::nullopt;
     begin(id());
     begin_locals();
+    // Where few values differ between pixels, many do not: counters of loops, and what they make.
+    const bool has_few = chance(50);
     const Id at = made(SpirvOp::load, vector_, {coordinates_});
+    std::array<Id, 2> whole{};
     for (const std::uint32_t axis : {0u, 1u}) {
-      know(kFloat, made(SpirvOp::composite_extract, type_[kFloat], {at, axis}));
-      know(kInt, made(SpirvOp::convert_float_to_signed, type_[kInt], {known_[kFloat].back()}));
+      const Id x = made(SpirvOp::composite_extract, type_[kFloat], {at, axis});
+      whole[axis] = made(SpirvOp::convert_float_to_signed, type_[kInt], {x});
+      if (has_few) continue;
+      know(kFloat, x);
+      know(kInt, whole[axis]);
+    }
+    for (const std::size_t most : {3u, 4u, 6u}) {
+      if (has_few) {
+        know(kBool, made(SpirvOp::signed_less_than, type_[kBool],
+                         {whole[0], constants_[kInt][most]}));
+      }
     }
     left_ = random_.whole(10, 80);
     statements(4, 16);
