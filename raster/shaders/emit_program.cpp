@@ -607,7 +607,21 @@ class Sharing {
   }
 
   void find_live() {
-    const std::size_t words = (program_.varying_count + 63) / 64;
+    // Few are read in a block that does not make them before: only these are live from block to
+    // block, and have bits.
+    std::vector<std::uint32_t> bit_of(program_.varying_count, kNever), made_in(bit_of),
+        number_of_bit;
+    for (std::uint32_t b = 0; b < blocks_.size(); ++b) {
+      for (std::uint32_t i = blocks_[b].first; i < blocks_[b].end; ++i) {
+        for_each_read(program_.steps[i], [&](std::uint32_t of) {
+          if (made_in[of] == b || bit_of[of] != kNever) return;
+          bit_of[of] = static_cast<std::uint32_t>(number_of_bit.size());
+          number_of_bit.push_back(of);
+        });
+        for_each_made(program_.steps[i], [&](std::uint32_t of) { made_in[of] = b; });
+      }
+    }
+    const std::size_t words = (number_of_bit.size() + 63) / 64;
     constexpr std::size_t kMostWords = std::size_t{1} << 24;
     if (words * blocks_.size() > kMostWords) {
       throw ShaderError("the shader is too long: it has " + std::to_string(blocks_.size()) +
@@ -621,9 +635,11 @@ class Sharing {
       for (std::uint32_t i = block.first; i < block.end; ++i) {
         const ShaderStep& step = program_.steps[i];
         for_each_read(step, [&](std::uint32_t of) {
-          if (!has(block.makes, of)) put(block.uses, of);
+          if (bit_of[of] != kNever && !has(block.makes, bit_of[of])) put(block.uses, bit_of[of]);
         });
-        for_each_made(step, [&](std::uint32_t of) { put(block.makes, of); });
+        for_each_made(step, [&](std::uint32_t of) {
+          if (bit_of[of] != kNever) put(block.makes, bit_of[of]);
+        });
       }
     }
     bool grew = true;
@@ -642,8 +658,8 @@ class Sharing {
       }
     }
     for (const Block& block : blocks_) {
-      for_each_in(block.in, [&](std::uint32_t of) { touch(of, 2 * block.first); });
-      for_each_in(block.out, [&](std::uint32_t of) { touch(of, 2 * block.end); });
+      for_each_in(block.in, [&](std::uint32_t bit) { touch(number_of_bit[bit], 2 * block.first); });
+      for_each_in(block.out, [&](std::uint32_t bit) { touch(number_of_bit[bit], 2 * block.end); });
       for (std::uint32_t i = block.first; i < block.end; ++i) {
         const ShaderStep& step = program_.steps[i];
         // A step reads at 2 i and writes at 2 i + 1: a result may take an operand's place. Those

@@ -21,7 +21,7 @@ using Words = std::span<const std::uint32_t>;
 using Scalars = std::vector<ShaderValue>;
 
 inline constexpr std::size_t kMostNodes = std::size_t{1} << 20;
-inline constexpr std::size_t kMostWork = std::size_t{1} << 24;
+inline constexpr std::size_t kMostWork = std::size_t{1} << 22;
 inline constexpr int kDeepestNodes = 200, kDeepestCalls = 64;
 
 inline bool is_uniform(SpirvStorage storage) {
