@@ -46,6 +46,7 @@ class Run {
       width_ = target.width;
       height_ = target.height;
     }
+    decode_textures();
     lanes_ = pass.lanes != 0 ? pass.lanes : lanes_for(program);
     lane_program_ = lane_program(program, lanes_, pool.isa());
     for (const auto& output : program.outputs) {
@@ -83,6 +84,34 @@ class Run {
   std::atomic<bool> stopped_{false};
   std::mutex mutex_{};
   std::string why_{};
+
+  std::vector<DecodedTexture> decoded_{};
+  std::vector<ShaderTexture> textures_{};
+
+  /// For what filters texels, which reads them as floats.
+  void decode_textures() {
+    textures_.assign(pass_.textures.begin(), pass_.textures.end());
+    const bool filters = std::any_of(
+        program_.samples.begin(), program_.samples.end(), [](const ShaderSampleRegisters& of) {
+          const SampleKind kind = of.sample.kind;
+          return kind == SampleKind::implicit || kind == SampleKind::level ||
+                 kind == SampleKind::gradient;
+        });
+    if (!filters) return;
+    decoded_.reserve(textures_.size());
+    for (ShaderTexture& of : textures_) {
+      if (of.texture == nullptr || of.decoded != nullptr) continue;
+      const auto same =
+          std::find_if(decoded_.begin(), decoded_.end(),
+                       [&](const DecodedTexture& made) { return made.source == of.texture; });
+      if (same != decoded_.end()) {
+        of.decoded = &*same;
+      } else {
+        decoded_.push_back(decode_texture(*of.texture, pass_.profile));
+        of.decoded = &decoded_.back();
+      }
+    }
+  }
 
   std::byte* memory_of(PassFrame& frame) const {
     return reinterpret_cast<std::byte*>(frame.memory.get());
@@ -132,7 +161,7 @@ class Run {
       std::memset(place(frame, program_.killed), 0, lane_program_.register_bytes);
     }
     LaneFrame lanes{.memory = memory_of(frame),
-                    .textures = pass_.textures,
+                    .textures = textures_,
                     .samples = lane_program_.samples,
                     .tables = lane_program_.tables,
                     .profile = &pass_.profile,
