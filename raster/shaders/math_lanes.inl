@@ -326,10 +326,13 @@ SOFTFOCUS_INLINE Angle reduce_angle(Floats x, Cut cut, bool far) {
   const Floats shifted = (x * 0x1.45f306p-1f - offset) + whole;
   Floats n = shifted - whole;
   if (cut.offset != 0) n += offset;
-  // pi/2 in four parts. Products with the first three are exact.
-  Angle angle = {
-      (((x - n * 0x1.922p+0f) + n * 0x1.28p-18f) + n * 0x1.778p-25f) - n * 0x1.68c234p-39f,
-      as_bits(shifted)};
+  // pi/2 in four parts. Products with the first three are exact, and so are the first two sums. The
+  // third's error joins the fourth part, so that the rest is rounded once.
+  const Floats coarse = (x - n * 0x1.922p+0f) + n * 0x1.28p-18f;
+  const Floats third = n * 0x1.778p-25f;
+  const Floats sum = coarse + third;
+  const Floats error = (coarse - sum) + third;
+  Angle angle = {sum + (error - n * 0x1.68c234p-39f), as_bits(shifted)};
   if (far) reduce_far_angles(x, cut, angle);
   return angle;
 }
