@@ -2,9 +2,10 @@
 // its documentation; the text is ours.
 
 #include <algorithm>
-#include <set>
+#include <cctype>
+#include <iterator>
 
-#include "raster/shaders/glsl_text.h"
+#include "raster/shaders/glsl/glsl_text.h"
 
 namespace softfocus {
 namespace {
@@ -16,23 +17,30 @@ struct Declared {
 };
 
 constexpr Declared kShadertoyUniforms[] = {
-    {"vec3", "iResolution"},         {"float", "iTime"},
-    {"float", "iGlobalTime"},        {"float", "iTimeDelta"},
-    {"float", "iFrameRate"},         {"int", "iFrame"},
-    {"vec4", "iMouse"},              {"vec4", "iDate"},
-    {"float", "iSampleRate"},        {"float", "iChannelTime", "[4]"},
-    {"vec3", "iChannelResolution", "[4]"}, {"sampler2D", "iChannel0"},
-    {"sampler2D", "iChannel1"},      {"sampler2D", "iChannel2"},
+    {"vec3", "iResolution"},
+    {"float", "iTime"},
+    {"float", "iGlobalTime"},
+    {"float", "iTimeDelta"},
+    {"float", "iFrameRate"},
+    {"int", "iFrame"},
+    {"vec4", "iMouse"},
+    {"vec4", "iDate"},
+    {"float", "iSampleRate"},
+    {"float", "iChannelTime", "[4]"},
+    {"vec3", "iChannelResolution", "[4]"},
+    {"sampler2D", "iChannel0"},
+    {"sampler2D", "iChannel1"},
+    {"sampler2D", "iChannel2"},
     {"sampler2D", "iChannel3"},
 };
 constexpr Declared kTransitionUniforms[] = {
     {"float", "progress"}, {"float", "ratio"}, {"sampler2D", "from"}, {"sampler2D", "to"}};
 constexpr Declared kThreeUniforms[] = {
-    {"mat4", "viewMatrix"},      {"vec3", "cameraPosition"},   {"bool", "isOrthographic"},
-    {"mat4", "modelMatrix"},     {"mat4", "modelViewMatrix"},  {"mat4", "projectionMatrix"},
-    {"mat3", "normalMatrix"},    {"sampler2D", "tDiffuse"},    {"sampler2D", "tDepth"},
-    {"float", "cameraNear"},     {"float", "cameraFar"},       {"vec2", "resolution"},
-    {"float", "time"},           {"float", "toneMappingExposure"}};
+    {"mat4", "viewMatrix"},   {"vec3", "cameraPosition"},      {"bool", "isOrthographic"},
+    {"mat4", "modelMatrix"},  {"mat4", "modelViewMatrix"},     {"mat4", "projectionMatrix"},
+    {"mat3", "normalMatrix"}, {"sampler2D", "tDiffuse"},       {"sampler2D", "tDepth"},
+    {"float", "cameraNear"},  {"float", "cameraFar"},          {"vec2", "resolution"},
+    {"float", "time"},        {"float", "toneMappingExposure"}};
 constexpr Declared kThreeAttributes[] = {{"vec3", "position"}, {"vec3", "normal"}, {"vec2", "uv"},
                                          {"vec4", "tangent"},  {"vec4", "color"},  {"vec2", "uv1"}};
 
@@ -63,7 +71,8 @@ precision highp usampler2DArray;
 )";
 /// ES 1.00's functions for a text of both versions, but those of GL_EXT_shader_texture_lod, which
 /// glslang has. They are no macros: shaders name variables `texture`.
-constexpr const char* kOldTextures = R"(vec4 texture2D(sampler2D s, vec2 p) { return texture(s, p); }
+constexpr const char* kOldTextures =
+    R"(vec4 texture2D(sampler2D s, vec2 p) { return texture(s, p); }
 vec4 textureCube(samplerCube s, vec3 p) { return texture(s, p); }
 vec4 texture2DProj(sampler2D s, vec3 p) { return textureProj(s, p); }
 vec4 texture2DProj(sampler2D s, vec4 p) { return textureProj(s, p); }
@@ -188,6 +197,41 @@ constexpr Include kThreeHelpers[] = {
      "}\n"},
 };
 
+/// Extensions, and the version of GLSL that has what they bring.
+struct Extension {
+  const char* name;
+  int version;
+};
+constexpr Extension kExtensions[] = {
+    {"GL_AMD_conservative_depth", 420},
+    {"GL_ARB_arrays_of_arrays", 430},
+    {"GL_ARB_conservative_depth", 420},
+    {"GL_ARB_cull_distance", 450},
+    {"GL_ARB_derivative_control", 450},
+    {"GL_ARB_draw_instanced", 140},
+    {"GL_ARB_enhanced_layouts", 440},
+    {"GL_ARB_explicit_attrib_location", 330},
+    {"GL_ARB_explicit_uniform_location", 430},
+    {"GL_ARB_fragment_coord_conventions", 150},
+    {"GL_ARB_gpu_shader5", 420},
+    {"GL_ARB_sample_shading", 400},
+    {"GL_ARB_separate_shader_objects", 410},
+    {"GL_ARB_shader_bit_encoding", 330},
+    {"GL_ARB_shader_texture_lod", 130},
+    {"GL_ARB_shading_language_420pack", 420},
+    {"GL_ARB_shading_language_packing", 420},
+    {"GL_ARB_texture_cube_map_array", 400},
+    {"GL_ARB_texture_gather", 400},
+    {"GL_ARB_texture_multisample", 150},
+    {"GL_ARB_texture_query_levels", 430},
+    {"GL_ARB_texture_query_lod", 400},
+    {"GL_ARB_texture_rectangle", 140},
+    {"GL_ARB_uniform_buffer_object", 140},
+    {"GL_EXT_gpu_shader4", 130},
+    {"GL_EXT_texture_array", 130},
+    {"GL_MESA_shader_integer_functions", 400},
+};
+
 bool uses(std::span<const GlslToken> tokens, std::string_view name) {
   return std::any_of(tokens.begin(), tokens.end(),
                      [&](const GlslToken& token) { return token.text == name; });
@@ -221,10 +265,14 @@ bool lacks(std::span<const GlslToken> tokens, std::string_view name) {
   return uses(tokens, name) && !declares(tokens, name);
 }
 
-/// "[](", "[2]("
-bool has_array_constructor(std::span<const GlslToken> tokens) {
+/// "[2](", or "float[2] name".
+bool has_array_type(std::span<const GlslToken> tokens) {
   for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
-    if (tokens[i].text == "]" && tokens[i + 1].text == "(") return true;
+    const char next = tokens[i + 1].text[0];
+    if (tokens[i].text == "]" &&
+        (next == '(' || std::isalpha(static_cast<unsigned char>(next)) != 0)) {
+      return true;
+    }
   }
   return false;
 }
@@ -416,12 +464,32 @@ GlslConvention recognise(ShaderStage stage, std::span<const GlslToken> tokens, b
   return GlslConvention::plain;
 }
 
+bool is_raising(std::string_view extension) {
+  return std::any_of(std::begin(kExtensions), std::end(kExtensions),
+                     [&](const Extension& one) { return extension == one.name; });
+}
+
+GlslVersion raised_version(const GlslVersion& version, GlslConvention convention,
+                           std::span<const GlslToken> tokens) {
+  if (version.is_es) return version;
+  int number =
+      convention == GlslConvention::libretro ? std::max(version.number, 330) : version.number;
+  for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
+    if (tokens[i].text != "#" || tokens[i + 1].text != "extension") continue;
+    for (const Extension& one : kExtensions) {
+      if (tokens[i + 2].text == one.name) number = std::max(number, one.version);
+    }
+  }
+  if (number == version.number) return version;
+  return {number, false, number >= 150 ? "compatibility" : ""};
+}
+
 GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tokens) {
   const GlslVersion es3{300, true, "es"}, es1{100, true, ""};
   switch (convention) {
     case GlslConvention::shadertoy:
     case GlslConvention::three: return es3;
-    case GlslConvention::gl_transitions: return has_array_constructor(tokens) ? es3 : es1;
+    case GlslConvention::gl_transitions: return has_array_type(tokens) ? es3 : es1;
     case GlslConvention::libretro: return {330, false, "compatibility"};
     default: break;
   }
@@ -449,6 +517,7 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
   if (!version.is_es && uses(tokens, "ftransform")) {
     around.before += "#define ftransform() (gl_ModelViewProjectionMatrix * gl_Vertex)\n";
   }
+  if (uses(tokens, "textureQueryLOD")) around.before += "#define textureQueryLOD textureQueryLod\n";
   if (version.is_es && version.number >= 300) around.before = renamed(tokens) + around.before;
   if (version.is_es && convention != GlslConvention::plain) {
     if (uses(tokens, "sample")) around.before = "#define sample sample_\n" + around.before;

@@ -21,7 +21,8 @@ namespace softfocus {
 /// | libretro | `#pragma stage` or `#pragma parameter`, or a condition on VERTEX or FRAGMENT |
 /// | shadertoy | a function `mainImage`, and none `main` or an undeclared iResolution or iTime |
 /// | gl_transitions | a function `transition`, and none `main` |
-/// | three | an `#include <...>` of three.js'; or no `#version`, and vUv or tDiffuse, or in a vertex
+/// | three | an `#include <...>` of three.js'; or no `#version`, and vUv or tDiffuse, or in a
+/// vertex
 ///   shader position, uv, modelViewMatrix or projectionMatrix undeclared |
 /// | plain | anything else |
 enum class GlslConvention : std::uint8_t {
@@ -55,15 +56,15 @@ using GlslReader = std::function<std::optional<std::string>(const std::string& p
 /// `#pragma parameter`. (A uniform's initialiser is in the SPIR-V.)
 struct GlslParameter {
   std::string name{}, label{};
-  std::vector<double> value{};  ///< one a component, or one for all
+  std::vector<double> value{};           ///< one a component, or one for all
   double least = 0, most = 0, step = 0;  ///< step 0: not said
 };
 
 struct CompiledGlsl {
-  /// For OpenGL (of libretro's .slang for Vulkan), with OpLine of the user's files. What GLSL leaves
-  /// to linking has no Location or Binding, and is known by its name.
+  /// For OpenGL (of libretro's .slang for Vulkan), with OpLine of the user's files. What GLSL
+  /// leaves to linking has no Location or Binding, and is known by its name.
   std::vector<std::uint32_t> words{};
-  GlslConvention convention{};  ///< never `recognised`
+  GlslConvention convention{};       ///< never `recognised`
   std::vector<std::string> files{};  ///< that were included
   std::vector<GlslParameter> parameters{};
   std::vector<std::string> warnings{};  ///< "FILE:LINE: ..."

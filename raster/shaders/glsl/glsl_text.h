@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "raster/shaders/glsl.h"
+#include "raster/shaders/glsl/glsl.h"
 
 namespace softfocus {
 
@@ -44,13 +44,19 @@ struct GlslText {
   bool is_vulkan = false;
   std::vector<std::string> files{};
   std::vector<GlslParameter> parameters{};
+  /// Why the files of "#error kMissingInclude N" cannot be had.
+  std::vector<std::string> missing_includes{};
+  bool is_raised = false;
 };
+constexpr std::string_view kMissingInclude = "softfocus_missing_include";
 
 /// A condition on VERTEX or FRAGMENT, by which libretro's .glsl files tell their stages apart.
 bool has_stage_condition(std::span<const GlslToken> tokens);
 
-/// Throws ShaderError.
-GlslText glsl_text(const GlslSource& source, const GlslReader& read);
+/// Throws ShaderError. `raise`: to a later version, in whose compatibility profile stands what the
+/// text's extensions bring and glslang knows of no earlier version; GlslText::is_raised says
+/// whether there is one.
+GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise = false);
 
 /// What a convention declares for a shader that uses it and does not declare it itself.
 struct GlslSurroundings {
@@ -61,6 +67,12 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
 
 /// What `recognised` is; `has_version`: the text has a #version.
 GlslConvention recognise(ShaderStage stage, std::span<const GlslToken> tokens, bool has_version);
+
+/// The version that has the extensions that the text asks for, if it is above `version`.
+GlslVersion raised_version(const GlslVersion& version, GlslConvention convention,
+                           std::span<const GlslToken> tokens);
+/// An extension that raised_version() counts.
+bool is_raising(std::string_view extension);
 
 /// The version of a text that says none.
 GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tokens);

@@ -1,4 +1,4 @@
-#include "raster/shaders/glsl.h"
+#include "raster/shaders/glsl/glsl.h"
 
 #ifdef SOFTFOCUS_WITH_GLSL
 
@@ -8,8 +8,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
-#include "raster/shaders/glsl_text.h"
+#include "raster/shaders/glsl/glsl_text.h"
 
 namespace softfocus {
 namespace {
@@ -33,7 +34,8 @@ std::string said_of(std::string_view message, const std::string& name) {
   std::size_t end = 0;
   while ((end = message.find(':', end)) != std::string_view::npos) {
     std::size_t digit = ++end;
-    while (digit < message.size() && std::isdigit(static_cast<unsigned char>(message[digit])) != 0) {
+    while (digit < message.size() &&
+           std::isdigit(static_cast<unsigned char>(message[digit])) != 0) {
       ++digit;
     }
     if (digit == end || digit >= message.size() || message[digit] != ':') continue;
@@ -73,7 +75,10 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
         messages.warnings.push_back(said_of(line.substr(9), name));
       }
     } else if (line.starts_with("ERROR: ")) {
-      if (line.find("compilation errors.") != std::string_view::npos) continue;
+      if (line.find("compilation errors.") != std::string_view::npos ||
+          line.find("compilation terminated") != std::string_view::npos) {
+        continue;
+      }
       if (messages.errors++ == 0) messages.first_error = said_of(line.substr(7), name);
     }
   }
@@ -89,6 +94,15 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   } else if (messages.errors > 1) {
     why += " (and " + std::to_string(messages.errors - 1) + " more)";
   }
+  if (const std::size_t found = why.find(kMissingInclude); found != std::string::npos) {
+    std::size_t number = 0;
+    const char* const digits = why.data() + found + kMissingInclude.size() + 1;
+    std::from_chars(digits, why.data() + why.size(), number);
+    const std::size_t error = why.rfind("'#error': ", found);
+    if (number < text.missing_includes.size() && error != std::string::npos) {
+      throw ShaderError(why.substr(0, error) + text.missing_includes[number]);
+    }
+  }
   if (text.convention != GlslConvention::plain) {
     why += " (taken as " + std::string(name_of(text.convention)) + ")";
   } else if (!text.said_version) {
@@ -98,15 +112,8 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   throw ShaderError(why);
 }
 
-}  // namespace
-
-std::string_view missing_glsl() { return {}; }
-
-CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read) {
-  static const GlslangProcess process;
-  GlslText text = glsl_text(source, read);
+CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) {
   const EShLanguage stage = source.stage == ShaderStage::vertex ? EShLangVertex : EShLangFragment;
-
   glslang::TShader shader(stage);
   const char* const strings[] = {text.version.c_str(), text.text.c_str(), text.after.c_str()};
   const int lengths[] = {static_cast<int>(text.version.size()), static_cast<int>(text.text.size()),
@@ -118,7 +125,7 @@ CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read) {
   // OpenGL's GLSL is parsed without the rules for SPIR-V, which know neither versions below 1.40
   // and ES 3.10 nor the compatibility profile, and want a location of everything. What comes out
   // can be said in SPIR-V all the same.
-  int rules = EShMsgDebugInfo;
+  int rules = EShMsgDebugInfo | (is_relaxed ? EShMsgRelaxedErrors : EShMsgDefault);
   if (text.is_vulkan) {
     shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_0);
@@ -150,6 +157,31 @@ CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read) {
   out.parameters = std::move(text.parameters);
   out.warnings = std::move(messages.warnings);
   return out;
+}
+
+}  // namespace
+
+std::string_view missing_glsl() { return {}; }
+
+CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read) {
+  static const GlslangProcess process;
+  try {
+    return compiled(source, glsl_text(source, read), false);
+  } catch (const ShaderError& error) {
+    // What drivers take and glslang, by the letter, refuses. If that fails too, the first error
+    // says more.
+    const std::string_view why = error.what();
+    const bool is_relaxable =
+        why.find("when expanded from macros") != std::string_view::npos ||
+        why.find("'#define': names containing consecutive") != std::string_view::npos;
+    GlslText raised = glsl_text(source, read, true);
+    if (!is_relaxable && !raised.is_raised) throw;
+    try {
+      return compiled(source, std::move(raised), is_relaxable);
+    } catch (const ShaderError&) {
+    }
+    throw;
+  }
 }
 
 }  // namespace softfocus

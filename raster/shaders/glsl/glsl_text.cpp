@@ -1,4 +1,4 @@
-#include "raster/shaders/glsl_text.h"
+#include "raster/shaders/glsl/glsl_text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -10,7 +10,8 @@ namespace softfocus {
 namespace {
 
 constexpr int kMostIncludes = 1000, kMostIncludeDepth = 32;
-/// Operators of one expression: glslang walks a tree as deep as their number, on the caller's stack.
+/// Operators of one expression: glslang walks a tree as deep as their number, on the caller's
+/// stack.
 constexpr int kMostOperators = 2000;
 /// Stands before a line number, until the version says what `#line` means.
 constexpr char kLineMark = '\1';
@@ -174,13 +175,16 @@ class Includes {
   }
 
   bool includes_three = false;  ///< a text of convention_include()
+  std::vector<std::string> missing{};
 
  private:
   std::string included(std::string_view header, const std::string& includer, int line) {
     const bool is_local = header.size() > 2 && header.front() == '"' && header.back() == '"';
     const bool is_angled = header.size() > 2 && header.front() == '<' && header.back() == '>';
     const auto error = [&](const std::string& why) {
-      return line_directive(line, includer) + "#error " + why + "\n";
+      missing.push_back(why);
+      return line_directive(line, includer) + "#error " + std::string(kMissingInclude) + " " +
+             std::to_string(missing.size() - 1) + "\n";
     };
     if (!is_local && !is_angled) return error("#include wants \"FILE\"");
     const std::string wanted(header.substr(1, header.size() - 2));
@@ -193,8 +197,9 @@ class Includes {
     if (wanted.front() == '/' || wanted.find(':') != std::string::npos) {
       return error("#include " + wanted + ": the path must be relative");
     }
-    const std::string path =
-        (std::filesystem::path(includer).parent_path() / wanted).lexically_normal().generic_string();
+    const std::string path = (std::filesystem::path(includer).parent_path() / wanted)
+                                 .lexically_normal()
+                                 .generic_string();
     if (std::find(chain_.begin(), chain_.end(), path) != chain_.end()) {
       return error("#include " + wanted + ": the file includes itself");
     }
@@ -203,7 +208,7 @@ class Includes {
     }
     const std::optional<std::string> text = read_ ? read_(path) : std::nullopt;
     if (!text) {
-      return error("#include: cannot read " + path +
+      return error("#include " + wanted + ": cannot read " + path +
                    (is_angled ? ", and it is none of three.js' that are known here" : ""));
     }
     if (std::find(files_.begin(), files_.end(), path) == files_.end()) files_.push_back(path);
@@ -302,13 +307,32 @@ std::optional<GlslParameter> pragma_parameter(std::string_view line) {
 }
 
 /// The #version, if nothing but comments stands in front.
-GlslVersion said_version(std::span<const GlslToken> tokens) {
+GlslVersion said_version(std::span<const GlslToken> tokens, const std::string& name) {
   GlslVersion version;
-  if (tokens.size() < 3 || tokens[0].text != "#" || tokens[1].text != "version") return version;
-  const std::string_view number = tokens[2].text;
-  std::from_chars(number.data(), number.data() + number.size(), version.number);
-  if (tokens.size() > 3 && tokens[3].line == tokens[2].line) version.profile = tokens[3].text;
-  version.is_es = version.profile == "es" || version.number == 100;
+  if (tokens.size() < 2 || tokens[0].text != "#" || tokens[1].text != "version") return version;
+  const int line = tokens[0].line;
+  std::string written;
+  for (std::size_t i = 2; i < tokens.size() && tokens[i].line == line; ++i) {
+    if (i == 3) version.profile = tokens[i].text;
+    written += ' ';
+    written += tokens[i].text;
+  }
+  if (tokens.size() > 2) {
+    const std::string_view number = tokens[2].text;
+    std::from_chars(number.data(), number.data() + number.size(), version.number);
+  }
+  const int n = version.number;
+  version.is_es = version.profile == "es" || n == 100;
+  const bool is_known =
+      version.profile == "es"
+          ? n == 300 || n == 310 || n == 320
+          : n % 10 == 0 && ((n >= 100 && n <= 150) || n == 330 || (n >= 400 && n <= 460)) &&
+                (version.profile.empty() ||
+                 (n >= 150 && (version.profile == "core" || version.profile == "compatibility")));
+  if (!is_known) {
+    throw ShaderError(at(name, line) + "#version" + written +
+                      "; there are 100, 110 to 460, 300 es, 310 es and 320 es");
+  }
   return version;
 }
 
@@ -345,6 +369,31 @@ bool is_vulkan(std::span<const GlslToken> tokens) {
     }
   }
   return false;
+}
+
+/// An extension whose types glslang accepts and then fails on.
+GlslToken refused_extension(std::span<const GlslToken> tokens) {
+  for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
+    if (tokens[i].text == "#" && tokens[i + 1].text == "extension" &&
+        tokens[i + 2].text == "GL_ARB_bindless_texture") {
+      return tokens[i + 2];
+    }
+  }
+  return {};
+}
+
+/// Lines that switch on what a raised version has are left empty.
+std::string without_raising(const std::string& text) {
+  std::string out;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::string_view line = next_line(text, from);
+    const auto extension = directive(line, "extension");
+    if (!extension || !is_raising(extension->substr(0, extension->find_first_of(" \t:")))) {
+      out += line;
+    }
+    out += '\n';
+  }
+  return out;
 }
 
 std::string with_lines(const std::string& text, bool sets_next) {
@@ -410,14 +459,14 @@ bool has_function(std::span<const GlslToken> tokens, std::string_view returns,
   return false;
 }
 
-GlslText glsl_text(const GlslSource& source, const GlslReader& read) {
+GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise) {
   GlslText out;
   std::string text = cleaned(source.text, source.name);
   Includes includes(read, out.files);
   text = includes.expanded(text, source.name);
   {
     const std::vector<GlslToken> tokens = glsl_tokens(text);
-    out.taken_as = said_version(tokens);
+    out.taken_as = said_version(tokens, source.name);
     out.said_version = out.taken_as.number != 0;
     out.convention = source.convention != GlslConvention::recognised
                          ? source.convention
@@ -426,6 +475,13 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read) {
       out.convention = GlslConvention::three;
     }
     if (!out.said_version) out.taken_as = version_of(out.convention, tokens);
+    if (const auto refused = refused_extension(tokens); !refused.text.empty()) {
+      throw ShaderError(at(source.name, refused.line) + std::string(refused.text) +
+                        " is not supported; a sampler is a uniform");
+    }
+    GlslVersion raised = out.taken_as;
+    if (raise) raised = raised_version(out.taken_as, out.convention, tokens);
+    out.is_raised = raised.number > out.taken_as.number;
     if (out.said_version) {
       // In front of everything, where it belongs and comments often stand.
       const int line = tokens[0].line;
@@ -436,9 +492,12 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read) {
       out.version += text.substr(begin, text.find('\n', begin) - begin) + "\n";
       text.replace(begin, text.find('\n', begin) - begin, "");
     }
+    if (out.is_raised) out.taken_as = raised;
   }
+  out.missing_includes = std::move(includes.missing);
   const GlslVersion& version = out.taken_as;
-  if (!out.said_version) {
+  if (out.is_raised) text = without_raising(text);
+  if (!out.said_version || out.is_raised) {
     out.version = "#version " + std::to_string(version.number);
     if (version.number > 100 && !version.profile.empty()) out.version += " " + version.profile;
     out.version += "\n";
