@@ -221,21 +221,21 @@ class Run {
 
 }  // namespace
 
-Shader make_shader(std::vector<std::uint32_t> words) {
-  Shader made;
+UserShader make_shader(std::vector<std::uint32_t> words) {
+  UserShader made;
   made.module = std::make_unique<const SpirvModule>(read_spirv(std::move(words)));
   made.uniforms = uniforms_of(*made.module);
   return made;
 }
 
-const ShaderUniform* find_uniform(const Shader& shader, std::string_view name) {
+const ShaderUniform* find_uniform(const UserShader& shader, std::string_view name) {
   for (const ShaderUniform& uniform : shader.uniforms.all) {
     if (uniform.name == name) return &uniform;
   }
   return nullptr;
 }
 
-ShaderProgram compile_shader(const Shader& shader, std::span<const std::uint32_t> words) {
+ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words) {
   ShaderTree tree = lower_spirv(*shader.module, words);
   simplify(tree);
   return emit_program(tree);

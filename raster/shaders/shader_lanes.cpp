@@ -20,9 +20,9 @@
 namespace softfocus {
 namespace {
 
-constexpr std::uint8_t number_of(StepOp op) { return static_cast<std::uint8_t>(op); }
+constexpr bool is_step(std::uint8_t op, StepOp of) { return op == static_cast<std::uint8_t>(of); }
 
-bool steers(std::uint8_t op) { return op >= number_of(StepOp::jump); }
+bool steers(std::uint8_t op) { return op >= static_cast<std::uint8_t>(StepOp::jump); }
 
 }  // namespace
 
@@ -81,7 +81,7 @@ LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa) {
       to.stride *= made.register_bytes;
       to.vectors = vectors;
     }
-    if (step.op == number_of(StepOp::jump_if_none))
+    if (is_step(step.op, StepOp::jump_if_none))
       to.vectors = step.a.varies ? vectors : std::uint16_t{1};
     made.steps.push_back(to);
   }
