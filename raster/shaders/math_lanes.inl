@@ -434,11 +434,15 @@ SOFTFOCUS_INLINE Floats arctangent(Floats y, Floats x) {
   const Floats width = absolute(x);
   Floats lesser = smaller(height, width);
   Floats greater = larger(height, width);
-  if (any(greater >= 0x1p126f)) {
-    // The sum below must not overflow; infinity over infinity counts as 1.
-    const Floats scale = select(greater >= 0x1p126f, splat(0x1p-30f), splat(1.0f));
-    greater = select(lesser == kInfinity, splat(1.0f), greater * scale);
-    lesser = select(lesser == kInfinity, splat(1.0f), lesser * scale);
+  const Mask huge = greater >= 0x1p126f;
+  const Mask tiny = greater < 0x1p-100f;
+  if (any(huge | tiny)) {
+    // The sum below must not overflow, the comparison not be among subnormals. Infinity over
+    // infinity counts as 1.
+    const Floats scale = select(huge, splat(0x1p-30f), select(tiny, splat(0x1p60f), splat(1.0f)));
+    const Mask infinite = lesser == kInfinity;
+    lesser = select(infinite, splat(1.0f), lesser * scale);
+    greater = select(infinite, splat(1.0f), greater * scale);
   }
   const Mask middle = lesser > greater * 0x1.a8279ap-2f;
   const Floats numerator = select(middle, lesser - greater, lesser);
