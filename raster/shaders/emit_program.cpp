@@ -1,0 +1,733 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "raster/shaders/shader_program.h"
+#include "raster/shaders/simplify_tree.h"
+
+namespace softfocus {
+namespace {
+
+using enum ShaderNodeKind;
+
+// --- what varies ---
+
+/// Which values and variables differ between pixels, and which scopes some pixels may leave before
+/// others. Found again and again until nothing is added.
+struct Varying {
+  std::vector<bool> values, variables, scopes;
+  bool grew = false;
+
+  explicit Varying(const ShaderTree& tree)
+      : values(tree.values.size()), variables(tree.variable_count), scopes(tree.scope_count) {
+    // What an index chooses from lies in the memory of lanes.
+    mark_indexed(tree.main);
+    do {
+      grew = false;
+      std::vector<std::uint32_t> left;
+      run(tree, tree.main, false, left);
+    } while (grew);
+  }
+
+  void mark_indexed(const ShaderRegion& region) {
+    for (const ShaderNode& node : region) {
+      const ShaderInstruction& in = node.instruction;
+      if (node.kind == instruction &&
+          (in.op == ShaderOp::load_indexed || in.op == ShaderOp::store_indexed)) {
+        // The elements and what lies between them: structures have members side by side.
+        for (std::uint32_t i = 0; i <= (in.count - 1) * in.stride; ++i) {
+          variables[in.place + i] = true;
+        }
+      }
+      if (node.first) mark_indexed(*node.first);
+      if (node.second) mark_indexed(*node.second);
+    }
+  }
+
+  void mark(std::vector<bool>& of, std::uint32_t number) {
+    if (of[number]) return;
+    of[number] = true;
+    grew = true;
+  }
+
+  bool varies(const ShaderTree& tree, const ShaderInstruction& in) const {
+    using enum ShaderOp;
+    if (in.op == input || in.op == load_indexed ||
+        (in.op >= derivative_x && in.op <= derivative_y_coarse)) {
+      return true;
+    }
+    if (in.op == load) return variables[in.place];
+    bool any = false;
+    const auto look = [&](ShaderValue of) { any = any || (of != kNoValue && values[of]); };
+    look(in.a);
+    look(in.b);
+    look(in.c);
+    if (in.op != sample) return any;
+    const ShaderSample& of = tree.samples[in.place];
+    for (const ShaderValue value : of.at) look(value);
+    for (const ShaderValue value : of.more) look(value);
+    for (const ShaderValue value : of.offset) look(value);
+    for (const ShaderValue value : {of.texture, of.sampler, of.compared}) look(value);
+    return any || of.kind == SampleKind::implicit || of.kind == SampleKind::query_lod;
+  }
+
+  /// `apart`: whether some pixels may be elsewhere. Adds the scopes that some of them leave to
+  /// `left`.
+  void run(const ShaderTree& tree, const ShaderRegion& region, bool apart,
+           std::vector<std::uint32_t>& left) {
+    for (const ShaderNode& node : region) {
+      const ShaderInstruction& in = node.instruction;
+      switch (node.kind) {
+        case instruction:
+          if (varies(tree, in)) {
+            for_each_result(tree, in, [&](ShaderValue of) { mark(values, of); });
+          }
+          if (in.op == ShaderOp::store && (apart || values[in.a])) mark(variables, in.place);
+          break;
+        case branch: {
+          std::vector<std::uint32_t> inner;
+          const bool inside = apart || values[in.a];
+          run(tree, *node.first, inside, inner);
+          run(tree, *node.second, inside, inner);
+          apart = apart || !inner.empty();
+          left.insert(left.end(), inner.begin(), inner.end());
+          break;
+        }
+        case scope: {
+          std::vector<std::uint32_t> inner;
+          run(tree, *node.first, apart || (node.loops && scopes[node.scope]), inner);
+          // Who leaves a loop for good while others go on makes its next turn apart.
+          if (node.loops && !inner.empty()) mark(scopes, node.scope);
+          inner.erase(std::remove(inner.begin(), inner.end(), node.scope), inner.end());
+          apart = apart || !inner.empty();
+          left.insert(left.end(), inner.begin(), inner.end());
+          break;
+        }
+        case ShaderNodeKind::exit:
+          if (apart) {
+            mark(scopes, node.scope);
+            left.push_back(node.scope);
+          }
+          break;
+      }
+    }
+    std::sort(left.begin(), left.end());
+    left.erase(std::unique(left.begin(), left.end()), left.end());
+  }
+};
+
+// --- steps ---
+
+constexpr std::uint8_t number_of(ShaderOp op) { return static_cast<std::uint8_t>(op); }
+constexpr std::uint8_t number_of(StepOp op) { return static_cast<std::uint8_t>(op); }
+
+class Emitter {
+ public:
+  Emitter(const ShaderTree& tree, ShaderProgram& to)
+      : tree_(tree),
+        to_(to),
+        varying_(tree),
+        of_value_(tree.values.size()),
+        of_variable_(tree.variable_count) {}
+
+  void run() {
+    give_indexed(tree_.main);
+    region(tree_.main, {});
+    put_step(number_of(StepOp::end));
+    for (const ShaderOutput& output : tree_.outputs) {
+      if (of_variable_[output.variable].is_there) {
+        to_.outputs.push_back({output, of_variable_[output.variable]});
+      }
+    }
+    to_.tables = tree_.tables;
+    to_.has_derivatives = tree_.has_derivatives;
+  }
+
+  /// Runs of registers that must lie one behind the other.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> rows{};
+
+ private:
+  const ShaderTree& tree_;
+  ShaderProgram& to_;
+  Varying varying_;
+  std::vector<ShaderRegister> of_value_, of_variable_;
+  std::vector<std::uint32_t> of_input_{};
+
+  struct Scope {
+    std::uint32_t number = 0;
+    ShaderRegister live{};             ///< lanes that have not left; if some may
+    std::vector<std::size_t> jumps{};  ///< steps that go to its end
+  };
+  std::vector<Scope> scopes_{};  ///< around
+
+  ShaderRegister new_register(bool varies) {
+    return {varies ? to_.varying_count++ : to_.uniform_count++, varies, true};
+  }
+  ShaderRegister constant(std::uint32_t bits) {
+    const ShaderRegister made = new_register(false);
+    to_.constants.push_back({made.number, bits});
+    return made;
+  }
+  std::optional<ShaderRegister> all_lanes_{};
+  ShaderRegister all_lanes() {
+    if (!all_lanes_) all_lanes_ = constant(~0u);
+    return *all_lanes_;
+  }
+
+  ShaderRegister of(ShaderValue value) {
+    if (value == kNoValue) return {};
+    ShaderRegister& known = of_value_[value];
+    if (!known.is_there) {
+      known = tree_.is_constant(value) ? constant(tree_.bits(value))
+                                       : new_register(varying_.values[value]);
+    }
+    return known;
+  }
+  ShaderRegister of_variable(ShaderVariable variable) {
+    ShaderRegister& known = of_variable_[variable];
+    if (!known.is_there) known = new_register(varying_.variables[variable]);
+    return known;
+  }
+
+  /// Variables that an index chooses from get registers in a row.
+  void give_indexed(const ShaderRegion& region) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;
+    collect_indexed(region, ranges);
+    std::sort(ranges.begin(), ranges.end());
+    for (std::size_t i = 0; i < ranges.size();) {
+      auto [begin, end] = ranges[i++];
+      while (i < ranges.size() && ranges[i].first <= end) end = std::max(end, ranges[i++].second);
+      const std::uint32_t first = to_.varying_count;
+      for (std::uint32_t k = begin; k <= end; ++k) of_variable_[k] = new_register(true);
+      rows.emplace_back(first, end - begin + 1);
+    }
+  }
+  static void collect_indexed(const ShaderRegion& region,
+                              std::vector<std::pair<std::uint32_t, std::uint32_t>>& to) {
+    for (const ShaderNode& node : region) {
+      const ShaderInstruction& in = node.instruction;
+      if (node.kind == instruction &&
+          (in.op == ShaderOp::load_indexed || in.op == ShaderOp::store_indexed)) {
+        to.emplace_back(in.place, in.place + (in.count - 1) * in.stride);
+      }
+      if (node.first) collect_indexed(*node.first, to);
+      if (node.second) collect_indexed(*node.second, to);
+    }
+  }
+
+  ShaderStep& put_step(std::uint8_t op, ShaderRegister to = {}, ShaderRegister a = {},
+                       ShaderRegister b = {}, ShaderRegister c = {}) {
+    to_.steps.push_back({.op = op, .to = to, .a = a, .b = b, .c = c});
+    to_.steps.back().line = line_;
+    return to_.steps.back();
+  }
+  ShaderLine line_{};
+  std::size_t here() const { return to_.steps.size(); }
+  void land(std::size_t jump) { to_.steps[jump].place = static_cast<std::uint32_t>(here()); }
+
+  ShaderRegister mask_and(ShaderRegister mask, ShaderRegister also, bool turned) {
+    const ShaderRegister made = new_register(true);
+    const ShaderRegister from = mask.is_there ? mask : all_lanes();
+    put_step(turned ? number_of(StepOp::and_not) : number_of(ShaderOp::bit_and), made, from, also);
+    return made;
+  }
+
+  /// The innermost scope's lanes that have not left, of those around that some may leave.
+  ShaderRegister innermost_live() const {
+    for (std::size_t i = scopes_.size(); i-- > 0;) {
+      if (scopes_[i].live.is_there) return scopes_[i].live;
+    }
+    return {};
+  }
+
+  /// `mask`: the lanes that are here; all if it is not there.
+  void region(const ShaderRegion& all, ShaderRegister mask) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const ShaderNode& node = all[i];
+      line_ = node.instruction.line;
+      switch (node.kind) {
+        case instruction: run(all, i, mask); break;
+        case branch: run_branch(node, mask); break;
+        case scope: run_scope(node, mask); break;
+        case ShaderNodeKind::exit: run_exit(node, mask); break;
+      }
+    }
+  }
+
+  /// Whether some lanes may leave scopes around from within.
+  bool some_leave(const ShaderRegion& region) const {
+    return std::any_of(region.begin(), region.end(), [&](const ShaderNode& node) {
+      if (node.kind == ShaderNodeKind::exit) {
+        return std::any_of(scopes_.begin(), scopes_.end(), [&](const Scope& of) {
+          return of.number == node.scope && of.live.is_there;
+        });
+      }
+      return (node.first && some_leave(*node.first)) || (node.second && some_leave(*node.second));
+    });
+  }
+  void drop_left(ShaderRegister mask, bool some_left) {
+    const ShaderRegister live = innermost_live();
+    if (!some_left || !mask.is_there || !live.is_there || mask.number == live.number) return;
+    put_step(number_of(ShaderOp::bit_and), mask, mask, live);
+  }
+
+  void run_branch(const ShaderNode& node, ShaderRegister mask) {
+    const ShaderRegister condition = of(node.instruction.a);
+    const bool some_left = some_leave(*node.first) || some_leave(*node.second);
+    if (!condition.varies) {
+      const std::size_t over = here();
+      put_step(number_of(StepOp::jump_if_false), {}, condition);
+      region(*node.first, mask);
+      if (node.second->empty()) {
+        land(over);
+      } else {
+        const std::size_t out = here();
+        put_step(number_of(StepOp::jump));
+        land(over);
+        region(*node.second, mask);
+        land(out);
+      }
+      drop_left(mask, some_left);
+      return;
+    }
+    for (int side = 0; side < 2; ++side) {
+      const ShaderRegion& inner = side == 0 ? *node.first : *node.second;
+      if (inner.empty()) continue;
+      const ShaderRegister here_mask = mask_and(mask, condition, side == 1);
+      const std::size_t over = here();
+      put_step(number_of(StepOp::jump_if_none), {}, here_mask);
+      region(inner, here_mask);
+      land(over);
+    }
+    drop_left(mask, some_left);
+  }
+
+  void run_scope(const ShaderNode& node, ShaderRegister mask) {
+    scopes_.push_back({.number = node.scope});
+    ShaderRegister inner = mask;
+    if (varying_.scopes[node.scope]) {
+      inner = scopes_.back().live = new_register(true);
+      put_step(number_of(ShaderOp::copy), inner, mask.is_there ? mask : all_lanes());
+    }
+    const std::size_t begin = here();
+    if (node.loops) {
+      if (inner.is_there) {
+        scopes_.back().jumps.push_back(here());
+        put_step(number_of(StepOp::jump_if_none), {}, inner);
+      }
+      put_step(number_of(StepOp::check_budget));
+    }
+    region(*node.first, inner);
+    if (node.loops) put_step(number_of(StepOp::jump)).place = static_cast<std::uint32_t>(begin);
+    const Scope done = std::move(scopes_.back());
+    scopes_.pop_back();
+    for (const std::size_t jump : done.jumps) land(jump);
+    drop_left(mask, some_leave(*node.first));
+  }
+
+  void run_exit(const ShaderNode& node, ShaderRegister mask) {
+    if (!varying_.scopes[node.scope]) {
+      for (Scope& of : scopes_) {
+        if (of.number != node.scope) continue;
+        of.jumps.push_back(here());
+        put_step(number_of(StepOp::jump));
+        return;
+      }
+      return;
+    }
+    bool inside = false;
+    for (Scope& of : scopes_) {
+      inside = inside || of.number == node.scope;
+      if (!inside || !of.live.is_there) continue;
+      put_step(number_of(StepOp::and_not), of.live, of.live, mask.is_there ? mask : all_lanes());
+    }
+  }
+
+  void run(const ShaderRegion& all, std::size_t at, ShaderRegister mask) {
+    const ShaderInstruction& in = all[at].instruction;
+    using enum ShaderOp;
+    switch (in.op) {
+      case store: {
+        const ShaderRegister variable = of_variable(in.place);
+        const bool everywhere = !mask.is_there || !variable.varies || is_local(all, at);
+        if (everywhere) {
+          put_step(number_of(copy), variable, of(in.a));
+        } else {
+          put_step(number_of(StepOp::masked_copy), variable, of(in.a), mask);
+        }
+        return;
+      }
+      case load: put_step(number_of(copy), of(in.to), of_variable(in.place)); return;
+      case kill: {
+        if (!to_.killed.is_there) to_.killed = new_register(true);
+        put_step(number_of(bit_or), to_.killed, to_.killed, mask.is_there ? mask : all_lanes());
+        return;
+      }
+      case input: to_.inputs.push_back({tree_.inputs[in.place], of(in.to)}); return;
+      case sample: run_sample(in); return;
+      case load_indexed: {
+        ShaderStep& step = put_step(number_of(in.op), of(in.to), of(in.a), of_variable(in.place));
+        step.count = in.count;
+        step.stride = in.stride;
+        return;
+      }
+      case load_constant: {
+        ShaderStep& step = put_step(number_of(in.op), of(in.to), of(in.a));
+        step.place = in.place;
+        step.count = in.count;
+        step.stride = in.stride;
+        return;
+      }
+      case store_indexed: {
+        ShaderStep& step = put_step(number_of(in.op), of_variable(in.place), of(in.a), of(in.b),
+                                    mask.is_there ? mask : all_lanes());
+        step.count = in.count;
+        step.stride = in.stride;
+        return;
+      }
+      default: put_step(number_of(in.op), of(in.to), of(in.a), of(in.b), of(in.c));
+    }
+  }
+
+  void run_sample(const ShaderInstruction& in) {
+    const ShaderSample& sample = tree_.samples[in.place];
+    ShaderSampleRegisters made{.sample = sample,
+                               .texture = of(sample.texture),
+                               .sampler = of(sample.sampler),
+                               .compared = of(sample.compared)};
+    for (std::size_t i = 0; i < 4; ++i) made.at[i] = of(sample.at[i]);
+    for (std::size_t i = 0; i < 6; ++i) made.more[i] = of(sample.more[i]);
+    for (std::size_t i = 0; i < 3; ++i) made.offset[i] = of(sample.offset[i]);
+    for (std::size_t i = 0; i < 4; ++i) made.to[i] = of(sample.to[i]);
+    put_step(number_of(ShaderOp::sample)).place = static_cast<std::uint32_t>(to_.samples.size());
+    to_.samples.push_back(made);
+  }
+
+  // --- stores that no other lane minds ---
+
+  /// A variable all of whose loads and stores are in this region, or in regions inside it, and not
+  /// before this store: what other lanes have in it is not read.
+  bool is_local(const ShaderRegion& all, std::size_t at) {
+    if (counts_.empty()) {
+      counts_.resize(tree_.variable_count);
+      count(tree_.main, counts_);
+      for (const ShaderOutput& output : tree_.outputs) counts_[output.variable] += 1u << 30;
+    }
+    const ShaderVariable variable = all[at].instruction.place;
+    std::uint32_t behind = 0;
+    for (std::size_t i = at; i < all.size(); ++i) behind += uses(all[i], variable);
+    return behind == counts_[variable];
+  }
+  std::vector<std::uint32_t> counts_{};
+  static void count(const ShaderRegion& region, std::vector<std::uint32_t>& to) {
+    for (const ShaderNode& node : region) {
+      const ShaderInstruction& in = node.instruction;
+      if (node.kind == instruction && (in.op == ShaderOp::load || in.op == ShaderOp::store)) {
+        ++to[in.place];
+      }
+      if (node.kind == instruction &&
+          (in.op == ShaderOp::load_indexed || in.op == ShaderOp::store_indexed)) {
+        for (std::uint32_t i = 0; i < in.count; ++i) to[in.place + i * in.stride] += 1u << 30;
+      }
+      if (node.first) count(*node.first, to);
+      if (node.second) count(*node.second, to);
+    }
+  }
+  static std::uint32_t uses(const ShaderNode& node, ShaderVariable variable) {
+    const ShaderInstruction& in = node.instruction;
+    if (node.kind == instruction) {
+      const bool is = (in.op == ShaderOp::load || in.op == ShaderOp::store) && in.place == variable;
+      return is ? 1 : 0;
+    }
+    std::uint32_t sum = 0;
+    for (const auto* side : {&node.first, &node.second}) {
+      if (!*side) continue;
+      for (const ShaderNode& inner : **side) sum += uses(inner, variable);
+    }
+    return sum;
+  }
+};
+
+// --- registers shared by what is not there at the same time ---
+
+class Sharing {
+ public:
+  Sharing(ShaderProgram& program, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& rows)
+      : program_(program), rows_(rows) {}
+
+  void run() {
+    const std::uint32_t count = program_.varying_count;
+    begin_.assign(count, kNever);
+    end_.assign(count, 0);
+    find_blocks();
+    find_live();
+    for (const auto& input : program_.inputs) {
+      touch(input.to.number, 0);
+    }
+    const auto last = 2 * static_cast<std::uint32_t>(program_.steps.size());
+    for (const auto& output : program_.outputs) {
+      if (output.from.varies) touch(output.from.number, last);
+    }
+    for (const auto& [first, length] : rows_) {
+      for (std::uint32_t i = first; i < first + length; ++i) {
+        touch(i, 0);
+        touch(i, last);
+      }
+    }
+    if (program_.killed.is_there) {
+      touch(program_.killed.number, 0);
+      touch(program_.killed.number, last);
+    }
+    assign();
+    rename();
+  }
+
+ private:
+  static constexpr std::uint32_t kNever = 0xFFFFFFFF;
+  ShaderProgram& program_;
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>>& rows_;
+  std::vector<std::uint32_t> begin_{}, end_{}, given_{};
+  struct Block {
+    std::uint32_t first = 0, end = 0;
+    std::vector<std::uint32_t> next{};
+    std::vector<std::uint64_t> uses{}, makes{}, in{}, out{};
+  };
+  std::vector<Block> blocks_{};
+
+  void touch(std::uint32_t number, std::uint32_t at) {
+    begin_[number] = std::min(begin_[number], at);
+    end_[number] = std::max(end_[number], at);
+  }
+
+  static bool is_jump(const ShaderStep& step) {
+    return step.op == number_of(StepOp::jump) || step.op == number_of(StepOp::jump_if_none) ||
+           step.op == number_of(StepOp::jump_if_false);
+  }
+  template <class Body>
+  void for_each_read(const ShaderStep& step, const Body& body) const {
+    for (const ShaderRegister& of : {step.a, step.b, step.c}) {
+      if (of.is_there && of.varies) body(of.number);
+    }
+    // What stays in other lanes is read, too.
+    if ((step.op == number_of(StepOp::masked_copy) ||
+         step.op == number_of(ShaderOp::store_indexed)) &&
+        step.to.varies) {
+      body(step.to.number);
+    }
+    if (step.op != number_of(ShaderOp::sample)) return;
+    const ShaderSampleRegisters& sample = program_.samples[step.place];
+    const auto each = [&](const auto& list) {
+      for (const ShaderRegister& of : list) {
+        if (of.is_there && of.varies) body(of.number);
+      }
+    };
+    each(sample.at);
+    each(sample.more);
+    each(sample.offset);
+    each(std::array{sample.texture, sample.sampler, sample.compared});
+  }
+  template <class Body>
+  void for_each_made(const ShaderStep& step, const Body& body) const {
+    if (step.to.is_there && step.to.varies) body(step.to.number);
+    if (step.op != number_of(ShaderOp::sample)) return;
+    for (const ShaderRegister& of : program_.samples[step.place].to) {
+      if (of.is_there && of.varies) body(of.number);
+    }
+  }
+
+  void find_blocks() {
+    const std::vector<ShaderStep>& steps = program_.steps;
+    std::vector<bool> begins(steps.size() + 1);
+    begins[0] = true;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (!is_jump(steps[i])) continue;
+      begins[steps[i].place] = begins[i + 1] = true;
+    }
+    std::vector<std::uint32_t> block_at(steps.size() + 1);
+    for (std::uint32_t i = 0; i < steps.size(); ++i) {
+      if (begins[i]) blocks_.push_back({.first = i});
+      block_at[i] = static_cast<std::uint32_t>(blocks_.size()) - 1;
+      blocks_.back().end = i + 1;
+    }
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const ShaderStep& last = steps[blocks_[b].end - 1];
+      if (is_jump(last) && last.place < steps.size())
+        blocks_[b].next.push_back(block_at[last.place]);
+      if (last.op != number_of(StepOp::jump) && b + 1 < blocks_.size()) {
+        blocks_[b].next.push_back(static_cast<std::uint32_t>(b) + 1);
+      }
+    }
+  }
+
+  static bool has(const std::vector<std::uint64_t>& set, std::uint32_t i) {
+    return (set[i / 64] >> (i % 64) & 1) != 0;
+  }
+  static void put(std::vector<std::uint64_t>& set, std::uint32_t i) {
+    set[i / 64] |= std::uint64_t{1} << (i % 64);
+  }
+
+  void find_live() {
+    const std::size_t words = (program_.varying_count + 63) / 64;
+    for (Block& block : blocks_) {
+      block.uses.resize(words);
+      block.makes.resize(words);
+      block.in.resize(words);
+      block.out.resize(words);
+      for (std::uint32_t i = block.first; i < block.end; ++i) {
+        const ShaderStep& step = program_.steps[i];
+        for_each_read(step, [&](std::uint32_t of) {
+          if (!has(block.makes, of)) put(block.uses, of);
+        });
+        for_each_made(step, [&](std::uint32_t of) { put(block.makes, of); });
+      }
+    }
+    bool grew = true;
+    while (grew) {
+      grew = false;
+      for (std::size_t b = blocks_.size(); b-- > 0;) {
+        Block& block = blocks_[b];
+        for (std::size_t w = 0; w < words; ++w) {
+          std::uint64_t out = 0;
+          for (const std::uint32_t next : block.next) out |= blocks_[next].in[w];
+          const std::uint64_t in = block.uses[w] | (out & ~block.makes[w]);
+          grew = grew || in != block.in[w] || out != block.out[w];
+          block.in[w] = in;
+          block.out[w] = out;
+        }
+      }
+    }
+    for (const Block& block : blocks_) {
+      for (std::uint32_t of = 0; of < program_.varying_count; ++of) {
+        if (has(block.in, of)) touch(of, 2 * block.first);
+        if (has(block.out, of)) touch(of, 2 * block.end);
+      }
+      for (std::uint32_t i = block.first; i < block.end; ++i) {
+        const ShaderStep& step = program_.steps[i];
+        // A step reads at 2 i and writes at 2 i + 1: a result may take an operand's place. Those
+        // that make several results, or read other lanes, begin before their operands end.
+        const bool at_once = step.op == number_of(ShaderOp::sample) ||
+                             step.op == number_of(ShaderOp::load_indexed) ||
+                             step.op == number_of(ShaderOp::store_indexed);
+        for_each_read(step, [&](std::uint32_t of) { touch(of, 2 * i + (at_once ? 2 : 0)); });
+        for_each_made(step, [&](std::uint32_t of) { touch(of, 2 * i + 1); });
+        for_each_made(step, [&](std::uint32_t of) {
+          if (at_once) touch(of, 2 * i);
+        });
+      }
+    }
+  }
+
+  void assign() {
+    // Rows keep their order, at the front.
+    given_.assign(program_.varying_count, kNever);
+    std::uint32_t next = 0;
+    for (const auto& [first, length] : rows_) {
+      for (std::uint32_t i = 0; i < length; ++i) given_[first + i] = next++;
+    }
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t i = 0; i < program_.varying_count; ++i) {
+      if (begin_[i] != kNever && given_[i] == kNever) order.push_back(i);
+    }
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return begin_[a] < begin_[b]; });
+    struct Taken {
+      std::uint32_t end, place;
+    };
+    std::vector<Taken> taken;
+    std::vector<std::uint32_t> open;
+    for (const std::uint32_t of : order) {
+      std::erase_if(taken, [&](const Taken& is) {
+        if (is.end > begin_[of]) return false;
+        open.push_back(is.place);
+        return true;
+      });
+      if (open.empty()) {
+        given_[of] = next++;
+      } else {
+        const auto least = std::min_element(open.begin(), open.end());
+        given_[of] = *least;
+        open.erase(least);
+      }
+      taken.push_back({std::max(end_[of], begin_[of] + 1), given_[of]});
+    }
+    program_.varying_count = next;
+  }
+
+  void rename() {
+    const auto give = [&](ShaderRegister& of) {
+      if (of.is_there && of.varies) of.number = given_[of.number];
+    };
+    for (ShaderStep& step : program_.steps) {
+      for (ShaderRegister* of : {&step.to, &step.a, &step.b, &step.c}) give(*of);
+    }
+    for (ShaderSampleRegisters& sample : program_.samples) {
+      for (auto* list : {&sample.texture, &sample.sampler, &sample.compared}) give(*list);
+      for (ShaderRegister& of : sample.at) give(of);
+      for (ShaderRegister& of : sample.more) give(of);
+      for (ShaderRegister& of : sample.offset) give(of);
+      for (ShaderRegister& of : sample.to) give(of);
+    }
+    for (auto& input : program_.inputs) give(input.to);
+    for (auto& output : program_.outputs) give(output.from);
+    give(program_.killed);
+  }
+};
+
+/// `v = ...` and then `variable = v`, with v used nowhere else: the variable is made at once.
+void join_copies(ShaderProgram& program) {
+  std::vector<std::uint32_t> reads(program.varying_count);
+  const auto count = [&](const ShaderRegister& of) {
+    if (of.is_there && of.varies) ++reads[of.number];
+  };
+  for (const ShaderStep& step : program.steps) {
+    for (const ShaderRegister& of : {step.a, step.b, step.c}) count(of);
+  }
+  for (const ShaderSampleRegisters& sample : program.samples) {
+    for (const ShaderRegister& of : sample.at) count(of);
+    for (const ShaderRegister& of : sample.more) count(of);
+    for (const ShaderRegister& of : sample.offset) count(of);
+    for (const ShaderRegister& of : {sample.texture, sample.sampler, sample.compared}) count(of);
+  }
+  for (std::size_t i = 1; i < program.steps.size(); ++i) {
+    ShaderStep& step = program.steps[i];
+    ShaderStep& before = program.steps[i - 1];
+    if (step.op != number_of(ShaderOp::copy) || !step.a.varies || !step.to.varies) continue;
+    if (before.op >= number_of(ShaderOp::load) || !before.to.is_there || !before.to.varies)
+      continue;
+    if (before.to.number != step.a.number || reads[step.a.number] != 1) continue;
+    before.to = step.to;
+    step.to = step.a = {};
+    step.op = number_of(StepOp::jump);  // to the next: dropped below
+    step.place = static_cast<std::uint32_t>(i) + 1;
+  }
+  // Jumps to the next step go.
+  std::vector<std::uint32_t> place(program.steps.size() + 1);
+  std::vector<ShaderStep> kept;
+  for (std::size_t i = 0; i < program.steps.size(); ++i) {
+    place[i] = static_cast<std::uint32_t>(kept.size());
+    const ShaderStep& step = program.steps[i];
+    if (step.op == number_of(StepOp::jump) && step.place == i + 1) continue;
+    kept.push_back(step);
+  }
+  place.back() = static_cast<std::uint32_t>(kept.size());
+  for (ShaderStep& step : kept) {
+    if (step.op == number_of(StepOp::jump) || step.op == number_of(StepOp::jump_if_none) ||
+        step.op == number_of(StepOp::jump_if_false)) {
+      step.place = place[step.place];
+    }
+  }
+  program.steps = std::move(kept);
+}
+
+}  // namespace
+
+ShaderProgram emit_program(const ShaderTree& tree) {
+  ShaderProgram program;
+  Emitter emitter{tree, program};
+  emitter.run();
+  join_copies(program);
+  Sharing{program, emitter.rows}.run();
+  return program;
+}
+
+}  // namespace softfocus

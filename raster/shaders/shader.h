@@ -1,0 +1,57 @@
+#pragma once
+// A user's shader on the emulated GPU: SPIR-V, with uniforms and textures, over every pixel of some
+// targets. docs/shaders.md says what a shader may be, docs/specification.md what each operation
+// gives: the same bits on every machine.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "raster/images/image.h"
+#include "raster/numbers/profile.h"
+#include "raster/shaders/lower_spirv.h"
+#include "raster/shaders/shader_lanes.h"
+#include "raster/threads/parallel.h"
+
+namespace softfocus {
+
+/// A shader whose uniforms are not set yet.
+struct Shader {
+  std::unique_ptr<const SpirvModule> module{};
+  ShaderUniforms uniforms{};
+};
+
+/// Throws ShaderError.
+Shader make_shader(std::vector<std::uint32_t> words);
+
+/// The uniform of that name ("tint", "light.colour", "tint[0]" is "tint"), or null.
+const ShaderUniform* find_uniform(const Shader& shader, std::string_view name);
+
+/// A shader with its uniforms: `words` as ShaderUniforms has them. Throws ShaderError.
+ShaderProgram compile_shader(const Shader& shader, std::span<const std::uint32_t> words);
+
+/// An input of the fragment shader in a pass over a whole picture.
+struct PassVarying {
+  enum class Is : std::uint8_t { u, v, constant } is{};
+  int location = 0, component = 0;
+  float value = 0.0f;  ///< of a constant
+};
+
+struct ShaderPass {
+  std::span<const ShaderTexture> textures{};  ///< by their numbers
+  /// By location; those without texels are left out. All of one size.
+  std::span<const ImageView> targets{};
+  std::span<const PassVarying> varyings{};
+  Profile profile{};
+  /// Turns of loops that a batch of pixels may take.
+  std::uint64_t budget = std::uint64_t{1} << 24;
+  int lanes = 0;  ///< that run together, for tests; 0: as many as are fastest
+};
+
+/// Runs the shader at every pixel. gl_FragCoord is (x + 1/2, y + 1/2) of column x and row y, the
+/// first row 0. Throws ShaderError if a loop takes more turns than the budget has.
+void run_shader(const ShaderProgram& program, const ShaderPass& pass, ThreadPool& pool);
+
+}  // namespace softfocus

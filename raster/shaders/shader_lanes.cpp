@@ -1,0 +1,784 @@
+#ifndef SOFTFOCUS_ISA
+// The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+
+#include "raster/shaders/shader_lanes.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "raster/images/decoded_texture.h"
+#include "raster/images/texel.h"
+#include "raster/numbers/fused.h"
+#include "raster/numbers/half.h"
+#include "raster/shaders/shader_kernels.h"
+
+#define SOFTFOCUS_KERNELS "raster/shaders/shader_lanes.cpp"
+#include "raster/lanes/for_each_isa.inl"
+
+namespace softfocus {
+namespace {
+
+constexpr std::uint8_t number_of(StepOp op) { return static_cast<std::uint8_t>(op); }
+
+bool steers(std::uint8_t op) { return op >= number_of(StepOp::jump); }
+
+}  // namespace
+
+std::uint32_t fold_shader_op(ShaderOp op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  constexpr std::size_t kLaneRoom = 16;
+  alignas(64) std::array<std::uint32_t, 4 * kLaneRoom> memory;
+  for (std::size_t i = 0; i < kLaneRoom; ++i) {
+    memory[i] = a;
+    memory[kLaneRoom + i] = b;
+    memory[2 * kLaneRoom + i] = c;
+  }
+  constexpr std::uint32_t kBytes = 4 * kLaneRoom;
+  LaneStep step{.to = 3 * kBytes, .a = 0, .b = kBytes, .c = 2 * kBytes, .vectors = 1};
+  LaneFrame frame{.memory = reinterpret_cast<std::byte*>(memory.data())};
+  const Isa isa = Isa::baseline;
+  SOFTFOCUS_KERNEL(isa, lane_function)(static_cast<std::uint8_t>(op))(step, frame);
+  return memory[3 * kLaneRoom];
+}
+
+LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa) {
+  LaneProgram made;
+  made.lanes = lanes;
+  made.unit_lanes = isa == Isa::avx512 ? 16 : isa == Isa::avx2 ? 8 : 4;
+#ifdef SOFTFOCUS_ONLY_LANES
+  made.unit_lanes = SOFTFOCUS_ONLY_LANES;
+#endif
+  const auto vector_bytes = static_cast<std::uint32_t>(4 * made.unit_lanes);
+  made.register_bytes = static_cast<std::uint32_t>(4 * lanes);
+  made.uniform_bytes = vector_bytes;
+  made.uniform_at = program.varying_count * made.register_bytes;
+  made.bytes = made.uniform_at + std::size_t{program.uniform_count} * vector_bytes;
+  const auto place = [&](const ShaderRegister& of) {
+    if (!of.is_there) return 0u;
+    return of.varies ? of.number * made.register_bytes : made.uniform_at + of.number * vector_bytes;
+  };
+  const auto next = [&](const ShaderRegister& of) {
+    return static_cast<std::uint16_t>(of.is_there && of.varies ? vector_bytes : 0);
+  };
+  const auto vectors = static_cast<std::uint16_t>(lanes / made.unit_lanes);
+  for (const ShaderStep& step : program.steps) {
+    LaneStep to{.to = place(step.to),
+                .a = place(step.a),
+                .b = place(step.b),
+                .c = place(step.c),
+                .a_next = next(step.a),
+                .b_next = next(step.b),
+                .c_next = next(step.c),
+                .vectors = step.to.is_there && !step.to.varies ? std::uint16_t{1} : vectors,
+                .place = step.place,
+                .count = step.count,
+                .stride = step.stride,
+                .op = step.op};
+    if (!steers(step.op)) to.run = SOFTFOCUS_KERNEL(isa, lane_function)(step.op);
+    if (step.op == static_cast<std::uint8_t>(ShaderOp::load_indexed) ||
+        step.op == static_cast<std::uint8_t>(ShaderOp::store_indexed)) {
+      to.stride *= made.register_bytes;
+      to.vectors = vectors;
+    }
+    if (step.op == number_of(StepOp::jump_if_none))
+      to.vectors = step.a.varies ? vectors : std::uint16_t{1};
+    made.steps.push_back(to);
+  }
+  for (const ShaderSampleRegisters& from : program.samples) {
+    const auto at = [&](const ShaderRegister& of) {
+      return LaneSample::At{place(of), next(of), of.is_there};
+    };
+    LaneSample to{.sample = from.sample,
+                  .texture = at(from.texture),
+                  .sampler = at(from.sampler),
+                  .compared = at(from.compared),
+                  .vectors = 1};
+    for (std::size_t i = 0; i < 4; ++i) to.at[i] = at(from.at[i]);
+    for (std::size_t i = 0; i < 6; ++i) to.more[i] = at(from.more[i]);
+    for (std::size_t i = 0; i < 3; ++i) to.offset[i] = at(from.offset[i]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      to.to[i] = at(from.to[i]);
+      if (to.to[i].next != 0) to.vectors = vectors;
+    }
+    made.samples.push_back(to);
+  }
+  made.tables = program.tables;
+  return made;
+}
+
+bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_t& stopped) {
+  const LaneStep* const steps = program.steps.data();
+  const LaneStep* step = steps;
+  for (;; ++step) {
+    if (step->run != nullptr) {
+      step->run(*step, frame);
+      continue;
+    }
+    switch (static_cast<StepOp>(step->op)) {
+      case StepOp::jump: step = steps + step->place - 1; break;
+      case StepOp::jump_if_none:
+        if (!SOFTFOCUS_KERNEL(isa, any_lane)(*step, frame)) step = steps + step->place - 1;
+        break;
+      case StepOp::jump_if_false: {
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, frame.memory + step->a, sizeof bits);
+        if (bits == 0) step = steps + step->place - 1;
+        break;
+      }
+      case StepOp::check_budget:
+        if (frame.budget-- == 0) {
+          stopped = static_cast<std::size_t>(step - steps);
+          return false;
+        }
+        break;
+      default: return true;
+    }
+  }
+}
+
+void store_lanes(Isa isa, const float* const* channels, const std::int32_t* killed, int count,
+                 Format format, const Profile& profile, std::byte* to) {
+  if (format == Format::rgba16f && killed == nullptr) {
+    SOFTFOCUS_KERNEL(isa, store_half_lanes)
+    (channels, count, profile.half_store, reinterpret_cast<std::uint16_t*>(to));
+    return;
+  }
+  Image one = make_image(format, 1, 1);
+  for (int i = 0; i < count; ++i) {
+    if (killed != nullptr && killed[i] != 0) continue;
+    store_texel(one, 0, 0, {channels[0][i], channels[1][i], channels[2][i], channels[3][i]},
+                profile);
+    std::memcpy(to + static_cast<std::size_t>(i) * bytes_per_texel(format), one.bytes.data(),
+                bytes_per_texel(format));
+  }
+}
+
+}  // namespace softfocus
+
+#else  // kernels
+
+#include "raster/images/sample_lanes.inl"
+#include "raster/shaders/math_lanes.inl"
+
+namespace {
+
+// --- operations ---
+
+// A number of each lane by a function of single numbers.
+template <class Number, class Function>
+SOFTFOCUS_INLINE Bits by_lane(Bits a, Bits b, Function function) {
+  Number of_a[kLanes], of_b[kLanes], made[kLanes];
+  std::memcpy(of_a, &a, sizeof a);
+  std::memcpy(of_b, &b, sizeof b);
+  for (int i = 0; i < kLanes; ++i) made[i] = function(of_a[i], of_b[i]);
+  Bits v;
+  std::memcpy(&v, made, sizeof v);
+  return v;
+}
+
+/// The integer part, of any float.
+SOFTFOCUS_INLINE Floats whole_part(Floats v) {
+  const Bits sign = as_bits(v) & 0x80000000u;
+  const Floats below = floor(absolute(v));
+  return as_floats(as_bits(below) | sign);
+}
+
+/// Bits `first` to `first + count - 1`, in the low bits; count 0 gives 0, and what lies beyond the
+/// 32nd bit is 0.
+SOFTFOCUS_INLINE Bits field(Bits v, Bits first, Bits count) {
+  const Bits moved = select((Mask)(first < 32u), v >> (first & 31u), splat(0u));
+  const Bits ones = select((Mask)(count < 32u), (splat(1u) << (count & 31u)) - 1u, splat(~0u));
+  return moved & ones;
+}
+SOFTFOCUS_INLINE Bits signed_field(Bits v, Bits first, Bits count) {
+  const Bits low = field(v, first, count);
+  const Bits sign =
+      select((Mask)((count > 0u) & (count < 32u)), splat(1u) << ((count - 1u) & 31u), splat(0u));
+  return (low ^ sign) - sign;
+}
+
+SOFTFOCUS_INLINE Bits bit_count(Bits v) {
+  v = v - (v >> 1 & 0x55555555u);
+  v = (v & 0x33333333u) + (v >> 2 & 0x33333333u);
+  v = (v + (v >> 4)) & 0x0F0F0F0Fu;
+  return v * 0x01010101u >> 24;
+}
+SOFTFOCUS_INLINE Bits reversed(Bits v) {
+  v = (v >> 1 & 0x55555555u) | (v & 0x55555555u) << 1;
+  v = (v >> 2 & 0x33333333u) | (v & 0x33333333u) << 2;
+  v = (v >> 4 & 0x0F0F0F0Fu) | (v & 0x0F0F0F0Fu) << 4;
+  v = (v >> 8 & 0x00FF00FFu) | (v & 0x00FF00FFu) << 8;
+  return v >> 16 | v << 16;
+}
+/// The number of the highest bit that is set; -1 if none is.
+SOFTFOCUS_INLINE Bits highest_bit(Bits v) {
+  v |= v >> 1;
+  v |= v >> 2;
+  v |= v >> 4;
+  v |= v >> 8;
+  v |= v >> 16;
+  return bit_count(v) - 1u;
+}
+
+// Division by 0 gives all bits; the least number divided by -1 is itself, and leaves 0.
+struct DivideUnsigned {
+  std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return b == 0 ? ~0u : a / b; }
+};
+struct ModuloUnsigned {
+  std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const { return b == 0 ? ~0u : a % b; }
+};
+struct DivideSigned {
+  std::int32_t operator()(std::int32_t a, std::int32_t b) const {
+    if (b == 0) return -1;
+    return b == -1 ? static_cast<std::int32_t>(0u - static_cast<std::uint32_t>(a)) : a / b;
+  }
+};
+struct RemainderSigned {
+  std::int32_t operator()(std::int32_t a, std::int32_t b) const {
+    if (b == 0) return -1;
+    return b == -1 ? 0 : a % b;
+  }
+};
+struct ModuloSigned {
+  std::int32_t operator()(std::int32_t a, std::int32_t b) const {
+    const std::int32_t rest = RemainderSigned{}(a, b);
+    return b != 0 && rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+  }
+};
+struct HighUnsigned {
+  std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const {
+    return static_cast<std::uint32_t>(std::uint64_t{a} * b >> 32);
+  }
+};
+struct HighSigned {
+  std::uint32_t operator()(std::int32_t a, std::int32_t b) const {
+    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::int64_t{a} * b) >> 32);
+  }
+};
+/// x = mantissa 2^exponent with 1/2 <= |mantissa| < 1; 0, infinities and NaN are their own
+/// mantissa, with exponent 0.
+struct MantissaOf {
+  float operator()(float x, float) const {
+    int exponent = 0;
+    return x - x != 0.0f ? x : std::frexp(x, &exponent);
+  }
+};
+struct ExponentOf {
+  std::int32_t operator()(float x) const {
+    int exponent = 0;
+    if (x - x == 0.0f) static_cast<void>(std::frexp(x, &exponent));
+    return exponent;
+  }
+};
+/// x 2^n, rounded once.
+struct Scale {
+  float operator()(float x, std::int32_t n) const {
+    return std::ldexp(x, n < -400 ? -400 : n > 400 ? 400 : n);
+  }
+};
+
+template <ShaderOp op>
+SOFTFOCUS_INLINE Bits apply(Bits a, Bits b, Bits c) {
+  using Op = ShaderOp;
+  const Floats x = as_floats(a), y = as_floats(b);
+  const Ints i = as_ints(a), j = as_ints(b);
+  static_cast<void>(x), static_cast<void>(y), static_cast<void>(i), static_cast<void>(j);
+  static_cast<void>(c);
+  if constexpr (op == Op::add) return as_bits(x + y);
+  if constexpr (op == Op::subtract) return as_bits(x - y);
+  if constexpr (op == Op::multiply) return as_bits(x * y);
+  if constexpr (op == Op::divide) return as_bits(x / y);
+  if constexpr (op == Op::negate) return a ^ 0x80000000u;
+  if constexpr (op == Op::absolute) return a & 0x7FFFFFFFu;
+  if constexpr (op == Op::minimum) return as_bits(smaller(y, x));
+  if constexpr (op == Op::maximum) return as_bits(select(x < y, y, x));
+  if constexpr (op == Op::floor) return as_bits(floor(x));
+  if constexpr (op == Op::ceiling) {
+    return as_bits(floor(as_floats(a ^ 0x80000000u))) ^ 0x80000000u;
+  }
+  if constexpr (op == Op::truncate) return as_bits(whole_part(x));
+  if constexpr (op == Op::round_even) return as_bits(nearest(x));
+  if constexpr (op == Op::fraction) return as_bits(x - floor(x));
+  if constexpr (op == Op::sign) {
+    const Floats below = select(x < 0.0f, splat(-1.0f), splat(0.0f));
+    return as_bits(select(x > 0.0f, splat(1.0f), below));
+  }
+  if constexpr (op == Op::square_root) return as_bits(square_root(x));
+  if constexpr (op == Op::fused_multiply_add) {
+    return as_bits(fused_multiply_add(x, y, as_floats(c)));
+  }
+  if constexpr (op == Op::remainder) return as_bits(x - y * whole_part(x / y));
+  if constexpr (op == Op::modulo) return as_bits(x - y * floor(x / y));
+  if constexpr (op == Op::inverse_square_root) return as_bits(inverse_square_root(x));
+  if constexpr (op == Op::sine) return as_bits(sine(x));
+  if constexpr (op == Op::cosine) return as_bits(cosine(x));
+  if constexpr (op == Op::tangent) return as_bits(tangent(x));
+  if constexpr (op == Op::arc_sine) return as_bits(arcsine(x));
+  if constexpr (op == Op::arc_cosine) return as_bits(arccosine(x));
+  if constexpr (op == Op::arc_tangent) return as_bits(arctangent(x));
+  if constexpr (op == Op::arc_tangent_2) return as_bits(arctangent(x, y));
+  if constexpr (op == Op::hyperbolic_sine) return as_bits(hyperbolic_sine(x));
+  if constexpr (op == Op::hyperbolic_cosine) return as_bits(hyperbolic_cosine(x));
+  if constexpr (op == Op::hyperbolic_tangent) return as_bits(hyperbolic_tangent(x));
+  if constexpr (op == Op::area_sine) return as_bits(inverse_hyperbolic_sine(x));
+  if constexpr (op == Op::area_cosine) return as_bits(inverse_hyperbolic_cosine(x));
+  if constexpr (op == Op::area_tangent) return as_bits(inverse_hyperbolic_tangent(x));
+  if constexpr (op == Op::exponential) return as_bits(exponential(x));
+  if constexpr (op == Op::logarithm) return as_bits(logarithm(x));
+  if constexpr (op == Op::exponential_2) return as_bits(binary_exponential(x));
+  if constexpr (op == Op::logarithm_2) return as_bits(binary_logarithm(x));
+  if constexpr (op == Op::power) return as_bits(power(x, y));
+  if constexpr (op == Op::mantissa_of) return by_lane<float>(a, b, MantissaOf{});
+  if constexpr (op == Op::scale_by_exponent || op == Op::exponent_of) {
+    float of_x[kLanes];
+    std::int32_t of_n[kLanes];
+    std::memcpy(of_x, &a, sizeof a);
+    std::memcpy(of_n, &b, sizeof b);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if constexpr (op == Op::exponent_of) of_n[lane] = ExponentOf{}(of_x[lane]);
+      if constexpr (op == Op::scale_by_exponent) of_x[lane] = Scale{}(of_x[lane], of_n[lane]);
+    }
+    Bits made;
+    std::memcpy(&made, op == Op::exponent_of ? static_cast<const void*>(of_n) : of_x, sizeof made);
+    return made;
+  }
+  if constexpr (op == Op::add_integers) return a + b;
+  if constexpr (op == Op::subtract_integers) return a - b;
+  if constexpr (op == Op::multiply_integers) return a * b;
+  if constexpr (op == Op::negate_integer) return 0u - a;
+  if constexpr (op == Op::absolute_integer) return select((Mask)(i < 0), 0u - a, a);
+  if constexpr (op == Op::sign_integer) return select((Mask)(i > 0), splat(1u), as_bits(i >> 31));
+  if constexpr (op == Op::divide_unsigned) return by_lane<std::uint32_t>(a, b, DivideUnsigned{});
+  if constexpr (op == Op::modulo_unsigned) return by_lane<std::uint32_t>(a, b, ModuloUnsigned{});
+  if constexpr (op == Op::divide_signed) return by_lane<std::int32_t>(a, b, DivideSigned{});
+  if constexpr (op == Op::remainder_signed) return by_lane<std::int32_t>(a, b, RemainderSigned{});
+  if constexpr (op == Op::modulo_signed) return by_lane<std::int32_t>(a, b, ModuloSigned{});
+  if constexpr (op == Op::multiply_high_unsigned) {
+    return by_lane<std::uint32_t>(a, b, HighUnsigned{});
+  }
+  if constexpr (op == Op::multiply_high_signed) return by_lane<std::int32_t>(a, b, HighSigned{});
+  if constexpr (op == Op::minimum_signed) return as_bits(smaller(i, j));
+  if constexpr (op == Op::maximum_signed) return as_bits(larger(i, j));
+  if constexpr (op == Op::minimum_unsigned) return select((Mask)(a < b), a, b);
+  if constexpr (op == Op::maximum_unsigned) return select((Mask)(a > b), a, b);
+  if constexpr (op == Op::shift_left) return a << (b & 31u);
+  if constexpr (op == Op::shift_right) return a >> (b & 31u);
+  if constexpr (op == Op::shift_right_signed) return as_bits(i >> as_ints(b & 31u));
+  if constexpr (op == Op::bit_and) return a & b;
+  if constexpr (op == Op::bit_or) return a | b;
+  if constexpr (op == Op::bit_xor) return a ^ b;
+  if constexpr (op == Op::bit_not) return ~a;
+  if constexpr (op == Op::count_bits) return bit_count(a);
+  if constexpr (op == Op::reverse_bits) return reversed(a);
+  if constexpr (op == Op::lowest_bit) {
+    return select((Mask)(a == 0u), splat(~0u), bit_count((a & (0u - a)) - 1u));
+  }
+  if constexpr (op == Op::highest_bit_unsigned) return highest_bit(a);
+  if constexpr (op == Op::highest_bit_signed) return highest_bit(a ^ as_bits(i >> 31));
+  if constexpr (op == Op::extract_bits_unsigned) return field(a, b, c);
+  if constexpr (op == Op::extract_bits_signed) return signed_field(a, b, c);
+  if constexpr (op == Op::equal) return as_bits((Mask)(x == y));
+  if constexpr (op == Op::not_equal) return as_bits((Mask)(x != y));
+  if constexpr (op == Op::less) return as_bits((Mask)(x < y));
+  if constexpr (op == Op::less_equal) return as_bits((Mask)(x <= y));
+  if constexpr (op == Op::equal_integers) return as_bits((Mask)(a == b));
+  if constexpr (op == Op::less_signed) return as_bits((Mask)(i < j));
+  if constexpr (op == Op::less_equal_signed) return as_bits((Mask)(i <= j));
+  if constexpr (op == Op::less_unsigned) return as_bits((Mask)(a < b));
+  if constexpr (op == Op::less_equal_unsigned) return as_bits((Mask)(a <= b));
+  if constexpr (op == Op::is_infinite) {
+    return as_bits((Mask)((a & 0x7FFFFFFFu) == 0x7F800000u));
+  }
+  if constexpr (op == Op::select) return select((Mask)as_ints(a), b, c);
+  if constexpr (op == Op::to_signed) return as_bits(truncate_to_int(x));
+  if constexpr (op == Op::to_unsigned) {
+    const Bits upper = as_bits(truncate_to_int(x - 0x1p31f)) ^ 0x80000000u;
+    return select((Mask)(x < 0x1p31f), as_bits(truncate_to_int(x)), upper);
+  }
+  if constexpr (op == Op::from_signed) return as_bits(to_floats(i));
+  if constexpr (op == Op::from_unsigned) {
+    // Exact halves, and one rounding.
+    return as_bits(to_floats(as_ints(a >> 16)) * 65536.0f + to_floats(as_ints(a & 0xFFFFu)));
+  }
+  if constexpr (op == Op::to_half) return float_to_half<HalfRounding::nearest_even>(x);
+  if constexpr (op == Op::from_half) return as_bits(half_to_float(a & 0xFFFFu));
+  if constexpr (op == Op::copy) return a;
+  return a;
+}
+
+// --- steps ---
+
+constexpr bool is_binary(ShaderOp op) {
+  using enum ShaderOp;
+  switch (op) {
+    case negate:
+    case absolute:
+    case ShaderOp::floor:
+    case ceiling:
+    case ShaderOp::truncate:
+    case round_even:
+    case fraction:
+    case sign:
+    case ShaderOp::square_root:
+    case copy: return false;
+    default: return true;
+  }
+}
+constexpr bool is_ternary(ShaderOp op) {
+  using enum ShaderOp;
+  return op == ShaderOp::fused_multiply_add || op == ShaderOp::select ||
+         op == extract_bits_signed || op == extract_bits_unsigned;
+}
+
+SOFTFOCUS_INLINE Bits bits_at(const std::byte* from) {
+  Bits v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+SOFTFOCUS_INLINE void put_bits(std::byte* to, Bits v) { std::memcpy(to, &v, sizeof v); }
+
+template <ShaderOp op>
+void run_step(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  const std::byte* b = frame.memory + step.b;
+  const std::byte* c = frame.memory + step.c;
+  std::byte* to = frame.memory + step.to;
+  for (int n = step.vectors; n > 0; --n) {
+    Bits of_b{}, of_c{};
+    if constexpr (is_binary(op)) {
+      of_b = bits_at(b);
+      b += step.b_next;
+    }
+    if constexpr (is_ternary(op)) {
+      of_c = bits_at(c);
+      c += step.c_next;
+    }
+    put_bits(to, apply<op>(bits_at(a), of_b, of_c));
+    a += step.a_next;
+    to += sizeof(Bits);
+  }
+}
+
+void run_and_not(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  const std::byte* b = frame.memory + step.b;
+  std::byte* to = frame.memory + step.to;
+  for (int n = step.vectors; n > 0; --n) {
+    put_bits(to, bits_at(a) & ~bits_at(b));
+    a += step.a_next;
+    b += step.b_next;
+    to += sizeof(Bits);
+  }
+}
+
+void run_masked_copy(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  const std::byte* b = frame.memory + step.b;
+  std::byte* to = frame.memory + step.to;
+  for (int n = step.vectors; n > 0; --n) {
+    put_bits(to, select((Mask)as_ints(bits_at(b)), bits_at(a), bits_at(to)));
+    a += step.a_next;
+    b += step.b_next;
+    to += sizeof(Bits);
+  }
+}
+
+// --- differences in each four lanes: 0 1 above 2 3 ---
+
+SOFTFOCUS_INLINE Floats along_x(Floats v) {
+  const Mask upper = (lane_numbers() & 2) == 0;
+  return select(upper, spread<1>(v) - spread<0>(v), spread<3>(v) - spread<2>(v));
+}
+SOFTFOCUS_INLINE Floats along_y(Floats v) {
+  const Mask left = (lane_numbers() & 1) == 0;
+  return select(left, spread<2>(v) - spread<0>(v), spread<3>(v) - spread<1>(v));
+}
+
+template <ShaderOp op>
+void run_derivative(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  std::byte* to = frame.memory + step.to;
+  for (int n = step.vectors; n > 0; --n) {
+    const Floats v = as_floats(bits_at(a));
+    Floats made = along_y(v);
+    if constexpr (op == ShaderOp::derivative_x) made = along_x(v);
+    if constexpr (op == ShaderOp::derivative_x_coarse) made = spread<1>(v) - spread<0>(v);
+    if constexpr (op == ShaderOp::derivative_y_coarse) made = spread<2>(v) - spread<0>(v);
+    put_bits(to, as_bits(made));
+    a += step.a_next;
+    to += sizeof(Bits);
+  }
+}
+
+// --- memory by an index ---
+
+SOFTFOCUS_INLINE std::int32_t clamped_index(std::int32_t index, std::uint32_t count) {
+  return index < 0                                   ? 0
+         : index >= static_cast<std::int32_t>(count) ? static_cast<std::int32_t>(count) - 1
+                                                     : index;
+}
+
+// a: the index; b: the first register.
+void run_load_indexed(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  const std::byte* from = frame.memory + step.b;
+  std::byte* to = frame.memory + step.to;
+  for (int n = step.vectors; n > 0; --n) {
+    std::int32_t index[kLanes];
+    std::uint32_t made[kLanes];
+    std::memcpy(index, a, sizeof index);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto at = static_cast<std::size_t>(clamped_index(index[lane], step.count));
+      std::memcpy(&made[lane], from + at * step.stride + 4 * lane, 4);
+    }
+    std::memcpy(to, made, sizeof made);
+    a += step.a_next;
+    from += sizeof(Bits);
+    to += sizeof(Bits);
+  }
+}
+// a: the index; b: what is stored where c.
+void run_store_indexed(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  const std::byte* b = frame.memory + step.b;
+  const std::byte* c = frame.memory + step.c;
+  std::byte* to = frame.memory + step.to;
+  for (int n = step.vectors; n > 0; --n) {
+    std::int32_t index[kLanes], mask[kLanes];
+    std::uint32_t value[kLanes];
+    std::memcpy(index, a, sizeof index);
+    std::memcpy(value, b, sizeof value);
+    std::memcpy(mask, c, sizeof mask);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (mask[lane] == 0) continue;
+      const auto at = static_cast<std::size_t>(clamped_index(index[lane], step.count));
+      std::memcpy(to + at * step.stride + 4 * lane, &value[lane], 4);
+    }
+    a += step.a_next;
+    b += step.b_next;
+    c += step.c_next;
+    to += sizeof(Bits);
+  }
+}
+void run_load_constant(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  std::byte* to = frame.memory + step.to;
+  const std::uint32_t* table = frame.tables.data() + step.place;
+  for (int n = step.vectors; n > 0; --n) {
+    std::int32_t index[kLanes];
+    std::uint32_t made[kLanes];
+    std::memcpy(index, a, sizeof index);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      made[lane] =
+          table[static_cast<std::size_t>(clamped_index(index[lane], step.count)) * step.stride];
+    }
+    std::memcpy(to, made, sizeof made);
+    a += step.a_next;
+    to += sizeof(Bits);
+  }
+}
+
+// --- textures ---
+
+SOFTFOCUS_INLINE Ints numbers_of(const LaneSample::At& at, const LaneFrame& frame, int vector) {
+  if (!at.is_there) return Ints{};
+  return as_ints(bits_at(frame.memory + at.place + static_cast<std::size_t>(vector) * at.next));
+}
+SOFTFOCUS_INLINE void put_result(const LaneSample& sample, int channel, LaneFrame& frame,
+                                 int vector, Bits v) {
+  const LaneSample::At& at = sample.to[static_cast<std::size_t>(channel)];
+  if (at.is_there) {
+    put_bits(frame.memory + at.place + static_cast<std::size_t>(vector) * at.next, v);
+  }
+}
+
+/// Texels of halves by whole numbers; those outside of the texture are 0.
+void fetch_half_texels(const LaneSample& sample, const Image& level, LaneFrame& frame) {
+  const auto stride = static_cast<std::int32_t>(level.stride_bytes / 8);
+  const auto* texels = reinterpret_cast<const std::uint16_t*>(level.bytes.data());
+  for (int vector = 0; vector < static_cast<int>(sample.vectors); ++vector) {
+    const Ints x =
+        numbers_of(sample.at[0], frame, vector) + numbers_of(sample.offset[0], frame, vector);
+    const Ints y =
+        numbers_of(sample.at[1], frame, vector) + numbers_of(sample.offset[1], frame, vector);
+    const Mask inside = (Mask)(as_bits(x) < static_cast<std::uint32_t>(level.width)) &
+                        (Mask)(as_bits(y) < static_cast<std::uint32_t>(level.height));
+    HalfTexels found;
+    const Ints in_row = splat(x[0]) + lane_numbers();
+    if (all(inside & (x == in_row) & (y == splat(y[0])))) {
+      found = load_half_texels(texels + 4 * (static_cast<std::ptrdiff_t>(y[0]) * stride + x[0]));
+    } else {
+      // Pairs of halves, the first in the low bits of little-endian machines.
+      const Ints at = (y * stride + x) & inside;
+      const auto* pairs = reinterpret_cast<const std::int32_t*>(texels);
+      const IntPairs words = gather_pairs(pairs, at);
+      const Bits first = as_bits(words.first & inside), second = as_bits(words.second & inside);
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+      found = {first >> 16, first & 0xFFFFu, second >> 16, second & 0xFFFFu};
+#else
+      found = {first & 0xFFFFu, first >> 16, second & 0xFFFFu, second >> 16};
+#endif
+    }
+    put_result(sample, 0, frame, vector, as_bits(half_to_float(found.r)));
+    put_result(sample, 1, frame, vector, as_bits(half_to_float(found.g)));
+    put_result(sample, 2, frame, vector, as_bits(half_to_float(found.b)));
+    put_result(sample, 3, frame, vector, as_bits(half_to_float(found.a)));
+  }
+}
+
+/// Where a lane samples, of a side of a texture with that many texels.
+SOFTFOCUS_INLINE Floats place_of(const LaneSample& sample, int axis, int size,
+                                 const LaneFrame& frame, int vector) {
+  const auto number = static_cast<std::size_t>(axis);
+  if (!sample.at[number].is_there) return splat(0.5f);
+  Floats at = as_floats(as_bits(numbers_of(sample.at[number], frame, vector)));
+  if (sample.sample.dim == SpirvDim::one && axis == 1) at = splat(0.5f);
+  if (sample.sample.dim == SpirvDim::rectangle) at = at / static_cast<float>(size);
+  if (sample.offset[number].is_there) {
+    at += to_floats(numbers_of(sample.offset[number], frame, vector)) / static_cast<float>(size);
+  }
+  return at;
+}
+
+SOFTFOCUS_INLINE Floats floats_of(const LaneSample::At& at, const LaneFrame& frame, int vector) {
+  return as_floats(as_bits(numbers_of(at, frame, vector)));
+}
+
+SOFTFOCUS_INLINE Floats level_of(const LaneSample& sample, const ShaderTexture& from,
+                                 const LaneFrame& frame, int vector) {
+  const Profile& profile = *frame.profile;
+  switch (sample.sample.kind) {
+    case SampleKind::level: return floats_of(sample.more[0], frame, vector);
+    case SampleKind::gradient:
+      return level_of_detail_lanes(*from.decoded, profile, floats_of(sample.more[0], frame, vector),
+                                   floats_of(sample.more[1], frame, vector),
+                                   floats_of(sample.more[3], frame, vector),
+                                   floats_of(sample.more[4], frame, vector));
+    default: break;
+  }
+  if (from.texture->levels.size() == 1) return splat(0.0f);
+  const Floats u = floats_of(sample.at[0], frame, vector);
+  const Floats v = floats_of(sample.at[1], frame, vector);
+  return level_of_detail_lanes(*from.decoded, profile, along_x(u), along_x(v), along_y(u),
+                               along_y(v)) +
+         floats_of(sample.more[0], frame, vector);
+}
+
+/// Filtered texels, by the profile's texture unit.
+void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFrame& frame) {
+  alignas(64) std::array<float, kMostSampled * kLanes> u, v, lod;
+  std::array<RgbaLanes, kMostSampled> colours;
+  const Image& base = from.texture->levels.front();
+  const int vectors = static_cast<int>(sample.vectors);
+  for (int first = 0; first < vectors; first += kMostSampled) {
+    const int count = std::min(kMostSampled, vectors - first);
+    for (int i = 0; i < count; ++i) {
+      store(u.data() + i * kLanes, place_of(sample, 0, base.width, frame, first + i));
+      store(v.data() + i * kLanes, place_of(sample, 1, base.height, frame, first + i));
+      store(lod.data() + i * kLanes, level_of(sample, from, frame, first + i));
+    }
+    sample_vectors(Isa::SOFTFOCUS_ISA, *from.decoded, from.sampler, *frame.profile,
+                   {u.data(), v.data(), lod.data()}, count, colours.data());
+    for (int i = 0; i < count; ++i) {
+      const RgbaLanes& colour = colours[static_cast<std::size_t>(i)];
+      if (sample.compared.is_there) {
+        const Mask passes = floats_of(sample.compared, frame, first + i) <= colour.r;
+        put_result(sample, 0, frame, first + i, as_bits(select(passes, splat(1.0f), splat(0.0f))));
+        continue;
+      }
+      put_result(sample, 0, frame, first + i, as_bits(colour.r));
+      put_result(sample, 1, frame, first + i, as_bits(colour.g));
+      put_result(sample, 2, frame, first + i, as_bits(colour.b));
+      put_result(sample, 3, frame, first + i, as_bits(colour.a));
+    }
+  }
+}
+
+void run_sample(const LaneStep& step, LaneFrame& frame) {
+  const LaneSample& sample = frame.samples[step.place];
+  const ShaderSample& of = sample.sample;
+  const ShaderTexture* from = sample.texture.next == 0 ? texture_of(sample, frame) : nullptr;
+  if (from == nullptr || of.is_integer) return sample_by_lane(sample, frame, kLanes);
+  if (of.kind == SampleKind::fetch && of.dim == SpirvDim::two && sample.more[0].next == 0) {
+    const std::int32_t level = numbers_of(sample.more[0], frame, 0)[0];
+    if (level >= 0 && level < std::ssize(from->texture->levels)) {
+      const Image& image = from->texture->levels[static_cast<std::size_t>(level)];
+      if (image.format == Format::rgba16f && frame.profile->texture_unit == TextureUnit::standard) {
+        return fetch_half_texels(sample, image, frame);
+      }
+    }
+  }
+  const bool filters = of.kind == SampleKind::implicit || of.kind == SampleKind::level ||
+                       of.kind == SampleKind::gradient;
+  if (filters && from->decoded != nullptr) return sample_texels(sample, *from, frame);
+  sample_by_lane(sample, frame, kLanes);
+}
+
+// --- the table ---
+
+template <ShaderOp op>
+constexpr LaneFunction function_of() {
+  using enum ShaderOp;
+  if constexpr (op < derivative_x || op == copy) return run_step<op>;
+  if constexpr (op >= derivative_x && op <= derivative_y_coarse) return run_derivative<op>;
+  if constexpr (op == load_indexed) return run_load_indexed;
+  if constexpr (op == store_indexed) return run_store_indexed;
+  if constexpr (op == load_constant) return run_load_constant;
+  if constexpr (op == ShaderOp::sample) return run_sample;
+  return nullptr;
+}
+
+template <std::size_t... number>
+constexpr std::array<LaneFunction, sizeof...(number)> all_functions(
+    std::index_sequence<number...>) {
+  return {function_of<static_cast<ShaderOp>(number)>()...};
+}
+
+}  // namespace
+
+LaneFunction lane_function(std::uint8_t op) {
+  constexpr auto kLast = static_cast<std::size_t>(ShaderOp::copy);
+  static constexpr auto kFunctions = all_functions(std::make_index_sequence<kLast + 1>{});
+  if (op <= kLast) return kFunctions[op];
+  return op == static_cast<std::uint8_t>(StepOp::and_not) ? run_and_not : run_masked_copy;
+}
+
+bool any_lane(const LaneStep& step, const LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  Bits joined{};
+  for (int n = step.vectors; n > 0; --n) {
+    joined |= bits_at(a);
+    a += sizeof(Bits);
+  }
+  return any((Mask)as_ints(joined) != 0);
+}
+
+template <HalfRounding rounding>
+void store_half_lanes_rounded(const float* const* channels, int count, std::uint16_t* to) {
+  for (int x = 0; x < count; x += kLanes) {
+    const HalfTexels texels{float_to_half<rounding>(load(channels[0] + x)),
+                            float_to_half<rounding>(load(channels[1] + x)),
+                            float_to_half<rounding>(load(channels[2] + x)),
+                            float_to_half<rounding>(load(channels[3] + x))};
+    if (x + kLanes <= count) {
+      store_half_texels(to + 4 * x, texels);
+    } else {
+      std::uint16_t last[4 * kLanes];
+      store_half_texels(last, texels);
+      std::memcpy(to + 4 * x, last, 8 * static_cast<std::size_t>(count - x));
+    }
+  }
+}
+
+void store_half_lanes(const float* const* channels, int count, HalfRounding rounding,
+                      std::uint16_t* to) {
+  using enum HalfRounding;
+  switch (rounding) {
+    case nearest_even: return store_half_lanes_rounded<nearest_even>(channels, count, to);
+    case toward_zero: return store_half_lanes_rounded<toward_zero>(channels, count, to);
+    case swiftshader: return store_half_lanes_rounded<swiftshader>(channels, count, to);
+  }
+}
+
+#endif

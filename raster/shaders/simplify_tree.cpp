@@ -1,0 +1,709 @@
+#include "raster/shaders/simplify_tree.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "raster/shaders/shader_kernels.h"
+
+namespace softfocus {
+namespace {
+
+using enum ShaderNodeKind;
+
+bool is_exit(const ShaderNode& node) { return node.kind == ShaderNodeKind::exit; }
+
+bool has_exit_to(const ShaderRegion& region, std::uint32_t scope) {
+  return std::any_of(region.begin(), region.end(), [&](const ShaderNode& node) {
+    return (is_exit(node) && node.scope == scope) ||
+           (node.first && has_exit_to(*node.first, scope)) ||
+           (node.second && has_exit_to(*node.second, scope));
+  });
+}
+
+// --- exits that are where a region ends anyway ---
+
+using Scopes = std::vector<std::uint32_t>;
+
+bool is_among(const Scopes& scopes, std::uint32_t scope) {
+  return std::find(scopes.begin(), scopes.end(), scope) != scopes.end();
+}
+
+bool ends_with_exit(const ShaderRegion& region, const Scopes& to) {
+  return !region.empty() && is_exit(region.back()) && is_among(to, region.back().scope);
+}
+
+void append(ShaderRegion& to, ShaderRegion&& from) {
+  std::move(from.begin(), from.end(), std::back_inserter(to));
+}
+
+/// `tails`: scopes that end where the region ends. `if (a) return; rest` becomes `if (a) {} else
+/// rest`, and no lane needs to wait.
+void settle_exits(ShaderRegion& region, const Scopes& tails, int depth) {
+  constexpr int kDeepest = 100;
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    if (is_exit(region[i])) region.resize(i + 1);
+    if (i + 1 >= region.size() || region[i].kind != branch || depth > kDeepest) continue;
+    const bool first = ends_with_exit(*region[i].first, tails);
+    const bool second = ends_with_exit(*region[i].second, tails);
+    if (!first && !second) continue;
+    ShaderRegion rest(std::make_move_iterator(region.begin() + static_cast<std::ptrdiff_t>(i) + 1),
+                      std::make_move_iterator(region.end()));
+    region.resize(i + 1);
+    if (!first || !second) append(first ? *region[i].second : *region[i].first, std::move(rest));
+  }
+  if (ends_with_exit(region, tails)) region.pop_back();
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    ShaderNode& node = region[i];
+    const bool is_last = i + 1 == region.size();
+    if (node.kind == branch) {
+      settle_exits(*node.first, is_last ? tails : Scopes{}, depth + 1);
+      settle_exits(*node.second, is_last ? tails : Scopes{}, depth + 1);
+    } else if (node.kind == scope) {
+      Scopes inner = is_last && !node.loops ? tails : Scopes{};
+      if (!node.loops) inner.push_back(node.scope);
+      settle_exits(*node.first, inner, depth + 1);
+    }
+  }
+  // A scope that nothing leaves early is part of its region.
+  ShaderRegion flat;
+  flat.reserve(region.size());
+  for (ShaderNode& node : region) {
+    if (node.kind == scope && !node.loops && !has_exit_to(*node.first, node.scope)) {
+      append(flat, std::move(*node.first));
+    } else {
+      flat.push_back(std::move(node));
+    }
+  }
+  region = std::move(flat);
+}
+
+// --- values that are used beyond the region that makes them ---
+
+class Exports {
+ public:
+  explicit Exports(ShaderTree& tree) : tree_(tree), made_in_(tree.values.size(), kNowhere) {}
+
+  void run() {
+    find(tree_.main, 0);
+    if (variable_of_.empty()) return;
+    put(tree_.main, 0);
+    ShaderRegion all;
+    for (const auto& [value, variable] : variable_of_) {
+      ShaderNode node;
+      node.instruction.op = ShaderOp::store;
+      node.instruction.place = variable;
+      node.instruction.a = tree_.constant(0);
+      all.push_back(std::move(node));
+    }
+    append(all, std::move(tree_.main));
+    tree_.main = std::move(all);
+  }
+
+ private:
+  static constexpr std::uint32_t kNowhere = 0xFFFFFFFF;
+  ShaderTree& tree_;
+  std::vector<std::uint32_t> made_in_;
+  std::vector<std::uint32_t> parent_{0};
+  std::unordered_map<ShaderValue, ShaderVariable> variable_of_{};
+  std::uint32_t next_ = 1;
+
+  bool reaches(ShaderValue value, std::uint32_t region) const {
+    if (tree_.is_constant(value)) return true;
+    const std::uint32_t from = made_in_[value];
+    while (region != from && region != 0) region = parent_[region];
+    return region == from;
+  }
+  void need(ShaderValue value, std::uint32_t region) {
+    if (reaches(value, region)) return;
+    variable_of_.try_emplace(value, tree_.variable_count);
+    if (variable_of_.at(value) == tree_.variable_count) ++tree_.variable_count;
+  }
+  void find(ShaderRegion& region, std::uint32_t number) {
+    for (ShaderNode& node : region) {
+      if (node.kind == instruction) {
+        for_each_operand(tree_, node.instruction, [&](ShaderValue of) { need(of, number); });
+        for_each_result(tree_, node.instruction, [&](ShaderValue of) { made_in_[of] = number; });
+        continue;
+      }
+      if (node.kind == branch) need(node.instruction.a, number);
+      for (auto* side : {&node.first, &node.second}) {
+        if (!*side) continue;
+        parent_.push_back(number);
+        find(**side, static_cast<std::uint32_t>(parent_.size()) - 1);
+      }
+    }
+  }
+
+  ShaderValue loaded(ShaderValue value, std::uint32_t region, ShaderRegion& to) {
+    if (reaches(value, region)) return value;
+    ShaderNode node;
+    node.instruction.op = ShaderOp::load;
+    node.instruction.place = variable_of_.at(value);
+    node.instruction.to = tree_.new_value();
+    made_in_.push_back(region);
+    to.push_back(std::move(node));
+    return static_cast<ShaderValue>(tree_.values.size() - 1);
+  }
+  void put(ShaderRegion& region, std::uint32_t number) {
+    ShaderRegion to;
+    to.reserve(region.size());
+    for (ShaderNode& node : region) {
+      if (node.kind == instruction) {
+        for_each_operand(tree_, node.instruction,
+                         [&](ShaderValue& of) { of = loaded(of, number, to); });
+        const ShaderInstruction in = node.instruction;
+        to.push_back(std::move(node));
+        for_each_result(tree_, in, [&](ShaderValue of) {
+          const auto found = variable_of_.find(of);
+          if (found == variable_of_.end()) return;
+          ShaderNode store;
+          store.instruction.op = ShaderOp::store;
+          store.instruction.place = found->second;
+          store.instruction.a = of;
+          to.push_back(std::move(store));
+        });
+        continue;
+      }
+      if (node.kind == branch) node.instruction.a = loaded(node.instruction.a, number, to);
+      for (auto* side : {&node.first, &node.second}) {
+        if (*side) put(**side, next_++);
+      }
+      to.push_back(std::move(node));
+    }
+    region = std::move(to);
+  }
+};
+
+// --- what variables hold, what is known, what is there already ---
+
+struct ValueKey {
+  ShaderOp op;
+  ShaderValue a, b, c;
+  bool operator==(const ValueKey&) const = default;
+};
+struct ValueKeyHash {
+  std::size_t operator()(const ValueKey& key) const {
+    std::uint64_t h = static_cast<std::uint64_t>(key.op);
+    for (const ShaderValue of : {key.a, key.b, key.c}) h = (h ^ of) * 0x9E3779B97F4A7C15u;
+    return static_cast<std::size_t>(h ^ h >> 29);
+  }
+};
+
+bool swaps(ShaderOp op) {
+  using enum ShaderOp;
+  return op == add || op == multiply || op == add_integers || op == multiply_integers ||
+         op == bit_and || op == bit_or || op == bit_xor || op == equal || op == not_equal ||
+         op == equal_integers;
+}
+
+class Forwarding {
+ public:
+  explicit Forwarding(ShaderTree& tree)
+      : tree_(tree), known_(tree.variable_count, kNoValue), loop_of_(tree.values.size(), 0) {
+    for (ShaderValue i = 0; i < tree.values.size(); ++i) same_.push_back(i);
+  }
+
+  void run() {
+    run(tree_.main);
+    append(inputs_, std::move(tree_.main));
+    tree_.main = std::move(inputs_);
+  }
+
+ private:
+  ShaderRegion inputs_{};  ///< each once, before all else
+  std::unordered_map<std::uint32_t, ShaderValue> input_values_{};
+
+  struct Change {
+    ShaderVariable variable;
+    ShaderValue before;
+  };
+  struct Loop {
+    ShaderRegion before{};                 ///< what need not run again
+    std::vector<ShaderVariable> stored{};  ///< sorted
+  };
+  ShaderTree& tree_;
+  std::vector<ShaderValue> same_{};  ///< what a value is replaced by
+  std::vector<ShaderValue> known_;   ///< of variables
+  std::vector<Change> changes_{};    ///< of known_, to be undone
+  std::unordered_map<ValueKey, ShaderValue, ValueKeyHash> made_{};
+  std::vector<ValueKey> order_{};       ///< of made_
+  std::vector<Loop*> loops_{};          ///< around
+  std::vector<std::uint32_t> loop_of_;  ///< how many loops are around a value
+
+  void learn(ShaderVariable variable, ShaderValue value) {
+    if (known_[variable] == value) return;
+    changes_.push_back({variable, known_[variable]});
+    known_[variable] = value;
+  }
+  void undo(std::size_t to) {
+    while (changes_.size() > to) {
+      known_[changes_.back().variable] = changes_.back().before;
+      changes_.pop_back();
+    }
+  }
+  void forget_made(std::size_t to) {
+    while (order_.size() > to) {
+      made_.erase(order_.back());
+      order_.pop_back();
+    }
+  }
+
+  ShaderValue resolved(ShaderValue value) {
+    while (same_[value] != value) {
+      same_[value] = same_[same_[value]];
+      value = same_[value];
+    }
+    return value;
+  }
+  ShaderValue new_value() {
+    const ShaderValue value = tree_.new_value();
+    same_.push_back(value);
+    loop_of_.push_back(static_cast<std::uint32_t>(loops_.size()));
+    return value;
+  }
+  void fit() {
+    while (same_.size() < tree_.values.size()) {
+      same_.push_back(static_cast<ShaderValue>(same_.size()));
+      loop_of_.push_back(0);
+    }
+  }
+  ShaderValue constant(std::uint32_t bits) {
+    const ShaderValue value = tree_.constant(bits);
+    fit();
+    return value;
+  }
+
+  static void collect_stored(const ShaderRegion& region, std::vector<ShaderVariable>& to) {
+    for (const ShaderNode& node : region) {
+      if (node.kind == instruction) {
+        for_each_stored(node.instruction, [&](ShaderVariable of) { to.push_back(of); });
+      }
+      if (node.first) collect_stored(*node.first, to);
+      if (node.second) collect_stored(*node.second, to);
+    }
+  }
+  static std::vector<ShaderVariable> stored_in(const ShaderRegion& region) {
+    std::vector<ShaderVariable> stored;
+    collect_stored(region, stored);
+    std::sort(stored.begin(), stored.end());
+    stored.erase(std::unique(stored.begin(), stored.end()), stored.end());
+    return stored;
+  }
+
+  void run(ShaderRegion& region) {
+    ShaderRegion to;
+    to.reserve(region.size());
+    for (ShaderNode& node : region) {
+      switch (node.kind) {
+        case instruction: run_instruction(node, to); break;
+        case branch: run_branch(node, to); break;
+        case scope: node.loops ? run_loop(node, to) : run_scope(node, to); break;
+        case ShaderNodeKind::exit: to.push_back(std::move(node)); break;
+      }
+      if (always_leaves(to)) break;
+    }
+    region = std::move(to);
+  }
+
+  void run_instruction(ShaderNode& node, ShaderRegion& to) {
+    ShaderInstruction& in = node.instruction;
+    for_each_operand(tree_, in, [&](ShaderValue& of) { of = resolved(of); });
+    using enum ShaderOp;
+    if ((in.op == load_indexed || in.op == store_indexed || in.op == load_constant) &&
+        tree_.is_constant(in.a)) {
+      const auto index = static_cast<std::int32_t>(tree_.bits(in.a));
+      const auto last = static_cast<std::int32_t>(in.count) - 1;
+      const std::uint32_t at =
+          in.place + static_cast<std::uint32_t>(std::clamp(index, 0, last)) * in.stride;
+      if (in.op == load_constant) {
+        same_[in.to] = constant(tree_.tables[at]);
+        return;
+      }
+      if (in.op == store_indexed) in.a = in.b;
+      if (in.op == load_indexed) in.a = kNoValue;
+      in.b = kNoValue;
+      in.op = in.op == load_indexed ? load : store;
+      in.place = at;
+    }
+    if (in.op == load) {
+      if (known_[in.place] != kNoValue) {
+        same_[in.to] = known_[in.place];
+        return;
+      }
+      learn(in.place, in.to);
+      // Out of the loops that leave the variable as it is.
+      std::size_t depth = loops_.size();
+      while (depth > 0 && !std::binary_search(loops_[depth - 1]->stored.begin(),
+                                              loops_[depth - 1]->stored.end(), in.place)) {
+        --depth;
+      }
+      put(node, depth, to);
+      return;
+    }
+    if (in.op == store) {
+      learn(in.place, in.a);
+    } else if (in.op == store_indexed) {
+      for_each_stored(in, [&](ShaderVariable of) { learn(of, kNoValue); });
+    } else if (is_pure(in.op)) {
+      run_pure(node, to);
+      return;
+    } else if (in.op == input) {
+      const auto [found, is_new] = input_values_.try_emplace(in.place, in.to);
+      if (!is_new) {
+        same_[in.to] = found->second;
+      } else {
+        loop_of_[in.to] = 0;
+        inputs_.push_back(std::move(node));
+      }
+      return;
+    } else if (in.op == load_constant) {
+      put(node, depth_of(in), to);
+      return;
+    }
+    for_each_result(tree_, in, [&](ShaderValue of) {
+      loop_of_[of] = static_cast<std::uint32_t>(loops_.size());
+    });
+    to.push_back(std::move(node));
+  }
+
+  /// Puts an instruction before the loop at a depth, or here.
+  void put(ShaderNode& node, std::size_t depth, ShaderRegion& to) {
+    loop_of_[node.instruction.to] = static_cast<std::uint32_t>(depth);
+    (depth < loops_.size() ? loops_[depth]->before : to).push_back(std::move(node));
+  }
+  std::size_t depth_of(const ShaderInstruction& in) const {
+    std::size_t depth = 0;
+    for (const ShaderValue of : {in.a, in.b, in.c}) {
+      if (of != kNoValue && !tree_.is_constant(of))
+        depth = std::max<std::size_t>(depth, loop_of_[of]);
+    }
+    return depth;
+  }
+
+  void run_pure(ShaderNode& node, ShaderRegion& to) {
+    ShaderInstruction& in = node.instruction;
+    using enum ShaderOp;
+    if (const ShaderValue simple = simpler(in); simple != kNoValue) {
+      same_[in.to] = simple;
+      return;
+    }
+    ValueKey key{in.op, in.a, in.b, in.c};
+    if (swaps(in.op) && key.b < key.a) std::swap(key.a, key.b);
+    const auto [found, is_new] = made_.try_emplace(key, in.to);
+    if (!is_new) {
+      same_[in.to] = found->second;
+      return;
+    }
+    order_.push_back(key);
+    put(node, depth_of(in), to);
+  }
+
+  ShaderValue simpler(const ShaderInstruction& in) {
+    using enum ShaderOp;
+    const auto is_known = [&](ShaderValue of) { return of == kNoValue || tree_.is_constant(of); };
+    const auto bits = [&](ShaderValue of) { return of == kNoValue ? 0u : tree_.bits(of); };
+    if (in.op == copy) return in.a;
+    if (in.op < derivative_x && is_known(in.a) && is_known(in.b) && is_known(in.c)) {
+      return constant(fold_shader_op(in.op, bits(in.a), bits(in.b), bits(in.c)));
+    }
+    if (in.op == select) {
+      if (in.b == in.c) return in.b;
+      if (is_known(in.a)) return bits(in.a) != 0 ? in.b : in.c;
+    }
+    const auto is = [&](ShaderValue of, std::uint32_t value) {
+      return of != kNoValue && tree_.is_constant(of) && tree_.bits(of) == value;
+    };
+    constexpr std::uint32_t kOne = 0x3F800000;
+    if (in.op == bit_and || in.op == bit_or) {
+      if (in.a == in.b) return in.a;
+      const std::uint32_t neutral = in.op == bit_and ? ~0u : 0u;
+      if (is(in.a, neutral)) return in.b;
+      if (is(in.b, neutral)) return in.a;
+      if (is(in.a, ~neutral)) return in.a;
+      if (is(in.b, ~neutral)) return in.b;
+    }
+    if (in.op == add_integers && is(in.b, 0)) return in.a;
+    if (in.op == add_integers && is(in.a, 0)) return in.b;
+    if (in.op == multiply_integers && is(in.b, 1)) return in.a;
+    if (in.op == multiply_integers && is(in.a, 1)) return in.b;
+    // By one, a float stays as it is: a NaN, too, for every NaN that is stored is the same one.
+    if (in.op == multiply && is(in.b, kOne)) return in.a;
+    if (in.op == multiply && is(in.a, kOne)) return in.b;
+    if (in.op == divide && is(in.b, kOne)) return in.a;
+    return kNoValue;
+  }
+
+  void run_branch(ShaderNode& node, ShaderRegion& to) {
+    node.instruction.a = resolved(node.instruction.a);
+    if (tree_.is_constant(node.instruction.a)) {
+      ShaderRegion taken =
+          std::move(tree_.bits(node.instruction.a) != 0 ? *node.first : *node.second);
+      run(taken);
+      append(to, std::move(taken));
+      return;
+    }
+    const std::size_t changes = changes_.size(), made = order_.size();
+    std::vector<Change> after[2];
+    for (int side = 0; side < 2; ++side) {
+      ShaderRegion& region = side == 0 ? *node.first : *node.second;
+      run(region);
+      for (std::size_t i = changes; i < changes_.size(); ++i) {
+        after[side].push_back({changes_[i].variable, known_[changes_[i].variable]});
+      }
+      undo(changes);
+      forget_made(made);
+    }
+    if (node.first->empty() && node.second->empty()) return;
+    const bool leaves[2] = {always_leaves(*node.first), always_leaves(*node.second)};
+    if (choose(node, to)) return;
+    join(after, leaves);
+    to.push_back(std::move(node));
+  }
+
+  /// What is known where two sides meet again.
+  void join(std::vector<Change> (&after)[2], const bool (&leaves)[2]) {
+    for (int side = 0; side < 2; ++side) {
+      if (leaves[side]) continue;
+      for (const Change& change : after[side]) {
+        if (leaves[1 - side]) {
+          learn(change.variable, change.before);
+          continue;
+        }
+        // Known if the other side has the same.
+        const ShaderValue other = known_before(change.variable, after[1 - side]);
+        learn(change.variable, other == change.before ? other : kNoValue);
+      }
+    }
+  }
+  ShaderValue known_before(ShaderVariable variable, const std::vector<Change>& after) const {
+    for (std::size_t i = after.size(); i-- > 0;) {
+      if (after[i].variable == variable) return after[i].before;
+    }
+    return known_[variable];
+  }
+
+  /// A short branch of pure instructions and stores becomes choices.
+  bool choose(ShaderNode& node, ShaderRegion& to) {
+    constexpr std::size_t kMost = 12;
+    const auto is_short = [](const ShaderRegion& region) {
+      return region.size() <= kMost &&
+             std::all_of(region.begin(), region.end(), [](const auto& in) {
+               return in.kind == instruction &&
+                      (is_pure(in.instruction.op) || in.instruction.op == ShaderOp::load ||
+                       in.instruction.op == ShaderOp::store) &&
+                      !(in.instruction.op >= ShaderOp::derivative_x &&
+                        in.instruction.op <= ShaderOp::derivative_y_coarse);
+             });
+    };
+    if (!is_short(*node.first) || !is_short(*node.second)) return false;
+    std::vector<std::pair<ShaderVariable, std::array<ShaderValue, 2>>> stored;
+    for (int side = 0; side < 2; ++side) {
+      for (ShaderNode& each : side == 0 ? *node.first : *node.second) {
+        ShaderInstruction& in = each.instruction;
+        if (in.op != ShaderOp::store) continue;
+        const auto found = std::find_if(stored.begin(), stored.end(),
+                                        [&](const auto& of) { return of.first == in.place; });
+        if (found == stored.end()) {
+          stored.push_back({in.place, {kNoValue, kNoValue}});
+          stored.back().second[static_cast<std::size_t>(side)] = in.a;
+        } else {
+          found->second[static_cast<std::size_t>(side)] = in.a;
+        }
+      }
+    }
+    // A load behind a store of its own side has been replaced; others see what was there before.
+    for (ShaderRegion* side : {node.first.get(), node.second.get()}) {
+      for (ShaderNode& each : *side) {
+        if (each.instruction.op == ShaderOp::store) continue;
+        for_each_result(tree_, each.instruction, [&](ShaderValue of) {
+          loop_of_[of] = static_cast<std::uint32_t>(loops_.size());
+        });
+        if (each.instruction.op == ShaderOp::load)
+          learn(each.instruction.place, each.instruction.to);
+        to.push_back(std::move(each));
+      }
+    }
+    for (auto& [variable, sides] : stored) {
+      for (ShaderValue& side : sides) {
+        if (side != kNoValue) continue;
+        if (known_[variable] == kNoValue) {
+          ShaderNode load;
+          load.instruction.op = ShaderOp::load;
+          load.instruction.place = variable;
+          load.instruction.to = new_value();
+          learn(variable, load.instruction.to);
+          to.push_back(std::move(load));
+        }
+        side = known_[variable];
+      }
+      ShaderValue chosen = resolved(sides[0]);
+      if (chosen != resolved(sides[1])) {
+        ShaderNode select;
+        select.instruction = {.op = ShaderOp::select,
+                              .a = node.instruction.a,
+                              .b = resolved(sides[0]),
+                              .c = resolved(sides[1]),
+                              .line = node.instruction.line};
+        select.instruction.to = chosen = new_value();
+        to.push_back(std::move(select));
+      }
+      ShaderNode store;
+      store.instruction.op = ShaderOp::store;
+      store.instruction.place = variable;
+      store.instruction.a = chosen;
+      to.push_back(std::move(store));
+      learn(variable, chosen);
+    }
+    return true;
+  }
+
+  void run_scope(ShaderNode& node, ShaderRegion& to) {
+    const std::vector<ShaderVariable> stored = stored_in(*node.first);
+    const std::size_t made = order_.size(), changes = changes_.size();
+    run(*node.first);
+    // Who left before a load has not made its value.
+    undo(changes);
+    forget_made(made);
+    for (const ShaderVariable of : stored) learn(of, kNoValue);
+    to.push_back(std::move(node));
+  }
+
+  void run_loop(ShaderNode& node, ShaderRegion& to) {
+    Loop loop{.stored = stored_in(*node.first)};
+    for (const ShaderVariable of : loop.stored) learn(of, kNoValue);
+    const std::size_t made = order_.size(), changes = changes_.size();
+    loops_.push_back(&loop);
+    run(*node.first);
+    loops_.pop_back();
+    forget_made(made);
+    undo(changes);
+    for (const ShaderVariable of : loop.stored) learn(of, kNoValue);
+    append(to, std::move(loop.before));
+    to.push_back(std::move(node));
+  }
+};
+
+// --- what nothing needs ---
+
+class Needs {
+ public:
+  explicit Needs(ShaderTree& tree)
+      : tree_(tree), values_(tree.values.size()), variables_(tree.variable_count) {}
+
+  void run() {
+    for (const ShaderOutput& output : tree_.outputs) variables_[output.variable] = true;
+    do {
+      grew_ = false;
+      find(tree_.main);
+    } while (grew_);
+    remove(tree_.main);
+    drop_overwritten(tree_.main);
+  }
+
+ private:
+  ShaderTree& tree_;
+  std::vector<bool> values_, variables_;
+  bool grew_ = false;
+
+  void need(ShaderValue value) {
+    if (values_[value]) return;
+    values_[value] = grew_ = true;
+  }
+  bool is_needed(const ShaderInstruction& in) const {
+    if (in.op == ShaderOp::kill) return true;
+    bool needed = false;
+    for_each_stored(in, [&](ShaderVariable of) { needed = needed || variables_[of]; });
+    for_each_result(tree_, in, [&](ShaderValue of) { needed = needed || values_[of]; });
+    return needed;
+  }
+  void find(ShaderRegion& region) {
+    for (std::size_t i = region.size(); i-- > 0;) {
+      ShaderNode& node = region[i];
+      if (node.kind == instruction && is_needed(node.instruction)) {
+        ShaderInstruction& in = node.instruction;
+        for_each_operand(tree_, in, [&](ShaderValue of) { need(of); });
+        if (in.op == ShaderOp::load || in.op == ShaderOp::load_indexed) {
+          for (std::uint32_t k = 0; k < std::max(1u, in.count); ++k) {
+            const ShaderVariable of = in.place + k * in.stride;
+            if (!variables_[of]) variables_[of] = grew_ = true;
+          }
+        }
+      }
+      if (node.kind == branch) need(node.instruction.a);
+      if (node.second) find(*node.second);
+      if (node.first) find(*node.first);
+    }
+  }
+  void remove(ShaderRegion& region) {
+    for (ShaderNode& node : region) {
+      if (node.first) remove(*node.first);
+      if (node.second) remove(*node.second);
+    }
+    std::erase_if(region, [&](const ShaderNode& node) {
+      if (node.kind == instruction) return !is_needed(node.instruction);
+      if (node.kind == branch) return node.first->empty() && node.second->empty();
+      return node.kind == scope && !node.loops && node.first->empty();
+    });
+  }
+
+  static bool may_read(const ShaderNode& node, ShaderVariable variable) {
+    if (node.kind == ShaderNodeKind::exit) return true;  // who left may read it outside
+    if (node.kind == instruction) {
+      const ShaderInstruction& in = node.instruction;
+      if (in.op == ShaderOp::load) return in.place == variable;
+      return in.op == ShaderOp::load_indexed && variable >= in.place &&
+             variable <= in.place + (in.count - 1) * in.stride;
+    }
+    const auto any = [&](const std::unique_ptr<ShaderRegion>& region) {
+      return region && std::any_of(region->begin(), region->end(), [&](const ShaderNode& inner) {
+               return may_read(inner, variable);
+             });
+    };
+    return any(node.first) || any(node.second);
+  }
+  /// A store before another, with nothing between that reads.
+  void drop_overwritten(ShaderRegion& region) {
+    constexpr std::size_t kFarthest = 64;
+    std::vector<bool> drops(region.size());
+    for (std::size_t i = 0; i < region.size(); ++i) {
+      if (region[i].kind != instruction || region[i].instruction.op != ShaderOp::store) continue;
+      const ShaderVariable variable = region[i].instruction.place;
+      for (std::size_t k = i + 1; k < std::min(region.size(), i + kFarthest); ++k) {
+        if (may_read(region[k], variable)) break;
+        if (region[k].kind == instruction && region[k].instruction.op == ShaderOp::store &&
+            region[k].instruction.place == variable) {
+          drops[i] = true;
+          break;
+        }
+      }
+    }
+    std::size_t i = 0;
+    std::erase_if(region, [&](const ShaderNode&) { return drops[i++]; });
+    for (ShaderNode& node : region) {
+      if (node.first) drop_overwritten(*node.first);
+      if (node.second) drop_overwritten(*node.second);
+    }
+  }
+};
+
+}  // namespace
+
+bool always_leaves(const ShaderRegion& region) {
+  if (region.empty()) return false;
+  const ShaderNode& last = region.back();
+  if (is_exit(last)) return true;
+  return last.kind == branch && always_leaves(*last.first) && always_leaves(*last.second);
+}
+
+void simplify(ShaderTree& tree) {
+  settle_exits(tree.main, {}, 0);
+  Exports{tree}.run();
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    Forwarding{tree}.run();
+    Needs{tree}.run();
+    settle_exits(tree.main, {}, 0);
+  }
+}
+
+}  // namespace softfocus
