@@ -1,5 +1,4 @@
-// What stands around shaders where they come from. The formulas of three.js' helpers are those of
-// its documentation; the text is ours.
+// What stands around shaders where they come from, and the versions that they are taken for.
 
 #include <algorithm>
 #include <cctype>
@@ -10,13 +9,7 @@
 namespace softfocus {
 namespace {
 
-struct Declared {
-  const char* type;
-  const char* name;
-  const char* array = "";
-};
-
-constexpr Declared kShadertoyUniforms[] = {
+constexpr GlslDeclared kShadertoyUniforms[] = {
     {"vec3", "iResolution"},
     {"float", "iTime"},
     {"float", "iGlobalTime"},
@@ -33,17 +26,8 @@ constexpr Declared kShadertoyUniforms[] = {
     {"sampler2D", "iChannel2"},
     {"sampler2D", "iChannel3"},
 };
-constexpr Declared kTransitionUniforms[] = {
+constexpr GlslDeclared kTransitionUniforms[] = {
     {"float", "progress"}, {"float", "ratio"}, {"sampler2D", "from"}, {"sampler2D", "to"}};
-constexpr Declared kThreeUniforms[] = {
-    {"mat4", "viewMatrix"},   {"vec3", "cameraPosition"},      {"bool", "isOrthographic"},
-    {"mat4", "modelMatrix"},  {"mat4", "modelViewMatrix"},     {"mat4", "projectionMatrix"},
-    {"mat3", "normalMatrix"}, {"sampler2D", "tDiffuse"},       {"sampler2D", "tDepth"},
-    {"float", "cameraNear"},  {"float", "cameraFar"},          {"vec2", "resolution"},
-    {"float", "time"},        {"float", "toneMappingExposure"}};
-constexpr Declared kThreeAttributes[] = {{"vec3", "position"}, {"vec3", "normal"}, {"vec2", "uv"},
-                                         {"vec4", "tangent"},  {"vec4", "color"},  {"vec2", "uv1"}};
-
 /// What browsers let pass, or have switched on.
 constexpr const char* kWebExtensions =
     R"(#extension GL_EXT_shader_non_constant_global_initializers : enable
@@ -83,120 +67,6 @@ constexpr const char* kOldTexturesOfFragments =
 vec4 textureCube(samplerCube s, vec3 p, float b) { return texture(s, p, b); }
 )";
 
-constexpr const char* kThreeCommon = R"(#ifndef PI
-#define PI 3.141592653589793
-#endif
-#define PI2 6.283185307179586
-#define PI_HALF 1.5707963267948966
-#define RECIPROCAL_PI 0.3183098861837907
-#define RECIPROCAL_PI2 0.15915494309189535
-#define EPSILON 1e-6
-#ifndef saturate
-#define saturate(x) clamp(x, 0.0, 1.0)
-#endif
-#define whiteComplement(x) (1.0 - saturate(x))
-float pow2(const in float x) { return x * x; }
-vec3 pow2(const in vec3 x) { return x * x; }
-float pow3(const in float x) { return x * x * x; }
-float pow4(const in float x) { return (x * x) * (x * x); }
-float max3(const in vec3 v) { return max(v.x, max(v.y, v.z)); }
-float average(const in vec3 v) { return dot(v, vec3(1.0 / 3.0)); }
-highp float rand(const in vec2 p) {
-  return fract(sin(mod(dot(p, vec2(12.9898, 78.233)), PI)) * 43758.5453);
-}
-float precisionSafeLength(vec3 v) { return length(v); }
-vec3 transformDirection(in vec3 v, in mat4 m) { return normalize((m * vec4(v, 0.0)).xyz); }
-vec3 inverseTransformDirection(in vec3 v, in mat4 m) { return normalize((vec4(v, 0.0) * m).xyz); }
-bool isPerspectiveMatrix(mat4 m) { return m[2][3] == -1.0; }
-)";
-/// Depth 0 at -near, 1 at -far; viewZ is negative in front of the camera. The largest part of a
-/// packed depth is in the first channel.
-constexpr const char* kThreePacking =
-    R"(vec3 packNormalToRGB(const in vec3 n) { return normalize(n) * 0.5 + 0.5; }
-vec3 unpackRGBToNormal(const in vec3 c) { return 2.0 * c - 1.0; }
-float unpackRGBAToDepth(const in vec4 c) {
-  return dot(c, vec4(255.0 / 256.0, 255.0 / 65536.0, 255.0 / 16777216.0, 1.0 / 16777216.0));
-}
-float unpackRGBToDepth(const in vec3 c) {
-  return dot(c, vec3(255.0 / 256.0, 255.0 / 65536.0, 1.0 / 65536.0));
-}
-vec4 packDepthToRGBA(const in float depth) {
-  if (depth <= 0.0) return vec4(0.0);
-  if (depth >= 1.0) return vec4(1.0);
-  float first = floor(depth * 256.0), rest = fract(depth * 256.0);
-  float second = floor(rest * 256.0);
-  rest = fract(rest * 256.0);
-  return vec4(first / 255.0, second / 255.0, floor(rest * 256.0) / 255.0, fract(rest * 256.0));
-}
-vec4 pack2HalfToRGBA(const in vec2 v) {
-  vec2 low = fract(v * 255.0);
-  return vec4(v.x - low.x / 255.0, low.x, v.y - low.y / 255.0, low.y);
-}
-vec2 unpackRGBATo2Half(const in vec4 c) { return c.xz + c.yw / 255.0; }
-float viewZToOrthographicDepth(const in float z, const in float near, const in float far) {
-  return (z + near) / (near - far);
-}
-float orthographicDepthToViewZ(const in float depth, const in float near, const in float far) {
-  return depth * (near - far) - near;
-}
-float viewZToPerspectiveDepth(const in float z, const in float near, const in float far) {
-  return (near + z) * far / ((far - near) * z);
-}
-float perspectiveDepthToViewZ(const in float depth, const in float near, const in float far) {
-  return near * far / ((far - near) * depth - far);
-}
-)";
-/// A pass draws into a linear target, where three.js changes neither tones nor colours.
-constexpr const char* kNothing = "";
-
-struct Include {
-  const char* name;
-  const char* text;
-};
-constexpr Include kThreeIncludes[] = {
-    {"common", kThreeCommon},
-    {"packing", kThreePacking},
-    {"tonemapping_fragment", kNothing},
-    {"colorspace_fragment", kNothing},
-    {"encodings_fragment", kNothing},
-    {"fog_pars_fragment", kNothing},
-    {"fog_fragment", kNothing},
-    {"fog_pars_vertex", kNothing},
-    {"fog_vertex", kNothing},
-    {"logdepthbuf_pars_fragment", kNothing},
-    {"logdepthbuf_fragment", kNothing},
-    {"logdepthbuf_pars_vertex", kNothing},
-    {"logdepthbuf_vertex", kNothing},
-    {"clipping_planes_pars_fragment", kNothing},
-    {"clipping_planes_fragment", kNothing},
-    {"clipping_planes_pars_vertex", kNothing},
-    {"clipping_planes_vertex", kNothing},
-    {"begin_vertex", "vec3 transformed = vec3(position);\n"},
-    {"beginnormal_vertex", "vec3 objectNormal = vec3(normal);\n"},
-    {"defaultnormal_vertex", "vec3 transformedNormal = normalMatrix * objectNormal;\n"},
-    {"project_vertex",
-     "vec4 mvPosition = modelViewMatrix * vec4(transformed, 1.0);\n"
-     "gl_Position = projectionMatrix * mvPosition;\n"},
-};
-
-/// What three.js puts in front of every fragment shader. Its output is linear, as that of a pass
-/// is.
-constexpr Include kThreeHelpers[] = {
-    {"luminance",
-     "float luminance(const in vec3 c) { return dot(c, vec3(0.2126729, 0.7151522, 0.072175)); }\n"},
-    {"linearToOutputTexel", "vec4 linearToOutputTexel(vec4 c) { return c; }\n"},
-    {"sRGBTransferOETF",
-     "vec4 sRGBTransferOETF(in vec4 c) {\n"
-     "  vec3 curve = pow(c.rgb, vec3(1.0 / 2.4)) * 1.055 - 0.055;\n"
-     "  return vec4(mix(curve, c.rgb * 12.92, vec3(lessThanEqual(c.rgb, vec3(0.0031308)))), c.a);\n"
-     "}\n"},
-    {"sRGBTransferEOTF",
-     "vec4 sRGBTransferEOTF(in vec4 c) {\n"
-     "  vec3 curve = pow((c.rgb + 0.055) / 1.055, vec3(2.4));\n"
-     "  return vec4(mix(curve, c.rgb / 12.92, vec3(lessThanEqual(c.rgb, vec3(0.04045)))), c.a);\n"
-     "}\n"},
-};
-
 /// Extensions, and the version of GLSL that has what they bring.
 struct Extension {
   const char* name;
@@ -232,11 +102,6 @@ constexpr Extension kExtensions[] = {
     {"GL_MESA_shader_integer_functions", 400},
 };
 
-bool uses(std::span<const GlslToken> tokens, std::string_view name) {
-  return std::any_of(tokens.begin(), tokens.end(),
-                     [&](const GlslToken& token) { return token.text == name; });
-}
-
 /// A uniform, an input or an output of this name is declared, or a macro or parameter of main().
 bool declares(std::span<const GlslToken> tokens, std::string_view name) {
   for (std::size_t i = 0; i < tokens.size(); ++i) {
@@ -259,10 +124,6 @@ bool declares(std::span<const GlslToken> tokens, std::string_view name) {
     }
   }
   return false;
-}
-
-bool lacks(std::span<const GlslToken> tokens, std::string_view name) {
-  return uses(tokens, name) && !declares(tokens, name);
 }
 
 /// "[2](", or "float[2] name".
@@ -289,16 +150,6 @@ bool has_es3_words(std::span<const GlslToken> tokens) {
   return false;
 }
 
-/// An output that the text declares, outside of parentheses.
-bool has_output(std::span<const GlslToken> tokens) {
-  int depth = 0;
-  for (const GlslToken& token : tokens) {
-    depth += static_cast<int>(token.text == "(") - static_cast<int>(token.text == ")");
-    if (depth == 0 && token.text == "out") return true;
-  }
-  return false;
-}
-
 /// ES 3.00 lets no function have a built-in's name, and glslang takes those of extensions that the
 /// text has not switched on for built-in.
 std::string renamed(std::span<const GlslToken> tokens) {
@@ -321,26 +172,6 @@ std::string renamed(std::span<const GlslToken> tokens) {
   return out;
 }
 
-std::string declarations(std::string_view qualifier, std::span<const Declared> all,
-                         const GlslSource& source, std::span<const GlslToken> tokens) {
-  std::string out;
-  for (const Declared& one : all) {
-    if (!lacks(tokens, one.name)) continue;
-    std::string type = one.type;
-    if (const auto found = source.samplers.find(one.name);
-        found != source.samplers.end() && type == "sampler2D") {
-      type = found->second;
-    }
-    out += qualifier;
-    for (const std::string_view part :
-         {std::string_view(" "), std::string_view(type), std::string_view(" "),
-          std::string_view(one.name), std::string_view(one.array), std::string_view(";\n")}) {
-      out += part;
-    }
-  }
-  return out;
-}
-
 GlslSurroundings shadertoy(const GlslSource& source, std::span<const GlslToken> tokens,
                            const GlslVersion& version) {
   GlslSurroundings around;
@@ -358,7 +189,7 @@ GlslSurroundings transition(const GlslSource& source, std::span<const GlslToken>
   GlslSurroundings around;
   const bool is_new = version.has_outputs();
   around.before = is_new ? "in vec2 _uv;\nout vec4 softfocus_color;\n" : "varying vec2 _uv;\n";
-  for (const Declared& one : kTransitionUniforms) {
+  for (const GlslDeclared& one : kTransitionUniforms) {
     if (declares(tokens, one.name)) continue;
     around.before += std::string("uniform ") + one.type;
     around.before += std::string(" ") + one.name + ";\n";
@@ -374,33 +205,31 @@ GlslSurroundings transition(const GlslSource& source, std::span<const GlslToken>
   return around;
 }
 
-GlslSurroundings three(const GlslSource& source, std::span<const GlslToken> tokens,
-                       const GlslVersion& version) {
-  GlslSurroundings around;
-  const bool is_new = version.has_outputs(), is_vertex = source.stage == ShaderStage::vertex;
-  if (is_new) {
-    around.before += is_vertex ? "#define attribute in\n#define varying out\n"
-                               : "#define varying in\n#define gl_FragDepthEXT gl_FragDepth\n";
-    if (!is_vertex && !has_output(tokens)) {
-      around.before += "out highp vec4 pc_fragColor;\n#define gl_FragColor pc_fragColor\n";
-    }
-  }
-  for (const Include& helper : kThreeHelpers) {
-    if (uses(tokens, helper.name) && !has_function(tokens, "float", helper.name) &&
-        !has_function(tokens, "vec4", helper.name)) {
-      around.before += helper.text;
-    }
-  }
-  around.before += declarations("uniform", kThreeUniforms, source, tokens);
-  if (is_vertex) {
-    around.before += declarations(is_new ? "in" : "attribute", kThreeAttributes, source, tokens);
-  } else if (lacks(tokens, "vUv")) {
-    around.before += is_new ? "in vec2 vUv;\n" : "varying vec2 vUv;\n";
-  }
-  return around;
+}  // namespace
+
+bool lacks(std::span<const GlslToken> tokens, std::string_view name) {
+  return uses(tokens, name) && !declares(tokens, name);
 }
 
-}  // namespace
+std::string declarations(std::string_view qualifier, std::span<const GlslDeclared> all,
+                         const GlslSource& source, std::span<const GlslToken> tokens) {
+  std::string out;
+  for (const GlslDeclared& one : all) {
+    if (!lacks(tokens, one.name)) continue;
+    std::string type = one.type;
+    if (const auto found = source.samplers.find(one.name);
+        found != source.samplers.end() && type == "sampler2D") {
+      type = found->second;
+    }
+    out += qualifier;
+    for (const std::string_view part :
+         {std::string_view(" "), std::string_view(type), std::string_view(" "),
+          std::string_view(one.name), std::string_view(one.array), std::string_view(";\n")}) {
+      out += part;
+    }
+  }
+  return out;
+}
 
 std::string_view name_of(GlslConvention convention) {
   switch (convention) {
@@ -412,13 +241,6 @@ std::string_view name_of(GlslConvention convention) {
     case GlslConvention::gl_transitions: return "gl-transitions";
   }
   return "";
-}
-
-const char* convention_include(std::string_view name) {
-  for (const Include& include : kThreeIncludes) {
-    if (include.name == name) return include.text;
-  }
-  return nullptr;
 }
 
 bool has_stage_condition(std::span<const GlslToken> tokens) {
@@ -485,12 +307,12 @@ GlslVersion raised_version(const GlslVersion& version, GlslConvention convention
 }
 
 GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tokens) {
-  const GlslVersion es3{300, true, "es"}, es1{100, true, ""};
+  GlslVersion es3{300, true, "es"}, es1{100, true, ""};
   switch (convention) {
     case GlslConvention::shadertoy:
     case GlslConvention::three: return es3;
     case GlslConvention::gl_transitions: return has_array_type(tokens) ? es3 : es1;
-    case GlslConvention::libretro: return {330, false, "compatibility"};
+    case GlslConvention::libretro: return {130, false, ""};
     default: break;
   }
   // Precisions are WebGL's, whose version without a #version is ES 1.00.
@@ -505,7 +327,7 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
   GlslSurroundings around;
   if (convention == GlslConvention::shadertoy) around = shadertoy(source, tokens, version);
   if (convention == GlslConvention::gl_transitions) around = transition(source, tokens, version);
-  if (convention == GlslConvention::three) around = three(source, tokens, version);
+  if (convention == GlslConvention::three) around = three_surroundings(source, tokens, version);
   if (convention == GlslConvention::libretro) {
     around.before = source.stage == ShaderStage::vertex ? "#define VERTEX\n" : "#define FRAGMENT\n";
     around.before += "#define PARAMETER_UNIFORM\n";
@@ -513,9 +335,19 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
       around.before = "#extension GL_ARB_shading_language_420pack : enable\n" + around.before;
     }
   }
-  // glslang knows ftransform(), and makes no SPIR-V of it.
+  // glslang knows these, and makes no SPIR-V of them. Noise is 0 with every driver.
   if (!version.is_es && uses(tokens, "ftransform")) {
     around.before += "#define ftransform() (gl_ModelViewProjectionMatrix * gl_Vertex)\n";
+  }
+  for (const char* const size : {"1", "2", "3", "4"}) {
+    const std::string name = std::string("noise") + size;
+    const std::string type = *size == '1' ? "float" : std::string("vec") + size;
+    if (version.is_es || !uses(tokens, name) || has_function(tokens, type, name)) continue;
+    for (const std::string_view part :
+         {std::string_view("#define "), std::string_view(name), std::string_view("(x) "),
+          std::string_view(type), std::string_view("(0.0)\n")}) {
+      around.before += part;
+    }
   }
   if (uses(tokens, "textureQueryLOD")) around.before += "#define textureQueryLOD textureQueryLod\n";
   if (version.is_es && version.number >= 300) around.before = renamed(tokens) + around.before;

@@ -174,7 +174,7 @@ class Includes {
     return out;
   }
 
-  bool includes_three = false;  ///< a text of convention_include()
+  bool includes_three = false;  ///< a text of three_include()
   std::vector<std::string> missing{};
 
  private:
@@ -189,7 +189,7 @@ class Includes {
     if (!is_local && !is_angled) return error("#include wants \"FILE\"");
     const std::string wanted(header.substr(1, header.size() - 2));
     if (is_angled) {
-      if (const char* const ours = convention_include(wanted)) {
+      if (const char* const ours = three_include(wanted)) {
         includes_three = true;
         return line_directive(1, "<" + wanted + ">") + ours;
       }
@@ -396,6 +396,24 @@ std::string without_raising(const std::string& text) {
   return out;
 }
 
+/// Layouts that are left to the implementation are std140.
+std::string with_known_layouts(const std::string& text) {
+  std::string out;
+  std::size_t done = 0;
+  const std::vector<GlslToken> tokens = glsl_tokens(text);
+  for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
+    if (tokens[i].text != "layout" || tokens[i + 1].text != "(") continue;
+    for (i += 2; i < tokens.size() && tokens[i].text != ")"; ++i) {
+      if (tokens[i].text != "shared" && tokens[i].text != "packed") continue;
+      const auto begin = static_cast<std::size_t>(tokens[i].text.data() - text.data());
+      out += text.substr(done, begin - done);
+      out += "std140";
+      done = begin + tokens[i].text.size();
+    }
+  }
+  return out + text.substr(done);
+}
+
 std::string with_lines(const std::string& text, bool sets_next) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -447,6 +465,11 @@ std::vector<GlslToken> glsl_tokens(std::string_view text) {
     }
   }
   return tokens;
+}
+
+bool uses(std::span<const GlslToken> tokens, std::string_view word) {
+  return std::any_of(tokens.begin(), tokens.end(),
+                     [&](const GlslToken& token) { return token.text == word; });
 }
 
 bool has_function(std::span<const GlslToken> tokens, std::string_view returns,
@@ -517,6 +540,7 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise)
     }
   }
   if (version.is_es ? version.number < 300 : version.number < 420) text = spliced(text);
+  text = with_known_layouts(text);
   const std::vector<GlslToken> tokens = glsl_tokens(text);
   check_depth(tokens, source.name);
   out.is_vulkan = is_vulkan(tokens);
@@ -525,12 +549,21 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise)
   for (const auto& [name, value] : source.defines) {
     if (name.empty() || !std::all_of(name.begin(), name.end(), is_word) ||
         value.find_first_of("\n\r\\") != std::string::npos) {
-      throw ShaderError(source.name + ": \"" + name + "\" cannot be defined as \"" + value + "\"");
+      throw ShaderError(
+          source.name +
+          ": a definition has to be a name, and a value of one line without a backslash");
     }
-    out.before += "#define " + name + " ";
-    out.before += value + "\n";
+    for (const std::string_view part :
+         {std::string_view("#define "), std::string_view(name), std::string_view(" "),
+          std::string_view(value), std::string_view("\n")}) {
+      out.before += part;
+    }
   }
-  if (version.has_blocks() && !out.is_vulkan) out.before += "layout(std140) uniform;\n";
+  if (version.has_blocks() && !out.is_vulkan) {
+    out.before += "layout(std140) uniform;\n";
+  } else if (uses(tokens, "GL_ARB_uniform_buffer_object")) {
+    out.before += "#extension GL_ARB_uniform_buffer_object : enable\nlayout(std140) uniform;\n";
+  }
   GlslSurroundings around = glsl_surroundings(out.convention, source, tokens, version);
   out.before += around.before;
   out.after = around.after;

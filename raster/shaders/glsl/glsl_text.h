@@ -31,6 +31,8 @@ struct GlslToken {
 /// Of a text that outlives them.
 std::vector<GlslToken> glsl_tokens(std::string_view text);
 
+bool uses(std::span<const GlslToken> tokens, std::string_view word);
+
 /// "[qualifier] returns name(" occurs.
 bool has_function(std::span<const GlslToken> tokens, std::string_view returns,
                   std::string_view name);
@@ -77,7 +79,23 @@ bool is_raising(std::string_view extension);
 /// The version of a text that says none.
 GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tokens);
 
-/// What `#include <name>` is by a convention; nullptr if nothing.
-const char* convention_include(std::string_view name);
+struct GlslDeclared {
+  const char* type;
+  const char* name;
+  const char* array = "";
+};
+
+/// The name is used, and declared as no uniform, input, output or macro.
+bool lacks(std::span<const GlslToken> tokens, std::string_view name);
+
+/// Declarations of those that the text lacks.
+std::string declarations(std::string_view qualifier, std::span<const GlslDeclared> all,
+                         const GlslSource& source, std::span<const GlslToken> tokens);
+
+GlslSurroundings three_surroundings(const GlslSource& source, std::span<const GlslToken> tokens,
+                                    const GlslVersion& version);
+
+/// What three.js' `#include <name>` is; nullptr if nothing.
+const char* three_include(std::string_view name);
 
 }  // namespace softfocus
