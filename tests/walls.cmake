@@ -3,7 +3,7 @@
 #
 #   cmake -D ROOT=FOLDER -P walls.cmake
 set(order
-  raster/numbers raster/lanes raster/threads raster/images raster/pipeline raster/passes raster/shaders raster/temporal raster/effects/motion raster/effects raster/raster.h
+  raster/numbers raster/lanes raster/threads raster/images raster/pipeline raster/passes raster/shaders raster/shaders/glsl raster/temporal raster/effects/motion raster/effects raster/raster.h
   dof/fixed dof dof/two_pass dof/one_pass dof/disc_layers dof/scatter
   dof/half_resolution dof/ring_bucket dof/circular dof/polygon dof/mipmap dof/object_layers dof/ray_distribution
   dof/methods dof/fixed_pictures dof/method.cpp dof/measure dof/auto dof/c

@@ -63,7 +63,7 @@ struct SamplePoints {
   const float* lod;
 };
 
-/// sample_lanes() of a unit with vectors; `colours`: RgbLanes of that unit.
+/// sample_lanes() of a unit with vectors; `colours`: RgbaLanes of that unit.
 void sample_vectors(Isa isa, const DecodedTexture& texture, const Sampler& sampler,
                     const Profile& profile, const SamplePoints& points, int count, void* colours);
 

@@ -287,10 +287,10 @@ SOFTFOCUS_INLINE constexpr bool is_llvmpipe(LaneArithmetic arithmetic) {
 // 128 bits.
 
 /// The channels of four groups, lane by lane.
-SOFTFOCUS_INLINE RgbLanes transpose_groups(Floats group0, Floats group1, Floats group2,
+SOFTFOCUS_INLINE RgbaLanes transpose_groups(Floats group0, Floats group1, Floats group2,
                                            Floats group3) {
   transpose_fours(group0, group1, group2, group3);
-  return {group0, group1, group2};
+  return {group0, group1, group2, group3};
 }
 
 /// Texels of a group, where `offsets` begins with its first lane's.
@@ -415,7 +415,7 @@ SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine
 template <LaneArithmetic arithmetic, bool neighbours, bool two_levels>
 [[gnu::noinline]] void filter_lanes(const float* texels, const FetchLanes& fine,
                                     const FetchLanes& coarse, const Floats& next_weight,
-                                    RgbLanes& colour) {
+                                    RgbaLanes& colour) {
   colour = transpose_groups(
       filter_group<arithmetic, neighbours, two_levels, 0>(texels, fine, coarse, next_weight),
       filter_group<arithmetic, neighbours, two_levels, 1>(texels, fine, coarse, next_weight),
@@ -489,7 +489,7 @@ SOFTFOCUS_INLINE void find_fetch(const PlaceLanes& place, Ints level, FetchLanes
 }
 
 template <LaneArithmetic arithmetic>
-SOFTFOCUS_INLINE RgbLanes sample_nearest(const PlaceLanes& place, Ints level) {
+SOFTFOCUS_INLINE RgbaLanes sample_nearest(const PlaceLanes& place, Ints level) {
   const AxisLanes along_u = axis_u(place, level);
   const AxisLanes along_v = axis_v(place, level);
   const Ints x = nearest_texel<arithmetic>(along_u, place.texture.are_whole);
@@ -550,7 +550,7 @@ SOFTFOCUS_INLINE void plan_linear(const PlaceLanes& place, const LevelLanes& lev
 }
 
 template <LaneArithmetic arithmetic>
-SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, RgbLanes& colour) {
+SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, RgbaLanes& colour) {
   const FetchLanes& fine = plan.fine;
   const Floats& weight = plan.next_weight;
   if (!plan.two_levels) {
@@ -569,7 +569,7 @@ SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, R
 /// sample() itself, lane by lane.
 [[gnu::noinline]] inline void sample_by_lane(const DecodedTexture& texture, const Sampler& sampler,
                                              const Profile& profile, SamplePoints points,
-                                             int vector, RgbLanes& colour) {
+                                             int vector, RgbaLanes& colour) {
   for (int lane = 0; lane < kLanes; ++lane) {
     const int i = vector * kLanes + lane;
     const glm::vec4 value =
@@ -577,6 +577,7 @@ SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, R
     colour.r[lane] = value.x;
     colour.g[lane] = value.y;
     colour.b[lane] = value.z;
+    colour.a[lane] = value.w;
   }
 }
 
@@ -597,7 +598,7 @@ SOFTFOCUS_INLINE Floats to_linear(const DecodedTexture& texture, Floats value) {
 template <LaneArithmetic arithmetic>
 [[gnu::noinline]] void sample_batch(const DecodedTexture& texture, const Sampler& sampler,
                                     const Profile& profile, SamplePoints points, int count,
-                                    RgbLanes* colours) {
+                                    RgbaLanes* colours) {
   const int last = texture.level_count - 1;
   const bool trilinear = sampler.filter == Filter::trilinear;
   std::array<SamplePlan, kMostSampled> plans;
@@ -630,6 +631,7 @@ template <LaneArithmetic arithmetic>
     colours[i].r = to_linear<arithmetic>(texture, colours[i].r);
     colours[i].g = to_linear<arithmetic>(texture, colours[i].g);
     colours[i].b = to_linear<arithmetic>(texture, colours[i].b);
+    colours[i].a = to_linear<arithmetic>(texture, colours[i].a);
   }
 }
 
@@ -640,7 +642,7 @@ template <LaneArithmetic arithmetic>
 /// filters: the CPU works on several vectors at once.
 void sample_in_lanes(const DecodedTexture& texture, const Sampler& sampler, const Profile& profile,
                      const SamplePoints& points, int count, void* to) {
-  auto* colours = static_cast<RgbLanes*>(to);
+  auto* colours = static_cast<RgbaLanes*>(to);
   using enum LaneArithmetic;
   switch (lane_arithmetic(texture, sampler, profile)) {
     case by_sample:

@@ -1,8 +1,8 @@
 // sample() and level_of_detail() for vectors of pixels, to the bit. Kernels that sample include
 // this, after raster/images/decoded_texture.h. sample_lanes.cpp has what reads the texels.
 
-struct RgbLanes {
-  Floats r, g, b;
+struct RgbaLanes {
+  Floats r, g, b, a;
 };
 
 inline constexpr int kMostSampled = 8;  // vectors at once
@@ -56,6 +56,6 @@ SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, con
 /// sample() of `count` vectors, kMostSampled at most.
 SOFTFOCUS_INLINE void sample_lanes(const DecodedTexture& texture, const Sampler& sampler,
                                    const Profile& profile, const SamplePoints& points, int count,
-                                   RgbLanes* colours) {
+                                   RgbaLanes* colours) {
   sample_vectors(Isa::SOFTFOCUS_ISA, texture, sampler, profile, points, count, colours);
 }

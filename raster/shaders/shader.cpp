@@ -46,6 +46,7 @@ class Run {
       width_ = target.width;
       height_ = target.height;
     }
+    decode_textures();
     lanes_ = pass.lanes != 0 ? pass.lanes : lanes_for(program);
     lane_program_ = lane_program(program, lanes_, pool.isa());
     for (const auto& output : program.outputs) {
@@ -83,6 +84,34 @@ class Run {
   std::atomic<bool> stopped_{false};
   std::mutex mutex_{};
   std::string why_{};
+
+  std::vector<DecodedTexture> decoded_{};
+  std::vector<ShaderTexture> textures_{};
+
+  /// For what filters texels, which reads them as floats.
+  void decode_textures() {
+    textures_.assign(pass_.textures.begin(), pass_.textures.end());
+    const bool filters = std::any_of(
+        program_.samples.begin(), program_.samples.end(), [](const ShaderSampleRegisters& of) {
+          const SampleKind kind = of.sample.kind;
+          return kind == SampleKind::implicit || kind == SampleKind::level ||
+                 kind == SampleKind::gradient;
+        });
+    if (!filters) return;
+    decoded_.reserve(textures_.size());
+    for (ShaderTexture& of : textures_) {
+      if (of.texture == nullptr || of.decoded != nullptr) continue;
+      const auto same =
+          std::find_if(decoded_.begin(), decoded_.end(),
+                       [&](const DecodedTexture& made) { return made.source == of.texture; });
+      if (same != decoded_.end()) {
+        of.decoded = &*same;
+      } else {
+        decoded_.push_back(decode_texture(*of.texture, pass_.profile));
+        of.decoded = &decoded_.back();
+      }
+    }
+  }
 
   std::byte* memory_of(PassFrame& frame) const {
     return reinterpret_cast<std::byte*>(frame.memory.get());
@@ -132,7 +161,7 @@ class Run {
       std::memset(place(frame, program_.killed), 0, lane_program_.register_bytes);
     }
     LaneFrame lanes{.memory = memory_of(frame),
-                    .textures = pass_.textures,
+                    .textures = textures_,
                     .samples = lane_program_.samples,
                     .tables = lane_program_.tables,
                     .profile = &pass_.profile,
@@ -192,21 +221,21 @@ class Run {
 
 }  // namespace
 
-Shader make_shader(std::vector<std::uint32_t> words) {
-  Shader made;
+UserShader make_shader(std::vector<std::uint32_t> words) {
+  UserShader made;
   made.module = std::make_unique<const SpirvModule>(read_spirv(std::move(words)));
   made.uniforms = uniforms_of(*made.module);
   return made;
 }
 
-const ShaderUniform* find_uniform(const Shader& shader, std::string_view name) {
+const ShaderUniform* find_uniform(const UserShader& shader, std::string_view name) {
   for (const ShaderUniform& uniform : shader.uniforms.all) {
     if (uniform.name == name) return &uniform;
   }
   return nullptr;
 }
 
-ShaderProgram compile_shader(const Shader& shader, std::span<const std::uint32_t> words) {
+ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words) {
   ShaderTree tree = lower_spirv(*shader.module, words);
   simplify(tree);
   return emit_program(tree);

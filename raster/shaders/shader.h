@@ -18,19 +18,19 @@
 namespace softfocus {
 
 /// A shader whose uniforms are not set yet.
-struct Shader {
+struct UserShader {
   std::unique_ptr<const SpirvModule> module{};
   ShaderUniforms uniforms{};
 };
 
 /// Throws ShaderError.
-Shader make_shader(std::vector<std::uint32_t> words);
+UserShader make_shader(std::vector<std::uint32_t> words);
 
 /// The uniform of that name ("tint", "light.colour", "tint[0]" is "tint"), or null.
-const ShaderUniform* find_uniform(const Shader& shader, std::string_view name);
+const ShaderUniform* find_uniform(const UserShader& shader, std::string_view name);
 
 /// A shader with its uniforms: `words` as ShaderUniforms has them. Throws ShaderError.
-ShaderProgram compile_shader(const Shader& shader, std::span<const std::uint32_t> words);
+ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words);
 
 /// An input of the fragment shader in a pass over a whole picture.
 struct PassVarying {

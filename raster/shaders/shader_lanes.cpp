@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "raster/images/decoded_texture.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/fused.h"
 #include "raster/numbers/half.h"
@@ -19,9 +20,9 @@
 namespace softfocus {
 namespace {
 
-constexpr std::uint8_t number_of(StepOp op) { return static_cast<std::uint8_t>(op); }
+constexpr bool is_step(std::uint8_t op, StepOp of) { return op == static_cast<std::uint8_t>(of); }
 
-bool steers(std::uint8_t op) { return op >= number_of(StepOp::jump); }
+bool steers(std::uint8_t op) { return op >= static_cast<std::uint8_t>(StepOp::jump); }
 
 }  // namespace
 
@@ -80,7 +81,7 @@ LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa) {
       to.stride *= made.register_bytes;
       to.vectors = vectors;
     }
-    if (step.op == number_of(StepOp::jump_if_none))
+    if (is_step(step.op, StepOp::jump_if_none))
       to.vectors = step.a.varies ? vectors : std::uint16_t{1};
     made.steps.push_back(to);
   }
@@ -157,6 +158,7 @@ void store_lanes(Isa isa, const float* const* channels, const std::int32_t* kill
 
 #else  // kernels
 
+#include "raster/images/sample_lanes.inl"
 #include "raster/shaders/math_lanes.inl"
 
 namespace {
@@ -484,24 +486,25 @@ void run_masked_copy(const LaneStep& step, LaneFrame& frame) {
 
 // --- differences in each four lanes: 0 1 above 2 3 ---
 
+SOFTFOCUS_INLINE Floats along_x(Floats v) {
+  const Mask upper = (lane_numbers() & 2) == 0;
+  return select(upper, spread<1>(v) - spread<0>(v), spread<3>(v) - spread<2>(v));
+}
+SOFTFOCUS_INLINE Floats along_y(Floats v) {
+  const Mask left = (lane_numbers() & 1) == 0;
+  return select(left, spread<2>(v) - spread<0>(v), spread<3>(v) - spread<1>(v));
+}
+
 template <ShaderOp op>
 void run_derivative(const LaneStep& step, LaneFrame& frame) {
   const std::byte* a = frame.memory + step.a;
   std::byte* to = frame.memory + step.to;
   for (int n = step.vectors; n > 0; --n) {
     const Floats v = as_floats(bits_at(a));
-    Floats made;
-    if constexpr (op == ShaderOp::derivative_x_coarse) {
-      made = spread<1>(v) - spread<0>(v);
-    } else if constexpr (op == ShaderOp::derivative_y_coarse) {
-      made = spread<2>(v) - spread<0>(v);
-    } else if constexpr (op == ShaderOp::derivative_x) {
-      const Mask upper = (lane_numbers() & 2) == 0;
-      made = select(upper, spread<1>(v) - spread<0>(v), spread<3>(v) - spread<2>(v));
-    } else {
-      const Mask left = (lane_numbers() & 1) == 0;
-      made = select(left, spread<2>(v) - spread<0>(v), spread<3>(v) - spread<1>(v));
-    }
+    Floats made = along_y(v);
+    if constexpr (op == ShaderOp::derivative_x) made = along_x(v);
+    if constexpr (op == ShaderOp::derivative_x_coarse) made = spread<1>(v) - spread<0>(v);
+    if constexpr (op == ShaderOp::derivative_y_coarse) made = spread<2>(v) - spread<0>(v);
     put_bits(to, as_bits(made));
     a += step.a_next;
     to += sizeof(Bits);
@@ -624,21 +627,91 @@ void fetch_half_texels(const LaneSample& sample, const Image& level, LaneFrame& 
   }
 }
 
+/// Where a lane samples, of a side of a texture with that many texels.
+SOFTFOCUS_INLINE Floats place_of(const LaneSample& sample, int axis, int size,
+                                 const LaneFrame& frame, int vector) {
+  const auto number = static_cast<std::size_t>(axis);
+  if (!sample.at[number].is_there) return splat(0.5f);
+  Floats at = as_floats(as_bits(numbers_of(sample.at[number], frame, vector)));
+  if (sample.sample.dim == SpirvDim::one && axis == 1) at = splat(0.5f);
+  if (sample.sample.dim == SpirvDim::rectangle) at = at / static_cast<float>(size);
+  if (sample.offset[number].is_there) {
+    at += to_floats(numbers_of(sample.offset[number], frame, vector)) / static_cast<float>(size);
+  }
+  return at;
+}
+
+SOFTFOCUS_INLINE Floats floats_of(const LaneSample::At& at, const LaneFrame& frame, int vector) {
+  return as_floats(as_bits(numbers_of(at, frame, vector)));
+}
+
+SOFTFOCUS_INLINE Floats level_of(const LaneSample& sample, const ShaderTexture& from,
+                                 const LaneFrame& frame, int vector) {
+  const Profile& profile = *frame.profile;
+  switch (sample.sample.kind) {
+    case SampleKind::level: return floats_of(sample.more[0], frame, vector);
+    case SampleKind::gradient:
+      return level_of_detail_lanes(*from.decoded, profile, floats_of(sample.more[0], frame, vector),
+                                   floats_of(sample.more[1], frame, vector),
+                                   floats_of(sample.more[3], frame, vector),
+                                   floats_of(sample.more[4], frame, vector));
+    default: break;
+  }
+  if (from.texture->levels.size() == 1) return splat(0.0f);
+  const Floats u = floats_of(sample.at[0], frame, vector);
+  const Floats v = floats_of(sample.at[1], frame, vector);
+  return level_of_detail_lanes(*from.decoded, profile, along_x(u), along_x(v), along_y(u),
+                               along_y(v)) +
+         floats_of(sample.more[0], frame, vector);
+}
+
+/// Filtered texels, by the profile's texture unit.
+void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFrame& frame) {
+  alignas(64) std::array<float, kMostSampled * kLanes> u, v, lod;
+  std::array<RgbaLanes, kMostSampled> colours;
+  const Image& base = from.texture->levels.front();
+  const int vectors = static_cast<int>(sample.vectors);
+  for (int first = 0; first < vectors; first += kMostSampled) {
+    const int count = std::min(kMostSampled, vectors - first);
+    for (int i = 0; i < count; ++i) {
+      store(u.data() + i * kLanes, place_of(sample, 0, base.width, frame, first + i));
+      store(v.data() + i * kLanes, place_of(sample, 1, base.height, frame, first + i));
+      store(lod.data() + i * kLanes, level_of(sample, from, frame, first + i));
+    }
+    sample_vectors(Isa::SOFTFOCUS_ISA, *from.decoded, from.sampler, *frame.profile,
+                   {u.data(), v.data(), lod.data()}, count, colours.data());
+    for (int i = 0; i < count; ++i) {
+      const RgbaLanes& colour = colours[static_cast<std::size_t>(i)];
+      if (sample.compared.is_there) {
+        const Mask passes = floats_of(sample.compared, frame, first + i) <= colour.r;
+        put_result(sample, 0, frame, first + i, as_bits(select(passes, splat(1.0f), splat(0.0f))));
+        continue;
+      }
+      put_result(sample, 0, frame, first + i, as_bits(colour.r));
+      put_result(sample, 1, frame, first + i, as_bits(colour.g));
+      put_result(sample, 2, frame, first + i, as_bits(colour.b));
+      put_result(sample, 3, frame, first + i, as_bits(colour.a));
+    }
+  }
+}
+
 void run_sample(const LaneStep& step, LaneFrame& frame) {
   const LaneSample& sample = frame.samples[step.place];
   const ShaderSample& of = sample.sample;
-  if (of.kind == SampleKind::fetch && of.dim == SpirvDim::two && !of.is_integer &&
-      sample.texture.next == 0 && sample.more[0].next == 0) {
-    const Texture* texture = texture_of(sample, frame);
+  const ShaderTexture* from = sample.texture.next == 0 ? texture_of(sample, frame) : nullptr;
+  if (from == nullptr || of.is_integer) return sample_by_lane(sample, frame, kLanes);
+  if (of.kind == SampleKind::fetch && of.dim == SpirvDim::two && sample.more[0].next == 0) {
     const std::int32_t level = numbers_of(sample.more[0], frame, 0)[0];
-    if (texture != nullptr && level >= 0 && level < std::ssize(texture->levels)) {
-      const Image& image = texture->levels[static_cast<std::size_t>(level)];
+    if (level >= 0 && level < std::ssize(from->texture->levels)) {
+      const Image& image = from->texture->levels[static_cast<std::size_t>(level)];
       if (image.format == Format::rgba16f && frame.profile->texture_unit == TextureUnit::standard) {
-        fetch_half_texels(sample, image, frame);
-        return;
+        return fetch_half_texels(sample, image, frame);
       }
     }
   }
+  const bool filters = of.kind == SampleKind::implicit || of.kind == SampleKind::level ||
+                       of.kind == SampleKind::gradient;
+  if (filters && from->decoded != nullptr) return sample_texels(sample, *from, frame);
   sample_by_lane(sample, frame, kLanes);
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "raster/images/decoded_texture.h"
 #include "raster/images/sampler.h"
 #include "raster/lanes/isa.h"
 #include "raster/shaders/shader_program.h"
@@ -16,6 +17,7 @@ namespace softfocus {
 struct ShaderTexture {
   const Texture* texture = nullptr;
   Sampler sampler{};
+  const DecodedTexture* decoded = nullptr;  ///< of the pass's profile; made there if it is null
 };
 
 struct LaneFrame;
@@ -58,7 +60,7 @@ struct LaneFrame {
 };
 
 /// The texture that a sample reads, of its first lane; null if there is none.
-const Texture* texture_of(const LaneSample& sample, const LaneFrame& frame);
+const ShaderTexture* texture_of(const LaneSample& sample, const LaneFrame& frame);
 
 /// Any sample, a lane after the other.
 void sample_by_lane(const LaneSample& sample, LaneFrame& frame, int unit_lanes);

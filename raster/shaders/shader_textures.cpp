@@ -185,10 +185,8 @@ void sample_one(const LaneSample& sample, const Lane& lane) {
 
 }  // namespace
 
-const Texture* texture_of(const LaneSample& sample, const LaneFrame& frame) {
-  const Lane lane{frame, 4, 0};
-  const ShaderTexture* found = texture_at(frame, lane.bits(sample.texture));
-  return found == nullptr ? nullptr : found->texture;
+const ShaderTexture* texture_of(const LaneSample& sample, const LaneFrame& frame) {
+  return texture_at(frame, Lane{frame, 4, 0}.bits(sample.texture));
 }
 
 void sample_by_lane(const LaneSample& sample, LaneFrame& frame, int unit_lanes) {

@@ -8,17 +8,16 @@
 namespace softfocus {
 namespace {
 
-using Words = std::span<const std::uint32_t>;
-using enum SpirvOp;
+using Operands = std::span<const std::uint32_t>;
 
 constexpr std::uint32_t kMagic = 0x07230203, kSwappedMagic = 0x03022307;
 constexpr std::uint32_t kMostIds = 1u << 22;
 
-std::uint32_t swapped(std::uint32_t word) {
+std::uint32_t with_bytes_swapped(std::uint32_t word) {
   return word >> 24 | (word >> 8 & 0xFF00) | (word << 8 & 0xFF0000) | word << 24;
 }
 
-[[noreturn]] void damaged(const std::string& why) {
+[[noreturn]] void damaged_words(const std::string& why) {
   throw ShaderError("the SPIR-V is damaged: " + why);
 }
 
@@ -28,6 +27,7 @@ struct Shape {
 };
 
 Shape shape_of(SpirvOp op) {
+  using enum SpirvOp;
   switch (op) {
     case nop:
     case source_continued:
@@ -84,6 +84,7 @@ Shape shape_of(SpirvOp op) {
 }
 
 bool ends_block(SpirvOp op) {
+  using enum SpirvOp;
   return op == branch || op == branch_conditional || op == switch_ || op == kill || op == return_ ||
          op == return_value || op == unreachable || op == terminate_invocation;
 }
@@ -93,29 +94,32 @@ class Reader {
   explicit Reader(SpirvModule& to) : module_(to) {}
 
   void read() {
-    const Words words = module_.words;
-    if (words.size() < 5 || words[0] != kMagic) damaged("it does not begin as SPIR-V does");
+    const Operands words = module_.words;
+    if (words.size() < 5 || words[0] != kMagic) damaged_words("it does not begin as SPIR-V does");
     if (words.size() > kMostSpirvWords) {
       throw ShaderError("the shader has " + std::to_string(words.size()) + " words; " +
                         std::to_string(kMostSpirvWords) + " are the most");
     }
     bound_ = words[3];
-    if (bound_ == 0 || bound_ > kMostIds) damaged("its bound of ids is " + std::to_string(bound_));
+    if (bound_ == 0 || bound_ > kMostIds)
+      damaged_words("its bound of ids is " + std::to_string(bound_));
     for (std::size_t at = 5; at < words.size();) {
       const std::size_t length = words[at] >> 16;
-      if (length == 0 || length > words.size() - at) damaged("an instruction goes beyond its end");
+      if (length == 0 || length > words.size() - at)
+        damaged_words("an instruction goes beyond its end");
       take(static_cast<SpirvOp>(words[at] & 0xFFFF), words.subspan(at + 1, length - 1));
       at += length;
     }
-    if (function_ != nullptr) damaged("its last function has no end");
+    if (function_ != nullptr) damaged_words("its last function has no end");
     if (module_.main == 0) {
       throw ShaderError("the SPIR-V has no entry point of a vertex or fragment shader");
     }
-    for (auto& [id, function] : module_.functions) check(function);
-    if (!module_.functions.contains(module_.main)) damaged("its entry point is no function");
+    for (const auto& [id, of] : module_.functions) check(of);
+    if (!module_.functions.contains(module_.main)) damaged_words("its entry point is no function");
   }
 
  private:
+  using enum SpirvOp;
   SpirvModule& module_;
   std::uint32_t bound_ = 0;
   std::set<SpirvId> defined_{};
@@ -128,12 +132,12 @@ class Reader {
     throw ShaderError(place_of(module_, line_) + why);
   }
 
-  static std::uint32_t word(Words operands, std::size_t at) {
-    if (at >= operands.size()) damaged("an instruction is cut short");
+  static std::uint32_t word(Operands operands, std::size_t at) {
+    if (at >= operands.size()) damaged_words("an instruction is cut short");
     return operands[at];
   }
   /// The text from a word on, and the words that it takes.
-  static std::pair<std::string, std::size_t> text(Words operands, std::size_t at) {
+  static std::pair<std::string, std::size_t> text(Operands operands, std::size_t at) {
     std::string text;
     for (std::size_t i = at; i < operands.size(); ++i) {
       for (int byte = 0; byte < 4; ++byte) {
@@ -142,22 +146,22 @@ class Reader {
         text += c;
       }
     }
-    damaged("a text has no end");
+    damaged_words("a text has no end");
   }
 
-  SpirvId known_type(Words operands, std::size_t at) const {
+  SpirvId known_type(Operands operands, std::size_t at) const {
     const SpirvId id = word(operands, at);
-    if (!module_.types.contains(id)) damaged("a type is used that is not there");
+    if (!module_.types.contains(id)) damaged_words("a type is used that is not there");
     return id;
   }
   std::uint32_t scalars_of(SpirvId type) const { return module_.types.at(type).scalars; }
   const SpirvConstant& constant_of(SpirvId id) const {
     const auto found = module_.constants.find(id);
-    if (found == module_.constants.end()) damaged("a constant is used that is not there");
+    if (found == module_.constants.end()) damaged_words("a constant is used that is not there");
     return found->second;
   }
 
-  void take(SpirvOp op, Words operands) {
+  void take(SpirvOp op, Operands operands) {
     SpirvInstruction in{.op = op, .line = line_};
     const Shape shape = shape_of(op);
     if (shape.has_type) {
@@ -166,8 +170,8 @@ class Reader {
     }
     if (shape.has_result) {
       in.result = word(operands, 0);
-      if (in.result == 0 || in.result >= bound_) damaged("an id is beyond its bound");
-      if (!defined_.insert(in.result).second) damaged("an id is defined twice");
+      if (in.result == 0 || in.result >= bound_) damaged_words("an id is beyond its bound");
+      if (!defined_.insert(in.result).second) damaged_words("an id is defined twice");
       operands = operands.subspan(1);
     }
     in.operands = operands;
@@ -192,7 +196,7 @@ class Reader {
   /// Checks what an array or structure consists of.
   void nest(SpirvType& outer, SpirvId inner) const {
     const SpirvType& of = module_.type(inner);
-    if (of.scalars == 0) damaged("an array or structure consists of what holds no numbers");
+    if (of.scalars == 0) damaged_words("an array or structure consists of what holds no numbers");
     outer.depth = std::max(outer.depth, of.depth + 1);
     if (outer.depth > kDeepestTypes) refuse("structures are nested too deeply");
   }
@@ -207,7 +211,7 @@ class Reader {
 
   bool take_type(const SpirvInstruction& in) {
     using enum SpirvKind;
-    const Words& w = in.operands;
+    const Operands& w = in.operands;
     switch (in.op) {
       case type_void: add_type(in, none, 0); return true;
       case type_bool: add_type(in, boolean, 1); return true;
@@ -231,7 +235,8 @@ class Reader {
         const SpirvKind of = module_.type(element).kind;
         const bool fits =
             in.op == type_matrix ? of == vector : of == floating || of == integer || of == boolean;
-        if (!fits || count < 2 || count > 4) damaged("a vector has parts that it cannot have");
+        if (!fits || count < 2 || count > 4)
+          damaged_words("a vector has parts that it cannot have");
         SpirvType& type =
             add_type(in, in.op == type_matrix ? matrix : vector, count * scalars_of(element));
         type.element = element;
@@ -252,14 +257,14 @@ class Reader {
       case type_sampler: add_type(in, sampler, 1); return true;
       case type_sampled_image: {
         const SpirvId element = known_type(w, 0);
-        if (module_.type(element).kind != image) damaged("a sampler has no image");
+        if (module_.type(element).kind != image) damaged_words("a sampler has no image");
         add_type(in, sampled_image, 2).element = element;
         return true;
       }
       case type_array: {
         const SpirvId element = known_type(w, 0);
         const SpirvConstant& count = constant_of(word(w, 1));
-        if (count.words.size() != 1 || count.words[0] == 0) damaged("an array has no length");
+        if (count.words.size() != 1 || count.words[0] == 0) damaged_words("an array has no length");
         SpirvType& type = add_type(
             in, array, checked_scalars(std::uint64_t{count.words[0]} * scalars_of(element)));
         type.element = element;
@@ -311,13 +316,13 @@ class Reader {
       case spec_constant_true:
       case constant_false:
       case spec_constant_false:
-        if (!is_kind(SpirvKind::boolean)) damaged("a constant is not of its type");
+        if (!is_kind(SpirvKind::boolean)) damaged_words("a constant is not of its type");
         words = {in.op == constant_true || in.op == spec_constant_true ? ~0u : 0u};
         break;
       case constant:
       case spec_constant:
         if (!is_kind(SpirvKind::integer) && !is_kind(SpirvKind::floating)) {
-          damaged("a constant is not of its type");
+          damaged_words("a constant is not of its type");
         }
         words = {word(in.operands, 0)};
         break;
@@ -328,9 +333,10 @@ class Reader {
         for (const SpirvId part : in.operands) {
           const SpirvConstant& of = constant_of(part);
           words.insert(words.end(), of.words.begin(), of.words.end());
-          if (words.size() > kMostScalars) damaged("a constant has too many parts");
+          if (words.size() > kMostScalars) damaged_words("a constant has too many parts");
         }
-        if (words.size() != scalars_of(in.type)) damaged("a constant has not its type's parts");
+        if (words.size() != scalars_of(in.type))
+          damaged_words("a constant has not its type's parts");
         break;
       case spec_constant_op:
         refuse("constants that are computed of specialised ones are not supported");
@@ -341,7 +347,7 @@ class Reader {
   }
 
   void take_other(const SpirvInstruction& in) {
-    const Words& w = in.operands;
+    const Operands& w = in.operands;
     switch (in.op) {
       case name: decorations(w).name = text(w, 1).first; break;
       case member_name: member(w).name = text(w, 2).first; break;
@@ -369,8 +375,8 @@ class Reader {
       case memory_model:
       case module_processed: break;
       default:
-        damaged("instruction " + std::to_string(static_cast<int>(in.op)) +
-                " stands outside of functions, or is none that shaders have");
+        damaged_words("instruction " + std::to_string(static_cast<int>(in.op)) +
+                      " stands outside of functions, or is none that shaders have");
     }
   }
 
@@ -384,7 +390,7 @@ class Reader {
     if (is({11, 12, 21})) refuse("atomic counters and 64-bit integers are not supported");
   }
 
-  void take_entry_point(Words w) {
+  void take_entry_point(Operands w) {
     constexpr std::uint32_t kVertex = 0, kFragment = 4;
     const std::uint32_t model = word(w, 0);
     if (model != kVertex && model != kFragment) {
@@ -395,25 +401,25 @@ class Reader {
     module_.main = word(w, 1);
   }
 
-  SpirvDecorations& decorations(Words w) {
+  SpirvDecorations& decorations(Operands w) {
     const SpirvId id = word(w, 0);
-    if (id == 0 || id >= bound_) damaged("an id is beyond its bound");
+    if (id == 0 || id >= bound_) damaged_words("an id is beyond its bound");
     return module_.decorations[id];
   }
-  SpirvDecorations& member(Words w) {
+  SpirvDecorations& member(Operands w) {
     constexpr std::size_t kMostMembers = kMostScalars;
     SpirvDecorations& of = decorations(w);
     const std::uint32_t number = word(w, 1);
-    if (number >= kMostMembers) damaged("a structure has too many members");
+    if (number >= kMostMembers) damaged_words("a structure has too many members");
     if (of.members.size() <= number) {
       members_ += number + 1 - of.members.size();
-      if (members_ > kMostMembers) damaged("structures have too many members");
+      if (members_ > kMostMembers) damaged_words("structures have too many members");
       of.members.resize(number + 1);
     }
     return of.members[number];
   }
 
-  static void add_decoration(SpirvDecorations& to, Words w) {
+  static void add_decoration(SpirvDecorations& to, Operands w) {
     const auto number = [&] { return static_cast<int>(std::min(word(w, 1), kMostScalars)); };
     switch (static_cast<SpirvDecoration>(word(w, 0))) {
       using enum SpirvDecoration;
@@ -438,12 +444,12 @@ class Reader {
     SpirvVariable made{in.result, in.type, static_cast<SpirvStorage>(word(in.operands, 0)), 0};
     const SpirvType& pointer = module_.type(in.type);
     if (pointer.kind != SpirvKind::pointer || pointer.storage != made.storage) {
-      damaged("a variable has no pointer's type");
+      damaged_words("a variable has no pointer's type");
     }
     if (in.operands.size() > 1) {
       made.initial = in.operands[1];
       if (constant_of(made.initial).type != pointer.element) {
-        damaged("a variable begins with another type's value");
+        damaged_words("a variable begins with another type's value");
       }
     }
     return made;
@@ -453,7 +459,7 @@ class Reader {
     const SpirvId type = known_type(in.operands, 1);
     const SpirvType& of = module_.type(type);
     if (of.kind != SpirvKind::function || of.element != in.type) {
-      damaged("a function is not of its type");
+      damaged_words("a function is not of its type");
     }
     function_ = &module_.functions[in.result];
     function_->id = in.result;
@@ -465,24 +471,25 @@ class Reader {
   void take_in_function(const SpirvInstruction& in) {
     switch (in.op) {
       case function_parameter:
-        if (!function_->blocks.empty()) damaged("a parameter stands behind a function's begin");
+        if (!function_->blocks.empty())
+          damaged_words("a parameter stands behind a function's begin");
         function_->parameters.push_back(in);
         return;
       case label:
-        if (block_ != nullptr) damaged("a block has no end");
+        if (block_ != nullptr) damaged_words("a block has no end");
         function_->block_of[in.result] = function_->blocks.size();
         function_->blocks.push_back({.label = in.result});
         block_ = &function_->blocks.back();
         return;
       case function_end:
-        if (block_ != nullptr) damaged("a block has no end");
+        if (block_ != nullptr) damaged_words("a block has no end");
         function_ = nullptr;
         return;
       case nop: return;
       case undefined: take_constant(in); return;
       default: break;
     }
-    if (block_ == nullptr) damaged("an instruction stands outside of a block");
+    if (block_ == nullptr) damaged_words("an instruction stands outside of a block");
     switch (in.op) {
       case variable: function_->variables.push_back(variable_of(in)); return;
       case selection_merge: block_->merge = word(in.operands, 0); return;
@@ -496,22 +503,22 @@ class Reader {
     if (ends_block(in.op)) block_ = nullptr;
   }
 
-  void check(const SpirvFunction& function) const {
-    const SpirvType& type = module_.type(function.type);
-    if (function.blocks.empty()) damaged("a function has no body");
-    bool fits = function.parameters.size() == type.members.size();
+  void check(const SpirvFunction& of) const {
+    const SpirvType& type = module_.type(of.type);
+    if (of.blocks.empty()) damaged_words("a function has no body");
+    bool fits = of.parameters.size() == type.members.size();
     for (std::size_t i = 0; fits && i < type.members.size(); ++i) {
-      fits = function.parameters[i].type == type.members[i];
+      fits = of.parameters[i].type == type.members[i];
     }
-    if (!fits) damaged("a function has not its type's parameters");
+    if (!fits) damaged_words("a function has not its type's parameters");
     const auto check_label = [&](SpirvId id) {
-      if (!function.block_of.contains(id)) damaged("a branch goes where no block is");
+      if (!of.block_of.contains(id)) damaged_words("a branch goes where no block is");
     };
-    for (const SpirvBlock& block : function.blocks) {
+    for (const SpirvBlock& block : of.blocks) {
       if (block.merge != 0) check_label(block.merge);
       if (block.continues != 0) check_label(block.continues);
       const SpirvInstruction& last = block.instructions.back();
-      const Words& w = last.operands;
+      const Operands& w = last.operands;
       if (last.op == return_value) word(w, 0);
       if (last.op == branch) check_label(word(w, 0));
       if (last.op == branch_conditional) {
@@ -520,7 +527,7 @@ class Reader {
       }
       if (last.op == switch_) {
         check_label(word(w, 1));
-        if (w.size() % 2 != 0) damaged("a switch is cut short");
+        if (w.size() % 2 != 0) damaged_words("a switch is cut short");
         for (std::size_t i = 3; i < w.size(); i += 2) check_label(w[i]);
       }
     }
@@ -531,7 +538,7 @@ class Reader {
 
 std::vector<std::uint32_t> spirv_words(std::span<const std::byte> file) {
   if (file.size() % 4 != 0 || file.size() < 20)
-    damaged("it has " + std::to_string(file.size()) + " bytes");
+    damaged_words("it has " + std::to_string(file.size()) + " bytes");
   std::vector<std::uint32_t> words(file.size() / 4);
   for (std::size_t i = 0; i < words.size(); ++i) {
     std::uint32_t word = 0;
@@ -541,7 +548,7 @@ std::vector<std::uint32_t> spirv_words(std::span<const std::byte> file) {
     words[i] = word;
   }
   if (words[0] == kSwappedMagic) {
-    for (std::uint32_t& word : words) word = swapped(word);
+    for (std::uint32_t& word : words) word = with_bytes_swapped(word);
   }
   return words;
 }

@@ -7,19 +7,14 @@
 #include <cstdint>
 #include <map>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "raster/shaders/shader_error.h"
 #include "raster/shaders/spirv_words.h"
 
 namespace softfocus {
-
-/// A shader is at fault, in one line: "FILE:LINE: what, and what would be right".
-struct ShaderError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 using SpirvId = std::uint32_t;  ///< 0: none
 

@@ -21,7 +21,7 @@ SOFTFOCUS_INLINE Floats opacity_texels(const Quads& in, std::size_t u,
   store(place[1].data(), in.varying(v));
   store(place[2].data(),
         level_of_detail_lanes(texture, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
-  RgbLanes texels;
+  RgbaLanes texels;
   sample_lanes(texture, sampler, profile, {place[0].data(), place[1].data(), place[2].data()}, 1,
                &texels);
   return texels.r;

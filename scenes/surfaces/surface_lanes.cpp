@@ -188,12 +188,12 @@ struct SurfaceFragmentLanes {
   SOFTFOCUS_INLINE void multiply_by_texture(const FragmentBatch<kInputs>& batch,
                                             std::array<Floats, 4>* colours) const {
     const int count = batch.vectors();
-    std::array<RgbLanes, kMostSampled> texels;
+    std::array<RgbaLanes, kMostSampled> texels;
     sample_lanes(*stage.decoded, stage.sampler, stage.profile,
                  {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
                  count, texels.data());
     for (int i = 0; i < count; ++i) {
-      const RgbLanes& texel = texels[static_cast<std::size_t>(i)];
+      const RgbaLanes& texel = texels[static_cast<std::size_t>(i)];
       colours[i][0] *= texel.r;
       colours[i][1] *= texel.g;
       colours[i][2] *= texel.b;

@@ -16,6 +16,7 @@
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/platform.h"
+#include "tools/effects/shader_on_picture.h"
 #include "tools/files/whole_file.h"
 #include "tools/options/effect_options.h"
 #include "tools/options/parameter_options.h"
@@ -200,6 +201,7 @@ struct ApplyOptions {
   std::optional<std::string> layer;
   VelocityOptions velocity;
   FileReading files;
+  ShaderOptions shaders;
   EffectOptions effects;
   Profile profile{};
   std::string profile_name = "ieee";
@@ -261,6 +263,7 @@ void apply_effects(const ApplyOptions& options, const Image& velocity, OpenedLay
     layer.opacity = opacity_of(with_effects(opacity_picture(layer.opacity, layer.colour), spreading,
                                             make_velocity, options.profile, pool));
   }
+  layer.colour = with_shaders(options.shaders, std::move(layer.colour), options.profile, pool);
   layer.colour = with_effects(std::move(layer.colour), all_effects(options.effects), make_velocity,
                               options.profile, pool);
 }
@@ -293,6 +296,9 @@ PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) 
   notes.width = colour.width;
   notes.height = colour.height;
   notes.picture_hash = hash_image(colour);
+  for (const std::string& file : options.shaders.files) {
+    notes.effects.push_back("shader " + std::filesystem::path{file}.filename().string());
+  }
   for (const ChosenEffect& chosen : all_effects(options.effects)) {
     notes.effects.push_back(effect_text(chosen));
   }
@@ -399,6 +405,8 @@ Command add_apply_command(CLI::App& program) {
   add_argument(*parser, "PICTURE",
                "PNG and JPEG (sRGB), EXR, HDR, PFM (linear), NPY (linear; whole numbers sRGB)",
                options->picture);
+  begin_group(*parser, "Shaders");
+  add_shader_options(*parser, options->shaders);
   begin_group(*parser, "Effects");
   add_effect_options(*parser, options->effects);
   add_text(*parser, "--layer", "NAME", "The colour's layer of an EXR", options->layer);
@@ -424,9 +432,10 @@ Command add_apply_command(CLI::App& program) {
   return {
       parser, [parser, options] {
         settle_format(*parser, options->output, options->format);
-        if (all_effects(options->effects).empty()) {
+        if (options->shaders.files.empty() && all_effects(options->effects).empty()) {
           throw UsageError(
-              "there is nothing to apply; give --effect (softfocus effects) or --tone-map");
+              "there is nothing to apply; give --shader, --effect (softfocus effects) or "
+              "--tone-map");
         }
         if (const auto of_frames = effect_of_frames(all_effects(options->effects), "--effect")) {
           throw UsageError("--effect " + std::string{of_frames->effect->name} +

@@ -254,8 +254,9 @@ void read_plain(TIFF* tiff, const TiffMemory& memory, const TiffForm& form, Numb
   };
   for (std::uint32_t y = 0; y < form.height; y += down) {
     for (std::uint32_t x = 0; x < form.width; x += across) {
-      for (std::uint16_t sample = 0; sample < (form.apart ? form.samples : 1); ++sample) {
-        read_block(x, y, sample);
+      const int planes = form.apart ? form.samples : 1;
+      for (int sample = 0; sample < planes; ++sample) {
+        read_block(x, y, static_cast<std::uint16_t>(sample));
       }
     }
   }

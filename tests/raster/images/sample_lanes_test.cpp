@@ -372,7 +372,7 @@ inline void sample_all(const DecodedTexture& texture, const Sampler& sampler,
     v.push_back(point.v);
     lod.push_back(point.lod);
   }
-  std::array<RgbLanes, kMostSampled> texels;
+  std::array<RgbaLanes, kMostSampled> texels;
   // Batches of 1, 2, ... vectors by turns.
   std::size_t most = 0;
   for (std::size_t done = 0; done < points.size();) {
@@ -381,7 +381,7 @@ inline void sample_all(const DecodedTexture& texture, const Sampler& sampler,
     sample_lanes(texture, sampler, profile, {&u[done], &v[done], &lod[done]},
                  static_cast<int>(count), texels.data());
     for (std::size_t i = 0; i < count * kStep; ++i) {
-      const RgbLanes& rgb = texels[i / kStep];
+      const RgbaLanes& rgb = texels[i / kStep];
       const int lane = static_cast<int>(i % kStep);
       colours[done + i] = {rgb.r[lane], rgb.g[lane], rgb.b[lane]};
     }

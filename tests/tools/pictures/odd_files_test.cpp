@@ -402,8 +402,9 @@ PlaneValues plane_of(const Bytes& bytes, std::size_t plane) {
 TEST_CASE("TIFF: whole numbers and floats of each size, of both byte orders") {
   if (!missing_tiff().empty()) return skip("TIFF", missing_tiff());
   for (const bool high : {false, true}) {
-    for (const auto& [bits, format] :
+    for (const auto& kind :
          {std::pair{8u, 1u}, {16u, 1u}, {32u, 1u}, {16u, 3u}, {32u, 3u}, {64u, 3u}}) {
+      const unsigned bits = kind.first, format = kind.second;
       CAPTURE(bits);
       CAPTURE(format);
       const TiffOf tiff{.high_byte_first = high, .bits = bits, .format = format};

@@ -6,15 +6,12 @@
 #include <string>
 #include <string_view>
 
+#include "raster/shaders/shader_error.h"
+
 namespace softfocus {
 
 /// A driver refuses or lacks something; in one line.
 struct DriverError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// A shader's text is at fault, in one line.
-struct ShaderError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

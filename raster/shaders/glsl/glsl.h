@@ -1,0 +1,83 @@
+#pragma once
+// GLSL as it is found in files, compiled to SPIR-V by glslang. Every version is read by its own
+// rules; nothing is translated but the few lines that a convention puts around a shader.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raster/shaders/spirv_module.h"
+
+namespace softfocus {
+
+/// What stands around a shader where it comes from. `recognised` takes the first that fits:
+///
+/// | convention | if the text has |
+/// |---|---|
+/// | libretro | `#pragma stage` or `#pragma parameter`, or a condition on VERTEX or FRAGMENT |
+/// | shadertoy | a function `mainImage`, and none `main` or an undeclared iResolution or iTime |
+/// | gl_transitions | a function `transition`, and none `main` |
+/// | three | an `#include <...>` of three.js'; or no `#version`, and vUv or tDiffuse, or in a
+/// vertex
+///   shader position, uv, modelViewMatrix or projectionMatrix undeclared |
+/// | plain | anything else |
+enum class GlslConvention : std::uint8_t {
+  recognised,
+  plain,
+  shadertoy,
+  three,
+  libretro,
+  gl_transitions
+};
+
+/// "plain", "shadertoy" and so on.
+std::string_view name_of(GlslConvention convention);
+
+struct GlslSource {
+  ShaderStage stage = ShaderStage::fragment;
+  std::string name{};  ///< for errors; its folder is where #include "..." looks
+  std::string text{};
+  GlslConvention convention = GlslConvention::recognised;
+  std::map<std::string, std::string> defines{};
+  /// Types of the samplers that a convention declares, other than sampler2D: iChannel0 ->
+  /// samplerCube.
+  std::map<std::string, std::string> samplers{};
+};
+
+/// Reads a file that a shader includes, named relative to where `GlslSource::name` is relative to;
+/// nothing if it cannot be read, or must not.
+using GlslReader = std::function<std::optional<std::string>(const std::string& path)>;
+
+/// A value that a text offers to its user: gl-transitions' `uniform float a; // = 1.0`, libretro's
+/// `#pragma parameter`. (A uniform's initialiser is in the SPIR-V.)
+struct GlslParameter {
+  std::string name{}, label{};
+  std::vector<double> value{};           ///< one a component, or one for all
+  double least = 0, most = 0, step = 0;  ///< step 0: not said
+};
+
+struct CompiledGlsl {
+  /// For OpenGL (of libretro's .slang for Vulkan), with OpLine of the user's files. What GLSL
+  /// leaves to linking has no Location or Binding, and is known by its name.
+  std::vector<std::uint32_t> words{};
+  GlslConvention convention{};       ///< never `recognised`
+  std::vector<std::string> files{};  ///< that were included
+  std::vector<GlslParameter> parameters{};
+  std::vector<std::string> warnings{};  ///< "FILE:LINE: ..."
+};
+
+/// What a text may have at the most, with all that it includes.
+inline constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;
+
+/// Throws ShaderError, "FILE:LINE: ...". Any number of threads may call it at once. There is no
+/// limit of time: macros that expand to ever more macros take as long as they take.
+CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read);
+
+/// Why this build compiles no GLSL; empty if it does.
+std::string_view missing_glsl();
+
+}  // namespace softfocus

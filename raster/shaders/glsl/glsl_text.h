@@ -1,0 +1,101 @@
+#pragma once
+// From a user's file to the texts that a GLSL compiler is given, without the compiler: what is
+// cleaned, included, recognised and put around it.
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raster/shaders/glsl/glsl.h"
+
+namespace softfocus {
+
+struct GlslVersion {
+  int number = 0;  ///< 0: not said
+  bool is_es = false;
+  std::string profile{};  ///< as written
+  bool has_blocks() const { return number >= (is_es ? 300 : 140); }
+  /// in, out and texture() in place of varying, gl_FragColor and texture2D().
+  bool has_outputs() const { return number >= (is_es ? 300 : 130); }
+};
+
+/// A word, number, string or sign, outside of comments.
+struct GlslToken {
+  std::string_view text{};
+  int line = 1;
+  bool is_first = false;  ///< of its line
+};
+
+/// Of a text that outlives them.
+std::vector<GlslToken> glsl_tokens(std::string_view text);
+
+bool uses(std::span<const GlslToken> tokens, std::string_view word);
+
+/// "[qualifier] returns name(" occurs.
+bool has_function(std::span<const GlslToken> tokens, std::string_view returns,
+                  std::string_view name);
+
+/// Parts in the order in which a compiler reads them.
+struct GlslText {
+  std::string version{}, before{}, text{}, after{};
+  GlslConvention convention{};
+  GlslVersion taken_as{};
+  bool said_version = false;
+  bool is_vulkan = false;
+  std::vector<std::string> files{};
+  std::vector<GlslParameter> parameters{};
+  /// Why the files of "#error kMissingInclude N" cannot be had.
+  std::vector<std::string> missing_includes{};
+  bool is_raised = false;
+};
+constexpr std::string_view kMissingInclude = "softfocus_missing_include";
+
+/// A condition on VERTEX or FRAGMENT, by which libretro's .glsl files tell their stages apart.
+bool has_stage_condition(std::span<const GlslToken> tokens);
+
+/// Throws ShaderError. `raise`: to a later version, in whose compatibility profile stands what the
+/// text's extensions bring and glslang knows of no earlier version; GlslText::is_raised says
+/// whether there is one.
+GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise = false);
+
+/// What a convention declares for a shader that uses it and does not declare it itself.
+struct GlslSurroundings {
+  std::string before{}, after{};
+};
+GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& source,
+                                   std::span<const GlslToken> tokens, const GlslVersion& version);
+
+/// What `recognised` is; `has_version`: the text has a #version.
+GlslConvention recognise(ShaderStage stage, std::span<const GlslToken> tokens, bool has_version);
+
+/// The version that has the extensions that the text asks for, if it is above `version`.
+GlslVersion raised_version(const GlslVersion& version, GlslConvention convention,
+                           std::span<const GlslToken> tokens);
+/// An extension that raised_version() counts.
+bool is_raising(std::string_view extension);
+
+/// The version of a text that says none.
+GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tokens);
+
+struct GlslDeclared {
+  const char* type;
+  const char* name;
+  const char* array = "";
+};
+
+/// The name is used, and declared as no uniform, input, output or macro.
+bool lacks(std::span<const GlslToken> tokens, std::string_view name);
+
+/// Declarations of those that the text lacks.
+std::string declarations(std::string_view qualifier, std::span<const GlslDeclared> all,
+                         const GlslSource& source, std::span<const GlslToken> tokens);
+
+GlslSurroundings three_surroundings(const GlslSource& source, std::span<const GlslToken> tokens,
+                                    const GlslVersion& version);
+
+/// What three.js' `#include <name>` is; nullptr if nothing.
+const char* three_include(std::string_view name);
+
+}  // namespace softfocus

@@ -1,0 +1,399 @@
+// GLSL as it is found: versions, conventions, includes, and errors that name the user's lines.
+
+#include <doctest/doctest.h>
+
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "raster/shaders/glsl/glsl.h"
+#include "tests/support/skip.h"
+
+using namespace softfocus;
+
+namespace {
+
+using TextFiles = std::map<std::string, std::string>;
+
+CompiledGlsl compiled_with(GlslSource source, const TextFiles& files = {}) {
+  if (source.name.empty()) source.name = "mine.frag";
+  return compile_glsl(source, [&](const std::string& path) -> std::optional<std::string> {
+    const auto found = files.find(path);
+    return found == files.end() ? std::nullopt : std::optional(found->second);
+  });
+}
+
+CompiledGlsl compiled_text(const std::string& text, ShaderStage stage = ShaderStage::fragment) {
+  GlslSource source;
+  source.stage = stage;
+  source.text = text;
+  return compiled_with(source);
+}
+
+std::string error_with(const GlslSource& source, const TextFiles& files = {}) {
+  try {
+    compiled_with(source, files);
+  } catch (const ShaderError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+std::string error_of_text(const std::string& text) {
+  GlslSource source;
+  source.text = text;
+  return error_with(source);
+}
+
+GlslConvention convention_of(const std::string& text, ShaderStage stage = ShaderStage::fragment) {
+  return compiled_text(text, stage).convention;
+}
+
+/// Strings of OpName that are there.
+bool has_name(const CompiledGlsl& shader, const std::string& name) {
+  for (std::size_t i = 5; i < shader.words.size();) {
+    const std::uint32_t count = shader.words[i] >> 16, op = shader.words[i] & 0xffff;
+    if (count == 0) return false;
+    constexpr std::uint32_t kOpName = 5;
+    if (op == kOpName && name == reinterpret_cast<const char*>(&shader.words[i + 2])) return true;
+    i += count;
+  }
+  return false;
+}
+
+bool has_line(const CompiledGlsl& shader, std::uint32_t line) {
+  for (std::size_t i = 5; i < shader.words.size(); i += shader.words[i] >> 16) {
+    constexpr std::uint32_t kOpLine = 8;
+    if ((shader.words[i] & 0xffff) == kOpLine && shader.words[i + 2] == line) return true;
+    if (shader.words[i] >> 16 == 0) return false;
+  }
+  return false;
+}
+
+constexpr const char* kOldBody =
+    "varying vec2 v;\nuniform sampler2D t;\n"
+    "void main() { gl_FragColor = texture2D(t, v); }\n";
+constexpr const char* kNewBody =
+    "in vec2 v;\nuniform sampler2D t;\nout vec4 o;\n"
+    "void main() { o = texture(t, v); }\n";
+
+}  // namespace
+
+TEST_CASE("GLSL of every version becomes SPIR-V 1.0, a line of it the user's") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  for (const char* const version : {"110", "120"}) {
+    CAPTURE(version);
+    const auto shader = compiled_text("#version " + std::string(version) + "\n" + kOldBody);
+    REQUIRE(shader.words.size() > 5);
+    CHECK(shader.words[0] == 0x07230203);
+    CHECK(shader.words[1] == 0x10000);
+    CHECK(has_line(shader, 4));
+    CHECK(has_name(shader, "gl_FragColor"));
+  }
+  for (const char* const version : {"130", "140", "150", "150 core", "150 compatibility", "330",
+                                    "330 core", "400", "410", "420", "430", "440", "450", "460"}) {
+    CAPTURE(version);
+    const auto shader = compiled_text("#version " + std::string(version) + "\n" + kNewBody);
+    CHECK(shader.words[1] == 0x10000);
+    CHECK(has_line(shader, 5));
+    CHECK(has_name(shader, "v"));
+    CHECK(shader.convention == GlslConvention::plain);
+  }
+  for (const char* const version : {"300 es", "310 es", "320 es"}) {
+    CAPTURE(version);
+    CHECK(has_line(compiled_text("#version " + std::string(version) +
+                                 "\nprecision mediump float;\n" + kNewBody),
+                   6));
+  }
+  CHECK(
+      has_line(compiled_text(std::string("#version 100\nprecision lowp float;\n") + kOldBody), 5));
+}
+
+TEST_CASE("a text without a version is GLSL 1.10, or ES 1.00 if it has precisions") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  CHECK(has_name(compiled_text(kOldBody), "v"));
+  CHECK(has_name(compiled_text(std::string("precision highp float;\n") + kOldBody), "v"));
+  const std::string error = error_of_text("void main() {\n  gl_FragColor = vec4(1u);\n}\n");
+  CHECK(error.starts_with("mine.frag:2: 'unsigned literal': not supported"));
+  CHECK(error.ends_with("(no #version: taken as GLSL 1.10)"));
+}
+
+TEST_CASE("the compatibility profile's built-ins are inputs and uniforms by their names") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto shader = compiled_text(
+      "void main() {\n"
+      "  gl_Position = ftransform();\n"
+      "  gl_TexCoord[0] = gl_TextureMatrix[0] * gl_MultiTexCoord0;\n"
+      "  gl_FrontColor = gl_Color;\n"
+      "}\n",
+      ShaderStage::vertex);
+  for (const char* const name : {"gl_Vertex", "gl_ModelViewProjectionMatrix", "gl_TexCoord",
+                                 "gl_MultiTexCoord0", "gl_FrontColor", "gl_Color"}) {
+    CAPTURE(name);
+    CHECK(has_name(shader, name));
+  }
+}
+
+TEST_CASE(
+    "a file may have a byte-order mark, CRLF, no-break spaces, spliced lines, a comment first") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto shader = compiled_text(
+      "\xEF\xBB\xBF/* mine */\r\n#version 300 es\r\nprecision highp float;\r\n"
+      "out vec4 o;\r\n#define TWO 1.0 + \\\r\n 1.0\r\nvoid main() {\r\n"
+      "\xC2\xA0 o =\xC2\xA0vec4(TWO);\r\n}\r\n");
+  CHECK(has_line(shader, 8));
+  CHECK(has_line(compiled_text("#version 330\nout vec4 o;\n#define A \\\n 1.0\nvoid main() {\n"
+                               "  // a comment goes on \\\n  o = vec4(A);\n}\n"),
+                 7));
+  CHECK(error_of_text(std::string("void main() {}\n\0", 16)) ==
+        "mine.frag:2: a byte of value 0; this is no text");
+  CHECK(error_of_text("\xFF\xFEv") == "mine.frag:1: the text is UTF-16; it would have to be UTF-8");
+}
+
+TEST_CASE("words that a later version reserves are names in an earlier one") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  CHECK(has_name(compiled_text("#version 330\nout vec4 o;\nvoid main() {\n"
+                               "  float sample = 1.0;\n  o = vec4(sample);\n}\n"),
+                 "sample"));
+  CHECK(has_name(compiled_text("uniform sampler2D t;\nvoid main() {\n"
+                               "  vec4 texture = texture2D(t, vec2(0.0));\n"
+                               "  gl_FragColor = texture + texture2D(t, texture.xy);\n}\n"),
+                 "texture"));
+}
+
+TEST_CASE("an extension that glslang has only in a later version is had") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  CHECK(has_name(compiled_text("#version 150\n#extension GL_ARB_gpu_shader5 : require\n"
+                               "uniform uint u;\nout vec4 o;\nvoid main() {\n"
+                               "  uint carry;\n  o = vec4(float(uaddCarry(u, 1u, carry)));\n}\n"),
+                 "carry"));
+  CHECK(has_name(compiled_text("#version 130\n#extension GL_ARB_arrays_of_arrays : require\n"
+                               "void main() { float a[2][2]; a[1][0] = 1.0; "
+                               "gl_FragColor = vec4(a[1][0]); }\n"),
+                 "a"));
+}
+
+TEST_CASE("an error names the user's file and line") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  CHECK(error_of_text("#version 330\nout vec4 o;\nvoid main() {\n  o = vec4(x);\n}\n") ==
+        "mine.frag:4: 'x': undeclared identifier");
+  CHECK(error_of_text("#version 330\n#error not so\nvoid main() {}\n")
+            .starts_with("mine.frag:2: '#error': not so"));
+  CHECK(error_of_text("#version 330\nvoid f() {}\n") ==
+        "mine.frag: no function main(), mainImage() or transition()");
+  for (const char* const version : {"999", "300", "330 es", "100 es", "330 coer", "es"}) {
+    CAPTURE(version);
+    CHECK(error_of_text("\n#version " + std::string(version) + "\nvoid main() {}\n") ==
+          "mine.frag:2: #version " + std::string(version) +
+              "; there are 100, 110 to 460, 300 es, 310 es and 320 es");
+  }
+  const std::string error =
+      error_of_text("void mainImage(out vec4 c, in vec2 p) {\n  c = vec4(y);\n}\n");
+  CHECK(error.starts_with("mine.frag:2: 'y': undeclared identifier"));
+  CHECK(error.ends_with("(taken as shadertoy)"));
+}
+
+TEST_CASE("an include is read beside the file that includes it, and errors name it") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  struct Dialect {
+    const char *first, *second, *output;
+  };
+  const TextFiles files{
+      {"shaders/parts/a.glsl", "#include \"../b.glsl\"\nfloat a() { return b(); }\n"},
+      {"shaders/b.glsl", "float b() {\n  return 1.0;\n}\n"}};
+  TextFiles broken = files;
+  broken["shaders/b.glsl"] = "\nfloat b() {\n  return c0;\n}\n";
+  for (const Dialect& dialect :
+       {Dialect{"#version 120\n", "\n", "gl_FragColor"},
+        Dialect{"#version 330\n", "out vec4 o;\n", "o"},
+        Dialect{"#version 100\n", "precision mediump float;\n", "gl_FragColor"}}) {
+    CAPTURE(dialect.first);
+    GlslSource source;
+    source.name = "shaders/mine.frag";
+    source.defines["OUTPUT"] = dialect.output;
+    source.text = std::string(dialect.first) + dialect.second +
+                  "#include \"parts/a.glsl\"\nvoid main() {\n  OUTPUT = vec4(a());\n}\n";
+    const CompiledGlsl shader = compiled_with(source, files);
+    CHECK(shader.files == std::vector<std::string>{"shaders/parts/a.glsl", "shaders/b.glsl"});
+    CHECK(error_with(source, broken).starts_with("shaders/b.glsl:3: 'c0': undeclared identifier"));
+    source.text.replace(source.text.find("a());"), 5, "c1);");
+    CHECK(error_with(source, files).starts_with("shaders/mine.frag:5: 'c1'"));
+  }
+}
+
+TEST_CASE("an include that cannot be is an error where the preprocessor comes to it") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  GlslSource source;
+  source.text = "#if 0\n#include \"none\"\n#endif\nvoid main() {}\n";
+  CHECK(error_with(source) == "none");
+  source.text = "\n#include \"none\"\nvoid main() {}\n";
+  CHECK(error_with(source) == "mine.frag:2: #include none: cannot read none");
+  source.text = "#include \"/etc/passwd\"\nvoid main() {}\n";
+  CHECK(error_with(source) == "mine.frag:1: #include /etc/passwd: the path must be relative");
+  source.text = "#include \"a\"\nvoid main() {}\n";
+  CHECK(error_with(source, {{"a", "\n#include \"a\"\n"}}) ==
+        "a:2: #include a: the file includes itself");
+  CHECK(error_with(source, {{"a", "#ifndef A\n#define A\n#include \"a\"\n#endif\n"}}) ==
+        "a:3: #include a: the file includes itself");
+  TextFiles many;
+  for (int i = 0; i < 40; ++i) {
+    many[std::string("a") + std::string(static_cast<std::size_t>(i), 'a')] =
+        "#include \"a" + std::string(static_cast<std::size_t>(i + 1), 'a') + "\"\n";
+  }
+  CHECK(error_with(source, many).find("too many files include others") != std::string::npos);
+}
+
+TEST_CASE("Shadertoy's text is recognised and gets its uniforms") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string toy =
+      "void mainImage(out vec4 color, in vec2 at) {\n"
+      "  vec2 uv = at / iResolution.xy + iChannelResolution[1].xy * iTime;\n"
+      "  color = texture(iChannel0, uv) + texture2D(iChannel1, uv) * float(iFrame) + iMouse;\n}\n";
+  const auto shader = compiled_text(toy);
+  CHECK(shader.convention == GlslConvention::shadertoy);
+  CHECK(has_name(shader, "iResolution"));
+  CHECK(has_name(shader, "iChannelResolution"));
+  CHECK_FALSE(has_name(shader, "iDate"));
+  CHECK(has_line(shader, 3));
+  // A text that declares them, as other programs want it.
+  CHECK(
+      convention_of(
+          "#version 330\nuniform vec3 iResolution; uniform float iTime;\n"
+          "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, iTime, 1); }\n") ==
+      GlslConvention::shadertoy);
+  GlslSource source;
+  source.text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel2, vec3(1.0)); }\n";
+  CHECK(error_with(source) != "none");
+  source.samplers["iChannel2"] = "samplerCube";
+  CHECK(error_with(source) == "none");
+}
+
+TEST_CASE("three.js' passes are recognised, of both versions of GLSL") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto pass = compiled_text(
+      "#include <common>\n#include <packing>\nvarying vec2 vUv;\nuniform sampler2D tDiffuse;\n"
+      "uniform sampler2D tDepth;\nvoid main() {\n"
+      "  float z = perspectiveDepthToViewZ(unpackRGBAToDepth(texture2D(tDepth, vUv)), 0.1, 10.0);\n"
+      "  vec4 texture = textureLod(tDiffuse, vUv, 0.0);\n"
+      "  gl_FragColor = saturate(texture * z * rand(vUv) + luminance(texture.rgb) * PI);\n"
+      "  #include <colorspace_fragment>\n}\n");
+  CHECK(pass.convention == GlslConvention::three);
+  CHECK(has_name(pass, "pc_fragColor"));
+  CHECK(has_line(pass, 9));
+  const auto vertex = compiled_text(
+      "varying vec2 vUv;\nvoid main() {\n  vUv = uv;\n"
+      "  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);\n}\n",
+      ShaderStage::vertex);
+  CHECK(vertex.convention == GlslConvention::three);
+  CHECK(has_name(vertex, "position"));
+  GlslSource source;
+  source.text =
+      "#version 300 es\nout vec4 color;\nvoid main() { color = texture(tDiffuse, vUv); }\n";
+  CHECK(error_with(source) != "none");
+  source.convention = GlslConvention::three;
+  CHECK(error_with(source) == "none");
+}
+
+TEST_CASE("gl-transitions are recognised, and their parameters read") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto shader = compiled_text(
+      "uniform float size; // = 0.5\nuniform vec2 at /* = vec2(1.0, -2) */;\n"
+      "uniform bool hard; // = true\nuniform ivec2 none; // no default\n"
+      "vec4 transition(vec2 uv) {\n"
+      "  return mix(getFromColor(uv), getToColor(uv + at * size), progress * ratio);\n}\n");
+  CHECK(shader.convention == GlslConvention::gl_transitions);
+  REQUIRE(shader.parameters.size() == 3);
+  CHECK(shader.parameters[0].name == "size");
+  CHECK(shader.parameters[0].value == std::vector<double>{0.5});
+  CHECK(shader.parameters[1].name == "at");
+  CHECK(shader.parameters[1].value == std::vector<double>{1, -2});
+  CHECK(shader.parameters[2].value == std::vector<double>{1});
+}
+
+TEST_CASE("libretro's files are recognised, both forms, a stage at a time") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string glsl =
+      "#pragma parameter GAIN \"Gain\" 1.0 0.5 2.0 0.05\n#if defined(VERTEX)\n"
+      "attribute vec4 VertexCoord;\nuniform mat4 MVPMatrix;\n"
+      "void main() { gl_Position = MVPMatrix * VertexCoord; }\n#elif defined(FRAGMENT)\n"
+      "#ifdef PARAMETER_UNIFORM\nuniform float GAIN;\n#endif\n"
+      "void main() { gl_FragColor = vec4(GAIN); }\n#endif\n";
+  const auto fragment = compiled_text(glsl);
+  CHECK(fragment.convention == GlslConvention::libretro);
+  CHECK(has_name(fragment, "GAIN"));
+  CHECK(has_line(fragment, 10));
+  REQUIRE(fragment.parameters.size() == 1);
+  CHECK(fragment.parameters[0].label == "Gain");
+  CHECK(fragment.parameters[0].most == 2);
+  CHECK(fragment.parameters[0].step == 0.05);
+  CHECK(has_name(compiled_text(glsl, ShaderStage::vertex), "VertexCoord"));
+  const std::string slang =
+      "#version 450\nlayout(push_constant) uniform Push { vec4 SourceSize; float GAIN; } params;\n"
+      "layout(std140, set = 0, binding = 0) uniform UBO { mat4 MVP; } global;\n"
+      "#pragma stage vertex\nlayout(location = 0) in vec4 Position;\n"
+      "void main() { gl_Position = global.MVP * Position; }\n"
+      "#pragma stage fragment\nlayout(location = 0) out vec4 FragColor;\n"
+      "void main() {\n  FragColor = params.SourceSize * params.GAIN;\n}\n";
+  CHECK(has_line(compiled_text(slang), 10));
+  CHECK(has_name(compiled_text(slang, ShaderStage::vertex), "Position"));
+}
+
+TEST_CASE("definitions reach the text, and nothing but definitions") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  GlslSource source;
+  source.text = "void main() { gl_FragColor = vec4(SIZE); }\n";
+  source.defines["SIZE"] = "2.0";
+  CHECK(error_with(source) == "none");
+  source.defines["SIZE"] = "2.0\n#error";
+  CHECK(error_with(source) ==
+        "mine.frag: a definition has to be a name, and a value of one line without a backslash");
+}
+
+TEST_CASE("texts that would take a compiler's stack or memory are refused in a line") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  std::string sum = "uniform float x;\nvoid main() {\n  gl_FragColor = vec4(x";
+  for (int i = 0; i < 200'000; ++i) sum += "+x";
+  CHECK(error_of_text(sum + ");\n}\n") ==
+        "mine.frag:3: an expression of more than 2000 operators; it would have to be split");
+  const auto nested = [](const std::string& open, const std::string& close) {
+    std::string text = "void main() { gl_FragColor = vec4(";
+    for (int i = 0; i < 60'000; ++i) text += open;
+    text += "1.0";
+    for (int i = 0; i < 60'000; ++i) text += close;
+    return text + "); }\n";
+  };
+  CHECK(error_of_text(nested("(", ")")) != "none");
+  CHECK(error_of_text(nested("-", "")) != "none");
+  CHECK(error_of_text(nested("abs(", ")")) != "none");
+  std::string blocks = "void main() { ";
+  for (int i = 0; i < 60'000; ++i) blocks += "if (true) {";
+  CHECK(error_of_text(blocks) != "none");
+  std::string table = "#version 330\nout vec4 o;\nconst float t[4000] = float[](0.0";
+  for (int i = 1; i < 4000; ++i) table += ", -" + std::to_string(i) + ".0";
+  CHECK(error_of_text(table + ");\nvoid main() { o = vec4(t[int(gl_FragCoord.x)]); }\n") == "none");
+  CHECK(error_of_text(
+            "float f(float x) { return f(x); }\nvoid main() { gl_FragColor = vec4(f(1.0)); }\n")
+            .find("ecursion") != std::string::npos);
+  CHECK(error_of_text(std::string(kMostGlslBytes + 1, ' '))
+            .starts_with("mine.frag:1: the text is longer than 1024 KiB"));
+  CHECK(error_of_text("#version 330\n#extension GL_ARB_bindless_texture : require\n"
+                      "void main() {}\n") ==
+        "mine.frag:2: GL_ARB_bindless_texture is not supported; a sampler is a uniform");
+}
+
+TEST_CASE("threads compile at once, each to the same words" * doctest::test_suite("threads")) {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto expected = compiled_text(kOldBody).words;
+  std::vector<std::thread> threads;
+  threads.reserve(4);
+  std::vector<int> equal(4);
+  for (int& count : equal) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 20; ++i)
+        count += static_cast<int>(compiled_text(kOldBody).words == expected);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(equal == std::vector<int>{20, 20, 20, 20});
+}
