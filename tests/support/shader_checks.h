@@ -103,7 +103,7 @@ inline std::string first_difference(const Image& found, const Image& expected) {
 /// threads, simplified or not. Uniforms and textures are chosen by `seed`. Throws ShaderError.
 inline CheckResult check_shader(const std::vector<std::uint32_t>& words, std::uint64_t seed) {
   Random random{seed};
-  const Shader shader = make_shader(words);
+  const UserShader shader = make_shader(words);
   const std::vector<std::uint32_t> uniforms = random_uniforms(shader.uniforms, random);
   const Format format = random.whole(0, 1) == 0 ? Format::rgba16f : Format::rgba32f;
   const Texture texture = random_texture(format, 8, random);
@@ -149,7 +149,7 @@ inline CheckResult check_shader(const std::vector<std::uint32_t>& words, std::ui
 
 /// Compiles and runs any words over a few pixels. Throws ShaderError.
 inline void run_any_shader(std::vector<std::uint32_t> words, Isa isa) {
-  const Shader shader = make_shader(std::move(words));
+  const UserShader shader = make_shader(std::move(words));
   const ShaderProgram program = compile_shader(shader, shader.uniforms.words);
   Random random;
   const Texture texture = random_texture(Format::rgba16f, 4, random);
