@@ -106,9 +106,9 @@ class Lowering {
   }
 
   const SpirvDecorations& decorations_of(SpirvId id) const {
-    static const SpirvDecorations kNone;
+    static const SpirvDecorations none;
     const auto found = module_.decorations.find(id);
-    return found == module_.decorations.end() ? kNone : found->second;
+    return found == module_.decorations.end() ? none : found->second;
   }
   const SpirvType& type(SpirvId id) const {
     const auto found = module_.types.find(id);

@@ -36,7 +36,8 @@ class RandomSpirv {
  private:
   using Words = std::vector<std::uint32_t>;
   using Id = std::uint32_t;
-  enum Kind : std::size_t { kBool, kInt, kFloat, kKinds };
+  enum Kind : std::uint8_t { truth, whole, real };
+  static constexpr std::size_t kKinds = 3;
   using Known = std::array<std::vector<Id>, kKinds>;  ///< values that are there
 
   /// A way into a block.
@@ -51,7 +52,7 @@ class RandomSpirv {
   };
   struct Function {
     Id id = 0;
-    Kind gives = kInt;
+    Kind gives = whole;
     std::vector<Kind> takes{};  ///< and behind them a pointer to an int
   };
 
@@ -60,7 +61,7 @@ class RandomSpirv {
   Id next_id_ = 1;
   Id void_ = 0, vector_ = 0, array_ = 0, output_ = 0, coordinates_ = 0;
   std::array<Id, kKinds> type_{}, pointer_{};
-  Id array_pointer_ = 0, private_int_ = 0, function_type_ = 0;
+  Id low_bits_ = 0, array_pointer_ = 0, private_int_ = 0, function_type_ = 0;
   std::array<Id, 2> globals_{}, arrays_{};
   std::vector<Id> ints_{};  ///< pointers of the function under way
   std::vector<Function> functions_{};
@@ -97,7 +98,7 @@ class RandomSpirv {
   }
   Id number(Kind kind, std::uint32_t bits) {
     const Id result = id();
-    if (kind == kBool) {
+    if (kind == truth) {
       put(types_, bits != 0 ? SpirvOp::constant_true : SpirvOp::constant_false,
           {type_[kind], result});
     } else {
@@ -116,23 +117,24 @@ class RandomSpirv {
     using enum SpirvOp;
     const auto storage = [](SpirvStorage of) { return static_cast<std::uint32_t>(of); };
     void_ = declared(type_void, {});
-    type_[kBool] = declared(type_bool, {});
-    type_[kInt] = declared(type_int, {32, 1});
-    type_[kFloat] = declared(type_float, {32});
-    vector_ = declared(type_vector, {type_[kFloat], 4});
-    for (const Kind kind : {kBool, kInt, kFloat}) {
+    type_[truth] = declared(type_bool, {});
+    type_[whole] = declared(type_int, {32, 1});
+    type_[real] = declared(type_float, {32});
+    vector_ = declared(type_vector, {type_[real], 4});
+    for (const Kind kind : {truth, whole, real}) {
       pointer_[kind] = declared(type_pointer, {storage(SpirvStorage::function), type_[kind]});
     }
-    for (const std::uint32_t bits : {0u, 1u, 2u, 3u, 7u, ~0u, 100u}) number(kInt, bits);
+    for (const std::uint32_t bits : {0u, 1u, 2u, 3u, 7u, ~0u, 100u}) number(whole, bits);
+    low_bits_ = number(whole, 0xFFFFFF);
     for (const float x : {0.0f, 1.0f, 0.5f, -2.5f, 8.0f}) {
-      number(kFloat, std::bit_cast<std::uint32_t>(x));
+      number(real, std::bit_cast<std::uint32_t>(x));
     }
-    number(kBool, 0);
-    number(kBool, 1);
-    array_ = declared(type_array, {type_[kInt], constants_[kInt][3]});
+    number(truth, 0);
+    number(truth, 1);
+    array_ = declared(type_array, {type_[whole], constants_[whole][3]});
     const Id array_of_globals = declared(type_pointer, {storage(SpirvStorage::private_), array_});
     array_pointer_ = declared(type_pointer, {storage(SpirvStorage::function), array_});
-    private_int_ = declared(type_pointer, {storage(SpirvStorage::private_), type_[kInt]});
+    private_int_ = declared(type_pointer, {storage(SpirvStorage::private_), type_[whole]});
     for (Id& each : globals_) each = global(private_int_, SpirvStorage::private_);
     arrays_[0] = global(array_of_globals, SpirvStorage::private_);
     function_type_ = declared(SpirvOp::type_function, {void_});
@@ -150,7 +152,7 @@ class RandomSpirv {
 
   Kind some_kind() {
     const int number = random_.whole(0, 9);
-    return number < 5 ? kInt : number < 8 ? kFloat : kBool;
+    return number < 5 ? whole : number < 8 ? real : truth;
   }
   Id some(Kind kind) { return some(kind, known_); }
   Id some(Kind kind, const Known& known) {
@@ -170,46 +172,46 @@ class RandomSpirv {
       return *(list.begin() + random_.whole(0, static_cast<int>(list.size()) - 1));
     };
     if (chance(12)) {
-      know(kind, made(SpirvOp::select, type_[kind], {some(kBool), some(kind), some(kind)}));
-    } else if (kind == kInt && chance(15)) {
-      know(kInt, made(convert_float_to_signed, type_[kInt], {some(kFloat)}));
-    } else if (kind == kInt) {
+      know(kind, made(SpirvOp::select, type_[kind], {some(truth), some(kind), some(kind)}));
+    } else if (kind == whole && chance(15)) {
+      know(whole, made(convert_float_to_signed, type_[whole], {some(real)}));
+    } else if (kind == whole) {
       const SpirvOp op = one_of({integer_add, integer_sub, integer_mul, signed_div, signed_mod,
                                  bitwise_and, bitwise_or, bitwise_xor, shift_left_logical,
                                  shift_right_arithmetic, bitwise_and});
-      know(kInt, made(op, type_[kInt], {some(kInt), some(kInt)}));
-    } else if (kind == kFloat && chance(25)) {
-      know(kFloat, made(convert_signed_to_float, type_[kFloat], {some(kInt)}));
-    } else if (kind == kFloat) {
+      know(whole, made(op, type_[whole], {some(whole), some(whole)}));
+    } else if (kind == real && chance(25)) {
+      know(real, made(convert_signed_to_float, type_[real], {some(whole)}));
+    } else if (kind == real) {
       const SpirvOp op = one_of({float_add, float_sub, float_mul, float_div});
-      know(kFloat, made(op, type_[kFloat], {some(kFloat), some(kFloat)}));
+      know(real, made(op, type_[real], {some(real), some(real)}));
     } else if (chance(50)) {
       const SpirvOp op = one_of({signed_less_than, integer_equal, signed_greater_than_equal});
-      know(kBool, made(op, type_[kBool], {some(kInt), some(kInt)}));
+      know(truth, made(op, type_[truth], {some(whole), some(whole)}));
     } else if (chance(50)) {
       const SpirvOp op = one_of({float_ord_less_than, float_unord_not_equal, float_ord_equal});
-      know(kBool, made(op, type_[kBool], {some(kFloat), some(kFloat)}));
+      know(truth, made(op, type_[truth], {some(real), some(real)}));
     } else {
-      know(kBool, made(one_of({logical_and, logical_or, logical_not_equal}), type_[kBool],
-                       {some(kBool), some(kBool)}));
+      know(truth, made(one_of({logical_and, logical_or, logical_not_equal}), type_[truth],
+                       {some(truth), some(truth)}));
     }
   }
 
   Id some_place() {
     const int number = random_.whole(0, 3);
     if (number == 0) return globals_[static_cast<std::size_t>(random_.whole(0, 1))];
-    if (number == 1) return made(SpirvOp::access_chain, private_int_, {arrays_[0], some(kInt)});
+    if (number == 1) return made(SpirvOp::access_chain, private_int_, {arrays_[0], some(whole)});
     if (number == 2 && arrays_[1] != 0) {
-      return made(SpirvOp::access_chain, pointer_[kInt], {arrays_[1], some(kInt)});
+      return made(SpirvOp::access_chain, pointer_[whole], {arrays_[1], some(whole)});
     }
     return ints_[static_cast<std::size_t>(random_.whole(0, static_cast<int>(ints_.size()) - 1))];
   }
   void remember() {
     const Id place = some_place();
     if (chance(50)) {
-      know(kInt, made(SpirvOp::load, type_[kInt], {place}));
+      know(whole, made(SpirvOp::load, type_[whole], {place}));
     } else {
-      put(SpirvOp::store, {place, some(kInt)});
+      put(SpirvOp::store, {place, some(whole)});
     }
   }
 
@@ -313,7 +315,7 @@ class RandomSpirv {
     const Id on = id();
     aim.ways.push_back({block_, known_});
     const bool first = chance(50);
-    put(SpirvOp::branch_conditional, {some(kBool), first ? aim.label : on, first ? on : aim.label});
+    put(SpirvOp::branch_conditional, {some(truth), first ? aim.label : on, first ? on : aim.label});
     begin(on);
   }
 
@@ -324,7 +326,7 @@ class RandomSpirv {
     const int missing = chance(40) ? random_.whole(0, 1) : 2;  // which side is the end itself
     put(SpirvOp::selection_merge, {merge.label, 0});
     if (missing < 2) merge.ways.push_back({block_, known_});
-    put(SpirvOp::branch_conditional, {some(kBool), missing == 0 ? merge.label : sides[0],
+    put(SpirvOp::branch_conditional, {some(truth), missing == 0 ? merge.label : sides[0],
                                       missing == 1 ? merge.label : sides[1]});
     for (int side = 0; side < 2; ++side) {
       if (side == missing) continue;
@@ -351,7 +353,8 @@ class RandomSpirv {
     }
     const int of_default = random_.whole(0, count);  // the last: the end itself
     if (of_default == count) merge.ways.push_back({block_, known_});
-    const Id selector = made(SpirvOp::bitwise_and, type_[kInt], {some(kInt), constants_[kInt][3]});
+    const Id selector =
+        made(SpirvOp::bitwise_and, type_[whole], {some(whole), constants_[whole][3]});
     put(SpirvOp::selection_merge, {merge.label, 0});
     Words operands{selector, of_default == count
                                  ? merge.label
@@ -394,22 +397,22 @@ class RandomSpirv {
       phis.push_back({kind, code_.size() - 2});
       return result;
     };
-    const Id counter = phi(kInt, constants_[kInt][0]);
+    const Id counter = phi(whole, constants_[whole][0]);
     for (int i = random_.whole(0, 3); i > 0; --i) {
       const Kind kind = some_kind();
       know(kind, phi(kind, some(kind, outside)));
     }
-    know(kInt, counter);
+    know(whole, counter);
     for (int i = random_.whole(0, 3); i > 0; --i) chance(80) ? compute() : remember();
     for (int i = random_.whole(0, 2); i > 0; --i) {  // of all pixels at once
-      know(kBool, made(SpirvOp::integer_equal, type_[kBool], {counter, some(kInt, constants_)}));
+      know(truth, made(SpirvOp::integer_equal, type_[truth], {counter, some(whole, constants_)}));
     }
-    Id most = constants_[kInt][static_cast<std::size_t>(random_.whole(1, 3))];
+    Id most = constants_[whole][static_cast<std::size_t>(random_.whole(1, 3))];
     if (chance(50)) {
-      most = made(SpirvOp::bitwise_and, type_[kInt], {some(kInt), constants_[kInt][3]});
+      most = made(SpirvOp::bitwise_and, type_[whole], {some(whole), constants_[whole][3]});
     }
-    const Id counted = made(SpirvOp::integer_add, type_[kInt], {counter, constants_[kInt][1]});
-    const Id goes_on = made(SpirvOp::signed_less_than, type_[kBool], {counter, most});
+    const Id counted = made(SpirvOp::integer_add, type_[whole], {counter, constants_[whole][1]});
+    const Id goes_on = made(SpirvOp::signed_less_than, type_[truth], {counter, most});
     const Known of_header = known_;
     const bool ends_first = chance(50);
     const auto end_turn = [&](bool may_leave, bool turned) {
@@ -419,7 +422,7 @@ class RandomSpirv {
       }
       if (!may_leave) return branch(header);
       merge.ways.push_back({block_, known_});
-      const Id is = turned ? made(SpirvOp::logical_not, type_[kBool], {goes_on}) : goes_on;
+      const Id is = turned ? made(SpirvOp::logical_not, type_[truth], {goes_on}) : goes_on;
       if (is_one_block) put(SpirvOp::loop_merge, {merge.label, next.label, 0});
       put(SpirvOp::branch_conditional,
           {is, turned ? merge.label : header, turned ? header : merge.label});
@@ -460,7 +463,7 @@ class RandomSpirv {
   void begin_locals() {
     ints_.clear();
     for (int i = 0; i < 2; ++i) {
-      ints_.push_back(made(SpirvOp::variable, pointer_[kInt],
+      ints_.push_back(made(SpirvOp::variable, pointer_[whole],
                            {static_cast<std::uint32_t>(SpirvStorage::function)}));
     }
     arrays_[1] = made(SpirvOp::variable, array_pointer_,
@@ -474,7 +477,7 @@ class RandomSpirv {
       function.takes.push_back(some_kind());
       type.push_back(type_[function.takes.back()]);
     }
-    type.push_back(pointer_[kInt]);
+    type.push_back(pointer_[whole]);
     const Id of = id();
     types_.push_back(static_cast<std::uint32_t>(type.size() + 2) << 16 |
                      static_cast<std::uint32_t>(SpirvOp::type_function));
@@ -485,7 +488,7 @@ class RandomSpirv {
     for (const Kind kind : function.takes) {
       know(kind, made(SpirvOp::function_parameter, type_[kind], {}));
     }
-    const Id pointer = made(SpirvOp::function_parameter, pointer_[kInt], {});
+    const Id pointer = made(SpirvOp::function_parameter, pointer_[whole], {});
     begin(id());
     begin_locals();
     ints_[1] = pointer;
@@ -497,14 +500,34 @@ class RandomSpirv {
     functions_.push_back(function);
   }
 
+  /// Of as many values as a shader can bring to bear, so that a wrong one shows.
   void store_output() {
-    std::array<Id, 4> parts{};
-    for (std::size_t i = 0; i < 4; ++i) {
-      parts[i] = i < 2 ? made(SpirvOp::convert_signed_to_float, type_[kFloat], {some(kInt)})
-                       : some(kFloat);
+    using enum SpirvOp;
+    Id values = some(whole), memory = made(SpirvOp::load, type_[whole], {ints_[0]});
+    Id floats = some(real), choices = constants_[whole][0];
+    for (int i = 0; i < 10; ++i) {
+      values = made(bitwise_xor, type_[whole], {values, some(whole)});
+      values = made(integer_mul, type_[whole], {values, constants_[whole][3]});
     }
-    put(SpirvOp::store, {output_, made(SpirvOp::composite_construct, vector_,
-                                       {parts[0], parts[1], parts[2], parts[3]})});
+    for (const Id place : {ints_[1], globals_[0], globals_[1]}) {
+      const Id more = made(SpirvOp::load, type_[whole], {place});
+      memory = made(integer_add, type_[whole], {memory, more});
+      memory = made(integer_mul, type_[whole], {memory, constants_[whole][4]});
+    }
+    for (int i = 0; i < 5; ++i) {
+      const Id bit = made(SpirvOp::select, type_[whole],
+                          {some(truth), constants_[whole][1], constants_[whole][0]});
+      choices = made(integer_add, type_[whole], {choices, choices});
+      choices = made(integer_add, type_[whole], {choices, bit});
+      floats = made(float_add, type_[real], {floats, some(real)});
+    }
+    std::array<Id, 3> parts{values, memory, choices};
+    for (Id& part : parts) {
+      part = made(SpirvOp::bitwise_and, type_[whole], {part, low_bits_});
+      part = made(convert_signed_to_float, type_[real], {part});
+    }
+    put(SpirvOp::store,
+        {output_, made(composite_construct, vector_, {parts[0], parts[1], parts[2], floats})});
   }
 
   void make_main() {
@@ -523,18 +546,18 @@ class RandomSpirv {
     // Where few values differ between pixels, many do not: counters of loops, and what they make.
     const bool has_few = chance(50);
     const Id at = made(SpirvOp::load, vector_, {coordinates_});
-    std::array<Id, 2> whole{};
+    std::array<Id, 2> columns{};
     for (const std::uint32_t axis : {0u, 1u}) {
-      const Id x = made(SpirvOp::composite_extract, type_[kFloat], {at, axis});
-      whole[axis] = made(SpirvOp::convert_float_to_signed, type_[kInt], {x});
+      const Id x = made(SpirvOp::composite_extract, type_[real], {at, axis});
+      columns[axis] = made(SpirvOp::convert_float_to_signed, type_[whole], {x});
       if (has_few) continue;
-      know(kFloat, x);
-      know(kInt, whole[axis]);
+      know(real, x);
+      know(whole, columns[axis]);
     }
     for (const std::size_t most : {3u, 4u, 6u}) {
       if (has_few) {
-        know(kBool, made(SpirvOp::signed_less_than, type_[kBool],
-                         {whole[0], constants_[kInt][most]}));
+        know(truth,
+             made(SpirvOp::signed_less_than, type_[truth], {columns[0], constants_[whole][most]}));
       }
     }
     left_ = random_.whole(10, 80);

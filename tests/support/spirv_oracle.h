@@ -71,7 +71,7 @@ struct Each {
 
 inline const std::map<SpirvOp, Each>& each_number() {
   using enum SpirvOp;
-  static const std::map<SpirvOp, Each> kAll{
+  static const std::map<SpirvOp, Each> table{
       {convert_float_to_unsigned, {To::to_unsigned}},
       {convert_float_to_signed, {To::to_signed}},
       {convert_signed_to_float, {To::from_signed}},
@@ -130,12 +130,12 @@ inline const std::map<SpirvOp, Each>& each_number() {
       {bit_reverse, {To::reverse_bits}},
       {bit_count, {To::count_bits}},
   };
-  return kAll;
+  return table;
 }
 
 inline const std::map<GlslOp, ShaderOp>& each_of_glsl() {
   using enum GlslOp;
-  static const std::map<GlslOp, ShaderOp> kAll{
+  static const std::map<GlslOp, ShaderOp> table{
       {round, To::round_even},
       {round_even, To::round_even},
       {trunc, To::truncate},
@@ -172,7 +172,7 @@ inline const std::map<GlslOp, ShaderOp>& each_of_glsl() {
       {find_signed_highest_bit, To::highest_bit_signed},
       {find_unsigned_highest_bit, To::highest_bit_unsigned},
   };
-  return kAll;
+  return table;
 }
 
 inline std::uint32_t plus(std::uint32_t a, std::uint32_t b) { return fold(To::add, a, b); }
@@ -260,9 +260,9 @@ class Oracle {
   std::map<SpirvId, SpirvId> types_{};  ///< of the values made so far
 
   const SpirvDecorations& decorations(SpirvId id) const {
-    static const SpirvDecorations kNone;
+    static const SpirvDecorations none;
     const auto found = module_.decorations.find(id);
-    return found == module_.decorations.end() ? kNone : found->second;
+    return found == module_.decorations.end() ? none : found->second;
   }
 
   Numbers call(const SpirvFunction& function, const std::map<SpirvId, Numbers>& values,

@@ -40,6 +40,16 @@ TEST_CASE("what stands behind a jump that all pixels take is not run") {
     })") == "");
 }
 
+TEST_CASE("a counter is the same for all pixels until some leave the loop") {
+  CHECK(difference_of(R"(
+    while (true) {
+      k++;
+      if (k > x) break;
+      s += 1.0;
+      if (k > 12) break;
+    })") == "");
+}
+
 TEST_CASE("a jump out of an inner scope that all take does not hide one out of an outer") {
   CHECK(difference_of(R"(
     for (int i = 0; i < 6; ++i) {
