@@ -1,5 +1,11 @@
 #include <algorithm>
+#include <bit>
+#include <functional>
 #include <optional>
+#include <queue>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "raster/shaders/shader_program.h"
@@ -16,17 +22,25 @@ using enum ShaderNodeKind;
 /// others. Found again and again until nothing is added.
 struct Varying {
   std::vector<bool> values, variables, scopes;
+  std::unordered_set<const ShaderNode*> exits{};  ///< which only some pixels may take at a time
   bool grew = false;
 
   explicit Varying(const ShaderTree& tree)
       : values(tree.values.size()), variables(tree.variable_count), scopes(tree.scope_count) {
     // What an index chooses from lies in the memory of lanes.
     mark_indexed(tree.main);
+    // Each time finds what varies by a turn of a loop more. Whoever takes longer varies as a whole.
+    constexpr int kMostTimes = 256;
+    int times = 0;
     do {
       grew = false;
       std::vector<std::uint32_t> left;
       run(tree, tree.main, false, left);
-    } while (grew);
+    } while (grew && ++times < kMostTimes);
+    if (!grew) return;
+    for (std::vector<bool>* all : {&values, &variables, &scopes}) all->assign(all->size(), true);
+    std::vector<std::uint32_t> left;
+    run(tree, tree.main, true, left);
   }
 
   void mark_indexed(const ShaderRegion& region) {
@@ -105,6 +119,7 @@ struct Varying {
         }
         case ShaderNodeKind::exit:
           if (apart) {
+            exits.insert(&node);
             mark(scopes, node.scope);
             left.push_back(node.scope);
           }
@@ -326,7 +341,7 @@ class Emitter {
   }
 
   void run_exit(const ShaderNode& node, ShaderRegister mask) {
-    if (!varying_.scopes[node.scope]) {
+    if (!varying_.exits.contains(&node)) {  // by all lanes that run
       for (Scope& of : scopes_) {
         if (of.number != node.scope) continue;
         of.jumps.push_back(here());
@@ -405,46 +420,62 @@ class Emitter {
 
   // --- stores that no other lane minds ---
 
-  /// A variable all of whose loads and stores are in this region, or in regions inside it, and not
-  /// before this store: what other lanes have in it is not read.
+  /// Where a variable is used: the innermost region around all its loads and stores, and the first.
+  struct Home {
+    const ShaderRegion* region = nullptr;
+    const ShaderRegion* first_in = nullptr;
+    std::size_t first = 0;
+    bool is_everywhere = false;  ///< outputs, and what an index chooses from
+  };
+  struct Parent {
+    const ShaderRegion* region = nullptr;
+    int depth = 0;
+  };
+  std::vector<Home> homes_{};
+  std::unordered_map<const ShaderRegion*, Parent> parents_{};
+
+  /// A store with which a variable begins: all its other loads and stores are behind it in this
+  /// region, or in regions inside it. What other lanes have in it is not read.
   bool is_local(const ShaderRegion& all, std::size_t at) {
-    if (counts_.empty()) {
-      counts_.resize(tree_.variable_count);
-      count(tree_.main, counts_);
-      for (const ShaderOutput& output : tree_.outputs) counts_[output.variable] += 1u << 30;
+    if (homes_.empty()) {
+      homes_.resize(tree_.variable_count);
+      for (const ShaderOutput& output : tree_.outputs) homes_[output.variable].is_everywhere = true;
+      find_homes(tree_.main, {});
     }
-    const ShaderVariable variable = all[at].instruction.place;
-    std::uint32_t behind = 0;
-    for (std::size_t i = at; i < all.size(); ++i) behind += uses(all[i], variable);
-    return behind == counts_[variable];
+    const Home& home = homes_[all[at].instruction.place];
+    return !home.is_everywhere && home.region == &all && home.first_in == &all && home.first == at;
   }
-  std::vector<std::uint32_t> counts_{};
-  static void count(const ShaderRegion& region, std::vector<std::uint32_t>& to) {
-    for (const ShaderNode& node : region) {
+  void find_homes(const ShaderRegion& region, Parent parent) {
+    parents_[&region] = parent;
+    for (std::size_t at = 0; at < region.size(); ++at) {
+      const ShaderNode& node = region[at];
       const ShaderInstruction& in = node.instruction;
-      if (node.kind == instruction && (in.op == ShaderOp::load || in.op == ShaderOp::store)) {
-        ++to[in.place];
+      if (node.kind == instruction) {
+        if (in.op == ShaderOp::load || in.op == ShaderOp::store) use(in.place, region, at);
+        if (in.op == ShaderOp::load_indexed || in.op == ShaderOp::store_indexed) {
+          for (std::uint32_t i = 0; i < in.count; ++i) {
+            homes_[in.place + i * in.stride].is_everywhere = true;
+          }
+        }
       }
-      if (node.kind == instruction &&
-          (in.op == ShaderOp::load_indexed || in.op == ShaderOp::store_indexed)) {
-        for (std::uint32_t i = 0; i < in.count; ++i) to[in.place + i * in.stride] += 1u << 30;
+      for (const auto* side : {&node.first, &node.second}) {
+        if (*side) find_homes(**side, {&region, parent.depth + 1});
       }
-      if (node.first) count(*node.first, to);
-      if (node.second) count(*node.second, to);
     }
   }
-  static std::uint32_t uses(const ShaderNode& node, ShaderVariable variable) {
-    const ShaderInstruction& in = node.instruction;
-    if (node.kind == instruction) {
-      const bool is = (in.op == ShaderOp::load || in.op == ShaderOp::store) && in.place == variable;
-      return is ? 1 : 0;
+  void use(ShaderVariable variable, const ShaderRegion& region, std::size_t at) {
+    Home& home = homes_[variable];
+    if (home.region == nullptr) {
+      home.region = home.first_in = &region;
+      home.first = at;
+      return;
     }
-    std::uint32_t sum = 0;
-    for (const auto* side : {&node.first, &node.second}) {
-      if (!*side) continue;
-      for (const ShaderNode& inner : **side) sum += uses(inner, variable);
+    const ShaderRegion* other = &region;
+    while (home.region != other) {
+      const ShaderRegion*& deeper =
+          parents_.at(home.region).depth > parents_.at(other).depth ? home.region : other;
+      deeper = parents_.at(deeper).region;
     }
-    return sum;
   }
 };
 
@@ -566,8 +597,36 @@ class Sharing {
     set[i / 64] |= std::uint64_t{1} << (i % 64);
   }
 
+  template <class Body>
+  static void for_each_in(const std::vector<std::uint64_t>& set, const Body& body) {
+    for (std::uint32_t word = 0; word < set.size(); ++word) {
+      for (std::uint64_t left = set[word]; left != 0; left &= left - 1) {
+        body(64 * word + static_cast<std::uint32_t>(std::countr_zero(left)));
+      }
+    }
+  }
+
   void find_live() {
-    const std::size_t words = (program_.varying_count + 63) / 64;
+    // Few are read in a block that does not make them before: only these are live from block to
+    // block, and have bits.
+    std::vector<std::uint32_t> bit_of(program_.varying_count, kNever), made_in(bit_of),
+        number_of_bit;
+    for (std::uint32_t b = 0; b < blocks_.size(); ++b) {
+      for (std::uint32_t i = blocks_[b].first; i < blocks_[b].end; ++i) {
+        for_each_read(program_.steps[i], [&](std::uint32_t of) {
+          if (made_in[of] == b || bit_of[of] != kNever) return;
+          bit_of[of] = static_cast<std::uint32_t>(number_of_bit.size());
+          number_of_bit.push_back(of);
+        });
+        for_each_made(program_.steps[i], [&](std::uint32_t of) { made_in[of] = b; });
+      }
+    }
+    const std::size_t words = (number_of_bit.size() + 63) / 64;
+    constexpr std::size_t kMostWords = std::size_t{1} << 24;
+    if (words * blocks_.size() > kMostWords) {
+      throw ShaderError("the shader is too long: it has " + std::to_string(blocks_.size()) +
+                        " branches and " + std::to_string(program_.varying_count) + " values");
+    }
     for (Block& block : blocks_) {
       block.uses.resize(words);
       block.makes.resize(words);
@@ -576,9 +635,11 @@ class Sharing {
       for (std::uint32_t i = block.first; i < block.end; ++i) {
         const ShaderStep& step = program_.steps[i];
         for_each_read(step, [&](std::uint32_t of) {
-          if (!has(block.makes, of)) put(block.uses, of);
+          if (bit_of[of] != kNever && !has(block.makes, bit_of[of])) put(block.uses, bit_of[of]);
         });
-        for_each_made(step, [&](std::uint32_t of) { put(block.makes, of); });
+        for_each_made(step, [&](std::uint32_t of) {
+          if (bit_of[of] != kNever) put(block.makes, bit_of[of]);
+        });
       }
     }
     bool grew = true;
@@ -597,10 +658,8 @@ class Sharing {
       }
     }
     for (const Block& block : blocks_) {
-      for (std::uint32_t of = 0; of < program_.varying_count; ++of) {
-        if (has(block.in, of)) touch(of, 2 * block.first);
-        if (has(block.out, of)) touch(of, 2 * block.end);
-      }
+      for_each_in(block.in, [&](std::uint32_t bit) { touch(number_of_bit[bit], 2 * block.first); });
+      for_each_in(block.out, [&](std::uint32_t bit) { touch(number_of_bit[bit], 2 * block.end); });
       for (std::uint32_t i = block.first; i < block.end; ++i) {
         const ShaderStep& step = program_.steps[i];
         // A step reads at 2 i and writes at 2 i + 1: a result may take an operand's place. Those
@@ -630,25 +689,19 @@ class Sharing {
     }
     std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return begin_[a] < begin_[b]; });
-    struct Taken {
-      std::uint32_t end, place;
-    };
-    std::vector<Taken> taken;
-    std::vector<std::uint32_t> open;
+    // Places by when they become free, and free ones by number.
+    using Least = std::greater<std::pair<std::uint32_t, std::uint32_t>>;
+    std::priority_queue<std::pair<std::uint32_t, std::uint32_t>,
+                        std::vector<std::pair<std::uint32_t, std::uint32_t>>, Least>
+        taken;
+    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> open;
     for (const std::uint32_t of : order) {
-      std::erase_if(taken, [&](const Taken& is) {
-        if (is.end > begin_[of]) return false;
-        open.push_back(is.place);
-        return true;
-      });
-      if (open.empty()) {
-        given_[of] = next++;
-      } else {
-        const auto least = std::min_element(open.begin(), open.end());
-        given_[of] = *least;
-        open.erase(least);
+      for (; !taken.empty() && taken.top().first <= begin_[of]; taken.pop()) {
+        open.push(taken.top().second);
       }
-      taken.push_back({std::max(end_[of], begin_[of] + 1), given_[of]});
+      given_[of] = open.empty() ? next++ : open.top();
+      if (!open.empty()) open.pop();
+      taken.emplace(std::max(end_[of], begin_[of] + 1), given_[of]);
     }
     program_.varying_count = next;
   }

@@ -60,6 +60,32 @@ ShaderOp plain_op(GlslOp op) {
   }
 }
 
+std::size_t operands_of(GlslOp op) {
+  using enum GlslOp;
+  switch (op) {
+    case float_clamp:
+    case number_clamp:
+    case unsigned_clamp:
+    case signed_clamp:
+    case float_mix:
+    case smooth_step:
+    case fma: return 3;
+    case atan2:
+    case pow:
+    case float_min:
+    case number_min:
+    case float_max:
+    case number_max:
+    case unsigned_min:
+    case signed_min:
+    case unsigned_max:
+    case signed_max:
+    case step:
+    case ldexp: return 2;
+    default: return 1;
+  }
+}
+
 }  // namespace
 
 ShaderValue Lowering::glsl_scalar(GlslOp op, ShaderValue a, ShaderValue b, ShaderValue c,
@@ -102,7 +128,7 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
   if (word(w, 0) != module_.glsl || module_.glsl == 0) {
     refuse("an extended instruction set other than GLSL.std.450 is not supported");
   }
-  const auto op = static_cast<GlslOp>(word(w, 1));
+  const auto op = static_cast<GlslOp>(std::min(word(w, 1), 255u));
   using enum GlslOp;
   if (op == modf || op == frexp) return glsl_pointers(call, in, op, to);
   if (op == interpolate_at_centroid || op == interpolate_at_sample || op == interpolate_at_offset) {
@@ -144,6 +170,7 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
     default: break;
   }
   if (op >= pack_snorm_4x8 && op <= unpack_unorm_4x8) return glsl_packs(op, of[0], to);
+  if (of.size() < operands_of(op)) damaged("a function has too few operands");
   Scalars made;
   for (std::size_t i = 0; i < of[0].size(); ++i) {
     const auto operand = [&](std::size_t number) {

@@ -137,6 +137,7 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
     }
     case vector_extract_dynamic: {
       const Scalars all = value(to, call, word(w, 0));
+      if (all.empty()) damaged("a vector has no parts");
       const ShaderValue index =
           clamped(to, scalar(to, call, word(w, 1)), static_cast<std::uint32_t>(all.size()));
       ShaderValue chosen = all[0];
@@ -148,6 +149,7 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
     }
     case vector_insert_dynamic: {
       Scalars all = value(to, call, word(w, 0));
+      if (all.empty()) damaged("a vector has no parts");
       const ShaderValue object = scalar(to, call, word(w, 1));
       const ShaderValue index =
           clamped(to, scalar(to, call, word(w, 2)), static_cast<std::uint32_t>(all.size()));
@@ -320,13 +322,22 @@ std::optional<Mapped> mapped(SpirvOp op) {
   }
 }
 
+bool has_one_operand(SpirvOp op) {
+  using enum SpirvOp;
+  return op <= float_negate || op == is_inf || op == logical_not || op == bitwise_not ||
+         op == bit_reverse || op == bit_count || op >= derivative_x;
+}
+
 }  // namespace
 
 Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
   const Scalars a = value(to, call, word(w, 0));
   const Scalars b = w.size() > 1 ? value(to, call, w[1]) : Scalars{};
-  const auto of_b = [&](std::size_t i) { return b.empty() ? kNoValue : b[i]; };
+  const auto of_b = [&](std::size_t i) {
+    if (i >= b.size()) damaged("an instruction has too few operands");
+    return b[i];
+  };
   if (!b.empty() && b.size() != a.size() && in.op != SpirvOp::bit_field_s_extract &&
       in.op != SpirvOp::bit_field_u_extract) {
     damaged("operands have two sizes");
@@ -338,8 +349,9 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
       tree_.has_derivatives = true;
     }
     for (std::size_t i = 0; i < a.size(); ++i) {
+      const ShaderValue second = has_one_operand(in.op) ? kNoValue : of_b(i);
       const ShaderValue is =
-          one->swaps ? make(to, one->op, of_b(i), a[i]) : make(to, one->op, a[i], of_b(i));
+          one->swaps ? make(to, one->op, second, a[i]) : make(to, one->op, a[i], second);
       made.push_back(one->turns ? make(to, ShaderOp::bit_not, is) : is);
     }
     return made;
@@ -444,7 +456,8 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
     if (texture.size() != 1 || sampler.size() != 1) damaged("a sampler is none");
     return {texture[0], sampler[0]};
   }
-  if (in.op == image) return {texture.at(0)};
+  if (texture.empty()) damaged("a texture is none");
+  if (in.op == image) return {texture[0]};
   const SpirvType* of = &type(type_of(call, w[0]));
   if (of->kind == SpirvKind::sampled_image) of = &type(of->element);
   if (of->kind != SpirvKind::image) damaged("a texture is none");

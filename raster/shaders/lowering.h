@@ -6,12 +6,14 @@
 #include <bit>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "raster/shaders/lower_spirv.h"
 #include "raster/shaders/shader_kernels.h"
+#include "raster/shaders/simplify_tree.h"
 
 namespace softfocus {
 
@@ -19,6 +21,7 @@ using Words = std::span<const std::uint32_t>;
 using Scalars = std::vector<ShaderValue>;
 
 inline constexpr std::size_t kMostNodes = std::size_t{1} << 20;
+inline constexpr std::size_t kMostWork = std::size_t{1} << 22;
 inline constexpr int kDeepestNodes = 200, kDeepestCalls = 64;
 
 inline bool is_uniform(SpirvStorage storage) {
@@ -90,7 +93,7 @@ class Lowering {
   std::vector<Target> targets_{};
   std::map<std::uint32_t, std::uint32_t> table_of_{};  ///< of uniforms from a number on
   std::map<SpirvId, std::uint32_t> constant_tables_{};
-  std::size_t nodes_ = 0;
+  std::size_t nodes_ = 0, work_ = 0;
   int depth_ = 0;
   std::uint32_t main_scope_ = 0;
   ShaderLine line_{};
@@ -138,6 +141,7 @@ class Lowering {
       }
       return;
     }
+    if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
     add_numbers(id, of, [&](int location, int component, int part) {
       tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear});
     });
@@ -185,6 +189,11 @@ class Lowering {
 
   // --- nodes ---
 
+  /// Counts what takes time or memory and makes no nodes.
+  void work(std::size_t amount) {
+    work_ += amount;
+    if (work_ > kMostWork) refuse("the shader is too long");
+  }
   ShaderNode& add_node(ShaderRegion& to, ShaderNodeKind kind) {
     if (++nodes_ > kMostNodes) {
       refuse("the shader is too long: more than " + std::to_string(kMostNodes) + " instructions");
@@ -243,20 +252,32 @@ class Lowering {
     using enum Place::In;
     if (at.in == uniforms && is_known) return whole(uniforms_[place]);
     if (at.in == variables && is_known) return get(to, place);
-    ShaderInstruction* in = nullptr;
-    if (at.in == inputs) {
-      if (!is_known) refuse("inputs chosen by an index that is not constant are not supported");
-      in = &add(to, ShaderOp::input);
-      in->place = place;
-    } else {
-      in = &add(to, at.in == uniforms ? ShaderOp::load_constant : ShaderOp::load_indexed);
-      in->place = at.in == uniforms ? place + uniform_table() : place;
-      in->a = at.index;
-      in->count = at.count;
-      in->stride = at.stride;
+    if (at.in == inputs) return load_input(to, at, place);
+    ShaderInstruction& in =
+        add(to, at.in == uniforms ? ShaderOp::load_constant : ShaderOp::load_indexed);
+    in.place = at.in == uniforms ? place + uniform_table() : place;
+    in.a = at.index;
+    in.count = at.count;
+    in.stride = at.stride;
+    work(at.count);
+    in.to = tree_.new_value();
+    return in.to;
+  }
+  /// By an index that is not known, all that it may mean are taken.
+  ShaderValue load_input(ShaderRegion& to, const Place& at, std::uint32_t place) {
+    const auto input = [&](std::uint32_t number) {
+      ShaderInstruction& in = add(to, ShaderOp::input);
+      in.place = number;
+      return in.to = tree_.new_value();
+    };
+    ShaderValue chosen = input(place);
+    if (at.index == kNoValue) return chosen;
+    const ShaderValue index = clamped(to, at.index, at.count);
+    for (std::uint32_t i = 1; i < at.count; ++i) {
+      const ShaderValue is = make(to, ShaderOp::equal_integers, index, whole(i));
+      chosen = make(to, ShaderOp::select, is, input(place + i * at.stride), chosen);
     }
-    in->to = tree_.new_value();
-    return in->to;
+    return chosen;
   }
   /// Where the uniforms lie among the tables.
   std::uint32_t uniform_table() {
@@ -284,6 +305,7 @@ class Lowering {
       in.b = values[i];
       in.count = at.count;
       in.stride = at.stride;
+      work(at.count);
     }
   }
 
@@ -336,10 +358,14 @@ class Lowering {
   // --- values and places of ids ---
 
   Scalars value(ShaderRegion&, Call& call, SpirvId id) {
-    if (const auto found = call.values.find(id); found != call.values.end()) return found->second;
+    if (const auto found = call.values.find(id); found != call.values.end()) {
+      work(found->second.size());
+      return found->second;
+    }
     if (const auto found = module_.constants.find(id); found != module_.constants.end()) {
       Scalars values;
       values.reserve(found->second.words.size());
+      work(found->second.words.size());
       for (const std::uint32_t word : found->second.words) values.push_back(whole(word));
       return values;
     }
@@ -374,6 +400,7 @@ class Lowering {
       call.places[variable.id] = at;
     }
     for (const SpirvBlock& block : call.function->blocks) {
+      work(block.instructions.size());
       for (const SpirvInstruction& in : block.instructions) {
         if (in.op != SpirvOp::phi) continue;
         call.phis[in.result] = new_variables(scalars(in.type));
@@ -401,9 +428,11 @@ class Lowering {
   void hand_phis(Call& call, SpirvId from, SpirvId label, ShaderRegion& to) {
     for (const SpirvInstruction& in : block_of(call, label).instructions) {
       if (in.op != SpirvOp::phi) break;
+      work(in.operands.size());
       for (std::size_t i = 0; i + 1 < in.operands.size(); i += 2) {
         if (in.operands[i + 1] != from) continue;
         const Scalars values = value(to, call, in.operands[i]);
+        if (values.size() != scalars(in.type)) damaged("a phi joins two types");
         for (std::uint32_t k = 0; k < values.size(); ++k) {
           set(to, call.phis.at(in.result) + k, values[k]);
         }
@@ -454,6 +483,7 @@ class Lowering {
     if (++depth_ > kDeepestNodes) refuse("the shader is nested too deeply");
     while (label != 0) {
       const SpirvBlock& block = block_of(call, label);
+      work(block.instructions.size());
       if (block.continues != 0) {
         loop(call, block, to);
         label = block.merge;
@@ -559,30 +589,35 @@ class Lowering {
 
   // --- switch ---
 
-  /// The labels that a case's blocks may go to, but for the switch's end.
-  void reach(const Call& call, SpirvId label, SpirvId merge, const std::vector<SpirvId>& cases,
-             std::vector<SpirvId>& seen, std::vector<SpirvId>& found) const {
-    if (label == merge || std::find(seen.begin(), seen.end(), label) != seen.end()) return;
-    if (target_of(label) != nullptr) return;
-    seen.push_back(label);
-    const SpirvBlock& block = block_of(call, label);
-    const auto go_on = [&](SpirvId next) {
-      if (std::find(cases.begin(), cases.end(), next) != cases.end()) {
-        if (std::find(found.begin(), found.end(), next) == found.end()) found.push_back(next);
-      } else {
-        reach(call, next, merge, cases, seen, found);
+  /// The cases that a case's blocks may go to.
+  std::set<SpirvId> reach(const Call& call, SpirvId begin, SpirvId merge,
+                          const std::vector<SpirvId>& cases) {
+    std::set<SpirvId> seen{begin}, found;
+    std::vector<SpirvId> next{begin};
+    while (!next.empty()) {
+      const SpirvId label = next.back();
+      next.pop_back();
+      if (label == merge || target_of(label) != nullptr) continue;
+      const SpirvInstruction& in = block_of(call, label).instructions.back();
+      const auto go_on = [&](SpirvId to) {
+        work(cases.size());
+        if (std::find(cases.begin(), cases.end(), to) != cases.end()) {
+          found.insert(to);
+        } else if (seen.insert(to).second) {
+          next.push_back(to);
+        }
+      };
+      const Words& w = in.operands;
+      if (in.op == SpirvOp::branch) go_on(w[0]);
+      if (in.op == SpirvOp::branch_conditional) {
+        go_on(w[1]);
+        go_on(w[2]);
       }
-    };
-    const SpirvInstruction& in = block.instructions.back();
-    const Words& w = in.operands;
-    if (in.op == SpirvOp::branch) go_on(w[0]);
-    if (in.op == SpirvOp::branch_conditional) {
-      go_on(w[1]);
-      go_on(w[2]);
+      if (in.op == SpirvOp::switch_) {
+        for (std::size_t i = 1; i < w.size(); i += 2) go_on(w[i]);
+      }
     }
-    if (in.op == SpirvOp::switch_) {
-      for (std::size_t i = 1; i < w.size(); i += i == 1 ? 2 : 2) go_on(w[i]);
-    }
+    return found;
   }
 
   SpirvId run_switch(Call& call, const SpirvBlock& block, ShaderRegion& to, SpirvId natural) {
@@ -612,34 +647,34 @@ class Lowering {
     }
     const std::uint32_t scope = tree_.scope_count++;
     targets_.push_back({block.merge, scope});
+    const std::map<SpirvId, ShaderVariable> outer = std::exchange(falls_, {});
     ShaderRegion body;
+    // Phis have what the switch hands them before a case falls into another, which has its own.
+    for (const SpirvId label : labels) hand_phis(call, block.label, label, body);
     for (const SpirvId label : in_order(call, labels, block.merge)) {
-      run_case(call, block, label, labels, chosen.at(label), scope, body);
+      run_case(call, label, labels, chosen.at(label), scope, body);
     }
     targets_.pop_back();
-    falls_.clear();
+    falls_ = outer;
     to.push_back(scope_node(scope, false, std::move(body)));
     return block.merge == natural || leave(block.merge, to) ? 0 : block.merge;
   }
 
   /// A case before the one that it falls into.
   std::vector<SpirvId> in_order(const Call& call, const std::vector<SpirvId>& labels,
-                                SpirvId merge) const {
+                                SpirvId merge) {
     std::vector<SpirvId> order;
-    std::map<SpirvId, std::vector<SpirvId>> falls;
+    std::map<SpirvId, std::set<SpirvId>> falls;
     for (const SpirvId label : labels) {
-      if (label == merge) continue;
-      std::vector<SpirvId> seen, found;
-      reach(call, label, merge, labels, seen, found);
-      falls[label] = found;
+      if (label != merge) falls[label] = reach(call, label, merge, labels);
     }
     std::vector<SpirvId> left = labels;
     left.erase(std::remove(left.begin(), left.end(), merge), left.end());
     while (!left.empty()) {
       const auto next = std::find_if(left.begin(), left.end(), [&](SpirvId label) {
         return std::none_of(left.begin(), left.end(), [&](SpirvId other) {
-          const auto& into = falls[other];
-          return other != label && std::find(into.begin(), into.end(), label) != into.end();
+          work(1);
+          return other != label && falls[other].contains(label);
         });
       });
       if (next == left.end()) refuse("control flow is not structured: cases fall in a circle");
@@ -652,17 +687,22 @@ class Lowering {
   std::map<SpirvId, ShaderVariable> falls_{};
 
   /// A case's body is a scope of its own, which is left to fall into the next.
-  void run_case(Call& call, const SpirvBlock& block, SpirvId label,
-                const std::vector<SpirvId>& labels, ShaderValue chosen, std::uint32_t scope,
-                ShaderRegion& to) {
+  void run_case(Call& call, SpirvId label, const std::vector<SpirvId>& labels, ShaderValue chosen,
+                std::uint32_t scope, ShaderRegion& to) {
+    const SpirvId merge = targets_.back().label;
+    if (ShaderRegion first; leave(label, first)) {  // a case that breaks or continues a loop
+      to.push_back(branch_node(chosen, std::move(first), {}));
+      return;
+    }
     const auto falls_in = falls_.find(label);
     if (falls_in != falls_.end()) {
       chosen = make(to, ShaderOp::bit_or, chosen, get(to, falls_in->second));
     }
     const std::uint32_t own = tree_.scope_count++;
     const std::size_t before = targets_.size();
+    work(labels.size());
     for (const SpirvId other : labels) {
-      if (other == label) continue;
+      if (other == label || other == merge) continue;
       const auto [at, is_new] = falls_.try_emplace(other, kNoValue);
       if (is_new) {
         at->second = new_variables(1);
@@ -672,11 +712,10 @@ class Lowering {
     }
     ShaderRegion body;
     if (falls_in != falls_.end()) set(body, falls_in->second, whole(0));
-    hand_phis(call, block.label, label, body);
-    walk(call, label, body, block.merge);
+    walk(call, label, body, merge);
     targets_.resize(before);
     // What ends naturally goes to the switch's end.
-    add_node(body, ShaderNodeKind::exit).scope = scope;
+    if (!always_leaves(body)) add_node(body, ShaderNodeKind::exit).scope = scope;
     ShaderRegion first;
     first.push_back(scope_node(own, false, std::move(body)));
     to.push_back(branch_node(chosen, std::move(first), {}));

@@ -60,10 +60,11 @@ std::int32_t wrapped(std::int32_t i, std::int32_t size, Wrap wrap) {
 float sanitized(float u) { return u - u == 0.0f ? u : 0.0f; }
 
 void fetch(const LaneSample& sample, const Lane& lane, const ShaderTexture& from) {
-  const std::int32_t x = lane.whole(sample.at[0]) + lane.whole(sample.offset[0]);
-  const std::int32_t y = sample.sample.dim == SpirvDim::one
-                             ? 0
-                             : lane.whole(sample.at[1]) + lane.whole(sample.offset[1]);
+  const auto sum = [&](std::size_t i) {
+    return static_cast<std::int32_t>(lane.bits(sample.at[i]) + lane.bits(sample.offset[i]));
+  };
+  const std::int32_t x = sum(0);
+  const std::int32_t y = sample.sample.dim == SpirvDim::one ? 0 : sum(1);
   const std::int32_t level = lane.whole(sample.more[0]);
   glm::vec4 texel{0.0f};
   if (level >= 0 && level < std::ssize(from.texture->levels)) {
@@ -141,6 +142,12 @@ void sample_one(const LaneSample& sample, const Lane& lane) {
   if (from == nullptr) {
     for (const At& to : sample.to) lane.put(to, 0u);
     return;
+  }
+  // Results that are not made below.
+  for (std::size_t i = 1; i < 4; ++i) {
+    if (sample.sample.kind >= SampleKind::size || sample.compared.is_there) {
+      lane.put(sample.to[i], 0u);
+    }
   }
   switch (sample.sample.kind) {
     case SampleKind::fetch: return fetch(sample, lane, *from);

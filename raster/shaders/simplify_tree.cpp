@@ -450,6 +450,8 @@ class Forwarding {
       for (std::size_t i = changes; i < changes_.size(); ++i) {
         after[side].push_back({changes_[i].variable, known_[changes_[i].variable]});
       }
+      const auto order = [](const Change& a, const Change& b) { return a.variable < b.variable; };
+      std::sort(after[side].begin(), after[side].end(), order);
       undo(changes);
       forget_made(made);
     }
@@ -476,10 +478,10 @@ class Forwarding {
     }
   }
   ShaderValue known_before(ShaderVariable variable, const std::vector<Change>& after) const {
-    for (std::size_t i = after.size(); i-- > 0;) {
-      if (after[i].variable == variable) return after[i].before;
-    }
-    return known_[variable];
+    const auto found =
+        std::lower_bound(after.begin(), after.end(), variable,
+                         [](const Change& of, ShaderVariable than) { return of.variable < than; });
+    return found != after.end() && found->variable == variable ? found->before : known_[variable];
   }
 
   /// A short branch of pure instructions and stores becomes choices.
@@ -592,11 +594,14 @@ class Needs {
 
   void run() {
     for (const ShaderOutput& output : tree_.outputs) variables_[output.variable] = true;
+    // Each time finds what a turn of a loop needs of the one before; none has so long a chain.
+    constexpr int kMostTimes = 256;
+    int times = 0;
     do {
       grew_ = false;
       find(tree_.main);
-    } while (grew_);
-    remove(tree_.main);
+    } while (grew_ && ++times < kMostTimes);
+    if (!grew_) remove(tree_.main);
     drop_overwritten(tree_.main);
   }
 
@@ -695,9 +700,11 @@ bool always_leaves(const ShaderRegion& region) {
   return last.kind == branch && always_leaves(*last.first) && always_leaves(*last.second);
 }
 
+void export_values(ShaderTree& tree) { Exports{tree}.run(); }
+
 void simplify(ShaderTree& tree) {
   settle_exits(tree.main, {}, 0);
-  Exports{tree}.run();
+  export_values(tree);
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     Forwarding{tree}.run();

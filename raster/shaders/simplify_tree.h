@@ -8,6 +8,10 @@ namespace softfocus {
 
 void simplify(ShaderTree& tree);
 
+/// Values that are used beyond the region that makes them go by variables: other lanes may make
+/// them again. A tree that is emitted needs this; simplify() does it.
+void export_values(ShaderTree& tree);
+
 /// Whether a region's end cannot be reached.
 bool always_leaves(const ShaderRegion& region);
 

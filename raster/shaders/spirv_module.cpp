@@ -114,7 +114,7 @@ class Reader {
     if (module_.main == 0) {
       throw ShaderError("the SPIR-V has no entry point of a vertex or fragment shader");
     }
-    for (auto& [id, function] : module_.functions) check(function);
+    for (const auto& [id, of] : module_.functions) check(of);
     if (!module_.functions.contains(module_.main)) damaged_words("its entry point is no function");
   }
 
@@ -126,6 +126,7 @@ class Reader {
   SpirvFunction* function_ = nullptr;
   SpirvBlock* block_ = nullptr;
   ShaderLine line_{};
+  std::size_t constant_scalars_ = 0, members_ = 0;
 
   [[noreturn]] void refuse(const std::string& why) const {
     throw ShaderError(place_of(module_, line_) + why);
@@ -180,7 +181,7 @@ class Reader {
       line_ = {};
     } else if (function_ != nullptr) {
       take_in_function(in);
-    } else if (!take_type(in) && !take_constant(in)) {
+    } else if (!take_type(in) && (in.type == 0 || !take_constant(in))) {
       take_other(in);
     }
   }
@@ -190,6 +191,14 @@ class Reader {
     type.kind = kind;
     type.scalars = scalars;
     return type;
+  }
+
+  /// Checks what an array or structure consists of.
+  void nest(SpirvType& outer, SpirvId inner) const {
+    const SpirvType& of = module_.type(inner);
+    if (of.scalars == 0) damaged_words("an array or structure consists of what holds no numbers");
+    outer.depth = std::max(outer.depth, of.depth + 1);
+    if (outer.depth > kDeepestTypes) refuse("structures are nested too deeply");
   }
 
   std::uint32_t checked_scalars(std::uint64_t count) const {
@@ -260,6 +269,7 @@ class Reader {
             in, array, checked_scalars(std::uint64_t{count.words[0]} * scalars_of(element)));
         type.element = element;
         type.count = count.words[0];
+        nest(type, element);
         return true;
       }
       case type_runtime_array: refuse("arrays without a length, of buffers, are not supported");
@@ -270,7 +280,9 @@ class Reader {
           members.push_back(known_type(w, i));
           sum += scalars_of(members.back());
         }
-        add_type(in, structure, checked_scalars(sum)).members = std::move(members);
+        SpirvType& type = add_type(in, structure, checked_scalars(sum));
+        type.members = std::move(members);
+        for (const SpirvId member : type.members) nest(type, member);
         return true;
       }
       case type_pointer: {
@@ -297,6 +309,8 @@ class Reader {
   bool take_constant(const SpirvInstruction& in) {
     const auto is_kind = [&](SpirvKind kind) { return module_.type(in.type).kind == kind; };
     std::vector<std::uint32_t> words;
+    constant_scalars_ += scalars_of(in.type);
+    if (constant_scalars_ > kMostConstantScalars) refuse("constants have too many numbers");
     switch (in.op) {
       case constant_true:
       case spec_constant_true:
@@ -393,16 +407,20 @@ class Reader {
     return module_.decorations[id];
   }
   SpirvDecorations& member(Operands w) {
-    constexpr std::uint32_t kMostMembers = 4096;
+    constexpr std::size_t kMostMembers = kMostScalars;
     SpirvDecorations& of = decorations(w);
     const std::uint32_t number = word(w, 1);
     if (number >= kMostMembers) damaged_words("a structure has too many members");
-    if (of.members.size() <= number) of.members.resize(number + 1);
+    if (of.members.size() <= number) {
+      members_ += number + 1 - of.members.size();
+      if (members_ > kMostMembers) damaged_words("structures have too many members");
+      of.members.resize(number + 1);
+    }
     return of.members[number];
   }
 
   static void add_decoration(SpirvDecorations& to, Operands w) {
-    const auto number = [&] { return static_cast<int>(std::min(word(w, 1), 0x7FFFFFFFu)); };
+    const auto number = [&] { return static_cast<int>(std::min(word(w, 1), kMostScalars)); };
     switch (static_cast<SpirvDecoration>(word(w, 0))) {
       using enum SpirvDecoration;
       case spec_id: to.constant = number(); break;
@@ -468,10 +486,7 @@ class Reader {
         function_ = nullptr;
         return;
       case nop: return;
-      case undefined:
-        module_.constants[in.result] = {in.type,
-                                        std::vector<std::uint32_t>(scalars_of(in.type), 0)};
-        return;
+      case undefined: take_constant(in); return;
       default: break;
     }
     if (block_ == nullptr) damaged_words("an instruction stands outside of a block");
@@ -488,22 +503,23 @@ class Reader {
     if (ends_block(in.op)) block_ = nullptr;
   }
 
-  void check(const SpirvFunction& function) const {
-    const SpirvType& type = module_.type(function.type);
-    if (function.blocks.empty()) damaged_words("a function has no body");
-    bool fits = function.parameters.size() == type.members.size();
+  void check(const SpirvFunction& of) const {
+    const SpirvType& type = module_.type(of.type);
+    if (of.blocks.empty()) damaged_words("a function has no body");
+    bool fits = of.parameters.size() == type.members.size();
     for (std::size_t i = 0; fits && i < type.members.size(); ++i) {
-      fits = function.parameters[i].type == type.members[i];
+      fits = of.parameters[i].type == type.members[i];
     }
     if (!fits) damaged_words("a function has not its type's parameters");
     const auto check_label = [&](SpirvId id) {
-      if (!function.block_of.contains(id)) damaged_words("a branch goes where no block is");
+      if (!of.block_of.contains(id)) damaged_words("a branch goes where no block is");
     };
-    for (const SpirvBlock& block : function.blocks) {
+    for (const SpirvBlock& block : of.blocks) {
       if (block.merge != 0) check_label(block.merge);
       if (block.continues != 0) check_label(block.continues);
       const SpirvInstruction& last = block.instructions.back();
       const Operands& w = last.operands;
+      if (last.op == return_value) word(w, 0);
       if (last.op == branch) check_label(word(w, 0));
       if (last.op == branch_conditional) {
         check_label(word(w, 1));

@@ -61,6 +61,7 @@ struct SpirvType {
   bool is_arrayed = false, is_shadow = false, is_multisampled = false;
   /// Scalars of 32 bits that a value consists of; 0 of what holds none.
   std::uint32_t scalars = 0;
+  int depth = 0;  ///< of arrays and structures inside it
 };
 
 /// Decorations of an id, or of a structure's member.
@@ -123,7 +124,9 @@ struct SpirvModule {
 
 /// What a module may have at the most: a shader that a person wrote has less.
 inline constexpr std::size_t kMostSpirvWords = std::size_t{1} << 22;
-inline constexpr std::uint32_t kMostScalars = 1u << 16;  ///< of a value
+inline constexpr std::uint32_t kMostScalars = 1u << 16;                    ///< of a value
+inline constexpr std::size_t kMostConstantScalars = std::size_t{1} << 22;  ///< of all constants
+inline constexpr int kDeepestTypes = 64;
 
 /// The words of a file, of either byte order. Throws ShaderError.
 std::vector<std::uint32_t> spirv_words(std::span<const std::byte> file);

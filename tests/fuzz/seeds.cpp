@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "raster/images/texel.h"
+#include "tests/support/random_spirv.h"
 #include "tools/files/profile_file.h"
 #include "tools/pictures/exr_file.h"
 #include "tools/pictures/png_text.h"
@@ -253,6 +254,20 @@ void put_sums(const fs::path& all) {
                   make_image(Format::rgba16f, kWidth, kHeight));
 }
 
+void put_shaders(const fs::path& all) {
+  const Seeds shaders{all, "shader"};
+  constexpr std::uint64_t kCount = 40;
+  for (std::uint64_t seed = 0; seed < kCount; ++seed) {
+    Bytes bytes;
+    for (const std::uint32_t word : test::RandomSpirv{seed}.words()) {
+      for (int shift = 0; shift < 32; shift += 8) {
+        bytes.push_back(static_cast<Bytes::value_type>(word >> shift & 0xFF));
+      }
+    }
+    shaders.put(std::to_string(seed), bytes);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -268,6 +283,7 @@ int main(int argc, char** argv) {
   put_texts(all);
   put_sums(all);
   put_reliefs(all);
+  put_shaders(all);
   const Seeds scenes{all, "scene"};
   for (const fs::directory_entry& entry : fs::directory_iterator{argv[3]}) {
     if (entry.path().extension() == ".toml") scenes.copy(entry.path());

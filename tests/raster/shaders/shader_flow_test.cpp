@@ -1,0 +1,122 @@
+// Shapes of control flow that lanes can get wrong, in GLSL, against the interpreter of a pixel.
+
+#include <doctest/doctest.h>
+
+#include "raster/shaders/glsl/glsl.h"
+#include "tests/support/shader_checks.h"
+
+using namespace softfocus;
+
+namespace {
+
+/// The first difference of a main() with `int x`, the column, and `float s`, which is stored.
+std::string difference_of(const std::string& body, const std::string& functions = "") {
+  if (!missing_glsl().empty()) return {};
+  const std::string text = "#version 450\nlayout(location = 0) out vec4 result;\n" + functions +
+                           "\nvoid main() {\n  int x = int(gl_FragCoord.x), k = 0;\n"
+                           "  float s = 0.0;\n" +
+                           body + "\n  result = vec4(s, float(k), 0.0, 1.0);\n}\n";
+  const CompiledGlsl made = compile_glsl({.name = "flow.frag", .text = text},
+                                         [](const std::string&) { return std::optional<std::string>{}; });
+  return test::check_shader(made.words, 1).difference;
+}
+
+}  // namespace
+
+TEST_CASE("what stands behind a jump that all pixels take is not run") {
+  // i is the same for all pixels, and others have a way out of the same scope that is not.
+  CHECK(difference_of(R"(
+    for (int i = 0; i < 6; ++i) {
+      if (i > 0) {
+        if (i == 2) continue;
+        s += 0.5;
+      }
+      k++;
+      if (x > 3) {
+        if (x > i * 8) continue;
+        s += 4.0;
+      }
+      s += 1.0;
+    })") == "");
+}
+
+TEST_CASE("a jump out of an inner scope that all take does not hide one out of an outer") {
+  CHECK(difference_of(R"(
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        if (j > 0) {
+          if (j == 2) break;
+          s += 0.5;
+        }
+        if (i == 4) return;
+        if (x > 9) {
+          if (x > i * 8) break;
+          s += 4.0;
+        }
+        k += j;
+      }
+      s += float(k);
+      result = vec4(s, 1.0, 2.0, float(i));
+    })") == "");
+}
+
+TEST_CASE("a case falls into the next after a switch of its own") {
+  CHECK(difference_of(R"(
+    switch (x & 3) {
+      case 0:
+        switch (x & 4) { case 0: s += 1.0; case 4: s += 2.0; }
+      case 1: s += 10.0; break;
+      default: s -= 1.0;
+      case 2: k = 7;
+    })") == "");
+}
+
+TEST_CASE("a case calls a function with a switch, and falls") {
+  CHECK(difference_of(R"(
+    for (int i = 0; i < 4; ++i) {
+      switch ((x + i) & 3) {
+        case 0: s += f(x);
+        case 3: s += 100.0; if (x > 40) break;
+        case 1: if (i == 2) continue; k += i; break;
+      }
+      s += 0.25;
+    })",
+                      "float f(int n) { switch (n & 7) { case 1: case 2: return 3.0; "
+                      "case 4: n = 5; default: break; } return float(n); }") == "");
+}
+
+TEST_CASE("two values that change places in each turn of a loop") {
+  CHECK(difference_of(R"(
+    int a = 1, b = x;
+    for (int i = 0; i < (x & 7); ++i) { int t = a; a = b; b = t; if (b > 20) break; b += a & 3; }
+    k = a; s = float(b);)") == "");
+}
+
+TEST_CASE("pixels that a function in a loop kills are not stored") {
+  CHECK(difference_of(R"(
+    for (int i = 0; i < 5; ++i) { s += f(x, i); if (s > 30.0) break; }
+    k = 3;)",
+                      "float f(int x, int i) { for (int j = 0; j < 3; ++j) { "
+                      "if (j == (x & 3)) { if (i * 9 > x + 20) discard; return float(x); } } "
+                      "return 1.0; }") == "");
+}
+
+TEST_CASE("a component of an input by an index") {
+  CHECK(difference_of("s = gl_FragCoord[x & 1] + gl_FragCoord[x - 3];") == "");
+}
+
+TEST_CASE("what is returned early, out of loops, from within a case") {
+  CHECK(difference_of("s = f(x) + f(x * 5 + 1); k = int(f(3));",
+                      R"(float f(int n) {
+                           float sum = 0.0;
+                           for (int i = 0; i < 7; ++i) {
+                             switch (i) {
+                               case 3: if (n > 20) return sum; break;
+                               case 4: for (int j = 0; j < n; ++j) if (j == 9) return -sum;
+                               default: sum += 0.5; continue;
+                             }
+                             sum *= 2.0;
+                           }
+                           return sum;
+                         })") == "");
+}
