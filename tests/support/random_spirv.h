@@ -130,11 +130,11 @@ class RandomSpirv {
     number(kBool, 0);
     number(kBool, 1);
     array_ = declared(type_array, {type_[kInt], constants_[kInt][3]});
-    const Id array_of_globals = declared(type_pointer, {storage(SpirvStorage::private_), array_});
+    const Id array_of_globals = declared(type_pointer, {storage(SpirvStorage::global), array_});
     array_pointer_ = declared(type_pointer, {storage(SpirvStorage::function), array_});
-    private_int_ = declared(type_pointer, {storage(SpirvStorage::private_), type_[kInt]});
-    for (Id& each : globals_) each = global(private_int_, SpirvStorage::private_);
-    arrays_[0] = global(array_of_globals, SpirvStorage::private_);
+    private_int_ = declared(type_pointer, {storage(SpirvStorage::global), type_[kInt]});
+    for (Id& each : globals_) each = global(private_int_, SpirvStorage::global);
+    arrays_[0] = global(array_of_globals, SpirvStorage::global);
     function_type_ = declared(SpirvOp::type_function, {void_});
     output_ = global(declared(type_pointer, {storage(SpirvStorage::output), vector_}),
                      SpirvStorage::output);
@@ -286,7 +286,7 @@ class RandomSpirv {
       put(SpirvOp::return_value, {some(*returns_)});
     } else {
       store_output();
-      put(SpirvOp::return_, {});
+      put(SpirvOp::return_nothing, {});
     }
     block_ = 0;
   }
@@ -362,7 +362,7 @@ class RandomSpirv {
       operands.push_back(cases[static_cast<std::size_t>(i)].label);
     }
     code_.push_back(static_cast<std::uint32_t>(operands.size() + 1) << 16 |
-                    static_cast<std::uint32_t>(SpirvOp::switch_));
+                    static_cast<std::uint32_t>(SpirvOp::switch_case));
     code_.insert(code_.end(), operands.begin(), operands.end());
     aims_.push_back(&merge);
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -533,15 +533,15 @@ class RandomSpirv {
     }
     for (const std::size_t most : {3u, 4u, 6u}) {
       if (has_few) {
-        know(kBool, made(SpirvOp::signed_less_than, type_[kBool],
-                         {whole[0], constants_[kInt][most]}));
+        know(kBool,
+             made(SpirvOp::signed_less_than, type_[kBool], {whole[0], constants_[kInt][most]}));
       }
     }
     left_ = random_.whole(10, 80);
     statements(4, 16);
     if (block_ != 0) {
       store_output();
-      put(SpirvOp::return_, {});
+      put(SpirvOp::return_nothing, {});
     }
     put(SpirvOp::function_end, {});
   }
