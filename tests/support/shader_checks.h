@@ -128,9 +128,7 @@ inline CheckResult check_shader(const std::vector<std::uint32_t>& words, std::ui
             Image found = make_image(Format::rgba32f, width, height);
             clear_image(found, kBeforeShader, {});
             const ImageView view = found;
-            const std::array<PassVarying, 1> varyings{{{PassVarying::Is::u, 0, 0, 0.0f}}};
-            const ShaderPass pass{
-                .textures = textures, .targets = {&view, 1}, .varyings = varyings, .lanes = lanes};
+            const ShaderPass pass{.textures = textures, .targets = {&view, 1}, .lanes = lanes};
             run_shader(is_plain ? plain : simplified, pass, pool);
             const std::string difference = first_difference(found, expected.image);
             if (difference.empty()) continue;
