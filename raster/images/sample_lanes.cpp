@@ -288,7 +288,7 @@ SOFTFOCUS_INLINE constexpr bool is_llvmpipe(LaneArithmetic arithmetic) {
 
 /// The channels of four groups, lane by lane.
 SOFTFOCUS_INLINE RgbaLanes transpose_groups(Floats group0, Floats group1, Floats group2,
-                                           Floats group3) {
+                                            Floats group3) {
   transpose_fours(group0, group1, group2, group3);
   return {group0, group1, group2, group3};
 }

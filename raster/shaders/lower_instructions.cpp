@@ -332,7 +332,7 @@ bool has_one_operand(SpirvOp op) {
 
 Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
-  const Scalars a = value(to, call, word(w, 0));
+  Scalars a = value(to, call, word(w, 0));
   const Scalars b = w.size() > 1 ? value(to, call, w[1]) : Scalars{};
   const auto of_b = [&](std::size_t i) {
     if (i >= b.size()) damaged("an instruction has too few operands");

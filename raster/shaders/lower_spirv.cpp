@@ -48,7 +48,9 @@ class UniformCollector {
         const bool has_name =
             found != module_.decorations.end() && i < found->second.members.size();
         const std::string member = has_name ? found->second.members[i].name : std::to_string(i);
-        add(type.members[i], members_alone ? member : name + "." + member, false);
+        std::string full = members_alone ? "" : name;
+        if (!members_alone) full += '.';
+        add(type.members[i], full += member, false);
       }
       return;
     }

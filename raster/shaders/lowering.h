@@ -525,7 +525,7 @@ class Lowering {
         if (w[0] == natural || leave(w[0], to)) return 0;
         return w[0];
       case branch_conditional: return run_condition(call, block, to, natural, is_header);
-      case switch_: return run_switch(call, block, to, natural);
+      case switch_case: return run_switch(call, block, to, natural);
       case return_value: {
         const Scalars values = value(to, call, w[0]);
         if (values.size() != scalars(call.function->returns))
@@ -613,7 +613,7 @@ class Lowering {
         go_on(w[1]);
         go_on(w[2]);
       }
-      if (in.op == SpirvOp::switch_) {
+      if (in.op == SpirvOp::switch_case) {
         for (std::size_t i = 1; i < w.size(); i += 2) go_on(w[i]);
       }
     }

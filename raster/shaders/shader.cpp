@@ -144,12 +144,14 @@ class Run {
     }
     if (of.builtin >= 0) return 0.0f;
     for (const PassVarying& varying : pass_.varyings) {
-      if (varying.location != of.location || varying.component != of.component) continue;
-      if (varying.is == PassVarying::Is::u) return x / static_cast<float>(width_);
-      if (varying.is == PassVarying::Is::v) return y / static_cast<float>(height_);
-      return varying.value;
+      if (varying.location == of.location && varying.component == of.component) {
+        return varying.value;
+      }
     }
-    return 0.0f;
+    // The place in the picture.
+    if (of.component == 0) return x / static_cast<float>(width_);
+    if (of.component == 1) return y / static_cast<float>(height_);
+    return of.component == 3 ? 1.0f : 0.0f;
   }
 
   void run_batch(const Batch& batch, PassFrame& frame) {

@@ -32,17 +32,17 @@ const ShaderUniform* find_uniform(const UserShader& shader, std::string_view nam
 /// A shader with its uniforms: `words` as ShaderUniforms has them. Throws ShaderError.
 ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words);
 
-/// An input of the fragment shader in a pass over a whole picture.
+/// A number that every pixel is given, by an input of the shader.
 struct PassVarying {
-  enum class Is : std::uint8_t { u, v, constant } is{};
   int location = 0, component = 0;
-  float value = 0.0f;  ///< of a constant
+  float value = 0.0f;
 };
 
 struct ShaderPass {
   std::span<const ShaderTexture> textures{};  ///< by their numbers
   /// By location; those without texels are left out. All of one size.
   std::span<const ImageView> targets{};
+  /// Inputs that are not among them are the place in the picture: u, v, 0, 1.
   std::span<const PassVarying> varyings{};
   Profile profile{};
   /// Turns of loops that a batch of pixels may take.
@@ -50,8 +50,9 @@ struct ShaderPass {
   int lanes = 0;  ///< that run together, for tests; 0: as many as are fastest
 };
 
-/// Runs the shader at every pixel. gl_FragCoord is (x + 1/2, y + 1/2) of column x and row y, the
-/// first row 0. Throws ShaderError if a loop takes more turns than the budget has.
+/// Runs the shader at every pixel. gl_FragCoord is (x + 1/2, y + 1/2, 1/2, 1) of column x and row
+/// y, the first row 0. What a shader does not write is 0, and what it discards stays. Throws
+/// ShaderError if a loop takes more turns than the budget has.
 void run_shader(const ShaderProgram& program, const ShaderPass& pass, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -52,9 +52,9 @@ Shape shape_of(SpirvOp op) {
     case selection_merge:
     case branch:
     case branch_conditional:
-    case switch_:
+    case switch_case:
     case kill:
-    case return_:
+    case return_nothing:
     case return_value:
     case unreachable:
     case no_line:
@@ -85,8 +85,9 @@ Shape shape_of(SpirvOp op) {
 
 bool ends_block(SpirvOp op) {
   using enum SpirvOp;
-  return op == branch || op == branch_conditional || op == switch_ || op == kill || op == return_ ||
-         op == return_value || op == unreachable || op == terminate_invocation;
+  return op == branch || op == branch_conditional || op == switch_case || op == kill ||
+         op == return_nothing || op == return_value || op == unreachable ||
+         op == terminate_invocation;
 }
 
 class Reader {
@@ -525,7 +526,7 @@ class Reader {
         check_label(word(w, 1));
         check_label(word(w, 2));
       }
-      if (last.op == switch_) {
+      if (last.op == switch_case) {
         check_label(word(w, 1));
         if (w.size() % 2 != 0) damaged_words("a switch is cut short");
         for (std::size_t i = 3; i < w.size(); i += 2) check_label(w[i]);

@@ -181,9 +181,9 @@ enum class SpirvOp : std::uint16_t {
   label = 248,
   branch = 249,
   branch_conditional = 250,
-  switch_ = 251,
+  switch_case = 251,
   kill = 252,
-  return_ = 253,
+  return_nothing = 253,
   return_value = 254,
   unreachable = 255,
   no_line = 317,
@@ -198,7 +198,7 @@ enum class SpirvStorage : std::uint8_t {
   input = 1,
   uniform = 2,  ///< uniform blocks
   output = 3,
-  private_ = 6,  ///< global variables
+  global = 6,  ///< global variables
   function = 7,
   push_constant = 9,
 };
@@ -244,17 +244,9 @@ enum class SpirvBuiltin : std::uint16_t {
   instance_index = 43,
 };
 
-/// Bits of an image operand; each takes operands in this order.
-enum SpirvImageOperand : std::uint32_t {
-  kImageBias = 1,
-  kImageLod = 2,
-  kImageGrad = 4,  ///< two
-  kImageConstOffset = 8,
-  kImageOffset = 16,
-  kImageConstOffsets = 32,
-  kImageSample = 64,
-  kImageMinLod = 128,
-};
+/// Bits of an image operand; each takes operands in this order, kImageGrad two.
+inline constexpr std::uint32_t kImageBias = 1, kImageLod = 2, kImageGrad = 4, kImageConstOffset = 8,
+                               kImageOffset = 16, kImageConstOffsets = 32;
 
 /// Numbers of GLSL.std.450's instructions.
 enum class GlslOp : std::uint8_t {

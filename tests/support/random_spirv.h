@@ -132,11 +132,11 @@ class RandomSpirv {
     number(truth, 0);
     number(truth, 1);
     array_ = declared(type_array, {type_[whole], constants_[whole][3]});
-    const Id array_of_globals = declared(type_pointer, {storage(SpirvStorage::private_), array_});
+    const Id array_of_globals = declared(type_pointer, {storage(SpirvStorage::global), array_});
     array_pointer_ = declared(type_pointer, {storage(SpirvStorage::function), array_});
-    private_int_ = declared(type_pointer, {storage(SpirvStorage::private_), type_[whole]});
-    for (Id& each : globals_) each = global(private_int_, SpirvStorage::private_);
-    arrays_[0] = global(array_of_globals, SpirvStorage::private_);
+    private_int_ = declared(type_pointer, {storage(SpirvStorage::global), type_[whole]});
+    for (Id& each : globals_) each = global(private_int_, SpirvStorage::global);
+    arrays_[0] = global(array_of_globals, SpirvStorage::global);
     function_type_ = declared(SpirvOp::type_function, {void_});
     output_ = global(declared(type_pointer, {storage(SpirvStorage::output), vector_}),
                      SpirvStorage::output);
@@ -288,7 +288,7 @@ class RandomSpirv {
       put(SpirvOp::return_value, {some(*returns_)});
     } else {
       store_output();
-      put(SpirvOp::return_, {});
+      put(SpirvOp::return_nothing, {});
     }
     block_ = 0;
   }
@@ -365,7 +365,7 @@ class RandomSpirv {
       operands.push_back(cases[static_cast<std::size_t>(i)].label);
     }
     code_.push_back(static_cast<std::uint32_t>(operands.size() + 1) << 16 |
-                    static_cast<std::uint32_t>(SpirvOp::switch_));
+                    static_cast<std::uint32_t>(SpirvOp::switch_case));
     code_.insert(code_.end(), operands.begin(), operands.end());
     aims_.push_back(&merge);
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -564,7 +564,7 @@ class RandomSpirv {
     statements(4, 16);
     if (block_ != 0) {
       store_output();
-      put(SpirvOp::return_, {});
+      put(SpirvOp::return_nothing, {});
     }
     put(SpirvOp::function_end, {});
   }

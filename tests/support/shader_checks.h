@@ -65,7 +65,9 @@ inline Expected expected_picture(const SpirvModule& module, OracleSettings& sett
         const float at[4] = {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, 0.5f, 1};
         float value = 0.0f;
         if (of.builtin == static_cast<int>(SpirvBuiltin::frag_coord)) value = at[part];
-        if (of.builtin < 0 && part == 0) value = at[0] / static_cast<float>(width);
+        const float place[4] = {at[0] / static_cast<float>(width),
+                                at[1] / static_cast<float>(height), 0.0f, 1.0f};
+        if (of.builtin < 0) value = place[part];
         return std::bit_cast<std::uint32_t>(value);
       };
       const OracleResult result = run_oracle(module, settings);
@@ -128,9 +130,7 @@ inline CheckResult check_shader(const std::vector<std::uint32_t>& words, std::ui
             Image found = make_image(Format::rgba32f, width, height);
             clear_image(found, kBeforeShader, {});
             const ImageView view = found;
-            const std::array<PassVarying, 1> varyings{{{PassVarying::Is::u, 0, 0, 0.0f}}};
-            const ShaderPass pass{
-                .textures = textures, .targets = {&view, 1}, .varyings = varyings, .lanes = lanes};
+            const ShaderPass pass{.textures = textures, .targets = {&view, 1}, .lanes = lanes};
             run_shader(is_plain ? plain : simplified, pass, pool);
             const std::string difference = first_difference(found, expected.image);
             if (difference.empty()) continue;

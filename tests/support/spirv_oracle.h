@@ -287,7 +287,7 @@ class Oracle {
       switch (last.op) {
         case branch: next = w[0]; break;
         case branch_conditional: next = value(frame, w[0])[0] != 0 ? w[1] : w[2]; break;
-        case switch_: {
+        case switch_case: {
           const std::uint32_t selector = value(frame, w[0])[0];
           next = w[1];
           for (std::size_t i = 2; i < w.size(); i += 2) {

@@ -19,6 +19,7 @@
 #include "tools/options/parameter_options.h"
 #include "tools/pictures/image_file.h"
 #include "tools/pictures/picture_file.h"
+#include "tools/refocus/chosen_layers.h"
 
 namespace softfocus {
 namespace {

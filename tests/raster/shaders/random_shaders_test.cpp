@@ -49,7 +49,7 @@ bool is_refused(const std::function<void(Words&)>& declare, const std::function<
   return false;
 }
 void nothing(Words&) {}
-void return_only(Words& words) { words.put(return_, {}); }
+void return_only(Words& words) { words.put(return_nothing, {}); }
 
 }  // namespace
 
@@ -115,10 +115,10 @@ TEST_CASE("control flow that is walked again and again is refused") {
       words.put(branch_conditional, {true_id, 1000 + i, 1000 + i});
       words.put(label, {1000 + i});
     }
-    words.put(return_, {});
+    words.put(return_nothing, {});
     for (std::uint32_t i = 0; i < 150; ++i) {
       words.put(label, {10000 + i});
-      words.put(return_, {});
+      words.put(return_nothing, {});
     }
   };
   CHECK(is_refused(nothing, doubled, "too long"));
@@ -132,7 +132,7 @@ TEST_CASE("control flow that is walked again and again is refused") {
       words.put(branch, {10000 + i});
       words.put(label, {10000 + i});
     }
-    words.put(return_, {});
+    words.put(return_nothing, {});
   };
   CHECK(is_refused(nothing, nested, "nested too deeply"));
   // Each function calls the next twice.
@@ -144,18 +144,18 @@ TEST_CASE("control flow that is walked again and again is refused") {
       }
       words.put(function_call, {void_id, 3000 + i, 1001 + i});
       words.put(function_call, {void_id, 4000 + i, 1001 + i});
-      words.put(return_, {});
+      words.put(return_nothing, {});
       words.put(function_end, {});
     }
     words.put(SpirvOp::function, {void_id, 1060, 0, function_id});
     words.put(label, {2060});
-    words.put(return_, {});
+    words.put(return_nothing, {});
   };
   CHECK(is_refused(nothing, calls, "too long"));
   // A switch with a long way from case to case.
   const auto ways = [](Words& words) {
     words.put(selection_merge, {90, 0});
-    words.put(switch_, {one_id, 90, 0, 100000, 1, 99});
+    words.put(switch_case, {one_id, 90, 0, 100000, 1, 99});
     for (std::uint32_t i = 0; i < 100000; ++i) {
       words.put(label, {100000 + i});
       words.put(branch, {100001 + i});
@@ -163,9 +163,9 @@ TEST_CASE("control flow that is walked again and again is refused") {
     words.put(label, {200000});
     words.put(branch, {99});
     words.put(label, {99});
-    words.put(return_, {});
+    words.put(return_nothing, {});
     words.put(label, {90});
-    words.put(return_, {});
+    words.put(return_nothing, {});
   };
   CHECK(!is_refused(nothing, ways, ""));
 }

@@ -16,8 +16,9 @@ std::string difference_of(const std::string& body, const std::string& functions 
                            "\nvoid main() {\n  int x = int(gl_FragCoord.x), k = 0;\n"
                            "  float s = 0.0;\n" +
                            body + "\n  result = vec4(s, float(k), 0.0, 1.0);\n}\n";
-  const CompiledGlsl made = compile_glsl({.name = "flow.frag", .text = text},
-                                         [](const std::string&) { return std::optional<std::string>{}; });
+  const CompiledGlsl made =
+      compile_glsl({.name = "flow.frag", .text = text},
+                   [](const std::string&) { return std::optional<std::string>{}; });
   return test::check_shader(made.words, 1).difference;
 }
 

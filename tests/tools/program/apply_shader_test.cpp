@@ -1,0 +1,171 @@
+// softfocus apply --shader, end to end.
+
+#include "raster/shaders/glsl/glsl.h"
+#include "tests/support/cli_refused.h"
+#include "tests/support/cli_render.h"
+#include "tests/support/skip.h"
+
+using namespace softfocus;
+
+namespace {
+
+constexpr const char* kRoot = SOFTFOCUS_TEST_DATA "/../../";
+
+/// A picture with depth, and shaders beside it.
+struct Shaders {
+  TemporaryDirectory directory;
+  std::string picture = directory.file("picture.npy");
+
+  Shaders() { CHECK(run_program(render("figures", picture, {"--show", "pinhole"})).status == 0); }
+  std::string shader(const std::string& name, const std::string& text) const {
+    write_file(directory.file(name), text);
+    return directory.file(name);
+  }
+  Words apply(const std::string& shader, const std::string& output, const Words& more) const {
+    Words words{"apply", picture, "--shader", shader, "-o", directory.file(output)};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  /// The texels of what `apply` makes: an NPY's without its head.
+  std::string applied(const std::string& shader, const Words& more = {}) const {
+    const ProgramRun run = run_program(apply(shader, "out.npy", more));
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    return texels(directory.file("out.npy"));
+  }
+  static std::string texels(const std::string& file) {
+    const std::string all = read_file(file);
+    return all.substr(all.find('\n') + 1);
+  }
+};
+
+/// A shader of ours with what it includes.
+std::string whole_shader(const std::string& file) {
+  std::string text = read_file(kRoot + file);
+  const std::string include = "#include \"weights.glsl\"";
+  REQUIRE(contains(text, include));
+  text.replace(text.find(include), include.size(),
+               read_file(std::string{kRoot} + "dof/weights.glsl"));
+  return "#version 400\n" + text;
+}
+
+std::string number_in(const std::string& json, const std::string& key) {
+  const auto at = json.find("\"" + key + "\": ");
+  REQUIRE(at != json.npos);
+  const std::size_t begin = at + key.size() + 4;
+  return json.substr(begin, json.find_first_of(",\n", begin) - begin);
+}
+
+}  // namespace
+
+TEST_CASE("apply --shader: two_pass.frag has the bits of --method two-pass") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const std::string filtered = all.directory.file("filtered.npy");
+  const ProgramRun run = run_program(
+      render("figures", filtered, {"--method", "two-pass", "--max-coc", "7.5", "--json"}));
+  REQUIRE(run.status == 0);
+  const std::string shader =
+      all.shader("two_pass.frag", whole_shader("dof/two_pass/two_pass.frag"));
+  const Words lens{"--set", "radius_at_infinity_px=" + number_in(run.out, "radius_at_infinity_px"),
+                   "--set", "focus_m=" + number_in(run.out, "focus_m"),
+                   "--set", "max_coc_px=7.5",
+                   "--set", "leak=1",
+                   "--set", "taps=7"};
+  Words across = lens, down = lens;
+  across.insert(across.end(), {"--set", "direction=1,0"});
+  down.insert(down.end(), {"--set", "direction=0,1"});
+  const ProgramRun first = run_program(all.apply(shader, "across.npy", across));
+  CAPTURE(first.err);
+  REQUIRE(first.status == 0);
+  Words second{"apply", all.directory.file("across.npy"), "--shader", shader,
+               "-o",    all.directory.file("down.npy")};
+  second.insert(second.end(), down.begin(), down.end());
+  REQUIRE(run_program(second).status == 0);
+  CHECK(Shaders::texels(all.directory.file("down.npy")) == Shaders::texels(filtered));
+}
+
+TEST_CASE("apply --shader: the same bits on every unit, and by threads") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const std::string shader = all.shader("mix.frag", R"(#version 330
+uniform sampler2D picture;
+in vec2 uv;
+out vec4 colour;
+void main() {
+  vec4 sum = vec4(0.0);
+  for (int i = -3; i <= 3; ++i) {
+    if (uv.x * 9.0 < float(i)) continue;
+    sum += texture(picture, uv + vec2(sin(float(i) + uv.y), cos(uv.x * float(i))) * 0.02);
+    if (sum.r > 2.0) break;
+  }
+  colour = pow(abs(sum), vec4(0.7)) + vec4(dFdx(uv.y * uv.x), dFdy(exp(uv.x)), atan(uv.y, uv.x), 0.0);
+}
+)");
+  const std::string expected = all.applied(shader, {"--threads", "1"});
+  CHECK(all.applied(shader, {"--threads", "3"}) == expected);
+  for (const char* isa : {"scalar", "baseline", "avx2", "avx512"}) {
+    const ProgramRun run = run_program(all.apply(shader, "unit.npy", {"--isa", isa}));
+    if (run.status != 0) continue;  // not of this processor
+    CHECK(Shaders::texels(all.directory.file("unit.npy")) == expected);
+  }
+}
+
+TEST_CASE(
+    "apply --shader: a plain shader has the picture's rows from the top, Shadertoy's from below") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const std::string before = Shaders::texels(all.picture);
+  const std::string same = all.shader("same.frag", R"(#version 330
+uniform sampler2D picture;
+out vec4 colour;
+void main() { colour = texelFetch(picture, ivec2(gl_FragCoord.xy), 0); }
+)");
+  CHECK(all.applied(same) == before);
+  const auto row_of = [](const std::string& texels, int row) {
+    return texels.substr(static_cast<std::size_t>(row) * 48 * 8, 48 * 8);
+  };
+  const std::string white = all.shader("white.frag", R"(#version 330
+out vec4 colour;
+void main() { colour = vec4(gl_FragCoord.y < 1.0 ? 1.0 : 0.0); }
+)");
+  const std::string toy = all.shader("toy.frag",
+                                     "void mainImage(out vec4 c, in vec2 at) {\n"
+                                     "  c = vec4(at.y < 1.0 ? 1.0 : 0.0);\n}\n");
+  const std::string plain = all.applied(white), below = all.applied(toy);
+  CHECK(row_of(plain, 0).substr(0, 6) == std::string{"\0\x3C\0\x3C\0\x3C", 6});
+  CHECK(row_of(plain, 31).substr(0, 6) == std::string(6, '\0'));
+  CHECK(row_of(below, 31).substr(0, 6) == std::string{"\0\x3C\0\x3C\0\x3C", 6});
+  CHECK(row_of(below, 0).substr(0, 6) == std::string(6, '\0'));
+  // The depth stays.
+  CHECK(row_of(below, 3).substr(6, 2) == row_of(before, 3).substr(6, 2));
+}
+
+TEST_CASE("apply --shader: what is wrong is one line, with the shader's or the option's") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const std::string tinted =
+      all.shader("tinted.frag",
+                 "#version 330\nuniform vec3 tint;\nuniform sampler2D a, b;\n"
+                 "out vec4 c;\nvoid main() {\n"
+                 "  c = texture(a, vec2(0.5)) + texture(b, vec2(0.5)) * vec4(tint, 1.0);\n}\n");
+  const std::string wrong =
+      all.shader("wrong.frag", "#version 330\nout vec4 c;\nvoid main() {\n  c = vec4(x);\n}\n");
+  const std::string endless =
+      all.shader("endless.frag",
+                 "#version 330\nout vec4 c;\nvoid main() {\n  float s = 0.0;\n"
+                 "  for (int i = 0; i >= 0; i += 0) s += 1.0;\n  c = vec4(s);\n}\n");
+  const auto refused = [&](const std::string& shader, const Words& more, int status,
+                           const std::vector<std::string>& said) {
+    check_refused(all.directory, all.apply(shader, "no.npy", more), status, said);
+  };
+  refused(wrong, {}, 1, {"wrong.frag:4: 'x'"});
+  refused(endless, {}, 1, {"line 5", "budget"});
+  refused(tinted, {"--set", "tnit=1"}, 2, {"--set 'tnit=1'", "did you mean 'tint'"});
+  refused(tinted, {"--set", "tint=1,2"}, 2, {"3 numbers"});
+  refused(tinted, {"--set", "tint=red"}, 2, {"'red' is no number"});
+  refused(tinted, {"--set", "tint"}, 2, {"NAME=VALUE"});
+  refused(tinted, {"--texture", "c=" + all.picture}, 2, {"a, b"});
+  refused(tinted, {}, 2, {"'a' and 'b'", "--texture"});
+  refused(all.directory.file("none.frag"), {}, 1, {"none.frag"});
+}
