@@ -252,8 +252,8 @@ struct HighUnsigned {
   }
 };
 struct HighSigned {
-  std::uint32_t operator()(std::int32_t a, std::int32_t b) const {
-    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::int64_t{a} * b) >> 32);
+  std::int32_t operator()(std::int32_t a, std::int32_t b) const {
+    return static_cast<std::int32_t>(static_cast<std::uint64_t>(std::int64_t{a} * b) >> 32);
   }
 };
 /// x = mantissa 2^exponent with 1/2 <= |mantissa| < 1; 0, infinities and NaN are their own
