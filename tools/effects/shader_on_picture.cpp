@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -13,6 +12,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/srgb.h"
 #include "raster/shaders/glsl/glsl.h"
+#include "scenes/files/decimal.h"
 #include "scenes/files/scene_error.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
@@ -102,14 +102,13 @@ std::vector<double> numbers_of(const std::string& setting, const std::string& te
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string_view one = std::string_view{text}.substr(begin, end - begin);
-    double value = 0.0;
-    const auto [last, error] = std::from_chars(one.data(), one.data() + one.size(), value);
-    if (one == "true" || one == "false") {
-      value = one == "true" ? 1.0 : 0.0;
-    } else if (one.empty() || error != std::errc{} || last != one.data() + one.size()) {
+    const bool is_word = one == "true" || one == "false";
+    const std::optional<double> value =
+        is_word ? std::optional{one == "true" ? 1.0 : 0.0} : decimal_to_double(one);
+    if (!value) {
       throw UsageError("--set '" + setting + "': '" + std::string{one} + "' is no number");
     }
-    numbers.push_back(value);
+    numbers.push_back(*value);
     begin = end + 1;
   }
   return numbers;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -237,6 +238,24 @@ std::string stage_of(const std::string& text, ShaderStage stage) {
   return out;
 }
 
+/// The number that a text begins with, which is taken off; nothing if it begins with none.
+std::optional<double> take_number(std::string_view& text) {
+  double number = 0.0;
+#ifdef __cpp_lib_to_chars
+  const char* const begin = text.data();
+  const auto [end, error] = std::from_chars(begin, begin + text.size(), number);
+  if (error != std::errc{}) return {};
+  text.remove_prefix(static_cast<std::size_t>(end - begin));
+#else  // WebAssembly's library has it for whole numbers alone
+  const std::string copy{text};
+  char* end = nullptr;
+  number = std::strtod(copy.c_str(), &end);
+  if (end == copy.c_str()) return {};
+  text.remove_prefix(static_cast<std::size_t>(end - copy.c_str()));
+#endif
+  return number;
+}
+
 /// Numbers of "vec2(1.0, -2)", "0.5" or "true".
 std::vector<double> numbers_of(std::string_view text) {
   std::vector<double> numbers;
@@ -247,11 +266,10 @@ std::vector<double> numbers_of(std::string_view text) {
   while (!text.empty()) {
     text = trimmed(text);
     if (text.starts_with('+')) text.remove_prefix(1);
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{}) break;
-    numbers.push_back(number);
-    text = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
+    const std::optional<double> number = take_number(text);
+    if (!number) break;
+    numbers.push_back(*number);
+    text = trimmed(text);
     if (text.starts_with('f')) text = trimmed(text.substr(1));
     if (!text.starts_with(',')) break;
     text.remove_prefix(1);
@@ -294,9 +312,9 @@ std::optional<GlslParameter> pragma_parameter(std::string_view line) {
   std::array<double, 4> values{};  // default, least, most, step
   for (double& value : values) {
     rest = trimmed(rest);
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    if (error != std::errc{}) break;
-    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    const std::optional<double> number = take_number(rest);
+    if (!number) break;
+    value = *number;
     rest = rest.substr(std::min(rest.size(), rest.find_first_of(" \t")));
   }
   parameter.value = {values[0]};
