@@ -726,8 +726,8 @@ class Sharing {
   }
 };
 
-/// `v = ...` and then `variable = v`, with v used nowhere else: the variable is made at once.
-void join_copies(ShaderProgram& program) {
+/// How often each register that varies is read.
+std::vector<std::uint32_t> reads_of(const ShaderProgram& program) {
   std::vector<std::uint32_t> reads(program.varying_count);
   const auto count = [&](const ShaderRegister& of) {
     if (of.is_there && of.varies) ++reads[of.number];
@@ -741,6 +741,49 @@ void join_copies(ShaderProgram& program) {
     for (const ShaderRegister& of : sample.offset) count(of);
     for (const ShaderRegister& of : {sample.texture, sample.sampler, sample.compared}) count(of);
   }
+  return reads;
+}
+
+/// `v = a b` and soon after `w = v + c`, with v used nowhere else: one step.
+void join_products(ShaderProgram& program) {
+  constexpr std::size_t kFarthest = 16;
+  const std::vector<std::uint32_t> reads = reads_of(program);
+  const auto is_jump = [](const ShaderStep& step) { return step.op >= number_of(StepOp::jump); };
+  std::vector<bool> begins(program.steps.size() + 1);
+  for (const ShaderStep& step : program.steps) {
+    if (is_jump(step)) begins[std::min<std::size_t>(step.place, program.steps.size())] = true;
+  }
+  for (std::size_t i = 0; i < program.steps.size(); ++i) {
+    const ShaderStep& product = program.steps[i];
+    if (product.op != number_of(ShaderOp::multiply) || !product.to.varies) continue;
+    if (reads[product.to.number] != 1) continue;
+    const auto is = [](const ShaderRegister& a, const ShaderRegister& b) {
+      return a.is_there && b.is_there && a.varies == b.varies && a.number == b.number;
+    };
+    for (std::size_t k = i + 1; k < std::min(program.steps.size(), i + kFarthest); ++k) {
+      ShaderStep& step = program.steps[k];
+      if (begins[k] || step.op == number_of(ShaderOp::sample)) break;
+      if (step.op == number_of(StepOp::jump) && step.place == k + 1) continue;  // dropped
+      if (is_jump(step)) break;
+      if (step.op == number_of(ShaderOp::add) &&
+          (is(step.a, product.to) || is(step.b, product.to))) {
+        step.c = is(step.a, product.to) ? step.b : step.a;
+        step.a = product.a;
+        step.b = product.b;
+        step.op = number_of(StepOp::multiply_add);
+        program.steps[i].op = number_of(StepOp::jump);  // to the next: dropped with the copies
+        program.steps[i].place = static_cast<std::uint32_t>(i) + 1;
+        program.steps[i].to = program.steps[i].a = program.steps[i].b = {};
+        break;
+      }
+      if (is(step.to, product.a) || is(step.to, product.b) || is(step.to, product.to)) break;
+    }
+  }
+}
+
+/// `v = ...` and then `variable = v`, with v used nowhere else: the variable is made at once.
+void join_copies(ShaderProgram& program) {
+  const std::vector<std::uint32_t> reads = reads_of(program);
   for (std::size_t i = 1; i < program.steps.size(); ++i) {
     ShaderStep& step = program.steps[i];
     ShaderStep& before = program.steps[i - 1];
@@ -778,6 +821,7 @@ ShaderProgram emit_program(const ShaderTree& tree) {
   ShaderProgram program;
   Emitter emitter{tree, program};
   emitter.run();
+  join_products(program);
   join_copies(program);
   Sharing{program, emitter.rows}.run();
   return program;

@@ -484,6 +484,21 @@ void run_masked_copy(const LaneStep& step, LaneFrame& frame) {
   }
 }
 
+void run_multiply_add(const LaneStep& step, LaneFrame& frame) {
+  const std::byte* a = frame.memory + step.a;
+  const std::byte* b = frame.memory + step.b;
+  const std::byte* c = frame.memory + step.c;
+  std::byte* to = frame.memory + step.to;
+  for (int n = step.vectors; n > 0; --n) {
+    const Floats product = as_floats(bits_at(a)) * as_floats(bits_at(b));
+    put_bits(to, as_bits(product + as_floats(bits_at(c))));
+    a += step.a_next;
+    b += step.b_next;
+    c += step.c_next;
+    to += sizeof(Bits);
+  }
+}
+
 // --- differences in each four lanes: 0 1 above 2 3 ---
 
 SOFTFOCUS_INLINE Floats along_x(Floats v) {
@@ -741,7 +756,11 @@ LaneFunction lane_function(std::uint8_t op) {
   constexpr auto kLast = static_cast<std::size_t>(ShaderOp::copy);
   static constexpr auto kFunctions = all_functions(std::make_index_sequence<kLast + 1>{});
   if (op <= kLast) return kFunctions[op];
-  return op == static_cast<std::uint8_t>(StepOp::and_not) ? run_and_not : run_masked_copy;
+  switch (static_cast<StepOp>(op)) {
+    case StepOp::and_not: return run_and_not;
+    case StepOp::multiply_add: return run_multiply_add;
+    default: return run_masked_copy;
+  }
 }
 
 bool any_lane(const LaneStep& step, const LaneFrame& frame) {

@@ -13,6 +13,7 @@ namespace softfocus {
 enum class StepOp : std::uint8_t {
   and_not = static_cast<std::uint8_t>(ShaderOp::copy) + 1,  ///< a and not b
   masked_copy,                                              ///< where b: a
+  multiply_add,                                             ///< a b + c, each rounded
   jump,                                                     ///< to `place`
   jump_if_none,                                             ///< if no lane of a is set
   jump_if_false,                                            ///< a does not vary

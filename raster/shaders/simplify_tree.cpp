@@ -226,9 +226,10 @@ class Forwarding {
   std::vector<ShaderValue> known_;   ///< of variables
   std::vector<Change> changes_{};    ///< of known_, to be undone
   std::unordered_map<ValueKey, ShaderValue, ValueKeyHash> made_{};
-  std::vector<ValueKey> order_{};       ///< of made_
-  std::vector<Loop*> loops_{};          ///< around
-  std::vector<std::uint32_t> loop_of_;  ///< how many loops are around a value
+  std::vector<ValueKey> order_{};                          ///< of made_
+  std::unordered_map<ShaderValue, ShaderValue> turned_{};  ///< what is the opposite of what
+  std::vector<Loop*> loops_{};                             ///< around
+  std::vector<std::uint32_t> loop_of_;                     ///< how many loops are around a value
 
   void learn(ShaderVariable variable, ShaderValue value) {
     if (known_[variable] == value) return;
@@ -359,6 +360,10 @@ class Forwarding {
     } else if (in.op == load_constant) {
       put(node, depth_of(in), to);
       return;
+    } else if (in.op == sample && (tree_.samples[in.place].kind == SampleKind::size ||
+                                   tree_.samples[in.place].kind == SampleKind::levels)) {
+      run_size(node, to);
+      return;
     }
     for_each_result(tree_, in, [&](ShaderValue of) {
       loop_of_[of] = static_cast<std::uint32_t>(loops_.size());
@@ -383,6 +388,12 @@ class Forwarding {
   void run_pure(ShaderNode& node, ShaderRegion& to) {
     ShaderInstruction& in = node.instruction;
     using enum ShaderOp;
+    if (in.op == select) {
+      if (const ShaderValue turned = turned_of(in.a); turned != kNoValue) {
+        in.a = turned;
+        std::swap(in.b, in.c);
+      }
+    }
     if (const ShaderValue simple = simpler(in); simple != kNoValue) {
       same_[in.to] = simple;
       return;
@@ -395,7 +406,44 @@ class Forwarding {
       return;
     }
     order_.push_back(key);
+    if (in.op == bit_not) turned_[in.to] = in.a;
     put(node, depth_of(in), to);
+  }
+  /// What a value is the opposite of, bit by bit.
+  ShaderValue turned_of(ShaderValue value) const {
+    const auto found = turned_.find(value);
+    return found == turned_.end() ? kNoValue : found->second;
+  }
+
+  /// The size of a texture, once.
+  void run_size(ShaderNode& node, ShaderRegion& to) {
+    const ShaderSample& sample = tree_.samples[node.instruction.place];
+    const ValueKey key{ShaderOp::sample, sample.texture, sample.more[0],
+                       static_cast<ShaderValue>(sample.kind)};
+    const auto [found, is_new] = made_.try_emplace(key, node.instruction.place);
+    if (!is_new) {
+      ShaderSample& first = tree_.samples[found->second];
+      for (std::size_t i = 0; i < sample.to.size(); ++i) {
+        if (sample.to[i] == kNoValue) continue;
+        if (first.to[i] == kNoValue) {
+          first.to[i] = sample.to[i];
+        } else {
+          same_[sample.to[i]] = first.to[i];
+        }
+      }
+      return;
+    }
+    order_.push_back(key);
+    std::size_t depth = 0;
+    for (const ShaderValue of : {sample.texture, sample.more[0]}) {
+      if (of != kNoValue && !tree_.is_constant(of)) {
+        depth = std::max<std::size_t>(depth, loop_of_[of]);
+      }
+    }
+    for (const ShaderValue of : sample.to) {
+      if (of != kNoValue) loop_of_[of] = static_cast<std::uint32_t>(depth);
+    }
+    (depth < loops_.size() ? loops_[depth]->before : to).push_back(std::move(node));
   }
 
   ShaderValue simpler(const ShaderInstruction& in) {
@@ -406,6 +454,7 @@ class Forwarding {
     if (in.op < derivative_x && is_known(in.a) && is_known(in.b) && is_known(in.c)) {
       return constant(fold_shader_op(in.op, bits(in.a), bits(in.b), bits(in.c)));
     }
+    if (in.op == bit_not && turned_of(in.a) != kNoValue) return turned_of(in.a);
     if (in.op == select) {
       if (in.b == in.c) return in.b;
       if (is_known(in.a)) return bits(in.a) != 0 ? in.b : in.c;
@@ -435,6 +484,10 @@ class Forwarding {
 
   void run_branch(ShaderNode& node, ShaderRegion& to) {
     node.instruction.a = resolved(node.instruction.a);
+    if (const ShaderValue turned = turned_of(node.instruction.a); turned != kNoValue) {
+      node.instruction.a = turned;
+      std::swap(node.first, node.second);
+    }
     if (tree_.is_constant(node.instruction.a)) {
       ShaderRegion taken =
           std::move(tree_.bits(node.instruction.a) != 0 ? *node.first : *node.second);
