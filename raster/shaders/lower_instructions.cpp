@@ -357,7 +357,20 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
     return made;
   }
   switch (in.op) {
-    case bitcast:
+    case bitcast: {
+      // Processors disagree on the bits of a NaN: as a whole number each is the same.
+      const auto is_float = [&](SpirvId id) {
+        const SpirvType& of = type(id);
+        return (of.kind == SpirvKind::vector ? type(of.element).kind : of.kind) ==
+               SpirvKind::floating;
+      };
+      if (!is_float(type_of(call, w[0])) || is_float(in.type)) return a;
+      for (const ShaderValue of : a) {
+        made.push_back(make(to, ShaderOp::select, make(to, ShaderOp::not_equal, of, of),
+                            whole(0x7FC00000u), of));
+      }
+      return made;
+    }
     case unsigned_convert:
     case signed_convert:
     case float_convert: return a;

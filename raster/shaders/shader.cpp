@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstring>
 #include <mutex>
 #include <utility>
@@ -132,31 +133,32 @@ class Run {
     }
   }
 
-  float input(const ShaderInput& of, const Batch& batch, int lane) const {
+  std::uint32_t input(const ShaderInput& of, const Batch& batch, int lane) const {
+    const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
     const auto x = static_cast<float>(batch.column(lane)) + 0.5f;
     const auto y = static_cast<float>(batch.row(lane)) + 0.5f;
     switch (static_cast<SpirvBuiltin>(of.builtin)) {
       case SpirvBuiltin::frag_coord:
-        return of.part == 0 ? x : of.part == 1 ? y : of.part == 2 ? 0.5f : 1.0f;
-      case SpirvBuiltin::point_coord: return 0.5f;
-      case SpirvBuiltin::front_facing: return std::bit_cast<float>(~0u);
+        return bits(of.part == 0 ? x : of.part == 1 ? y : of.part == 2 ? 0.5f : 1.0f);
+      case SpirvBuiltin::point_coord: return bits(0.5f);
+      case SpirvBuiltin::front_facing: return ~0u;
       default: break;
     }
-    if (of.builtin >= 0) return 0.0f;
+    if (of.builtin >= 0) return 0;
     for (const PassVarying& varying : pass_.varyings) {
       if (varying.location == of.location && varying.component == of.component) {
-        return varying.value;
+        return bits(varying.value);
       }
     }
     // The place in the picture.
-    if (of.component == 0) return x / static_cast<float>(width_);
-    if (of.component == 1) return y / static_cast<float>(height_);
-    return of.component == 3 ? 1.0f : 0.0f;
+    if (of.component == 0) return bits(x / static_cast<float>(width_));
+    if (of.component == 1) return bits(y / static_cast<float>(height_));
+    return bits(of.component == 3 ? 1.0f : 0.0f);
   }
 
   void run_batch(const Batch& batch, PassFrame& frame) {
     for (const auto& of : program_.inputs) {
-      auto* to = reinterpret_cast<float*>(place(frame, of.to));
+      auto* to = reinterpret_cast<std::uint32_t*>(place(frame, of.to));
       for (int lane = 0; lane < lanes_; ++lane) to[lane] = input(of.input, batch, lane);
     }
     if (program_.killed.is_there) {
@@ -172,8 +174,8 @@ class Run {
     if (!run_lanes(lane_program_, lanes, pool_.isa(), step)) {
       const std::lock_guard lock(mutex_);
       stopped_ = true;
-      why_ = "line " + std::to_string(program_.steps[step].line.line) +
-             ": a loop takes more turns than the budget of " + std::to_string(pass_.budget);
+      why_ = place_of(program_.files, program_.steps[step].line) +
+             "a loop takes more turns than the budget of " + std::to_string(pass_.budget);
       return;
     }
     for (std::size_t i = 0; i < std::min(pass_.targets.size(), kMostTargets); ++i) {
@@ -240,7 +242,9 @@ const ShaderUniform* find_uniform(const UserShader& shader, std::string_view nam
 ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words) {
   ShaderTree tree = lower_spirv(*shader.module, words);
   simplify(tree);
-  return emit_program(tree);
+  ShaderProgram program = emit_program(tree);
+  program.files = shader.module->strings;
+  return program;
 }
 
 void run_shader(const ShaderProgram& program, const ShaderPass& pass, ThreadPool& pool) {

@@ -3,6 +3,8 @@
 // pixel has a register of one number, and its steps run once.
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "raster/shaders/shader_ir.h"
@@ -66,6 +68,7 @@ struct ShaderProgram {
   std::vector<std::uint32_t> tables{};
   ShaderRegister killed{};  ///< if any pixel may be
   bool has_derivatives = false;
+  std::map<SpirvId, std::string> files{};  ///< that lines are of
 };
 
 ShaderProgram emit_program(const ShaderTree& tree);

@@ -561,11 +561,11 @@ SpirvModule read_spirv(std::vector<std::uint32_t> words) {
   return module;
 }
 
-std::string place_of(const SpirvModule& module, ShaderLine line) {
+std::string place_of(const std::map<SpirvId, std::string>& strings, ShaderLine line) {
   if (line.line == 0) return {};
-  const auto file = module.strings.find(line.file);
-  return (file == module.strings.end() ? "the shader" : file->second) + ":" +
-         std::to_string(line.line) + ": ";
+  const auto file = strings.find(line.file);
+  return (file == strings.end() ? "the shader" : file->second) + ":" + std::to_string(line.line) +
+         ": ";
 }
 
 }  // namespace softfocus

@@ -136,6 +136,9 @@ std::vector<std::uint32_t> spirv_words(std::span<const std::byte> file);
 SpirvModule read_spirv(std::vector<std::uint32_t> words);
 
 /// "FILE:LINE: ", or nothing if the module does not say.
-std::string place_of(const SpirvModule& module, ShaderLine line);
+std::string place_of(const std::map<SpirvId, std::string>& strings, ShaderLine line);
+inline std::string place_of(const SpirvModule& module, ShaderLine line) {
+  return place_of(module.strings, line);
+}
 
 }  // namespace softfocus

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -76,7 +77,6 @@ inline const std::map<SpirvOp, Each>& each_number() {
       {convert_float_to_signed, {To::to_signed}},
       {convert_signed_to_float, {To::from_signed}},
       {convert_unsigned_to_float, {To::from_unsigned}},
-      {bitcast, {To::copy}},
       {copy_object, {To::copy}},
       {signed_negate, {To::negate_integer}},
       {float_negate, {To::negate}},
@@ -405,6 +405,23 @@ class Oracle {
         return call(function, values, pointers);
       }
       case ext_inst: return glsl(frame, in);
+      case bitcast: {
+        const auto kind_of = [&](SpirvId id) {
+          const SpirvType& type = module_.type(id);
+          return type.kind == SpirvKind::vector ? module_.type(type.element).kind : type.kind;
+        };
+        const auto constant = module_.constants.find(w[0]);
+        const SpirvId from =
+            constant == module_.constants.end() ? types_.at(w[0]) : constant->second.type;
+        Numbers numbers = of(0);
+        if (kind_of(from) != SpirvKind::floating || kind_of(in.type) == SpirvKind::floating) {
+          return numbers;
+        }
+        for (std::uint32_t& x : numbers) {
+          if (std::isnan(std::bit_cast<float>(x))) x = 0x7FC00000u;
+        }
+        return numbers;
+      }
       case is_nan: {
         Numbers numbers = of(0);
         for (std::uint32_t& x : numbers) x = fold(To::not_equal, x, x);

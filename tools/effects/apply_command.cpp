@@ -338,6 +338,10 @@ int apply_to_file(const ApplyOptions& options) {
     if (options.velocity.file) {
       check_not_read("-o", options.output, {{*options.velocity.file, "the velocity"}});
     }
+    for (const std::string& file : shader_inputs(options.shaders)) {
+      check_not_read("-o", options.output, {{file, "a shader's file"}});
+      if (sidecar) check_not_read("the sidecar of -o", *sidecar, {{file, "a shader's file"}});
+    }
   }
   ThreadPool pool{options.pool.threads, options.pool.isa};
   OpenedPicture opened = read_picture(options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -39,7 +40,7 @@ bool is_spirv(const Bytes& bytes) {
          (std::memcmp(bytes.data(), kMagic, 4) == 0 || std::memcmp(bytes.data(), kOther, 4) == 0);
 }
 
-/// A file that a shader includes: beside it or below.
+/// A file that a shader includes.
 std::optional<std::string> read_include(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return {};
@@ -68,13 +69,9 @@ OpenedShader open_shader(const std::string& file, GlslConvention convention) {
 
 // --- uniforms ---
 
-std::string names_of(const UserShader& shader, bool textures) {
-  std::string names;
-  for (const ShaderUniform& of : shader.uniforms.all) {
-    const bool is_texture = of.kind == SpirvKind::sampled_image || of.kind == SpirvKind::image;
-    if (is_texture == textures) names += (names.empty() ? "" : ", ") + of.name;
-  }
-  return names.empty() ? "none" : names;
+bool is_texture(const ShaderUniform& of) {
+  return of.kind == SpirvKind::sampled_image || of.kind == SpirvKind::image ||
+         of.kind == SpirvKind::sampler;
 }
 
 /// "NAME=VALUE" of an option.
@@ -87,14 +84,15 @@ std::pair<std::string, std::string> split_setting(const std::string& option,
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
-std::uint32_t word_of(const ShaderUniform& of, double value) {
-  switch (of.kind) {
-    case SpirvKind::floating: return std::bit_cast<std::uint32_t>(static_cast<float>(value));
-    case SpirvKind::boolean: return value != 0.0 ? ~0u : 0u;
-    default:
-      return of.is_signed ? static_cast<std::uint32_t>(static_cast<std::int32_t>(value))
-                          : static_cast<std::uint32_t>(value);
+/// The bits of a number as a uniform of that kind; nothing if it cannot be one.
+std::optional<std::uint32_t> word_of(const ShaderUniform& of, double value) {
+  if (of.kind == SpirvKind::floating) {
+    return std::bit_cast<std::uint32_t>(static_cast<float>(value));
   }
+  if (of.kind == SpirvKind::boolean) return value != 0.0 ? ~0u : 0u;
+  const double least = of.is_signed ? -0x1p31 : 0.0, most = of.is_signed ? 0x1p31 : 0x1p32;
+  if (!(value >= least && value < most) || value != std::floor(value)) return {};
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
 }
 
 std::vector<double> numbers_of(const std::string& setting, const std::string& text) {
@@ -114,61 +112,79 @@ std::vector<double> numbers_of(const std::string& setting, const std::string& te
   return numbers;
 }
 
-class Uniforms {
- public:
-  Uniforms(const OpenedShader& opened, const Image& picture)
-      : shader_(opened.shader), words_(shader_.uniforms.words) {
-    const auto width = static_cast<double>(picture.width);
-    const auto height = static_cast<double>(picture.height);
-    // What the conventions and most shaders call the size of what is drawn, and the time.
-    for (const char* name : {"iResolution", "resolution", "u_resolution", "uResolution",
-                             "OutputSize", "InputSize", "TextureSize"}) {
-      set_known(name, {width, height, 1.0, 1.0});
+/// The uniforms' words: what most shaders call the size of what is drawn, and what the text offers.
+std::vector<std::uint32_t> known_words(const OpenedShader& opened, const Image& picture) {
+  std::vector<std::uint32_t> words = opened.shader.uniforms.words;
+  // Also as a member of a block without a name of its own, as libretro's .slang have it.
+  const auto set = [&](const std::string& name, const std::vector<double>& values) {
+    for (const ShaderUniform& of : opened.shader.uniforms.all) {
+      if (of.name != name && !of.name.ends_with("." + name)) continue;
+      for (std::uint32_t i = 0; i < of.words; ++i) {
+        const std::size_t at = values.size() == 1 ? 0 : i % of.rows;
+        words[of.first + i] = word_of(of, at < values.size() ? values[at] : 0.0).value_or(0);
+      }
     }
-    set_known("iChannelResolution", {width, height, 1.0});
-    set_known("ratio", {width / height});
-    set_known("iFrameRate", {60.0});
-    for (const GlslParameter& parameter : opened.parameters) {
-      set_known(parameter.name, parameter.value);
-    }
+  };
+  const auto width = static_cast<double>(picture.width);
+  const auto height = static_cast<double>(picture.height);
+  for (const char* name :
+       {"iResolution", "iChannelResolution", "resolution", "u_resolution", "uResolution"}) {
+    set(name, {width, height, 1.0});
   }
-
-  void set(const std::string& setting) {
-    const auto [name, text] = split_setting("--set", setting);
-    const ShaderUniform* of = find_uniform(shader_, name);
-    if (of == nullptr) {
-      throw UsageError("--set '" + setting + "': the shader has no uniform of that name" +
-                       nearest(name) + "; it has " + names_of(shader_, false));
-    }
-    const std::vector<double> numbers = numbers_of(setting, text);
-    if (numbers.size() != of->words && numbers.size() != 1) {
-      throw UsageError("--set '" + setting + "': " + std::to_string(of->words) +
-                       " numbers would be right");
-    }
-    for (std::uint32_t i = 0; i < of->words; ++i) {
-      words_[of->first + i] = word_of(*of, numbers[numbers.size() == 1 ? 0 : i]);
-    }
+  for (const char* name :
+       {"OutputSize", "InputSize", "TextureSize", "SourceSize", "OriginalSize"}) {
+    set(name, {width, height, 1.0 / width, 1.0 / height});
   }
-  const std::vector<std::uint32_t>& words() const { return words_; }
+  set("ratio", {width / height});
+  set("iFrameRate", {60.0});
+  for (const GlslParameter& parameter : opened.parameters) {
+    if (!parameter.value.empty()) set(parameter.name, parameter.value);
+  }
+  return words;
+}
 
- private:
-  const UserShader& shader_;
-  std::vector<std::uint32_t> words_;
+/// Sets a uniform as --set says. False if the shader has none of that name.
+bool set_uniform(const OpenedShader& opened, const std::string& setting,
+                 std::vector<std::uint32_t>& words) {
+  const auto [name, text] = split_setting("--set", setting);
+  const ShaderUniform* of = find_uniform(opened.shader, name);
+  if (of == nullptr || is_texture(*of)) return false;
+  const std::vector<double> numbers = numbers_of(setting, text);
+  if (numbers.size() != of->words && numbers.size() != 1) {
+    throw UsageError("--set '" + setting +
+                     "': " + count_text(static_cast<int>(of->words), "number") + " would be right");
+  }
+  for (std::uint32_t i = 0; i < of->words; ++i) {
+    const std::optional<std::uint32_t> word = word_of(*of, numbers[numbers.size() == 1 ? 0 : i]);
+    if (!word) {
+      throw UsageError("--set '" + setting + "': '" + name + "' is a whole number of 32 bits" +
+                       (of->is_signed ? "" : ", not below 0"));
+    }
+    words[of->first + i] = *word;
+  }
+  return true;
+}
 
-  std::string nearest(const std::string& name) const {
+/// Throws UsageError for a setting or a texture that no shader has.
+void check_names(const ShaderOptions& options, const std::vector<OpenedShader>& all) {
+  const auto check = [&](const std::string& option, const std::string& text, bool textures) {
+    const std::string name = split_setting(option, text).first;
     std::vector<std::string> names;
-    for (const ShaderUniform& of : shader_.uniforms.all) names.push_back(of.name);
-    return did_you_mean(name, names);
-  }
-  void set_known(const std::string& name, const std::vector<double>& values) {
-    const ShaderUniform* of = find_uniform(shader_, name);
-    if (of == nullptr || values.empty()) return;
-    for (std::uint32_t i = 0; i < of->words; ++i) {
-      const std::size_t at = values.size() == 1 ? 0 : i % of->rows;
-      words_[of->first + i] = word_of(*of, at < values.size() ? values[at] : 0.0);
+    for (const OpenedShader& opened : all) {
+      for (const ShaderUniform& of : opened.shader.uniforms.all) {
+        if (is_texture(of) == textures) names.push_back(of.name);
+      }
     }
-  }
-};
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    std::string list;
+    for (const std::string& of : names) list += (list.empty() ? "" : ", ") + of;
+    throw UsageError(option + " '" + text + "': the shaders have no " +
+                     (textures ? "texture" : "uniform") + " of that name; there are " +
+                     (list.empty() ? "none" : list) + did_you_mean(name, names));
+  };
+  for (const std::string& setting : options.settings) check("--set", setting, false);
+  for (const std::string& texture : options.textures) check("--texture", texture, true);
+}
 
 // --- textures ---
 
@@ -221,10 +237,7 @@ std::vector<const Texture*> bind(const ShaderOptions& options, const OpenedShade
   for (const std::string& text : options.textures) {
     const auto [name, file] = split_setting("--texture", text);
     const ShaderUniform* of = find_uniform(shader, name);
-    if (of == nullptr || of->kind != SpirvKind::sampled_image) {
-      throw UsageError("--texture '" + text + "': the shader has no texture of that name; it has " +
-                       names_of(shader, true));
-    }
+    if (of == nullptr || of->kind != SpirvKind::sampled_image) continue;  // of another shader
     const auto [at, is_new] = files.try_emplace(file);
     if (is_new) {
       PictureFile opened_file = open_picture_file(file);
@@ -255,13 +268,11 @@ std::vector<const Texture*> bind(const ShaderOptions& options, const OpenedShade
   return bound;
 }
 
-Image with_shader(const ShaderOptions& options, const std::string& file, const Image& picture,
+Image with_shader(const ShaderOptions& options, const OpenedShader& opened, const Image& picture,
                   const Profile& profile, ThreadPool& pool) {
-  const OpenedShader opened =
-      open_shader(file, options.convention.value_or(GlslConvention::recognised));
-  Uniforms uniforms{opened, picture};
-  for (const std::string& setting : options.settings) uniforms.set(setting);
-  const ShaderProgram program = compile_shader(opened.shader, uniforms.words());
+  std::vector<std::uint32_t> words = known_words(opened, picture);
+  for (const std::string& setting : options.settings) set_uniform(opened, setting, words);
+  const ShaderProgram program = compile_shader(opened.shader, words);
 
   const bool by_codes = opened.convention != GlslConvention::plain;
   const Texture source = make_texture(by_codes ? as_codes(picture) : picture);
@@ -301,10 +312,26 @@ void add_shader_options(CLI::App& parser, ShaderOptions& options) {
              options.convention);
 }
 
+std::vector<std::string> shader_inputs(const ShaderOptions& options) {
+  std::vector<std::string> files = options.files;
+  for (const std::string& text : options.textures) {
+    files.push_back(split_setting("--texture", text).second);
+  }
+  return files;
+}
+
 Image with_shaders(const ShaderOptions& options, Image picture, const Profile& profile,
                    ThreadPool& pool) {
+  std::vector<OpenedShader> all;
   for (const std::string& file : options.files) {
-    picture = with_shader(options, file, picture, profile, pool);
+    all.push_back(open_shader(file, options.convention.value_or(GlslConvention::recognised)));
+    if (all.back().shader.module->stage != ShaderStage::fragment) {
+      throw ShaderError(file + ": it is a vertex shader; a fragment shader would be right");
+    }
+  }
+  check_names(options, all);
+  for (const OpenedShader& opened : all) {
+    picture = with_shader(options, opened, picture, profile, pool);
   }
   return picture;
 }

@@ -22,6 +22,9 @@ struct ShaderOptions {
 /// Adds --shader, --set, --texture and --convention.
 void add_shader_options(CLI::App& parser, ShaderOptions& options);
 
+/// The files of the shaders and of their textures.
+std::vector<std::string> shader_inputs(const ShaderOptions& options);
+
 /// The picture, RGBA16F with its depth in alpha, behind the shaders. A shader by a convention gets
 /// and gives sRGB codes of 8 bits, the lowest row first, as a browser has them; others get and give
 /// the picture as it is. The depth stays. Throws UsageError, FileError, ShaderError.

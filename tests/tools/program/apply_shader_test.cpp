@@ -160,7 +160,7 @@ TEST_CASE("apply --shader: what is wrong is one line, with the shader's or the o
     check_refused(all.directory, all.apply(shader, "no.npy", more), status, said);
   };
   refused(wrong, {}, 1, {"wrong.frag:4: 'x'"});
-  refused(endless, {}, 1, {"line 5", "budget"});
+  refused(endless, {}, 1, {"endless.frag:5: ", "budget"});
   refused(tinted, {"--set", "tnit=1"}, 2, {"--set 'tnit=1'", "did you mean 'tint'"});
   refused(tinted, {"--set", "tint=1,2"}, 2, {"3 numbers"});
   refused(tinted, {"--set", "tint=red"}, 2, {"'red' is no number"});
@@ -168,4 +168,60 @@ TEST_CASE("apply --shader: what is wrong is one line, with the shader's or the o
   refused(tinted, {"--texture", "c=" + all.picture}, 2, {"a, b"});
   refused(tinted, {}, 2, {"'a' and 'b'", "--texture"});
   refused(all.directory.file("none.frag"), {}, 1, {"none.frag"});
+  const std::string counted = all.shader("counted.frag",
+                                         "#version 330\nuniform int n;\nuniform uint m;\n"
+                                         "out vec4 c;\nvoid main() { c = vec4(n, m, 0, 0); }\n");
+  for (const char* number : {"n=1e20", "n=2147483648", "n=0.5", "n=nan", "m=-1"}) {
+    refused(counted, {"--set", number}, 2, {number, "whole number of 32 bits"});
+  }
+  CHECK(run_program(all.apply(counted, "yes.npy", {"--set", "n=-2147483648"})).status == 0);
+  const std::string flat =
+      all.shader("flat.frag",
+                 "#version 330\nuniform sampler2D a;\nuniform sampler2D b;\nout vec4 c;\n"
+                 "void main() { c = texture(a, vec2(0.5)) * texture(b, vec2(0.5)); }\n");
+  const std::string before = read_file(all.picture);
+  CHECK(run_program(all.apply(flat, "one.npy", {"--texture", "b=" + all.picture})).status == 0);
+  const std::string one = all.directory.file("one.npy"), kept = read_file(one);
+  for (const std::string& output : {one, flat}) {
+    const Words words{"apply",    all.picture, "--shader", flat,       "--texture",
+                      "b=" + one, "-o",        output,     "--format", "npy"};
+    const ProgramRun run = run_program(words);
+    CHECK(run.status == 2);
+    CHECK(contains(run.err, "a shader's file"));
+  }
+  CHECK(read_file(one) == kept);
+  CHECK(read_file(all.picture) == before);
+}
+
+TEST_CASE("apply --shader: of several shaders a setting is for those that have it") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const auto scaled = [&](const char* name) {
+    return all.shader(std::string{name} + ".frag",
+                      "#version 330\nuniform sampler2D p;\nuniform float " + std::string{name} +
+                          ";\nout vec4 c;\nvoid main() {\n  c = texelFetch(p, "
+                          "ivec2(gl_FragCoord.xy), 0) * " +
+                          name + ";\n}\n");
+  };
+  const std::string twice = scaled("twice"), half = scaled("half_of");
+  CHECK(all.applied(twice, {"--shader", half, "--set", "twice=2", "--set", "half_of=0.5"}) ==
+        Shaders::texels(all.picture));
+  check_refused(all.directory, all.apply(twice, "no.npy", {"--shader", half, "--set", "thrice=2"}),
+                2, {"twice, half_of"});
+}
+
+TEST_CASE("apply --shader: the bits of a NaN are the same on every processor") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const std::string shader = all.shader("nan.frag", R"(#version 330
+uniform float zero;
+out vec4 colour;
+void main() {
+  float a = zero / zero, b = -a, c = sqrt(zero - 1.0), d = intBitsToFloat(0x7FC12345);
+  bool same = floatBitsToInt(a) == 0x7FC00000 && floatBitsToUint(b) == 0x7FC00000u &&
+              floatBitsToInt(c) == 0x7FC00000 && floatBitsToInt(d * gl_FragCoord.x) == 0x7FC00000;
+  colour = vec4(same ? 1.0 : 0.0);
+}
+)");
+  CHECK(all.applied(shader).substr(0, 2) == std::string{"\0\x3C", 2});
 }
