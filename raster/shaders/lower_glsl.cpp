@@ -135,7 +135,7 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
     return this->load(to, place(call, word(w, 2)));  // a pixel has one sample, its middle
   }
   std::vector<Scalars> of;
-  for (const SpirvId id : w.subspan(2)) of.push_back(value(to, call, id));
+  for (const SpirvId id : w.subspan(2)) of.push_back(value(call, id));
   if (of.empty() || of[0].empty()) damaged("a function has no operand");
   switch (op) {
     case determinant:
@@ -189,7 +189,7 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
 
 Scalars Lowering::glsl_pointers(Call& call, const SpirvInstruction& in, GlslOp op,
                                 ShaderRegion& to) {
-  const Scalars all = value(to, call, word(in.operands, 2));
+  const Scalars all = value(call, word(in.operands, 2));
   Scalars made, second;
   for (const ShaderValue x : all) {
     if (op == GlslOp::modf) {

@@ -70,7 +70,7 @@ Scalars Lowering::call_result(Call& call, const SpirvInstruction& in, ShaderRegi
     if (type(parameter.type).kind == SpirvKind::pointer) {
       inner.places[parameter.result] = place(call, w[i + 1]);
     } else {
-      inner.values[parameter.result] = value(to, call, w[i + 1]);
+      inner.values[parameter.result] = value(call, w[i + 1]);
       inner.types[parameter.result] = parameter.type;
       if (inner.values[parameter.result].size() != scalars(parameter.type)) {
         damaged("a call has other parameters");
@@ -90,18 +90,18 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
   using enum SpirvOp;
   switch (in.op) {
     case copy_object:
-    case copy_logical: return value(to, call, word(w, 0));
+    case copy_logical: return value(call, word(w, 0));
     case composite_construct: {
       Scalars made;
       for (const SpirvId id : w) {
-        const Scalars of = value(to, call, id);
+        const Scalars of = value(call, id);
         made.insert(made.end(), of.begin(), of.end());
       }
       return made;
     }
     case vector_shuffle: {
-      Scalars both = value(to, call, word(w, 0));
-      const Scalars second = value(to, call, word(w, 1));
+      Scalars both = value(call, word(w, 0));
+      const Scalars second = value(call, word(w, 1));
       both.insert(both.end(), second.begin(), second.end());
       Scalars made;
       for (const std::uint32_t i : w.subspan(2)) {
@@ -114,7 +114,7 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
     case composite_insert: {
       const bool inserts = in.op == composite_insert;
       const SpirvId whole_id = word(w, inserts ? 1 : 0);
-      Scalars all = value(to, call, whole_id);
+      Scalars all = value(call, whole_id);
       SpirvId at = inserts ? in.type : type_of(call, whole_id);
       std::uint32_t first = 0;
       for (const std::uint32_t i : w.subspan(inserts ? 2 : 1)) {
@@ -130,16 +130,16 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
         }
       }
       if (!inserts) return part(all, first, scalars(at));
-      const Scalars object = value(to, call, w[0]);
+      const Scalars object = value(call, w[0]);
       if (first + object.size() > all.size()) damaged("a part lies beyond its whole");
       std::copy(object.begin(), object.end(), all.begin() + first);
       return all;
     }
     case vector_extract_dynamic: {
-      const Scalars all = value(to, call, word(w, 0));
+      const Scalars all = value(call, word(w, 0));
       if (all.empty()) damaged("a vector has no parts");
       const ShaderValue index =
-          clamped(to, scalar(to, call, word(w, 1)), static_cast<std::uint32_t>(all.size()));
+          clamped(to, scalar(call, word(w, 1)), static_cast<std::uint32_t>(all.size()));
       ShaderValue chosen = all[0];
       for (std::uint32_t i = 1; i < all.size(); ++i) {
         chosen = make(to, ShaderOp::select, make(to, ShaderOp::equal_integers, index, whole(i)),
@@ -148,11 +148,11 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
       return {chosen};
     }
     case vector_insert_dynamic: {
-      Scalars all = value(to, call, word(w, 0));
+      Scalars all = value(call, word(w, 0));
       if (all.empty()) damaged("a vector has no parts");
-      const ShaderValue object = scalar(to, call, word(w, 1));
+      const ShaderValue object = scalar(call, word(w, 1));
       const ShaderValue index =
-          clamped(to, scalar(to, call, word(w, 2)), static_cast<std::uint32_t>(all.size()));
+          clamped(to, scalar(call, word(w, 2)), static_cast<std::uint32_t>(all.size()));
       for (std::uint32_t i = 0; i < all.size(); ++i) {
         all[i] = make(to, ShaderOp::select, make(to, ShaderOp::equal_integers, index, whole(i)),
                       object, all[i]);
@@ -160,8 +160,8 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
       return all;
     }
     case SpirvOp::select: {
-      const Scalars condition = value(to, call, word(w, 0));
-      const Scalars yes = value(to, call, word(w, 1)), no = value(to, call, word(w, 2));
+      const Scalars condition = value(call, word(w, 0));
+      const Scalars yes = value(call, word(w, 1)), no = value(call, word(w, 2));
       if (yes.size() != no.size() || (condition.size() != 1 && condition.size() != yes.size())) {
         damaged("a choice is between two types");
       }
@@ -173,7 +173,7 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
       return made;
     }
     default: {  // any, all
-      const Scalars all = value(to, call, word(w, 0));
+      const Scalars all = value(call, word(w, 0));
       if (all.empty()) damaged("a vector has no parts");
       ShaderValue joined = all[0];
       for (std::size_t i = 1; i < all.size(); ++i) {
@@ -186,7 +186,7 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
 
 Scalars Lowering::matrix_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
-  const Scalars a = value(to, call, word(w, 0));
+  const Scalars a = value(call, word(w, 0));
   const SpirvType& of_a = type(type_of(call, w[0]));
   using enum SpirvOp;
   if (in.op == transpose) {
@@ -200,7 +200,7 @@ Scalars Lowering::matrix_result(Call& call, const SpirvInstruction& in, ShaderRe
     }
     return made;
   }
-  const Scalars b = value(to, call, word(w, 1));
+  const Scalars b = value(call, word(w, 1));
   const SpirvType& of_b = type(type_of(call, w[1]));
   switch (in.op) {
     case vector_times_scalar:
@@ -332,8 +332,8 @@ bool has_one_operand(SpirvOp op) {
 
 Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
-  Scalars a = value(to, call, word(w, 0));
-  const Scalars b = w.size() > 1 ? value(to, call, w[1]) : Scalars{};
+  Scalars a = value(call, word(w, 0));
+  const Scalars b = w.size() > 1 ? value(call, w[1]) : Scalars{};
   const auto of_b = [&](std::size_t i) {
     if (i >= b.size()) damaged("an instruction has too few operands");
     return b[i];
@@ -432,7 +432,7 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
     }
     case bit_field_s_extract:
     case bit_field_u_extract: {
-      const ShaderValue first = scalar(to, call, word(w, 1)), count = scalar(to, call, word(w, 2));
+      const ShaderValue first = scalar(call, word(w, 1)), count = scalar(call, word(w, 2));
       for (const ShaderValue of : a) {
         made.push_back(make(to,
                             in.op == bit_field_s_extract ? ShaderOp::extract_bits_signed
@@ -442,7 +442,7 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
       return made;
     }
     case bit_field_insert: {
-      const ShaderValue first = scalar(to, call, word(w, 2)), count = scalar(to, call, word(w, 3));
+      const ShaderValue first = scalar(call, word(w, 2)), count = scalar(call, word(w, 3));
       // The field's bits of ones: all but the last `count`, turned round; none of 32.
       const ShaderValue ones =
           make(to, ShaderOp::extract_bits_unsigned, whole(~0u), whole(0), count);
@@ -463,9 +463,9 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
 Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
   using enum SpirvOp;
-  const Scalars texture = value(to, call, word(w, 0));
+  const Scalars texture = value(call, word(w, 0));
   if (in.op == sampled_image) {
-    const Scalars sampler = value(to, call, word(w, 1));
+    const Scalars sampler = value(call, word(w, 1));
     if (texture.size() != 1 || sampler.size() != 1) damaged("a sampler is none");
     return {texture[0], sampler[0]};
   }
@@ -490,7 +490,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
       in.op != image_query_size_lod && in.op != image_query_size && in.op != image_query_levels;
   std::size_t next = 1;
   if (has_place) {
-    Scalars at = value(to, call, word(w, next++));
+    Scalars at = value(call, word(w, next++));
     const bool projects = in.op == image_sample_proj_implicit_lod ||
                           in.op == image_sample_proj_explicit_lod ||
                           in.op == image_sample_proj_dref_implicit_lod ||
@@ -507,7 +507,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
         in.op == image_sample_proj_dref_implicit_lod ||
         in.op == image_sample_proj_dref_explicit_lod || in.op == image_dref_gather;
     if (compares) {
-      sample.compared = scalar(to, call, word(w, next++));
+      sample.compared = scalar(call, word(w, next++));
       if (projects) sample.compared = make(to, ShaderOp::divide, sample.compared, at[places]);
     }
   }
@@ -516,13 +516,13 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
     case image_fetch: sample.kind = SampleKind::fetch; break;
     case image_gather:
       sample.kind = SampleKind::gather;
-      sample.channel = static_cast<int>(tree_.bits(scalar(to, call, word(w, next++))) & 3);
+      sample.channel = static_cast<int>(tree_.bits(scalar(call, word(w, next++))) & 3);
       break;
     case image_dref_gather: sample.kind = SampleKind::gather; break;
     case image_query_size:
     case image_query_size_lod:
       sample.kind = SampleKind::size;
-      sample.more[0] = in.op == image_query_size ? whole(0) : scalar(to, call, word(w, next++));
+      sample.more[0] = in.op == image_query_size ? whole(0) : scalar(call, word(w, next++));
       break;
     case image_query_levels: sample.kind = SampleKind::levels; break;
     case image_query_lod: sample.kind = SampleKind::query_lod; break;
@@ -534,20 +534,20 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
   }
   if (next < w.size() && has_place) {
     const std::uint32_t bits = w[next++];
-    if ((bits & kImageBias) != 0) sample.more[0] = scalar(to, call, word(w, next++));
-    if ((bits & kImageLod) != 0) sample.more[0] = scalar(to, call, word(w, next++));
+    if ((bits & kImageBias) != 0) sample.more[0] = scalar(call, word(w, next++));
+    if ((bits & kImageLod) != 0) sample.more[0] = scalar(call, word(w, next++));
     if ((bits & kImageGrad) != 0) {
       sample.kind = SampleKind::gradient;
       std::size_t put = 0;
       for (int axis = 0; axis < 2; ++axis) {
-        const Scalars slope = value(to, call, word(w, next++));
+        const Scalars slope = value(call, word(w, next++));
         for (std::size_t i = 0; i < 3; ++i) {
           sample.more.at(put++) = i < slope.size() ? slope[i] : whole(0);
         }
       }
     }
     if ((bits & (kImageConstOffset | kImageOffset)) != 0) {
-      const Scalars offset = value(to, call, word(w, next++));
+      const Scalars offset = value(call, word(w, next++));
       std::copy_n(offset.begin(), std::min<std::size_t>(3, offset.size()), sample.offset.begin());
     }
     if ((bits & kImageConstOffsets) != 0) refuse("textureGatherOffsets is not supported");

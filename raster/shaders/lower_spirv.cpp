@@ -122,6 +122,174 @@ ShaderUniforms uniforms_of(const SpirvModule& module) {
   return made;
 }
 
+// --- what main() is given and gives, and memory ---
+
+void Lowering::lower() {
+  std::uint32_t first_uniform = 0;
+  for (const auto& [id, variable] : module_.variables) {
+    const std::uint32_t scalars = module_.pointed(variable.type).scalars;
+    const SpirvId type = module_.type(variable.type).element;
+    using enum SpirvStorage;
+    if (is_uniform(variable.storage)) {
+      globals_[id] = {Place::In::uniforms, type, first_uniform};
+      first_uniform += scalars;
+    } else if (variable.storage == input) {
+      globals_[id] = {Place::In::inputs, type, static_cast<std::uint32_t>(tree_.inputs.size())};
+      add_inputs(type, decorations_of(id));
+    } else {
+      globals_[id] = {Place::In::variables, type, new_variables(scalars)};
+      set_initial(tree_.main, globals_[id].first, scalars, variable.initial);
+      if (variable.storage == output) add_outputs(globals_[id].first, type, decorations_of(id));
+    }
+  }
+  Call main{.function = &module_.functions.at(module_.main)};
+  run_call(main, tree_.main);
+}
+
+void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
+  const SpirvType& what = type(id);
+  if (what.kind == SpirvKind::structure) {
+    for_each_member(id, of, [&](SpirvId member, SpirvDecorations with) {
+      with.is_flat = with.is_flat || of.is_flat;
+      with.is_linear = with.is_linear || of.is_linear;
+      add_inputs(member, with);
+    });
+    return;
+  }
+  if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
+  add_numbers(id, of, [&](int location, int component, int part) {
+    tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear});
+  });
+}
+
+void Lowering::add_outputs(std::uint32_t first, SpirvId id, const SpirvDecorations& of) {
+  if (type(id).kind == SpirvKind::structure) {
+    for_each_member(id, of, [&](SpirvId member, const SpirvDecorations& with) {
+      add_outputs(first, member, with);
+      first += scalars(member);
+    });
+    return;
+  }
+  add_numbers(id, of, [&](int location, int component, int) {
+    tree_.outputs.push_back({of.builtin, location, component, first++});
+  });
+}
+
+int Lowering::locations(SpirvId id) const {
+  const SpirvType& what = type(id);
+  if (what.kind == SpirvKind::array || what.kind == SpirvKind::matrix) {
+    return static_cast<int>(what.count) * locations(what.element);
+  }
+  int sum = 0;
+  for (const SpirvId member : what.members) sum += locations(member);
+  return what.kind == SpirvKind::structure ? sum : 1;
+}
+
+ShaderValue Lowering::load_one(ShaderRegion& to, const Place& at, std::uint32_t number) {
+  const std::uint32_t place = at.first + number;
+  const bool is_known = at.index == kNoValue;
+  using enum Place::In;
+  if (at.in == uniforms && is_known) return whole(uniforms_[place]);
+  if (at.in == variables && is_known) return get(to, place);
+  if (at.in == inputs) return load_input(to, at, place);
+  ShaderInstruction& in =
+      add(to, at.in == uniforms ? ShaderOp::load_constant : ShaderOp::load_indexed);
+  in.place = at.in == uniforms ? place + uniform_table() : place;
+  in.a = at.index;
+  in.count = at.count;
+  in.stride = at.stride;
+  work(at.count);
+  in.to = tree_.new_value();
+  return in.to;
+}
+
+ShaderValue Lowering::load_input(ShaderRegion& to, const Place& at, std::uint32_t place) {
+  const auto input = [&](std::uint32_t number) {
+    ShaderInstruction& in = add(to, ShaderOp::input);
+    in.place = number;
+    return in.to = tree_.new_value();
+  };
+  ShaderValue chosen = input(place);
+  if (at.index == kNoValue) return chosen;
+  const ShaderValue index = clamped(to, at.index, at.count);
+  for (std::uint32_t i = 1; i < at.count; ++i) {
+    const ShaderValue is = make(to, ShaderOp::equal_integers, index, whole(i));
+    chosen = make(to, ShaderOp::select, is, input(place + i * at.stride), chosen);
+  }
+  return chosen;
+}
+
+std::uint32_t Lowering::uniform_table() {
+  if (!uniform_table_) {
+    uniform_table_ = static_cast<std::uint32_t>(tree_.tables.size());
+    tree_.tables.insert(tree_.tables.end(), uniforms_.begin(), uniforms_.end());
+  }
+  return *uniform_table_;
+}
+
+Scalars Lowering::load(ShaderRegion& to, const Place& at) {
+  Scalars values(scalars(at.type));
+  for (std::uint32_t i = 0; i < values.size(); ++i) values[i] = load_one(to, at, i);
+  return values;
+}
+
+void Lowering::store(ShaderRegion& to, const Place& at, const Scalars& values) {
+  if (at.in != Place::In::variables) damaged("what cannot be written is written");
+  for (std::uint32_t i = 0; i < values.size(); ++i) {
+    if (at.index == kNoValue) {
+      set(to, at.first + i, values[i]);
+      continue;
+    }
+    ShaderInstruction& in = add(to, ShaderOp::store_indexed);
+    in.place = at.first + i;
+    in.a = at.index;
+    in.b = values[i];
+    in.count = at.count;
+    in.stride = at.stride;
+    work(at.count);
+  }
+}
+
+Place Lowering::chain(ShaderRegion& to, Place at, const std::vector<ShaderValue>& indices) {
+  for (const ShaderValue index : indices) {
+    const SpirvType& of = type(at.type);
+    const bool is_known = tree_.is_constant(index);
+    if (of.kind == SpirvKind::structure) {
+      if (!is_known || tree_.bits(index) >= of.members.size()) {
+        damaged("a structure has no such member");
+      }
+      for (std::uint32_t i = 0; i < tree_.bits(index); ++i) at.first += scalars(of.members[i]);
+      at.type = of.members[tree_.bits(index)];
+      continue;
+    }
+    if (of.kind != SpirvKind::array && of.kind != SpirvKind::vector &&
+        of.kind != SpirvKind::matrix) {
+      damaged("an index chooses from what has no parts");
+    }
+    const std::uint32_t each = scalars(of.element);
+    at.type = of.element;
+    if (is_known) {
+      const auto number = static_cast<std::int32_t>(tree_.bits(index));
+      at.first += each * static_cast<std::uint32_t>(
+                             std::clamp(number, 0, static_cast<std::int32_t>(of.count) - 1));
+    } else if (at.index == kNoValue) {
+      at.index = index;
+      at.count = of.count;
+      at.stride = each;
+    } else {
+      // Both as one index that counts numbers.
+      const ShaderValue outer =
+          make(to, ShaderOp::multiply_integers, clamped(to, at.index, at.count), whole(at.stride));
+      const ShaderValue inner =
+          make(to, ShaderOp::multiply_integers, clamped(to, index, of.count), whole(each));
+      at.index = make(to, ShaderOp::add_integers, outer, inner);
+      at.count = (at.count - 1) * at.stride + (of.count - 1) * each + 1;
+      at.stride = 1;
+    }
+  }
+  return at;
+}
+
 ShaderTree lower_spirv(const SpirvModule& module, std::span<const std::uint32_t> words) {
   ShaderTree tree;
   Lowering{module, words, tree}.lower();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,22 @@ struct ShaderProgram {
   std::map<SpirvId, std::string> files{};  ///< that lines are of
 };
 
+constexpr std::uint8_t number_of(ShaderOp op) { return static_cast<std::uint8_t>(op); }
+constexpr std::uint8_t number_of(StepOp op) { return static_cast<std::uint8_t>(op); }
+
 ShaderProgram emit_program(const ShaderTree& tree);
+
+// What emit_program() ends with.
+
+/// Registers that must lie one behind the other: an index chooses from them.
+struct RegisterRow {
+  std::uint32_t first = 0, length = 0;
+};
+
+/// A product and a sum become one step, a value and its copy one register.
+void join_steps(ShaderProgram& program);
+
+/// Values that vary share registers if they are not there at the same time.
+void share_registers(ShaderProgram& program, std::span<const RegisterRow> rows);
 
 }  // namespace softfocus

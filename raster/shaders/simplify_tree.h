@@ -2,6 +2,9 @@
 // What is known of a shader before it runs is done before it runs. No pass changes a bit of a
 // result: values that are known, are made twice, or that nothing needs.
 
+#include <algorithm>
+#include <iterator>
+
 #include "raster/shaders/shader_ir.h"
 
 namespace softfocus {
@@ -11,6 +14,17 @@ void simplify(ShaderTree& tree);
 /// Values that are used beyond the region that makes them go by variables: other lanes may make
 /// them again. A tree that is emitted needs this; simplify() does it.
 void export_values(ShaderTree& tree);
+
+/// Values that are known, or are there already, take the place of what would make them. A pass of
+/// simplify().
+void forward_values(ShaderTree& tree);
+
+inline bool is_exit(const ShaderNode& node) { return node.kind == ShaderNodeKind::exit; }
+
+/// Moves a region's nodes to the end of another.
+inline void append(ShaderRegion& to, ShaderRegion&& from) {
+  std::move(from.begin(), from.end(), std::back_inserter(to));
+}
 
 /// Whether a region's end cannot be reached.
 bool always_leaves(const ShaderRegion& region);
