@@ -177,7 +177,10 @@ void check_names(const ShaderOptions& options, const std::vector<OpenedShader>& 
     }
     if (std::find(names.begin(), names.end(), name) != names.end()) return;
     std::string list;
-    for (const std::string& of : names) list += (list.empty() ? "" : ", ") + of;
+    for (const std::string& of : names) {
+      if (!list.empty()) list += ", ";
+      list += of;
+    }
     throw UsageError(option + " '" + text + "': the shaders have no " +
                      (textures ? "texture" : "uniform") + " of that name; there are " +
                      (list.empty() ? "none" : list) + did_you_mean(name, names));
