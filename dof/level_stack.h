@@ -45,8 +45,8 @@ struct RowRoom {
 };
 /// Enough to enlarge a whole tile that begins at the last pixel.
 inline constexpr RowRoom kSeenRoom{8, 72};
-/// Takes planes from `memory`, of which `used` floats are taken. Without memory counts their
-/// floats.
+/// Takes planes from `memory`, whose first `used` floats are taken already, and adds to `used`. If
+/// `memory` is null, only counts.
 LevelPlanes take_planes(int count, int width, int height, float* memory, std::size_t& used,
                         RowRoom room = kSeenRoom);
 /// Repeats the first and last of `width` pixels outwards, in the rows of some planes.

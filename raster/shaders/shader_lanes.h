@@ -81,8 +81,8 @@ LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa);
 /// Runs the steps. False if the budget is spent: `stopped` is the step.
 bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_t& stopped);
 
-/// Stores lanes of four registers as texels of a row: `texels` of them, of which those that are
-/// `killed` stay (null: none is).
+/// Stores `count` lanes of four registers as texels of a row. A texel whose lane is set in `killed`
+/// stays as it is; if `killed` is null, none does.
 void store_lanes(Isa isa, const float* const* channels, const std::int32_t* killed, int count,
                  Format format, const Profile& profile, std::byte* to);
 

@@ -143,6 +143,11 @@ std::vector<std::uint32_t> known_words(const OpenedShader& opened, const Image& 
   return words;
 }
 
+[[noreturn]] void refuse_whole(const std::string& setting, const ShaderUniform& of) {
+  throw UsageError("--set '" + setting + "': '" + of.name + "' is a whole number of 32 bits" +
+                   (of.is_signed ? "" : ", not below 0"));
+}
+
 /// Sets a uniform as --set says. False if the shader has none of that name.
 bool set_uniform(const OpenedShader& opened, const std::string& setting,
                  std::vector<std::uint32_t>& words) {
@@ -156,10 +161,7 @@ bool set_uniform(const OpenedShader& opened, const std::string& setting,
   }
   for (std::uint32_t i = 0; i < of->words; ++i) {
     const std::optional<std::uint32_t> word = word_of(*of, numbers[numbers.size() == 1 ? 0 : i]);
-    if (!word) {
-      throw UsageError("--set '" + setting + "': '" + name + "' is a whole number of 32 bits" +
-                       (of->is_signed ? "" : ", not below 0"));
-    }
+    if (!word) refuse_whole(setting, *of);
     words[of->first + i] = *word;
   }
   return true;

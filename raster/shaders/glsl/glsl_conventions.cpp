@@ -119,7 +119,7 @@ bool declares(std::span<const GlslToken> tokens, std::string_view name) {
       const std::string_view next = tokens[i].text;
       if (next == "{") is_block = true;
       if (next == "}") is_block = false;
-      if ((next == ";" && !is_block) || next == ")") break;  // the latter: of a parameter
+      if ((next == ";" && !is_block) || next == ")") break;  // ")" ends a parameter
       if (next == name) return true;
     }
   }
