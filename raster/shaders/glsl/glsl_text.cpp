@@ -10,6 +10,9 @@
 namespace softfocus {
 namespace {
 
+constexpr std::string_view kOldTextureNames[] = {"texture1D",   "texture2D", "texture3D",
+                                                 "textureCube", "shadow1D",  "shadow2D"};
+
 constexpr int kMostIncludes = 1000, kMostIncludeDepth = 32;
 /// Operators of one expression: glslang walks a tree as deep as their number, on the caller's
 /// stack.
@@ -400,6 +403,16 @@ GlslToken refused_extension(std::span<const GlslToken> tokens) {
   return {};
 }
 
+/// Functions such as texture2D() are there in core profiles before 4.20, too, but glslang makes
+/// SPIR-V of them in the compatibility profile alone.
+bool wants_compatibility(std::span<const GlslToken> tokens, const GlslVersion& version) {
+  if (version.is_es || version.number < 150 || version.number >= 420) return false;
+  return std::any_of(tokens.begin(), tokens.end(), [](const GlslToken& token) {
+    return std::any_of(std::begin(kOldTextureNames), std::end(kOldTextureNames),
+                       [&](std::string_view begin) { return token.text.starts_with(begin); });
+  });
+}
+
 /// Lines that switch on what a raised version has are left empty.
 std::string without_raising(const std::string& text) {
   std::string out;
@@ -530,7 +543,12 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise)
       std::size_t from = 0, begin = 0;
       for (int i = 1; i < line; ++i) next_line(text, from);
       begin = static_cast<std::size_t>(tokens[0].text.data() - text.data());
-      out.version += text.substr(begin, text.find('\n', begin) - begin) + "\n";
+      if (wants_compatibility(tokens, out.taken_as)) {
+        out.taken_as.profile = "compatibility";
+        out.version += "#version " + std::to_string(out.taken_as.number) + " compatibility\n";
+      } else {
+        out.version += text.substr(begin, text.find('\n', begin) - begin) + "\n";
+      }
       text.replace(begin, text.find('\n', begin) - begin, "");
     }
     if (out.is_raised) out.taken_as = raised;
@@ -585,8 +603,13 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise)
   GlslSurroundings around = glsl_surroundings(out.convention, source, tokens, version);
   out.before += around.before;
   out.after = around.after;
+  if (out.after.empty()) {  // an error at the end is one of the last line
+    const auto lines = std::count(source.text.begin(), source.text.end(), '\n');
+    out.after = line_directive(static_cast<int>(lines) + 1, source.name);
+  }
   const bool sets_next = version.is_es || version.number >= 330;
   out.text = with_lines(line_directive(1, source.name) + text, sets_next);
+  out.after = with_lines(out.after, sets_next);
   return out;
 }
 

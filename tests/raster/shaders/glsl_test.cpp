@@ -174,8 +174,28 @@ TEST_CASE("an extension that glslang has only in a later version is had") {
                  "a"));
 }
 
+TEST_CASE("texture2D() and its kin are there in core profiles before 4.20, as drivers have them") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  for (const char* const version : {"150", "150 core", "330", "330 core", "400", "410 core"}) {
+    CAPTURE(version);
+    for (const char* const read : {"texture2D(t, vec2(0.5))", "texture2DProj(t, vec3(0.5))",
+                                   "texture2DLod(t, vec2(0.5), 1.0)"}) {
+      CAPTURE(read);
+      const std::string text = "// a comment\n#version " + std::string(version) +
+                               "\nuniform sampler2D t;\nout vec4 o;\nvoid main() {\n  o = " + read +
+                               ";\n}\n";
+      CHECK(error_of_text(text) == "none");
+      CHECK(has_line(compiled_text(text), 6));
+    }
+  }
+  CHECK(error_of_text("#version 420\nuniform sampler2D t;\nout vec4 o;\nvoid main() {\n  o = "
+                      "texture2D(t, vec2(0.5));\n}\n")
+            .starts_with("mine.frag:5: 'texture2D'"));
+}
+
 TEST_CASE("an error names the user's file and line") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  CHECK(error_of_text("#version 330\nvoid main() {\n  f(\n").starts_with("mine.frag:4: "));
   CHECK(error_of_text("#version 330\nout vec4 o;\nvoid main() {\n  o = vec4(x);\n}\n") ==
         "mine.frag:4: 'x': undeclared identifier");
   CHECK(error_of_text("#version 330\n#error not so\nvoid main() {}\n")
